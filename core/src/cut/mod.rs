@@ -1,0 +1,17 @@
+//! What happens to the cutter: stock → engagement → force → elastic loop → wall.
+
+mod compliance;
+mod elastic;
+mod engagement;
+mod force;
+mod path;
+mod setup;
+mod wall;
+
+pub use compliance::Compliance;
+pub use elastic::{Loop, Passage, State};
+pub use engagement::Frame;
+pub use force::{ForceTable, SplitForce, chip_area, chip_volume};
+pub use path::{Path, PathError, Sample};
+pub use setup::{Coefficients, CutSetup, Milling, Side, WallLaw};
+pub use wall::{Envelope, WallError};

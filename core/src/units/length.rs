@@ -1,0 +1,139 @@
+//! Lengths in whole nanometres: places ([`Position`]) and differences of places ([`Offset`]).
+
+use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
+
+use super::{Real, shift_rounded};
+
+/// An absolute coordinate, nanometres, ±9.2 × 10⁹ m (the machine uses ±4 m). Arithmetic saturates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Position(i64);
+
+/// A difference of coordinates, a length or a displacement, nanometres. Arithmetic saturates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Offset(i64);
+
+impl Position {
+    /// The origin of the coordinate.
+    pub const ZERO: Self = Self(0);
+
+    /// From whole nanometres.
+    pub const fn from_nm(nm: i64) -> Self {
+        Self(nm)
+    }
+    /// Whole nanometres.
+    pub const fn nm(self) -> i64 {
+        self.0
+    }
+}
+
+impl Offset {
+    /// No length.
+    pub const ZERO: Self = Self(0);
+    /// The longest length.
+    pub const MAX: Self = Self(i64::MAX);
+
+    /// From whole nanometres.
+    pub const fn from_nm(nm: i64) -> Self {
+        Self(nm)
+    }
+    /// From whole micrometres, saturating.
+    pub const fn from_um(um: i64) -> Self {
+        Self(um.saturating_mul(1_000))
+    }
+    /// Whole nanometres.
+    pub const fn nm(self) -> i64 {
+        self.0
+    }
+    /// From millimetres, rounded to the nanometre.
+    pub const fn from_mm(mm: Real) -> Self {
+        Self(shift_rounded((mm.bits() as i128).saturating_mul(1_000_000), Real::FRACTION_BITS) as i64)
+    }
+    /// Millimetres, rounded to 2⁻³² mm; saturates beyond ±2147 m.
+    pub const fn mm(self) -> Real {
+        Real::ratio(self.0, 1_000_000)
+    }
+    /// The length without its sign.
+    pub const fn abs(self) -> Self {
+        Self(self.0.saturating_abs())
+    }
+    /// This length times a number, rounded to the nanometre, saturating.
+    pub const fn scaled(self, factor: Real) -> Self {
+        let product = shift_rounded((self.0 as i128).saturating_mul(factor.bits() as i128), Real::FRACTION_BITS);
+        Self(saturate(product))
+    }
+    /// This length over another, as a number; saturates, 0/0 is 0.
+    pub const fn over(self, other: Self) -> Real {
+        Real::ratio(self.0, other.0)
+    }
+    /// The sum of two products `self·a + other·b`, rounded once.
+    pub const fn blend(self, a: Real, other: Self, b: Real) -> Self {
+        let p = (self.0 as i128).saturating_mul(a.bits() as i128);
+        let q = (other.0 as i128).saturating_mul(b.bits() as i128);
+        Self(saturate(shift_rounded(p.saturating_add(q), Real::FRACTION_BITS)))
+    }
+}
+
+const fn saturate(v: i128) -> i64 {
+    if v > i64::MAX as i128 {
+        i64::MAX
+    } else if v < i64::MAX.saturating_neg() as i128 {
+        i64::MAX.saturating_neg()
+    } else {
+        v as i64
+    }
+}
+
+impl Sub for Position {
+    type Output = Offset;
+    #[inline]
+    fn sub(self, other: Self) -> Offset {
+        Offset(self.0.saturating_sub(other.0))
+    }
+}
+impl Add<Offset> for Position {
+    type Output = Self;
+    #[inline]
+    fn add(self, by: Offset) -> Self {
+        Self(self.0.saturating_add(by.0))
+    }
+}
+impl Sub<Offset> for Position {
+    type Output = Self;
+    #[inline]
+    fn sub(self, by: Offset) -> Self {
+        Self(self.0.saturating_sub(by.0))
+    }
+}
+impl Add for Offset {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self(self.0.saturating_add(other.0))
+    }
+}
+impl Sub for Offset {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.saturating_sub(other.0))
+    }
+}
+impl Neg for Offset {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self(self.0.saturating_neg())
+    }
+}
+impl AddAssign for Offset {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl SubAssign for Offset {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
