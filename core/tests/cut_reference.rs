@@ -3,7 +3,7 @@ mod corner;
 use corner::*;
 use truepath_core::cut::*;
 use truepath_core::geometry::{Curve, Vector};
-use truepath_core::units::Offset;
+use truepath_core::units::{Offset, Real};
 
 fn engaged_deg(path: &Path, s_mm: f64) -> f64 {
     // The sample nearest to s, then exactly beside it: interpolate between its neighbours.
@@ -56,10 +56,10 @@ fn engagement_on_arcs_agrees_with_its_closed_forms() {
 #[test]
 fn the_mean_force_is_that_of_the_papers_record() {
     let s = setup(WallLaw::Mean);
-    let table = ForceTable::new(&s, &coefficients());
+    let table = ForceTable::new(Real::ZERO);
     let f = s.feed_per_tooth(real(400.0));
     let magnitude = |degrees: f64| {
-        let (n, t) = table.mean(real(degrees.to_radians())).total(f);
+        let (n, t) = table.mean(&s, &coefficients(), real(degrees.to_radians())).total(f);
         float(n).hypot(float(t))
     };
     assert!((magnitude(45.573) - 150.0).abs() < 1.0, "{}", magnitude(45.573));
@@ -71,16 +71,16 @@ fn the_mean_force_is_that_of_the_papers_record() {
 #[test]
 fn the_helix_decides_the_force_that_makes_a_height() {
     let s = setup(WallLaw::Helical);
-    let table = ForceTable::new(&s, &coefficients());
+    let table = ForceTable::new(Real::ZERO);
     let f = s.feed_per_tooth(real(400.0));
     let rows = [(45.573, [-90, -46, -39, -94, -140], -109), (79.047, [-379, -435, -456, -385, -317], -361)];
     for (degrees, forces, mean) in rows {
         let engaged = real(f64::to_radians(degrees));
         for (z, expected) in [0.1, 2.5, 5.0, 7.5, 9.9].into_iter().zip(forces) {
-            let got = float(table.at_height(engaged, real(z)).total(f).0);
+            let got = float(table.at_height(&s, &coefficients(), engaged, real(z)).total(f).0);
             assert!((got - f64::from(expected)).abs() < 1.0, "{degrees} z {z}: {got} instead of {expected}");
         }
-        let got = float(table.mean(engaged).total(f).0);
+        let got = float(table.mean(&s, &coefficients(), engaged).total(f).0);
         assert!((got - f64::from(mean)).abs() < 1.0, "mean {got}");
     }
 }
@@ -89,7 +89,7 @@ fn the_helix_decides_the_force_that_makes_a_height() {
 fn the_closed_loop_leaves_the_papers_error_on_the_corner() {
     let blocks = corner();
     let path = path(&blocks, &setup(WallLaw::Mean), 100);
-    let table = ForceTable::new(path.setup(), &coefficients());
+    let table = ForceTable::new(Real::ZERO);
     let stiffness = real(1150.0);
     let machine = machine(&path, &table, Compliance::from_stiffness(stiffness, stiffness));
     let mut states = vec![State::REST; path.working().len()];
@@ -104,4 +104,17 @@ fn the_closed_loop_leaves_the_papers_error_on_the_corner() {
     assert!((straight - 0.0914).abs() < 0.001, "{straight}");
     assert!((arc - 0.297).abs() < 0.004, "{arc}");
     assert!((widest - 76.6).abs() < 0.2, "{widest}");
+}
+
+#[test]
+fn a_cantilever_with_its_load_at_mid_depth_moves_its_tip_as_the_beam_formula_says() {
+    // D 16, L 60, b 10: u = 1 − b/2L = 0.9167; P·L³/3EI times u²(3 − u)/2.
+    let beam = Cantilever::new(Offset::from_um(16_000), 4, Offset::from_um(60_000), real(10.0), ToolMaterial::Carbide);
+    let rigidity = 600.0 * std::f64::consts::PI * 12f64.powi(4) / 64.0;
+    let tip_load = 60f64.powi(3) / (3.0 * rigidity);
+    let u: f64 = 1.0 - 10.0 / 120.0;
+    let expected = tip_load * u * u * (3.0 - u) / 2.0;
+    let got = float(beam.at(Real::ZERO));
+    assert!((got / expected - 1.0).abs() < 0.005, "{got} instead of {expected}");
+    assert!(beam.at(real(10.0)) < beam.at(Real::ZERO));
 }

@@ -6,7 +6,7 @@
 //! left; the iteration is bounded and cannot hang.
 
 use super::compliance::Compliance;
-use super::force::ForceTable;
+use super::force::{ForceTable, SplitForce};
 use super::path::Path;
 use super::setup::{Coefficients, WallLaw};
 use crate::geometry::{Direction, Vector};
@@ -36,7 +36,7 @@ pub struct Loop<'a> {
     pub path: &'a Path<'a>,
     /// Force of the cutter.
     pub table: &'a ForceTable,
-    /// The coefficients the table was made with.
+    /// Force coefficients; their size exponent is the one the table was made for.
     pub coefficients: Coefficients,
     /// Compliance of machine and cutter.
     pub compliance: Compliance,
@@ -98,11 +98,15 @@ impl Loop<'_> {
         (state, MAX_ITERATIONS)
     }
 
+    fn mean(&self, engaged: Real) -> SplitForce {
+        self.table.mean(self.path.setup(), &self.coefficients, engaged)
+    }
+
     /// Engagement, normal and mean deflection for a centre displaced from a sample.
     fn push(&self, index: usize, displacement: Vector, chip_scale: Real) -> Option<(Real, Direction, Vector)> {
         let frame = self.path.frame(index, displacement)?;
         let engaged = self.path.engagement(index, displacement, &frame);
-        let force = self.table.mean(engaged).total(chip_scale);
+        let force = self.mean(engaged).total(chip_scale);
         let push = self.compliance.displacement(frame.normal, frame.heading, force);
         Some((engaged, frame.normal, push.scaled(self.compliance.mean_factor())))
     }
@@ -130,9 +134,17 @@ impl Loop<'_> {
         passage
     }
 
+    /// The state of an undisplaced cutter: the engagement the program intends.
+    pub fn nominal(&self, index: usize, chip_scale: Real) -> State {
+        let Some((engaged, normal, displacement)) = self.push(index, Vector::ZERO, chip_scale) else {
+            return State::REST;
+        };
+        State { engaged, normal, displacement, chip_scale, ..State::REST }
+    }
+
     /// Mean force over a revolution in a state, (normal, tangential), N.
     pub fn mean_force(&self, state: &State) -> (Real, Real) {
-        self.table.mean(state.engaged).total(state.chip_scale)
+        self.mean(state.engaged).total(state.chip_scale)
     }
 
     /// Displacement of the cutter from the nominal centre at the instant it makes the wall at a height, given as a
@@ -144,8 +156,11 @@ impl Loop<'_> {
     /// Deflection at a height: (its chip part, the whole).
     pub fn deflection_parts(&self, state: &State, fraction: Real) -> (Vector, Vector) {
         let force = match self.path.setup().law {
-            WallLaw::Mean => self.table.mean(state.engaged),
-            WallLaw::Helical => self.table.at_height(state.engaged, self.path.setup().axial_depth * fraction),
+            WallLaw::Mean => self.mean(state.engaged),
+            WallLaw::Helical => {
+                let setup = self.path.setup();
+                self.table.at_height(setup, &self.coefficients, state.engaged, setup.axial_depth * fraction)
+            }
         };
         let factor = self.compliance.height_factor(fraction);
         let heading = self.path.setup().wall.heading(state.normal);

@@ -10,10 +10,12 @@
 //! Limits: rigid tooth spacing (no runout); chip thickness from the circular path; 0 ≤ φ₁ ≤ π.
 
 use super::setup::{Coefficients, CutSetup, Milling};
-use crate::units::{Offset, Real, pow, sin_cos};
+use crate::units::{Real, pow, sin_cos};
 
 /// Intervals of the table over 0…π. With cubic interpolation the error is below 10⁻⁹ of the coefficients.
 const INTERVALS: usize = 256;
+/// Flutes that can be in the stock at once: 12 teeth at 60° helix over an axial depth of 8 radii stay below it.
+const MAX_FLUTES: i64 = 64;
 
 /// A force or its antiderivative, split by origin; N (or N/mm·rad) in the wall frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,92 +30,116 @@ pub struct SplitForce {
     pub edge_t: Real,
 }
 
-/// Antiderivatives of the force of one tooth over the immersion angle.
+/// Antiderivatives over the immersion angle of what the force of one tooth is made of. They depend on the size
+/// exponent alone; the coefficients enter when a force is read off.
 #[derive(Clone, Debug)]
 pub struct ForceTable {
-    sums: [SplitForce; INTERVALS + 1],
-    density: [SplitForce; INTERVALS + 1],
-    lag_per_mm: Real,
-    pitch: Real,
-    depth: Real,
-    teeth: Real,
-    milling: Milling,
+    sums: [Basis; INTERVALS + 1],
+    density: [Basis; INTERVALS + 1],
+    size_exponent: Real,
+}
+
+/// σ sin φ, σ cos φ, sin φ and cos φ with σ = sin^(1−m) φ, or their antiderivatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Basis {
+    chip_sine: Real,
+    chip_cosine: Real,
+    sine: Real,
+    cosine: Real,
 }
 
 impl SplitForce {
-    fn zip(self, o: Self, f: impl Fn(Real, Real) -> Real) -> Self {
-        Self {
-            chip_n: f(self.chip_n, o.chip_n),
-            chip_t: f(self.chip_t, o.chip_t),
-            edge_n: f(self.edge_n, o.edge_n),
-            edge_t: f(self.edge_t, o.edge_t),
-        }
-    }
-    /// Sum.
-    pub fn plus(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
-    /// Difference.
-    pub fn minus(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-    /// Times a number.
-    pub fn scaled(self, factor: Real) -> Self {
-        self.zip(self, |a, _| a * factor)
-    }
     /// (normal, tangential) for a chip scale from [`Coefficients::chip_scale`].
     pub fn total(self, chip_scale: Real) -> (Real, Real) {
         (self.chip_n * chip_scale + self.edge_n, self.chip_t * chip_scale + self.edge_t)
     }
 }
 
-impl ForceTable {
-    /// Tabulates the antiderivatives for a set of coefficients.
-    pub fn new(setup: &CutSetup, coefficients: &Coefficients) -> Self {
-        let step = Real::PI / Real::from_int(INTERVALS as i32);
-        let mut sums = [SplitForce::default(); INTERVALS + 1];
-        let mut density = [SplitForce::default(); INTERVALS + 1];
-        let mut running = SplitForce::default();
-        for (i, (sum, d)) in sums.iter_mut().zip(density.iter_mut()).enumerate() {
-            let angle = Real::PI * Real::ratio(i as i64, INTERVALS as i64);
-            *d = per_tooth(setup.milling, coefficients, angle);
-            *sum = running;
-            running = running.plus(cell(setup.milling, coefficients, angle, step));
-        }
+impl Basis {
+    fn zip(self, o: Self, f: impl Fn(Real, Real) -> Real) -> Self {
         Self {
-            sums,
-            density,
-            lag_per_mm: setup.lag_per_mm(),
-            pitch: setup.pitch(),
-            depth: setup.axial_depth,
-            teeth: Real::from_int(setup.teeth.into()),
-            milling: setup.milling,
+            chip_sine: f(self.chip_sine, o.chip_sine),
+            chip_cosine: f(self.chip_cosine, o.chip_cosine),
+            sine: f(self.sine, o.sine),
+            cosine: f(self.cosine, o.cosine),
         }
     }
+    fn plus(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+    fn minus(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+    fn scaled(self, factor: Real) -> Self {
+        self.zip(self, |a, _| a * factor)
+    }
+    fn at(size_exponent: Real, angle: Real) -> Self {
+        let (sine, cosine) = sin_cos(angle);
+        let chip = if size_exponent == Real::ZERO { sine } else { pow(sine, Real::ONE - size_exponent) };
+        Self { chip_sine: chip * sine, chip_cosine: chip * cosine, sine, cosine }
+    }
+    /// The force in the wall frame on the tool (physics of P23 eq. 3; eq. 1 as printed is the force on the workpiece).
+    fn force(self, milling: Milling, k: &Coefficients) -> SplitForce {
+        let part = |tangential: Real, radial: Real, sine: Real, cosine: Real| match milling {
+            Milling::Climb => {
+                (-Real::dot(tangential, sine, radial, cosine), Real::dot(tangential, cosine, -radial, sine))
+            }
+            Milling::Conventional => {
+                (Real::dot(tangential, sine, -radial, cosine), -Real::dot(tangential, cosine, radial, sine))
+            }
+        };
+        let (chip_n, chip_t) = part(k.ktc, k.krc, self.chip_sine, self.chip_cosine);
+        let (edge_n, edge_t) = part(k.kte, k.kre, self.sine, self.cosine);
+        SplitForce { chip_n, chip_t, edge_n, edge_t }
+    }
+}
 
-    /// ∫₀^φ of the force per unit depth, N/mm·rad; φ is limited to 0…π.
-    pub fn antiderivative(&self, angle: Real) -> SplitForce {
-        let x = angle.max(Real::ZERO).min(Real::PI) * Real::from_int(INTERVALS as i32) / Real::PI;
+impl ForceTable {
+    /// Tabulates the antiderivatives for a size exponent (0…0.5).
+    pub fn new(size_exponent: Real) -> Self {
+        let step = Real::PI / Real::from_int(INTERVALS as i32);
+        let mut sums = [Basis::default(); INTERVALS + 1];
+        let mut density = [Basis::default(); INTERVALS + 1];
+        let mut running = Basis::default();
+        for (i, (sum, d)) in sums.iter_mut().zip(density.iter_mut()).enumerate() {
+            let angle = Real::PI * Real::ratio(i as i64, INTERVALS as i64);
+            *d = Basis::at(size_exponent, angle);
+            *sum = running;
+            running = running.plus(cell(size_exponent, angle, step));
+        }
+        Self { sums, density, size_exponent }
+    }
+
+    /// The size exponent it was made for.
+    pub const fn size_exponent(&self) -> Real {
+        self.size_exponent
+    }
+
+    /// The antiderivatives from 0 to an angle, which is limited to 0…π.
+    fn antiderivative(&self, angle: Real) -> Basis {
+        const PER_RADIAN: Real = Real::from_int(INTERVALS as i32).over(Real::PI);
+        const INTERVAL: Real = Real::PI.over(Real::from_int(INTERVALS as i32));
+        let x = angle.max(Real::ZERO).min(Real::PI) * PER_RADIAN;
         let index = (x.floor().unsigned_abs() as usize).min(INTERVALS.saturating_sub(1));
         let u = x - Real::from_int(index as i32);
         let next = index.saturating_add(1);
         let (Some(&a), Some(&b), Some(&da), Some(&db)) =
             (self.sums.get(index), self.sums.get(next), self.density.get(index), self.density.get(next))
         else {
-            return SplitForce::default();
+            return Basis::default();
         };
         // Cubic Hermite interpolation: the slope of the sum is the density.
-        let h = Real::PI / Real::from_int(INTERVALS as i32);
         let v = Real::ONE - u;
         let (u2, v2) = (u * u, v * v);
         let (wa, wb) = (v2 * (Real::ONE + u + u), u2 * (Real::ONE + v + v));
-        let (wda, wdb) = (h * u * v2, -(h * v * u2));
+        let (wda, wdb) = (INTERVAL * u * v2, -(INTERVAL * v * u2));
         a.scaled(wa).plus(b.scaled(wb)).plus(da.scaled(wda)).plus(db.scaled(wdb))
     }
 
-    /// Mean force over a revolution with the arc 0…φ₁ engaged (physics: `A = N·b/2π`), N.
-    pub fn mean(&self, engaged: Real) -> SplitForce {
-        self.antiderivative(engaged).scaled(self.teeth * self.depth / Real::TAU)
+    /// Mean force over a revolution with the arc 0…φ₁ engaged, `N·b/2π · ∫₀^φ₁`, N.
+    pub fn mean(&self, setup: &CutSetup, coefficients: &Coefficients, engaged: Real) -> SplitForce {
+        let share = Real::from_int(setup.teeth.into()) * setup.axial_depth / Real::TAU;
+        self.antiderivative(engaged).scaled(share).force(setup.milling, coefficients)
     }
 
     /// Force at the instant the wall at a height (mm above the tip) is generated, N.
@@ -121,54 +147,37 @@ impl ForceTable {
     /// In climb milling the tooth that generates height z has its upper part still in the stock, in conventional
     /// milling its lower part: the stretch of φ above φ = 0 is (b − z) or z high. The other flutes are whole pitches
     /// away.
-    pub fn at_height(&self, engaged: Real, height: Real) -> SplitForce {
-        let behind = match self.milling {
-            Milling::Climb => self.depth - height,
+    pub fn at_height(&self, setup: &CutSetup, coefficients: &Coefficients, engaged: Real, height: Real) -> SplitForce {
+        let behind = match setup.milling {
+            Milling::Climb => setup.axial_depth - height,
             Milling::Conventional => height,
         };
-        let top = behind * self.lag_per_mm;
-        let bottom = top - self.depth * self.lag_per_mm;
-        // Flutes whose stretch bottom+k·pitch … top+k·pitch meets 0…φ₁.
-        let first = (top / self.pitch).floor().saturating_neg();
-        let mut sum = SplitForce::default();
-        let mut k = first;
-        loop {
-            let shift = self.pitch * Real::from_int(k as i32);
+        let (lag, pitch) = (setup.lag_per_mm(), setup.pitch());
+        let top = behind * lag;
+        let bottom = top - setup.axial_depth * lag;
+        // Flutes whose stretch bottom + k·pitch … top + k·pitch meets 0…φ₁.
+        let first = (top / pitch).floor().saturating_neg();
+        let mut sum = Basis::default();
+        for k in first..first.saturating_add(MAX_FLUTES) {
+            let shift = pitch * Real::from_int(k as i32);
             let (low, high) = ((bottom + shift).max(Real::ZERO), (top + shift).min(engaged));
-            if bottom + shift >= engaged || k > first.saturating_add(64) {
-                return sum.scaled(Real::ONE / self.lag_per_mm);
+            if bottom + shift >= engaged {
+                break;
             }
             if high > low {
                 sum = sum.plus(self.antiderivative(high).minus(self.antiderivative(low)));
             }
-            k = k.saturating_add(1);
         }
+        sum.scaled(Real::ONE / lag).force(setup.milling, coefficients)
     }
 }
 
-/// Force of one tooth per unit depth at an immersion angle, chip part per unit of chip scale, on the tool.
-fn per_tooth(milling: Milling, k: &Coefficients, angle: Real) -> SplitForce {
-    let (sine, cosine) = sin_cos(angle);
-    let chip = if k.size_exponent == Real::ZERO { sine } else { pow(sine, Real::ONE - k.size_exponent) };
-    let part = |tangential: Real, radial: Real| match milling {
-        Milling::Climb => {
-            (-Real::dot(tangential, sine, radial, cosine), Real::dot(tangential, cosine, -radial, sine))
-        }
-        Milling::Conventional => {
-            (Real::dot(tangential, sine, -radial, cosine), -Real::dot(tangential, cosine, radial, sine))
-        }
-    };
-    let (chip_n, chip_t) = part(k.ktc * chip, k.krc * chip);
-    let (edge_n, edge_t) = part(k.kte, k.kre);
-    SplitForce { chip_n, chip_t, edge_n, edge_t }
-}
-
-/// Gauss–Legendre quadrature (three points) of [`per_tooth`] over one interval.
-fn cell(milling: Milling, k: &Coefficients, from: Real, step: Real) -> SplitForce {
+/// Gauss–Legendre quadrature (three points) of the basis over one interval.
+fn cell(size_exponent: Real, from: Real, step: Real) -> Basis {
     /// √(3/5)/2
     const NODE: Real = Real::from_bits(1_663_433_681);
     let middle = from + step * Real::HALF;
-    let at = |offset: Real| per_tooth(milling, k, middle + step * offset);
+    let at = |offset: Real| Basis::at(size_exponent, middle + step * offset);
     let ends = at(-NODE).plus(at(NODE)).scaled(step * Real::ratio(5, 18));
     ends.plus(at(Real::ZERO).scaled(step * Real::ratio(8, 18)))
 }
@@ -181,9 +190,5 @@ pub fn chip_area(setup: &CutSetup, feed_per_tooth: Real, engaged: Real) -> Real 
 
 /// Volume removed per tooth, chip area × cutter radius, mm³.
 pub fn chip_volume(setup: &CutSetup, feed_per_tooth: Real, engaged: Real) -> Real {
-    chip_area(setup, feed_per_tooth, engaged) * radius_mm(setup.radius)
-}
-
-fn radius_mm(radius: Offset) -> Real {
-    radius.mm()
+    chip_area(setup, feed_per_tooth, engaged) * setup.radius.mm()
 }

@@ -1,5 +1,6 @@
 //! What happens to the cutter: stock → engagement → force → elastic loop → wall.
 
+mod cantilever;
 mod compliance;
 mod elastic;
 mod engagement;
@@ -8,6 +9,7 @@ mod path;
 mod setup;
 mod wall;
 
+pub use cantilever::{Cantilever, ToolMaterial};
 pub use compliance::Compliance;
 pub use elastic::{Loop, Passage, State};
 pub use engagement::Frame;

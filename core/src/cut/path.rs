@@ -5,7 +5,7 @@
 //! runs of such arrays), so the walk over it costs the same however long the contour is. Before the first and behind
 //! the last block path and stock are continued straight: a contour that starts by plunging starts fully engaged.
 
-use super::setup::CutSetup;
+use super::setup::{CutSetup, WallLaw};
 use crate::geometry::{Contour, Direction, FACET_TURN_LIMIT, Point};
 use crate::units::{Offset, Real};
 
@@ -110,6 +110,11 @@ impl<'a> Path<'a> {
         Ok(Self { samples, first, count, step, stock_step, setup: *setup })
     }
 
+    /// The same path under another wall law.
+    pub const fn with_law(mut self, law: WallLaw) -> Self {
+        self.setup.law = law;
+        self
+    }
     /// All samples, run-in and run-out included.
     pub const fn samples(&self) -> &'a [Sample] {
         self.samples

@@ -1,0 +1,14 @@
+//! The cut model → correction array.
+//!
+//! When the correction works, the actual path *is* the nominal path, so the engagement is the nominal one:
+//! `Δ(s) = −C·F(nominal engagement at s)` cancels the mean law in one shot. For the helical law the mean over height
+//! is not the mean over a revolution and the envelope of the cutter counts: the shot is refined by a few passes on
+//! the *predicted wall error*. P23 eqs. (8)–(12) and the first-order mirror are kept as named laws to compare with.
+
+mod design;
+mod paper;
+mod profile;
+
+pub use design::{Design, DesignWorkspace, Law, Node, Predicted, design, uncertainty};
+pub use paper::{PaperRatio, PaperTransfer};
+pub use profile::{Band, Profile, Target};

@@ -1,0 +1,110 @@
+//! The wall error over the height of the cut, and what of it a correction aims at.
+
+use crate::cut::{Envelope, Loop, State};
+use crate::geometry::Vector;
+use crate::units::{Offset, Real};
+
+/// Heights of the profile: midpoints of even slices of the band.
+pub const HEIGHTS: i64 = 12;
+
+/// The band of heights that counts, as fractions 0…1 of the engaged depth above the tip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Band {
+    /// Lower end.
+    pub from: Real,
+    /// Upper end.
+    pub to: Real,
+}
+
+/// What the correction brings to zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// The uniform mean over the band.
+    Mean,
+    /// The error at the tip of the cutter.
+    Tip,
+    /// The middle between the largest and the smallest error over the band.
+    Minimax,
+}
+
+/// Wall error beside one sample over the band of heights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Profile {
+    /// Mean over the band.
+    pub mean: Offset,
+    /// Smallest over the band (deepest).
+    pub lowest: Offset,
+    /// Largest over the band.
+    pub highest: Offset,
+    /// At the tip.
+    pub tip: Offset,
+    /// Sum, over the heights, of the sample whose cutter position made the wall.
+    made_by: u64,
+}
+
+impl Band {
+    /// The whole engaged depth.
+    pub const WHOLE: Self = Self { from: Real::ZERO, to: Real::ONE };
+
+    /// Middle of the k-th of [`HEIGHTS`] even slices.
+    pub fn at(self, k: i64) -> Real {
+        self.from + (self.to - self.from) * Real::ratio(k.saturating_mul(2).saturating_add(1), HEIGHTS.saturating_mul(2))
+    }
+}
+
+impl Profile {
+    /// The error a target aims at. `max_gouge` wins over the target: the deepest height may not end deeper than it.
+    pub fn aim(&self, target: Target, max_gouge: Option<Offset>) -> Offset {
+        let wanted = match target {
+            Target::Mean => self.mean,
+            Target::Tip => self.tip,
+            Target::Minimax => Offset::from_nm(self.lowest.nm().saturating_add(self.highest.nm()) / 2),
+        };
+        match max_gouge {
+            Some(limit) => wanted.min(self.lowest + limit),
+            None => wanted,
+        }
+    }
+    /// What is left over height when the target is met: the larger distance from it.
+    pub fn form_error(&self, target: Target) -> Offset {
+        let zero = self.aim(target, None);
+        (self.highest - zero).max(zero - self.lowest)
+    }
+    /// Mean index of the samples that made the wall here, in 1/2³² of a sample.
+    pub fn made_by(&self) -> Real {
+        Real::ratio(self.made_by as i64, HEIGHTS.saturating_add(1))
+    }
+}
+
+/// Reads the profile off the wall beside each sample of the contour.
+///
+/// `states` belong to the path's working range; `profiles` to the contour's own samples; `displacements` is as long
+/// as `states`.
+pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut [Vector], profiles: &mut [Profile]) {
+    let path = machine.path;
+    let first = path.first();
+    profiles.fill(Profile { lowest: Offset::MAX, highest: -Offset::MAX, ..Profile::default() });
+    for k in 0..=HEIGHTS {
+        let tip = k == HEIGHTS;
+        let height = if tip { Real::ZERO } else { band.at(k) };
+        Envelope::displace(machine, states, height, displacements);
+        let envelope = Envelope::new(path, path.working().start, displacements);
+        let mut guess = first;
+        for (i, p) in profiles.iter_mut().enumerate() {
+            let index = first.saturating_add(i);
+            let Some(wall) = envelope.error(index, guess) else { continue };
+            guess = wall.made_by.saturating_add(1);
+            p.made_by = p.made_by.saturating_add(wall.made_by as u64);
+            if tip {
+                p.tip = wall.error;
+            } else {
+                p.mean += wall.error;
+                p.lowest = p.lowest.min(wall.error);
+                p.highest = p.highest.max(wall.error);
+            }
+        }
+    }
+    for p in profiles.iter_mut() {
+        p.mean = p.mean.scaled(Real::ratio(1, HEIGHTS));
+    }
+}

@@ -1,0 +1,207 @@
+//! The fit: Gauss–Newton with priors and a robust loss, and the evidence for a wall law.
+
+use super::observation::{Observation, PredictionWorkspace, predict};
+use super::parameters::{COUNT, Parameters, Prior};
+use super::solve::{Information, Matrix};
+use crate::cut::{ForceTable, Path, WallLaw};
+use crate::geometry::Vector;
+use crate::units::{Offset, Real};
+
+/// Result of an identification.
+#[derive(Clone, Copy, Debug)]
+pub struct Fit {
+    /// The identified parameters.
+    pub parameters: Parameters,
+    /// Distance from the prior, in its standard deviations.
+    pub theta: [Real; COUNT],
+    /// Covariance in units of the prior's standard deviations; its diagonal is 1 where the points say nothing.
+    pub covariance: Matrix,
+    /// Robust sum of squared residuals plus that of the prior.
+    pub cost: Real,
+    /// Gauss–Newton steps taken.
+    pub steps: u32,
+    /// Points that the robust loss set aside (weight below 0.3).
+    pub outliers: usize,
+    /// Evidence of the model, −½(cost + ln det), natural logarithm up to a constant; larger is better.
+    pub evidence: Real,
+}
+
+/// Buffers of the fit, lent by the caller.
+pub type FitWorkspace<'a> = PredictionWorkspace<'a>;
+
+/// Gauss–Newton steps at most.
+const MAX_STEPS: u32 = 12;
+/// Residual, in standard deviations, from which a point loses weight (Huber's constant).
+const HUBER: Real = Real::ratio(25, 10);
+/// Step of the difference quotients, in prior standard deviations.
+const DIFFERENCE: Real = Real::ratio(1, 32);
+
+impl Fit {
+    /// Standard deviation of a parameter over that of its prior, 0…1: small where the points decide.
+    pub fn remaining(&self, index: usize) -> Real {
+        self.covariance.get(index).and_then(|row| row.get(index)).map_or(Real::ONE, |v| v.sqrt())
+    }
+}
+
+/// Fits the parameters to the observations.
+///
+/// `commanded` is the displacement the program commanded at each sample when the probed part was cut. The path's
+/// setup names the wall law. On return the observations hold predictions, weights and sensitivities at the solution.
+pub fn identify(
+    path: &Path,
+    prior: &Prior,
+    observations: &mut [Observation],
+    commanded: impl Fn(usize) -> Vector + Copy,
+    workspace: &mut FitWorkspace,
+) -> Fit {
+    let mut theta = [Real::ZERO; COUNT];
+    let mut table = ForceTable::new(prior.mean.coefficients.size_exponent);
+    let mut cost = evaluate(path, &mut table, prior, &theta, observations, commanded, workspace);
+    let mut steps = 0;
+    let mut information = linearise(path, &table, prior, &theta, observations, commanded, workspace);
+    while steps < MAX_STEPS {
+        steps = steps.saturating_add(1);
+        let step = information.step();
+        let largest = step.iter().map(|v| v.abs()).max().unwrap_or_default();
+        // Backtracking: halve until the cost falls.
+        let mut share = Real::ONE;
+        let (taken, new_cost) = loop {
+            let mut trial = theta;
+            for (t, s) in trial.iter_mut().zip(&step) {
+                *t += *s * share;
+            }
+            let trial_cost = evaluate(path, &mut table, prior, &trial, observations, commanded, workspace);
+            if trial_cost <= cost {
+                break (Some(trial), trial_cost);
+            }
+            share = share * Real::HALF;
+            if share < Real::ratio(1, 40) {
+                break (None, cost);
+            }
+        };
+        let Some(accepted) = taken else { break };
+        theta = accepted;
+        let settled = largest < Real::ratio(1, 2000) || cost - new_cost < Real::ratio(1, 100_000);
+        cost = new_cost;
+        information = linearise(path, &table, prior, &theta, observations, commanded, workspace);
+        if settled {
+            break;
+        }
+    }
+    cost = evaluate(path, &mut table, prior, &theta, observations, commanded, workspace);
+    let outliers = observations.iter().filter(|o| o.weight < Real::ratio(3, 10)).count();
+    let ln_determinant = information.log2_determinant() * Real::ratio(693_147_181, 1_000_000_000);
+    Fit {
+        parameters: prior.at(&theta),
+        theta,
+        covariance: information.covariance(),
+        cost,
+        steps,
+        outliers,
+        evidence: -((cost + ln_determinant) * Real::HALF),
+    }
+}
+
+/// By how much the evidence for the mean law must exceed that for the helical one before it is believed (20 : 1).
+const DECISIVE: Real = Real::from_int(3);
+
+/// Identifies under both wall laws and takes the mean law only where the points speak decisively for it: on a
+/// helical cutter it is the wrong one, and a few points at one height cannot tell.
+///
+/// `around` gives the prior for a law. Returns the law with its prior and fit; the observations hold its predictions.
+pub fn identify_law(
+    path: &Path,
+    around: impl Fn(WallLaw) -> Prior,
+    observations: &mut [Observation],
+    commanded: impl Fn(usize) -> Vector + Copy,
+    workspace: &mut FitWorkspace,
+) -> (WallLaw, Prior, Fit) {
+    let mut under = |law, observations: &mut [Observation]| {
+        let prior = around(law);
+        let fit = identify(&path.with_law(law), &prior, observations, commanded, workspace);
+        (law, prior, fit)
+    };
+    let mean = under(WallLaw::Mean, observations);
+    let helical = under(WallLaw::Helical, observations);
+    if mean.2.evidence > helical.2.evidence + DECISIVE { under(WallLaw::Mean, observations) } else { helical }
+}
+
+/// Predicts all points and returns the robust cost; sets their weights.
+fn evaluate(
+    path: &Path,
+    table: &mut ForceTable,
+    prior: &Prior,
+    theta: &[Real; COUNT],
+    observations: &mut [Observation],
+    commanded: impl Fn(usize) -> Vector,
+    workspace: &mut FitWorkspace,
+) -> Real {
+    let parameters = prior.at(theta);
+    renew(table, &parameters);
+    predict(path, table, &parameters, commanded, observations, workspace);
+    let mut cost = theta.iter().fold(Real::ZERO, |sum, t| sum + *t * *t);
+    for o in observations.iter_mut() {
+        let residual = o.residual().abs();
+        // Huber: quadratic near zero, linear in the tails.
+        (o.weight, cost) = if residual <= HUBER {
+            (Real::ONE, cost + residual * residual)
+        } else {
+            (HUBER / residual, cost + HUBER * (residual + residual - HUBER))
+        };
+    }
+    cost
+}
+
+/// Sensitivities by difference quotients, and the normal equations, at a point just evaluated.
+fn linearise(
+    path: &Path,
+    table: &ForceTable,
+    prior: &Prior,
+    theta: &[Real; COUNT],
+    observations: &mut [Observation],
+    commanded: impl Fn(usize) -> Vector + Copy,
+    workspace: &mut FitWorkspace,
+) -> Information {
+    for (k, sigma) in prior.sigma.iter().enumerate() {
+        let mut moved = *theta;
+        if let (true, Some(t)) = (*sigma != Real::ZERO, moved.get_mut(k)) {
+            *t += DIFFERENCE;
+        } else {
+            continue;
+        }
+        let parameters = prior.at(&moved);
+        let changed;
+        let table = if parameters.coefficients.size_exponent == table.size_exponent() {
+            table
+        } else {
+            changed = ForceTable::new(parameters.coefficients.size_exponent);
+            &changed
+        };
+        // `predicted` is overwritten by the displaced prediction and restored.
+        for o in observations.iter_mut() {
+            if let Some(s) = o.sensitivity.get_mut(k) {
+                *s = Real::from_bits(o.predicted.nm());
+            }
+        }
+        predict(path, table, &parameters, commanded, observations, workspace);
+        for o in observations.iter_mut() {
+            let deviation = o.deviation();
+            if let Some(s) = o.sensitivity.get_mut(k) {
+                let base = Offset::from_nm(s.bits());
+                *s = (o.predicted - base).over(deviation) / DIFFERENCE;
+                o.predicted = base;
+            }
+        }
+    }
+    let mut information = Information::prior(theta);
+    for o in observations.iter() {
+        information.add(&o.sensitivity, o.residual(), o.weight);
+    }
+    information
+}
+
+fn renew(table: &mut ForceTable, parameters: &Parameters) {
+    if table.size_exponent() != parameters.coefficients.size_exponent {
+        *table = ForceTable::new(parameters.coefficients.size_exponent);
+    }
+}

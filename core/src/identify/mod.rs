@@ -1,0 +1,16 @@
+//! Probe errors and the cut model → compliance, coefficients, covariance.
+//!
+//! Weighted least squares with priors (Gauss–Newton on the closed elastic loop, wall envelope included). Everything
+//! the user states about machine and material is only a prior; the points correct it as far as they can see it. The
+//! tangential chip coefficient is held at its prior: a force twice as large on a machine twice as stiff leaves the
+//! same wall, so the compliance carries the scale of both.
+
+mod fit;
+mod observation;
+mod parameters;
+mod solve;
+
+pub use fit::{Fit, FitWorkspace, identify, identify_law};
+pub use observation::{Observation, PredictionWorkspace, predict};
+pub use parameters::{COUNT, Parameter, Parameters, Prior};
+pub use solve::{Information, Matrix, square_root};
