@@ -38,4 +38,5 @@ pub mod cut;
 pub mod gcode;
 pub mod geometry;
 pub mod identify;
+pub mod probe;
 pub mod units;

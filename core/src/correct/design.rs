@@ -4,7 +4,7 @@ use super::paper::PaperTransfer;
 use super::profile::{Band, Profile, Target, profile};
 use crate::cut::{ForceTable, Loop, Passage, State};
 use crate::geometry::Vector;
-use crate::identify::{COUNT, Matrix, Prior};
+use crate::identify::{Fit, Prior};
 use crate::units::{Offset, Real};
 
 /// How the correction is made.
@@ -197,23 +197,22 @@ fn refine(machine: &Loop, wanted: &Design, nodes: &mut [Node], workspace: &mut D
 /// overwritten; `sigma` is as long as the contour's own samples.
 pub fn uncertainty(
     machine: &Loop,
-    prior: &Prior,
-    fit: (&[Real; COUNT], &Matrix),
+    belief: (&Prior, &Fit),
     wanted: &Design,
     nodes: &[Node],
     predicted: &[Predicted],
     sigma: &mut [Offset],
     workspace: &mut DesignWorkspace,
 ) {
-    let (theta, covariance) = fit;
+    let (prior, fit) = belief;
     let path = machine.path;
     sigma.fill(Offset::ZERO);
     let mut table = machine.table.clone();
-    for column in crate::identify::square_root(covariance) {
+    for column in crate::identify::square_root(&fit.covariance) {
         if column.iter().all(|v| v.abs() < Real::ratio(1, 1000)) {
             continue;
         }
-        let mut moved = *theta;
+        let mut moved = fit.theta;
         for (t, c) in moved.iter_mut().zip(&column) {
             *t += *c;
         }

@@ -1,7 +1,7 @@
 //! The fit: Gauss–Newton with priors and a robust loss, and the evidence for a wall law.
 
 use super::observation::{Observation, PredictionWorkspace, predict};
-use super::parameters::{COUNT, Parameters, Prior};
+use super::parameters::{COUNT, Parameter, Parameters, Prior};
 use super::solve::{Information, Matrix};
 use crate::cut::{ForceTable, Path, WallLaw};
 use crate::geometry::Vector;
@@ -152,7 +152,10 @@ fn evaluate(
     cost
 }
 
-/// Sensitivities by difference quotients, and the normal equations, at a point just evaluated.
+/// Sensitivities and the normal equations at a point just evaluated.
+///
+/// Radius and datum act on the measurement and are known; the others are central difference quotients, so that a
+/// parameter whose sign turns with the part has the same sensitivity with the other sign.
 fn linearise(
     path: &Path,
     table: &ForceTable,
@@ -162,34 +165,43 @@ fn linearise(
     commanded: impl Fn(usize) -> Vector + Copy,
     workspace: &mut FitWorkspace,
 ) -> Information {
-    for (k, sigma) in prior.sigma.iter().enumerate() {
-        let mut moved = *theta;
-        if let (true, Some(t)) = (*sigma != Real::ZERO, moved.get_mut(k)) {
-            *t += DIFFERENCE;
-        } else {
+    for (k, (parameter, sigma)) in Parameter::ALL.iter().zip(&prior.sigma).enumerate() {
+        let direct = |o: &Observation| match parameter {
+            Parameter::Radius => Some(Real::ONE),
+            Parameter::DatumX => Some(-o.normal.x),
+            Parameter::DatumY => Some(-o.normal.y),
+            _ => None,
+        };
+        for o in observations.iter_mut() {
+            let value = direct(o).map(|d| Offset::from_mm(*sigma).over(o.deviation()) * d);
+            set(o, k, value.unwrap_or(Real::ZERO));
+        }
+        if *sigma == Real::ZERO || observations.iter().any(|o| direct(o).is_some()) {
             continue;
         }
-        let parameters = prior.at(&moved);
-        let changed;
-        let table = if parameters.coefficients.size_exponent == table.size_exponent() {
-            table
-        } else {
-            changed = ForceTable::new(parameters.coefficients.size_exponent);
-            &changed
-        };
-        // `predicted` is overwritten by the displaced prediction and restored.
-        for o in observations.iter_mut() {
-            if let Some(s) = o.sensitivity.get_mut(k) {
-                *s = Real::from_bits(o.predicted.nm());
+        for side in [DIFFERENCE, -DIFFERENCE] {
+            let mut moved = *theta;
+            if let Some(t) = moved.get_mut(k) {
+                *t += side;
             }
-        }
-        predict(path, table, &parameters, commanded, observations, workspace);
-        for o in observations.iter_mut() {
-            let deviation = o.deviation();
-            if let Some(s) = o.sensitivity.get_mut(k) {
-                let base = Offset::from_nm(s.bits());
-                *s = (o.predicted - base).over(deviation) / DIFFERENCE;
-                o.predicted = base;
+            let parameters = prior.at(&moved);
+            let changed;
+            let table = if parameters.coefficients.size_exponent == table.size_exponent() {
+                table
+            } else {
+                changed = ForceTable::new(parameters.coefficients.size_exponent);
+                &changed
+            };
+            // The prediction at the point itself is needed again: it is kept aside.
+            for o in observations.iter_mut() {
+                o.base = o.predicted;
+            }
+            predict(path, table, &parameters, commanded, observations, workspace);
+            for o in observations.iter_mut() {
+                let change = (o.predicted - o.base).over(o.deviation()) / (side + side);
+                o.predicted = o.base;
+                let sum = o.sensitivity.get(k).copied().unwrap_or_default() + change;
+                set(o, k, sum);
             }
         }
     }
@@ -198,6 +210,12 @@ fn linearise(
         information.add(&o.sensitivity, o.residual(), o.weight);
     }
     information
+}
+
+fn set(observation: &mut Observation, k: usize, value: Real) {
+    if let Some(slot) = observation.sensitivity.get_mut(k) {
+        *slot = value;
+    }
 }
 
 fn renew(table: &mut ForceTable, parameters: &Parameters) {

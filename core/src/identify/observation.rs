@@ -20,6 +20,8 @@ pub struct Observation {
     pub normal: Direction,
     /// Predicted error of the last evaluation.
     pub predicted: Offset,
+    /// Prediction at the point about which a fit differentiates.
+    pub(super) base: Offset,
     /// Weight given by the robust loss, 0…1.
     pub weight: Real,
     /// Sensitivities: change of the predicted error per prior standard deviation, in standard deviations of the point.
@@ -36,6 +38,7 @@ impl Observation {
             noise,
             normal,
             predicted: Offset::ZERO,
+            base: Offset::ZERO,
             weight: Real::ONE,
             sensitivity: [Real::ZERO; COUNT],
         }

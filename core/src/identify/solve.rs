@@ -38,15 +38,11 @@ impl Information {
     /// Adds an observation: its sensitivities and its residual (measured − predicted), both in its standard
     /// deviations, with a weight 0…1.
     pub fn add(&mut self, sensitivity: &[Real; COUNT], residual: Real, weight: Real) {
-        for i in 0..COUNT {
-            let weighted = sensitivity[i] * weight;
-            self.gradient[i] += weighted * residual;
-            for j in 0..=i {
-                let product = weighted * sensitivity[j];
-                self.matrix[i][j] += product;
-                if i != j {
-                    self.matrix[j][i] += product;
-                }
+        for (i, row) in self.matrix.iter_mut().enumerate() {
+            self.gradient[i] += weight * (sensitivity[i] * residual);
+            for (entry, other) in row.iter_mut().zip(sensitivity) {
+                // The product of the two first: its rounding does not depend on their order.
+                *entry += weight * (sensitivity[i] * *other);
             }
         }
     }

@@ -1,0 +1,292 @@
+//! What can be wrong with a program, and where.
+//!
+//! Every kind has a code that never changes its meaning (`G0…` lexical, `G2…` one block, `G3…` a code, `G4…` motion,
+//! `G5…` arcs, `G7…` the contour) and carries both sides of a mismatch. The sentences shown to the user are in
+//! `message.rs`.
+
+use super::{GCode, Line, LineRange, Span};
+use crate::units::Offset;
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GcodeErrorKind {
+    /// A byte that belongs to no word and no comment.
+    UnexpectedByte(u8),
+    /// A letter without a number.
+    NumberMissing {
+        /// The letter.
+        letter: u8,
+    },
+    /// A number with more than 18 digits before its point.
+    NumberTooLarge {
+        /// Its letter.
+        letter: u8,
+    },
+    /// `(` without `)` in the same line.
+    UnclosedComment,
+    /// `)` without `(`.
+    StrayParenthesis,
+    /// `#`, `[`, `]`, `=` or `*`: a parameter or an expression.
+    Expression(u8),
+    /// `O<name>` or `O100 sub`: a named or controlled subprogram.
+    NamedProgram,
+    /// Three or more letters in a row outside a comment.
+    Text,
+    /// The program is in another language.
+    ForeignDialect(Dialect),
+    /// Something else than a comment after `%`.
+    TextAfterPercent,
+    /// `,R` or `,C`.
+    CornerRounding,
+
+    /// A, B, C, U, V or W: an axis that is not computed.
+    UnsupportedAxis {
+        /// The axis.
+        letter: u8,
+    },
+    /// A letter given twice in a block.
+    DuplicateWord {
+        /// The letter.
+        letter: u8,
+    },
+    /// N or `/` after another word.
+    OutOfPlace {
+        /// `N`, `/` or `O`.
+        letter: u8,
+    },
+    /// Two G codes of one modal group in a block.
+    Conflict {
+        /// The one read first.
+        first: GCode,
+        /// The other.
+        second: GCode,
+    },
+    /// Two M codes that exclude each other in a block.
+    ConflictM {
+        /// The one read first.
+        first: u32,
+        /// The other.
+        second: u32,
+    },
+    /// More M codes in a block than are kept.
+    TooManyM {
+        /// How many are kept.
+        limit: u8,
+    },
+    /// A number that must be whole is not.
+    NotWhole {
+        /// Its letter.
+        letter: u8,
+    },
+    /// A number that must not be negative is.
+    Negative {
+        /// Its letter.
+        letter: u8,
+    },
+    /// A word that no code of the block uses.
+    UnusedWord {
+        /// Its letter.
+        letter: u8,
+    },
+    /// A coordinate, feed, speed or number out of range.
+    OutOfRange {
+        /// Its letter.
+        letter: u8,
+    },
+    /// A second program begins before the first has ended.
+    SecondProgram {
+        /// Number of the first.
+        first: u32,
+        /// Number of the second.
+        second: u32,
+    },
+
+    /// A G code that is not known.
+    UnknownG(GCode),
+    /// A known G code that is not computed.
+    Unsupported(GCode),
+    /// A plane other than XY.
+    WrongPlane(GCode),
+    /// Inverse-time feed or feed per revolution.
+    WrongFeedMode(GCode),
+    /// A code that moves the origin inside the program.
+    ShiftsCoordinates(GCode),
+    /// A drilling or other canned cycle.
+    CannedCycle(GCode),
+    /// A call of a macro.
+    Macro(GCode),
+    /// A spline.
+    Spline(GCode),
+    /// M97, M98 or M99: a call of a subprogram, or a return.
+    Subprogram {
+        /// The M code.
+        m: u32,
+    },
+    /// A G that is no number of a G code.
+    NotAGCode,
+
+    /// Axis words, but no motion is active.
+    NoMotion,
+    /// G53 with axis words needs G0 or G1.
+    MachineMoveNeedsLine,
+    /// G4 without its time.
+    DwellWithoutTime,
+    /// An incremental move or an arc from an axis position that is not known.
+    PositionUnknown {
+        /// The axis.
+        axis: u8,
+    },
+
+    /// An arc with neither I, J nor R.
+    ArcWithoutCentre,
+    /// An arc with R as well as I or J.
+    ArcMixed,
+    /// An absolute centre (G90.1) of which one coordinate is missing.
+    ArcCentreIncomplete {
+        /// The missing letter.
+        missing: u8,
+    },
+    /// An arc with R whose end is its start.
+    ArcRadiusFullCircle,
+    /// A radius too small to reach the end.
+    ArcRadiusTooSmall {
+        /// Distance from start to end.
+        chord: Offset,
+        /// The radius without its sign.
+        radius: Offset,
+    },
+    /// The end is not as far from the centre as the start.
+    ArcEndOffRadius {
+        /// Distance of the start from the centre.
+        start: Offset,
+        /// Distance of the end from the centre.
+        end: Offset,
+    },
+    /// The centre coincides with the start or the end.
+    ArcNoRadius,
+    /// More than one turn.
+    ArcTurns,
+
+    /// No cutting move in X or Y at constant Z.
+    NoContour,
+    /// More than one candidate.
+    SeveralContours {
+        /// How many.
+        count: u32,
+        /// Lines of the first.
+        first: LineRange,
+        /// Lines of the second.
+        second: LineRange,
+    },
+    /// More blocks than the buffer holds.
+    ContourTooLong {
+        /// What it holds.
+        limit: usize,
+    },
+    /// A cutting move from a place that is not known.
+    StartUnknown {
+        /// The axis whose position is not known.
+        axis: u8,
+    },
+    /// The height of the contour is never given.
+    HeightUnknown,
+    /// The contour is cut with G41 in one part and G42 in another.
+    BothSides,
+}
+
+/// A language that is not G-code as read here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dialect {
+    /// `BEGIN PGM … MM`: Heidenhain's conversational language.
+    Heidenhain,
+    /// `E` words: a program of a 3D printer.
+    Printer,
+}
+
+impl GcodeErrorKind {
+    /// The stable code of this kind.
+    pub const fn code(self) -> &'static str {
+        match self {
+            Self::UnexpectedByte(_) => "G001",
+            Self::NumberMissing { .. } => "G002",
+            Self::NumberTooLarge { .. } => "G003",
+            Self::UnclosedComment => "G004",
+            Self::StrayParenthesis => "G005",
+            Self::Expression(_) => "G006",
+            Self::NamedProgram => "G007",
+            Self::Text => "G008",
+            Self::ForeignDialect(_) => "G009",
+            Self::TextAfterPercent => "G010",
+            Self::CornerRounding => "G011",
+            Self::UnsupportedAxis { .. } => "G020",
+            Self::DuplicateWord { .. } => "G022",
+            Self::OutOfPlace { .. } => "G023",
+            Self::Conflict { .. } => "G024",
+            Self::ConflictM { .. } => "G025",
+            Self::TooManyM { .. } => "G026",
+            Self::NotWhole { .. } => "G027",
+            Self::Negative { .. } => "G028",
+            Self::UnusedWord { .. } => "G029",
+            Self::OutOfRange { .. } => "G030",
+            Self::SecondProgram { .. } => "G031",
+            Self::UnknownG(_) => "G032",
+            Self::Unsupported(_) => "G033",
+            Self::WrongPlane(_) => "G034",
+            Self::WrongFeedMode(_) => "G035",
+            Self::ShiftsCoordinates(_) => "G036",
+            Self::CannedCycle(_) => "G037",
+            Self::Macro(_) => "G038",
+            Self::Spline(_) => "G039",
+            Self::Subprogram { .. } => "G040",
+            Self::NotAGCode => "G041",
+            Self::NoMotion => "G042",
+            Self::MachineMoveNeedsLine => "G043",
+            Self::DwellWithoutTime => "G044",
+            Self::PositionUnknown { .. } => "G045",
+            Self::ArcWithoutCentre => "G050",
+            Self::ArcMixed => "G051",
+            Self::ArcCentreIncomplete { .. } => "G052",
+            Self::ArcRadiusFullCircle => "G053",
+            Self::ArcRadiusTooSmall { .. } => "G054",
+            Self::ArcEndOffRadius { .. } => "G055",
+            Self::ArcNoRadius => "G056",
+            Self::ArcTurns => "G057",
+            Self::NoContour => "G070",
+            Self::SeveralContours { .. } => "G071",
+            Self::ContourTooLong { .. } => "G072",
+            Self::StartUnknown { .. } => "G073",
+            Self::HeightUnknown => "G074",
+            Self::BothSides => "G075",
+        }
+    }
+}
+
+/// What is wrong, and where.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GcodeError {
+    /// What is wrong.
+    pub kind: GcodeErrorKind,
+    /// Line, counted from 1.
+    pub line: u32,
+    /// Column of the first offending byte, in bytes, counted from 1.
+    pub column: u32,
+    /// Offset of that byte from the start of the program.
+    pub start: usize,
+    /// Number of offending bytes.
+    pub len: usize,
+}
+
+impl GcodeError {
+    /// At a span of a line.
+    pub(super) fn new(kind: GcodeErrorKind, line: &Line<'_>, span: Span) -> Self {
+        let column = span.start.saturating_sub(line.start).saturating_add(1);
+        let column = u32::try_from(column).unwrap_or(u32::MAX);
+        Self { kind, line: line.number, column, start: span.start, len: span.len }
+    }
+    /// The offending bytes.
+    pub const fn span(&self) -> Span {
+        Span { start: self.start, len: self.len }
+    }
+}
+
+impl core::error::Error for GcodeError {}

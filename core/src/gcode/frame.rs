@@ -1,0 +1,91 @@
+//! Which lines of a file are the program: what stands between the two `%`.
+//!
+//! `%` as the first character of a line begins and ends a program (ISO 6983); text outside is a leader or a trailer.
+//! Either may be missing, which is noted because a file that was cut off looks the same.
+
+use super::decimal::is_blank;
+use super::{Line, Lines, Span, WarningKind, Warnings};
+
+/// The lines of the program in its file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame<'a> {
+    /// Line of the opening `%`, 0 when there is none.
+    open: u32,
+    /// Line of the closing `%`, the largest number when there is none.
+    close: u32,
+    /// The first line with text outside.
+    outside: Option<Line<'a>>,
+    /// Where a missing `%` is reported.
+    last: Line<'a>,
+}
+
+impl<'a> Frame<'a> {
+    /// Of a file.
+    pub(super) fn of(program: &'a [u8]) -> Self {
+        let percents = || Lines::new(program).filter(|l| first_byte(l) == Some(b'%'));
+        let text = || Lines::new(program).filter(|l| first_byte(l).is_some());
+        let none = Line { number: 1, start: 0, text: &[] };
+        let (first, second) = (percents().next(), percents().nth(1));
+        let only_remarks_before = |p: Line<'_>| {
+            text().take_while(|l| l.number < p.number).all(|l| matches!(first_byte(&l), Some(b'(' | b';')))
+        };
+        let (open, close) = match (first, second) {
+            (Some(a), Some(b)) => (a.number, b.number),
+            (Some(a), None) if only_remarks_before(a) => (a.number, u32::MAX),
+            (Some(a), None) => (0, a.number),
+            (None, _) => (0, u32::MAX),
+        };
+        let outside = text().find(|l| l.number < open || l.number > close);
+        Self { open, close, outside, last: text().last().unwrap_or(none) }
+    }
+
+    /// Whether a line belongs to the program, its `%` included.
+    pub(super) const fn holds(&self, line: u32) -> bool {
+        self.open <= line && line <= self.close
+    }
+
+    /// Whether a line of the program has anything but a `%`.
+    pub(super) fn is_text(&self, line: &Line<'_>) -> bool {
+        first_byte(line).is_some_and(|b| b != b'%')
+    }
+
+    /// Notes what is missing and what is outside.
+    pub(super) fn warn(&self, warnings: &mut Warnings) {
+        if self.open == 0 || self.close == u32::MAX {
+            warnings.note(WarningKind::PercentMissing, &self.last, self.last.span());
+        }
+        if let Some(line) = self.outside {
+            warnings.note(WarningKind::OutsidePercent, &line, Span { start: line.start, len: line.text.len() });
+        }
+    }
+}
+
+/// The first byte that is not a blank.
+fn first_byte(line: &Line<'_>) -> Option<u8> {
+    line.text.iter().copied().find(|&b| !is_blank(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    fn held(program: &str) -> (Vec<u32>, bool) {
+        let frame = Frame::of(program.as_bytes());
+        let lines = Lines::new(program.as_bytes()).filter(|l| frame.holds(l.number)).map(|l| l.number).collect();
+        (lines, frame.outside.is_some())
+    }
+
+    #[test]
+    fn the_program_lies_between_the_percents() {
+        assert_eq!(held("%\nA\n%\n"), (std::vec![1, 2, 3], false));
+        assert_eq!(held("leader\n%\nA\n%\ntrailer"), (std::vec![2, 3, 4], true));
+    }
+
+    #[test]
+    fn a_single_percent_opens_after_remarks_and_closes_after_blocks() {
+        assert_eq!(held("(remark)\n%\nA\n"), (std::vec![2, 3], true));
+        assert_eq!(held("A\n%\n\x1a\n"), (std::vec![1, 2], false));
+        assert_eq!(held("A\nB"), (std::vec![1, 2], false));
+    }
+}

@@ -1,0 +1,56 @@
+//! G-code: bytes → words → modal interpreter → canonical moves → contour.
+//!
+//! | step | where |
+//! |---|---|
+//! | lines, spans | [`Lines`], [`Span`] |
+//! | words with exact decimal numbers | [`Words`], [`Decimal`] |
+//! | modes and order of execution | [`Interpreter`] |
+//! | canonical moves with the block each comes from | [`Event`], [`Canon`] |
+//! | the finishing contour | [`read_contour`], [`find_contours`] |
+//!
+//! Nothing is allocated and nothing is computed in floating point: 0.0001 in is 2540 nm on every machine. What is not
+//! understood is a [`GcodeError`] with line, column and a code; it is never skipped.
+//!
+//! ```
+//! use truepath_core::gcode::{Canon, Interpreter, Options};
+//!
+//! let program = b"%\nG21 G90 G17\nG0 X0 Y0\nG3 X10 Y10 R10 F200\nM30\n%\n";
+//! let mut arcs = 0;
+//! let summary = Interpreter::new(Options::default()).run(program, &mut |event| {
+//!     arcs += i32::from(matches!(event.canon, Canon::Arc { .. }));
+//!     Ok(())
+//! })?;
+//! assert_eq!((arcs, summary.end, summary.warnings.as_slice().len()), (1, Some(30), 0));
+//! # Ok::<(), truepath_core::gcode::GcodeError>(())
+//! ```
+
+mod arc;
+mod block;
+mod canon;
+mod code;
+mod contour;
+mod decimal;
+mod error;
+mod execute;
+mod frame;
+mod identity;
+mod interpreter;
+mod message;
+mod modal;
+mod motion;
+mod run;
+mod text;
+mod warning;
+mod word;
+
+pub use canon::{Axes, Canon, Coolant, Event, PathControl, Source, Spindle, ToolLength, Units};
+pub use code::GCode;
+pub use contour::{Candidate, ContourOptions, ContourProgram, find_contours, read_contour};
+pub use decimal::Decimal;
+pub use error::{Dialect, GcodeError, GcodeErrorKind};
+pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};
+pub use interpreter::{Interpreter, Options, ProgramSummary};
+pub use modal::{Modal, Motion, WallSide};
+pub use text::{Line, LineRange, Lines, Span};
+pub use warning::{Warning, WarningKind, Warnings};
+pub use word::{Token, Word, Words};

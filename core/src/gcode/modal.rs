@@ -1,0 +1,82 @@
+//! The modes of the machine that stay from block to block.
+
+use super::{PathControl, Spindle, Units};
+use crate::units::Real;
+
+/// On which side of travel the finished wall lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum WallSide {
+    /// On the left of travel: G42 guides the cutter along the right of the contour.
+    Left,
+    /// On the right of travel: G41 guides the cutter along the left of the contour.
+    Right,
+}
+
+/// How an axis word without a motion code of its own moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// G0.
+    Traverse,
+    /// G1.
+    Feed,
+    /// G2 or G3.
+    Arc {
+        /// G3.
+        counter_clockwise: bool,
+    },
+}
+
+/// The modes in force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Modal {
+    /// G20, G21.
+    pub units: Units,
+    /// G0 … G3; `None` at the start and after G80.
+    pub motion: Option<Motion>,
+    /// G90 (true), G91.
+    pub absolute: bool,
+    /// G90.1 (true), G91.1.
+    pub absolute_centres: bool,
+    /// The side of the wall told by G41 or G42.
+    pub wall: Option<WallSide>,
+    /// D of the last G41 or G42.
+    pub radius_offset: Option<u32>,
+    /// Whether G43 or G43.1 is in force.
+    pub length_offset: bool,
+    /// G54 (1) … G59.3 (9).
+    pub work_offset: u8,
+    /// G61, G61.1, G64; `None` when the program has not said it.
+    pub path: Option<PathControl>,
+    /// F, mm/min; `None` before the first.
+    pub feed: Option<Real>,
+    /// S, revolutions per minute; `None` before the first.
+    pub speed: Option<Real>,
+    /// M3, M4, M5.
+    pub spindle: Spindle,
+    /// The last T.
+    pub selected: Option<u32>,
+    /// The tool that the last M6 put into the spindle.
+    pub tool: Option<u32>,
+}
+
+impl Modal {
+    /// At the start of a program: G17 G90 G91.1 G94 G40 G49 G54, no motion, spindle stopped.
+    pub(super) const fn initial(units: Units) -> Self {
+        Self {
+            units,
+            motion: None,
+            absolute: true,
+            absolute_centres: false,
+            wall: None,
+            radius_offset: None,
+            length_offset: false,
+            work_offset: 1,
+            path: None,
+            feed: None,
+            speed: None,
+            spindle: Spindle::Stopped,
+            selected: None,
+            tool: None,
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Where things stand in a program: lines and spans of bytes.
+//!
+//! A program is bytes, not characters: comments may be in any code page. Lines end with CR, LF or CR LF. Columns are
+//! bytes, counted from 1.
+
+/// A run of bytes of the program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Span {
+    /// Offset of its first byte from the start of the program.
+    pub start: usize,
+    /// Number of bytes.
+    pub len: usize,
+}
+
+impl Span {
+    /// Offset of the byte behind it.
+    pub const fn end(self) -> usize {
+        self.start.saturating_add(self.len)
+    }
+    /// Its bytes; empty when the program is not the one it was taken from.
+    pub fn of(self, program: &[u8]) -> &[u8] {
+        program.get(self.start..self.end()).unwrap_or(&[])
+    }
+}
+
+/// Lines of a program from the first to the last, both included, counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LineRange {
+    /// The first line.
+    pub first: u32,
+    /// The last line.
+    pub last: u32,
+}
+
+impl LineRange {
+    /// Whether a line is one of them.
+    pub const fn contains(self, line: u32) -> bool {
+        self.first <= line && line <= self.last
+    }
+}
+
+/// One line of the program, without its line end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line<'a> {
+    /// Counted from 1.
+    pub number: u32,
+    /// Offset of its first byte from the start of the program.
+    pub start: usize,
+    /// Its bytes.
+    pub text: &'a [u8],
+}
+
+impl Line<'_> {
+    /// Its bytes as a span.
+    pub const fn span(&self) -> Span {
+        Span { start: self.start, len: self.text.len() }
+    }
+}
+
+/// The lines of a program, in order. A UTF-8 byte order mark at the start belongs to no line.
+#[derive(Clone, Debug)]
+pub struct Lines<'a> {
+    program: &'a [u8],
+    at: usize,
+    number: u32,
+}
+
+impl<'a> Lines<'a> {
+    /// From the first line.
+    pub fn new(program: &'a [u8]) -> Self {
+        let at = if program.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
+        Self { program, at, number: 0 }
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = Line<'a>;
+
+    fn next(&mut self) -> Option<Line<'a>> {
+        let rest = self.program.get(self.at..).filter(|r| !r.is_empty())?;
+        let len = rest.iter().position(|b| matches!(b, b'\r' | b'\n')).unwrap_or(rest.len());
+        let (text, end) = rest.split_at_checked(len)?;
+        let end_len = match end {
+            [b'\r', b'\n', ..] => 2,
+            [] => 0,
+            _ => 1,
+        };
+        self.number = self.number.saturating_add(1);
+        let line = Line { number: self.number, start: self.at, text };
+        self.at = self.at.saturating_add(len).saturating_add(end_len);
+        Some(line)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    #[test]
+    fn every_line_end_counts_once() {
+        let lines: Vec<_> = Lines::new(b"\xEF\xBB\xBFa\r\nb\rc\n\nd").map(|l| (l.number, l.start, l.text)).collect();
+        assert_eq!(lines, [(1, 3, &b"a"[..]), (2, 6, b"b"), (3, 8, b"c"), (4, 10, b""), (5, 11, b"d")]);
+    }
+
+    #[test]
+    fn a_span_of_another_program_is_empty() {
+        assert_eq!(Span { start: 3, len: 9 }.of(b"short"), b"");
+    }
+}

@@ -1,0 +1,134 @@
+//! What deserves a look but does not stop the reading.
+
+use super::{Line, Span};
+
+/// What was noticed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WarningKind {
+    /// The program lacks one or both `%`.
+    PercentMissing,
+    /// There is text before the first or behind the second `%`.
+    OutsidePercent,
+    /// Neither M2 nor M30.
+    EndMissing,
+    /// There is text behind M2 or M30.
+    TextAfterEnd,
+    /// A cutting move before any F, or with F0.
+    FeedMissing,
+    /// A length before G20 or G21.
+    UnitsAssumed,
+    /// F in the block in which G20 or G21 changes the unit.
+    UnitsWithFeed,
+    /// A block with `/` was executed.
+    BlockDeleteExecuted,
+    /// A block with `/` was skipped.
+    BlockDeleteSkipped,
+    /// An M code that is not known.
+    UnknownM {
+        /// Its number.
+        m: u32,
+    },
+    /// G53 with no axis words.
+    BareG53,
+    /// H or D without the code that uses it.
+    UnusedOffsetNumber {
+        /// `H` or `D`.
+        letter: u8,
+    },
+    /// G41 or G42: the side is recorded, no offset computed.
+    CompensationNotApplied,
+}
+
+impl WarningKind {
+    /// The stable code of this kind.
+    pub const fn code(self) -> &'static str {
+        match self {
+            Self::PercentMissing => "W001",
+            Self::OutsidePercent => "W002",
+            Self::EndMissing => "W003",
+            Self::TextAfterEnd => "W004",
+            Self::FeedMissing => "W005",
+            Self::UnitsAssumed => "W006",
+            Self::UnitsWithFeed => "W007",
+            Self::BlockDeleteExecuted => "W008",
+            Self::BlockDeleteSkipped => "W009",
+            Self::UnknownM { .. } => "W010",
+            Self::BareG53 => "W011",
+            Self::UnusedOffsetNumber { .. } => "W012",
+            Self::CompensationNotApplied => "W013",
+        }
+    }
+}
+
+/// What was noticed, and where first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// What was noticed.
+    pub kind: WarningKind,
+    /// Line, counted from 1.
+    pub line: u32,
+    /// Column in bytes, counted from 1.
+    pub column: u32,
+    /// How often it was noticed in the program.
+    pub times: u32,
+}
+
+/// The warnings of a program, each kind once with its first place and how often it was seen.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Warnings {
+    list: heapless::Vec<Warning, { Self::CAPACITY }>,
+    dropped: u32,
+}
+
+impl Warnings {
+    /// How many different warnings are kept; more are counted in [`Self::dropped`].
+    pub const CAPACITY: usize = 24;
+
+    /// The warnings in the order in which they were first noticed.
+    pub fn as_slice(&self) -> &[Warning] {
+        &self.list
+    }
+    /// How many were noticed beyond [`Self::CAPACITY`] different ones.
+    pub const fn dropped(&self) -> u32 {
+        self.dropped
+    }
+    /// Notes one.
+    pub(super) fn note(&mut self, kind: WarningKind, line: &Line<'_>, span: Span) {
+        if let Some(known) = self.list.iter_mut().find(|w| w.kind == kind) {
+            known.times = known.times.saturating_add(1);
+            return;
+        }
+        let column = span.start.saturating_sub(line.start).saturating_add(1);
+        let column = u32::try_from(column).unwrap_or(u32::MAX);
+        if self.list.push(Warning { kind, line: line.number, column, times: 1 }).is_err() {
+            self.dropped = self.dropped.saturating_add(1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::indexing_slicing)]
+    use super::*;
+
+    #[test]
+    fn a_warning_is_kept_once_and_counted() {
+        let mut warnings = Warnings::default();
+        let line = Line { number: 7, start: 100, text: b"G53" };
+        for _ in 0..3 {
+            warnings.note(WarningKind::BareG53, &line, Span { start: 104, len: 3 });
+        }
+        let seen = warnings.as_slice();
+        assert_eq!((seen.len(), seen[0].line, seen[0].column, seen[0].times), (1, 7, 5, 3));
+    }
+
+    #[test]
+    fn what_exceeds_the_capacity_is_counted() {
+        let mut warnings = Warnings::default();
+        let line = Line { number: 1, start: 0, text: b"" };
+        for m in 0..30 {
+            warnings.note(WarningKind::UnknownM { m }, &line, Span::default());
+        }
+        assert_eq!((warnings.as_slice().len(), warnings.dropped()), (24, 6));
+    }
+}

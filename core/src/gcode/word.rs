@@ -1,0 +1,278 @@
+//! Bytes → words: the lexical layer, one line at a time.
+//!
+//! A line is an optional `/`, words of one letter and one number in any case and with blanks anywhere, comments in
+//! `( )` (they do not nest) and a comment after `;`. `:1234` is the program name `O1234`. Sources: RS274/NGC
+//! interpreter version 3 (Kramer, Proctor, Messina, NIST 6556) §3.3, and the Fanuc and Haas spellings of the same.
+//! Nothing is skipped: a byte that belongs to none of these is an error with its place.
+//!
+//! Limits: plain numbers only; expressions, parameters, named subprograms and `,R` corners are recognised and refused.
+
+use nom::bytes::complete::{tag_no_case, take_while};
+use nom::{IResult, Parser};
+
+use super::decimal::{NumberError, blanks, number};
+use super::{Decimal, Dialect, GcodeError, GcodeErrorKind, Line, Span};
+
+/// A letter with its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Word {
+    /// The letter, upper case.
+    pub letter: u8,
+    /// Its number.
+    pub value: Decimal,
+    /// From the letter to the last digit.
+    pub span: Span,
+}
+
+/// One piece of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Token {
+    /// A letter with its number.
+    Word(Word),
+    /// A comment: everything including its parentheses or semicolon, and what is inside.
+    Comment {
+        /// With the parentheses or the semicolon.
+        span: Span,
+        /// Without them.
+        body: Span,
+    },
+    /// `/` or `/1` … `/9`: the line may be switched off at the machine.
+    BlockDelete {
+        /// The bytes.
+        span: Span,
+        /// The switch, 1 when no digit is given.
+        switch: u8,
+    },
+    /// `%` as the first character of a line, with nothing but comments after it.
+    Percent(Span),
+}
+
+/// The tokens of one line in the order of the text.
+///
+/// After an error there is nothing more: what follows an unreadable byte means nothing.
+#[derive(Clone, Debug)]
+pub struct Words<'a> {
+    line: Line<'a>,
+    rest: &'a [u8],
+    first: bool,
+    percent: bool,
+    failed: bool,
+}
+
+impl<'a> Words<'a> {
+    /// Of this line.
+    pub const fn new(line: Line<'a>) -> Self {
+        Self { line, rest: line.text, first: true, percent: false, failed: false }
+    }
+
+    fn offset(&self, rest: &[u8]) -> usize {
+        self.line.start.saturating_add(self.line.text.len().saturating_sub(rest.len()))
+    }
+
+    /// From `from` (a rest of the line) to the rest now held.
+    fn span_from(&self, from: &[u8]) -> Span {
+        Span { start: self.offset(from), len: from.len().saturating_sub(self.rest.len()) }
+    }
+
+    fn advance(&mut self, bytes: usize) {
+        self.rest = self.rest.get(bytes..).unwrap_or(&[]);
+    }
+
+    fn error(&self, from: &[u8], kind: GcodeErrorKind) -> GcodeError {
+        let len = from.len().saturating_sub(self.rest.len()).max(1);
+        GcodeError::new(kind, &self.line, Span { start: self.offset(from), len })
+    }
+
+    fn token(&mut self, byte: u8) -> Result<Token, GcodeError> {
+        let from = self.rest;
+        let first = core::mem::replace(&mut self.first, false);
+        if first && is_heidenhain(from) {
+            self.rest = &[];
+            return Err(self.error(from, GcodeErrorKind::ForeignDialect(Dialect::Heidenhain)));
+        }
+        self.advance(1);
+        if self.percent && !matches!(byte, b'(' | b';') {
+            self.rest = &[];
+            return Err(self.error(from, GcodeErrorKind::TextAfterPercent));
+        }
+        match byte {
+            b'(' => self.comment(from),
+            b';' => {
+                self.rest = &[];
+                let span = self.span_from(from);
+                let body = Span { start: span.start.saturating_add(1), len: span.len.saturating_sub(1) };
+                Ok(Token::Comment { span, body })
+            }
+            b'/' => Ok(self.block_delete(from)),
+            b'%' if first => {
+                self.percent = true;
+                Ok(Token::Percent(self.span_from(from)))
+            }
+            b':' => self.word(from, b'O'),
+            _ if byte.is_ascii_alphabetic() => self.word(from, byte.to_ascii_uppercase()),
+            b')' => Err(self.error(from, GcodeErrorKind::StrayParenthesis)),
+            b',' => Err(self.error(from, GcodeErrorKind::CornerRounding)),
+            b'[' | b']' | b'#' | b'=' | b'*' => Err(self.error(from, GcodeErrorKind::Expression(byte))),
+            _ => Err(self.error(from, GcodeErrorKind::UnexpectedByte(byte))),
+        }
+    }
+
+    fn comment(&mut self, from: &'a [u8]) -> Result<Token, GcodeError> {
+        let Some(len) = self.rest.iter().position(|&b| b == b')') else {
+            self.rest = &[];
+            return Err(self.error(from, GcodeErrorKind::UnclosedComment));
+        };
+        let body = Span { start: self.offset(self.rest), len };
+        self.advance(len.saturating_add(1));
+        Ok(Token::Comment { span: self.span_from(from), body })
+    }
+
+    fn block_delete(&mut self, from: &'a [u8]) -> Token {
+        let mut switch = 1;
+        if let Some(&digit @ b'1'..=b'9') = self.rest.first() {
+            switch = digit.saturating_sub(b'0');
+            self.advance(1);
+        }
+        Token::BlockDelete { span: self.span_from(from), switch }
+    }
+
+    fn word(&mut self, from: &'a [u8], letter: u8) -> Result<Token, GcodeError> {
+        let (rest, value) = number(self.rest);
+        match value {
+            Ok(value) => {
+                self.rest = rest;
+                let word = Word { letter, value, span: self.span_from(from) };
+                if letter == b'O' && letters(rest) > 1 {
+                    return Err(self.error(from, GcodeErrorKind::NamedProgram));
+                }
+                Ok(Token::Word(word))
+            }
+            Err(NumberError::TooLarge) => {
+                self.rest = rest;
+                Err(self.error(from, GcodeErrorKind::NumberTooLarge { letter }))
+            }
+            Err(NumberError::Missing) => Err(self.missing(from, letter)),
+        }
+    }
+
+    /// Tells what stands where a number should.
+    fn missing(&mut self, from: &'a [u8], letter: u8) -> GcodeError {
+        let next = blanks(self.rest).ok().and_then(|(rest, _)| rest.first().copied());
+        let run = letters(from);
+        let kind = match next {
+            Some(b'<') if letter == b'O' => GcodeErrorKind::NamedProgram,
+            Some(byte @ (b'[' | b'#' | b'=')) => GcodeErrorKind::Expression(byte),
+            // Three letters in a row are a word of a language; two are more likely a forgotten number.
+            _ if run > 2 => {
+                self.advance(run.saturating_sub(1));
+                GcodeErrorKind::Text
+            }
+            _ => GcodeErrorKind::NumberMissing { letter },
+        };
+        self.error(from, kind)
+    }
+}
+
+impl Iterator for Words<'_> {
+    type Item = Result<Token, GcodeError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.failed {
+            return None;
+        }
+        if let Ok((rest, _)) = blanks(self.rest) {
+            self.rest = rest;
+        }
+        let byte = *self.rest.first()?;
+        let token = self.token(byte);
+        self.failed = token.is_err();
+        Some(token)
+    }
+}
+
+/// How many letters stand here without a blank between them.
+fn letters(text: &[u8]) -> usize {
+    text.iter().take_while(|b| b.is_ascii_alphabetic()).count()
+}
+
+/// `BEGIN PGM`, with or without Heidenhain's line number before it.
+fn is_heidenhain(text: &[u8]) -> bool {
+    let digits = take_while(|b: u8| b.is_ascii_digit());
+    let mut begin = (blanks, digits, blanks, tag_no_case(&b"BEGIN"[..]), blanks, tag_no_case(&b"PGM"[..]));
+    let read: IResult<&[u8], _> = begin.parse(text);
+    read.is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::arithmetic_side_effects)]
+    use super::super::Lines;
+    use super::*;
+    use proptest::prelude::*;
+    use std::vec::Vec;
+
+    fn tokens(text: &[u8]) -> Vec<Result<Token, GcodeError>> {
+        Lines::new(text).flat_map(Words::new).collect()
+    }
+
+    #[test]
+    fn blanks_case_and_comments_do_not_change_the_words() {
+        let plain: Vec<_> = words(b"G1X12.5F100");
+        assert_eq!(words(b" g 0 1 (r\xE9sum\xE9) x + 1 2 . 5 F1 0 0 ; rest (of line"), plain);
+    }
+
+    fn words(text: &[u8]) -> Vec<(u8, i128)> {
+        let word = |t: Result<Token, GcodeError>| match t.unwrap() {
+            Token::Word(w) => Some((w.letter, w.value.times(1_000_000))),
+            _ => None,
+        };
+        tokens(text).into_iter().filter_map(word).collect()
+    }
+
+    #[test]
+    fn spans_point_at_the_bytes_of_the_word() {
+        let program = b"%\r\n/2 N10.5 X -1 . 5  Y2 (a)";
+        let spans: Vec<_> = tokens(program)
+            .into_iter()
+            .map(|t| match t.unwrap() {
+                Token::Word(Word { span, .. })
+                | Token::Comment { span, .. }
+                | Token::BlockDelete { span, .. }
+                | Token::Percent(span) => span.of(program),
+            })
+            .collect();
+        assert_eq!(spans, [&b"%"[..], b"/2", b"N10.5", b"X -1 . 5", b"Y2", b"(a)"]);
+    }
+
+    #[test]
+    fn a_colon_names_the_program_as_o_does() {
+        assert_eq!(words(b":1234"), words(b"O1234"));
+    }
+
+    #[test]
+    fn nothing_follows_an_unreadable_byte() {
+        let read = tokens(b"G1 X1 ? Y2");
+        assert_eq!(read.len(), 3);
+        let error = read[2].unwrap_err();
+        assert_eq!((error.kind, error.line, error.column), (GcodeErrorKind::UnexpectedByte(b'?'), 1, 7));
+    }
+
+    proptest! {
+        #[test]
+        fn every_byte_of_a_readable_line_is_a_blank_or_in_one_token(text in "[GXYZ0-9. ()/;%-]{0,24}") {
+            let bytes = text.as_bytes();
+            let mut owner = std::vec![0u8; bytes.len()];
+            for token in tokens(bytes) {
+                let Ok(token) = token else { return Ok(()) };
+                let (Token::Word(Word { span, .. }) | Token::Comment { span, .. } | Token::BlockDelete { span, .. }
+                | Token::Percent(span)) = token;
+                for o in &mut owner[span.start..span.end()] {
+                    *o += 1;
+                }
+            }
+            for (byte, owner) in bytes.iter().zip(owner) {
+                prop_assert!(owner == 1 || (owner == 0 && *byte == b' '));
+            }
+        }
+    }
+}
