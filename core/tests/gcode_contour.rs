@@ -1,8 +1,9 @@
 //! Programs → contours: the paper's program, its variants, and what a real program surrounds a contour with.
 
+use truepath_core::geometry::Side;
 use truepath_core::gcode::{
-    Candidate, ContourOptions, ContourProgram, GcodeError, LineRange, Spindle, Units, WallSide, WarningKind, find_contours,
-    read_contour,
+    Candidate, ContourOptions, ContourProgram, GcodeError, LineRange, Spindle, Units, WarningKind,
+    find_contours, read_contour,
 };
 use truepath_core::geometry::{Block, Contour, Curve, Point, Shape};
 use truepath_core::units::{Offset, Position, Real};
@@ -117,8 +118,8 @@ fn guidance_left_of_the_contour_puts_the_wall_on_the_right() {
         assert!(warnings(&contour).contains(&(WarningKind::CompensationNotApplied, 2)));
         contour.wall
     };
-    assert_eq!(side("G41"), Some(WallSide::Right));
-    assert_eq!(side("G42"), Some(WallSide::Left));
+    assert_eq!(side("G41"), Some(Side::Right));
+    assert_eq!(side("G42"), Some(Side::Left));
 }
 
 #[test]
@@ -128,8 +129,7 @@ fn arc_length_adds_up_and_moves_without_length_are_dropped() {
     assert_eq!(contour.length.nm(), 7 * MM);
 }
 
-const TWO: &str =
-    "G21 G0 X0 Y0 Z5\nT2 M6\nG0 Z5\nG1 Z-1 F50\nX10\nY10\nG0 Z5\nG0 X0 Y0\nG1 Z-2\nG41 D1 X30\nX0\nM2";
+const TWO: &str = "G21 G0 X0 Y0 Z5\nT2 M6\nG0 Z5\nG1 Z-1 F50\nX10\nY10\nG0 Z5\nG0 X0 Y0\nG1 Z-2\nG41 D1 X30\nX0\nM2";
 
 #[test]
 fn several_contours_are_listed_and_one_is_chosen_by_its_lines() {
@@ -138,16 +138,19 @@ fn several_contours_are_listed_and_one_is_chosen_by_its_lines() {
     let lines: Vec<_> = found.iter().map(|c| (c.lines.first, c.lines.last, c.blocks)).collect();
     assert_eq!(lines, [(5, 6, 2), (10, 11, 2)]);
     assert_eq!((found[1].z, found[1].length.nm()), (Some(Position::from_nm(-2 * MM)), 60 * MM));
-    assert_eq!((found[1].tool, found[1].closed, found[1].wall), (Some(2), true, Some(WallSide::Right)));
+    assert_eq!((found[1].tool, found[1].closed, found[1].wall), (Some(2), true, Some(Side::Right)));
 
     let within = Some(LineRange { first: 9, last: 11 });
-    let (contour, _) = read_with(TWO.as_bytes(), &ContourOptions { within, ..Default::default() }).expect("one contour");
+    let (contour, _) =
+        read_with(TWO.as_bytes(), &ContourOptions { within, ..Default::default() }).expect("one contour");
     assert_eq!((contour.blocks, contour.lines), (2, found[1].lines));
 }
 
 #[test]
 fn rapids_machine_moves_tools_and_spindle_changes_end_a_contour() {
-    for interruption in ["G0 X1 Y0", "G53 G0 Z0\nG0 X1 Y0 Z0", "G28 Z0\nG0 X1 Y0 Z0", "T3 M6\nG0 Z0", "S900", "M4", "G43 H1\nG0 Z0"] {
+    for interruption in
+        ["G0 X1 Y0", "G53 G0 Z0\nG0 X1 Y0 Z0", "G28 Z0\nG0 X1 Y0 Z0", "T3 M6\nG0 Z0", "S900", "M4", "G43 H1\nG0 Z0"]
+    {
         let program = format!("G21 S500 M3 G0 X0 Y0 Z0\nG1 X1 F100\n{interruption}\nG1 X2\nM2");
         let mut count = 0;
         find_contours(program.as_bytes(), &ContourOptions::default(), |_| count += 1).expect("readable");
@@ -174,11 +177,10 @@ fn what_deserves_a_look_is_told_with_its_line() {
         ("%\nG21 G0 X0 Y0 Z0\nG1 X1 F9\nM2\nG0 Z5\n%", &[(W::TextAfterEnd, 5)]),
         ("%\nG21 G0 X0 Y0 Z0\nG1 X1\nM2\n%", &[(W::FeedMissing, 3)]),
         ("%\nG0 X0 Y0 Z0\nG1 X1 F9\nM2\n%", &[(W::UnitsAssumed, 2)]),
-        ("%\nG21 G0 X0 Y0 Z0 H3\n/M123\nG1 X1 F9\nM2\n%", &[
-            (W::UnusedOffsetNumber { letter: b'H' }, 2),
-            (W::BlockDeleteExecuted, 3),
-            (W::UnknownM { m: 123 }, 3),
-        ]),
+        (
+            "%\nG21 G0 X0 Y0 Z0 H3\n/M123\nG1 X1 F9\nM2\n%",
+            &[(W::UnusedOffsetNumber { letter: b'H' }, 2), (W::BlockDeleteExecuted, 3), (W::UnknownM { m: 123 }, 3)],
+        ),
         ("%\nG20 F9 G0 X0 Y0 Z0\nG1 X1\nM2\n%", &[(W::UnitsWithFeed, 2)]),
     ];
     for (program, expected) in cases {
@@ -207,6 +209,7 @@ fn the_mark_of_a_corrected_program_is_reported_with_the_check_sum() {
 fn the_contour_may_fill_the_buffer_but_not_exceed_it() {
     let mut buffer = [empty_block(); 3];
     assert!(read_contour(P18, &mut buffer, &ContourOptions::default()).is_ok());
-    let error = read_contour(P18, &mut buffer[..2], &ContourOptions::default()).expect_err("three blocks in two places");
+    let error =
+        read_contour(P18, &mut buffer[..2], &ContourOptions::default()).expect_err("three blocks in two places");
     assert_eq!((error.kind.code(), error.line), ("G072", 13));
 }

@@ -5,7 +5,7 @@ use corner::*;
 use proptest::prelude::*;
 use truepath_core::correct::{self, Band, Design, DesignWorkspace, Node, Predicted, Profile, Target};
 use truepath_core::cut::*;
-use truepath_core::geometry::{Block, Curve, Point, Shape, Vector};
+use truepath_core::geometry::{Block, Curve, Point, Shape, Side, Vector};
 use truepath_core::identify::{Fit, Observation, PredictionWorkspace, Prior, identify};
 use truepath_core::units::{Offset, Real};
 
@@ -70,7 +70,7 @@ impl Motion {
 fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, errors: &[i64]) -> (Fit, Vec<Node>) {
     let blocks = motion.blocks(blocks);
     // The spindle turns the other way on the mirrored machine, so climb stays climb.
-    let milling = wall.milling(true);
+    let milling = Milling::of(wall, true);
     let setup = CutSetup { wall: motion.wall(wall), milling, ..setup(WallLaw::Helical) };
     let path = path(&blocks, &setup, 500);
     let k = Coefficients { kte: real(12.0), kre: real(16.0), ..coefficients() };
@@ -79,7 +79,8 @@ fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, 
         .iter()
         .enumerate()
         .map(|(i, e)| {
-            let s = Offset::from_nm(path.samples()[path.first() + path.count() - 1].s.nm() / 13 * (1 + i as i64 / 2 * 2));
+            let s =
+                Offset::from_nm(path.samples()[path.first() + path.count() - 1].s.nm() / 13 * (1 + i as i64 / 2 * 2));
             let sample = path.samples()[path.index_at(s)];
             let height = Real::ratio(1 + 2 * (i as i64 % 2), 4);
             Observation::new(sample.s, height, Offset::from_nm(*e), Offset::from_um(2), sample.normal)

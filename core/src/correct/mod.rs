@@ -11,4 +11,4 @@ mod profile;
 
 pub use design::{Design, DesignWorkspace, Law, Node, Predicted, design, uncertainty};
 pub use paper::{PaperRatio, PaperTransfer};
-pub use profile::{Band, Profile, Target};
+pub use profile::{Band, Profile, Target, profile};

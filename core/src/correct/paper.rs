@@ -51,10 +51,8 @@ impl PaperTransfer {
         let samples = path.samples().iter().skip(path.first());
         for ((node, state), sample) in nodes.iter_mut().zip(uncorrected.iter().skip(skipped)).zip(samples) {
             let absolute = sample.point.from(Point::from_nm(0, 0));
-            node.chip = Vector {
-                x: self.x.shift(absolute.x, state.engaged),
-                y: self.y.shift(absolute.y, state.engaged),
-            };
+            node.chip =
+                Vector { x: self.x.shift(absolute.x, state.engaged), y: self.y.shift(absolute.y, state.engaged) };
             node.edge = Vector::ZERO;
         }
     }

@@ -48,7 +48,8 @@ impl Band {
 
     /// Middle of the k-th of [`HEIGHTS`] even slices.
     pub fn at(self, k: i64) -> Real {
-        self.from + (self.to - self.from) * Real::ratio(k.saturating_mul(2).saturating_add(1), HEIGHTS.saturating_mul(2))
+        self.from
+            + (self.to - self.from) * Real::ratio(k.saturating_mul(2).saturating_add(1), HEIGHTS.saturating_mul(2))
     }
 }
 

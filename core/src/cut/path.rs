@@ -6,7 +6,7 @@
 //! the last block path and stock are continued straight: a contour that starts by plunging starts fully engaged.
 
 use super::setup::{CutSetup, WallLaw};
-use crate::geometry::{Contour, Direction, FACET_TURN_LIMIT, Point};
+use crate::geometry::{Contour, Direction, FACET_TURN_LIMIT, Point, Side};
 use crate::units::{Offset, Real};
 
 /// One sample of the path.
@@ -80,7 +80,7 @@ impl<'a> Path<'a> {
         for block in contour.blocks() {
             // The wall lies inside an arc that turns towards it: the arc must be wider than the cutter.
             if let Some(radius) = block.curve.signed_radius() {
-                let towards_wall = (radius > Offset::ZERO) == (setup.wall == super::setup::Side::Left);
+                let towards_wall = (radius > Offset::ZERO) == (setup.wall == Side::Left);
                 if towards_wall && radius.abs() <= setup.radius - setup.allowance {
                     return Err(PathError::NoWall { line: block.line });
                 }
@@ -123,7 +123,8 @@ impl<'a> Path<'a> {
     /// shapes its wall.
     pub fn working(&self) -> core::ops::Range<usize> {
         let margin = margin(&self.setup);
-        let end = self.samples.get(self.first.saturating_add(self.count).saturating_sub(1)).map_or(Offset::ZERO, |s| s.s);
+        let end =
+            self.samples.get(self.first.saturating_add(self.count).saturating_sub(1)).map_or(Offset::ZERO, |s| s.s);
         let from = self.samples.partition_point(|s| s.s < -margin);
         from..self.samples.partition_point(|s| s.s <= end + margin)
     }
@@ -226,7 +227,7 @@ fn pieces(length: Offset, step: Offset) -> i64 {
 /// Headings between two, when the corner opens towards the wall (an inside corner of the part).
 fn pivot(from: Direction, to: Direction, setup: &CutSetup, mut emit: impl FnMut(Direction)) {
     let turn = from.angle_to(to);
-    let inside = (turn > Real::ZERO) == (setup.wall == super::setup::Side::Right);
+    let inside = (turn > Real::ZERO) == (setup.wall == Side::Right);
     if !inside || from.dot(to) >= FACET_TURN_LIMIT {
         return;
     }
@@ -243,7 +244,7 @@ fn remove_crossings(samples: &mut [Sample], setup: &CutSetup) {
     let limit = reach - Offset::from_um(1);
     let outside_corner = |a: &Sample, b: &Sample| {
         let turn = a.normal.cross(b.normal);
-        let towards_wall = (turn > Real::ZERO) == (setup.wall == super::setup::Side::Left);
+        let towards_wall = (turn > Real::ZERO) == (setup.wall == Side::Left);
         towards_wall && a.normal.dot(b.normal) < FACET_TURN_LIMIT
     };
     let mut corner = 1usize;

@@ -1,16 +1,7 @@
 //! What is cut, with what, and how: the facts the model takes as given.
 
-use crate::geometry::Direction;
+use crate::geometry::Side;
 use crate::units::{Offset, Real, pow, sin_cos};
-
-/// On which side of travel the finished wall lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Side {
-    /// On the left of travel.
-    Left,
-    /// On the right of travel.
-    Right,
-}
 
 /// How the teeth meet the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -73,24 +64,10 @@ const REFERENCE_CHIP: Real = Real::ratio(5, 100);
 /// The least turn of a tooth over the engaged depth that is distinguished from a straight flute, rad.
 const STRAIGHT_FLUTE_LAG: Real = Real::ratio(2, 100);
 
-impl Side {
-    /// The normal towards the wall for a direction of travel.
-    pub fn normal(self, heading: Direction) -> Direction {
-        match self {
-            Self::Left => heading.left(),
-            Self::Right => heading.right(),
-        }
-    }
-    /// The direction of travel for a normal towards the wall.
-    pub fn heading(self, normal: Direction) -> Direction {
-        match self {
-            Self::Left => normal.right(),
-            Self::Right => normal.left(),
-        }
-    }
-    /// Climb or conventional, for a wall on this side and a spindle that turns clockwise (M3) or not (M4).
-    pub fn milling(self, spindle_clockwise: bool) -> Milling {
-        if (self == Self::Right) == spindle_clockwise { Milling::Climb } else { Milling::Conventional }
+impl Milling {
+    /// For a wall on a side of travel and a spindle that turns clockwise (M3) or not (M4).
+    pub fn of(wall: Side, spindle_clockwise: bool) -> Self {
+        if (wall == Side::Right) == spindle_clockwise { Self::Climb } else { Self::Conventional }
     }
 }
 

@@ -98,12 +98,7 @@ impl<'a> Envelope<'a> {
     }
 }
 
-fn consider_around(
-    gap: &impl Fn(usize) -> Option<Offset>,
-    best: &mut (usize, Offset),
-    from: usize,
-    stride: usize,
-) {
+fn consider_around(gap: &impl Fn(usize) -> Option<Offset>, best: &mut (usize, Offset), from: usize, stride: usize) {
     for at in [from.saturating_sub(stride), from.saturating_add(stride)] {
         if let Some(g) = gap(at)
             && g < best.1

@@ -1,17 +1,8 @@
 //! The words of one block, gathered and checked for what may stand together.
 
 use super::code::Group;
+use super::mcode::{M_LIMIT, MCode};
 use super::{Decimal, Dialect, GCode, GcodeError, GcodeErrorKind, Line, Span, Token, Word, Words};
-
-/// M codes kept per block.
-pub(super) const M_LIMIT: usize = 8;
-
-/// An M code with its place.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct MCode {
-    pub(super) number: u32,
-    pub(super) span: Span,
-}
 
 /// The words of one block.
 #[derive(Debug)]

@@ -4,8 +4,8 @@
 //! block it comes from, so that a writer can change the words of one move and keep every other byte. The vocabulary
 //! follows the canonical machining functions of RS274/NGC (NIST 6556, chapter 4).
 
-use super::{Decimal, Modal, Span, WallSide};
-use crate::geometry::{Curve, Point};
+use super::{Decimal, Modal, Span};
+use crate::geometry::{Curve, Point, Side};
 use crate::units::{Offset, Position, Real};
 
 /// Positions of the axes in program coordinates; `None` where the program has not said it.
@@ -59,7 +59,7 @@ pub enum Canon {
     /// G40, G41, G42.
     Compensation {
         /// The side of the wall; `None` for G40.
-        wall: Option<WallSide>,
+        wall: Option<Side>,
         /// D.
         offset_number: Option<u32>,
     },

@@ -97,7 +97,7 @@ impl GCode {
             730 | 740 | 760 | 810..=890 => return Err(GcodeErrorKind::CannedCycle(self)),
             650 | 651 | 652 | 660 => return Err(GcodeErrorKind::Macro(self)),
             50..=53 | 60 | 61 | 62 => return Err(GcodeErrorKind::Spline(self)),
-            411 | 421 | 432 | 434 | 540..=549 | 1540 => {
+            411 | 421 | 432 | 434 | 541..=549 | 1540 => {
                 return Err(GcodeErrorKind::Unsupported(self));
             }
             160 | 310 | 330 | 331 | 380..=385 | 500 | 510 | 511 | 680..=683 | 700 | 710 | 960 | 970 | 1870 => {

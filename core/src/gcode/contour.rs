@@ -5,9 +5,9 @@
 
 use super::run::{Run, RunReader};
 use super::{
-    GcodeError, GcodeErrorKind, Interpreter, LineRange, Options, PathControl, ProgramSummary, Spindle, Units, WallSide,
+    GcodeError, GcodeErrorKind, Interpreter, LineRange, Options, PathControl, ProgramSummary, Spindle, Units,
 };
-use crate::geometry::Block;
+use crate::geometry::{Block, Side};
 use crate::units::{Offset, Position, Real};
 
 /// How a contour is looked for.
@@ -33,7 +33,7 @@ pub struct Candidate {
     /// The tool in the spindle; `None` without M6.
     pub tool: Option<u32>,
     /// The side of the wall by G41 or G42.
-    pub wall: Option<WallSide>,
+    pub wall: Option<Side>,
     /// Whether it ends where it starts.
     pub closed: bool,
 }
@@ -52,7 +52,7 @@ pub struct ContourProgram {
     /// Whether it ends where it starts.
     pub closed: bool,
     /// The side of the wall by G41 or G42; `None` when the program does not say it.
-    pub wall: Option<WallSide>,
+    pub wall: Option<Side>,
     /// The lowest feed on it, mm/min; 0 when a block has none.
     pub lowest_feed: Real,
     /// The highest feed on it, mm/min.

@@ -1,12 +1,14 @@
 //! The codes of one block that set modes, in their order of execution.
 
-use super::block::{BlockWords, M_LIMIT, MCode, whole};
+use super::block::{BlockWords, whole};
 use super::code::Group;
 use super::interpreter::Execution;
+use super::mcode::MCodes;
 use super::{
-    Canon, Coolant, Event, GcodeError, GcodeErrorKind, Motion, PathControl, Span, Spindle, ToolLength, Units, WallSide,
+    Canon, Coolant, Event, GcodeError, GcodeErrorKind, Motion, PathControl, Spindle, ToolLength, Units,
     WarningKind, Word,
 };
+use crate::geometry::Side;
 use crate::units::{Offset, Real};
 
 /// The largest F (mm/min) and S (rpm).
@@ -171,8 +173,8 @@ where
             return Ok(());
         };
         self.modal.wall = match code.tenths() {
-            410 => Some(WallSide::Right),
-            420 => Some(WallSide::Left),
+            410 => Some(Side::Right),
+            420 => Some(Side::Left),
             _ => None,
         };
         if self.modal.wall.is_some() {
@@ -281,42 +283,4 @@ where
             _ => None,
         };
     }
-}
-
-/// The M codes of a block by what they do.
-#[derive(Default)]
-struct MCodes {
-    stop: Option<MCode>,
-    tool: Option<MCode>,
-    spindle: Option<MCode>,
-    coolant: heapless::Vec<MCode, M_LIMIT>,
-    other: heapless::Vec<MCode, M_LIMIT>,
-}
-
-impl MCodes {
-    /// Sorts them; two of one kind exclude each other, except M7 with M8 and codes that are not known.
-    fn sorted(block: &BlockWords) -> Result<Self, (GcodeErrorKind, Span)> {
-        let mut sorted = Self::default();
-        for &code in &block.m {
-            let before = match code.number {
-                0 | 1 | 2 | 30 => sorted.stop.replace(code),
-                6 => sorted.tool.replace(code),
-                3..=5 => sorted.spindle.replace(code),
-                7..=9 => add(&mut sorted.coolant, code, |c| c.number == code.number || c.number.max(code.number) == 9),
-                97..=99 => return Err((GcodeErrorKind::Subprogram { m: code.number }, code.span)),
-                _ => add(&mut sorted.other, code, |_| false),
-            };
-            if let Some(first) = before {
-                return Err((GcodeErrorKind::ConflictM { first: first.number, second: code.number }, code.span));
-            }
-        }
-        Ok(sorted)
-    }
-}
-
-/// Adds a code to a list; gives the one before that excludes it.
-fn add(list: &mut heapless::Vec<MCode, M_LIMIT>, code: MCode, excludes: impl Fn(&MCode) -> bool) -> Option<MCode> {
-    let before = list.iter().copied().find(excludes);
-    // The list holds as many codes as a block, so this cannot fail.
-    list.push(code).err().or(before)
 }

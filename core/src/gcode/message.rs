@@ -243,7 +243,7 @@ impl GcodeErrorKind {
                 "{count} contours found, the first two on {first} and {second}; name the one to correct in a [[feature]] of the job (blocks = [first line, last line])"
             ),
             Self::ContourTooLong { limit } => {
-                write!(f, "the contour has more than {limit} blocks, which is what the buffer holds; split the program")
+                write!(f, "the contour has more than {limit} blocks, which is what the buffer holds; choose fewer lines, or split the program")
             }
             Self::StartUnknown { axis } => write!(
                 f,
@@ -251,7 +251,7 @@ impl GcodeErrorKind {
                 Letter(axis)
             ),
             Self::HeightUnknown => {
-                f.write_str("the Z of this contour is never given; move to it with G90 before the contour")
+                f.write_str("the Z of this contour is not known; give it with G90 before the contour, after any tool change, G43, G28 or G53")
             }
             Self::BothSides => {
                 f.write_str("the contour is cut with G41 in one part and G42 in another; a wall has one side")

@@ -1,16 +1,8 @@
 //! The modes of the machine that stay from block to block.
 
 use super::{PathControl, Spindle, Units};
+use crate::geometry::Side;
 use crate::units::Real;
-
-/// On which side of travel the finished wall lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum WallSide {
-    /// On the left of travel: G42 guides the cutter along the right of the contour.
-    Left,
-    /// On the right of travel: G41 guides the cutter along the left of the contour.
-    Right,
-}
 
 /// How an axis word without a motion code of its own moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +30,7 @@ pub struct Modal {
     /// G90.1 (true), G91.1.
     pub absolute_centres: bool,
     /// The side of the wall told by G41 or G42.
-    pub wall: Option<WallSide>,
+    pub wall: Option<Side>,
     /// D of the last G41 or G42.
     pub radius_offset: Option<u32>,
     /// Whether G43 or G43.1 is in force.

@@ -3,8 +3,8 @@
 //! A run is consecutive cutting moves (G1, G2, G3) in X and Y at constant Z. A rapid, a move in Z, G28, G53, a tool
 //! change, and a change of spindle or offset end it. Moves without length are dropped.
 
-use super::{Axes, Canon, Event, GcodeErrorKind, LineRange, PathControl, Span, Spindle, Units, WallSide};
-use crate::geometry::{Block, Curve, Point};
+use super::{Axes, Canon, Event, GcodeErrorKind, LineRange, PathControl, Span, Spindle, Units};
+use crate::geometry::{Block, Curve, Point, Side};
 use crate::units::{Offset, Position, Real};
 
 /// A run of cutting moves.
@@ -18,7 +18,7 @@ pub(super) struct Run {
     pub(super) start: Point,
     pub(super) end: Point,
     pub(super) z: Option<Position>,
-    pub(super) wall: Option<WallSide>,
+    pub(super) wall: Option<Side>,
     pub(super) both_sides: bool,
     pub(super) lowest_feed: Real,
     pub(super) highest_feed: Real,

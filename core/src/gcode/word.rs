@@ -142,7 +142,8 @@ impl<'a> Words<'a> {
             Ok(value) => {
                 self.rest = rest;
                 let word = Word { letter, value, span: self.span_from(from) };
-                if letter == b'O' && letters(rest) > 1 {
+                let after = blanks(rest).map_or(rest, |(after, _)| after);
+                if letter == b'O' && letters(after) > 1 {
                     return Err(self.error(from, GcodeErrorKind::NamedProgram));
                 }
                 Ok(Token::Word(word))

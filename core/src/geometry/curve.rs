@@ -65,12 +65,22 @@ impl Curve {
         };
         let difference = (ra - rb).abs().nm();
         let per_mille = ra.nm().min(rb.nm()) / 1000;
-        if difference > ARC_TOLERANCE_NM.saturating_mul(100) || (difference > ARC_TOLERANCE_NM && difference > per_mille) {
+        if difference > ARC_TOLERANCE_NM.saturating_mul(100)
+            || (difference > ARC_TOLERANCE_NM && difference > per_mille)
+        {
             return Err(ArcError::RadiusMismatch { start: ra, end: rb });
         }
         let turn = from.angle_to(to);
         let same = start == end;
+        // A half turn is its own mirror image: it has no sign of its own.
         let sweep = match (counter_clockwise, turn.bits().signum()) {
+            _ if turn.abs() == Real::PI => {
+                if counter_clockwise {
+                    Real::PI
+                } else {
+                    -Real::PI
+                }
+            }
             (true, _) if same => Real::TAU,
             (false, _) if same => -Real::TAU,
             (true, 1) | (false, -1) => turn,
@@ -79,7 +89,13 @@ impl Curve {
         };
         let mean_radius = Offset::from_nm(ra.nm().saturating_add(rb.nm()) / 2);
         let start_heading = if counter_clockwise { from.left() } else { from.right() };
-        Ok(Self { start, end, length: mean_radius.scaled(sweep.abs()), start_heading, shape: Shape::Arc { centre, sweep } })
+        Ok(Self {
+            start,
+            end,
+            length: mean_radius.scaled(sweep.abs()),
+            start_heading,
+            shape: Shape::Arc { centre, sweep },
+        })
     }
 
     /// Where it begins.

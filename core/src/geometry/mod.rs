@@ -5,9 +5,11 @@
 mod contour;
 mod curve;
 mod nearest;
+mod side;
 mod vector;
 
 pub use contour::{Block, Contour, FACET_TURN_LIMIT, Place};
 pub use curve::{ArcError, Curve, Shape};
 pub use nearest::Nearest;
+pub use side::Side;
 pub use vector::{Direction, Point, Vector};

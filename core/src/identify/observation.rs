@@ -77,7 +77,9 @@ impl PredictionWorkspace<'_> {
         path.samples()
             .iter()
             .enumerate()
-            .map(|(i, s)| path.index_at(s.s + Offset::from_nm(reach)).saturating_sub(i).saturating_mul(2).saturating_add(4))
+            .map(|(i, s)| {
+                path.index_at(s.s + Offset::from_nm(reach)).saturating_sub(i).saturating_mul(2).saturating_add(4)
+            })
             .max()
             .unwrap_or(0)
     }
@@ -100,8 +102,7 @@ pub fn predict(
     observations: &mut [Observation],
     workspace: &mut PredictionWorkspace,
 ) {
-    let machine =
-        Loop { path, table, coefficients: parameters.coefficients, compliance: parameters.compliance };
+    let machine = Loop { path, table, coefficients: parameters.coefficients, compliance: parameters.compliance };
     let working = path.working();
     let mut place: Option<(Offset, usize, usize)> = None;
     for observation in observations.iter_mut() {

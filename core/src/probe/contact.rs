@@ -5,8 +5,7 @@
 //! at, not to its number in the file.
 
 use super::read::Reading;
-use crate::cut::Side;
-use crate::geometry::{Contour, Direction, Nearest, Point};
+use crate::geometry::{Contour, Direction, Nearest, Point, Side};
 use crate::units::{Offset, Position, Real};
 
 /// How the readings were taken and what they touched.
@@ -154,9 +153,7 @@ pub fn suspect(contacts: &Contacts, readings: &[Reading]) -> Option<Suspicion> {
         return None;
     }
     let times = |numerator: i64, denominator: i64| {
-        move |p: Position| {
-            Position::from_nm((p - Position::ZERO).scaled(Real::ratio(numerator, denominator)).nm())
-        }
+        move |p: Position| Position::from_nm((p - Position::ZERO).scaled(Real::ratio(numerator, denominator)).nm())
     };
     if enough(contacts.fitting(readings, times(254, 10))) {
         return Some(Suspicion::Inches);

@@ -49,23 +49,29 @@ impl ProbeErrorKind {
     /// A code that keeps its meaning.
     pub const fn code(self) -> &'static str {
         match self {
-            Self::NotANumber => "P001",
-            Self::NumberTooLarge => "P002",
-            Self::WrongCount { .. } => "P003",
-            Self::ColumnMissing { .. } => "P004",
-            Self::Empty => "P005",
-            Self::TooManyPoints { .. } => "P006",
+            Self::NotANumber => "M001",
+            Self::NumberTooLarge => "M002",
+            Self::WrongCount { .. } => "M003",
+            Self::ColumnMissing { .. } => "M004",
+            Self::Empty => "M005",
+            Self::TooManyPoints { .. } => "M006",
         }
     }
     /// What to do about it.
     pub const fn help(self) -> &'static str {
         match self {
-            Self::NotANumber => "write plain decimal numbers such as -12.345; for a comma as decimal sign separate the columns by blanks, tabs or semicolons",
+            Self::NotANumber => {
+                "write plain decimal numbers such as -12.345; for a comma as decimal sign separate the columns by blanks, tabs or semicolons"
+            }
             Self::NumberTooLarge => "check the unit and the separator of the file",
-            Self::WrongCount { .. } => "a PROBEOPEN file has nine numbers in every line (X Y Z A B C U V W); set [probe] format = \"columns\" for other files, and probe again if the file was cut off",
+            Self::WrongCount { .. } => {
+                "a PROBEOPEN file has nine numbers in every line (X Y Z A B C U V W); set [probe] format = \"columns\" for other files, and probe again if the file was cut off"
+            }
             Self::ColumnMissing { .. } => "name the columns x, y and z in the first line, for example x_mm,y_mm,z_mm",
             Self::Empty => "probe the wall first, or check that the right file was given",
-            Self::TooManyPoints { .. } => "split the file or probe fewer places; a handful of points on each wall is enough",
+            Self::TooManyPoints { .. } => {
+                "split the file or probe fewer places; a handful of points on each wall is enough"
+            }
         }
     }
 }
@@ -74,7 +80,9 @@ impl fmt::Display for ProbeErrorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotANumber => write!(f, "this is not a number; a coordinate was expected"),
-            Self::NumberTooLarge => write!(f, "this number has more than 12 digits before its point; a coordinate was expected"),
+            Self::NumberTooLarge => {
+                write!(f, "this number has more than 12 digits before its point; a coordinate was expected")
+            }
             Self::WrongCount { expected, found } => {
                 write!(f, "found {found} numbers in this line; expected {expected}")
             }

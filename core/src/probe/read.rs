@@ -92,11 +92,12 @@ pub fn read(file: &[u8], format: Format, unit: LengthUnit, readings: &mut [Readi
     Ok(count)
 }
 
-/// A comma separates columns unless semicolons or tabs do, or blanks do and commas stand inside numbers.
+/// A comma separates columns unless semicolons or tabs do, or it stands inside numbers that blanks separate.
 fn comma_separates(file: &[u8]) -> bool {
     let has = |byte: u8| file.contains(&byte);
-    let between_digits = |w: &[u8]| matches!(w, [a, b',', b] if a.is_ascii_digit() && b.is_ascii_digit());
-    has(b',') && !has(b';') && !has(b'\t') && !(file.windows(3).any(between_digits) && has(b' ') && !has(b'.'))
+    let inside_number = |w: &[u8]| matches!(w, [a, b',', b] if a.is_ascii_digit() && b.is_ascii_digit());
+    let decimal = has(b' ') && !has(b'.') && file.windows(3).any(inside_number);
+    has(b',') && !decimal && !has(b';') && !has(b'\t')
 }
 
 const fn is_blank(byte: u8) -> bool {

@@ -30,7 +30,8 @@ pub fn log2(value: Real) -> Real {
         exponent = exponent.saturating_add(1);
     }
     // ln m = 2·atanh((m − 1)/(m + 1))
-    let z = div_rounded((mantissa.saturating_sub(ONE) as i128) << Q, (mantissa as i128).saturating_add(ONE as i128)) as i64;
+    let z =
+        div_rounded((mantissa.saturating_sub(ONE) as i128) << Q, (mantissa as i128).saturating_add(ONE as i128)) as i64;
     let square = mul(z, z);
     let mut series = 0i64;
     let mut k = 23i64;
@@ -62,7 +63,11 @@ pub fn exp2(x: Real) -> Real {
     }
     let value = ONE.saturating_add(series) as i128;
     let bits = i64::from(Q - Real::FRACTION_BITS).saturating_sub(whole);
-    Real::narrow(if bits >= 0 { shift_rounded(value, bits.unsigned_abs() as u32) } else { value << bits.unsigned_abs() })
+    Real::narrow(if bits >= 0 {
+        shift_rounded(value, bits.unsigned_abs() as u32)
+    } else {
+        value << bits.unsigned_abs()
+    })
 }
 
 fn shift_left(v: Real) -> i64 {

@@ -19,6 +19,7 @@ pub const fn hypot_nm(x: Offset, y: Offset) -> Offset {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::arithmetic_side_effects)]
     use super::*;
     use proptest::prelude::*;
 

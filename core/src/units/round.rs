@@ -47,6 +47,7 @@ const fn signed(magnitude: u128, negative: bool) -> i128 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::arithmetic_side_effects)]
     use super::*;
     use proptest::prelude::*;
 

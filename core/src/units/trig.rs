@@ -128,7 +128,7 @@ fn atan_unit(q: i64) -> i64 {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::float_arithmetic)]
+    #![allow(clippy::float_arithmetic, clippy::arithmetic_side_effects)]
     use super::*;
     use proptest::prelude::*;
 

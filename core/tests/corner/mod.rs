@@ -2,9 +2,9 @@
 #![allow(dead_code)]
 
 use truepath_core::cut::{
-    Coefficients, Compliance, CutSetup, Envelope, ForceTable, Loop, Milling, Path, Sample, Side, State, WallLaw,
+    Coefficients, Compliance, CutSetup, Envelope, ForceTable, Loop, Milling, Path, Sample, State, WallLaw,
 };
-use truepath_core::geometry::{Block, Contour, Curve, Point, Vector};
+use truepath_core::geometry::{Block, Contour, Curve, Point, Side, Vector};
 use truepath_core::units::{Offset, Real};
 
 pub fn mm(v: f64) -> i64 {

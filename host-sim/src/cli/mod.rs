@@ -1,0 +1,79 @@
+//! The command line: arguments, dispatch, exit codes.
+//!
+//! Data goes to standard output or to the files named by `-o`, talk to standard error. Exit codes: 0 done, 1 the input
+//! is wrong (command line included), 2 a fault of the program. `--json` makes both streams readable for machines.
+
+mod canon;
+mod terminal;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::diagnostics::{Failure, InputError};
+
+pub use terminal::{Progress, Terminal};
+
+/// Cut contours as if machine and cutter were rigid.
+///
+/// Mill once, touch the wall in a few places, and get the program or the correction image that cancels the deflection.
+#[derive(Debug, Parser)]
+#[command(name = "truepath", version, propagate_version = true, subcommand_required = true, arg_required_else_help = true)]
+struct Arguments {
+    /// Print results, warnings and errors as JSON.
+    #[arg(long, global = true)]
+    json: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Canonical moves of a program, in the text format of LinuxCNC's `rs274 -g`.
+    Canon(canon::Arguments),
+}
+
+/// Runs the program.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let json = arguments.iter().any(|a| a == "--json");
+    let terminal = Terminal::new(json);
+    let outcome = match Arguments::try_parse_from(&arguments) {
+        Ok(arguments) => guarded(|| dispatch(arguments.command, &terminal)),
+        Err(error) if error.use_stderr() => Err(usage_error(&error, json)),
+        Err(help) => {
+            // Help and version are asked for: data, on standard output.
+            let printed = help.print().map_err(|e| Failure::Internal(e.to_string()));
+            return ExitCode::from(printed.map_or_else(|failure| terminal.fail(&failure), |()| 0));
+        }
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => ExitCode::from(terminal.fail(&failure)),
+    }
+}
+
+fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
+    match command {
+        Command::Canon(arguments) => canon::run(&arguments, terminal),
+    }
+}
+
+/// Turns a panic into an internal error, so that it is reported as one.
+fn guarded(work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+        Err(Failure::Internal(text.unwrap_or("a panic without a message").to_owned()))
+    })
+}
+
+/// A wrong command line. For people clap's own text is the better one.
+fn usage_error(error: &clap::Error, json: bool) -> Failure {
+    let text = error.render().to_string();
+    if !json {
+        return Failure::Usage(text);
+    }
+    let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+    InputError::new("C001", first, "a command line as shown by truepath --help", "run truepath --help").into()
+}

@@ -1,0 +1,221 @@
+//! `correct`: from a probe file to the corrected program or the correction image.
+
+use std::path::Path as FilePath;
+
+use truepath_core::cut::{Loop, Path};
+
+use crate::correction::{Correction, Identified, corrected, identified, law, wanted};
+use crate::diagnostics::{Failure, InputError, Source};
+use crate::job::{Job, Route};
+use crate::measurement::Measurement;
+use crate::output::OutputFolder;
+use crate::pass::{Pass, PathBuffer};
+use crate::program::{RewriteOptions, rewrite_program};
+use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, image_nodes, mm, points_csv};
+
+use super::simulate::json;
+
+/// Files this command may write.
+const FILES: &[&str] = &[
+    "corrected.nc",
+    "correction.tpi",
+    "correction.csv",
+    "points.csv",
+    "summary.json",
+    "correction.svg",
+    "probe-raw.txt",
+];
+
+/// What is corrected.
+#[derive(Clone, Debug)]
+pub struct Options<'a> {
+    /// The job.
+    pub job: &'a FilePath,
+    /// The probe file.
+    pub probe: &'a FilePath,
+    /// Output folder.
+    pub out: &'a FilePath,
+    /// Replace existing files.
+    pub force: bool,
+    /// `--route`, over that of the job.
+    pub route: Option<Route>,
+}
+
+/// A correction in memory: everything the command writes follows from it.
+#[derive(Clone, Debug)]
+pub struct Corrected {
+    /// Machine and material.
+    pub identified: Identified,
+    /// The correction.
+    pub correction: Correction,
+    /// The summary.
+    pub summary: CorrectSummary,
+    /// The corrected program, when the route is the program.
+    pub program: Option<Vec<u8>>,
+    /// The image, when the route is the coprocessor.
+    pub image: Option<Vec<u8>>,
+    /// `correction.csv`.
+    pub table: Vec<u8>,
+    /// `correction.svg`.
+    pub picture: Vec<u8>,
+}
+
+/// Corrects a pass from a measurement, in memory.
+///
+/// # Errors
+/// What is wrong with program or measurement, and a correction beyond the clamp.
+pub fn correct(
+    pass: &Pass,
+    measurement: &Measurement,
+    remarks: &[String],
+    route: Route,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Corrected, Failure> {
+    let mut buffer = PathBuffer::default();
+    let sampled = pass.sample(&mut buffer)?;
+    let identified = identified(pass, &sampled, measurement);
+    progress(0.2);
+    let path = sampled.with_law(identified.law);
+    let table = identified.table();
+    let machine = identified.machine(&path, &table);
+    let law = law(pass, &machine, &measurement.contacts, pass.job.correct.law);
+    let correction = corrected(&machine, &identified, wanted(pass, law), |share| progress(0.2 + 0.7 * share));
+    check_clamp(pass, &path, &correction)?;
+    let mut warnings = pass.warnings.clone();
+    warnings.extend(remarks.iter().cloned());
+    warnings.extend(doubts(pass, &identified, &correction, &machine));
+    let summary = correct_summary(pass, &identified, &correction, measurement.rejected.len(), warnings);
+    let (mut program, mut image) = (None, None);
+    match route {
+        Route::Program => program = Some(corrected_program(pass, &path, &correction)?),
+        Route::Coprocessor => {
+            //TMP
+        }
+    }
+    let table = correction_csv(&machine, &correction)?;
+    let s_mm: Vec<f64> =
+        path.samples()[path.first()..path.first() + path.count()].iter().map(|sample| mm(sample.s)).collect();
+    let picture = crate::plot::correction(pass, &s_mm, &correction)?;
+    progress(1.0);
+    Ok(Corrected { identified, correction, summary, program, image, table, picture })
+}
+
+/// Corrects and writes the outputs.
+///
+/// # Errors
+/// As [`correct`], and outputs that cannot be written.
+pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSummary, Failure> {
+    let pass = Pass::read(Job::read(options.job)?)?;
+    let file = Source::read(options.probe)?;
+    let measurement = Measurement::read(&pass, &file)?;
+    let folder = OutputFolder::create(options.out, options.force, FILES)?;
+    let route = options.route.unwrap_or(pass.job.correct.route);
+    let done = correct(&pass, &measurement, &measurement.remarks(&file), route, progress)?;
+    if let Some(text) = &done.program {
+        folder.write("corrected.nc", text)?;
+    }
+    if let Some(bytes) = &done.image {
+        folder.write("correction.tpi", bytes)?;
+    }
+    folder.write("correction.csv", &done.table)?;
+    folder.write("points.csv", &points_csv(&measurement.contacts)?)?;
+    folder.write("summary.json", &json(&done.summary)?)?;
+    folder.write("correction.svg", &done.picture)?;
+    folder.write("probe-raw.txt", file.bytes())?;
+    folder.commit()?;
+    Ok(done.summary)
+}
+
+fn corrected_program(pass: &Pass, path: &Path, correction: &Correction) -> Result<Vec<u8>, Failure> {
+    let options = RewriteOptions { tolerance: pass.job.correct.tolerance, ..RewriteOptions::default() };
+    Ok(rewrite_program(&pass.program, &block_edits(pass, path, &correction.nodes), &options)?.text)
+}
+
+/// A correction cut by the clamp is an error, never silent.
+fn check_clamp(pass: &Pass, path: &Path, correction: &Correction) -> Result<(), Failure> {
+    let size = |i: usize| {
+        let total = correction.nodes[i].total();
+        total.x.abs().max(total.y.abs())
+    };
+    let Some(worst) = (0..correction.nodes.len()).max_by_key(|i| size(*i)) else { return Ok(()) };
+    let clamp = pass.job.correct.clamp;
+    if size(worst) <= clamp {
+        return Ok(());
+    }
+    let at = path.samples()[path.first() + worst];
+    let peak = mm(size(worst));
+    // The peak and a tenth of it, rounded up to a hundredth.
+    let proposal = (peak * 110.0).ceil() / 100.0;
+    Err(InputError::new(
+        "J017",
+        format!(
+            "the correction reaches {peak:.3} mm at X{:.3} Y{:.3}, beyond clamp_mm = {}",
+            at.point.x.nm() as f64 / 1e6,
+            at.point.y.nm() as f64 / 1e6,
+            mm(clamp)
+        ),
+        "a correction inside the clamp",
+        format!("if a correction that large is meant, set clamp_mm = {proposal} in [correct]; otherwise check the probe file and the cut"),
+    )
+    .at(pass.job.source(), pass.job.span("correct.clamp_mm"))
+    .into())
+}
+
+/// What the user should doubt.
+fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
+    let mut out = Vec::new();
+    if identified.fit.outliers > 0 {
+        let lines: Vec<String> = identified
+            .observations
+            .iter()
+            .filter(|o| crate::report::float(o.weight) < 0.3)
+            .map(|o| format!("s = {:.2} mm (measured {:.4}, model {:.4} mm)", mm(o.s), mm(o.error), mm(o.predicted)))
+            .collect();
+        out.push(format!("{} points do not fit and were given little weight: {}", lines.len(), lines.join("; ")));
+    }
+    if correction.passage.unsettled > 0 {
+        out.push(format!(
+            "the elastic loop did not settle at {} places (worst residual {:.4} mm): the machine is too soft for this cut",
+            correction.passage.unsettled,
+            mm(correction.passage.worst_residual)
+        ));
+    }
+    let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
+    let sigma = correction.sigma.iter().copied().max().unwrap_or_default();
+    if sigma.nm() * 8 > peak.nm() {
+        out.push(format!(
+            "the points leave the corrected wall uncertain by {:.4} mm (one sigma); probe more places, best in the corners",
+            mm(sigma)
+        ));
+    }
+    if let Some(reversal) = reversal(pass, machine, correction) {
+        out.push(reversal);
+    }
+    out
+}
+
+/// Where the correction reverses an axis that the program does not reverse, backlash acts.
+fn reversal(pass: &Pass, machine: &Loop, correction: &Correction) -> Option<String> {
+    let path = machine.path;
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    for axis in 0..2 {
+        let backlash = [pass.job.machine.backlash_x, pass.job.machine.backlash_y][axis];
+        if backlash.nm() == 0 {
+            continue;
+        }
+        for (i, pair) in samples.windows(2).enumerate() {
+            let nominal = pair[1].point.from(pair[0].point);
+            let change = correction.nodes[i + 1].total() - correction.nodes[i].total();
+            let (n, c) = if axis == 0 { (nominal.x.nm(), change.x.nm()) } else { (nominal.y.nm(), change.y.nm()) };
+            if n.abs() > 1_000 && (n + c).signum() == -n.signum() {
+                return Some(format!(
+                    "near s = {:.2} mm the correction reverses {} against the program: its backlash of {} mm acts there",
+                    mm(pair[0].s),
+                    ["X", "Y"][axis],
+                    mm(backlash)
+                ));
+            }
+        }
+    }
+    None
+}

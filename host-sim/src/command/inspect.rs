@@ -1,0 +1,60 @@
+//! `inspect`: the accuracy of the wall from measurements alone (P18), no model.
+
+use std::path::Path as FilePath;
+
+use crate::diagnostics::{Failure, Source};
+use crate::job::Job;
+use crate::measurement::Measurement;
+use crate::pass::Pass;
+use crate::report::{InspectSummary, inspect_summary, mm};
+
+/// One contact, for the list that is printed.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Point {
+    /// Line of the probe file.
+    pub line: u32,
+    /// Place along the contour, mm.
+    pub s_mm: f64,
+    /// Contact, mm.
+    pub x_mm: f64,
+    /// Contact, mm.
+    pub y_mm: f64,
+    /// Height above the cutter's tip, mm.
+    pub height_mm: f64,
+    /// Wall error, mm: positive, material left.
+    pub error_mm: f64,
+}
+
+/// The report.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Inspection {
+    /// Totals.
+    pub summary: InspectSummary,
+    /// Every contact, in the order of the contour.
+    pub contacts: Vec<Point>,
+}
+
+/// Compares a probe file with the wall of the job.
+///
+/// # Errors
+/// Whatever is wrong with job, program or probe file.
+pub fn run(job: &FilePath, probe: &FilePath) -> Result<Inspection, Failure> {
+    let pass = Pass::read(Job::read(job)?)?;
+    let file = Source::read(probe)?;
+    let measurement = Measurement::read(&pass, &file)?;
+    let mut warnings = pass.warnings.clone();
+    warnings.extend(measurement.remarks(&file));
+    let depth = mm(pass.job.cut.axial_depth);
+    let contacts = measurement.contacts.iter().map(|c| Point {
+        line: c.line,
+        s_mm: mm(c.s),
+        x_mm: c.point.x.nm() as f64 / 1e6,
+        y_mm: c.point.y.nm() as f64 / 1e6,
+        height_mm: crate::report::float(c.height) * depth,
+        error_mm: mm(c.error),
+    });
+    Ok(Inspection {
+        contacts: contacts.collect(),
+        summary: inspect_summary(&measurement.contacts, measurement.rejected.len(), warnings),
+    })
+}

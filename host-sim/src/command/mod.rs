@@ -1,0 +1,5 @@
+//! What the commands do, apart from how they are called (`cli`) and printed.
+
+pub mod correct;
+pub mod inspect;
+pub mod simulate;

@@ -1,0 +1,125 @@
+//! `simulate`: the pass as the core predicts it, or as the plant cuts it.
+
+use std::path::Path as FilePath;
+
+use truepath_core::correct::{Band, Profile, profile};
+use truepath_core::cut::{ForceTable, Loop, State};
+use truepath_core::geometry::Vector;
+
+use crate::diagnostics::{Failure, InputError, Source};
+use crate::job::Job;
+use crate::output::OutputFolder;
+use crate::pass::{Pass, PathBuffer};
+use crate::plant;
+use crate::report::{SimulateSummary, Trace, TraceRow, mm, simulate_summary, trace, trace_csv};
+use crate::workshop;
+
+/// Files this command may write.
+const FILES: &[&str] = &["trace.csv", "summary.json", "trace.svg"];
+
+/// What is simulated.
+#[derive(Clone, Debug)]
+pub struct Options<'a> {
+    /// The job.
+    pub job: &'a FilePath,
+    /// A machine for the plant; without it the core predicts with the job's priors.
+    pub plant: Option<&'a FilePath>,
+    /// Output folder.
+    pub out: &'a FilePath,
+    /// Replace existing files.
+    pub force: bool,
+}
+
+/// Simulates and writes trace and summary.
+///
+/// # Errors
+/// Whatever is wrong with job, program or plant, and outputs that cannot be written.
+pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
+    let pass = Pass::read(Job::read(options.job)?)?;
+    let folder = OutputFolder::create(options.out, options.force, FILES)?;
+    let (by, trace) = match options.plant {
+        None => ("core", predicted(&pass)?),
+        Some(file) => ("plant", milled(&pass, &read_machine(file)?)?),
+    };
+    let summary = simulate_summary(&pass, by, &trace, pass.warnings.clone());
+    folder.write("trace.csv", &trace_csv(&trace)?)?;
+    folder.write("summary.json", &json(&summary)?)?;
+    folder.write("trace.svg", &crate::plot::trace(&trace)?)?;
+    folder.commit()?;
+    Ok(summary)
+}
+
+/// A summary as JSON text.
+///
+/// # Errors
+/// Internal, when it cannot be written.
+pub fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Failure> {
+    let mut text = serde_json::to_vec_pretty(value).map_err(|e| Failure::Internal(format!("JSON: {e}")))?;
+    text.push(b'\n');
+    Ok(text)
+}
+
+/// The uncorrected pass as the core predicts it from the job's priors.
+///
+/// # Errors
+/// As [`Pass::sample`].
+pub fn predicted(pass: &Pass) -> Result<Trace, Failure> {
+    let mut buffer = PathBuffer::default();
+    let path = pass.sample(&mut buffer)?;
+    let prior = pass.prior(pass.setup.law).mean;
+    let table = ForceTable::new(prior.coefficients.size_exponent);
+    let machine = Loop { path: &path, table: &table, coefficients: prior.coefficients, compliance: prior.compliance };
+    let mut states = vec![State::REST; path.working().len()];
+    machine.run(path.working().start, &mut states, |_| Vector::ZERO);
+    let mut displacements = vec![Vector::ZERO; states.len()];
+    let mut profiles = vec![Profile::default(); path.count()];
+    profile(&machine, &states, Band::WHOLE, &mut displacements, &mut profiles);
+    let errors: Vec<f64> = profiles.iter().map(|p| mm(p.mean)).collect();
+    Ok(trace(&machine, &states, &errors))
+}
+
+/// The uncorrected pass as a virtual machine cuts it.
+///
+/// # Errors
+/// What the plant refuses.
+pub fn milled(pass: &Pass, machine: &plant::Machine) -> Result<Trace, Failure> {
+    let milled = workshop::mill(pass, machine, None)?;
+    let errors = milled.mean_errors();
+    let feed = |s: f64| milled.cut.feed_per_tooth_mm(milled.cut.feed_at(s));
+    let rows = milled.samples.iter().zip(&milled.path.centre).zip(errors).map(|((sample, nominal), error_mm)| {
+        let leaving = sample.leaving_rad();
+        let [fx_n, fy_n] = sample.force_n;
+        TraceRow {
+            s_mm: sample.s_mm,
+            x_mm: nominal[0],
+            y_mm: nominal[1],
+            arc_deg: leaving.to_degrees(),
+            chip_area_mm2: milled.cut.axial_depth_mm * feed(sample.s_mm) * (1.0 - leaving.cos()),
+            force_n: fx_n.hypot(fy_n),
+            fx_n,
+            fy_n,
+            dx_mm: sample.actual[0] - sample.commanded[0],
+            dy_mm: sample.actual[1] - sample.commanded[1],
+            error_mm,
+        }
+    });
+    Ok(rows.collect())
+}
+
+/// Reads a PLANT.toml.
+///
+/// # Errors
+/// Whatever is wrong with it, with its place.
+pub fn read_machine(file: &FilePath) -> Result<plant::Machine, Failure> {
+    let source = Source::read(file)?;
+    let text = std::str::from_utf8(source.bytes()).map_err(|e| {
+        let at = e.valid_up_to();
+        let help = "save the file as UTF-8";
+        InputError::new("L001", "a byte that is not UTF-8", "a text file", help).at(&source, at..at + 1)
+    })?;
+    toml::from_str(text).map_err(|e| {
+        let span = e.span().unwrap_or(0..0);
+        let help = "see docs/plant.md for the keys of a plant and their units";
+        InputError::new("L002", e.message().to_owned(), "", help).at(&source, span).into()
+    })
+}

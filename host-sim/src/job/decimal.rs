@@ -1,0 +1,115 @@
+//! Decimal numbers taken from their text, without a detour through binary floating point.
+//!
+//! `0.1` mm is then exactly 100,000 nm on every host. Range ±10⁹, resolution 10⁻¹⁸; digits beyond that are rounded
+//! once, to nearest.
+
+use truepath_core::units::{Offset, Real, div_rounded};
+
+/// A decimal number in units of 10⁻¹⁸.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Decimal(i128);
+
+const SCALE: i32 = 18;
+/// 10⁹, the end of the range.
+const LIMIT: i128 = 10i128.pow(9 + SCALE as u32);
+
+impl Decimal {
+    /// From the text of a TOML number: sign, digits with `_`, point, exponent. `None` for anything else (hexadecimal,
+    /// `nan`, `inf`) and for more than 36 digits. Values beyond the range are held at its end.
+    pub fn parse(text: &str) -> Option<Self> {
+        let (negative, digits) = match text.as_bytes().first()? {
+            b'-' => (true, &text[1..]),
+            b'+' => (false, &text[1..]),
+            _ => (false, text),
+        };
+        let (digits, exponent) = match digits.split_once(['e', 'E']) {
+            Some((digits, exponent)) => (digits, exponent.replace('_', "").parse::<i32>().ok()?),
+            None => (digits, 0),
+        };
+        let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+        let mut value = 0i128;
+        let mut count = 0;
+        for c in whole.chars().chain(fraction.chars()).filter(|&c| c != '_') {
+            value = value * 10 + i128::from(c.to_digit(10)?);
+            count += 1;
+            if count > 36 {
+                return None;
+            }
+        }
+        if count == 0 {
+            return None;
+        }
+        let decimals = fraction.chars().filter(char::is_ascii_digit).count() as i32;
+        let shift = SCALE.saturating_sub(decimals).saturating_add(exponent);
+        let scaled = match 10i128.checked_pow(shift.unsigned_abs()) {
+            Some(power) if shift >= 0 => value.saturating_mul(power),
+            Some(power) => div_rounded(value, power),
+            None if shift > 0 && value != 0 => LIMIT,
+            None => 0,
+        };
+        let magnitude = scaled.min(LIMIT);
+        Some(Self(if negative { -magnitude } else { magnitude }))
+    }
+
+    /// As millimetres: whole nanometres, rounded to nearest.
+    pub fn as_mm(self) -> Offset {
+        Offset::from_nm(div_rounded(self.0, 10i128.pow(12)) as i64)
+    }
+    /// As a number of the model, rounded to nearest.
+    pub fn as_real(self) -> Real {
+        Real::narrow(div_rounded(self.0 << Real::FRACTION_BITS, 10i128.pow(18)))
+    }
+    /// As a whole number; `None` when it is not one.
+    pub fn as_whole(self) -> Option<i64> {
+        let one = 10i128.pow(18);
+        (self.0 % one == 0).then(|| (self.0 / one) as i64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nm(text: &str) -> i64 {
+        Decimal::parse(text).expect(text).as_mm().nm()
+    }
+
+    #[test]
+    fn lengths_are_exact_nanometres() {
+        for (text, expected) in [
+            ("0.1", 100_000),
+            ("-0.3", -300_000),
+            ("+20", 20_000_000),
+            ("1_000.000_001", 1_000_000_001),
+            ("12.7e-1", 1_270_000),
+            ("2E1", 20_000_000),
+            ("0.0000005", 1),
+            ("-0.0000005", -1),
+            ("0.00000049999", 0),
+        ] {
+            assert_eq!(nm(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_rounded_once() {
+        let third = Decimal::parse("0.333333333333333333333333").expect("a number").as_real();
+        assert_eq!(third.bits(), 1_431_655_765);
+        assert_eq!(Decimal::parse("1147.7").expect("a number").as_real().bits(), 4_929_333_965_619);
+    }
+
+    #[test]
+    fn what_is_no_decimal_is_refused() {
+        for text in ["", "-", "0x10", "nan", "inf", "1e", ".", "12a", &"1".repeat(40)] {
+            assert_eq!(Decimal::parse(text), None, "{text}");
+        }
+        assert_eq!(Decimal::parse("1e30"), Decimal::parse("1e9"));
+        assert_eq!(Decimal::parse("1e-99"), Decimal::parse("0"));
+    }
+
+    #[test]
+    fn whole_numbers_are_told_from_fractions() {
+        assert_eq!(Decimal::parse("6.0").and_then(Decimal::as_whole), Some(6));
+        assert_eq!(Decimal::parse("6.5").and_then(Decimal::as_whole), None);
+    }
+}

@@ -1,0 +1,15 @@
+//! Host side.
+pub mod diagnostics;
+pub mod job;
+pub mod output;
+pub mod plant;
+pub mod program;
+pub mod correction;
+pub mod measurement;
+pub mod pass;
+pub mod report;
+pub mod command;
+pub mod plot;
+pub mod workshop;
+pub mod canon;
+pub mod cli;

@@ -1,0 +1,203 @@
+//! One line of a program, taken apart into words and put together again with other coordinates.
+//!
+//! What is not a coordinate keeps its bytes: block number, comments, feed, spaces, case, `G01` or `G1`.
+
+use std::ops::Range;
+
+use truepath_core::gcode::{Line, Motion, Token, Word, Words};
+
+/// A line with its tokens.
+pub(super) struct Block<'a> {
+    line: Line<'a>,
+    tokens: Vec<Token>,
+    style: Style,
+}
+
+/// How the words of a line are spelt.
+#[derive(Clone, Copy)]
+struct Style {
+    /// Between two words.
+    gap: &'static str,
+    lower: bool,
+    /// `G01` rather than `G1`.
+    two_digits: bool,
+    /// The line ends with `;`.
+    ends_with_semicolon: bool,
+}
+
+/// Words that say where a move goes.
+const GEOMETRY: &[u8] = b"XYIJR";
+/// M codes that act when the move is over: stops, end, spindle and coolant off.
+const AFTER_MOVE: [i128; 7] = [0, 1, 2, 5, 9, 30, 60];
+
+impl<'a> Block<'a> {
+    /// Takes a line apart; `two_digits` is how its G words are written when it has none.
+    pub(super) fn new(line: Line<'a>, two_digits: bool) -> Self {
+        // A line the interpreter has executed has no unreadable token.
+        let tokens: Vec<Token> = Words::new(line).map_while(Result::ok).collect();
+        let mut block = Self { line, tokens, style: Style { gap: " ", lower: false, two_digits, ends_with_semicolon: false } };
+        block.style = block.spelling();
+        block
+    }
+
+    fn spelling(&self) -> Style {
+        let text = |range: Range<usize>| self.line.text.get(range).unwrap_or_default();
+        let spans: Vec<Range<usize>> = self.tokens.iter().map(|t| self.range(t)).collect();
+        let touching = spans.windows(2).any(|pair| pair[0].end == pair[1].start);
+        let apart = spans.windows(2).any(|pair| pair[0].end < pair[1].start);
+        let letters = || self.words().map(|w| text(self.word_range(w))[0]);
+        let motion = self.motion_word().map(|w| text(self.word_range(w)).iter().filter(|b| b.is_ascii_digit()).count() > 1);
+        Style {
+            gap: if touching && !apart { "" } else { " " },
+            lower: letters().next().is_some() && letters().all(|l| l.is_ascii_lowercase()),
+            two_digits: motion.unwrap_or(self.style.two_digits),
+            ends_with_semicolon: matches!(self.tokens.last(), Some(Token::Comment { body, span }) if body.len == 0 && span.len == 1),
+        }
+    }
+
+    fn range(&self, token: &Token) -> Range<usize> {
+        let (Token::Word(Word { span, .. }) | Token::Comment { span, .. } | Token::BlockDelete { span, .. } | Token::Percent(span)) = token;
+        span.start - self.line.start..span.end() - self.line.start
+    }
+    fn word_range(&self, word: &Word) -> Range<usize> {
+        word.span.start - self.line.start..word.span.end() - self.line.start
+    }
+    fn words(&self) -> impl Iterator<Item = &Word> {
+        self.tokens.iter().filter_map(|t| if let Token::Word(w) = t { Some(w) } else { None })
+    }
+    /// The word of a letter, if the line has it.
+    pub(super) fn word(&self, letter: u8) -> Option<&Word> {
+        self.words().find(|w| w.letter == letter)
+    }
+    /// G0, G1, G2 or G3, if the line has it.
+    pub(super) fn motion_word(&self) -> Option<&Word> {
+        self.words().find(|w| w.letter == b'G' && w.value.exactly_times(1).is_some_and(|n| (0..=3).contains(&n)))
+    }
+    /// Whether its G words are written with two digits.
+    pub(super) const fn two_digits(&self) -> bool {
+        self.style.two_digits
+    }
+
+    /// The line with its coordinates replaced by `coordinates` (words separated by one space) and its motion by
+    /// `motion`, which is written only where the line names one or `needed`. Codes that act after the move are left
+    /// out when `more` lines of the same move follow; they belong to the last one.
+    pub(super) fn moved(&self, motion: Motion, needed: bool, coordinates: &str, more: bool) -> Vec<u8> {
+        let mut edits: Vec<(Range<usize>, String)> = Vec::new();
+        let named = self.motion_word();
+        if let Some(word) = named
+            && word.value.exactly_times(1) != Some(number(motion))
+        {
+            edits.push((self.word_range(word), self.spelt(&self.motion_text(motion))));
+        }
+        let mut text = self.spelt(coordinates);
+        if named.is_none() && needed {
+            text = format!("{}{}{text}", self.spelt(&self.motion_text(motion)), self.style.gap);
+        }
+        for word in self.words() {
+            let range = self.word_range(word);
+            if GEOMETRY.contains(&word.letter) {
+                // The first one gives its place to all of them.
+                match std::mem::take(&mut text) {
+                    new if new.is_empty() => edits.push((self.with_blanks_before(range), String::new())),
+                    new => edits.push((range, new)),
+                }
+            } else if more && acts_after_move(word) {
+                edits.push((self.with_blanks_before(range), String::new()));
+            }
+        }
+        self.edited(edits)
+    }
+
+    /// A further line of the same move.
+    pub(super) fn further(&self, motion: Motion, coordinates: &str, last: bool) -> Vec<u8> {
+        let indent = self.line.text.iter().take_while(|b| matches!(b, b' ' | b'\t')).count();
+        let mut text = self.line.text.get(..indent).unwrap_or_default().to_vec();
+        if let Some(token @ Token::BlockDelete { .. }) = self.tokens.first() {
+            text.extend_from_slice(self.line.text.get(self.range(token)).unwrap_or_default());
+        }
+        text.extend_from_slice(self.spelt(&format!("{} {coordinates}", self.motion_text(motion))).as_bytes());
+        if last {
+            for word in self.words().filter(|w| acts_after_move(w)) {
+                text.extend_from_slice(self.style.gap.as_bytes());
+                text.extend_from_slice(self.line.text.get(self.word_range(word)).unwrap_or_default());
+            }
+        }
+        if self.style.ends_with_semicolon {
+            text.push(b';');
+        }
+        text
+    }
+
+    /// The line with the values of X and Y replaced where they are `Some`; a missing word is added beside the other.
+    pub(super) fn repositioned(&self, values: [Option<String>; 2]) -> Vec<u8> {
+        let mut edits = Vec::new();
+        let mut added = String::new();
+        for (letter, value) in [b'X', b'Y'].into_iter().zip(values) {
+            let Some(value) = value else { continue };
+            let text = format!("{}{value}", char::from(letter));
+            match self.word(letter) {
+                Some(word) => edits.push((self.word_range(word), self.spelt(&text))),
+                None => added = format!("{}{}", self.style.gap, self.spelt(&text)),
+            }
+        }
+        if let Some(beside) = self.words().find(|w| matches!(w.letter, b'X' | b'Y'))
+            && !added.is_empty()
+        {
+            let end = self.word_range(beside).end;
+            edits.push((end..end, added));
+        }
+        self.edited(edits)
+    }
+
+    /// The line with a motion code before its first axis or centre word.
+    pub(super) fn with_motion(&self, motion: Motion) -> Vec<u8> {
+        let first = self.words().find(|w| b"XYZIJR".contains(&w.letter));
+        let edits = first.map(|word| {
+            let at = self.word_range(word).start;
+            (at..at, format!("{}{}", self.spelt(&self.motion_text(motion)), self.style.gap))
+        });
+        self.edited(edits.into_iter().collect())
+    }
+
+    fn edited(&self, mut edits: Vec<(Range<usize>, String)>) -> Vec<u8> {
+        edits.sort_by_key(|(range, _)| (range.start, range.end));
+        let (mut text, mut at) = (Vec::new(), 0);
+        for (range, new) in edits {
+            text.extend_from_slice(self.line.text.get(at..range.start).unwrap_or_default());
+            text.extend_from_slice(new.as_bytes());
+            at = range.end;
+        }
+        text.extend_from_slice(self.line.text.get(at..).unwrap_or_default());
+        text
+    }
+
+    fn with_blanks_before(&self, range: Range<usize>) -> Range<usize> {
+        let before = self.line.text.get(..range.start).unwrap_or_default();
+        let blanks = before.iter().rev().take_while(|b| matches!(b, b' ' | b'\t')).count();
+        range.start - blanks..range.end
+    }
+
+    fn motion_text(&self, motion: Motion) -> String {
+        let zero = if self.style.two_digits { "0" } else { "" };
+        format!("G{zero}{}", number(motion))
+    }
+
+    /// In the line's case and with its gaps.
+    fn spelt(&self, words: &str) -> String {
+        let words = words.replace(' ', self.style.gap);
+        if self.style.lower { words.to_lowercase() } else { words }
+    }
+}
+
+fn acts_after_move(word: &Word) -> bool {
+    word.letter == b'M' && AFTER_MOVE.contains(&word.value.times(1))
+}
+
+const fn number(motion: Motion) -> i64 {
+    match motion {
+        Motion::Traverse => 0,
+        Motion::Feed => 1,
+        Motion::Arc { counter_clockwise: false } => 2,
+        Motion::Arc { counter_clockwise: true } => 3,
+    }
+}

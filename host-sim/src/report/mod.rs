@@ -1,0 +1,23 @@
+//! What the commands write: tables (CSV), the summary (JSON), the corrected path for the program and for the image.
+
+mod path;
+mod summary;
+mod tables;
+
+pub use path::{block_edits, image_nodes};
+pub use summary::{
+    CorrectSummary, InspectSummary, Parameter, SimulateSummary, correct_summary, inspect_summary, simulate_summary,
+};
+pub use tables::{Trace, TraceRow, correction_csv, points_csv, trace, trace_csv, wall_at_height};
+
+use truepath_core::units::{Offset, Real};
+
+/// Millimetres of a length, for reports.
+pub fn mm(v: Offset) -> f64 {
+    v.nm() as f64 / 1e6
+}
+
+/// A number of the model, for reports.
+pub fn float(v: Real) -> f64 {
+    v.bits() as f64 / 4_294_967_296.0
+}

@@ -1,0 +1,48 @@
+//! The corrected centre path, as the program writer and the image want it.
+
+use truepath_core::correct::Node;
+use truepath_core::cut::Path;
+use truepath_core::geometry::{Point, Vector};
+use truepath_core::units::{Offset, Real};
+
+use crate::pass::Pass;
+use crate::program::BlockEdit;
+
+/// The correction at an arc length, between the two samples that enclose it.
+fn correction_at(path: &Path, nodes: &[Node], s: Offset) -> Vector {
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    let after = samples.partition_point(|x| x.s <= s).clamp(1, samples.len() - 1);
+    let (a, b) = (&samples[after - 1], &samples[after]);
+    let u = (s - a.s).over(b.s - a.s).max(Real::ZERO).min(Real::ONE);
+    let (from, to) = (nodes[after - 1].total(), nodes[after].total());
+    from + (to - from).scaled(u)
+}
+
+/// The corrected path, one list of points per line of the program, from the start of the block to its end.
+pub fn block_edits(pass: &Pass, path: &Path, nodes: &[Node]) -> Vec<BlockEdit> {
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    let raw = |p: Point| [p.x.nm(), p.y.nm()];
+    let mut edits: Vec<BlockEdit> = Vec::new();
+    let mut at = 0usize;
+    for block in &pass.blocks {
+        let end = block.s + block.curve.length();
+        let mut points = vec![raw(block.curve.start() + correction_at(path, nodes, block.s))];
+        while at < samples.len() && samples[at].s < end {
+            if samples[at].s > block.s {
+                points.push(raw(samples[at].point + nodes[at].total()));
+            }
+            at += 1;
+        }
+        points.push(raw(block.curve.end() + correction_at(path, nodes, end)));
+        match edits.last_mut() {
+            Some(last) if last.line == block.line => last.samples.extend_from_slice(&points[1..]),
+            _ => edits.push(BlockEdit { line: block.line, samples: points }),
+        }
+    }
+    edits
+}
+
+/// The samples of the contour with their correction, in the order of travel.
+pub fn image_nodes<'a>(path: &'a Path, nodes: &'a [Node]) -> impl Iterator<Item = (Point, Node)> + 'a {
+    path.samples()[path.first()..path.first() + path.count()].iter().zip(nodes).map(|(s, n)| (s.point, *n))
+}

@@ -1,0 +1,229 @@
+//! `summary.json`.
+
+use std::collections::BTreeMap;
+
+use truepath_core::cut::WallLaw;
+use truepath_core::identify;
+use truepath_core::probe::Contact;
+use truepath_core::units::{Offset, Real};
+
+use super::tables::TraceRow;
+use super::{float, mm};
+use crate::correction::{Correction, Identified};
+use crate::pass::Pass;
+
+/// An identified quantity.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Parameter {
+    /// Its value.
+    pub value: f64,
+    /// One standard deviation.
+    pub sigma: f64,
+    /// What was believed before probing.
+    pub prior: f64,
+    /// One standard deviation of that belief.
+    pub prior_sigma: f64,
+    /// Unit of the four.
+    pub unit: &'static str,
+    /// Whether the points decide it: they have at least halved the uncertainty.
+    pub observable: bool,
+}
+
+/// Summary of `correct`.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct CorrectSummary {
+    /// Version of this file.
+    pub version: u32,
+    /// Largest predicted wall error without correction (of the target quantity), mm.
+    pub max_error_before_mm: f64,
+    /// Largest predicted wall error with it, mm.
+    pub max_error_after_mm: f64,
+    /// Largest standard deviation of the error after, mm: what the points leave open.
+    pub max_sigma_mm: f64,
+    /// What no XY correction can remove: the largest deviation over the height from the target, mm.
+    pub axial_form_error_mm: f64,
+    /// Deepest predicted gouge at any height, mm (positive).
+    pub worst_gouge_mm: f64,
+    /// Largest correction along an axis, mm.
+    pub max_correction_mm: f64,
+    /// The law of the correction.
+    pub law: &'static str,
+    /// The wall law: mean or helical.
+    pub wall_law: &'static str,
+    /// Climb or conventional.
+    pub milling: &'static str,
+    /// Identified quantities by name.
+    pub identified: BTreeMap<&'static str, Parameter>,
+    /// Contacts used.
+    pub points_used: usize,
+    /// Contacts the fit set aside.
+    pub points_outlying: usize,
+    /// Readings set aside before the fit.
+    pub points_rejected: usize,
+    /// Root mean square of the fit's residuals, mm.
+    pub fit_residual_mm: f64,
+    /// CRC-32 of the original program.
+    pub program_crc32: String,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+fn largest(values: impl Iterator<Item = Offset>) -> f64 {
+    mm(values.max().unwrap_or_default())
+}
+
+/// Makes the summary of `correct`.
+pub fn correct_summary(
+    pass: &Pass,
+    identified: &Identified,
+    correction: &Correction,
+    rejected: usize,
+    warnings: Vec<String>,
+) -> CorrectSummary {
+    let target = correction.wanted.target;
+    let predicted = &correction.predicted;
+    let observations = &identified.observations;
+    let squares: f64 = observations.iter().map(|o| mm(o.error - o.predicted).powi(2)).sum();
+    CorrectSummary {
+        version: 1,
+        max_error_before_mm: largest(predicted.iter().map(|p| p.before.aim(target, None).abs())),
+        max_error_after_mm: largest(predicted.iter().map(|p| p.after.aim(target, None).abs())),
+        max_sigma_mm: largest(correction.sigma.iter().copied()),
+        axial_form_error_mm: largest(predicted.iter().map(|p| p.after.form_error(target))),
+        worst_gouge_mm: largest(predicted.iter().map(|p| -p.after.lowest)).max(0.0),
+        max_correction_mm: largest(correction.nodes.iter().map(|n| n.total().x.abs().max(n.total().y.abs()))),
+        law: law_name(&correction.wanted.law),
+        wall_law: wall_law_name(identified.law),
+        milling: crate::pass::milling_name(pass.setup.milling),
+        identified: parameters(identified),
+        points_used: observations.len(),
+        points_outlying: identified.fit.outliers,
+        points_rejected: rejected,
+        fit_residual_mm: (squares / observations.len().max(1) as f64).sqrt(),
+        program_crc32: format!("{:08x}", pass.program_crc),
+        warnings,
+    }
+}
+
+fn parameters(identified: &Identified) -> BTreeMap<&'static str, Parameter> {
+    let (values, prior) = (identified.fit.parameters.values(), identified.prior.value());
+    let each = identify::Parameter::ALL.iter().enumerate().filter(|(i, _)| identified.prior.sigma[*i] != Real::ZERO);
+    each.map(|(i, parameter)| {
+        let (prior_sigma, remaining) = (float(identified.prior.sigma[i]), float(identified.fit.remaining(i)));
+        let value = Parameter {
+            value: float(values[i]),
+            sigma: prior_sigma * remaining,
+            prior: float(prior[i]),
+            prior_sigma,
+            unit: parameter.unit(),
+            observable: remaining <= 0.5,
+        };
+        (parameter.name(), value)
+    })
+    .collect()
+}
+
+/// Name of a law of correction.
+pub const fn law_name(law: &truepath_core::correct::Law) -> &'static str {
+    match law {
+        truepath_core::correct::Law::Model => "model",
+        truepath_core::correct::Law::Mirror => "mirror",
+        truepath_core::correct::Law::Paper(_) => "paper",
+    }
+}
+
+/// Name of a wall law.
+pub const fn wall_law_name(law: WallLaw) -> &'static str {
+    match law {
+        WallLaw::Mean => "mean",
+        WallLaw::Helical => "helical",
+    }
+}
+
+/// Summary of `simulate`.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct SimulateSummary {
+    /// Version of this file.
+    pub version: u32,
+    /// Who cut: `core` or `plant`.
+    pub by: &'static str,
+    /// Length of the contour, mm.
+    pub length_mm: f64,
+    /// Largest magnitude of the wall error, mean over height, mm.
+    pub max_error_mm: f64,
+    /// Its root mean square, mm.
+    pub rms_error_mm: f64,
+    /// Largest engagement angle, degrees.
+    pub max_arc_deg: f64,
+    /// Largest mean force, N.
+    pub max_force_n: f64,
+    /// Climb or conventional.
+    pub milling: &'static str,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Makes the summary of `simulate`.
+pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warnings: Vec<String>) -> SimulateSummary {
+    let most = |f: fn(&TraceRow) -> f64| trace.iter().map(f).filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let finite: Vec<f64> = trace.iter().map(|r| r.error_mm).filter(|e| e.is_finite()).collect();
+    SimulateSummary {
+        version: 1,
+        by,
+        length_mm: mm(pass.contour.length),
+        max_error_mm: most(|r| r.error_mm.abs()),
+        rms_error_mm: (finite.iter().map(|e| e * e).sum::<f64>() / finite.len().max(1) as f64).sqrt(),
+        max_arc_deg: most(|r| r.arc_deg),
+        max_force_n: most(|r| r.force_n),
+        milling: crate::pass::milling_name(pass.setup.milling),
+        warnings,
+    }
+}
+
+/// Summary of `inspect`: the accuracy of the wall from measurements alone.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct InspectSummary {
+    /// Version of this file.
+    pub version: u32,
+    /// Contacts on the wall.
+    pub points: usize,
+    /// Readings set aside.
+    pub points_rejected: usize,
+    /// Mean wall error, mm: what a wear offset could remove.
+    pub mean_error_mm: f64,
+    /// Largest (most material left), mm.
+    pub max_error_mm: f64,
+    /// Smallest (deepest), mm.
+    pub min_error_mm: f64,
+    /// Root mean square, mm.
+    pub rms_error_mm: f64,
+    /// Largest spread over the heights of one place, mm.
+    pub spread_over_height_mm: f64,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Makes the summary of `inspect`.
+pub fn inspect_summary(contacts: &[Contact], rejected: usize, warnings: Vec<String>) -> InspectSummary {
+    let errors: Vec<f64> = contacts.iter().map(|c| mm(c.error)).collect();
+    let n = errors.len().max(1) as f64;
+    let place = |a: &Contact, b: &Contact| (b.s - a.s).abs() < Offset::from_um(5);
+    let spread = contacts
+        .chunk_by(place)
+        .map(|group| {
+            let low = group.iter().map(|c| c.error).min().unwrap_or_default();
+            group.iter().map(|c| c.error).max().unwrap_or_default() - low
+        })
+        .max();
+    InspectSummary {
+        version: 1,
+        points: contacts.len(),
+        points_rejected: rejected,
+        mean_error_mm: errors.iter().sum::<f64>() / n,
+        max_error_mm: errors.iter().copied().fold(f64::MIN, f64::max),
+        min_error_mm: errors.iter().copied().fold(f64::MAX, f64::min),
+        rms_error_mm: (errors.iter().map(|e| e * e).sum::<f64>() / n).sqrt(),
+        spread_over_height_mm: mm(spread.unwrap_or_default()),
+        warnings,
+    }
+}

@@ -1,0 +1,189 @@
+//! Tables. Column names carry their units; their order is part of the contract.
+
+use truepath_core::correct::Target;
+use truepath_core::cut::{Envelope, Loop, State, chip_area};
+use truepath_core::geometry::Vector;
+use truepath_core::probe::Contact;
+use truepath_core::units::Real;
+
+use super::{float, mm};
+use crate::correction::Correction;
+use crate::diagnostics::Failure;
+
+/// One place of a simulated pass.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct TraceRow {
+    /// Arc length of the contour.
+    pub s_mm: f64,
+    /// Nominal centre.
+    pub x_mm: f64,
+    /// Nominal centre.
+    pub y_mm: f64,
+    /// Engagement angle.
+    pub arc_deg: f64,
+    /// P23's analogue of the removal rate, b·f·(1 − cos φ₁), per tooth.
+    pub chip_area_mm2: f64,
+    /// Mean force over a revolution.
+    pub force_n: f64,
+    /// Its component along x, on the tool.
+    pub fx_n: f64,
+    /// Its component along y, on the tool.
+    pub fy_n: f64,
+    /// Mean deflection along x.
+    pub dx_mm: f64,
+    /// Mean deflection along y.
+    pub dy_mm: f64,
+    /// Wall error, mean over the height: positive, material left.
+    pub error_mm: f64,
+}
+
+/// A simulated pass.
+pub type Trace = Vec<TraceRow>;
+
+/// The trace of a pass in states of the elastic loop over the path's working range, with the wall error of each
+/// sample of the contour.
+pub fn trace(machine: &Loop, states: &[State], errors_mm: &[f64]) -> Trace {
+    let path = machine.path;
+    let skipped = path.first() - path.working().start;
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    let rows = samples.iter().zip(&states[skipped..]).zip(errors_mm);
+    rows.map(|((sample, state), error)| {
+        let (n, t) = machine.mean_force(state);
+        let heading = path.setup().wall.heading(state.normal);
+        let (n, t) = (float(n), float(t));
+        let fx_n = n * float(state.normal.x) + t * float(heading.x);
+        let fy_n = n * float(state.normal.y) + t * float(heading.y);
+        let feed = path.setup().feed_per_tooth(sample.feed);
+        TraceRow {
+            s_mm: mm(sample.s),
+            x_mm: sample.point.x.nm() as f64 / 1e6,
+            y_mm: sample.point.y.nm() as f64 / 1e6,
+            arc_deg: float(state.engaged).to_degrees(),
+            chip_area_mm2: float(chip_area(path.setup(), feed, state.engaged)),
+            force_n: n.hypot(t),
+            fx_n,
+            fy_n,
+            dx_mm: mm(state.displacement.x),
+            dy_mm: mm(state.displacement.y),
+            error_mm: *error,
+        }
+    })
+    .collect()
+}
+
+/// Predicted wall error at one height beside every sample of the contour, mm.
+pub fn wall_at_height(machine: &Loop, states: &[State], fraction: Real) -> Vec<f64> {
+    let path = machine.path;
+    let mut displacements = vec![Vector::ZERO; states.len()];
+    Envelope::displace(machine, states, fraction, &mut displacements);
+    let envelope = Envelope::new(path, path.working().start, &displacements);
+    let mut guess = path.first();
+    (path.first()..path.first() + path.count())
+        .map(|index| {
+            envelope.error(index, guess).map_or(f64::NAN, |e| {
+                guess = e.made_by + 1;
+                mm(e.error)
+            })
+        })
+        .collect()
+}
+
+fn table<T: serde::Serialize>(rows: impl IntoIterator<Item = T>) -> Result<Vec<u8>, Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row).map_err(|e| Failure::Internal(format!("a table cannot be written: {e}")))?;
+    }
+    writer.into_inner().map_err(|e| Failure::Internal(format!("a table cannot be written: {e}")))
+}
+
+/// Nanometres and nanoradians are enough for any reader.
+fn rounded(v: f64, digits: i32) -> f64 {
+    let scale = 10f64.powi(digits);
+    (v * scale).round() / scale
+}
+
+/// `trace.csv`.
+///
+/// # Errors
+/// Internal, when memory cannot be written.
+pub fn trace_csv(trace: &Trace) -> Result<Vec<u8>, Failure> {
+    table(trace.iter().map(|r| TraceRow {
+        s_mm: rounded(r.s_mm, 6),
+        x_mm: rounded(r.x_mm, 6),
+        y_mm: rounded(r.y_mm, 6),
+        arc_deg: rounded(r.arc_deg, 6),
+        chip_area_mm2: rounded(r.chip_area_mm2, 6),
+        force_n: rounded(r.force_n, 4),
+        fx_n: rounded(r.fx_n, 4),
+        fy_n: rounded(r.fy_n, 4),
+        dx_mm: rounded(r.dx_mm, 6),
+        dy_mm: rounded(r.dy_mm, 6),
+        error_mm: rounded(r.error_mm, 6),
+    }))
+}
+
+#[derive(serde::Serialize)]
+struct CorrectionRow {
+    s_mm: f64,
+    x_mm: f64,
+    y_mm: f64,
+    dx_mm: f64,
+    dy_mm: f64,
+    predicted_error_before_mm: f64,
+    predicted_error_after_mm: f64,
+    sigma_mm: f64,
+}
+
+/// `correction.csv`: for every sample of the contour its nominal place, the correction and the wall error of the
+/// target quantity before and after it.
+///
+/// # Errors
+/// Internal, when memory cannot be written.
+pub fn correction_csv(machine: &Loop, correction: &Correction) -> Result<Vec<u8>, Failure> {
+    let path = machine.path;
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    let aim = |p: &truepath_core::correct::Profile, target: Target| mm(p.aim(target, None));
+    table(samples.iter().enumerate().map(|(i, sample)| {
+        let total = correction.nodes[i].total();
+        let predicted = &correction.predicted[i];
+        CorrectionRow {
+            s_mm: mm(sample.s),
+            x_mm: sample.point.x.nm() as f64 / 1e6,
+            y_mm: sample.point.y.nm() as f64 / 1e6,
+            dx_mm: mm(total.x),
+            dy_mm: mm(total.y),
+            predicted_error_before_mm: aim(&predicted.before, correction.wanted.target),
+            predicted_error_after_mm: aim(&predicted.after, correction.wanted.target),
+            sigma_mm: mm(correction.sigma[i]),
+        }
+    }))
+}
+
+#[derive(serde::Serialize)]
+struct PointRow {
+    line: u32,
+    s_mm: f64,
+    x_mm: f64,
+    y_mm: f64,
+    nx: f64,
+    ny: f64,
+    height: f64,
+    error_mm: f64,
+}
+
+/// `points.csv`: every contact with its place on the contour and its wall error.
+///
+/// # Errors
+/// Internal, when memory cannot be written.
+pub fn points_csv(contacts: &[Contact]) -> Result<Vec<u8>, Failure> {
+    table(contacts.iter().map(|c| PointRow {
+        line: c.line,
+        s_mm: mm(c.s),
+        x_mm: c.point.x.nm() as f64 / 1e6,
+        y_mm: c.point.y.nm() as f64 / 1e6,
+        nx: rounded(float(c.normal.x), 9),
+        ny: rounded(float(c.normal.y), 9),
+        height: rounded(float(c.height), 6),
+        error_mm: mm(c.error),
+    }))
+}

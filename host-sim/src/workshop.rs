@@ -1,0 +1,110 @@
+//! The plant in the service of a pass: nominal path and cut handed over in float, and nothing of the model.
+
+use truepath_core::gcode::Spindle;
+use truepath_core::geometry::{Point, Shape, Side};
+use truepath_core::units::Real;
+
+use crate::diagnostics::Failure;
+use crate::pass::Pass;
+use crate::plant::{self, Milled, PlantError};
+use crate::report::{float, mm};
+
+fn coordinates(p: Point) -> [f64; 2] {
+    [p.x.nm() as f64 / 1e6, p.y.nm() as f64 / 1e6]
+}
+
+fn refused(error: &PlantError) -> Failure {
+    crate::diagnostics::InputError::new(
+        "L003",
+        error.to_string(),
+        "",
+        "correct the plant or the job; the plant mills contours with real-world dimensions",
+    )
+    .into()
+}
+
+/// The nominal path of a pass for the plant.
+fn path(pass: &Pass) -> Result<plant::Path, PlantError> {
+    let segments: Vec<plant::Segment> = pass
+        .blocks
+        .iter()
+        .map(|block| {
+            let (from, to) = (coordinates(block.curve.start()), coordinates(block.curve.end()));
+            match block.curve.shape() {
+                Shape::Line => plant::Segment::Line { from, to },
+                Shape::Arc { centre, sweep } => {
+                    plant::Segment::Arc { from, to, centre: coordinates(centre), ccw: sweep > Real::ZERO }
+                }
+            }
+        })
+        .collect();
+    let side = match pass.setup.wall {
+        Side::Left => plant::Side::Left,
+        Side::Right => plant::Side::Right,
+    };
+    plant::Path::new(&segments, side, 0.1)
+}
+
+/// The cut of a pass for the plant.
+fn cut(pass: &Pass) -> plant::Cut {
+    let setup = &pass.setup;
+    let first = pass.blocks.first().map_or(0.0, |b| float(b.feed));
+    let changes = pass.blocks.windows(2).filter(|w| w[0].feed != w[1].feed);
+    plant::Cut {
+        radius_mm: mm(setup.radius),
+        teeth: setup.teeth.into(),
+        helix_deg: float(setup.helix_deg),
+        axial_depth_mm: float(setup.axial_depth),
+        feed_mm_per_min: first,
+        feed_changes: changes
+            .map(|w| plant::FeedChange { from_s_mm: mm(w[1].s), feed_mm_per_min: float(w[1].feed) })
+            .collect(),
+        spindle_rpm: float(setup.spindle_rpm),
+        allowance_mm: mm(setup.allowance),
+        spindle: match pass.contour.spindle {
+            Spindle::CounterClockwise => plant::Spindle::CounterClockwise,
+            Spindle::Clockwise | Spindle::Stopped => plant::Spindle::Clockwise,
+        },
+        surface: None,
+        memory_mm: Some(3.0),
+    }
+}
+
+/// Mills a pass along its nominal path, or along commanded centres.
+///
+/// # Errors
+/// What the plant refuses.
+pub fn mill(pass: &Pass, machine: &plant::Machine, commanded: Option<&[plant::Point]>) -> Result<Milled, Failure> {
+    let path = path(pass).map_err(|e| refused(&e))?;
+    plant::mill(&path, &cut(pass), machine, commanded).map_err(|e| refused(&e))
+}
+
+/// Touches a milled part and writes the file LinuxCNC's PROBEOPEN would.
+///
+/// # Errors
+/// What the plant refuses.
+pub fn probe(pass: &Pass, milled: &Milled, places_mm: &[f64], levels: &[f64], ball_mm: f64) -> Result<String, Failure> {
+    let plan = plant::ProbePlan {
+        s_mm: places_mm.to_vec(),
+        levels: levels.to_vec(),
+        ball_diameter_mm: ball_mm,
+        tip_z_mm: pass.contour.z.nm() as f64 / 1e6,
+    };
+    plant::probe(milled, &plan).map(|touches| plant::probeopen_text(&touches)).map_err(|e| refused(&e))
+}
+
+/// The commanded centres of a corrected program: the contour moves, sampled finely.
+///
+/// # Errors
+/// Whatever is wrong with the program.
+pub fn commanded(pass: &Pass, text: &[u8]) -> Result<Vec<plant::Point>, Failure> {
+    let source = crate::diagnostics::Source::new(format!("{} (corrected)", pass.program.name()), text.to_vec());
+    let blocks = crate::pass::read_blocks(&source)?.0;
+    let mut points = Vec::new();
+    for block in &blocks {
+        let pieces = (mm(block.curve.length()) / 0.02).ceil().max(1.0) as i64;
+        let skip = i64::from(!points.is_empty());
+        points.extend((skip..=pieces).map(|k| coordinates(block.curve.point(Real::ratio(k, pieces)))));
+    }
+    Ok(points)
+}

@@ -1,0 +1,31 @@
+%
+O1000 (modes, offsets and the order of a block)
+N10 G21 G90 G80
+N20 G0 X0 Y0 Z5
+N0030 M3 S100 M8 F100 (one) (two)
+/G1 Z-1
+G91 X1
+G1
+G0
+G20 G94 F10 G61
+(MSG, touch off)
+G90.1 G90 G3 X2 Y2 I1.5 J2 ; remark
+G91.1 G3 I.5
+G64
+G64 P0.01 Q0.02
+G61.1
+G4 P0.5
+G55 G0 X1 Y0 Z1
+G2 X2 Y0 R1
+G3 X2 Y-1 R-1
+G53 G0 Z0
+G28 X0 Y1
+M7
+M9
+M1
+M4 S200
+G54
+G54
+M0
+M30
+%
