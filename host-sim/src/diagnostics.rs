@@ -6,96 +6,17 @@
 //! `{"error":{"code","message","file","line","column","found","expected","help"}}`. In every form the place reads
 //! `file:line:column`, lines and columns counted from 1, columns in characters.
 
+mod source;
+
 use std::fmt;
 use std::io;
 use std::ops::Range;
 use std::path::Path;
-use std::sync::Arc;
 
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan};
 use truepath_core::gcode::GcodeError;
 
-/// A text that errors can point into: its name as the user wrote it, and its bytes made readable.
-///
-/// Bytes that are not UTF-8 (comments of old controls) become `U+FFFD`; a lone carriage return counts as a line end.
-#[derive(Clone, Debug)]
-pub struct Source(Arc<Inner>);
-
-#[derive(Debug)]
-struct Inner {
-    name: String,
-    bytes: Vec<u8>,
-    text: String,
-}
-
-impl Source {
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// `F001` when it cannot be read.
-    pub fn read(path: &Path) -> Result<Self, InputError> {
-        let bytes = std::fs::read(path).map_err(|e| InputError::unreadable(path, &e))?;
-        Ok(Self::new(path.display().to_string(), bytes))
-    }
-
-    /// From bytes already at hand.
-    pub fn new(name: impl Into<String>, bytes: Vec<u8>) -> Self {
-        let text = readable(&bytes);
-        Self(Arc::new(Inner { name: name.into(), bytes, text }))
-    }
-
-    /// The file's name as the user wrote it.
-    pub fn name(&self) -> &str {
-        &self.0.name
-    }
-    /// The bytes as they are on disk.
-    pub fn bytes(&self) -> &[u8] {
-        &self.0.bytes
-    }
-    /// The bytes of a span, made readable.
-    pub fn excerpt(&self, span: Range<usize>) -> String {
-        String::from_utf8_lossy(self.0.bytes.get(span).unwrap_or_default()).into_owned()
-    }
-    /// The byte span of `length` bytes at a line and a column (bytes), both counted from 1, limited to the text.
-    pub fn span_at(&self, line: u32, column: u32, length: u32) -> Range<usize> {
-        let lines = line_starts(&self.0.bytes);
-        let start = lines.get(line.saturating_sub(1) as usize).copied().unwrap_or(self.0.bytes.len());
-        let start = (start + column.saturating_sub(1) as usize).min(self.0.bytes.len());
-        start..(start + length as usize).min(self.0.bytes.len())
-    }
-    /// Line and column (characters) of a byte of the file, both counted from 1.
-    pub fn line_column(&self, byte: usize) -> (usize, usize) {
-        let lines = line_starts(&self.0.bytes);
-        let byte = byte.min(self.0.bytes.len());
-        let line = lines.partition_point(|&start| start <= byte);
-        let start = lines[line - 1];
-        (line, readable(&self.0.bytes[start..byte]).chars().count() + 1)
-    }
-    /// The same span in the readable text.
-    fn readable_span(&self, span: &Range<usize>) -> Range<usize> {
-        let at = |byte: usize| readable(&self.0.bytes[..byte.min(self.0.bytes.len())]).len();
-        at(span.start)..at(span.end)
-    }
-}
-
-fn readable(bytes: &[u8]) -> String {
-    let mut text = String::from_utf8_lossy(bytes).into_owned();
-    if !text.contains('\n') && text.contains('\r') {
-        text = text.replace('\r', "\n");
-    }
-    text
-}
-
-/// Offsets of the first byte of every line; CR, LF and CRLF end a line.
-fn line_starts(bytes: &[u8]) -> Vec<usize> {
-    let mut starts = vec![0];
-    for (i, &b) in bytes.iter().enumerate() {
-        if b == b'\n' || (b == b'\r' && bytes.get(i + 1) != Some(&b'\n')) {
-            starts.push(i + 1);
-        }
-    }
-    starts
-}
+pub use source::Source;
 
 /// An error in what the user gave.
 #[derive(Clone, Debug)]
@@ -115,7 +36,12 @@ struct Body {
 impl InputError {
     /// `code` is stable; `found` is a clause naming what is there, `expected` a noun phrase (empty when
     /// `found` says it), `help` an instruction.
-    pub fn new(code: impl Into<String>, found: impl Into<String>, expected: impl Into<String>, help: impl Into<String>) -> Self {
+    pub fn new(
+        code: impl Into<String>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
         Self(Box::new(Body {
             code: code.into(),
             found: found.into(),
@@ -217,25 +143,6 @@ impl miette::Diagnostic for InputError {
     }
 }
 
-impl miette::SourceCode for Source {
-    fn read_span<'a>(
-        &'a self,
-        span: &miette::SourceSpan,
-        before: usize,
-        after: usize,
-    ) -> Result<Box<dyn miette::SpanContents<'a> + 'a>, miette::MietteError> {
-        let contents = self.0.text.read_span(span, before, after)?;
-        Ok(Box::new(miette::MietteSpanContents::new_named(
-            self.0.name.clone(),
-            contents.data(),
-            *contents.span(),
-            contents.line(),
-            contents.column(),
-            contents.line_count(),
-        )))
-    }
-}
-
 /// Why a command did not do its work.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
@@ -305,4 +212,3 @@ fn plain_reason(error: &io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
-

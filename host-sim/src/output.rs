@@ -29,7 +29,13 @@ impl OutputFile {
     /// `F003` when the target exists and `force` is not set, `F002` when its folder cannot be written to.
     pub fn create(target: &Path, force: bool) -> Result<Self, InputError> {
         if target.is_dir() {
-            return Err(InputError::new("F003", format!("{} is a folder", target.display()), "the name of a file", "name a file in it").in_file(target));
+            return Err(InputError::new(
+                "F003",
+                format!("{} is a folder", target.display()),
+                "the name of a file",
+                "name a file in it",
+            )
+            .in_file(target));
         }
         refuse_existing(target, force)?;
         let file = plain_mode(&mut tempfile::Builder::new(), 0o666)
@@ -83,7 +89,13 @@ impl OutputFolder {
     /// cannot be written to.
     pub fn create(target: &Path, force: bool, owned: &[&'static str]) -> Result<Self, InputError> {
         if target.exists() && !target.is_dir() {
-            return Err(InputError::new("F003", format!("{} is a file", target.display()), "the name of a folder", "name another folder").in_file(target));
+            return Err(InputError::new(
+                "F003",
+                format!("{} is a file", target.display()),
+                "the name of a folder",
+                "name another folder",
+            )
+            .in_file(target));
         }
         let occupied = fs::read_dir(target).is_ok_and(|mut entries| entries.next().is_some());
         if occupied && !force {
@@ -184,7 +196,8 @@ fn refuse_existing(target: &Path, force: bool) -> Result<(), InputError> {
         return Ok(());
     }
     let found = format!("{} exists", target.display());
-    Err(InputError::new("F003", found, "the name of a new file", "name another file, or add --force to replace it").in_file(target))
+    Err(InputError::new("F003", found, "the name of a new file", "name another file, or add --force to replace it")
+        .in_file(target))
 }
 
 /// The folder a target lies in, so that moving it into place stays on one file system.

@@ -7,7 +7,7 @@ use truepath_core::gcode::{
     ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Spindle, Units, is_marked_corrected, program_crc,
     read_contour,
 };
-use truepath_core::geometry::{Block, Contour, Curve, Direction, Point, Side};
+use truepath_core::geometry::{Block, Contour, Curve, Direction, Point};
 use truepath_core::identify::Prior;
 use truepath_core::units::{Offset, Real};
 

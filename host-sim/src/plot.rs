@@ -221,8 +221,11 @@ fn value_at(points: &[(f64, f64)], s: f64) -> f64 {
     }
 }
 
+/// Points of the nominal wall with the normals into the free side.
+type Wall = Vec<([f64; 2], [f64; 2])>;
+
 /// Nominal wall of a pass with the normals into the free side, at arc lengths every half millimetre.
-pub fn nominal_wall(pass: &Pass) -> (Vec<f64>, Vec<([f64; 2], [f64; 2])>) {
+pub fn nominal_wall(pass: &Pass) -> (Vec<f64>, Wall) {
     let contour = pass.path_contour();
     let pieces = (mm(contour.length()) * 2.0).ceil().max(2.0) as i64;
     let mut hint = 0;

@@ -9,8 +9,10 @@ use truepath::output::{OutputFile, OutputFolder, write_file};
 const OWNED: [&str; 3] = ["corrected.nc", "correction.tpi", "summary.json"];
 
 fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> =
-        fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .expect("a folder")
+        .map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
     names.sort();
     names
 }
@@ -74,7 +76,8 @@ fn force_replaces_its_own_files_removes_its_old_ones_and_leaves_the_rest() {
     let place = tempfile::tempdir().expect("a folder");
     let target = place.path().join("out");
     fs::create_dir(&target).expect("a folder");
-    for (name, text) in [("corrected.nc", "old"), ("correction.tpi", "of the other route"), ("notes.txt", "the user's")] {
+    for (name, text) in [("corrected.nc", "old"), ("correction.tpi", "of the other route"), ("notes.txt", "the user's")]
+    {
         fs::write(target.join(name), text).expect("a file");
     }
     let folder = OutputFolder::create(&target, true, &OWNED).expect("a folder");
@@ -82,7 +85,10 @@ fn force_replaces_its_own_files_removes_its_old_ones_and_leaves_the_rest() {
     folder.write("summary.json", b"{}").expect("written");
     folder.commit().expect("committed");
     assert_eq!(names(&target), ["corrected.nc", "notes.txt", "summary.json"]);
-    assert_eq!((read(&target.join("corrected.nc")), read(&target.join("notes.txt"))), ("new".into(), "the user's".into()));
+    assert_eq!(
+        (read(&target.join("corrected.nc")), read(&target.join("notes.txt"))),
+        ("new".into(), "the user's".into())
+    );
     assert_eq!(names(place.path()), ["out"]);
 }
 

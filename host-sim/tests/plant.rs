@@ -115,14 +115,14 @@ fn the_engagement_on_arcs_is_the_closed_form() {
         let rho: f64 = rp - 10.0;
         let rs = rp - 3.0;
         let expected = ((rs * rs - rho * rho - 100.0) / (20.0 * rho)).acos();
-        let quarter = [
+        let half = [
             line([-20.0, -rho], [0.0, -rho]),
-            arc([0.0, -rho], [rho, 0.0], [0.0, 0.0], true),
-            line([rho, 0.0], [rho, 20.0]),
+            arc([0.0, -rho], [0.0, rho], [0.0, 0.0], true),
+            line([0.0, rho], [-20.0, rho]),
         ];
-        let milled = pass(&quarter, Side::Right, &d20(), &Machine::rigid());
+        let milled = pass(&half, Side::Right, &d20(), &Machine::rigid());
         // Early on the arc, before the exit of the engagement reaches the next line.
-        let found = arc_deg(&milled, 20.0 + 0.1 * rho);
+        let found = arc_deg(&milled, 20.0 + 0.3 * rho);
         assert!((found - expected.to_degrees()).abs() < 0.03, "concave {rp}: {found}");
     }
     for (rp, degrees) in [(5.0, 29.541), (15.0, 36.678), (30.0, 40.204), (100.0, 43.682)] {
@@ -267,7 +267,8 @@ fn coming_back_to_the_start_of_a_closed_contour_meets_no_stock() {
     let all = pass(&circle, Side::Right, &d20(), &Machine::rigid());
     let end = all.samples.len() - 1;
     assert!(all.samples[end / 2].leaving_rad() > 0.9);
-    assert!(all.samples[end - 2].leaving_rad() < 1e-6);
+    // The cusp between the first place and the present one is all that is left.
+    assert!(all.samples[end - 2].leaving_rad() < 0.02);
     // A short memory gives the contour no seam.
     let short = pass(&circle, Side::Right, &Cut { memory_mm: Some(3.0), ..d20() }, &Machine::rigid());
     let (middle, last) = (&short.samples[end / 2], &short.samples[end - 2]);

@@ -107,7 +107,10 @@ fn only_the_contour_and_its_start_move() {
 fn an_identical_path_changes_nothing_but_the_mark() {
     let rewritten = rewrite(CORNER, &edits(CORNER, |_, _| [0.0, 0.0]));
     let text = text(&rewritten);
-    let unmarked: String = text.split_inclusive('\n').filter(|l| !l.starts_with("(TRUEPATH") && !l.starts_with("(ORIGINAL") && !l.starts_with("(DO NOT")).collect();
+    let unmarked: String = text
+        .split_inclusive('\n')
+        .filter(|l| !l.starts_with("(TRUEPATH") && !l.starts_with("(ORIGINAL") && !l.starts_with("(DO NOT"))
+        .collect();
     assert_eq!(unmarked, CORNER);
     assert_eq!((rewritten.unchanged, rewritten.lines, rewritten.arcs), (3, 0, 0));
 }
@@ -154,7 +157,15 @@ fn inches_incremental_moves_and_absolute_centres_give_the_same_path() {
     let inch = |mm: f64| format!("{:.6}", mm / 25.4);
     let inches = format!(
         "%\nG20 G90\nM3 S1500\nG0 X{} Y{}\nG1 Z-.5 F15\nG1 X{} Y{}\nG3 X{} Y{} I{} J0\nG1 X{} Y{}\nG0 Z4\nM30\n%\n",
-        inch(34.0), inch(80.0), inch(34.0), inch(35.0), inch(39.0), inch(30.0), inch(5.0), inch(90.0), inch(30.0)
+        inch(34.0),
+        inch(80.0),
+        inch(34.0),
+        inch(35.0),
+        inch(39.0),
+        inch(30.0),
+        inch(5.0),
+        inch(90.0),
+        inch(30.0)
     );
     let incremental = "%\nG21 G90\nM3 S1500\nG0 X34 Y80\nG1 Z-15 F400\nG91\nG1 Y-45\nG3 X5 Y-5 I5 J0\nG1 X51\nG0 Z115\nG0 X10 Y5\nM30\n%\n";
     let centres = "%\nG21 G90 G90.1\nM3 S1500\nG0 X34 Y80\nG1 Z-15 F400\nG1 X34 Y35\nG3 X39 Y30 I39 J35\nG1 X90 Y30\nG0 Z100\nM30\n%\n";
@@ -206,9 +217,14 @@ fn line_ends_spelling_and_code_pages_are_kept() {
 
     let tight = "g21g90m3s1500\ng0x34y80\ng1z-15f400\nn1g1x34y35\nn2g3x39y30r5\nn3g1x90y30m9\ng0z100\nm2\n";
     let written = self::text(&rewrite(tight, &self::edits(tight, bump)));
-    assert!(written.lines().filter(|l| !l.starts_with('(')).all(|l| !l.contains(' ') && l == l.to_lowercase()), "{written}");
+    assert!(
+        written.lines().filter(|l| !l.starts_with('(')).all(|l| !l.contains(' ') && l == l.to_lowercase()),
+        "{written}"
+    );
     assert!(!written.contains('r'), "no radius is left on a line:\n{written}");
-    let last = written.lines().filter(|l| l.starts_with("g1") || l.starts_with("g2") || l.starts_with("g3") || l.starts_with('n')).next_back();
+    let last = written
+        .lines()
+        .rfind(|l| l.starts_with("g1") || l.starts_with("g2") || l.starts_with("g3") || l.starts_with('n'));
     assert!(last.is_some_and(|l| l.ends_with("m9")), "the coolant stays on to the end of the contour:\n{written}");
     assert_eq!(written.matches("m9").count(), 1);
 }
@@ -229,7 +245,10 @@ fn a_move_that_relied_on_the_code_of_the_last_line_gets_its_own() {
 #[test]
 fn repeated_points_follow_the_corrected_path() {
     let program = "G21 G90 M3 S1500\nG0 X34 Y80 Z10\nG1 Z-15 F400\nG1 X34 Y80\nG1 X34 Y35\nX34 Y35\nG3 X39 Y30 I5 J0\nG1 X90 Y30\nG1 X90 Y30 Z5\nM2\n";
-    let text = text(&rewrite(program, &edits(CORNER, bump).into_iter().zip([5, 7, 8]).map(|(e, line)| BlockEdit { line, ..e }).collect::<Vec<_>>()));
+    let text = text(&rewrite(
+        program,
+        &edits(CORNER, bump).into_iter().zip([5, 7, 8]).map(|(e, line)| BlockEdit { line, ..e }).collect::<Vec<_>>(),
+    ));
     for place in ["X34 ", "Y80", "Y35", "X90 ", "Y30\n"] {
         assert!(!text.contains(place), "{place} is left in\n{text}");
     }
@@ -251,7 +270,8 @@ fn start(program: &str) -> Point {
 
 #[test]
 fn block_delete_and_semicolon_ends_are_repeated_on_every_piece() {
-    let program = "G21 G90 M3 S1500;\nG0 X34 Y80;\nG1 Z-15 F400;\n/G1 X34 Y35;\n/G3 X39 Y30 I5 J0;\n/G1 X90 Y30;\nG0 Z9;\nM2;\n";
+    let program =
+        "G21 G90 M3 S1500;\nG0 X34 Y80;\nG1 Z-15 F400;\n/G1 X34 Y35;\n/G3 X39 Y30 I5 J0;\n/G1 X90 Y30;\nG0 Z9;\nM2;\n";
     let text = text(&rewrite(program, &edits(program, bump)));
     assert!(text.lines().filter(|l| !l.starts_with('(')).all(|l| l.ends_with(';')), "{text}");
     let pieces = text.lines().filter(|l| l.contains("G1 X") || l.contains("G3 X") || l.contains("G2 X"));
@@ -261,7 +281,8 @@ fn block_delete_and_semicolon_ends_are_repeated_on_every_piece() {
 #[test]
 fn an_arc_right_after_the_contour_is_refused_with_its_line() {
     let program = "G21 G90 M3 S1500\nG0 X34 Y80\nG1 Z-15 F400\nG1 X34 Y35\nG3 X39 Y30 I5 J0\nG1 X90 Y30\nG1 Z-10\nG3 X100 Y40 I0 J10\nM2\n";
-    let contour: Vec<_> = edits(CORNER, bump).into_iter().zip([4, 5, 6]).map(|(e, line)| BlockEdit { line, ..e }).collect();
+    let contour: Vec<_> =
+        edits(CORNER, bump).into_iter().zip([4, 5, 6]).map(|(e, line)| BlockEdit { line, ..e }).collect();
     let source = Source::new("corner.nc", program.as_bytes().to_vec());
     let Err(Failure::Input(error)) = rewrite_program(&source, &contour, &options()) else { panic!("an input error") };
     assert_eq!((error.code(), error.line_column()), ("P003", Some((8, 1))));
@@ -279,7 +300,9 @@ fn a_contour_whose_start_no_move_sets_is_refused() {
     let program = program.replace("G1 X34 Y35 F400", "G0 X30 Y35\nG2 X34 Y35 I2 J0 F400");
     let source = Source::new("corner.nc", program.into_bytes());
     let shifted = |e: BlockEdit| BlockEdit { line: e.line + 1, ..e };
-    let Err(Failure::Input(error)) = rewrite_program(&source, &[shifted(edit), shifted(second)], &options()) else { panic!("an input error") };
+    let Err(Failure::Input(error)) = rewrite_program(&source, &[shifted(edit), shifted(second)], &options()) else {
+        panic!("an input error")
+    };
     assert_eq!((error.code(), error.line_column()), ("P002", Some((5, 1))));
 }
 

@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use truepath_core::gcode::{Axes, Canon, Coolant, Line, Motion, PathControl, Span, Spindle, Token, ToolLength, Units, Words};
+use truepath_core::gcode::{
+    Axes, Canon, Coolant, Line, Motion, PathControl, Span, Spindle, Token, ToolLength, Units, Words,
+};
 
 use super::{Printer, Step, decimal};
 
@@ -81,7 +83,7 @@ impl<W: Write> Printer<'_, W> {
             Canon::ChangeTool(tool) => {
                 self.call("START_CHANGE()")?;
                 self.call("STOP_SPINDLE_TURNING(0)")?;
-                self.call(&format!("CHANGE_TOOL({})", tool.unwrap_or(0)))
+                self.call(&format!("CHANGE_TOOL({})", self.options.tools.row(tool.unwrap_or(0))))
             }
             Canon::Coolant(coolant) => self.coolant(coolant),
             Canon::ToolLength(length) => self.tool_length(length),
@@ -123,10 +125,8 @@ impl<W: Write> Printer<'_, W> {
             Canon::Reference { axes, via, .. } => {
                 self.go(via);
                 self.straight(true)?;
-                for axis in 0..3 {
-                    if axes[axis] {
-                        self.at[axis] = -self.offset[axis];
-                    }
+                for ((at, offset), moves) in self.at.iter_mut().zip(self.offset).zip(axes) {
+                    *at = if moves { -offset } else { *at };
                 }
                 self.straight(true)
             }
@@ -181,8 +181,8 @@ impl<W: Write> Printer<'_, W> {
             // The core refuses to move from a place it does not know; the values themselves are no part of an event.
             ToolLength::InProgram => return self.call("COMMENT(\"truepath: tool offset from the program (G43.1)\")"),
         };
-        for axis in 0..3 {
-            self.at[axis] += self.offset[axis] - offset[axis];
+        for ((at, before), now) in self.at.iter_mut().zip(self.offset).zip(offset) {
+            *at += before - now;
         }
         self.offset = offset;
         let [x, y, z] = offset.map(|nm| self.length(nm));

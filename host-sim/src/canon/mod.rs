@@ -13,7 +13,9 @@ mod tool_table;
 
 use std::io::{self, Write};
 
-use truepath_core::gcode::{Axes, Canon, Event, Interpreter, Line, Lines, Modal, Motion, Options, ProgramSummary, Units};
+use truepath_core::gcode::{
+    Axes, Canon, Event, Interpreter, Line, Lines, Modal, Motion, Options, ProgramSummary, Units,
+};
 
 use crate::diagnostics::{InputError, Source};
 
@@ -32,7 +34,11 @@ pub struct CanonOptions {
 ///
 /// # Errors
 /// Whatever the interpreter does not understand.
-pub fn write_canon(source: &Source, options: &CanonOptions, out: &mut impl Write) -> Result<io::Result<ProgramSummary>, InputError> {
+pub fn write_canon(
+    source: &Source,
+    options: &CanonOptions,
+    out: &mut impl Write,
+) -> Result<io::Result<ProgramSummary>, InputError> {
     let program = source.bytes();
     let start = Options { start: Axes::ORIGIN, skip_block_delete: options.skip_block_delete, ..Options::default() };
     let mut events: Vec<Step> = Vec::new();
@@ -78,7 +84,11 @@ impl Step {
             Canon::WorkOffset(_) => 13,
             Canon::PathControl(_) => 14,
             // Distance modes come here; they are no events.
-            Canon::Traverse { .. } | Canon::Feed { .. } | Canon::Arc { .. } | Canon::MachineMove { .. } | Canon::Reference { .. } => 16,
+            Canon::Traverse { .. }
+            | Canon::Feed { .. }
+            | Canon::Arc { .. }
+            | Canon::MachineMove { .. }
+            | Canon::Reference { .. } => 16,
             Canon::Stop { .. } | Canon::End(_) => 17,
         }
     }
@@ -150,18 +160,19 @@ impl<'a, W: Write> Printer<'a, W> {
 
     fn block(&mut self, line: Line<'_>, steps: &[Step]) -> io::Result<()> {
         let codes = block::Codes::of(line, self.program);
-        // A skipped block has no events; nor has one outside the two percents.
+        // A skipped block has no events.
         if steps.is_empty() && (codes.block_delete && self.options.skip_block_delete) {
             return Ok(());
         }
         self.set_label(codes.number.as_deref());
         let mut steps = steps.to_vec();
         steps.sort_by_key(Step::rank);
-        let last_comment = steps.iter().rposition(|s| matches!(s.canon, Canon::Comment(_)));
+        // Of several comments the reference shows the last one, and none beside the program's name.
+        let named = steps.iter().any(|s| matches!(s.canon, Canon::ProgramNumber(_)));
+        let last_comment = steps.iter().rposition(|s| matches!(s.canon, Canon::Comment(_))).filter(|_| !named);
         let split = steps.partition_point(|s| s.rank() < DISTANCE_RANK);
         let remarks = steps.partition_point(|s| s.rank() == 0);
         for (index, step) in steps[..split].iter().enumerate() {
-            // Of several comments the reference shows the last one.
             if index == remarks && codes.feed_per_minute {
                 self.feed_per_minute()?;
             }

@@ -6,10 +6,18 @@ use truepath_core::gcode::{Lines, Token, Units, Words};
 
 use crate::diagnostics::{InputError, Source};
 
-/// Offsets of the tools, nanometres, by tool number.
+/// The tools by number.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ToolTable {
-    offsets: BTreeMap<u32, [i64; 3]>,
+    rows: BTreeMap<u32, Row>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Row {
+    /// Counted from 1.
+    number: u32,
+    /// Nanometres.
+    offset: [i64; 3],
 }
 
 impl ToolTable {
@@ -18,7 +26,7 @@ impl ToolTable {
     /// # Errors
     /// `T001` for a line that is no row of a tool table.
     pub fn parse(source: &Source, units: Units) -> Result<Self, InputError> {
-        let mut offsets = BTreeMap::new();
+        let mut rows = BTreeMap::new();
         for line in Lines::new(source.bytes()) {
             let span = line.span();
             let refused = |found: &str| {
@@ -30,7 +38,9 @@ impl ToolTable {
             for token in Words::new(line) {
                 let Token::Word(word) = token.map_err(|_| refused("this line cannot be read"))? else { continue };
                 any = true;
-                let nm = || i64::try_from(word.value.times(units.nanometres())).map_err(|_| refused("this number is too large"));
+                let nm = || {
+                    i64::try_from(word.value.times(units.nanometres())).map_err(|_| refused("this number is too large"))
+                };
                 match word.letter {
                     b'T' => tool = word.value.exactly_times(1).and_then(|n| u32::try_from(n).ok()),
                     b'X' => offset[0] = nm()?,
@@ -42,15 +52,23 @@ impl ToolTable {
                 }
             }
             if any {
-                offsets.insert(tool.ok_or_else(|| refused("this row has no T with a whole number"))?, offset);
+                let number = rows.len() as u32 + 1;
+                rows.insert(
+                    tool.ok_or_else(|| refused("this row has no T with a whole number"))?,
+                    Row { number, offset },
+                );
             }
         }
-        Ok(Self { offsets })
+        Ok(Self { rows })
     }
 
     /// The offset of a tool; none for one that is not in the table.
     pub fn offset(&self, tool: u32) -> Option<[i64; 3]> {
-        self.offsets.get(&tool).copied()
+        self.rows.get(&tool).map(|row| row.offset)
+    }
+    /// The number by which the reference names a tool when it is changed: its row, or the tool's own without a table.
+    pub(super) fn row(&self, tool: u32) -> u32 {
+        self.rows.get(&tool).map_or(tool, |row| row.number)
     }
 }
 

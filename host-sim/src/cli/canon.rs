@@ -1,12 +1,12 @@
 //! `truepath canon`: what a program does, move by move.
 
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use truepath_core::gcode::Units;
 
-use super::Terminal;
+use super::{Terminal, print};
 use crate::canon::{CanonOptions, ToolTable, write_canon};
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::output::OutputFile;
@@ -55,7 +55,14 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     let written = write_canon(&source, &options, &mut text)?;
     let summary = written.map_err(|e| Failure::Internal(e.to_string()))?;
     for warning in summary.warnings.as_slice() {
-        terminal.warn(&format!("{}:{}:{}: {}: {}", source.name(), warning.line, warning.column, warning.kind.code(), warning.kind));
+        terminal.warn(&format!(
+            "{}:{}:{}: {}: {}",
+            source.name(),
+            warning.line,
+            warning.column,
+            warning.kind.code(),
+            warning.kind
+        ));
     }
     match &arguments.output {
         Some(path) => {
@@ -64,14 +71,5 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
             Ok(file.commit()?)
         }
         None => print(&text),
-    }
-}
-
-/// Standard output that was closed early (`| head`) is not an error.
-fn print(text: &[u8]) -> Result<(), Failure> {
-    let mut out = BufWriter::new(std::io::stdout().lock());
-    match out.write_all(text).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::Internal(error.to_string())),
-        _ => Ok(()),
     }
 }

@@ -4,9 +4,14 @@
 //! is wrong (command line included), 2 a fault of the program. `--json` makes both streams readable for machines.
 
 mod canon;
+mod correct;
+mod demo;
+mod inspect;
+mod simulate;
 mod terminal;
 
 use std::ffi::OsString;
+use std::io::{BufWriter, Write};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -19,7 +24,13 @@ pub use terminal::{Progress, Terminal};
 ///
 /// Mill once, touch the wall in a few places, and get the program or the correction image that cancels the deflection.
 #[derive(Debug, Parser)]
-#[command(name = "truepath", version, propagate_version = true, subcommand_required = true, arg_required_else_help = true)]
+#[command(
+    name = "truepath",
+    version,
+    propagate_version = true,
+    subcommand_required = true,
+    arg_required_else_help = true
+)]
 struct Arguments {
     /// Print results, warnings and errors as JSON.
     #[arg(long, global = true)]
@@ -30,6 +41,14 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// The whole story: parts are milled, probed, corrected and milled again on a virtual machine.
+    Demo(demo::Arguments),
+    /// One pass as the model predicts it, or as a virtual machine cuts it.
+    Simulate(simulate::Arguments),
+    /// How accurate a milled wall is, from probe points alone.
+    Inspect(inspect::Arguments),
+    /// From a probe file to the corrected program or the image for the coprocessor.
+    Correct(correct::Arguments),
     /// Canonical moves of a program, in the text format of LinuxCNC's `rs274 -g`.
     Canon(canon::Arguments),
 }
@@ -56,6 +75,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
     match command {
+        Command::Demo(arguments) => demo::run(&arguments, terminal),
+        Command::Simulate(arguments) => simulate::run(&arguments, terminal),
+        Command::Inspect(arguments) => inspect::run(&arguments, terminal),
+        Command::Correct(arguments) => correct::run(&arguments, terminal),
         Command::Canon(arguments) => canon::run(&arguments, terminal),
     }
 }
@@ -76,4 +99,13 @@ fn usage_error(error: &clap::Error, json: bool) -> Failure {
     }
     let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
     InputError::new("C001", first, "a command line as shown by truepath --help", "run truepath --help").into()
+}
+
+/// Standard output that was closed early (`| head`) is not an error.
+fn print(text: &[u8]) -> Result<(), Failure> {
+    let mut out = BufWriter::new(std::io::stdout().lock());
+    match out.write_all(text).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::Internal(error.to_string())),
+        _ => Ok(()),
+    }
 }

@@ -6,19 +6,14 @@ use std::path::Path;
 use toml::de::DeTable;
 use truepath_core::units::{Offset, Real};
 
+use super::check_correct::correct;
+use super::check_tool::{reach, tool};
 use super::document::{Section, Spans};
 use super::limits::Limits;
 use super::material::MATERIALS;
-use super::{
-    Cantilever, Correct, Cut, CutterMaterial, Decimal, Force, ForceModel, Job, Law, Machine, Probe, ProbeFormat, Route, Side, Target, Tool,
-    ZReference,
-};
+use super::{Cut, Decimal, Force, ForceModel, Job, Machine, Probe, ProbeFormat, Side, ZReference};
 use crate::diagnostics::{InputError, Source};
 
-/// Correction allowed when the job does not say: 0.5 mm.
-const DEFAULT_CLAMP: Offset = Offset::from_um(500);
-/// Tolerance of the written path when the job does not say: 1 µm.
-const DEFAULT_TOLERANCE: Offset = Offset::from_um(1);
 /// Standard deviation of a reading when the job does not say: 2 µm.
 const DEFAULT_NOISE: Offset = Offset::from_um(2);
 
@@ -26,7 +21,13 @@ const DEFAULT_NOISE: Offset = Offset::from_um(2);
 pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     let text = std::str::from_utf8(source.bytes()).map_err(|error| {
         let at = error.valid_up_to();
-        InputError::new("J002", "the job file holds a byte that is not UTF-8", "a text in UTF-8", "save the file as UTF-8").at(&source, at..at + 1)
+        InputError::new(
+            "J002",
+            "the job file holds a byte that is not UTF-8",
+            "a text in UTF-8",
+            "save the file as UTF-8",
+        )
+        .at(&source, at..at + 1)
     })?;
     let table = DeTable::parse(text).map_err(|error| syntax_error(&source, &error))?;
     let spans = RefCell::new(Spans::new());
@@ -34,13 +35,19 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     version(&source, &root)?;
     let program = root.text("program")?.ok_or_else(|| root.missing("program", "the file name of a G-code program"))?;
     if program.0.is_empty() {
-        return Err(root.out_of_range(&program.1, "the file name of a G-code program", "name the program, relative to this file"));
+        return Err(root.out_of_range(
+            &program.1,
+            "the file name of a G-code program",
+            "name the program, relative to this file",
+        ));
     }
     let wall = root.choice("wall", &[("left", Side::Left), ("right", Side::Right)])?;
     if let Some(feature) = root.value("feature") {
         let expected = "a program that holds exactly one finishing contour";
         let help = "remove [[feature]] and give the contour a program of its own";
-        return Err(InputError::new("J009", "[[feature]] is not supported yet", expected, help).at(&source, feature.span));
+        return Err(
+            InputError::new("J009", "[[feature]] is not supported yet", expected, help).at(&source, feature.span)
+        );
     }
     let tool_section = root.required_section("tool", "diameter_mm, teeth and helix_deg")?;
     let tool = tool(&source, &tool_section)?;
@@ -54,7 +61,19 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     root.close()?;
     let program = folder.join(program.0);
     drop(root);
-    Ok(Job { program, wall, allowance, tool, cut, force, machine, probe, correct, spans: spans.into_inner(), source: source.clone() })
+    Ok(Job {
+        program,
+        wall,
+        allowance,
+        tool,
+        cut,
+        force,
+        machine,
+        probe,
+        correct,
+        spans: spans.into_inner(),
+        source: source.clone(),
+    })
 }
 
 fn syntax_error(source: &Source, error: &toml::de::Error) -> InputError {
@@ -82,14 +101,20 @@ fn version(source: &Source, root: &Section<'_>) -> Result<(), InputError> {
         return Ok(());
     }
     let found = format!("version is {}", source.excerpt(value.span.clone()));
-    Err(InputError::new("J010", found, "1, the only version there is", "write version = 1, or use the program the file was made for")
-        .at(source, value.span))
+    Err(InputError::new(
+        "J010",
+        found,
+        "1, the only version there is",
+        "write version = 1, or use the program the file was made for",
+    )
+    .at(source, value.span))
 }
 
 fn stock(source: &Source, section: &Section<'_>, diameter: Offset) -> Result<Offset, InputError> {
     if let Some(surface) = section.value("surface") {
         let help = "give allowance_mm, the stock along the normal";
-        return Err(InputError::new("J009", "stock.surface is not supported yet", "an even allowance", help).at(source, surface.span));
+        return Err(InputError::new("J009", "stock.surface is not supported yet", "an even allowance", help)
+            .at(source, surface.span));
     }
     let limits = Limits::above("0", "100", "mm");
     let Some(value) = section.value("allowance_mm") else {
@@ -98,74 +123,28 @@ fn stock(source: &Source, section: &Section<'_>, diameter: Offset) -> Result<Off
     let allowance = section.number_in(&value, limits)?.as_mm();
     if allowance >= diameter {
         let expected = format!("less than the cutter's diameter, {} mm", text_of(diameter));
-        return Err(section.out_of_range(&value, &expected, "take the stock off in more passes, or correct tool.diameter_mm"));
+        return Err(section.out_of_range(
+            &value,
+            &expected,
+            "take the stock off in more passes, or correct tool.diameter_mm",
+        ));
     }
     section.close()?;
     Ok(allowance)
 }
 
-fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, InputError> {
-    let diameter = section.required_number("diameter_mm", Limits::within("0.1", "100", "mm"))?.as_mm();
-    let measured = section.value("measured_diameter_mm");
-    let measured_diameter = match &measured {
-        None => None,
-        Some(value) => {
-            let measured = section.number_in(value, Limits::within("0.1", "110", "mm"))?.as_mm();
-            if (measured - diameter).abs().nm() > diameter.nm() / 10 {
-                let expected = format!("a diameter within 10 % of diameter_mm, {} mm", text_of(diameter));
-                return Err(section.out_of_range(value, &expected, "check which of the two is mistyped"));
-            }
-            Some(measured)
-        }
-    };
-    let limits = Limits::within("1", "12", "");
-    let Some(value) = section.value("teeth") else {
-        return Err(section.missing("teeth", "a whole number, 1 to 12"));
-    };
-    let whole = section.number_in(&value, limits)?.as_whole().and_then(|n| u8::try_from(n).ok());
-    let Some(teeth) = whole else {
-        return Err(section.out_of_range(&value, "a whole number, 1 to 12", "count the cutter's teeth"));
-    };
-    let helix_deg = section.required_number("helix_deg", Limits::within("0", "60", "degrees"))?.as_real();
-    let stickout = section.number("stickout_mm", Limits::above("0", "500", "mm"))?.map(Decimal::as_mm);
-    let material = section.choice("material", &[("HSS", CutterMaterial::Hss), ("carbide", CutterMaterial::Carbide)])?;
-    let cantilever = match (stickout, material) {
-        (Some(stickout), Some(material)) => Some(Cantilever { stickout, material }),
-        (None, None) => None,
-        (given, _) => {
-            let (there, other) = if given.is_some() { ("stickout_mm", "material") } else { ("material", "stickout_mm") };
-            let place = section.value(there).map_or(0..0, |v| v.span);
-            let help = format!("add {other}, or remove {there}");
-            let found = format!("tool.{there} is given without tool.{other}");
-            return Err(InputError::new("J008", found, "both or neither: the cutter's own compliance needs both", help).at(source, place));
-        }
-    };
-    section.close()?;
-    Ok(Tool { diameter, measured_diameter, teeth, helix_deg, cantilever })
-}
-
-/// The cutter must stick out at least as far as it cuts deep.
-fn reach(source: &Source, section: &Section<'_>, tool: &Tool, cut: &Cut) -> Result<(), InputError> {
-    match (tool.cantilever, section.value("stickout_mm")) {
-        (Some(c), Some(value)) if c.stickout < cut.axial_depth => {
-            let expected = format!("at least cut.axial_depth_mm, {} mm", text_of(cut.axial_depth));
-            let found = format!("tool.stickout_mm is {}", source.excerpt(value.span.clone()));
-            Err(InputError::new("J008", found, expected, "measure from the collet to the cutter's tip").at(source, value.span))
-        }
-        _ => Ok(()),
-    }
-}
-
 fn cut(section: &Section<'_>) -> Result<Cut, InputError> {
     let axial_depth = section.required_number("axial_depth_mm", Limits::above("0", "200", "mm"))?.as_mm();
     let spindle_rpm = section.number("spindle_rpm", Limits::within("1", "200000", "rev/min"))?.map(Decimal::as_real);
-    let feed_mm_per_min = section.number("feed_mm_per_min", Limits::within("0.1", "100000", "mm/min"))?.map(Decimal::as_real);
+    let feed_mm_per_min =
+        section.number("feed_mm_per_min", Limits::within("0.1", "100000", "mm/min"))?.map(Decimal::as_real);
     section.close()?;
     Ok(Cut { axial_depth, spindle_rpm, feed_mm_per_min })
 }
 
 fn force(source: &Source, section: &Section<'_>) -> Result<Force, InputError> {
-    const MODELS: [(&str, ForceModel); 3] = [("auto", ForceModel::Auto), ("helical", ForceModel::Helical), ("mean", ForceModel::Mean)];
+    const MODELS: [(&str, ForceModel); 3] =
+        [("auto", ForceModel::Auto), ("helical", ForceModel::Helical), ("mean", ForceModel::Mean)];
     const KEYS: [&str; 4] = ["ktc_n_per_mm2", "krc_n_per_mm2", "kte_n_per_mm", "kre_n_per_mm"];
     let model = section.choice("model", &MODELS)?.unwrap_or(ForceModel::Auto);
     let materials: Vec<(&str, usize)> = MATERIALS.iter().enumerate().map(|(i, m)| (m.name, i)).collect();
@@ -181,7 +160,9 @@ fn force(source: &Source, section: &Section<'_>) -> Result<Force, InputError> {
     if let Some(value) = KEYS.into_iter().find_map(|key| section.value(key)) {
         let found = format!("{} is given as well as force.material", value.path);
         let help = "remove material to use your own coefficients, or remove the coefficients";
-        return Err(InputError::new("J008", found, "either a material or the four coefficients", help).at(source, value.span));
+        return Err(
+            InputError::new("J008", found, "either a material or the four coefficients", help).at(source, value.span)
+        );
     }
     section.close()?;
     let row = MATERIALS[index];
@@ -206,56 +187,17 @@ fn probe(section: &Section<'_>) -> Result<Probe, InputError> {
     const FORMATS: [(&str, ProbeFormat); 2] = [("linuxcnc", ProbeFormat::LinuxCnc), ("columns", ProbeFormat::Columns)];
     const REFERENCES: [(&str, ZReference); 2] = [("centre", ZReference::Centre), ("tip", ZReference::Tip)];
     let ball_diameter = section.required_number("ball_diameter_mm", Limits::within("0.1", "50", "mm"))?.as_mm();
-    let format = section.choice("format", &FORMATS)?.ok_or_else(|| section.missing("format", "\"linuxcnc\" or \"columns\""))?;
-    let z_reference = section.choice("z_reference", &REFERENCES)?.ok_or_else(|| section.missing("z_reference", "\"centre\" or \"tip\""))?;
+    let format =
+        section.choice("format", &FORMATS)?.ok_or_else(|| section.missing("format", "\"linuxcnc\" or \"columns\""))?;
+    let z_reference = section
+        .choice("z_reference", &REFERENCES)?
+        .ok_or_else(|| section.missing("z_reference", "\"centre\" or \"tip\""))?;
     let noise = section.number("noise_mm", Limits::above("0", "0.1", "mm"))?.map_or(DEFAULT_NOISE, Decimal::as_mm);
     section.close()?;
     Ok(Probe { ball_diameter, format, z_reference, noise })
 }
 
-fn correct(source: &Source, section: Option<&Section<'_>>, depth: Offset) -> Result<Correct, InputError> {
-    const LAWS: [(&str, Law); 3] = [("model", Law::Model), ("mirror", Law::Mirror), ("paper", Law::Paper)];
-    const TARGETS: [(&str, Target); 3] = [("mean", Target::Mean), ("tip", Target::Tip), ("minimax", Target::Minimax)];
-    const ROUTES: [(&str, Route); 2] = [("program", Route::Program), ("coprocessor", Route::Coprocessor)];
-    let mut correct = Correct {
-        law: Law::Model,
-        tolerance: DEFAULT_TOLERANCE,
-        clamp: DEFAULT_CLAMP,
-        target: Target::Mean,
-        band: [Offset::ZERO, depth],
-        max_gouge: None,
-        route: Route::Program,
-    };
-    let Some(section) = section else { return Ok(correct) };
-    correct.law = section.choice("law", &LAWS)?.unwrap_or(correct.law);
-    correct.tolerance = section.number("tolerance_mm", Limits::within("0.0001", "0.1", "mm"))?.map_or(correct.tolerance, Decimal::as_mm);
-    correct.clamp = section.number("clamp_mm", Limits::above("0", "5", "mm"))?.map_or(correct.clamp, Decimal::as_mm);
-    correct.target = section.choice("target", &TARGETS)?.unwrap_or(correct.target);
-    correct.band = band(source, section, depth)?.unwrap_or(correct.band);
-    correct.max_gouge = section.number("max_gouge_mm", Limits::within("0", "1", "mm"))?.map(Decimal::as_mm);
-    correct.route = section.choice("route", &ROUTES)?.unwrap_or(correct.route);
-    section.close()?;
-    Ok(correct)
-}
-
-fn band(source: &Source, section: &Section<'_>, depth: Offset) -> Result<Option<[Offset; 2]>, InputError> {
-    let Some(value) = section.value("band_mm") else { return Ok(None) };
-    let expected = format!("two heights above the cutter's tip, rising, within 0 to {} mm", text_of(depth));
-    let help = "write band_mm = [low, high]; cut.axial_depth_mm bounds it";
-    let Some([low, high]) = value.raw.as_array().map(|a| a.iter().collect::<Vec<_>>()).and_then(|v| <[_; 2]>::try_from(v).ok()) else {
-        return Err(section.wrong_type(&value, &expected, help));
-    };
-    let height = |entry: &toml::Spanned<toml::de::DeValue<'_>>| {
-        let text = source.excerpt(entry.span());
-        if entry.get_ref().is_integer() || entry.get_ref().is_float() { Decimal::parse(&text).map(Decimal::as_mm) } else { None }
-    };
-    match (height(low), height(high)) {
-        (Some(low), Some(high)) if low >= Offset::ZERO && low < high && high <= depth => Ok(Some([low, high])),
-        _ => Err(section.out_of_range(&value, &expected, help)),
-    }
-}
-
 /// Millimetres as a person writes them.
-fn text_of(length: Offset) -> String {
+pub(super) fn text_of(length: Offset) -> String {
     format!("{}", length.nm() as f64 / 1e6)
 }

@@ -8,8 +8,8 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use toml::de::{DeTable, DeValue};
 use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 use super::decimal::Decimal;
 use super::limits::Limits;
@@ -59,14 +59,27 @@ impl<'d> Section<'d> {
         let Some(table) = value.raw.as_table() else {
             return Err(self.wrong_type(&value, "a table", &format!("write it as [{key}] with one key a line")));
         };
-        Ok(Some(Section { source: self.source, name: key, span: value.span, table, asked: RefCell::default(), spans: self.spans }))
+        Ok(Some(Section {
+            source: self.source,
+            name: key,
+            span: value.span,
+            table,
+            asked: RefCell::default(),
+            spans: self.spans,
+        }))
     }
 
     /// A sub-table that must be there; `needs` lists what belongs in it.
     pub(super) fn required_section(&self, key: &'static str, needs: &str) -> Result<Section<'d>, InputError> {
         match self.section(key)? {
             Some(section) => Ok(section),
-            None => Err(self.missing_or_misspelt(key, format!("[{key}] is missing"), &format!("a table [{key}]"), format!("add [{key}] with {needs}"), self.end())),
+            None => Err(self.missing_or_misspelt(
+                key,
+                format!("[{key}] is missing"),
+                &format!("a table [{key}]"),
+                format!("add [{key}] with {needs}"),
+                self.end(),
+            )),
         }
     }
 
@@ -86,15 +99,22 @@ impl<'d> Section<'d> {
             DeValue::Integer(i) if i.radix() == 10 => i.as_str().to_owned(),
             DeValue::Float(f) => f.as_str().to_owned(),
             _ => {
-                let help = if value.raw.is_str() { "remove the quotation marks" } else { "write a plain decimal number" };
+                let help =
+                    if value.raw.is_str() { "remove the quotation marks" } else { "write a plain decimal number" };
                 return Err(self.wrong_type(value, &format!("a number, {}", limits.phrase()), help));
             }
         };
         let number = Decimal::parse(&text);
         match number {
             Some(n) if limits.admits(n) => Ok(n),
-            Some(_) => Err(self.out_of_range(value, &limits.phrase(), "check the value and its unit: the key's name carries it")),
-            None => Err(self.out_of_range(value, &limits.phrase(), "write a plain decimal number with at most 36 digits")),
+            Some(_) => Err(self.out_of_range(
+                value,
+                &limits.phrase(),
+                "check the value and its unit: the key's name carries it",
+            )),
+            None => {
+                Err(self.out_of_range(value, &limits.phrase(), "write a plain decimal number with at most 36 digits"))
+            }
         }
     }
 
@@ -118,7 +138,8 @@ impl<'d> Section<'d> {
                     Some(name) => format!("did you mean \"{name}\"?"),
                     None => "write one of these names exactly".to_owned(),
                 };
-                Err(InputError::new("J007", format!("{} is \"{text}\"", value.path), one_of(&names), help).at(self.source, value.span))
+                Err(InputError::new("J007", format!("{} is \"{text}\"", value.path), one_of(&names), help)
+                    .at(self.source, value.span))
             }
         }
     }
@@ -137,17 +158,32 @@ impl<'d> Section<'d> {
             "datetime" => "a date".to_owned(),
             kind => format!("a {kind}"),
         };
-        InputError::new("J005", format!("{} is {article}", value.path), expected, help).at(self.source, value.span.clone())
+        InputError::new("J005", format!("{} is {article}", value.path), expected, help)
+            .at(self.source, value.span.clone())
     }
 
     /// The error of a key that must be there.
     pub(super) fn missing(&self, key: &'static str, expected: &str) -> InputError {
-        let place = if self.name.is_empty() { "at the top of the file".to_owned() } else { format!("under [{}]", self.name) };
-        self.missing_or_misspelt(key, format!("{} is missing", self.path(key)), expected, format!("add {key} {place}"), self.span.clone())
+        let place =
+            if self.name.is_empty() { "at the top of the file".to_owned() } else { format!("under [{}]", self.name) };
+        self.missing_or_misspelt(
+            key,
+            format!("{} is missing", self.path(key)),
+            expected,
+            format!("add {key} {place}"),
+            self.span.clone(),
+        )
     }
 
     /// Points at a key nobody knows whose name is close to the missing one, else at `place`.
-    fn missing_or_misspelt(&self, key: &'static str, found: String, expected: &str, help: String, place: Range<usize>) -> InputError {
+    fn missing_or_misspelt(
+        &self,
+        key: &'static str,
+        found: String,
+        expected: &str,
+        help: String,
+        place: Range<usize>,
+    ) -> InputError {
         let misspelt = self.table.keys().find(|k| nearest(k.get_ref(), &[key]).is_some());
         let (help, place) = match misspelt {
             Some(k) => (format!("did you mean {key} where {} is written?", k.get_ref()), k.span()),
@@ -162,9 +198,13 @@ impl<'d> Section<'d> {
     /// `J003` at the first key nobody asked for.
     pub(super) fn close(&self) -> Result<(), InputError> {
         let asked = self.asked.borrow();
-        let unknown = self.table.keys().filter(|key| !asked.contains(&key.get_ref().as_ref())).min_by_key(|key| key.span().start);
+        let unknown =
+            self.table.keys().filter(|key| !asked.contains(&key.get_ref().as_ref())).min_by_key(|key| key.span().start);
         let Some(key) = unknown else { return Ok(()) };
-        let (name, place) = (key.get_ref(), if self.name.is_empty() { "the top of the file".to_owned() } else { format!("[{}]", self.name) });
+        let (name, place) = (
+            key.get_ref(),
+            if self.name.is_empty() { "the top of the file".to_owned() } else { format!("[{}]", self.name) },
+        );
         let help = match nearest(name, &asked) {
             Some(known) => format!("did you mean {known}?"),
             None => "remove it, or correct its name".to_owned(),
@@ -172,7 +212,8 @@ impl<'d> Section<'d> {
         let mut known = asked.clone();
         known.sort_unstable();
         known.dedup();
-        Err(InputError::new("J003", format!("{name} is no key of {place}"), one_of(&known), help).at(self.source, key.span()))
+        Err(InputError::new("J003", format!("{name} is no key of {place}"), one_of(&known), help)
+            .at(self.source, key.span()))
     }
 
     fn end(&self) -> Range<usize> {
@@ -204,7 +245,8 @@ fn edit_distance(a: &str, b: &str) -> usize {
     for i in 1..=a.len() {
         let mut row = vec![i];
         for j in 1..=b.len() {
-            let mut cost = (rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1])).min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
+            let mut cost =
+                (rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1])).min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
             if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
                 cost = cost.min(rows[i - 2][j - 2] + 1);
             }

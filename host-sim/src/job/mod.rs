@@ -21,6 +21,8 @@
 //! Limits: one contour a job; the stock is a parallel curve of the finished wall.
 
 mod check;
+mod check_correct;
+mod check_tool;
 mod decimal;
 mod document;
 mod limits;
@@ -271,8 +273,13 @@ impl Job {
     pub fn require_probe(&self) -> Result<Probe, InputError> {
         self.probe.ok_or_else(|| {
             let end = self.source.bytes().len();
-            InputError::new("J004", "[probe] is missing", "a table [probe]", "add [probe] with ball_diameter_mm, format and z_reference")
-                .at(&self.source, end..end)
+            InputError::new(
+                "J004",
+                "[probe] is missing",
+                "a table [probe]",
+                "add [probe] with ball_diameter_mm, format and z_reference",
+            )
+            .at(&self.source, end..end)
         })
     }
 

@@ -15,6 +15,8 @@ use super::vector::{Point, along, distance, dot, left_of, mix, scaled, sub, turn
 const FACET_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
 /// Half-length over which a facet of turn α is smoothed is at most this / α, mm·rad: a chord error of a quarter of it.
 const FACET_MM_RAD: f64 = 0.05;
+/// Pieces of at least so many steps are sampled each for itself.
+const LONG_STEPS: f64 = 5.0;
 /// Ends closer than this meet, mm.
 const JOIN_MM: f64 = 0.01;
 
@@ -125,7 +127,11 @@ impl Path {
             return Err(PlantError::EmptyPath);
         };
         let closed = distance(first.segment.from(), last.segment.to()) < JOIN_MM;
-        let corner_before = smooth_facets(&mut pieces, closed);
+        let mut run_starts = smooth_facets(&mut pieces, closed);
+        // Where two long pieces meet the curvature jumps: a sample lies there too.
+        for (k, pair) in pieces.windows(2).enumerate() {
+            run_starts[k + 1] |= pair[0].length.min(pair[1].length) >= LONG_STEPS * step_mm;
+        }
 
         let mut path = Self {
             s_mm: Vec::new(),
@@ -138,12 +144,12 @@ impl Path {
             closed,
         };
         let mut rest = pieces.as_slice();
-        let mut corners = corner_before.as_slice();
+        let mut starts = run_starts.as_slice();
         while !rest.is_empty() {
-            let run = corners.iter().skip(1).position(|&c| c).map_or(rest.len(), |i| i + 1);
+            let run = starts.iter().skip(1).position(|&c| c).map_or(rest.len(), |i| i + 1);
             path.sample_run(&rest[..run]);
             rest = &rest[run..];
-            corners = &corners[run..];
+            starts = &starts[run..];
         }
         if let Some(last) = pieces.last() {
             let (p, t) = last.at(last.length);
@@ -152,7 +158,7 @@ impl Path {
         Ok(path)
     }
 
-    /// Samples pieces without a corner between them evenly, the end left out.
+    /// Samples a run of pieces evenly, the end left out.
     fn sample_run(&mut self, run: &[Piece]) {
         let length: f64 = run.iter().map(|p| p.length).sum();
         let count = (length / self.step_mm - 1e-9).ceil().max(1.0);

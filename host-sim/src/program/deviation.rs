@@ -36,7 +36,13 @@ fn distance(sample: [i64; 2], curve: &Curve) -> f64 {
             let sense = if sweep.bits() < 0 { -1.0 } else { 1.0 };
             let (after_start, before_end) = (sense * cross(from, spoke) >= 0.0, sense * cross(spoke, to) >= 0.0);
             let short = sense * cross(from, to) > 0.0;
-            let beside = if b == [0.0, 0.0] { true } else if short { after_start && before_end } else { after_start || before_end };
+            let beside = if b == [0.0, 0.0] {
+                true
+            } else if short {
+                after_start && before_end
+            } else {
+                after_start || before_end
+            };
             let radius = 0.5 * (length(from) + length(to));
             if beside { ends.min((length(spoke) - radius).abs()) } else { ends }
         }

@@ -142,7 +142,8 @@ fn shape(samples: Samples<'_>, start: usize, end: usize, tolerance: f64) -> Opti
     if low <= 0.0 && high >= 0.0 {
         return Some(Shape::Line);
     }
-    let g = if low > 0.0 { (0.5 * (low + high)).max(MIN_G).min(high) } else { (0.5 * (low + high)).min(-MIN_G).max(low) };
+    let g =
+        if low > 0.0 { (0.5 * (low + high)).max(MIN_G).min(high) } else { (0.5 * (low + high)).min(-MIN_G).max(low) };
     if g.abs() < MIN_G || (g * chord).abs() > MAX_HALF_TANGENT {
         return None;
     }
@@ -200,7 +201,8 @@ mod tests {
     fn a_straight_is_one_line_and_a_circle_a_few_arcs() {
         let line: Vec<_> = (0..500).map(|i| [f64::from(i) * 60_000.0, f64::from(i) * 80_000.0]).collect();
         assert_eq!(fit(same(&line), 100.0), [Piece { end: 499, shape: Shape::Line }]);
-        let circle: Vec<_> = (0..=360).map(|i| f64::from(i).to_radians()).map(|a| [8e6 * a.cos() - 8e6, 8e6 * a.sin()]).collect();
+        let circle: Vec<_> =
+            (0..=360).map(|i| f64::from(i).to_radians()).map(|a| [8e6 * a.cos() - 8e6, 8e6 * a.sin()]).collect();
         let pieces = fit(same(&circle), 100.0);
         assert_eq!(pieces.len(), 3);
         for piece in pieces {
@@ -232,7 +234,8 @@ mod tests {
                 .map(|piece| match piece.shape {
                     Shape::Line => *piece,
                     Shape::Arc { centre, counter_clockwise } => {
-                        let shape = Shape::Arc { centre: map(centre), counter_clockwise: counter_clockwise != (index == 2) };
+                        let shape =
+                            Shape::Arc { centre: map(centre), counter_clockwise: counter_clockwise != (index == 2) };
                         Piece { end: piece.end, shape }
                     }
                 })

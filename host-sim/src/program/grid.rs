@@ -60,7 +60,9 @@ mod tests {
     #[test]
     fn text_is_exact_and_rounds_to_nearest_on_both_sides() {
         let mm = Grid::of(Units::Millimetres);
-        for (nm, text) in [(0, "0."), (34_000_000, "34."), (-34_091_449, "-34.0914"), (50, "0.0001"), (-50, "-0.0001"), (49, "0.")] {
+        for (nm, text) in
+            [(0, "0."), (34_000_000, "34."), (-34_091_449, "-34.0914"), (50, "0.0001"), (-50, "-0.0001"), (49, "0.")]
+        {
             assert_eq!(mm.text(mm.steps(nm)), text);
         }
         let inch = Grid::of(Units::Inches);

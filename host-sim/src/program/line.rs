@@ -35,7 +35,8 @@ impl<'a> Block<'a> {
     pub(super) fn new(line: Line<'a>, two_digits: bool) -> Self {
         // A line the interpreter has executed has no unreadable token.
         let tokens: Vec<Token> = Words::new(line).map_while(Result::ok).collect();
-        let mut block = Self { line, tokens, style: Style { gap: " ", lower: false, two_digits, ends_with_semicolon: false } };
+        let mut block =
+            Self { line, tokens, style: Style { gap: " ", lower: false, two_digits, ends_with_semicolon: false } };
         block.style = block.spelling();
         block
     }
@@ -46,7 +47,8 @@ impl<'a> Block<'a> {
         let touching = spans.windows(2).any(|pair| pair[0].end == pair[1].start);
         let apart = spans.windows(2).any(|pair| pair[0].end < pair[1].start);
         let letters = || self.words().map(|w| text(self.word_range(w))[0]);
-        let motion = self.motion_word().map(|w| text(self.word_range(w)).iter().filter(|b| b.is_ascii_digit()).count() > 1);
+        let motion =
+            self.motion_word().map(|w| text(self.word_range(w)).iter().filter(|b| b.is_ascii_digit()).count() > 1);
         Style {
             gap: if touching && !apart { "" } else { " " },
             lower: letters().next().is_some() && letters().all(|l| l.is_ascii_lowercase()),
@@ -56,7 +58,10 @@ impl<'a> Block<'a> {
     }
 
     fn range(&self, token: &Token) -> Range<usize> {
-        let (Token::Word(Word { span, .. }) | Token::Comment { span, .. } | Token::BlockDelete { span, .. } | Token::Percent(span)) = token;
+        let (Token::Word(Word { span, .. })
+        | Token::Comment { span, .. }
+        | Token::BlockDelete { span, .. }
+        | Token::Percent(span)) = token;
         span.start - self.line.start..span.end() - self.line.start
     }
     fn word_range(&self, word: &Word) -> Range<usize> {

@@ -12,6 +12,7 @@
 //!
 //! Limits: G17, one contour; coordinates are written with four decimals of a millimetre or six of an inch.
 
+mod assemble;
 mod deviation;
 mod fit;
 mod grid;
@@ -78,9 +79,14 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
     let original = source.bytes();
     if is_marked_corrected(original) {
         let help = "correct the original program; its CRC-32 is in the comment";
-        return Err(InputError::new("P001", "the program carries the mark TRUEPATH CORRECTED", "an uncorrected program", help)
-            .at(source, mark(original))
-            .into());
+        return Err(InputError::new(
+            "P001",
+            "the program carries the mark TRUEPATH CORRECTED",
+            "an uncorrected program",
+            help,
+        )
+        .at(source, mark(original))
+        .into());
     }
     let moves = survey::survey(original, options.program).map_err(|e| InputError::of_program(source, &e))?;
     let written = writer::write(source, &moves, edits, options)?;
@@ -102,7 +108,6 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
         max_deviation_nm,
     })
 }
-
 
 /// Where the mark stands.
 fn mark(program: &[u8]) -> Range<usize> {

@@ -32,7 +32,9 @@ pub(super) enum Kind {
 impl Move {
     /// Whether its start and end are one point of the plane, both known.
     pub(super) fn stands_still(&self) -> bool {
-        self.from.point().is_some() && self.from.point() == self.to.point() && matches!(self.kind, Kind::Traverse | Kind::Feed)
+        self.from.point().is_some()
+            && self.from.point() == self.to.point()
+            && matches!(self.kind, Kind::Traverse | Kind::Feed)
     }
     /// Whether it cuts in the plane.
     pub(super) fn cuts(&self) -> bool {

@@ -3,17 +3,17 @@
 //! Before the contour: the moves that lead to its start. On it: one edit a line. After it: whatever depended on the
 //! end that has moved. A move inside the contour that stands still (programs repeat points) follows the pen.
 
-use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use truepath_core::gcode::{Line, Lines, Motion, program_crc};
+use truepath_core::gcode::{Line, Lines, Motion};
 
+use super::assemble::{Replaced, assemble};
 use super::deviation::deviation;
 use super::fit::{Piece, Samples, Shape, fit};
 use super::line::Block;
 use super::pen::{Pen, place};
 use super::survey::{Kind, Move};
-use super::{BlockEdit, RewriteOptions, header};
+use super::{BlockEdit, RewriteOptions};
 use crate::diagnostics::{Failure, InputError, Source};
 
 /// The written text and where each edit ended up in it.
@@ -26,9 +26,6 @@ pub(super) struct Written {
     pub(super) unchanged: usize,
 }
 
-/// New text of a line: one or more lines without their ends.
-type Replaced = BTreeMap<u32, Vec<Vec<u8>>>;
-
 struct Writer<'a> {
     source: &'a Source,
     lines: Vec<Line<'a>>,
@@ -40,10 +37,16 @@ struct Writer<'a> {
 }
 
 /// Writes the program.
-pub(super) fn write(source: &Source, moves: &[Move], edits: &[BlockEdit], options: &RewriteOptions) -> Result<Written, Failure> {
+pub(super) fn write(
+    source: &Source,
+    moves: &[Move],
+    edits: &[BlockEdit],
+    options: &RewriteOptions,
+) -> Result<Written, Failure> {
     let lines: Vec<Line<'_>> = Lines::new(source.bytes()).collect();
     let two_digits = lines.iter().map(|&l| Block::new(l, false)).any(|b| b.motion_word().is_some() && b.two_digits());
-    let mut writer = Writer { source, lines, options, replaced: Replaced::new(), two_digits, motion: None, count: [0; 3] };
+    let mut writer =
+        Writer { source, lines, options, replaced: Replaced::new(), two_digits, motion: None, count: [0; 3] };
     let (Some(first_edit), Some(last_edit)) = (edits.first(), edits.last()) else {
         return Err(Failure::Internal("there is no line to correct".to_owned()));
     };
@@ -68,7 +71,9 @@ pub(super) fn write(source: &Source, moves: &[Move], edits: &[BlockEdit], option
         return Err(Failure::Internal(format!("line {} is out of order or not part of the contour", edit.line)));
     }
     writer.leave(pen, &moves[last + 1..])?;
-    Ok(writer.assemble(edits))
+    let [lines, arcs, unchanged] = writer.count;
+    let (text, ranges) = assemble(source.bytes(), &writer.lines, &writer.replaced, edits, options);
+    Ok(Written { text, ranges, lines, arcs, unchanged })
 }
 
 impl<'a> Writer<'a> {
@@ -98,7 +103,10 @@ impl<'a> Writer<'a> {
         if start.is_at(to) {
             return Ok(start);
         }
-        const EXPECTED: [&str; 2] = ["a G0 or G1 move in X and Y to the start of the contour", "give the contour's start with G0 X Y before it"];
+        const EXPECTED: [&str; 2] = [
+            "a G0 or G1 move in X and Y to the start of the contour",
+            "give the contour's start with G0 X Y before it",
+        ];
         for step in before.iter().rev() {
             let block = self.block(step.line);
             let named = [b'X', b'Y'].map(|letter| block.word(letter).is_some());
@@ -127,7 +135,9 @@ impl<'a> Writer<'a> {
     /// Writes one line of the contour.
     fn edit(&mut self, pen: &mut Pen, step: &Move, edit: &BlockEdit) -> Result<(), Failure> {
         *pen = pen.under(&step.modal);
-        let (Some(&first), Some(from), Some(to), Some(curve)) = (edit.samples.first(), place(step.from), place(step.to), step.curve()) else {
+        let (Some(&first), Some(from), Some(to), Some(curve)) =
+            (edit.samples.first(), place(step.from), place(step.to), step.curve())
+        else {
             return Err(Failure::Internal(format!("line {} has no corrected path", edit.line)));
         };
         let gap = [0, 1].map(|axis| (first[axis] as f64 - pen.at[axis]).abs());
@@ -159,7 +169,11 @@ impl<'a> Writer<'a> {
             self.count[usize::from(motion != Motion::Feed)] += 1;
             let words = pen.draw(*target, &piece.shape);
             let more = index + 1 < pieces.len();
-            text.push(if index == 0 { block.moved(motion, self.motion != Some(motion), &words, more) } else { block.further(motion, &words, !more) });
+            text.push(if index == 0 {
+                block.moved(motion, self.motion != Some(motion), &words, more)
+            } else {
+                block.further(motion, &words, !more)
+            });
             self.motion = Some(motion);
         }
         self.replaced.insert(step.line, text);
@@ -170,7 +184,8 @@ impl<'a> Writer<'a> {
     fn follow(&mut self, pen: Pen, step: &Move) {
         let block = self.block(step.line);
         if step.modal.absolute && !place(step.from).is_some_and(|from| pen.is_at(from)) {
-            let values = [(0, b'X'), (1, b'Y')].map(|(axis, letter)| block.word(letter).map(|_| pen.value(axis, pen.at[axis])));
+            let values =
+                [(0, b'X'), (1, b'Y')].map(|(axis, letter)| block.word(letter).map(|_| pen.value(axis, pen.at[axis])));
             if values.iter().any(Option::is_some) {
                 let text = block.repositioned(values);
                 self.replaced.insert(step.line, vec![text]);
@@ -229,45 +244,6 @@ impl<'a> Writer<'a> {
             }
         }
         Ok(())
-    }
-
-    /// Puts the text together.
-    fn assemble(self, edits: &[BlockEdit]) -> Written {
-        let program = self.source.bytes();
-        let ends: Vec<&[u8]> = (0..self.lines.len())
-            .map(|i| {
-                let next = self.lines.get(i + 1).map_or(program.len(), |l| l.start);
-                &program[self.lines[i].span().end()..next]
-            })
-            .collect();
-        let usual = ends.iter().copied().find(|end| !end.is_empty()).unwrap_or(b"\n");
-        let head = header::text(program_crc(program), self.options.tolerance, &self.options.notes, usual);
-        let head_after = header::place(program);
-        let mut text = program[..self.lines.first().map_or(0, |l| l.start)].to_vec();
-        let mut ranges = Vec::new();
-        if head_after == 0 {
-            text.extend_from_slice(&head);
-        }
-        let mut written = Lines::new(&text).count() as u32;
-        for (line, end) in self.lines.iter().zip(ends) {
-            let begin = written + 1;
-            let single = [line.text.to_vec()];
-            let parts = self.replaced.get(&line.number).map_or(&single[..], Vec::as_slice);
-            for (index, part) in parts.iter().enumerate() {
-                text.extend_from_slice(part);
-                text.extend_from_slice(if index + 1 < parts.len() && end.is_empty() { usual } else { end });
-                written += 1;
-            }
-            if edits.iter().any(|edit| edit.line == line.number) {
-                ranges.push(begin..=written);
-            }
-            if line.number == head_after {
-                text.extend_from_slice(&head);
-                written += Lines::new(&head).count() as u32;
-            }
-        }
-        let [lines, arcs, unchanged] = self.count;
-        Written { text, ranges, lines, arcs, unchanged }
     }
 }
 

@@ -9,7 +9,8 @@ G1
 G0
 G20 G94 F10 G61
 (MSG, touch off)
-G90.1 G90 G3 X2 Y2 I1.5 J2 ; remark
+G90 G0 X1 Y1 Z1
+G90.1 G3 X2 Y2 I1.5 J1.5 ; remark
 G91.1 G3 I.5
 G64
 G64 P0.01 Q0.02

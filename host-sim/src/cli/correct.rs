@@ -1,0 +1,82 @@
+//! `truepath correct`: from a probe file to the corrected program or the correction image.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{Terminal, print};
+use crate::command::correct::{Options, run as correct};
+use crate::command::simulate::json;
+use crate::diagnostics::Failure;
+use crate::job::Route;
+use crate::report::CorrectSummary;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The job.
+    job: PathBuf,
+    /// What the probe measured on the part cut by the job's program.
+    #[arg(long, value_name = "FILE")]
+    probe: PathBuf,
+    /// Folder for the corrected program (or image), tables, summary and picture.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Correct in the program text or in the coprocessor; the job says it otherwise.
+    #[arg(long, value_enum)]
+    route: Option<RouteArgument>,
+    /// Replace the files of an earlier run.
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum RouteArgument {
+    Program,
+    Coprocessor,
+}
+
+pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let route = arguments.route.map(|r| match r {
+        RouteArgument::Program => Route::Program,
+        RouteArgument::Coprocessor => Route::Coprocessor,
+    });
+    let options =
+        Options { job: &arguments.job, probe: &arguments.probe, out: &arguments.output, force: arguments.force, route };
+    let mut bar = terminal.progress("correcting", 100);
+    let summary = correct(&options, &mut |share| bar.reached((share * 100.0) as u64))?;
+    drop(bar);
+    for warning in &summary.warnings {
+        terminal.warn(warning);
+    }
+    print(&if terminal.json() { json(&summary)? } else { words(&summary, arguments).into_bytes() })
+}
+
+fn words(s: &CorrectSummary, arguments: &Arguments) -> String {
+    let factor = s.max_error_before_mm / s.max_error_after_mm.max(1e-6);
+    let mut text = format!(
+        "{} points used, {} set aside; wall follows the {} force, {} milling\n\
+         \n\
+         largest wall error without correction  {:>8.4} mm\n\
+         with correction, as the model sees it  {:>8.4} mm  ({factor:.0} times less)\n\
+         what the points leave open (1 sigma)   {:>8.4} mm\n\
+         left over the height, beyond X and Y   {:>8.4} mm\n\
+         largest correction                     {:>8.4} mm\n\
+         \n\
+         identified                      value      sigma   before\n",
+        s.points_used,
+        s.points_rejected + s.points_outlying,
+        s.wall_law,
+        s.milling,
+        s.max_error_before_mm,
+        s.max_error_after_mm,
+        s.max_sigma_mm,
+        s.axial_form_error_mm,
+        s.max_correction_mm,
+    );
+    for (name, p) in &s.identified {
+        let seen = if p.observable { "" } else { "  not decided by the points" };
+        text += &format!("  {name:<24} {:>10.4} {:>10.4} {:>8.4} {:<5}{seen}\n", p.value, p.sigma, p.prior, p.unit);
+    }
+    text += &format!("\nwritten to {}\n", arguments.output.display());
+    text
+}

@@ -1,0 +1,45 @@
+//! `truepath demo`: the whole story, on parts that come with the program.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Terminal, print};
+use crate::command::demo::{Outcome, run as demo};
+use crate::command::simulate::json;
+use crate::diagnostics::Failure;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Folder for the programs, probe files, corrections and pictures.
+    #[arg(short, long, value_name = "DIR", default_value = "out/demo")]
+    output: PathBuf,
+    /// Keep the files of an earlier run: stop when there are some.
+    #[arg(long)]
+    keep: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let mut bar = terminal.progress("milling, probing, correcting, milling again", 100);
+    let outcomes = demo(&arguments.output, !arguments.keep, &mut |share| bar.reached((share * 100.0) as u64))?;
+    drop(bar);
+    print(&if terminal.json() { json(&outcomes)? } else { words(&outcomes).into_bytes() })
+}
+
+fn words(outcomes: &[Outcome]) -> String {
+    let mut text = String::from(
+        "Each part was milled on a virtual machine, touched with a probe, corrected, and milled again.\n\
+         Largest error of the wall (mean over the height):\n\n\
+         part                                                          points   before mm   after mm   times less\n",
+    );
+    for o in outcomes {
+        text +=
+            &format!("{:<62}{:>6}{:>12.4}{:>11.4}{:>11.1}x\n", o.title, o.points, o.before_mm, o.after_mm, o.factor);
+    }
+    text += "\nLook at the pictures:\n";
+    for o in outcomes {
+        text += &format!("  {}\n", o.folder.join("before-after.svg").display());
+    }
+    text += "The corrected programs (corrected.nc) and images for the coprocessor (correction.tpi) lie beside them.\n";
+    text
+}

@@ -1,0 +1,43 @@
+//! `truepath inspect`: the accuracy of the wall from measurements alone.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Terminal, print};
+use crate::command::inspect::{Inspection, run as inspect};
+use crate::command::simulate::json;
+use crate::diagnostics::Failure;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The job.
+    job: PathBuf,
+    /// The probe file.
+    #[arg(long, value_name = "FILE")]
+    probe: PathBuf,
+}
+
+pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let inspection = inspect(&arguments.job, &arguments.probe)?;
+    for warning in &inspection.summary.warnings {
+        terminal.warn(warning);
+    }
+    print(&if terminal.json() { json(&inspection)? } else { words(&inspection).into_bytes() })
+}
+
+fn words(inspection: &Inspection) -> String {
+    let mut text = String::from("  line     s mm       X mm       Y mm   height mm   error mm\n");
+    for p in &inspection.contacts {
+        text += &format!(
+            "{:>6} {:>8.2} {:>10.4} {:>10.4} {:>11.3} {:>10.4}\n",
+            p.line, p.s_mm, p.x_mm, p.y_mm, p.height_mm, p.error_mm
+        );
+    }
+    let s = &inspection.summary;
+    text += &format!(
+        "\n{} points; material left is positive\nmean {:.4} mm (a wear offset removes it), largest {:.4}, smallest {:.4}, rms {:.4}, spread over height {:.4} mm\n",
+        s.points, s.mean_error_mm, s.max_error_mm, s.min_error_mm, s.rms_error_mm, s.spread_over_height_mm
+    );
+    text
+}

@@ -1,0 +1,192 @@
+//! `demo`: the whole story on three parts. Each is milled by the plant, which is no model of the core, touched with a
+//! probe, corrected, and milled again with the corrected program.
+
+use std::path::{Path as FilePath, PathBuf};
+
+use crate::command::correct::{Corrected, correct};
+use crate::command::simulate::json;
+use crate::diagnostics::{Failure, Source};
+use crate::job::{Job, Route};
+use crate::measurement::Measurement;
+use crate::output::OutputFolder;
+use crate::pass::Pass;
+use crate::plant::{Milled, Score};
+use crate::plot;
+use crate::workshop;
+
+/// A part of the story.
+struct Story {
+    name: &'static str,
+    title: &'static str,
+    program: &'static str,
+    job: &'static str,
+    plant: &'static str,
+    /// Places to probe, mm along the contour.
+    places: &'static [f64],
+    /// Heights to probe, fractions of the engaged depth.
+    levels: &'static [f64],
+}
+
+const STORIES: &[Story] = &[
+    Story {
+        name: "corner",
+        title: "The corner of the 2018 and 2023 papers, mean force",
+        program: include_str!("../../demo/corner/program.nc"),
+        job: include_str!("../../demo/corner/job.toml"),
+        plant: include_str!("../../demo/corner/plant.toml"),
+        places: &[30.0, 75.0],
+        levels: &[0.5],
+    },
+    Story {
+        name: "corner-helix",
+        title: "The same corner, helical cutter with edge forces and bending",
+        program: include_str!("../../demo/corner-helix/program.nc"),
+        job: include_str!("../../demo/corner-helix/job.toml"),
+        plant: include_str!("../../demo/corner-helix/plant.toml"),
+        places: &[20.0, 32.0, 49.0, 68.0, 80.0],
+        levels: &[0.1, 0.5, 0.9],
+    },
+    Story {
+        name: "pocket",
+        title: "A finishing pass round a pocket",
+        program: include_str!("../../demo/pocket/program.nc"),
+        job: include_str!("../../demo/pocket/job.toml"),
+        plant: include_str!("../../demo/pocket/plant.toml"),
+        places: &[12.0, 45.0, 92.0, 145.0, 180.0],
+        levels: &[0.1, 0.5, 0.9],
+    },
+];
+
+const FILES: &[&str] = &[
+    "program.nc",
+    "job.toml",
+    "plant.toml",
+    "probe.txt",
+    "corrected.nc",
+    "correction.tpi",
+    "correction.csv",
+    "summary.json",
+    "before-after.svg",
+];
+
+/// One line of the table.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Outcome {
+    /// Folder of the part.
+    pub name: &'static str,
+    /// What it is.
+    pub title: &'static str,
+    /// Probe points taken.
+    pub points: usize,
+    /// Largest wall error of the first part, mean over height, mm.
+    pub before_mm: f64,
+    /// What the model expected to remain, mm.
+    pub expected_after_mm: f64,
+    /// Largest wall error of the corrected part, as milled by the plant, mm.
+    pub after_mm: f64,
+    /// before/after.
+    pub factor: f64,
+    /// Root mean square before, mm.
+    pub rms_before_mm: f64,
+    /// Root mean square after, mm.
+    pub rms_after_mm: f64,
+    /// What no XY correction can remove: spread over the height, after, mm.
+    pub axial_form_mm: f64,
+    /// Folder with the files.
+    pub folder: PathBuf,
+}
+
+/// Tells the story; every part gets a folder in `out`. `progress` is told the share done, 0…1.
+///
+/// # Errors
+/// Outputs that cannot be written.
+pub fn run(out: &FilePath, force: bool, progress: &mut dyn FnMut(f64)) -> Result<Vec<Outcome>, Failure> {
+    std::fs::create_dir_all(out).map_err(|e| crate::diagnostics::InputError::unwritable(out, &e))?;
+    let mut outcomes = Vec::new();
+    for (k, story) in STORIES.iter().enumerate() {
+        let done = |share: f64| (k as f64 + share) / STORIES.len() as f64;
+        outcomes.push(tell(story, &out.join(story.name), force, &mut |share| progress(done(share)))?);
+    }
+    Ok(outcomes)
+}
+
+fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(f64)) -> Result<Outcome, Failure> {
+    let out = OutputFolder::create(folder, force, FILES)?;
+    let source = |name: &str, text: &str| Source::new(format!("demo/{}/{name}", story.name), text.as_bytes().to_vec());
+    let job = Job::parse(source("job.toml", story.job), FilePath::new(""))?;
+    let machine = toml::from_str(story.plant).map_err(|e| Failure::Internal(format!("demo plant: {e}")))?;
+    let pass = Pass::new(job, source("program.nc", story.program))?;
+
+    let first = workshop::mill(&pass, &machine, None)?;
+    progress(0.3);
+    let ball = crate::report::mm(pass.job.require_probe()?.ball_diameter);
+    let probe = workshop::probe(&pass, &first, story.places, story.levels, ball)?;
+    let file = source("probe.txt", &probe);
+    let measurement = Measurement::read(&pass, &file)?;
+
+    let remarks = measurement.remarks(&file);
+    let corrected = correct(&pass, &measurement, &remarks, Route::Program, &mut |share| progress(0.3 + 0.3 * share))?;
+    let image = correct(&pass, &measurement, &remarks, Route::Coprocessor, &mut |_| ())?;
+    let text = corrected.program.as_deref().unwrap_or_default();
+    let second = workshop::mill(&pass, &machine, Some(&workshop::commanded(&pass, text)?))?;
+    progress(0.9);
+    let (before, after) = (first.score(), second.score());
+
+    out.write("program.nc", story.program.as_bytes())?;
+    out.write("job.toml", story.job.as_bytes())?;
+    out.write("plant.toml", story.plant.as_bytes())?;
+    out.write("probe.txt", probe.as_bytes())?;
+    out.write("corrected.nc", text)?;
+    out.write("correction.tpi", image.image.as_deref().unwrap_or_default())?;
+    out.write("correction.csv", &corrected.table)?;
+    out.write("summary.json", &json(&corrected.summary)?)?;
+    out.write("before-after.svg", &picture(story, &pass, (&first, &before), (&second, &after))?)?;
+    out.commit()?;
+    progress(1.0);
+    Ok(outcome(story, folder, &measurement, &corrected, &before, &after))
+}
+
+fn outcome(
+    story: &Story,
+    folder: &FilePath,
+    measurement: &Measurement,
+    corrected: &Corrected,
+    before: &Score,
+    after: &Score,
+) -> Outcome {
+    Outcome {
+        name: story.name,
+        title: story.title,
+        points: measurement.contacts.len(),
+        before_mm: before.max_error_mm,
+        expected_after_mm: corrected.summary.max_error_after_mm,
+        after_mm: after.max_error_mm,
+        factor: before.max_error_mm / after.max_error_mm.max(1e-9),
+        rms_before_mm: before.rms_error_mm,
+        rms_after_mm: after.rms_error_mm,
+        axial_form_mm: after.axial_form_mm,
+        folder: folder.to_owned(),
+    }
+}
+
+fn picture(
+    story: &Story,
+    pass: &Pass,
+    (first, before): (&Milled, &Score),
+    (second, after): (&Milled, &Score),
+) -> Result<Vec<u8>, Failure> {
+    let (s, wall) = plot::nominal_wall(pass);
+    // The ends, where the cutter plunges and lifts, are not judged.
+    let trim = (0.8 * first.cut.radius_mm).max(6.0);
+    let length = crate::report::mm(pass.contour.length);
+    let along = |milled: &Milled| {
+        let errors = milled.mean_errors();
+        let judged = |s: f64| s > trim && s < length - trim;
+        let at = |(s, e): (&f64, f64)| (*s, if judged(*s) { e } else { f64::NAN });
+        milled.path.s_mm.iter().zip(errors).map(at).collect::<Vec<_>>()
+    };
+    let name = |text: &str, score: &Score| format!("{text}: largest error {:.3} mm", score.max_error_mm);
+    let (first_name, second_name) = (name("first part", before), name("corrected part", after));
+    let curves = [plot::Curve::before(&first_name, along(first)), plot::Curve::after(&second_name, along(second))];
+    plot::part(story.title, &s, &wall, &curves)
+}

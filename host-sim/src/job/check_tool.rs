@@ -1,0 +1,67 @@
+//! The `[tool]` table.
+
+use super::check::text_of;
+use super::document::Section;
+use super::limits::Limits;
+use super::{Cantilever, Cut, CutterMaterial, Decimal, Tool};
+use crate::diagnostics::{InputError, Source};
+
+pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, InputError> {
+    let diameter = section.required_number("diameter_mm", Limits::within("0.1", "100", "mm"))?.as_mm();
+    let measured = section.value("measured_diameter_mm");
+    let measured_diameter = match &measured {
+        None => None,
+        Some(value) => {
+            let measured = section.number_in(value, Limits::within("0.1", "110", "mm"))?.as_mm();
+            if (measured - diameter).abs().nm() > diameter.nm() / 10 {
+                let expected = format!("a diameter within 10 % of diameter_mm, {} mm", text_of(diameter));
+                return Err(section.out_of_range(value, &expected, "check which of the two is mistyped"));
+            }
+            Some(measured)
+        }
+    };
+    let limits = Limits::within("1", "12", "");
+    let Some(value) = section.value("teeth") else {
+        return Err(section.missing("teeth", "a whole number, 1 to 12"));
+    };
+    let whole = section.number_in(&value, limits)?.as_whole().and_then(|n| u8::try_from(n).ok());
+    let Some(teeth) = whole else {
+        return Err(section.out_of_range(&value, "a whole number, 1 to 12", "count the cutter's teeth"));
+    };
+    let helix_deg = section.required_number("helix_deg", Limits::within("0", "60", "degrees"))?.as_real();
+    let stickout = section.number("stickout_mm", Limits::above("0", "500", "mm"))?.map(Decimal::as_mm);
+    let material = section.choice("material", &[("HSS", CutterMaterial::Hss), ("carbide", CutterMaterial::Carbide)])?;
+    let cantilever = match (stickout, material) {
+        (Some(stickout), Some(material)) => Some(Cantilever { stickout, material }),
+        (None, None) => None,
+        (given, _) => {
+            let (there, other) =
+                if given.is_some() { ("stickout_mm", "material") } else { ("material", "stickout_mm") };
+            let place = section.value(there).map_or(0..0, |v| v.span);
+            let help = format!("add {other}, or remove {there}");
+            let found = format!("tool.{there} is given without tool.{other}");
+            return Err(InputError::new(
+                "J008",
+                found,
+                "both or neither: the cutter's own compliance needs both",
+                help,
+            )
+            .at(source, place));
+        }
+    };
+    section.close()?;
+    Ok(Tool { diameter, measured_diameter, teeth, helix_deg, cantilever })
+}
+
+/// The cutter must stick out at least as far as it cuts deep.
+pub(super) fn reach(source: &Source, section: &Section<'_>, tool: &Tool, cut: &Cut) -> Result<(), InputError> {
+    match (tool.cantilever, section.value("stickout_mm")) {
+        (Some(c), Some(value)) if c.stickout < cut.axial_depth => {
+            let expected = format!("at least cut.axial_depth_mm, {} mm", text_of(cut.axial_depth));
+            let found = format!("tool.stickout_mm is {}", source.excerpt(value.span.clone()));
+            Err(InputError::new("J008", found, expected, "measure from the collet to the cutter's tip")
+                .at(source, value.span))
+        }
+        _ => Ok(()),
+    }
+}
