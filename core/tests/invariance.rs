@@ -3,7 +3,7 @@
 mod corner;
 use corner::*;
 use proptest::prelude::*;
-use truepath_core::correct::{self, Band, Design, DesignWorkspace, Node, Predicted, Profile, Target};
+use truepath_core::correct::{self, Band, Design, DesignWorkspace, Node, Predicted, Profile, Target, Update};
 use truepath_core::cut::*;
 use truepath_core::geometry::{Block, Curve, Point, Shape, Side, Vector};
 use truepath_core::identify::{Fit, Observation, PredictionWorkspace, Prior, identify};
@@ -109,7 +109,7 @@ fn designed(machine: &Loop) -> Vec<Node> {
         states: &mut vec![State::REST; w],
         displacements: &mut vec![Vector::ZERO; w],
         profiles: &mut vec![Profile::default(); n],
-        updates: &mut vec![Offset::ZERO; n],
+        updates: &mut vec![Update::default(); n],
     };
     correct::design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
     nodes

@@ -1,7 +1,9 @@
 //! What the laws of correction leave on the papers' corner, on a machine that obeys the mean law exactly.
 mod corner;
 use corner::*;
-use truepath_core::correct::{Band, Design, DesignWorkspace, Law, Node, PaperRatio, PaperTransfer, Predicted, Profile, Target, design};
+use truepath_core::correct::{
+    Band, Design, DesignWorkspace, Law, Node, PaperRatio, PaperTransfer, Predicted, Profile, Target, Update, design,
+};
 use truepath_core::cut::*;
 use truepath_core::geometry::{Block, Curve, Vector};
 use truepath_core::units::{Offset, Position, Real};
@@ -37,13 +39,16 @@ fn left_by(law: &str, blocks: &[Block]) -> (f64, f64) {
         states: &mut states,
         displacements: &mut vec![Vector::ZERO; w],
         profiles: &mut vec![Profile::default(); n],
-        updates: &mut vec![Offset::ZERO; n],
+        updates: &mut vec![Update::default(); n],
     };
     let wanted = Design { law, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
     design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
     // Away from the ends, where no wall is judged.
     let judged = || {
-        predicted.iter().zip(&path.samples()[path.first()..]).filter(|(_, s)| s.s > Offset::from_um(8_000) && s.s < Offset::from_um(95_000))
+        predicted
+            .iter()
+            .zip(&path.samples()[path.first()..])
+            .filter(|(_, s)| s.s > Offset::from_um(8_000) && s.s < Offset::from_um(95_000))
     };
     let most = |f: fn(&Predicted) -> Profile| judged().map(|(p, _)| f(p).mean.abs().nm()).max().unwrap() as f64 / 1e6;
     (most(|p| p.before), most(|p| p.after))

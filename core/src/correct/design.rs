@@ -56,6 +56,19 @@ pub struct Design {
     pub max_gouge: Option<Offset>,
 }
 
+/// What one refinement does to a cutter position.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Update {
+    sum: Offset,
+    count: u32,
+}
+
+impl Update {
+    fn mean(&self) -> Offset {
+        self.sum.scaled(Real::ratio(1, i64::from(self.count.max(1))))
+    }
+}
+
 /// Buffers lent by the caller: `states` and `displacements` as long as the path's working range, `profiles` and
 /// `updates` as long as the contour's own samples.
 #[derive(Debug)]
@@ -67,13 +80,15 @@ pub struct DesignWorkspace<'a> {
     /// Wall profiles.
     pub profiles: &'a mut [Profile],
     /// Changes of the correction.
-    pub updates: &'a mut [Offset],
+    pub updates: &'a mut [Update],
 }
 
 /// Refinements on the predicted wall error.
-const REFINEMENTS: usize = 6;
-/// The largest change of the last refinement at which it may stop early.
-const SETTLED: Offset = Offset::from_nm(100);
+const REFINEMENTS: usize = 24;
+/// The largest wall error at which refinement stops early.
+const SETTLED: Offset = Offset::from_nm(200);
+/// Refinements without a tenth of improvement after which it stops: what is left cannot be reached by this cutter.
+const PATIENCE: usize = 5;
 
 /// The commanded displacement at a sample of the path: the correction of the contour, held beyond its ends.
 fn commanded(nodes: &[Node], first: usize, index: usize) -> Vector {
@@ -103,16 +118,20 @@ pub fn design(
         Law::Mirror => one_shot(machine, wanted.band, nodes, true, workspace.states),
         Law::Paper(transfer) => transfer.fill(machine, workspace.states, nodes),
     }
+    let (mut best, mut since_best) = (Offset::MAX, 0usize);
     for refinement in 0..=REFINEMENTS {
         passage = machine.run(from, workspace.states, |i| commanded(nodes, first, i));
         profile(machine, workspace.states, wanted.band, workspace.displacements, workspace.profiles);
         if wanted.law != Law::Model || refinement == REFINEMENTS {
             break;
         }
-        let largest = refine(machine, wanted, nodes, workspace);
-        if largest < SETTLED {
+        let largest = worst(wanted, workspace.profiles);
+        since_best = if largest < best.scaled(Real::ratio(9, 10)) { 0 } else { since_best.saturating_add(1) };
+        best = best.min(largest);
+        if largest < SETTLED || since_best > PATIENCE {
             break;
         }
+        refine(machine, wanted, nodes, workspace);
     }
     for (p, after) in predicted.iter_mut().zip(workspace.profiles.iter()) {
         p.after = *after;
@@ -150,44 +169,49 @@ fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorr
     }
 }
 
-/// One refinement: what the wall shows is added, along the normal, where the cutter made it. Returns the largest
-/// change.
-fn refine(machine: &Loop, wanted: &Design, nodes: &mut [Node], workspace: &mut DesignWorkspace) -> Offset {
-    let path = machine.path;
-    let first = Real::from_int(path.first() as i32);
-    let aim = |p: &Profile| p.aim(wanted.target, wanted.max_gouge);
+/// One refinement: every cutter position moves along the normal by the mean error of the wall places it made (over
+/// samples and heights); positions that made none follow their neighbours.
+fn refine(machine: &Loop, wanted: &Design, nodes: &mut [Node], workspace: &mut DesignWorkspace) {
     let updates = &mut *workspace.updates;
-    updates.fill(Offset::ZERO);
-    // The wall beside sample i was made at sample m(i): between two neighbours i the samples of m(i)…m(i+1) get the
-    // error in proportion.
-    let mut last: Option<(Real, Offset)> = None;
-    let mut reached = 0usize;
-    for p in workspace.profiles.iter() {
-        let (at, error) = (p.made_by() - first, aim(p));
-        let (from, from_error) = last.unwrap_or((at - Real::ONE, error));
-        while reached < updates.len() && Real::from_int(reached as i32) <= at {
-            let u = ((Real::from_int(reached as i32) - from) / (at - from)).max(Real::ZERO).min(Real::ONE);
-            if let Some(slot) = updates.get_mut(reached) {
-                *slot = from_error + (error - from_error).scaled(u);
+    updates.fill(Update::default());
+    for (index, profile) in workspace.profiles.iter().enumerate() {
+        let error = profile.aim(wanted.target, wanted.max_gouge);
+        for maker in profile.makers(index) {
+            if let Some(update) = updates.get_mut(maker) {
+                update.sum += error;
+                update.count = update.count.saturating_add(1);
             }
-            reached = reached.saturating_add(1);
-        }
-        if last.is_none_or(|l| at > l.0) {
-            last = Some((at, error));
         }
     }
-    let tail = last.map_or(Offset::ZERO, |l| l.1);
-    for slot in updates.iter_mut().skip(reached) {
-        *slot = tail;
-    }
-    let mut largest = Offset::ZERO;
-    let samples = path.samples().iter().skip(path.first());
+    fill_gaps(updates);
+    let samples = machine.path.samples().iter().skip(machine.path.first());
     for ((node, update), sample) in nodes.iter_mut().zip(updates.iter()).zip(samples) {
         // The refinement follows the chip: it comes from the change of load along the path.
-        node.chip = node.chip + sample.normal.times(*update);
-        largest = largest.max(update.abs());
+        node.chip = node.chip + sample.normal.times(update.mean());
     }
-    largest
+}
+
+/// The largest error the target sees.
+fn worst(wanted: &Design, profiles: &[Profile]) -> Offset {
+    profiles.iter().map(|p| p.aim(wanted.target, wanted.max_gouge).abs()).max().unwrap_or_default()
+}
+
+/// Gives updates that have no wall of their own the straight line between their neighbours'.
+fn fill_gaps(updates: &mut [Update]) {
+    let mut at = 0usize;
+    while at < updates.len() {
+        let gap = updates.iter().skip(at).take_while(|u| u.count == 0).count();
+        if gap > 0 {
+            let before = at.checked_sub(1).and_then(|i| updates.get(i)).map(Update::mean);
+            let after = updates.get(at.saturating_add(gap)).map(Update::mean);
+            let (from, to) = (before.or(after).unwrap_or_default(), after.or(before).unwrap_or_default());
+            for (k, slot) in updates.iter_mut().skip(at).take(gap).enumerate() {
+                let u = Real::ratio(k.saturating_add(1) as i64, gap.saturating_add(1) as i64);
+                *slot = Update { sum: from + (to - from).scaled(u), count: 1 };
+            }
+        }
+        at = at.saturating_add(gap).saturating_add(1);
+    }
 }
 
 /// Standard deviation of the corrected wall error beside each sample, from the covariance of the fit.

@@ -9,6 +9,6 @@ mod design;
 mod paper;
 mod profile;
 
-pub use design::{Design, DesignWorkspace, Law, Node, Predicted, design, uncertainty};
+pub use design::{Design, DesignWorkspace, Law, Node, Predicted, Update, design, uncertainty};
 pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, Profile, Target, profile};

@@ -38,8 +38,8 @@ pub struct Profile {
     pub highest: Offset,
     /// At the tip.
     pub tip: Offset,
-    /// Sum, over the heights, of the sample whose cutter position made the wall.
-    made_by: u64,
+    /// For every height the sample whose cutter position made the wall, counted from the one beside it.
+    made_by: [i16; HEIGHTS as usize],
 }
 
 impl Band {
@@ -71,9 +71,10 @@ impl Profile {
         let zero = self.aim(target, None);
         (self.highest - zero).max(zero - self.lowest)
     }
-    /// Mean index of the samples that made the wall here, in 1/2³² of a sample.
-    pub fn made_by(&self) -> Real {
-        Real::ratio(self.made_by as i64, HEIGHTS.saturating_add(1))
+    /// The samples, counted along the contour, whose cutter positions made the wall beside sample `index`, one for
+    /// every height.
+    pub fn makers(&self, index: usize) -> impl Iterator<Item = usize> + '_ {
+        self.made_by.iter().filter_map(move |shift| index.checked_add_signed(isize::from(*shift)))
     }
 }
 
@@ -95,10 +96,12 @@ pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut
             let index = first.saturating_add(i);
             let Some(wall) = envelope.error(index, guess) else { continue };
             guess = wall.made_by.saturating_add(1);
-            p.made_by = p.made_by.saturating_add(wall.made_by as u64);
             if tip {
                 p.tip = wall.error;
             } else {
+                if let Some(slot) = p.made_by.get_mut(k as usize) {
+                    *slot = (wall.made_by as i64).saturating_sub(index as i64) as i16;
+                }
                 p.mean += wall.error;
                 p.lowest = p.lowest.min(wall.error);
                 p.highest = p.highest.max(wall.error);

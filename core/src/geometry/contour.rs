@@ -105,6 +105,15 @@ impl<'a> Contour<'a> {
         })
     }
 
+    /// Whether a point, off the end (`after`) or the start of block `index`, lies in the wedge of a facet corner there.
+    pub(super) fn in_facet(&self, index: usize, after: bool, point: Point) -> bool {
+        let (Some(block), Some(other)) = (self.blocks.get(index), self.neighbour(index, after)) else { return false };
+        let (before, behind) = if after { (block, other) } else { (other, block) };
+        let (from, to) = (before.curve.end_heading(), behind.curve.start_heading());
+        let away = point.from(behind.curve.start());
+        from.dot(to) >= FACET_TURN_LIMIT && away.along(from) >= Offset::ZERO && away.along(to) <= Offset::ZERO
+    }
+
     fn neighbour(&self, index: usize, after: bool) -> Option<&'a Block> {
         let last = self.blocks.len().checked_sub(1)?;
         let other = match (after, index) {

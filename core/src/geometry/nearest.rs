@@ -10,7 +10,8 @@ pub struct Nearest {
     pub s: Offset,
     /// Distance of the point from the foot, positive on the left of travel.
     pub left: Offset,
-    /// Whether the point lies beside the contour, not beyond one of its ends or corners.
+    /// Whether the point lies beside the contour, not beyond one of its ends or sharp corners. The wedge outside the
+    /// flat corner of two facets of a smooth curve counts as beside.
     pub beside: bool,
     /// Index of the block.
     pub block: usize,
@@ -45,7 +46,8 @@ impl Contour<'_> {
                     angle / sweep
                 }
             };
-            let beside = fraction >= Real::ZERO && fraction <= Real::ONE;
+            let beside =
+                (fraction >= Real::ZERO && fraction <= Real::ONE) || self.in_facet(index, fraction > Real::ONE, point);
             let fraction = fraction.max(Real::ZERO).min(Real::ONE);
             let foot = block.curve.point(fraction);
             let side = point.from(foot).along(block.curve.heading(fraction).left());

@@ -1,6 +1,6 @@
 //! The head of an image: what it belongs to, what it may do, how it is laid out.
 //!
-//! 272 bytes, little endian; places are listed in [`Header::encode`]. Lengths are nanometres unless said otherwise.
+//! 288 bytes, little endian; places are listed in [`Header::encode`]. Lengths are nanometres unless said otherwise.
 
 use super::feed_law::FeedLaw;
 use super::{FACTOR_NODES, FLAG_CLOSED, FORMAT, FineOffset, MAGIC, SEMANTICS, read};
@@ -8,7 +8,7 @@ use crate::geometry::Point;
 use crate::units::{Offset, Position};
 
 /// Bytes of the head; the nodes follow.
-pub const HEADER_BYTES: usize = 272;
+pub const HEADER_BYTES: usize = 288;
 
 /// What an image belongs to. Arming compares every field with what the controller sends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -109,25 +109,22 @@ impl Header {
         w.put(&s.limits.acceleration_nm_per_s2.to_le_bytes()); //     88
         w.u32(s.limits.slew_nm_per_s); //                             96
         w.u32(self.node_count); //                                   100
-        w.i64(s.window.tolerance.nm()); //                           104, at most 32 bits are used
+        w.i64(s.window.tolerance.nm()); //                           104
         w.i64(s.window.z_low.nm()); //                               112
         w.i64(s.window.z_high.nm()); //                              120
-        // The gate and the node step share a word: both are below 2³² nm.
-        w.u32(narrow(s.window.gate_height)); //                      128
-        w.u32(narrow(s.node_step)); //                               132
+        w.u32(to_u32(s.window.gate_height)); //                      128
+        w.u32(to_u32(s.node_step)); //                               132
         for entry in s.feed.factor {
             w.u32(entry); //                                         136 … 267, 2⁻²⁴
         }
-        let mut bytes = w.bytes;
-        // 268: reserved, 0. The origin is kept beside the nodes, see `ORIGIN_BYTES`.
-        if let Some(tail) = bytes.last_chunk_mut::<4>() {
-            *tail = [0; 4];
-        }
-        bytes
+        w.u32(0); //                                                 268 reserved
+        w.i64(self.origin.x.nm()); //                                272
+        w.i64(self.origin.y.nm()); //                                280
+        w.bytes
     }
 
     /// Decodes the bytes written by [`Header::encode`], without judging them.
-    pub fn decode(bytes: &[u8; HEADER_BYTES], origin: Point) -> Self {
+    pub fn decode(bytes: &[u8; HEADER_BYTES]) -> Self {
         let u32_at = |at| read::u32_at(bytes, at);
         let i64_at = |at| read::i64_at(bytes, at);
         let mut factor = [0; FACTOR_NODES];
@@ -168,8 +165,35 @@ impl Header {
                 },
                 node_step: Offset::from_nm(i64::from(u32_at(132))),
             },
-            origin,
+            origin: Point::from_nm(i64_at(272), i64_at(280)),
             node_count: u32_at(100),
         }
+    }
+}
+
+/// A length that the check of the image holds below 2³² nm; anything else becomes a value which that check refuses.
+fn to_u32(length: Offset) -> u32 {
+    u32::try_from(length.nm()).unwrap_or(u32::MAX)
+}
+
+/// Numbers one after the other.
+struct Writer {
+    bytes: [u8; HEADER_BYTES],
+    at: usize,
+}
+
+impl Writer {
+    fn put(&mut self, field: &[u8]) {
+        let end = self.at.saturating_add(field.len());
+        if let Some(place) = self.bytes.get_mut(self.at..end) {
+            place.copy_from_slice(field);
+        }
+        self.at = end;
+    }
+    fn u32(&mut self, value: u32) {
+        self.put(&value.to_le_bytes());
+    }
+    fn i64(&mut self, value: i64) {
+        self.put(&value.to_le_bytes());
     }
 }
