@@ -1,7 +1,8 @@
 //! From a measured pass to its correction: identification, design, uncertainty, all in the core.
 
 use truepath_core::correct::{
-    self, Band, Design, DesignWorkspace, Node, PaperRatio, PaperTransfer, Predicted, Profile, design, uncertainty,
+    self, Band, Design, DesignWorkspace, Node, PaperRatio, PaperTransfer, Predicted, Profile, Update, design,
+    uncertainty,
 };
 use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
@@ -135,7 +136,7 @@ pub fn corrected(machine: &Loop, identified: &Identified, wanted: Design, mut pr
     let mut states = vec![State::REST; working];
     let mut displacements = vec![Vector::ZERO; working];
     let mut profiles = vec![Profile::default(); count];
-    let mut updates = vec![Offset::ZERO; count];
+    let mut updates = vec![Update::default(); count];
     let mut workspace = DesignWorkspace {
         states: &mut states,
         displacements: &mut displacements,

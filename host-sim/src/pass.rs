@@ -7,7 +7,7 @@ use truepath_core::gcode::{
     ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Spindle, Units, is_marked_corrected, program_crc,
     read_contour,
 };
-use truepath_core::geometry::{Block, Contour, Curve, Direction, Point};
+use truepath_core::geometry::{Block, Contour, Curve, Point};
 use truepath_core::identify::Prior;
 use truepath_core::units::{Offset, Real};
 
@@ -108,17 +108,8 @@ impl Pass {
     /// # Errors
     /// When an outside arc is so tight that it leaves no wall.
     pub fn sample<'a>(&self, buffer: &'a mut PathBuffer) -> Result<Path<'a>, Failure> {
-        const BLANK: Sample = Sample {
-            s: Offset::ZERO,
-            point: Point::from_nm(0, 0),
-            normal: Direction::X,
-            stock: Point::from_nm(0, 0),
-            feed: Real::ZERO,
-            block: 0,
-            on_surface: true,
-        };
         let contour = self.path_contour();
-        buffer.0 = vec![BLANK; Path::samples_needed(&contour, &self.setup, STEP)];
+        buffer.0 = vec![Sample::BLANK; Path::samples_needed(&contour, &self.setup, STEP)];
         Path::sample(&contour, &self.setup, STEP, &mut buffer.0).map_err(|error| match error {
             PathError::NoWall { line } => InputError::new(
                 "J013",

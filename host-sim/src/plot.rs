@@ -51,11 +51,13 @@ fn draw(panel: &Panel, unit: &str, curves: &[Curve]) -> Result<(), Failure> {
     let (low, high) = all().fold((0.0f64, 0.0f64), |(l, h), p| (l.min(p.1), h.max(p.1)));
     let end = all().fold(0.0f64, |m, p| m.max(p.0));
     let margin = (high - low).max(1e-6) * 0.08;
+    // Room above the curves for the legend.
+    let headroom = (high - low).max(1e-6) * (0.08 + 0.12 * curves.len() as f64);
     let mut chart = ChartBuilder::on(panel)
         .margin(8)
         .x_label_area_size(34)
         .y_label_area_size(64)
-        .build_cartesian_2d(0.0..end.max(1e-6), (low - margin)..(high + margin))
+        .build_cartesian_2d(0.0..end.max(1e-6), (low - margin)..(high + headroom))
         .map_err(failed)?;
     chart
         .configure_mesh()
@@ -81,6 +83,7 @@ fn draw(panel: &Panel, unit: &str, curves: &[Curve]) -> Result<(), Failure> {
     }
     chart
         .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
         .background_style(WHITE.mix(0.85))
         .border_style(RGBColor(200, 200, 200))
         .label_font((FONT, 13))
@@ -163,12 +166,16 @@ fn draw_part(panel: &Panel, s: &[f64], wall: &[([f64; 2], [f64; 2])], curves: &[
     let magnification =
         [500.0, 200.0, 100.0, 50.0, 20.0, 10.0, 5.0, 2.0].into_iter().find(|m| *m <= raw).unwrap_or(1.0);
     let (width, height) = panel.dim_in_pixel();
-    let (width, height) = (f64::from(width) - 70.0, f64::from(height) - 50.0);
+    let (width, height) = (f64::from(width) - 70.0, f64::from(height) - 75.0);
     // Equal scales on both axes.
     let per_pixel = ((x1 - x0) * 1.3 / width).max((y1 - y0) * 1.3 / height).max(size / 1000.0);
     let (cx, cy) = ((x0 + x1) / 2.0, (y0 + y1) / 2.0);
     let (rx, ry) = (per_pixel * width / 2.0, per_pixel * height / 2.0);
     let mut chart = ChartBuilder::on(panel)
+        .caption(
+            format!("wanted wall (grey) and milled wall, its error drawn {magnification} times larger"),
+            (FONT, 14),
+        )
         .margin(8)
         .x_label_area_size(28)
         .y_label_area_size(48)
@@ -184,11 +191,7 @@ fn draw_part(panel: &Panel, s: &[f64], wall: &[([f64; 2], [f64; 2])], curves: &[
         .draw()
         .map_err(failed)?;
     let nominal: Vec<(f64, f64)> = wall.iter().map(|(p, _)| (p[0], p[1])).collect();
-    chart
-        .draw_series(LineSeries::new(nominal, NOMINAL.stroke_width(2)))
-        .map_err(failed)?
-        .label("wanted wall")
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], NOMINAL.stroke_width(3)));
+    chart.draw_series(LineSeries::new(nominal, NOMINAL.stroke_width(2))).map_err(failed)?;
     for curve in curves {
         let colour = curve.colour;
         let shifted = s.iter().zip(wall).map(|(s, (p, inward))| {
@@ -196,19 +199,9 @@ fn draw_part(panel: &Panel, s: &[f64], wall: &[([f64; 2], [f64; 2])], curves: &[
             (p[0] + inward[0] * error, p[1] + inward[1] * error)
         });
         let shifted: Vec<(f64, f64)> = shifted.filter(|p| p.0.is_finite() && p.1.is_finite()).collect();
-        chart
-            .draw_series(LineSeries::new(shifted, colour.stroke_width(2)))
-            .map_err(failed)?
-            .label(format!("{} (error × {magnification})", curve.name))
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(3)));
+        chart.draw_series(LineSeries::new(shifted, colour.stroke_width(2))).map_err(failed)?;
     }
-    chart
-        .configure_series_labels()
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(200, 200, 200))
-        .label_font((FONT, 13))
-        .draw()
-        .map_err(failed)
+    Ok(())
 }
 
 /// Linear interpolation in points ordered by their first coordinate.
@@ -224,10 +217,10 @@ fn value_at(points: &[(f64, f64)], s: f64) -> f64 {
 /// Points of the nominal wall with the normals into the free side.
 type Wall = Vec<([f64; 2], [f64; 2])>;
 
-/// Nominal wall of a pass with the normals into the free side, at arc lengths every half millimetre.
+/// Nominal wall of a pass with the normals into the free side, at arc lengths every tenth of a millimetre.
 pub fn nominal_wall(pass: &Pass) -> (Vec<f64>, Wall) {
     let contour = pass.path_contour();
-    let pieces = (mm(contour.length()) * 2.0).ceil().max(2.0) as i64;
+    let pieces = (mm(contour.length()) * 10.0).ceil().max(2.0) as i64;
     let mut hint = 0;
     let mut out = (Vec::new(), Vec::new());
     for k in 0..=pieces {

@@ -28,6 +28,19 @@ pub struct Sample {
     pub on_surface: bool,
 }
 
+impl Sample {
+    /// What a lent buffer is filled with before a path is sampled into it.
+    pub const BLANK: Self = Self {
+        s: Offset::ZERO,
+        point: Point::from_nm(0, 0),
+        normal: Direction::X,
+        stock: Point::from_nm(0, 0),
+        feed: Real::ZERO,
+        block: 0,
+        on_surface: true,
+    };
+}
+
 /// The sampled path: a straight run-in, the contour, a straight run-out, in a slice lent by the caller.
 #[derive(Clone, Copy, Debug)]
 pub struct Path<'a> {

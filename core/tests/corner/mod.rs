@@ -55,20 +55,11 @@ pub fn setup(law: WallLaw) -> CutSetup {
 pub fn coefficients() -> Coefficients {
     Coefficients { ktc: real(1147.7), krc: real(344.31), kte: Real::ZERO, kre: Real::ZERO, size_exponent: Real::ZERO }
 }
-pub const BLANK: Sample = Sample {
-    s: Offset::ZERO,
-    point: Point::from_nm(0, 0),
-    normal: truepath_core::geometry::Direction::X,
-    stock: Point::from_nm(0, 0),
-    feed: Real::ZERO,
-    block: 0,
-    on_surface: true,
-};
 /// Samples a contour into a leaked buffer, as tests may.
 pub fn path(blocks: &[Block], setup: &CutSetup, step_um: i64) -> Path<'static> {
     let contour = Contour::new(blocks).unwrap();
     let step = Offset::from_um(step_um);
-    let buffer = vec![BLANK; Path::samples_needed(&contour, setup, step)].leak();
+    let buffer = vec![Sample::BLANK; Path::samples_needed(&contour, setup, step)].leak();
     Path::sample(&contour, setup, step, buffer).unwrap()
 }
 /// Wall error beside each sample of the contour, mean over `heights` even heights, mm.

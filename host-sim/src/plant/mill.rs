@@ -23,7 +23,7 @@ const CLOSED_MM: f64 = 1e-9;
 /// Bound on the steps of the elastic loop.
 const LOOP_STEPS: usize = 120;
 /// The cutter stays within this of the place where its surroundings were gathered, mm.
-const SLACK_MM: f64 = 1.0;
+const SLACK_MM: f64 = 2.0;
 /// Search window for the nominal place of the actual centre, mm of path.
 const WINDOW_MM: f64 = 6.0;
 

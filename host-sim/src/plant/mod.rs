@@ -32,13 +32,16 @@
 //! ```
 
 mod arcs;
+mod chip;
 mod error;
 mod flutes;
 mod follow;
 mod grid;
 mod machine;
 mod mill;
+mod parallel;
 mod path;
+mod place;
 mod probe;
 mod score;
 mod segment;
@@ -54,7 +57,8 @@ pub use error::PlantError;
 pub use flutes::{Flutes, NormalTangential};
 pub use machine::{Machine, WallLaw};
 pub use mill::{Milled, Sample, Track, mill};
-pub use path::{Path, Place, Side};
+pub use path::{Path, Side};
+pub use place::Place;
 pub use probe::{ProbePlan, Touch, probe, probeopen_text};
 pub use score::{Comparison, Score, judged_levels};
 pub use segment::Segment;

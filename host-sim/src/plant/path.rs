@@ -9,10 +9,10 @@
 
 use super::error::{PlantError, require};
 use super::segment::Segment;
-use super::vector::{Point, along, distance, dot, left_of, mix, scaled, sub, turn, turned, unit};
+use super::vector::{Point, along, distance, left_of, scaled, turn, turned};
 
 /// A vertex that turns less than this is a facet of a smooth curve.
-const FACET_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
+pub(super) const FACET_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
 /// Half-length over which a facet of turn α is smoothed is at most this / α, mm·rad: a chord error of a quarter of it.
 const FACET_MM_RAD: f64 = 0.05;
 /// Pieces of at least so many steps are sampled each for itself.
@@ -58,19 +58,6 @@ pub struct Path {
     pub step_mm: f64,
     /// The path ends where it starts.
     pub closed: bool,
-}
-
-/// Nominal place and frame of a point near the path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
-    /// Nearest sample.
-    pub index: usize,
-    /// Distance along the path, mm.
-    pub s_mm: f64,
-    /// Unit direction of travel.
-    pub tangent: Point,
-    /// Unit normal towards the wall.
-    pub normal: Point,
 }
 
 /// A segment with the heading corrections at its two ends.
@@ -202,36 +189,6 @@ impl Path {
     pub fn wall(&self, index: usize, radius_mm: f64) -> Point {
         along(self.centre[index], self.normal[index], radius_mm)
     }
-
-    /// Nominal place of `point`, searched `window_mm` of path to either side of the sample `near`; place, heading and normal
-    /// are interpolated between samples, except across a corner.
-    pub fn place(&self, point: Point, near: usize, window_mm: f64) -> Place {
-        let reach = (window_mm / self.step_mm).ceil() as usize;
-        let (lo, hi) = (near.saturating_sub(reach), (near + reach).min(self.len() - 1));
-        let mut index = near.min(hi);
-        let mut best = f64::INFINITY;
-        for k in lo..=hi {
-            let d = super::vector::squared_distance(self.centre[k], point);
-            if d < best {
-                (best, index) = (d, k);
-            }
-        }
-        let ahead = dot(sub(point, self.centre[index]), self.tangent[index]) >= 0.0;
-        let other = if ahead { index + 1 } else { index.wrapping_sub(1) };
-        let mut place =
-            Place { index, s_mm: self.s_mm[index], tangent: self.tangent[index], normal: self.normal[index] };
-        if other < self.len()
-            && dot(self.tangent[index], self.tangent[other]) > FACET_RAD.cos()
-            && self.s_mm[index] != self.s_mm[other]
-        {
-            let chord = sub(self.centre[other], self.centre[index]);
-            let u = (dot(sub(point, self.centre[index]), chord) / dot(chord, chord).max(1e-18)).clamp(0.0, 1.0);
-            place.s_mm += (self.s_mm[other] - self.s_mm[index]) * u;
-            place.tangent = unit(mix(self.tangent[index], self.tangent[other], u));
-            place.normal = scaled(left_of(place.tangent), self.side.sign());
-        }
-        place
-    }
 }
 
 /// Sets the heading corrections; returns for each piece whether a corner lies before it.
@@ -258,6 +215,7 @@ fn smooth_facets(pieces: &mut [Piece], closed: bool) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::vector::{dot, unit};
     use super::*;
     use std::f64::consts::PI;
 

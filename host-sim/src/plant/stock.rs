@@ -2,18 +2,16 @@
 //!
 //! Without a measured surface it is the parallel curve of the nominal centre path at `r − h` towards the wall, h varying smoothly
 //! if the machine says so. An open path is extended tangentially by 40 mm at both ends, a closed one is closed.
-//! At a corner of the path the parallel curve turns about the vertex (inside corner) or is cut at its self-crossing (outside corner).
 //!
-//! Limits: a corner at the seam of a closed path is bevelled; the stock does not vary with height.
+//! Limit: the stock does not vary with height.
 
 use super::arcs::EngagedArcs;
 use super::grid::Grid;
 use super::machine::Machine;
-use super::path::{Path, Side};
+use super::parallel::parallel_curve;
+use super::path::Path;
 use super::setup::Cut;
-use super::vector::{Point, add, along, cross, dot, scaled, squared_distance, sub, turn, turned, unit};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
+use super::vector::{Point, add, along, cross, dot, mix, scaled, squared_distance, sub, unit};
 use std::f64::consts::{PI, TAU};
 
 /// Straight run of stock before and after an open path, mm.
@@ -186,67 +184,6 @@ impl Stock {
     }
 }
 
-/// The parallel curve on which the raw surface lies.
-fn parallel_curve(path: &Path, cut: &Cut, machine: &Machine) -> Vec<Point> {
-    let wave = AllowanceWave::new(machine);
-    let offset = |i: usize| cut.radius_mm - (cut.allowance_mm + wave.at(path.s_mm[i]));
-    let mut curve: Vec<Point> = Vec::with_capacity(path.len());
-    let count = if path.closed { path.len() - 1 } else { path.len() };
-    for i in 0..count {
-        let here = path.wall(i, offset(i));
-        if i > 0 {
-            let angle = turn(path.normal[i - 1], path.normal[i]);
-            // Turning away from the wall's side makes an inside corner.
-            let inside_corner = (angle > 0.0) == (path.side == Side::Right);
-            if angle.abs() > 0.25 && inside_corner {
-                let fan = (angle.abs() / 0.02).ceil();
-                for k in 0..fan as usize {
-                    let n = turned(path.normal[i - 1], angle * k as f64 / fan);
-                    curve.push(along(path.centre[i], n, offset(i)));
-                }
-            } else if angle.abs() > 0.25 {
-                let reach = (offset(i).abs() * (0.5 * angle.abs()).tan() * 2.0).max(1.0);
-                return_to_crossing(&mut curve, path, i, reach, &offset);
-            }
-        }
-        // After an outside corner the parallel curve runs backwards up to the crossing: such points are left out.
-        let forwards = |&last: &Point| dot(sub(here, last), path.tangent[i]) > 0.0;
-        if curve.last().is_none_or(forwards) {
-            curve.push(here);
-        }
-    }
-    curve
-}
-
-/// Cuts the end of `curve` back to where the curve after the corner at `i` crosses it.
-fn return_to_crossing(curve: &mut Vec<Point>, path: &Path, i: usize, reach: f64, offset: &dyn Fn(usize) -> f64) {
-    let ahead: Vec<Point> = (i..path.len())
-        .take_while(|&k| path.s_mm[k] - path.s_mm[i] <= reach)
-        .map(|k| path.wall(k, offset(k)))
-        .collect();
-    let back = (reach / path.step_mm).ceil() as usize + 1;
-    for end in (curve.len().saturating_sub(back).max(1)..curve.len()).rev() {
-        let (a, b) = (curve[end - 1], curve[end]);
-        for w in ahead.windows(2) {
-            if let Some(p) = crossing(a, b, w[0], w[1]) {
-                curve.truncate(end);
-                curve.push(p);
-                return;
-            }
-        }
-    }
-}
-
-fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> {
-    let (u, v, w) = (sub(b, a), sub(d, c), sub(c, a));
-    let det = cross(u, v);
-    if det.abs() < 1e-18 {
-        return None;
-    }
-    let (x, y) = (cross(w, v) / det, cross(w, u) / det);
-    ((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y)).then(|| along(a, u, x))
-}
-
 fn extended(mut points: Vec<Point>) -> Vec<Point> {
     let n = points.len();
     if n < 2 {
@@ -267,39 +204,11 @@ fn subdivided(points: &[Point], closed: bool) -> Vec<Point> {
         let (a, b) = (points[k], points[(k + 1) % n]);
         let parts = (super::vector::distance(a, b) / PIECE_MM).ceil().max(1.0);
         for j in 0..parts as usize {
-            out.push(super::vector::mix(a, b, j as f64 / parts));
+            out.push(mix(a, b, j as f64 / parts));
         }
     }
     if !closed {
         out.push(points[n - 1]);
     }
     out
-}
-
-/// Smooth deviation of the allowance: a few waves of random phase, never more than the stated amplitude.
-struct AllowanceWave {
-    waves: Vec<(f64, f64, f64)>,
-}
-
-impl AllowanceWave {
-    /// Lengths of the waves as multiples of the shortest; not commensurate, so that the sum does not repeat.
-    const LENGTHS: [f64; 4] = [1.0, 1.618, 2.718, 4.669];
-
-    fn new(machine: &Machine) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(machine.seed);
-        rng.set_stream(1);
-        let amplitude = machine.stock_variation_mm / Self::LENGTHS.len() as f64;
-        let waves = Self::LENGTHS
-            .iter()
-            .map(|l| {
-                let phase = TAU * f64::from(rng.next_u32()) / 2f64.powi(32);
-                (amplitude, TAU / (l * machine.stock_wavelength_mm), phase)
-            })
-            .collect();
-        Self { waves }
-    }
-
-    fn at(&self, s: f64) -> f64 {
-        self.waves.iter().map(|(a, k, p)| a * (k * s + p).sin()).sum()
-    }
 }

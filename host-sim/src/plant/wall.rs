@@ -23,8 +23,8 @@ impl Milled {
         let nominal = Grid::of(radius + REACH_MM, path.centre.iter().copied());
         let mut errors = vec![vec![f64::NAN; path.len()]; levels.len()];
         let mut near = Vec::new();
-        for i in 0..path.len() {
-            let (wall, normal) = (path.wall(i, radius), path.normal[i]);
+        for (i, &normal) in path.normal.iter().enumerate() {
+            let wall = path.wall(i, radius);
             nominal.near(wall, radius - UNDERCUT_MM, &mut near);
             if !near.is_empty() {
                 continue;

@@ -139,12 +139,17 @@ fn shape(samples: Samples<'_>, start: usize, end: usize, tolerance: f64) -> Opti
             return None;
         }
     }
-    if low <= 0.0 && high >= 0.0 {
+    // The slack was an estimate; what counts is the distance from the circle that is taken.
+    let passes = |g: f64| {
+        let slack = tolerance * (1.0 + (g * chord) * (g * chord)).sqrt();
+        (start + 1..end).all(|k| parameter(place(k), chord).is_none_or(|(gk, w)| (gk - g).abs() * w <= slack))
+    };
+    if low <= 0.0 && high >= 0.0 && passes(0.0) {
         return Some(Shape::Line);
     }
-    let g =
-        if low > 0.0 { (0.5 * (low + high)).max(MIN_G).min(high) } else { (0.5 * (low + high)).min(-MIN_G).max(low) };
-    if g.abs() < MIN_G || (g * chord).abs() > MAX_HALF_TANGENT {
+    let middle = 0.5 * (low + high);
+    let g = if middle < 0.0 { middle.min(-MIN_G).max(low) } else { middle.max(MIN_G).min(high) };
+    if g.abs() < MIN_G || (g * chord).abs() > MAX_HALF_TANGENT || !passes(g) {
         return None;
     }
     let h = 0.5 / g;
@@ -242,6 +247,15 @@ mod tests {
                 .collect();
             assert_eq!(fit(same(&turned), 1_000.0), expected, "map {index}");
         }
+    }
+
+    #[test]
+    fn a_sample_that_stands_out_is_passed_however_short_the_piece() {
+        let mut path: Vec<_> = (0..40).map(|i| [f64::from(i) * 1e5, 0.0]).collect();
+        path.push([4.0e6 - 7_000.0, 23_000.0]);
+        path.push([4.0e6, 0.0]);
+        let ends: Vec<_> = fit(same(&path), 1_000.0).iter().map(|p| p.end).collect();
+        assert_eq!(ends, [39, 40, 41]);
     }
 
     #[test]

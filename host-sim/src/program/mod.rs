@@ -93,12 +93,16 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
     let after = survey::survey(&written.text, options.program)
         .map_err(|e| Failure::Internal(format!("the written program cannot be read back: {e}")))?;
     let mut max_deviation_nm = 0.0f64;
-    for (edit, lines) in edits.iter().zip(&written.ranges) {
+    for ((edit, lines), ends) in edits.iter().zip(&written.ranges).zip(&written.piece_ends) {
         let curves: Vec<_> = after.iter().filter(|m| lines.contains(&m.line)).filter_map(survey::Move::curve).collect();
-        if curves.is_empty() && edit.samples.iter().all(|s| Some(s) == edit.samples.first()) {
-            continue;
+        if curves.len() != ends.len() {
+            return Err(Failure::Internal(format!("line {} is read back as another path", edit.line)));
         }
-        max_deviation_nm = max_deviation_nm.max(deviation::deviation(&edit.samples, &curves));
+        let mut start = 0;
+        for (curve, &end) in curves.iter().zip(ends) {
+            max_deviation_nm = max_deviation_nm.max(deviation::deviation(&edit.samples[start..=end], curve));
+            start = end;
+        }
     }
     Ok(Rewritten {
         text: written.text,

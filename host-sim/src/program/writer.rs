@@ -21,6 +21,8 @@ pub(super) struct Written {
     pub(super) text: Vec<u8>,
     /// Lines of the text that came from each edit.
     pub(super) ranges: Vec<RangeInclusive<u32>>,
+    /// For each edit, the sample at which each of its lines and arcs ends; none for a block that vanished.
+    pub(super) piece_ends: Vec<Vec<usize>>,
     pub(super) lines: usize,
     pub(super) arcs: usize,
     pub(super) unchanged: usize,
@@ -34,6 +36,7 @@ struct Writer<'a> {
     two_digits: bool,
     motion: Option<Motion>,
     count: [usize; 3],
+    piece_ends: Vec<Vec<usize>>,
 }
 
 /// Writes the program.
@@ -45,8 +48,16 @@ pub(super) fn write(
 ) -> Result<Written, Failure> {
     let lines: Vec<Line<'_>> = Lines::new(source.bytes()).collect();
     let two_digits = lines.iter().map(|&l| Block::new(l, false)).any(|b| b.motion_word().is_some() && b.two_digits());
-    let mut writer =
-        Writer { source, lines, options, replaced: Replaced::new(), two_digits, motion: None, count: [0; 3] };
+    let mut writer = Writer {
+        source,
+        lines,
+        options,
+        replaced: Replaced::new(),
+        two_digits,
+        motion: None,
+        count: [0; 3],
+        piece_ends: Vec::new(),
+    };
     let (Some(first_edit), Some(last_edit)) = (edits.first(), edits.last()) else {
         return Err(Failure::Internal("there is no line to correct".to_owned()));
     };
@@ -73,7 +84,7 @@ pub(super) fn write(
     writer.leave(pen, &moves[last + 1..])?;
     let [lines, arcs, unchanged] = writer.count;
     let (text, ranges) = assemble(source.bytes(), &writer.lines, &writer.replaced, edits, options);
-    Ok(Written { text, ranges, lines, arcs, unchanged })
+    Ok(Written { text, ranges, piece_ends: writer.piece_ends, lines, arcs, unchanged })
 }
 
 impl<'a> Writer<'a> {
@@ -147,7 +158,7 @@ impl<'a> Writer<'a> {
         let last = edit.samples[edit.samples.len() - 1];
         let tolerance = self.options.tolerance.nm() as f64;
         let end = Pen::new(last.map(|v| v as f64), &step.modal);
-        if pen.is_at(from) && end.is_at(to) && deviation(&edit.samples, &[curve]) <= 0.5 * tolerance {
+        if pen.is_at(from) && end.is_at(to) && deviation(&edit.samples, &curve) <= 0.5 * tolerance {
             let motion = step.modal.motion;
             if self.motion != motion && self.block(step.line).motion_word().is_none() {
                 self.state_motion(step);
@@ -155,10 +166,14 @@ impl<'a> Writer<'a> {
             self.motion = motion;
             pen.at = to.map(|v| v as f64);
             self.count[2] += 1;
+            self.piece_ends.push(vec![edit.samples.len() - 1]);
             return Ok(());
         }
         let step_nm = pen.grid().step_nm();
         let (pieces, points) = pieces(pen, &edit.samples, (tolerance - step_nm).max(0.5 * tolerance));
+        let places = std::iter::once(pen.at).chain(points.iter().copied());
+        let moving = pieces.iter().zip(places.zip(&points)).filter(|(_, (from, to))| from != *to);
+        self.piece_ends.push(moving.map(|(piece, _)| piece.end).collect());
         let block = Block::new(self.line(step.line), self.two_digits);
         let mut text = Vec::new();
         for (index, (piece, target)) in pieces.iter().zip(&points).enumerate() {
