@@ -90,7 +90,7 @@ fn the_helix_decides_the_force_that_makes_a_height() {
     for (degrees, forces, mean) in rows {
         let engaged = real(f64::to_radians(degrees));
         for (z, expected) in [0.1, 2.5, 5.0, 7.5, 9.9].into_iter().zip(forces) {
-            let got = float(table.at_height(&s, &coefficients(), engaged, real(z)).total(f).0);
+            let got = float(table.at_height((&s, &s.helix()), &coefficients(), engaged, real(z)).total(f).0);
             assert!((got - f64::from(expected)).abs() < 1.0, "{degrees} z {z}: {got} instead of {expected}");
         }
         let got = float(table.mean(&s, &coefficients(), engaged).total(f).0);

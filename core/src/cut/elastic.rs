@@ -159,7 +159,12 @@ impl Loop<'_> {
             WallLaw::Mean => self.mean(state.engaged),
             WallLaw::Helical => {
                 let setup = self.path.setup();
-                self.table.at_height(setup, &self.coefficients, state.engaged, setup.axial_depth * fraction)
+                self.table.at_height(
+                    (setup, self.path.helix()),
+                    &self.coefficients,
+                    state.engaged,
+                    setup.axial_depth * fraction,
+                )
             }
         };
         let factor = self.compliance.height_factor(fraction);

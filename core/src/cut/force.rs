@@ -9,7 +9,7 @@
 //!
 //! Limits: rigid tooth spacing (no runout); chip thickness from the circular path; 0 ≤ φ₁ ≤ π.
 
-use super::setup::{Coefficients, CutSetup, Milling};
+use super::setup::{Coefficients, CutSetup, Helix, Milling};
 use crate::units::{Real, pow, sin_cos};
 
 /// Intervals of the table over 0…π. With cubic interpolation the error is below 10⁻⁹ of the coefficients.
@@ -147,12 +147,18 @@ impl ForceTable {
     /// In climb milling the tooth that generates height z has its upper part still in the stock, in conventional
     /// milling its lower part: the stretch of φ above φ = 0 is (b − z) or z high. The other flutes are whole pitches
     /// away.
-    pub fn at_height(&self, setup: &CutSetup, coefficients: &Coefficients, engaged: Real, height: Real) -> SplitForce {
+    pub fn at_height(
+        &self,
+        (setup, helix): (&CutSetup, &Helix),
+        coefficients: &Coefficients,
+        engaged: Real,
+        height: Real,
+    ) -> SplitForce {
         let behind = match setup.milling {
             Milling::Climb => setup.axial_depth - height,
             Milling::Conventional => height,
         };
-        let (lag, pitch) = (setup.lag_per_mm(), setup.pitch());
+        let (lag, pitch) = (helix.lag_per_mm, helix.pitch);
         let top = behind * lag;
         let bottom = top - setup.axial_depth * lag;
         // Flutes whose stretch bottom + k·pitch … top + k·pitch meets 0…φ₁.
@@ -168,7 +174,7 @@ impl ForceTable {
                 sum = sum.plus(self.antiderivative(high).minus(self.antiderivative(low)));
             }
         }
-        sum.scaled(Real::ONE / lag).force(setup.milling, coefficients)
+        sum.scaled(helix.mm_per_lag).force(setup.milling, coefficients)
     }
 }
 

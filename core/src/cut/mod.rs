@@ -15,5 +15,5 @@ pub use elastic::{Loop, Passage, State};
 pub use engagement::Frame;
 pub use force::{ForceTable, SplitForce, chip_area, chip_volume};
 pub use path::{Path, PathError, Sample};
-pub use setup::{Coefficients, CutSetup, Milling, WallLaw};
+pub use setup::{Coefficients, CutSetup, Helix, Milling, WallLaw};
 pub use wall::{Envelope, WallError};

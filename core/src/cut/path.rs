@@ -5,7 +5,7 @@
 //! runs of such arrays), so the walk over it costs the same however long the contour is. Before the first and behind
 //! the last block path and stock are continued straight: a contour that starts by plunging starts fully engaged.
 
-use super::setup::{CutSetup, WallLaw};
+use super::setup::{CutSetup, Helix, WallLaw};
 use crate::geometry::{Contour, Direction, FACET_TURN_LIMIT, Point, Side};
 use crate::units::{Offset, Real};
 
@@ -50,6 +50,7 @@ pub struct Path<'a> {
     step: Offset,
     stock_step: Offset,
     setup: CutSetup,
+    helix: Helix,
 }
 
 /// Why a path could not be sampled.
@@ -120,7 +121,7 @@ impl<'a> Path<'a> {
             samples.iter().zip(samples.iter().skip(1)).map(|(a, b)| f(a).distance(f(b))).max().unwrap_or_default()
         };
         let (step, stock_step) = (gap(|s| s.point), gap(|s| s.stock));
-        Ok(Self { samples, first, count, step, stock_step, setup: *setup })
+        Ok(Self { samples, first, count, step, stock_step, setup: *setup, helix: setup.helix() })
     }
 
     /// The same path under another wall law.
@@ -160,6 +161,10 @@ impl<'a> Path<'a> {
     /// The cut it was sampled for.
     pub const fn setup(&self) -> &CutSetup {
         &self.setup
+    }
+    /// How its cutter's edges wind.
+    pub const fn helix(&self) -> &Helix {
+        &self.helix
     }
     /// Nominal wall beside a sample.
     pub fn wall(&self, sample: &Sample) -> Point {

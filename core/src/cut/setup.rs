@@ -59,6 +59,17 @@ pub struct CutSetup {
     pub law: WallLaw,
 }
 
+/// How the edges of a cutter wind, derived once from a [`CutSetup`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Helix {
+    /// How far a tooth lags per millimetre of height, rad/mm.
+    pub lag_per_mm: Real,
+    /// Its inverse, mm/rad.
+    pub mm_per_lag: Real,
+    /// Angle between two teeth, rad.
+    pub pitch: Real,
+}
+
 /// Chip thickness at which the chip coefficients are stated, mm.
 const REFERENCE_CHIP: Real = Real::ratio(5, 100);
 /// The least turn of a tooth over the engaged depth that is distinguished from a straight flute, rad.
@@ -76,16 +87,13 @@ impl CutSetup {
     pub fn feed_per_tooth(&self, feed: Real) -> Real {
         feed / (self.spindle_rpm * Real::from_int(self.teeth.into()))
     }
-    /// Angle between two teeth, rad.
-    pub fn pitch(&self) -> Real {
-        Real::TAU / Real::from_int(self.teeth.into())
-    }
-    /// How far a tooth lags per millimetre of height, rad/mm. A straight flute is given a lag of 0.02 rad over the
-    /// engaged depth, which changes its force by less than the tooth entry it smooths.
-    pub fn lag_per_mm(&self) -> Real {
+    /// The edges of the cutter. A straight flute is given a lag of 0.02 rad over the engaged depth, which changes its
+    /// force by less than the tooth entry it smooths.
+    pub fn helix(&self) -> Helix {
         let (sine, cosine) = sin_cos(self.helix_deg * Real::PI / Real::from_int(180));
         let lag = sine / cosine / self.radius.mm();
-        lag.max(STRAIGHT_FLUTE_LAG / self.axial_depth)
+        let lag_per_mm = lag.max(STRAIGHT_FLUTE_LAG / self.axial_depth);
+        Helix { lag_per_mm, mm_per_lag: Real::ONE / lag_per_mm, pitch: Real::TAU / Real::from_int(self.teeth.into()) }
     }
 }
 

@@ -124,7 +124,7 @@ impl<'a> Contacts<'a> {
                 Side::Right => -foot.left,
             };
             let error = expected - towards_wall;
-            if best.is_none_or(|(b, e)| (error.abs(), !foot.beside) < (e.abs(), !b.beside)) {
+            if best.is_none_or(|(b, e)| (!foot.beside, error.abs()) < (!b.beside, e.abs())) {
                 best = Some((foot, error));
             }
         });
