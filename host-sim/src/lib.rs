@@ -13,4 +13,5 @@ pub mod plant;
 pub mod plot;
 pub mod program;
 pub mod report;
+pub mod setpoints;
 pub mod workshop;

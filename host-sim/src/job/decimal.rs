@@ -55,6 +55,10 @@ impl Decimal {
     pub fn as_mm(self) -> Offset {
         Offset::from_nm(div_rounded(self.0, 10i128.pow(12)) as i64)
     }
+    /// In billionths (nanoseconds of a time in seconds), rounded to nearest.
+    pub fn as_billionths(self) -> i64 {
+        div_rounded(self.0, 10i128.pow(9)) as i64
+    }
     /// As a number of the model, rounded to nearest.
     pub fn as_real(self) -> Real {
         Real::narrow(div_rounded(self.0 << Real::FRACTION_BITS, 10i128.pow(18)))

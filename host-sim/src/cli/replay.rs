@@ -1,0 +1,153 @@
+//! `truepath replay`: recorded setpoints through the device's own code.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use truepath_core::units::Real;
+
+use super::{Terminal, image, print};
+use crate::diagnostics::{Failure, InputError, Source};
+use crate::job::Decimal;
+use crate::output::OutputFile;
+use crate::replay::{Placement, Summary, replay};
+use crate::setpoints::{Frame, Setpoints};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The correction image.
+    image: PathBuf,
+    /// Recorded setpoints: `# frame = program` or `machine`, then t_s,x_mm,y_mm,z_mm[,spindle_rpm].
+    #[arg(long, value_name = "FILE")]
+    setpoints: PathBuf,
+    /// Corrected setpoints with correction, state and reason of every tick.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Machine coordinates of the program's origin, needed for `# frame = machine`.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = lengths)]
+    origin_mm: Option<[i64; 3]>,
+    /// Turn of the program in the machine's XY plane, counter-clockwise.
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = angle)]
+    rotation_deg: Option<Real>,
+    /// Serial number of the part.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    part: u32,
+    /// Replace the output file if it exists.
+    #[arg(long)]
+    force: bool,
+}
+
+/// Rows between two steps of the progress bar.
+const BAR_STEP: usize = 4096;
+
+pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let bytes = image::read(&arguments.image)?;
+    let image = image::check(&bytes, &arguments.image)?;
+    let source = Source::read(&arguments.setpoints)?;
+    let setpoints = Setpoints::parse(&source)?;
+    let placement = placement(arguments, &setpoints, &source)?;
+    if setpoints.rows.first().is_some_and(|row| row.spindle_rpm.is_none()) {
+        terminal.note("the file has no spindle_rpm; the image's nominal speed is taken");
+    }
+    let mut file = OutputFile::create(&arguments.output, arguments.force)?;
+    let failed = |e: std::io::Error| Failure::from(InputError::unwritable(&arguments.output, &e));
+    let frame = if setpoints.frame == Frame::Program { "program" } else { "machine" };
+    writeln!(file, "# frame = {frame}\nt_s,x_mm,y_mm,z_mm,dx_mm,dy_mm,state,reason,status,node").map_err(failed)?;
+    let mut progress = terminal.progress("replaying", setpoints.rows.len() as u64);
+    let summary = replay(image, &setpoints, &placement, arguments.part, |index, output| {
+        if index % BAR_STEP == 0 {
+            progress.reached(index as u64);
+        }
+        let time = Billionths(setpoints.start_ns + setpoints.period_ns * index as i64);
+        let [x, y, z, ..] = output.axes.map(Millionths);
+        let [dx, dy, ..] = output.correction_nm.map(|nm| Millionths(nm.into()));
+        let (state, reason, status) = (output.mode, output.reason.code(), output.status.0);
+        let node = output.place.node;
+        writeln!(file, "{time},{x},{y},{z},{dx},{dy},{state},{reason},{status},{node}").map_err(failed)
+    })?;
+    drop(progress);
+    file.commit()?;
+    report(&summary, arguments, terminal)
+}
+
+fn report(summary: &Summary, arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    if terminal.json() {
+        let mut text = serde_json::to_vec_pretty(summary).map_err(|e| Failure::Internal(e.to_string()))?;
+        text.push(b'\n');
+        return print(&text);
+    }
+    if summary.fault {
+        terminal.warn(&format!("the correction was dropped: {}", summary.reason_text));
+    } else if summary.corrected_ticks == 0 {
+        terminal.warn("no setpoint came to the start of the path, so nothing was corrected");
+    } else if summary.state == "Active" || summary.state == "Hold" {
+        terminal.warn("the file ends before the path does; the correction was still on");
+    }
+    let text = format!(
+        "{} ticks, {} with a correction, largest {:.4} mm; {} above the warn level, {} cut by the clamp, {} faded\n\
+         ended in state {}: {}\n\
+         fingerprint {}\n\
+         written to {}\n",
+        summary.ticks,
+        summary.corrected_ticks,
+        summary.max_correction_mm,
+        summary.warned_ticks,
+        summary.saturated_ticks,
+        summary.faded_ticks,
+        summary.state,
+        summary.reason_text,
+        summary.digest,
+        arguments.output.display(),
+    );
+    print(text.as_bytes())
+}
+
+/// Where the program stands; machine coordinates mean nothing without it, program coordinates nothing with it.
+fn placement(arguments: &Arguments, setpoints: &Setpoints, source: &Source) -> Result<Placement, InputError> {
+    let given = arguments.origin_mm.is_some() || arguments.rotation_deg.is_some();
+    match (setpoints.frame, arguments.origin_mm) {
+        (Frame::Program, _) if !given => Ok(Placement::default()),
+        (Frame::Machine, Some(origin_nm)) => {
+            Ok(Placement { origin_nm, rotation_deg: arguments.rotation_deg.unwrap_or_default() })
+        }
+        (Frame::Program, _) => {
+            let found = "the setpoints are in program coordinates, but --origin-mm or --rotation-deg is given";
+            let help = "leave the options out, or say # frame = machine in the file";
+            Err(InputError::new("R003", found, "one or the other", help).at(source, 0..1))
+        }
+        (Frame::Machine, None) => {
+            let found = "the setpoints are in machine coordinates, but --origin-mm is not given";
+            let help = "add --origin-mm X,Y,Z: the work offset with the tool's length";
+            Err(InputError::new("R003", found, "the place of the program's origin", help).at(source, 0..1))
+        }
+    }
+}
+
+fn lengths(text: &str) -> Result<[i64; 3], String> {
+    let lengths: Option<Vec<i64>> = text.split(',').map(|t| Some(Decimal::parse(t.trim())?.as_mm().nm())).collect();
+    lengths.and_then(|l| <[i64; 3]>::try_from(l).ok()).ok_or_else(|| "three lengths in mm, like 120.5,-80,-310".to_owned())
+}
+
+fn angle(text: &str) -> Result<Real, String> {
+    let angle = Decimal::parse(text.trim()).map(Decimal::as_real).filter(|a| a.abs() <= Real::from_int(360));
+    angle.ok_or_else(|| "an angle from -360 to 360 degrees".to_owned())
+}
+
+/// Millionths printed with six decimals: nanometres as millimetres.
+struct Millionths(i64);
+/// Billionths printed with nine decimals: nanoseconds as seconds.
+struct Billionths(i64);
+
+impl std::fmt::Display for Millionths {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (sign, nm) = (if self.0 < 0 { "-" } else { "" }, self.0.unsigned_abs());
+        write!(f, "{sign}{}.{:06}", nm / 1_000_000, nm % 1_000_000)
+    }
+}
+
+impl std::fmt::Display for Billionths {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (sign, ns) = (if self.0 < 0 { "-" } else { "" }, self.0.unsigned_abs());
+        write!(f, "{sign}{}.{:09}", ns / 1_000_000_000, ns % 1_000_000_000)
+    }
+}

@@ -1,0 +1,164 @@
+//! Recorded setpoints through the device's own code.
+//!
+//! The ticks of a file go through [`Rewriter::tick`], the function the coprocessor calls, in the same order and with
+//! the same settings scaled to the file's tick rate: what comes out is what the device would have sent to the drives,
+//! bit for bit. The image is armed with its own identity, once, before the first tick.
+//!
+//! Limits: X, Y, Z on the first three axes, no mirror; drives enabled and spindle speed fresh throughout.
+
+use truepath_core::image::Image;
+use truepath_core::rewrite::{
+    AXES, ArmRequest, Digest, Flags, Frame, Mode, Output, Reason, Rewriter, Setpoint, Settings, State, Status, TURN_BITS,
+};
+use truepath_core::units::{Offset, Real, shift_rounded_i64, sin_cos};
+
+use crate::diagnostics::{Failure, InputError};
+use crate::setpoints::Setpoints;
+
+/// Where the program stands in the machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Placement {
+    /// Machine coordinates of the program's origin, nm.
+    pub origin_nm: [i64; 3],
+    /// Turn of the program in the XY plane, degrees, counter-clockwise.
+    pub rotation_deg: Real,
+}
+
+/// What came of a replay.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Summary {
+    /// Ticks replayed.
+    pub ticks: usize,
+    /// Ticks with a correction on (Active, Hold, and ramping out in Fault).
+    pub corrected_ticks: usize,
+    /// Largest correction of an axis, mm.
+    pub max_correction_mm: f64,
+    /// Ticks above the warn level.
+    pub warned_ticks: usize,
+    /// Ticks in which the clamp cut the correction.
+    pub saturated_ticks: usize,
+    /// Ticks with a faded correction.
+    pub faded_ticks: usize,
+    /// State after the last tick.
+    pub state: String,
+    /// Number of the reason for which the correction ended; 0 for none.
+    pub reason: u16,
+    /// The same in words.
+    pub reason_text: String,
+    /// Whether it was a fault.
+    pub fault: bool,
+    /// Fingerprint of all outputs; the device gives the same for the same ticks.
+    pub digest: String,
+}
+
+/// Replays setpoints; `each` gets every tick's output in order.
+///
+/// # Errors
+/// `R001` for a tick rate outside 10 Hz … 100 kHz or a setting that does not go with it, `R002` when the image refuses
+/// to be armed, and whatever `each` answers.
+pub fn replay(
+    image: Image<'_>,
+    setpoints: &Setpoints,
+    placement: &Placement,
+    part_serial: u32,
+    mut each: impl FnMut(usize, &Output) -> Result<(), Failure>,
+) -> Result<Summary, Failure> {
+    let nominal_millirpm = image.settings().feed.spindle_millirpm;
+    let request = ArmRequest { binding: image.settings().binding, part_serial, frame: frame(placement) };
+    let rewriter = Rewriter::new(settings(setpoints.period_ns)?, Some(image)).map_err(|e| {
+        InputError::new("R001", e.to_string(), "", "record the setpoints at the rate of the machine's servo cycle")
+    })?;
+    let mut state = State::default();
+    let refused = |e: truepath_core::rewrite::Refusal| InputError::new("R002", e.to_string(), "", "make the image again");
+    rewriter.acknowledge_drives_disabled(&mut state).map_err(refused)?;
+    rewriter.arm(&mut state, &request).map_err(refused)?;
+    let mut tally = Tally::default();
+    for (index, row) in setpoints.rows.iter().enumerate() {
+        let mut axes = [0; AXES];
+        for (axis, nm) in axes.iter_mut().zip(row.position_nm) {
+            *axis = nm;
+        }
+        let setpoint = Setpoint {
+            axes,
+            spindle_millirpm: row.spindle_rpm.map_or(nominal_millirpm, millirpm),
+            spindle_age_ticks: 0,
+            sequence: index as u32 + 1,
+            frame_crc: request.frame.crc,
+            flags: Flags::DRIVES_ENABLED.with(Flags::SPINDLE_LOADED),
+        };
+        let output = rewriter.tick(&mut state, &setpoint);
+        tally.add(&output);
+        each(index, &output)?;
+    }
+    Ok(tally.summary(state.mode(), state.reason()))
+}
+
+/// The settings of a device at 1 kHz, scaled to another rate.
+fn settings(period_ns: i64) -> Result<Settings, InputError> {
+    let hz = (1_000_000_000 + period_ns / 2) / period_ns.max(1);
+    let tick_hz = u32::try_from(hz).unwrap_or(u32::MAX);
+    let per_second = |at_1_khz: u32| ((u64::from(at_1_khz) * u64::from(tick_hz)).div_ceil(1000)).max(1) as u32;
+    let slow = Settings::at_1_khz();
+    let smoothing_ticks = per_second(1 << slow.feed_smoothing);
+    Ok(Settings {
+        tick_hz,
+        // 1 m/s whatever the rate; faster moves are rapids.
+        max_step: Offset::from_nm((slow.max_step.nm() * 1000 / i64::from(tick_hz.max(1))).clamp(1, 8_000_000)),
+        hold_after_ticks: per_second(slow.hold_after_ticks),
+        spindle_stale_ticks: per_second(slow.spindle_stale_ticks),
+        fade_ticks: per_second(slow.fade_ticks).min(65_536),
+        feed_smoothing: smoothing_ticks.ilog2().min(12),
+        ..slow
+    })
+}
+
+fn frame(placement: &Placement) -> Frame {
+    let (sine, cosine) = sin_cos(placement.rotation_deg * Real::PI / Real::from_int(180));
+    let turn = |v: Real| shift_rounded_i64(v.bits(), Real::FRACTION_BITS - TURN_BITS) as i32;
+    Frame { offset_nm: placement.origin_nm, cosine: turn(cosine), sine: turn(sine), ..Frame::identity() }.sealed()
+}
+
+fn millirpm(rpm: Real) -> u32 {
+    u32::try_from((rpm * Real::from_int(1000)).round_to_int()).unwrap_or(0)
+}
+
+/// Counts over all ticks.
+#[derive(Default)]
+struct Tally {
+    ticks: usize,
+    corrected: usize,
+    warned: usize,
+    saturated: usize,
+    faded: usize,
+    largest_nm: u32,
+    digest: Digest,
+}
+
+impl Tally {
+    fn add(&mut self, output: &Output) {
+        self.ticks += 1;
+        self.corrected += usize::from(matches!(output.mode, Mode::Active | Mode::Hold | Mode::Fault));
+        self.warned += usize::from(output.status.has(Status::WARN));
+        self.saturated += usize::from(output.status.has(Status::SATURATED));
+        self.faded += usize::from(output.status.has(Status::FADED));
+        let largest = output.correction_nm.iter().map(|nm| nm.unsigned_abs()).max().unwrap_or(0);
+        self.largest_nm = self.largest_nm.max(largest);
+        self.digest.add(output);
+    }
+
+    fn summary(self, mode: Mode, reason: Reason) -> Summary {
+        Summary {
+            ticks: self.ticks,
+            corrected_ticks: self.corrected,
+            max_correction_mm: f64::from(self.largest_nm) / 1e6,
+            warned_ticks: self.warned,
+            saturated_ticks: self.saturated,
+            faded_ticks: self.faded,
+            state: mode.to_string(),
+            reason: reason.code(),
+            reason_text: reason.to_string(),
+            fault: reason.is_fault(),
+            digest: format!("{:016x}", self.digest.value()),
+        }
+    }
+}
