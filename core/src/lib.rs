@@ -38,5 +38,7 @@ pub mod cut;
 pub mod gcode;
 pub mod geometry;
 pub mod identify;
+pub mod image;
 pub mod probe;
+pub mod rewrite;
 pub mod units;

@@ -167,3 +167,36 @@ proptest! {
         }
     }
 }
+
+/// The corner, turned about the origin by any angle, and its correction turned back, nm.
+fn turned_correction(angle: f64, law: WallLaw) -> Vec<(f64, f64)> {
+    let (sine, cosine) = angle.sin_cos();
+    let at = |x: f64, y: f64| point(cosine * x - sine * y, sine * x + cosine * y);
+    let blocks = chain(
+        &[
+            Curve::line(at(34.0, 80.0), at(34.0, 35.0)).unwrap(),
+            Curve::arc(at(34.0, 35.0), at(39.0, 30.0), at(39.0, 35.0), true).unwrap(),
+            Curve::line(at(39.0, 30.0), at(90.0, 30.0)).unwrap(),
+        ],
+        400.0,
+    );
+    let path = path(&blocks, &setup(law), 100);
+    let table = ForceTable::new(Real::ZERO);
+    let machine = machine(&path, &table, Compliance::from_stiffness(real(1150.0), real(1150.0)));
+    let back = |v: Vector| {
+        let (x, y) = (v.x.nm() as f64, v.y.nm() as f64);
+        (cosine * x + sine * y, cosine * y - sine * x)
+    };
+    designed(&machine).iter().map(|n| back(n.total())).collect()
+}
+
+#[test]
+fn a_turn_by_any_other_angle_turns_the_correction_within_two_nanometres_of_its_rounded_inputs() {
+    let straight = turned_correction(0.0, WallLaw::Mean);
+    for angle in [0.1, 0.7, 1.0, 2.5, -0.3] {
+        let turned = turned_correction(angle, WallLaw::Mean);
+        let worst = straight.iter().zip(&turned).map(|(a, b)| (a.0 - b.0).hypot(a.1 - b.1)).fold(0.0, f64::max);
+        println!("{angle}: {worst:.2} nm");
+        assert!(worst <= 2.0, "{angle}: {worst} nm");
+    }
+}

@@ -5,6 +5,7 @@ pub mod cli;
 pub mod command;
 pub mod correction;
 pub mod diagnostics;
+pub mod image;
 pub mod job;
 pub mod measurement;
 pub mod output;

@@ -8,7 +8,8 @@
 
 use truepath_core::image::Image;
 use truepath_core::rewrite::{
-    AXES, ArmRequest, Digest, Flags, Frame, Mode, Output, Reason, Rewriter, Setpoint, Settings, State, Status, TURN_BITS,
+    AXES, ArmRequest, Digest, Flags, Frame, Mode, Output, Reason, Rewriter, Setpoint, Settings, State, Status,
+    TURN_BITS,
 };
 use truepath_core::units::{Offset, Real, shift_rounded_i64, sin_cos};
 
@@ -69,7 +70,8 @@ pub fn replay(
         InputError::new("R001", e.to_string(), "", "record the setpoints at the rate of the machine's servo cycle")
     })?;
     let mut state = State::default();
-    let refused = |e: truepath_core::rewrite::Refusal| InputError::new("R002", e.to_string(), "", "make the image again");
+    let refused =
+        |e: truepath_core::rewrite::Refusal| InputError::new("R002", e.to_string(), "", "make the image again");
     rewriter.acknowledge_drives_disabled(&mut state).map_err(refused)?;
     rewriter.arm(&mut state, &request).map_err(refused)?;
     let mut tally = Tally::default();

@@ -17,7 +17,12 @@ pub(super) fn header(header: &Header) -> Result<(), ImageError> {
     const PLACE: i64 = 1_000_000_000_000;
     let s = &header.settings;
     within("number of nodes", i64::from(header.node_count), 2, MAX_NODES as i64)?;
-    within("feed per tooth (2^-8 nm)", i64::from(s.feed.per_tooth.bits()), 1 << FineOffset::FRACTION_BITS, 8_000_000 << 8)?;
+    within(
+        "feed per tooth (2^-8 nm)",
+        i64::from(s.feed.per_tooth.bits()),
+        1 << FineOffset::FRACTION_BITS,
+        8_000_000 << 8,
+    )?;
     within("number of teeth", i64::from(s.feed.teeth), 1, 64)?;
     within("size exponent (2^-16)", i64::from(s.feed.size_exponent), 0, i64::from(RATIO_ONE))?;
     within("lower feed ratio (2^-16)", i64::from(s.feed.ratio_low), 0, i64::from(RATIO_ONE))?;
@@ -89,7 +94,8 @@ fn link(index: usize, node: &Node, next: &Node) -> Result<(), ImageError> {
 
 fn clamp(index: usize, node: &Node, header: &Header) -> Result<(), ImageError> {
     let s = &header.settings;
-    let correction_nm = reach_nm(node.chip, node.edge, &[s.feed.factor_at(s.feed.ratio_low), s.feed.factor_at(s.feed.ratio_high)]);
+    let correction_nm =
+        reach_nm(node.chip, node.edge, &[s.feed.factor_at(s.feed.ratio_low), s.feed.factor_at(s.feed.ratio_high)]);
     let clamp_nm = s.limits.clamp.nm();
     if correction_nm > clamp_nm { Err(ImageError::OverClamp { node: index, correction_nm, clamp_nm }) } else { Ok(()) }
 }
@@ -113,7 +119,7 @@ pub(super) fn reach_nm(chip: [FineOffset; 2], edge: [FineOffset; 2], factors: &[
 
 /// A part times a chip factor, units of 2⁻⁸ nm.
 #[inline]
-pub(crate) fn scaled(part: FineOffset, factor: i32) -> i64 {
+pub fn scaled(part: FineOffset, factor: i32) -> i64 {
     // In range: 32 × 32 → 64 bits.
     shift_rounded_i64(i64::from(part.bits()).wrapping_mul(i64::from(factor)), super::FACTOR_BITS)
 }

@@ -81,7 +81,8 @@ impl Decimal {
     /// A binary fraction, rounded to a number of decimals.
     fn binary(value: i64, bits: u32, digits: u32) -> Self {
         let scale = 10i32.saturating_pow(digits);
-        let value = (Real::from_bits(value << Real::FRACTION_BITS.saturating_sub(bits)) * Real::from_int(scale)).round_to_int();
+        let value =
+            (Real::from_bits(value << Real::FRACTION_BITS.saturating_sub(bits)) * Real::from_int(scale)).round_to_int();
         Self { value, digits }
     }
 }

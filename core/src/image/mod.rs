@@ -24,6 +24,7 @@ mod read;
 use crc::{CRC_32_ISO_HDLC, Crc};
 
 pub use build::{build, image_bytes, peak};
+pub(crate) use check::scaled;
 pub use dump::dump;
 pub use error::ImageError;
 pub use feed_law::{FACTOR_BITS, FACTOR_NODES, FACTOR_ONE, FeedLaw, RATIO_BITS, RATIO_ONE};

@@ -92,12 +92,14 @@ impl Node {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::arithmetic_side_effects, clippy::float_arithmetic)]
     use super::*;
 
     #[test]
     fn a_node_survives_its_bytes() {
         let f = FineOffset::from_bits;
-        let node = Node { x: -1, y: i32::MAX, chip: [f(7), f(-8)], edge: [f(9), f(i32::MIN)], reciprocal: 5, length: 6 };
+        let node =
+            Node { x: -1, y: i32::MAX, chip: [f(7), f(-8)], edge: [f(9), f(i32::MIN)], reciprocal: 5, length: 6 };
         assert_eq!(Node::decode(&node.encode()), node);
     }
 

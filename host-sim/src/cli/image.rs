@@ -48,7 +48,9 @@ pub(super) fn check<'b>(bytes: &'b [u8], path: &Path) -> Result<Image<'b>, Input
         let (found, help) = sentence.split_once(": ").unwrap_or((&sentence, ""));
         let (expected, help) = match error {
             ImageError::Magic => ("a correction image (.tpi) written by truepath correct", "name that file"),
-            _ if help.starts_with("make") => ("an image for this program", "make the image again with truepath correct"),
+            _ if help.starts_with("make") => {
+                ("an image for this program", "make the image again with truepath correct")
+            }
             _ => ("an image as truepath correct wrote it", "copy the file again, or make the image again"),
         };
         // The detail behind the colon belongs to what was found when it is no instruction.
@@ -74,7 +76,9 @@ fn json(text: &str) -> Result<String, Failure> {
         let value = match (name.ends_with("crc"), number(value), value) {
             (false, Some(n), _) => serde_json::Value::Number(n),
             (false, None, "true" | "false") => serde_json::Value::Bool(value == "true"),
-            (false, None, list) if list.contains(' ') => list.split(' ').filter_map(number).map(serde_json::Value::Number).collect(),
+            (false, None, list) if list.contains(' ') => {
+                list.split(' ').filter_map(number).map(serde_json::Value::Number).collect()
+            }
             _ => serde_json::Value::String(value.to_owned()),
         };
         members.insert(name.to_owned(), value);

@@ -125,7 +125,9 @@ fn placement(arguments: &Arguments, setpoints: &Setpoints, source: &Source) -> R
 
 fn lengths(text: &str) -> Result<[i64; 3], String> {
     let lengths: Option<Vec<i64>> = text.split(',').map(|t| Some(Decimal::parse(t.trim())?.as_mm().nm())).collect();
-    lengths.and_then(|l| <[i64; 3]>::try_from(l).ok()).ok_or_else(|| "three lengths in mm, like 120.5,-80,-310".to_owned())
+    lengths
+        .and_then(|l| <[i64; 3]>::try_from(l).ok())
+        .ok_or_else(|| "three lengths in mm, like 120.5,-80,-310".to_owned())
 }
 
 fn angle(text: &str) -> Result<Real, String> {

@@ -89,7 +89,7 @@ pub fn correct(
     match route {
         Route::Program => program = Some(corrected_program(pass, &path, &correction)?),
         Route::Coprocessor => {
-            //TMP
+            image = Some(crate::image::build(pass, &identified, image_nodes(&path, &correction.nodes))?);
         }
     }
     let table = correction_csv(&machine, &correction)?;
@@ -186,6 +186,13 @@ fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine
         out.push(format!(
             "the points leave the corrected wall uncertain by {:.4} mm (one sigma); probe more places, best in the corners",
             mm(sigma)
+        ));
+    }
+    if correction.nodes.len() > crate::image::DEVICE_NODES {
+        out.push(format!(
+            "the correction has {} nodes; the coprocessor holds {}: its image would be refused there",
+            correction.nodes.len(),
+            crate::image::DEVICE_NODES
         ));
     }
     if let Some(reversal) = reversal(pass, machine, correction) {

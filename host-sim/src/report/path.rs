@@ -42,7 +42,8 @@ pub fn block_edits(pass: &Pass, path: &Path, nodes: &[Node]) -> Vec<BlockEdit> {
     edits
 }
 
-/// The samples of the contour with their correction, in the order of travel.
-pub fn image_nodes<'a>(path: &'a Path, nodes: &'a [Node]) -> impl Iterator<Item = (Point, Node)> + 'a {
-    path.samples()[path.first()..path.first() + path.count()].iter().zip(nodes).map(|(s, n)| (s.point, *n))
+/// The samples of the contour with their feed (mm/min) and correction, in the order of travel.
+pub fn image_nodes<'a>(path: &'a Path, nodes: &'a [Node]) -> impl Iterator<Item = (Point, Real, Node)> + 'a {
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    samples.iter().zip(nodes).map(|(s, n)| (s.point, s.feed, *n))
 }

@@ -1,3 +1,10 @@
+#![allow(
+    clippy::arithmetic_side_effects,
+    clippy::indexing_slicing,
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::float_arithmetic
+)]
 use std::string::String;
 use std::vec;
 use std::vec::Vec;
@@ -136,7 +143,8 @@ fn a_correction_that_the_feed_window_lifts_over_the_clamp_cannot_be_built() {
     n[1].chip[1] = FineOffset::from_bits(450_000 << 8);
     n[1].edge[1] = FineOffset::ZERO;
     let expected = 450_000.0 * 1.5f64.powf(0.8);
-    let Err(ImageError::OverClamp { node: 1, correction_nm, clamp_nm: 500_000 }) = build(&settings(), &n, &mut buffer) else {
+    let Err(ImageError::OverClamp { node: 1, correction_nm, clamp_nm: 500_000 }) = build(&settings(), &n, &mut buffer)
+    else {
         panic!("built");
     };
     assert!((correction_nm as f64 - expected).abs() < 10.0, "{correction_nm} {expected}");

@@ -1,0 +1,109 @@
+//! The kernels whose cost is watched, for the benchmarks and for the counter of instructions.
+//!
+//! The steps of the cut are measured in the middle of waves of 10, 1,000 and 100,000 equal segments: their cost must
+//! not depend on the length. Identification and design are measured whole, on the papers' corner and on a pocket.
+
+#[path = "../../tests/corner/mod.rs"]
+mod corner;
+mod part;
+mod whole;
+
+use corner::{machine, path, real, setup};
+use std::hint::black_box;
+use truepath_core::cut::{Compliance, Envelope, ForceTable, Loop, Path, State, WallLaw};
+use truepath_core::geometry::Vector;
+use truepath_core::units::{Offset, Real};
+
+/// Something that can be called again and again at the same cost.
+pub type Work = Box<dyn FnMut()>;
+
+/// A named kernel.
+pub struct Kernel {
+    /// Its name: kernel, then the part.
+    pub name: &'static str,
+    /// Calls after which its cost is known well.
+    #[allow(dead_code, reason = "criterion finds its own number")]
+    pub calls: u32,
+    /// Makes everything it needs and returns it.
+    pub prepare: fn() -> Work,
+}
+
+/// All kernels.
+pub const KERNELS: &[Kernel] = &[
+    Kernel { name: "engagement/10", calls: 2000, prepare: || engagement(10) },
+    Kernel { name: "engagement/1000", calls: 2000, prepare: || engagement(1_000) },
+    Kernel { name: "engagement/100000", calls: 2000, prepare: || engagement(100_000) },
+    Kernel { name: "elastic/10", calls: 1000, prepare: || elastic(10) },
+    Kernel { name: "elastic/1000", calls: 1000, prepare: || elastic(1_000) },
+    Kernel { name: "elastic/100000", calls: 1000, prepare: || elastic(100_000) },
+    Kernel { name: "wall/10", calls: 1000, prepare: || wall(10) },
+    Kernel { name: "wall/1000", calls: 1000, prepare: || wall(1_000) },
+    Kernel { name: "wall/100000", calls: 1000, prepare: || wall(100_000) },
+    Kernel { name: "identify/corner", calls: 1, prepare: || whole::identify(whole::corner()) },
+    Kernel { name: "identify/pocket", calls: 1, prepare: || whole::identify(whole::pocket()) },
+    Kernel { name: "design/corner", calls: 1, prepare: || whole::design(whole::corner()) },
+    Kernel { name: "design/pocket", calls: 1, prepare: || whole::design(whole::pocket()) },
+];
+
+/// Samples of one period of the wave, and their distance.
+const WINDOW: usize = 100;
+const STEP_UM: i64 = 200;
+
+/// A leaked machine on a wave and the samples of the period in its middle.
+fn on_a_wave(segments: usize) -> (&'static Loop<'static>, std::ops::Range<usize>) {
+    let path: &'static Path = Box::leak(Box::new(path(&part::wave(segments), &setup(WallLaw::Helical), STEP_UM)));
+    let table = Box::leak(Box::new(ForceTable::new(Real::ZERO)));
+    let machine = machine(path, table, Compliance::from_stiffness(real(1150.0), real(1150.0)));
+    let whole_periods = (segments / 10 / 2) as i64;
+    let start = path.index_at(Offset::from_um(20_000 * whole_periods));
+    (Box::leak(Box::new(machine)), start..start + WINDOW)
+}
+
+/// Calls a step on the samples of a range in turn.
+fn in_turn(range: std::ops::Range<usize>, mut step: impl FnMut(usize) + 'static) -> Work {
+    let mut at = range.clone();
+    Box::new(move || {
+        let index = at.next().unwrap_or_else(|| {
+            at = range.start + 1..range.end;
+            range.start
+        });
+        step(black_box(index));
+    })
+}
+
+/// The engagement angle at one sample.
+fn engagement(segments: usize) -> Work {
+    let (machine, range) = on_a_wave(segments);
+    let displaced = Vector { x: Offset::from_um(30), y: Offset::from_um(-80) };
+    in_turn(range, move |index| {
+        let frame = machine.path.frame(index, displaced).unwrap();
+        black_box(machine.path.engagement(index, displaced, &frame));
+    })
+}
+
+/// The elastic loop at one sample, started from the sample before.
+fn elastic(segments: usize) -> Work {
+    let (machine, range) = on_a_wave(segments);
+    let feed = machine.path.setup().feed_per_tooth(machine.path.samples()[range.start].feed);
+    let chip_scale = machine.coefficients.chip_scale(feed);
+    let mut guess = Vector::ZERO;
+    in_turn(range, move |index| {
+        let (state, _) = machine.settle(index, Vector::ZERO, guess, chip_scale);
+        guess = black_box(state).displacement;
+    })
+}
+
+/// The wall error beside one sample at one height.
+fn wall(segments: usize) -> Work {
+    let (machine, range) = on_a_wave(segments);
+    let margin = WINDOW / 2;
+    let from = range.start.saturating_sub(margin);
+    let mut states = vec![State::REST; WINDOW + 2 * margin];
+    machine.run(from, &mut states, |_| Vector::ZERO);
+    let mut displacements = vec![Vector::ZERO; states.len()];
+    Envelope::displace(machine, &states, Real::HALF, &mut displacements);
+    let envelope = Envelope::new(machine.path, from, displacements.leak());
+    in_turn(range, move |index| {
+        black_box(envelope.error(index, index));
+    })
+}

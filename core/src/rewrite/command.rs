@@ -1,0 +1,100 @@
+//! Commands between ticks: acknowledge, arm, disarm. They come from the controller or the operator, outside the servo
+//! cycle.
+
+use super::refusal::{Identity, Refusal};
+use super::state::{Mode, Spent, State};
+use super::{Frame, Phase, Reason, Rewriter};
+use crate::image::Binding;
+
+/// What the controller says it is about to do: the operator's confirmation for one pass of one part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ArmRequest {
+    /// Program, feature, pass, tool, tool offset, setup; every number must be that of the image.
+    pub binding: Binding,
+    /// Serial number of the part; the same pass of the same part cannot be armed twice.
+    pub part_serial: u32,
+    /// Program coordinates to machine axes.
+    pub frame: Frame,
+}
+
+impl Rewriter<'_> {
+    /// The controller acknowledges that the drives are disabled: `Off` → `Bypass`.
+    ///
+    /// # Errors
+    /// Not in `Off`, or the last setpoint said that the drives are enabled.
+    pub fn acknowledge_drives_disabled(&self, state: &mut State) -> Result<(), Refusal> {
+        if state.mode != Mode::Off {
+            return Err(Refusal::State(state.mode));
+        }
+        if state.drives_seen_enabled {
+            return Err(Refusal::DrivesEnabled);
+        }
+        // The axes stand where they stand: whatever correction there was went with the drive enable.
+        *state = State { mode: Mode::Bypass, reason: state.reason, ..State::remembering(state.spent) };
+        Ok(())
+    }
+
+    /// Arms the image for one pass of one part: `Bypass` → `Armed`. The pass counts as spent from here on, whether
+    /// or not the gate is ever reached.
+    ///
+    /// # Errors
+    /// Not in `Bypass`; no image; a number differs; the frame is damaged or no rigid motion; the pass of this part
+    /// was armed before. The state then stays as it is.
+    pub fn arm(&self, state: &mut State, request: &ArmRequest) -> Result<(), Refusal> {
+        if state.mode != Mode::Bypass {
+            return Err(Refusal::State(state.mode));
+        }
+        let Some(plan) = &self.plan else {
+            return Err(Refusal::NoImage);
+        };
+        let stored = plan.image.settings().binding;
+        let asked = request.binding;
+        for (what, image, request) in [
+            (Identity::Program, stored.program_crc, asked.program_crc),
+            (Identity::Feature, stored.feature, asked.feature),
+            (Identity::Pass, stored.pass, asked.pass),
+            (Identity::Tool, stored.tool, asked.tool),
+            (Identity::ToolOffset, stored.tool_offset, asked.tool_offset),
+            (Identity::Setup, stored.setup, asked.setup),
+        ] {
+            if image != request {
+                return Err(Refusal::Identity { what, image, request });
+            }
+        }
+        let mapping = request.frame.mapping(plan.image.header().origin)?;
+        let pass = Spent {
+            part_serial: request.part_serial,
+            program_crc: asked.program_crc,
+            feature: asked.feature,
+            pass: asked.pass,
+        };
+        if state.is_spent(&pass) {
+            return Err(Refusal::PartRepeated { part_serial: request.part_serial });
+        }
+        let mut next = State {
+            mode: Mode::Armed,
+            reason: Reason::None,
+            phase: Phase::Entry,
+            image_crc: plan.image.crc(),
+            frame_crc: request.frame.crc,
+            mapping: Some(mapping),
+            spent: state.spent,
+            ..State::default()
+        };
+        next.spend(pass);
+        *state = next;
+        Ok(())
+    }
+
+    /// Ends an arming: `Armed` → `Bypass` at once; from `Active` and `Hold` the correction ramps out first.
+    ///
+    /// # Errors
+    /// Nothing is armed.
+    pub fn disarm(&self, state: &mut State) -> Result<(), Refusal> {
+        if !matches!(state.mode, Mode::Armed | Mode::Active | Mode::Hold) || state.is_ending() {
+            return Err(Refusal::State(state.mode));
+        }
+        state.end(Reason::Disarmed);
+        Ok(())
+    }
+}

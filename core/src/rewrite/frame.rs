@@ -1,0 +1,222 @@
+//! From program coordinates to machine axes.
+//!
+//! `axis[k] = offset[k] ± (R·p)[k]` for the program axes k = X, Y, Z: R turns the XY plane, the sign mirrors, the map
+//! says which machine axis it is. Work offset, G52/G92 and tool offset are sums in `offset`; the unit is always the
+//! nanometre. The controller sends the frame with its own checksum, and the checksum alone with every setpoint.
+
+use super::Refusal;
+use crate::geometry::Point;
+use crate::image::crc32;
+use crate::units::{shift_rounded, shift_rounded_i64};
+
+/// Axes of a setpoint.
+pub const AXES: usize = 6;
+/// Fraction bits of sine and cosine of a frame.
+pub const TURN_BITS: u32 = 30;
+/// Cosine 1.
+pub const TURN_ONE: i32 = 1 << TURN_BITS;
+
+/// The machine axis a program axis drives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct AxisMap {
+    /// Index of the axis in a setpoint, 0…5.
+    pub axis: u8,
+    /// Whether it counts the other way round.
+    pub reversed: bool,
+}
+
+/// The transform, as the controller sends it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Frame {
+    /// Machine coordinate of the program's origin on the axes of X, Y, Z, nm.
+    pub offset_nm: [i64; 3],
+    /// Cosine of the turn of the XY plane, counter-clockwise, units of 2⁻³⁰.
+    pub cosine: i32,
+    /// Sine of that turn.
+    pub sine: i32,
+    /// Axes of X, Y, Z.
+    pub axes: [AxisMap; 3],
+    /// CRC-32 of all of the above, see [`Frame::checksum`].
+    pub crc: u32,
+}
+
+impl Frame {
+    /// Program coordinates are machine coordinates.
+    pub fn identity() -> Self {
+        let axis = |axis| AxisMap { axis, reversed: false };
+        let axes = [axis(0), axis(1), axis(2)];
+        Self { offset_nm: [0; 3], cosine: TURN_ONE, sine: 0, axes, crc: 0 }.sealed()
+    }
+
+    /// The same with the right checksum.
+    pub fn sealed(mut self) -> Self {
+        self.crc = self.checksum();
+        self
+    }
+
+    /// CRC-32 of offsets (3 × i64), cosine, sine (i32) and for each axis its index and 1 or 0 for reversed, little
+    /// endian: 38 bytes.
+    pub fn checksum(&self) -> u32 {
+        let mut bytes = [0u8; 38];
+        let (words, tail) = bytes.as_chunks_mut::<8>();
+        for (to, offset) in words.iter_mut().zip(self.offset_nm) {
+            *to = offset.to_le_bytes();
+        }
+        if let Some(to) = words.last_mut() {
+            let turn = u64::from(self.cosine as u32) | (u64::from(self.sine as u32) << 32);
+            *to = turn.to_le_bytes();
+        }
+        for (to, map) in tail.as_chunks_mut::<2>().0.iter_mut().zip(self.axes) {
+            *to = [map.axis, u8::from(map.reversed)];
+        }
+        crc32(&bytes)
+    }
+
+    /// Machine coordinates of a point in program coordinates on the axes of X, Y, Z, nm, rounded once.
+    pub fn machine_nm(&self, x: i64, y: i64, z: i64) -> [i64; 3] {
+        let (c, s) = (i128::from(self.cosine), i128::from(self.sine));
+        let turned = |a: i128, x: i64, b: i128, y: i64| {
+            let sum = a.saturating_mul(x.into()).saturating_add(b.saturating_mul(y.into()));
+            shift_rounded(sum, TURN_BITS) as i64
+        };
+        let [mx, my, mz] = self.axes;
+        let [ox, oy, oz] = self.offset_nm;
+        [
+            ox.saturating_add(mx.signed(turned(c, x, s.saturating_neg(), y))),
+            oy.saturating_add(my.signed(turned(s, x, c, y))),
+            oz.saturating_add(mz.signed(z)),
+        ]
+    }
+
+    /// Checked and prepared for the servo cycle. `origin` is the first node of the image.
+    ///
+    /// # Errors
+    /// The checksum is wrong, sine and cosine are not those of one angle, or the axes are not three different ones.
+    pub(super) fn mapping(&self, origin: Point) -> Result<Mapping, Refusal> {
+        let computed = self.checksum();
+        if computed != self.crc {
+            return Err(Refusal::FrameDamaged { stored: self.crc, computed });
+        }
+        let (c, s) = (i64::from(self.cosine), i64::from(self.sine));
+        let square = c.saturating_mul(c).saturating_add(s.saturating_mul(s));
+        // 2⁻²⁷ of the length: 4 nm over half a metre, two steps of sine and cosine.
+        if square.abs_diff(1 << (2 * TURN_BITS)) > 1 << (TURN_BITS + 4) {
+            return Err(Refusal::FrameNotRigid { cosine: self.cosine, sine: self.sine });
+        }
+        let [x, y, z] = self.axes.map(|m| m.axis);
+        if x == y || y == z || x == z || [x, y, z].iter().any(|&a| usize::from(a) >= AXES) {
+            return Err(Refusal::FrameAxes { x, y, z });
+        }
+        let anchor = self.machine_nm(origin.x.nm(), origin.y.nm(), 0);
+        Ok(Mapping { anchor, cosine: self.cosine, sine: self.sine, axes: self.axes })
+    }
+}
+
+impl AxisMap {
+    #[inline]
+    fn signed(self, value: i64) -> i64 {
+        if self.reversed { value.saturating_neg() } else { value }
+    }
+}
+
+/// A frame seen from the first node of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Mapping {
+    /// Machine coordinates of the first node at program Z = 0.
+    anchor: [i64; 3],
+    cosine: i32,
+    sine: i32,
+    axes: [AxisMap; 3],
+}
+
+/// A setpoint in program coordinates: x and y from the first node of the image, z absolute, nm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) struct Local {
+    pub x: i64,
+    pub y: i64,
+    pub z: i64,
+}
+
+impl Mapping {
+    /// The setpoint in program coordinates; `None` farther than 2.1 m from the first node.
+    #[inline]
+    pub fn local(&self, axes: &[i64; AXES]) -> Option<Local> {
+        let [mx, my, mz] = self.axes;
+        let [ax, ay, az] = self.anchor;
+        let at = |map: AxisMap, anchor: i64| {
+            map.signed(axes.get(usize::from(map.axis)).copied().unwrap_or(0).saturating_sub(anchor))
+        };
+        let x = i32::try_from(at(mx, ax)).ok()?;
+        let y = i32::try_from(at(my, ay)).ok()?;
+        let (x, y) = turn(x, y, self.cosine, self.sine.wrapping_neg());
+        Some(Local { x, y, z: at(mz, az) })
+    }
+
+    /// A correction in program coordinates on the machine axes of X and Y, the unit unchanged.
+    #[inline]
+    pub fn machine(&self, x: i32, y: i32) -> [i32; 2] {
+        let (x, y) = turn(x, y, self.cosine, self.sine);
+        let [mx, my, _] = self.axes;
+        // In range: corrections are below 2³⁰, turned below 2³¹.
+        [mx.signed(x) as i32, my.signed(y) as i32]
+    }
+
+    /// Indices of the machine axes of X and Y.
+    #[inline]
+    pub fn plane(&self) -> [usize; 2] {
+        let [x, y, _] = self.axes;
+        [usize::from(x.axis), usize::from(y.axis)]
+    }
+}
+
+/// Turned counter-clockwise. In range: products below 2⁶¹, sums below 2⁶².
+#[inline]
+fn turn(x: i32, y: i32, cosine: i32, sine: i32) -> (i64, i64) {
+    let product = |a: i32, b: i32| i64::from(a).wrapping_mul(i64::from(b));
+    let turned_x = product(x, cosine).wrapping_sub(product(y, sine));
+    let turned_y = product(x, sine).wrapping_add(product(y, cosine));
+    (shift_rounded_i64(turned_x, TURN_BITS), shift_rounded_i64(turned_y, TURN_BITS))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::arithmetic_side_effects, clippy::indexing_slicing, clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn machine_coordinates_go_back_to_program_coordinates() {
+        // 3-4-5: a turn whose cosine 0.8 is not exact in binary.
+        let axes = [(2, true), (0, false), (1, true)].map(|(axis, reversed)| AxisMap { axis, reversed });
+        let frame =
+            Frame { offset_nm: [1_000_003, -7, 55], cosine: 858_993_459, sine: 644_245_094, axes, crc: 0 }.sealed();
+        let mapping = frame.mapping(Point::from_nm(5_000, -6_000)).unwrap();
+        for (x, y, z) in [(0, 0, 0), (123_456_789, -98_765_432, -4), (-300_000_000, 1, 7)] {
+            let [a, b, c] = frame.machine_nm(5_000 + x, -6_000 + y, z);
+            let back = mapping.local(&[b, c, a, 9, 9, 9]).unwrap();
+            assert!((back.x - x).abs() <= 2 && (back.y - y).abs() <= 2, "{back:?}");
+            assert_eq!(back.z, z);
+        }
+        assert_eq!(mapping.plane(), [2, 0]);
+    }
+
+    #[test]
+    fn a_frame_that_is_damaged_bent_or_short_of_an_axis_is_refused() {
+        let good = Frame::identity();
+        let origin = Point::from_nm(0, 0);
+        assert!(good.mapping(origin).is_ok());
+        let damaged = Frame { sine: 1, ..good };
+        assert!(matches!(damaged.mapping(origin), Err(Refusal::FrameDamaged { .. })));
+        let bent = Frame { sine: 1 << 20, ..good }.sealed();
+        assert!(matches!(bent.mapping(origin), Err(Refusal::FrameNotRigid { .. })));
+        let mut twice = good;
+        twice.axes[1] = twice.axes[0];
+        assert!(matches!(twice.sealed().mapping(origin), Err(Refusal::FrameAxes { .. })));
+    }
+
+    #[test]
+    fn a_setpoint_in_another_room_is_no_place() {
+        let mapping = Frame::identity().mapping(Point::from_nm(0, 0)).unwrap();
+        assert!(mapping.local(&[i64::MAX, 0, 0, 0, 0, 0]).is_none());
+        assert!(mapping.local(&[0, i64::MIN, 0, 0, 0, 0]).is_none());
+    }
+}

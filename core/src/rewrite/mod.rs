@@ -1,0 +1,122 @@
+//! Setpoint in, corrected setpoint out, in the same tick: the only code in the servo cycle.
+//!
+//! [`Rewriter`] is configuration (settings, image and what follows from them), [`State`] is what changes;
+//! [`Rewriter::tick`] takes one setpoint. Called once per interpolator cycle, by the servo task of the device or by
+//! the replay on a PC, with the same bits as result. It holds no float, no division, no 128-bit product, no
+//! formatting; its loops are bounded ([`ADVANCE_LIMIT`]).
+//!
+//! | state | what goes out | leaves it by |
+//! |---|---|---|
+//! | `Off` | nothing | [`Rewriter::acknowledge_drives_disabled`] → `Bypass` |
+//! | `Bypass` | the setpoint | [`Rewriter::arm`] → `Armed` |
+//! | `Armed` | the setpoint | gate → `Active`; [`Rewriter::disarm`], stop, tool or frame change → `Bypass` |
+//! | `Active` | corrected | end, disarm, M30: ramps out → `Bypass`; feed hold → `Hold`; anything unexpected → `Fault` |
+//! | `Hold` | corrected, held | motion → `Active`; as `Active` |
+//! | `Fault` | correction ramps to zero | at zero, within [`Limits::ramp_ticks`] → `Bypass` |
+//!
+//! Arming is one-shot: after any end the next part needs a new arming with another serial number, so a repeated
+//! program, a spring pass or a restart in the middle runs uncorrected.
+//!
+//! The correction is looked up in program coordinates, turned to the machine axes, and limited there, axis by axis.
+
+mod command;
+mod digest;
+mod feed;
+mod follow;
+mod frame;
+mod limit;
+mod locate;
+mod reason;
+mod refusal;
+mod setpoint;
+mod settings;
+mod state;
+mod tick;
+
+pub use command::ArmRequest;
+pub use digest::Digest;
+pub use frame::{AXES, AxisMap, Frame, TURN_BITS, TURN_ONE};
+pub use limit::{AxisState, Limits};
+pub use locate::{ADVANCE_LIMIT, Place};
+pub use reason::Reason;
+pub use refusal::{Identity, Refusal};
+pub use setpoint::{Flags, Output, Setpoint, Status};
+pub use settings::{Settings, SettingsError};
+pub use state::{Mode, SPENT_CAPACITY, Spent, State};
+
+use crate::image::Image;
+use feed::FeedScale;
+use state::Phase;
+
+/// Settings and image, and what follows from them. Making one divides and takes roots; it belongs outside the servo
+/// cycle, as does changing the image, which is safe at any time but ends an active correction.
+#[derive(Clone, Debug)]
+pub struct Rewriter<'a> {
+    settings: Settings,
+    /// Change of the fade factor per tick, 2⁻¹⁶.
+    fade_step: i32,
+    plan: Option<Plan<'a>>,
+}
+
+/// An image prepared for the tick.
+#[derive(Clone, Debug)]
+struct Plan<'a> {
+    image: Image<'a>,
+    limits: Limits,
+    feed_scale: FeedScale,
+    tolerance_nm: i64,
+    tolerance_squared: u64,
+    last_segment: u32,
+    /// Pass window with tolerance, and the top of the gate, program coordinates, nm.
+    z_bottom: i64,
+    z_top: i64,
+    z_gate: i64,
+    warn_nm: u32,
+}
+
+impl<'a> Rewriter<'a> {
+    /// A rewriter for an image; without one it can only pass setpoints on.
+    ///
+    /// # Errors
+    /// A setting is outside its range, or a limit of the image vanishes at this tick rate.
+    pub fn new(settings: Settings, image: Option<Image<'a>>) -> Result<Self, SettingsError> {
+        settings.check()?;
+        let plan = image.map(|image| Plan::new(image, settings.tick_hz)).transpose()?;
+        let fade_step = 65_536u32.div_ceil(settings.fade_ticks.max(1)) as i32;
+        Ok(Self { settings, fade_step, plan })
+    }
+
+    /// Its settings.
+    pub const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+    /// Its image.
+    pub fn image(&self) -> Option<&Image<'a>> {
+        self.plan.as_ref().map(|p| &p.image)
+    }
+    /// Limits of the correction per tick.
+    pub fn limits(&self) -> Option<&Limits> {
+        self.plan.as_ref().map(|p| &p.limits)
+    }
+}
+
+impl<'a> Plan<'a> {
+    fn new(image: Image<'a>, tick_hz: u32) -> Result<Self, SettingsError> {
+        let settings = image.settings();
+        let window = settings.window;
+        let tolerance_nm = window.tolerance.nm();
+        let top = window.z_high + window.tolerance;
+        Ok(Self {
+            limits: Limits::new(&settings.limits, tick_hz)?,
+            feed_scale: FeedScale::new(&settings.feed, tick_hz),
+            tolerance_nm,
+            tolerance_squared: tolerance_nm.unsigned_abs().saturating_mul(tolerance_nm.unsigned_abs()),
+            last_segment: image.len().saturating_sub(2) as u32,
+            z_bottom: (window.z_low - window.tolerance).nm(),
+            z_top: top.nm(),
+            z_gate: (window.z_high + window.gate_height).nm().max(top.nm()),
+            warn_nm: settings.limits.warn.nm().unsigned_abs() as u32,
+            image,
+        })
+    }
+}

@@ -1,0 +1,158 @@
+//! The state of a rewriter, apart from its configuration.
+
+use core::fmt;
+
+use super::Reason;
+use super::feed::FeedRatio;
+use super::frame::{Local, Mapping};
+use super::limit::AxisState;
+use super::locate::Place;
+
+/// Fade factor 1, units of 2⁻¹⁶.
+pub(super) const FADE_ONE: i32 = 1 << 16;
+/// Arming is remembered for this many passes of parts; the oldest is forgotten first.
+pub const SPENT_CAPACITY: usize = 16;
+
+/// The states of the safety contract.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Mode {
+    /// After power-up or reset: nothing goes out, until the controller acknowledges that the drives are disabled.
+    #[default]
+    Off = 0,
+    /// Positions unchanged.
+    Bypass = 1,
+    /// Positions unchanged; waiting for the gate.
+    Armed = 2,
+    /// Corrected positions; also while the correction ramps out behind the end of the path.
+    Active = 3,
+    /// Place frozen, correction held.
+    Hold = 4,
+    /// The correction ramps to zero, then `Bypass`.
+    Fault = 5,
+}
+
+impl fmt::Display for Mode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Off => "Off",
+            Self::Bypass => "Bypass",
+            Self::Armed => "Armed",
+            Self::Active => "Active",
+            Self::Hold => "Hold",
+            Self::Fault => "Fault",
+        })
+    }
+}
+
+/// Where in the feature an active correction is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) enum Phase {
+    /// Over the start, above the pass: place frozen at the first node, the correction ramps in.
+    #[default]
+    Entry,
+    /// In the pass.
+    Path,
+    /// Behind the end: the correction ramps out.
+    Leaving,
+}
+
+/// A pass of a part that has been armed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Spent {
+    /// Serial number of the part.
+    pub part_serial: u32,
+    /// CRC-32 of the program.
+    pub program_crc: u32,
+    /// Feature.
+    pub feature: u32,
+    /// Pass.
+    pub pass: u32,
+}
+
+/// Everything that changes from tick to tick. A copy is a complete record: the same state, image, settings and
+/// setpoints give the same outputs to the last bit. The default is the state after power-up, [`Mode::Off`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct State {
+    pub(super) mode: Mode,
+    pub(super) reason: Reason,
+    pub(super) drives_seen_enabled: bool,
+    pub(super) phase: Phase,
+    /// Of the image that was armed.
+    pub(super) image_crc: u32,
+    /// Of the frame that was armed.
+    pub(super) frame_crc: u32,
+    pub(super) mapping: Option<Mapping>,
+    /// The setpoint before, in program coordinates, while armed or on.
+    pub(super) last: Option<Local>,
+    /// Where the place was frozen.
+    pub(super) held_at: Local,
+    pub(super) sequence: u32,
+    /// Ticks without motion.
+    pub(super) still: u32,
+    pub(super) place: Place,
+    /// Way along the path from the node of `place`, nm.
+    pub(super) along: u32,
+    /// How far the setpoint has gone back from its farthest place, nm.
+    pub(super) behind: i64,
+    pub(super) ratio: FeedRatio,
+    /// Whether the ratio was inside the window of the image when the setpoint last moved.
+    pub(super) feed_in_window: bool,
+    /// 0 … 2¹⁶.
+    pub(super) fade: i32,
+    /// Machine axes of X and Y.
+    pub(super) axes: [AxisState; 2],
+    pub(super) spent: [Option<Spent>; SPENT_CAPACITY],
+}
+
+impl State {
+    /// State after power-up that remembers armings from before, newest first.
+    pub fn remembering(spent: [Option<Spent>; SPENT_CAPACITY]) -> Self {
+        Self { spent, ..Self::default() }
+    }
+    /// The mode.
+    pub const fn mode(&self) -> Mode {
+        self.mode
+    }
+    /// Why the last correction ended or failed; stays until the next arming.
+    pub const fn reason(&self) -> Reason {
+        self.reason
+    }
+    /// The limited corrections of the machine axes of X and Y.
+    pub const fn axes(&self) -> &[AxisState; 2] {
+        &self.axes
+    }
+    /// Armed passes of parts, newest first, to be kept over a power-down.
+    pub const fn spent(&self) -> &[Option<Spent>; SPENT_CAPACITY] {
+        &self.spent
+    }
+
+    pub(super) fn is_spent(&self, pass: &Spent) -> bool {
+        self.spent.iter().flatten().any(|s| s == pass)
+    }
+    pub(super) fn spend(&mut self, pass: Spent) {
+        self.spent.rotate_right(1);
+        if let Some(newest) = self.spent.first_mut() {
+            *newest = Some(pass);
+        }
+    }
+    /// The end of a correction: ramp out when one is on, bypass at once when only armed.
+    #[inline]
+    pub(super) fn end(&mut self, reason: Reason) {
+        self.reason = reason;
+        self.mode = match self.mode {
+            Mode::Active | Mode::Hold if reason.is_fault() => Mode::Fault,
+            Mode::Active | Mode::Hold => {
+                self.phase = Phase::Leaving;
+                Mode::Active
+            }
+            Mode::Armed => Mode::Bypass,
+            other => other,
+        };
+    }
+    /// Whether the correction is on its way out.
+    #[inline]
+    pub(super) fn is_ending(&self) -> bool {
+        self.mode == Mode::Fault || (self.mode == Mode::Active && self.phase == Phase::Leaving)
+    }
+}

@@ -1,0 +1,129 @@
+//! The whole chain on the parts of the demonstration: milled by the plant, probed, corrected, milled again.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use truepath::command::correct::{self, Options};
+use truepath::command::demo;
+use truepath::diagnostics::Failure;
+use truepath::job::Route;
+use truepath_core::image::Image;
+
+fn told(folder: &Path) -> Vec<demo::Outcome> {
+    demo::run(folder, true, &mut |_| ()).unwrap()
+}
+
+/// The demonstration, told once for all tests.
+static STORY: LazyLock<(tempfile::TempDir, Vec<demo::Outcome>)> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let outcomes = told(folder.path());
+    (folder, outcomes)
+});
+
+/// A copy of one of its parts, to work in.
+fn part(index: usize) -> (tempfile::TempDir, PathBuf) {
+    let copy = tempfile::tempdir().unwrap();
+    for entry in fs::read_dir(&STORY.1[index].folder).unwrap() {
+        let entry = entry.unwrap();
+        fs::copy(entry.path(), copy.path().join(entry.file_name())).unwrap();
+    }
+    let path = copy.path().to_owned();
+    (copy, path)
+}
+
+#[test]
+fn every_part_of_the_demonstration_comes_out_as_promised() {
+    let outcomes = &STORY.1;
+    let names: Vec<&str> = outcomes.iter().map(|o| o.name).collect();
+    assert_eq!(names, ["corner", "corner-helix", "pocket"]);
+    for outcome in outcomes {
+        println!("{}: {:.4} -> {:.4} mm", outcome.name, outcome.before_mm, outcome.after_mm);
+    }
+    // The papers' corner: 0.30 mm before, at most 0.015 mm after.
+    assert!((outcomes[0].before_mm - 0.297).abs() < 0.004 && outcomes[0].after_mm <= 0.015);
+    // A machine that obeys no simplification of the model: ten and twenty times.
+    assert!(outcomes[1].factor >= 10.0 && outcomes[2].factor >= 20.0);
+    for outcome in outcomes {
+        assert!(outcome.rms_after_mm < outcome.rms_before_mm / 10.0);
+        let image = fs::read(outcome.folder.join("correction.tpi")).unwrap();
+        assert!(Image::new_checked(&image).is_ok());
+        let text = fs::read_to_string(outcome.folder.join("corrected.nc")).unwrap();
+        assert!(text.contains("(TRUEPATH CORRECTED"));
+        assert!(text.lines().count() < 80, "a corrected contour stays lines and arcs");
+    }
+}
+
+#[test]
+fn the_same_inputs_give_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    for (one, other) in STORY.1.iter().zip(&told(folder.path())) {
+        for entry in fs::read_dir(&one.folder).unwrap() {
+            let name = entry.unwrap().file_name();
+            assert_eq!(
+                fs::read(one.folder.join(&name)).unwrap(),
+                fs::read(other.folder.join(&name)).unwrap(),
+                "{}/{}",
+                one.name,
+                name.display()
+            );
+        }
+    }
+}
+
+#[test]
+fn correct_reads_what_the_demonstration_wrote_and_refuses_a_second_correction() {
+    let (_kept, part) = part(0);
+    let options = |job: &Path, out: &Path, route| -> Result<_, Failure> {
+        let probe = part.join("probe.txt");
+        correct::run(&Options { job, probe: &probe, out, force: false, route: Some(route) }, &mut |_| ())
+    };
+    let job = part.join("job.toml");
+    let out = part.join("again");
+    options(&job, &out, Route::Program).unwrap();
+    assert_eq!(fs::read(out.join("corrected.nc")).unwrap(), fs::read(part.join("corrected.nc")).unwrap());
+    let columns = "s_mm,x_mm,y_mm,dx_mm,dy_mm,predicted_error_before_mm,predicted_error_after_mm,sigma_mm";
+    assert!(fs::read_to_string(out.join("correction.csv")).unwrap().starts_with(columns));
+    let summary: serde_json::Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    for key in [
+        "max_error_before_mm",
+        "max_error_after_mm",
+        "axial_form_error_mm",
+        "worst_gouge_mm",
+        "identified",
+        "law",
+        "warnings",
+    ] {
+        assert!(summary.get(key).is_some(), "summary.json has no {key}");
+    }
+    let compliance = &summary["identified"]["compliance"];
+    assert!(compliance["value"].is_f64() && compliance["sigma"].is_f64() && compliance["observable"] == true);
+
+    // Nothing is overwritten without --force, and nothing of the folder changes.
+    let Err(Failure::Input(error)) = options(&job, &out, Route::Coprocessor) else { panic!("overwritten") };
+    assert_eq!(error.code(), "F003");
+    assert!(!out.join("correction.tpi").exists());
+
+    // A corrected program is no input for a correction.
+    let text = fs::read_to_string(&job).unwrap().replace("\"program.nc\"", "\"again/corrected.nc\"");
+    fs::write(part.join("twice.toml"), text).unwrap();
+    let Err(Failure::Input(error)) = options(&part.join("twice.toml"), &part.join("twice"), Route::Program) else {
+        panic!("corrected twice")
+    };
+    assert_eq!(error.code(), "J011");
+    assert!(!part.join("twice").exists());
+}
+
+#[test]
+fn a_correction_beyond_the_clamp_is_an_error_that_proposes_one_and_writes_nothing() {
+    let (_kept, part) = part(1);
+    let job = fs::read_to_string(part.join("job.toml")).unwrap().replace("clamp_mm = 1.0", "clamp_mm = 0.2");
+    fs::write(part.join("tight.toml"), job).unwrap();
+    let (job, probe, out) = (part.join("tight.toml"), part.join("probe.txt"), part.join("out"));
+    let options = Options { job: &job, probe: &probe, out: &out, force: false, route: None };
+    let Err(Failure::Input(error)) = correct::run(&options, &mut |_| ()) else { panic!("clamped in silence") };
+    assert_eq!(error.code(), "J017");
+    let shown = Failure::Input(error).render(truepath::diagnostics::Form::Plain);
+    assert!(shown.contains("set clamp_mm = 0."), "{shown}");
+    assert!(!out.exists());
+}

@@ -1,0 +1,38 @@
+//! Format, lints, documentation and tests of the workspace.
+
+use crate::repository::{cargo, run};
+use crate::step::{Outcome, Passed};
+
+/// Formatting of every source file.
+pub fn format(write: bool) -> Outcome {
+    let mut command = cargo();
+    command.args(["fmt", "--all"]);
+    if !write {
+        command.arg("--check");
+    }
+    run(&mut command)?;
+    Ok(Passed::Done)
+}
+
+/// Clippy over all targets; a warning fails.
+pub fn lint() -> Outcome {
+    run(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    Ok(Passed::Done)
+}
+
+/// The documentation of the workspace's own packages; a warning fails.
+pub fn doc() -> Outcome {
+    run(cargo().args(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))?;
+    Ok(Passed::Done)
+}
+
+/// The tests. Without arguments those of the whole workspace, and all of them even when one fails.
+pub fn tests(arguments: &[String]) -> Outcome {
+    let mut command = cargo();
+    command.arg("test");
+    if arguments.is_empty() {
+        command.args(["--workspace", "--no-fail-fast"]);
+    }
+    run(command.args(arguments))?;
+    Ok(Passed::Done)
+}

@@ -1,0 +1,128 @@
+//! A compiler for the microcontroller.
+//!
+//! In order of preference: the user's own, when the target is installed for it; Debian's, whose package of the
+//! compiler's sources lets cargo build `core` for any target; else a message with both remedies. Nobody's toolchains
+//! are changed: rustup is never called.
+
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::Command;
+
+use super::TARGET;
+use crate::repository::{cargo, is_root, may_install, program, read, run};
+use crate::step::Failure;
+
+/// Debian's packages, as of the security suite of Debian 12. They move, so no version is named.
+const PACKAGES: [&str; 3] = ["cargo-web", "rustc-web", "rust-web-src"];
+
+/// The oldest compiler the crates accept (`rust-version` of the workspace).
+const OLDEST_MINOR: u32 = 93;
+
+/// A compiler that can build for the microcontroller.
+#[derive(Debug)]
+pub enum Toolchain {
+    /// The one in use, with the target installed.
+    Own,
+    /// Debian's, which builds `core` from source.
+    Debian,
+}
+
+impl Toolchain {
+    /// Finds one, installing Debian's packages where that is allowed.
+    ///
+    /// # Errors
+    /// [`Failure::Missing`] with the ways to get one.
+    pub fn find() -> Result<Self, Failure> {
+        if own_has_target() {
+            return Ok(Self::Own);
+        }
+        if debian_is_complete() {
+            return Ok(Self::Debian);
+        }
+        if may_install() && install().is_ok() && debian_is_complete() {
+            return Ok(Self::Debian);
+        }
+        Err(Failure::Missing(format!(
+            "no compiler for {TARGET}. Install one of:\n  rustup target add {TARGET}\n  apt-get install \
+             --no-install-recommends {}   (Debian; compiler 1.{OLDEST_MINOR} or newer)",
+            PACKAGES.join(" ")
+        )))
+    }
+
+    /// Its name in reports.
+    pub fn describe(&self) -> &'static str {
+        match self {
+            Self::Own => "the installed target",
+            Self::Debian => "Debian's compiler, core built from source",
+        }
+    }
+
+    /// Its cargo.
+    pub fn cargo(&self) -> Command {
+        match self {
+            Self::Own => cargo(),
+            Self::Debian => {
+                let mut command = program("/usr/bin/cargo");
+                command
+                    .env("RUSTC", "/usr/bin/rustc")
+                    .env("RUSTDOC", "/usr/bin/rustdoc")
+                    // Lets the stable compiler build `core`; nothing else unstable is used.
+                    .env("RUSTC_BOOTSTRAP", "1")
+                    .env("CARGO_UNSTABLE_BUILD_STD", "core");
+                // What the cargo around this program set would lead back to its own compiler.
+                for name in ["RUSTUP_TOOLCHAIN", "CARGO", "RUSTC_WRAPPER", "LD_LIBRARY_PATH"] {
+                    command.env_remove(name);
+                }
+                command
+            }
+        }
+    }
+}
+
+fn own_has_target() -> bool {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| OsString::from("rustc"));
+    let Ok(directory) = read(program(rustc).args(["--print", "target-libdir", "--target", TARGET])) else {
+        return false;
+    };
+    let Ok(files) = Path::new(directory.trim()).read_dir() else { return false };
+    files.flatten().any(|f| f.file_name().to_string_lossy().starts_with("libcore-"))
+}
+
+fn debian_is_complete() -> bool {
+    let rustc = || program("/usr/bin/rustc");
+    let (Ok(version), Ok(sysroot)) = (read(rustc().arg("--version")), read(rustc().args(["--print", "sysroot"])))
+    else {
+        return false;
+    };
+    let source = Path::new(sysroot.trim()).join("lib/rustlib/src/rust/library/core");
+    minor(&version).is_some_and(|m| m >= OLDEST_MINOR) && source.is_dir() && Path::new("/usr/bin/cargo").exists()
+}
+
+/// 95 of `rustc 1.95.0 (…)`.
+fn minor(version: &str) -> Option<u32> {
+    version.strip_prefix("rustc 1.")?.split('.').next()?.parse().ok()
+}
+
+fn install() -> Result<(), Failure> {
+    let apt = || {
+        let mut command = if is_root() { program("apt-get") } else { program("sudo") };
+        if !is_root() {
+            command.args(["-n", "apt-get"]);
+        }
+        command
+    };
+    run(apt().args(["update", "--quiet"]))?;
+    run(apt().args(["install", "--yes", "--quiet", "--no-install-recommends"]).args(PACKAGES))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_version_of_a_compiler_is_read() {
+        assert_eq!(minor("rustc 1.96.0 (ac68faa20 2026-05-25) (built from a source tarball)"), Some(96));
+        assert_eq!(minor("rustc 2.0.0"), None);
+        assert_eq!(minor("clang 17"), None);
+    }
+}

@@ -1,0 +1,77 @@
+//! Where things are, and programs run from there.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use crate::step::Failure;
+
+/// The root of the repository.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the root of the repository")
+}
+
+/// The target directory in force.
+pub fn target() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |dir| root().join(dir))
+}
+
+/// The cargo that runs this program.
+pub fn cargo() -> Command {
+    program(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+/// A program, started in the root.
+pub fn program(name: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(name);
+    command.current_dir(root());
+    command
+}
+
+/// Runs a command with its output shown.
+///
+/// # Errors
+/// When it cannot be started or does not succeed; the message is the command line.
+pub fn run(command: &mut Command) -> Result<(), Failure> {
+    eprintln!("    $ {}", line(command));
+    let status = command.status().map_err(|e| not_started(command, &e))?;
+    if status.success() { Ok(()) } else { Err(Failure::found(format!("{status}: {}", line(command)))) }
+}
+
+/// Runs a command and takes its standard output.
+///
+/// # Errors
+/// When it cannot be started or does not succeed; the message holds what it said.
+pub fn read(command: &mut Command) -> Result<String, Failure> {
+    let Output { status, stdout, stderr } =
+        command.stdin(Stdio::null()).output().map_err(|e| not_started(command, &e))?;
+    if status.success() {
+        return Ok(String::from_utf8_lossy(&stdout).into_owned());
+    }
+    let said = String::from_utf8_lossy(&stderr);
+    Err(Failure::found(format!("{status}: {}\n{}", line(command), said.trim_end())))
+}
+
+/// Whether a command can be started and succeeds, in silence.
+pub fn succeeds(command: &mut Command) -> bool {
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())
+}
+
+/// Whether missing tools may be installed: by a continuous-integration run, or by a user who is root.
+pub fn may_install() -> bool {
+    std::env::var_os("CI").is_some_and(|v| v == "true") || is_root()
+}
+
+/// Whether the user is root.
+pub fn is_root() -> bool {
+    read(program("id").arg("-u")).is_ok_and(|uid| uid.trim() == "0")
+}
+
+fn not_started(command: &Command, error: &std::io::Error) -> Failure {
+    Failure::Missing(format!("{} cannot be started: {error}", command.get_program().to_string_lossy()))
+}
+
+fn line(command: &Command) -> String {
+    let words = std::iter::once(command.get_program()).chain(command.get_args());
+    words.map(OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
+}

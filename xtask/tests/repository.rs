@@ -1,0 +1,115 @@
+//! Properties of the repository as a whole that no compiler checks.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The modules of the core in the order in which data flows; none uses one that comes later.
+const LAYERS: [&str; 9] = ["units", "geometry", "gcode", "probe", "cut", "identify", "correct", "image", "rewrite"];
+/// Names under which unrelated things gather.
+const CATCH_ALL: [&str; 6] = ["util", "utils", "common", "helpers", "manager", "misc"];
+/// A source file longer than this holds more than one concept.
+const LONGEST_FILE: usize = 300;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap()
+}
+
+/// The Rust files below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()) {
+            if entry.is_dir() {
+                folders.push(entry);
+            } else if entry.extension().is_some_and(|e| e == "rs") {
+                found.push(entry);
+            }
+        }
+    }
+    assert!(!found.is_empty(), "no source in {}", folder.display());
+    found
+}
+
+/// The sources of every package, without tests and benchmarks.
+fn all_sources() -> Vec<PathBuf> {
+    ["core", "host-sim", "tests", "xtask"]
+        .iter()
+        .flat_map(|package| sources(&root().join(package).join("src")))
+        .collect()
+}
+
+/// Code lines of a file: without comments and without what follows `#[cfg(test)]`; none of a file of tests.
+fn code(file: &Path) -> Vec<String> {
+    if is_tests(file) {
+        return Vec::new();
+    }
+    let text = fs::read_to_string(file).unwrap();
+    let lines = text.lines().take_while(|l| l.trim() != "#[cfg(test)]").filter(|l| !l.trim_start().starts_with("//"));
+    lines.map(str::to_owned).collect()
+}
+
+fn is_tests(file: &Path) -> bool {
+    file.file_stem().is_some_and(|s| s == "tests")
+}
+
+#[test]
+fn no_module_of_the_core_uses_one_further_down() {
+    let mut wrong = Vec::new();
+    for (place, layer) in LAYERS.iter().enumerate() {
+        for file in sources(&root().join("core/src").join(layer)) {
+            for line in code(&file) {
+                for below in &LAYERS[place + 1..] {
+                    if line.contains(&format!("crate::{below}::")) || line.contains(&format!("crate::{below};")) {
+                        wrong.push(format!("{}: {}", file.display(), line.trim()));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_module_of_the_core_has_its_place_in_the_order() {
+    let lib = fs::read_to_string(root().join("core/src/lib.rs")).unwrap();
+    let modules: Vec<&str> = lib.lines().filter_map(|l| l.strip_prefix("pub mod ")?.strip_suffix(';')).collect();
+    assert!(!modules.is_empty());
+    for module in modules {
+        assert!(LAYERS.contains(&module), "{module} has no place");
+    }
+}
+
+#[test]
+fn every_source_file_says_what_it_is_and_holds_one_concept() {
+    let mut wrong = Vec::new();
+    for file in all_sources() {
+        let text = fs::read_to_string(&file).unwrap();
+        if !is_tests(&file) && !text.starts_with("//!") && !text.starts_with("#![doc") {
+            wrong.push(format!("{} does not begin with what it is", file.display()));
+        }
+        let lines = text.lines().count();
+        if lines > LONGEST_FILE {
+            wrong.push(format!("{} has {lines} lines, more than {LONGEST_FILE}", file.display()));
+        }
+        if file.iter().any(|part| CATCH_ALL.iter().any(|name| part.to_string_lossy().trim_end_matches(".rs") == *name))
+        {
+            wrong.push(format!("{} is named after nothing in particular", file.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_core_stays_without_std_and_without_unsafe() {
+    let lib = fs::read_to_string(root().join("core/src/lib.rs")).unwrap();
+    for attribute in ["#![no_std]", "#![forbid(unsafe_code)]", "#![deny(missing_docs)]"] {
+        assert!(lib.lines().any(|l| l == attribute), "{attribute}");
+    }
+    for file in sources(&root().join("core/src")) {
+        for line in code(&file) {
+            let alloc = line.contains("extern crate alloc") || line.contains("alloc::");
+            assert!(!alloc && !line.contains("use std::"), "{}: {line}", file.display());
+        }
+    }
+}
