@@ -13,6 +13,7 @@ pub mod pass;
 pub mod plant;
 pub mod plot;
 pub mod program;
+pub mod replay;
 pub mod report;
 pub mod setpoints;
 pub mod workshop;

@@ -1,11 +1,15 @@
 //! The kernels whose cost is watched, for the benchmarks and for the counter of instructions.
 //!
-//! The steps of the cut are measured in the middle of waves of 10, 1,000 and 100,000 equal segments: their cost must
-//! not depend on the length. Identification and design are measured whole, on the papers' corner and on a pocket.
+//! A tick of the rewriter and the steps of the cut are measured in the middle of paths of 10, 1,000 and 100,000 equal
+//! segments: their cost must not depend on the length. Identification and design are measured whole, on the papers'
+//! corner and on a pocket.
 
 #[path = "../../tests/corner/mod.rs"]
 mod corner;
 mod part;
+#[path = "../../tests/rewrite_support/mod.rs"]
+mod rewrite_support;
+mod servo;
 mod whole;
 
 use corner::{machine, path, real, setup};
@@ -30,6 +34,9 @@ pub struct Kernel {
 
 /// All kernels.
 pub const KERNELS: &[Kernel] = &[
+    Kernel { name: "tick/10", calls: 6000, prepare: || servo::tick(10) },
+    Kernel { name: "tick/1000", calls: 6000, prepare: || servo::tick(1_000) },
+    Kernel { name: "tick/100000", calls: 6000, prepare: || servo::tick(100_000) },
     Kernel { name: "engagement/10", calls: 2000, prepare: || engagement(10) },
     Kernel { name: "engagement/1000", calls: 2000, prepare: || engagement(1_000) },
     Kernel { name: "engagement/100000", calls: 2000, prepare: || engagement(100_000) },

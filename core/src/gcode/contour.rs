@@ -4,9 +4,7 @@
 //! lines. The blocks go into a slice lent by the caller, whose length is the only limit.
 
 use super::run::{Run, RunReader};
-use super::{
-    GcodeError, GcodeErrorKind, Interpreter, LineRange, Options, PathControl, ProgramSummary, Spindle, Units,
-};
+use super::{GcodeError, GcodeErrorKind, Interpreter, LineRange, Options, PathControl, ProgramSummary, Spindle, Units};
 use crate::geometry::{Block, Side};
 use crate::units::{Offset, Position, Real};
 

@@ -122,6 +122,11 @@ pub enum GcodeErrorKind {
         /// The M code.
         m: u32,
     },
+    /// M70…M73: LinuxCNC's saving and restoring of modes.
+    SavedModes {
+        /// The M code.
+        m: u32,
+    },
     /// A G that is no number of a G code.
     NotAGCode,
 
@@ -238,6 +243,7 @@ impl GcodeErrorKind {
             Self::Macro(_) => "G038",
             Self::Spline(_) => "G039",
             Self::Subprogram { .. } => "G040",
+            Self::SavedModes { .. } => "G046",
             Self::NotAGCode => "G041",
             Self::NoMotion => "G042",
             Self::MachineMoveNeedsLine => "G043",

@@ -5,8 +5,8 @@ use super::code::Group;
 use super::interpreter::Execution;
 use super::mcode::MCodes;
 use super::{
-    Canon, Coolant, Event, GcodeError, GcodeErrorKind, Motion, PathControl, Spindle, ToolLength, Units,
-    WarningKind, Word,
+    Canon, Coolant, Event, GcodeError, GcodeErrorKind, Motion, PathControl, Spindle, ToolLength, Units, WarningKind,
+    Word,
 };
 use crate::geometry::Side;
 use crate::units::{Offset, Real};

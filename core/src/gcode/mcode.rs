@@ -1,7 +1,7 @@
 //! The M codes of one block: which exclude each other, and what each kind does.
 //!
-//! LinuxCNC's modal groups 4 (stop), 6 (tool), 7 (spindle) and 8 (coolant). M97, M98 and M99 leave the sequence of blocks
-//! and are refused; any other code is kept and passed on.
+//! LinuxCNC's modal groups 4 (stop), 6 (tool), 7 (spindle) and 8 (coolant). M97, M98 and M99 leave the sequence of blocks,
+//! M70 to M73 change modes out of sight: they are refused; any other code is kept and passed on.
 
 use super::block::BlockWords;
 use super::{GcodeErrorKind, Span};
@@ -36,6 +36,7 @@ impl MCodes {
                 6 => sorted.tool.replace(code),
                 3..=5 => sorted.spindle.replace(code),
                 7..=9 => add(&mut sorted.coolant, code, |c| c.number == code.number || c.number.max(code.number) == 9),
+                70..=73 => return Err((GcodeErrorKind::SavedModes { m: code.number }, code.span)),
                 97..=99 => return Err((GcodeErrorKind::Subprogram { m: code.number }, code.span)),
                 _ => add(&mut sorted.other, code, |_| false),
             };

@@ -182,6 +182,12 @@ impl GcodeErrorKind {
             Self::Spline(g) => {
                 write!(f, "{g} is a spline, which is not computed; post the program with lines and arcs")
             }
+            Self::SavedModes { m } => {
+                write!(
+                    f,
+                    "M{m} saves or restores modes, which is not followed; write the modes (G90, G21, F, S) out instead"
+                )
+            }
             Self::Subprogram { m } => {
                 write!(
                     f,

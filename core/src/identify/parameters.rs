@@ -107,10 +107,10 @@ impl Prior {
     /// A prior of usual width around what the user stated.
     ///
     /// Widths: a stiffness is rarely known to better than a factor of two and x may differ from y by as much; cross
-    /// compliance is a tenth of the direct one; radial ratio ±25 %; edge coefficients ±60 % together (coefficients of
+    /// compliance is a tenth of the direct one; radial ratio ±40 %; edge coefficients ±60 % together (coefficients of
     /// one nominal alloy spread twofold) and ±25 % against each other; size exponent 0.15 ± 0.12 (Kienzle exponents
-    /// of steels and aluminium); bending 0.1 ± 0.12. The mean law of P23 is linear in the chip and knows no height,
-    /// so it has neither size exponent nor bending.
+    /// of steels and aluminium); bending 0.1 ± 0.12. The mean law of P23 is linear in the chip, knows no height and
+    /// describes the machine by two stiffnesses: it has neither size exponent nor bending and hardly a cross term.
     pub fn around(coefficients: Coefficients, compliance: Compliance, law: WallLaw) -> Self {
         let helical = law == WallLaw::Helical;
         let or_zero = |v: Real| if helical { v } else { Real::ZERO };
@@ -131,8 +131,8 @@ impl Prior {
         let sigma = [
             scale * percent(50),
             scale * percent(50),
-            scale * percent(10),
-            coefficients.krc / coefficients.ktc * percent(25),
+            scale * percent(if helical { 10 } else { 2 }),
+            coefficients.krc / coefficients.ktc * percent(40),
             edge(percent(60)),
             edge(percent(25)),
             or_zero(percent(12)),

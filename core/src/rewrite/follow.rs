@@ -1,9 +1,9 @@
 //! An armed or active correction: through the gate, along the path, over a hold, to the end.
 
 use super::feed::FeedRatio;
-use super::frame::{Local, Mapping};
+use super::frame::Local;
 use super::locate::{FRACTION_ONE, Foot, Place, locate, product, square};
-use super::state::{FADE_ONE, Mode, Phase, State};
+use super::state::{FADE_BITS, FADE_ONE, Mode, Phase, State};
 use super::{Flags, Plan, Reason, Rewriter, Setpoint};
 use crate::image::{Node, scaled};
 use crate::units::shift_rounded_i64;
@@ -12,8 +12,8 @@ impl Rewriter<'_> {
     /// Waits for the gate: the setpoint over the start of the path at gate height or lower, at feed speed, not
     /// against the direction of the path, drives on and no feed hold. The first setpoint after arming only tells where the cutter is.
     #[inline]
-    pub(super) fn wait(&self, plan: &Plan<'_>, mapping: &Mapping, state: &mut State, setpoint: &Setpoint) {
-        let at = mapping.local(&setpoint.axes);
+    pub(super) fn wait(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint) {
+        let at = state.local(setpoint);
         let before = core::mem::replace(&mut state.last, at);
         let (Some(at), Some(before)) = (at, before) else {
             return;
@@ -45,17 +45,11 @@ impl Rewriter<'_> {
     /// Takes the place, feed and fade to the new setpoint; gives the correction wanted, in program coordinates,
     /// 2⁻⁸ nm. Any reason to stop is left in `state`, and nothing is wanted any more.
     #[inline]
-    pub(super) fn follow(
-        &self,
-        plan: &Plan<'_>,
-        mapping: &Mapping,
-        state: &mut State,
-        setpoint: &Setpoint,
-    ) -> (i32, i32) {
-        match self.advance(plan, mapping, state, setpoint) {
-            Ok(ends) => {
+    pub(super) fn follow(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint) -> (i32, i32) {
+        match self.advance(plan, state, setpoint) {
+            Ok(()) => {
                 let judged = self.fade(plan, state, setpoint);
-                wanted(plan, state, &ends, judged)
+                wanted(plan, state, judged)
             }
             Err(reason) => {
                 state.end(reason);
@@ -64,18 +58,12 @@ impl Rewriter<'_> {
         }
     }
 
-    fn advance(
-        &self,
-        plan: &Plan<'_>,
-        mapping: &Mapping,
-        state: &mut State,
-        setpoint: &Setpoint,
-    ) -> Result<[Node; 2], Reason> {
+    fn advance(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint) -> Result<(), Reason> {
         let ticks = setpoint.sequence.wrapping_sub(state.sequence);
         if ticks == 0 || ticks > self.settings.max_lost_frames.wrapping_add(1) {
             return Err(Reason::SequenceBroken);
         }
-        let at = mapping.local(&setpoint.axes).ok_or(Reason::OffPath)?;
+        let at = state.local(setpoint).ok_or(Reason::OffPath)?;
         let before = state.last.unwrap_or(at);
         let step = step(before, at);
         state.last = Some(at);
@@ -84,15 +72,11 @@ impl Rewriter<'_> {
         }
         let moved = at != before;
         state.still = if moved { 0 } else { state.still.saturating_add(1) };
-        let frozen = |state: &State| {
-            let index = state.place.node as usize;
-            [plan.image.node(index), plan.image.node(index.wrapping_add(1))]
-        };
         if state.phase == Phase::Entry && at.z > plan.z_top {
             if !plan.near_start(at) || at.z > plan.z_gate {
                 return Err(Reason::LeftGate);
             }
-            return Ok(frozen(state));
+            return Ok(());
         }
         state.phase = Phase::Path;
         if at.z > plan.z_top {
@@ -102,7 +86,7 @@ impl Rewriter<'_> {
             return Err(Reason::BelowPass);
         }
         if self.holds(plan, state, setpoint, at, moved)? {
-            return Ok(frozen(state));
+            return Ok(());
         }
         let (foot, ahead) = locate(&plan.image, state.place.node, at);
         let way = ahead.wrapping_sub(state.along.into());
@@ -119,7 +103,7 @@ impl Rewriter<'_> {
         if step != (0, 0) && ticks == 1 {
             state.ratio.update(plan.feed_scale, way, self.live_spindle(setpoint), self.settings.feed_smoothing);
         }
-        Ok(foot.ends)
+        Ok(())
     }
 
     /// Enters and leaves `Hold`; says whether the place is frozen in this tick. With the feed-hold flag the place
@@ -215,19 +199,20 @@ fn step(from: Local, to: Local) -> (i64, i64) {
 
 /// The correction at the place: both ends of the segment scaled by the feed, then between them, then faded.
 #[inline]
-fn wanted(plan: &Plan<'_>, state: &State, ends: &[Node; 2], ratio: u32) -> (i32, i32) {
+fn wanted(plan: &Plan<'_>, state: &State, ratio: u32) -> (i32, i32) {
     let factor = plan.image.settings().feed.factor_at(ratio);
-    let [a, b] = ends;
+    let index = state.place.node as usize;
+    let (a, b) = (plan.image.node(index), plan.image.node(index.wrapping_add(1)));
     let part = |axis: usize| {
         let at = |node: &Node| {
             let (chip, edge) = (node.chip.get(axis).copied(), node.edge.get(axis).copied());
             // In range: the image holds chip · factor + edge within the clamp, below 2³⁰, over the feed window.
             scaled(chip.unwrap_or_default(), factor).wrapping_add(edge.unwrap_or_default().bits().into()) as i32
         };
-        let (low, high) = (at(a), at(b));
+        let (low, high) = (at(&a), at(&b));
         let rise = product(high.wrapping_sub(low), state.place.fraction as i32);
         let full = low.wrapping_add(shift_rounded_i64(rise, super::locate::FRACTION_BITS) as i32);
-        shift_rounded_i64(product(full, state.fade), 16) as i32
+        if state.fade == FADE_ONE { full } else { shift_rounded_i64(product(full, state.fade), FADE_BITS) as i32 }
     };
     (part(0), part(1))
 }

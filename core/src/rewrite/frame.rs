@@ -107,26 +107,37 @@ impl Frame {
         if x == y || y == z || x == z || [x, y, z].iter().any(|&a| usize::from(a) >= AXES) {
             return Err(Refusal::FrameAxes { x, y, z });
         }
-        let anchor = self.machine_nm(origin.x.nm(), origin.y.nm(), 0);
-        Ok(Mapping { anchor, cosine: self.cosine, sine: self.sine, axes: self.axes })
+        let [ax, ay, az] = self.machine_nm(origin.x.nm(), origin.y.nm(), 0);
+        let [mx, my, mz] = self.axes;
+        let signed = |map: AxisMap, value: i32| if map.reversed { value.saturating_neg() } else { value };
+        Ok(Mapping {
+            anchor: [ax, ay, az],
+            matrix: [
+                [signed(mx, self.cosine), signed(my, self.sine)],
+                [signed(mx, self.sine.saturating_neg()), signed(my, self.cosine)],
+            ],
+            plane: [mx.axis, my.axis],
+            height: mz,
+        })
     }
 }
 
 impl AxisMap {
-    #[inline]
     fn signed(self, value: i64) -> i64 {
         if self.reversed { value.saturating_neg() } else { value }
     }
 }
 
-/// A frame seen from the first node of an image.
+/// A frame seen from the first node of an image, with the turn and the signs of X and Y in one matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Mapping {
     /// Machine coordinates of the first node at program Z = 0.
     anchor: [i64; 3],
-    cosine: i32,
-    sine: i32,
-    axes: [AxisMap; 3],
+    /// Rows: program X, Y; columns: the machine axes of X, Y. Orthogonal, units of 2⁻³⁰.
+    matrix: [[i32; 2]; 2],
+    /// Indices of the machine axes of X and Y.
+    plane: [u8; 2],
+    height: AxisMap,
 }
 
 /// A setpoint in program coordinates: x and y from the first node of the image, z absolute, nm.
@@ -141,41 +152,36 @@ impl Mapping {
     /// The setpoint in program coordinates; `None` farther than 2.1 m from the first node.
     #[inline]
     pub fn local(&self, axes: &[i64; AXES]) -> Option<Local> {
-        let [mx, my, mz] = self.axes;
         let [ax, ay, az] = self.anchor;
-        let at = |map: AxisMap, anchor: i64| {
-            map.signed(axes.get(usize::from(map.axis)).copied().unwrap_or(0).saturating_sub(anchor))
-        };
-        let x = i32::try_from(at(mx, ax)).ok()?;
-        let y = i32::try_from(at(my, ay)).ok()?;
-        let (x, y) = turn(x, y, self.cosine, self.sine.wrapping_neg());
-        Some(Local { x, y, z: at(mz, az) })
+        let from = |axis: u8, anchor: i64| axes.get(usize::from(axis)).copied().unwrap_or(0).saturating_sub(anchor);
+        let [mx, my] = self.plane;
+        let x = i32::try_from(from(mx, ax)).ok()?;
+        let y = i32::try_from(from(my, ay)).ok()?;
+        let [[xx, xy], [yx, yy]] = self.matrix;
+        let z = self.height.signed(from(self.height.axis, az));
+        Some(Local { x: blend(x, xx, y, xy), y: blend(x, yx, y, yy), z })
     }
 
     /// A correction in program coordinates on the machine axes of X and Y, the unit unchanged.
     #[inline]
     pub fn machine(&self, x: i32, y: i32) -> [i32; 2] {
-        let (x, y) = turn(x, y, self.cosine, self.sine);
-        let [mx, my, _] = self.axes;
+        let [[xx, xy], [yx, yy]] = self.matrix;
         // In range: corrections are below 2³⁰, turned below 2³¹.
-        [mx.signed(x) as i32, my.signed(y) as i32]
+        [blend(x, xx, y, yx) as i32, blend(x, xy, y, yy) as i32]
     }
 
     /// Indices of the machine axes of X and Y.
     #[inline]
     pub fn plane(&self) -> [usize; 2] {
-        let [x, y, _] = self.axes;
-        [usize::from(x.axis), usize::from(y.axis)]
+        self.plane.map(usize::from)
     }
 }
 
-/// Turned counter-clockwise. In range: products below 2⁶¹, sums below 2⁶².
+/// a·m + b·n with matrix entries, rounded once. In range: products below 2⁶¹, the sum below 2⁶².
 #[inline]
-fn turn(x: i32, y: i32, cosine: i32, sine: i32) -> (i64, i64) {
-    let product = |a: i32, b: i32| i64::from(a).wrapping_mul(i64::from(b));
-    let turned_x = product(x, cosine).wrapping_sub(product(y, sine));
-    let turned_y = product(x, sine).wrapping_add(product(y, cosine));
-    (shift_rounded_i64(turned_x, TURN_BITS), shift_rounded_i64(turned_y, TURN_BITS))
+fn blend(a: i32, m: i32, b: i32, n: i32) -> i64 {
+    let product = |v: i32, by: i32| i64::from(v).wrapping_mul(i64::from(by));
+    shift_rounded_i64(product(a, m).wrapping_add(product(b, n)), TURN_BITS)
 }
 
 #[cfg(test)]

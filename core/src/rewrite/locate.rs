@@ -39,10 +39,6 @@ pub(super) struct Foot {
     pub along: u32,
     /// Square of the distance of the setpoint from the foot, nm²; the largest number when far.
     pub distance_squared: u64,
-    /// Length of the segment, nm.
-    pub length: u32,
-    /// The nodes at both ends.
-    pub ends: [Node; 2],
 }
 
 /// The foot nearest to `at`, starting from the foot's node `from`, and the way from that node's start to the foot, nm.
@@ -50,25 +46,33 @@ pub(super) struct Foot {
 pub(super) fn locate(image: &Image<'_>, from: u32, at: Local) -> (Foot, i64) {
     let last_segment = image.len().wrapping_sub(2) as u32;
     let node = |index: u32| image.node(index as usize);
-    let mut best = foot(node(from), node(from.wrapping_add(1)), from, at);
+    let mut start = node(from);
+    let mut end = node(from.wrapping_add(1));
+    let mut best = foot(&start, &end, from, at);
     let mut before = 0i64;
     if best.place.fraction == 0 && from > 0 {
-        let back = foot(node(from.wrapping_sub(1)), best.ends[0], from.wrapping_sub(1), at);
+        let previous = node(from.wrapping_sub(1));
+        let back = foot(&previous, &start, from.wrapping_sub(1), at);
         if back.distance_squared < best.distance_squared {
-            before = i64::from(back.length).wrapping_neg();
+            before = i64::from(previous.length).wrapping_neg();
             best = back;
+            end = start;
+            start = previous;
         }
     }
     let mut steps = 0;
     while steps < ADVANCE_LIMIT && best.place.node < last_segment {
         let index = best.place.node.wrapping_add(1);
-        let next = foot(best.ends[1], node(index.wrapping_add(1)), index, at);
+        let after = node(index.wrapping_add(1));
+        let next = foot(&end, &after, index, at);
         let shared = best.place.fraction == FRACTION_ONE && next.distance_squared == best.distance_squared;
         if next.distance_squared >= best.distance_squared && !shared {
             break;
         }
-        before = before.wrapping_add(i64::from(best.length));
+        before = before.wrapping_add(i64::from(start.length));
         best = next;
+        start = end;
+        end = after;
         steps = steps.wrapping_add(1);
     }
     (best, before.wrapping_add(i64::from(best.along)))
@@ -76,14 +80,12 @@ pub(super) fn locate(image: &Image<'_>, from: u32, at: Local) -> (Foot, i64) {
 
 /// The foot on the segment a…b.
 #[inline]
-fn foot(a: Node, b: Node, index: u32, at: Local) -> Foot {
+fn foot(a: &Node, b: &Node, index: u32, at: Local) -> Foot {
     let length = a.length;
     let result = |fraction: u32, along: u32, distance_squared: u64| Foot {
         place: Place { node: index, fraction },
         along,
         distance_squared,
-        length,
-        ends: [a, b],
     };
     let dx = at.x.wrapping_sub(i64::from(a.x));
     let dy = at.y.wrapping_sub(i64::from(a.y));

@@ -2,14 +2,16 @@
 
 use core::fmt;
 
-use super::Reason;
 use super::feed::FeedRatio;
 use super::frame::{Local, Mapping};
 use super::limit::AxisState;
 use super::locate::Place;
+use super::{Reason, Setpoint};
 
-/// Fade factor 1, units of 2⁻¹⁶.
-pub(super) const FADE_ONE: i32 = 1 << 16;
+/// Fraction bits of the fade factor.
+pub(super) const FADE_BITS: u32 = 16;
+/// Fade factor 1.
+pub(super) const FADE_ONE: i32 = 1 << FADE_BITS;
 /// Arming is remembered for this many passes of parts; the oldest is forgotten first.
 pub const SPENT_CAPACITY: usize = 16;
 
@@ -149,6 +151,11 @@ impl State {
             Mode::Armed => Mode::Bypass,
             other => other,
         };
+    }
+    /// The setpoint in program coordinates by the frame that was armed.
+    #[inline]
+    pub(super) fn local(&self, setpoint: &Setpoint) -> Option<Local> {
+        self.mapping.as_ref()?.local(&setpoint.axes)
     }
     /// Whether the correction is on its way out.
     #[inline]

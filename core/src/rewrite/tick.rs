@@ -1,6 +1,7 @@
 //! One tick: outer events, place and target, limiter, output.
 
-use super::frame::{AXES, Mapping};
+use super::frame::AXES;
+use super::locate::Place;
 use super::state::{FADE_ONE, Mode, State};
 use super::{Flags, Output, Plan, Reason, Rewriter, Setpoint, Status};
 use crate::image::FineOffset;
@@ -8,37 +9,36 @@ use crate::image::FineOffset;
 impl Rewriter<'_> {
     /// Rewrites one setpoint. Cost is bounded; nothing in it can fail or panic.
     pub fn tick(&self, state: &mut State, setpoint: &Setpoint) -> Output {
-        let mut correction_nm = [0; AXES];
-        let mut status = Status::default();
+        let mut out = Output {
+            axes: setpoint.axes,
+            correction_nm: [0; AXES],
+            forward: true,
+            mode: Mode::Off,
+            reason: Reason::None,
+            status: Status::default(),
+            place: Place::default(),
+            sequence: setpoint.sequence,
+        };
         match state.mode {
             Mode::Off => state.drives_seen_enabled = setpoint.flags.has(Flags::DRIVES_ENABLED),
             Mode::Bypass => {}
-            _ => self.run(state, setpoint, &mut correction_nm, &mut status),
+            _ => self.run(state, setpoint, &mut out),
         }
         state.sequence = setpoint.sequence;
-        let mut axes = setpoint.axes;
-        for (axis, correction) in axes.iter_mut().zip(correction_nm) {
-            *axis = axis.saturating_add(correction.into());
-        }
-        Output {
-            axes,
-            correction_nm,
-            forward: state.mode != Mode::Off,
-            mode: state.mode,
-            reason: state.reason,
-            status,
-            place: state.place,
-            sequence: setpoint.sequence,
-        }
+        out.forward = state.mode != Mode::Off;
+        out.mode = state.mode;
+        out.reason = state.reason;
+        out.place = state.place;
+        out
     }
 
-    fn run(&self, state: &mut State, setpoint: &Setpoint, correction_nm: &mut [i32; AXES], status: &mut Status) {
+    fn run(&self, state: &mut State, setpoint: &Setpoint, out: &mut Output) {
         let at_rest = state.axes.iter().all(|a| a.is_at_rest_at_zero());
         if state.is_ending() && at_rest {
             state.mode = Mode::Bypass;
             return;
         }
-        let (Some(plan), Some(mapping)) = (&self.plan, state.mapping) else {
+        let Some(plan) = &self.plan else {
             // The image was taken away. Without it there are no limits to ramp by: the drives must stop first.
             state.reason = Reason::ImageChanged;
             state.mode = if at_rest { Mode::Bypass } else { Mode::Off };
@@ -48,58 +48,60 @@ impl Rewriter<'_> {
             state.end(reason);
         }
         if state.mode == Mode::Armed {
-            self.wait(plan, &mapping, state, setpoint);
+            self.wait(plan, state, setpoint);
         }
-        let wanted = match state.mode {
+        let (x, y) = match state.mode {
             Mode::Bypass | Mode::Armed => return,
             _ if state.is_ending() => (0, 0),
-            _ => self.follow(plan, &mapping, state, setpoint),
+            _ => self.follow(plan, state, setpoint),
         };
-        let mut wanted = mapping.machine(wanted.0, wanted.1);
-        if self.passes_joint_limit(&mapping, setpoint, wanted) {
+        let (mut wanted, plane) = match &state.mapping {
+            Some(mapping) => (mapping.machine(x, y), mapping.plane()),
+            None => ([0; 2], [0, 1]),
+        };
+        let rooms = plane.map(|axis| self.room(setpoint, axis));
+        if wanted.iter().zip(rooms).any(|(&fine, room)| room.hold(nanometres(FineOffset::from_bits(fine))).1) {
             state.end(Reason::JointLimit);
-            wanted = [0, 0];
+            wanted = [0; 2];
         }
-        for (index, (axis, goal)) in state.axes.iter_mut().zip(wanted).enumerate() {
-            status.set(Status::SATURATED, plan.limits.step(axis, goal));
-            status.set(Status::LAGGING, !axis.is_on_target());
-            let nm = nanometres(axis.correction());
-            let (held, limited) = self.within_joint_limits(&mapping, setpoint, index, nm);
-            status.set(Status::JOINT_LIMITED, limited);
-            status.set(Status::WARN, held.unsigned_abs() > plan.warn_nm);
-            let place = mapping.plane().get(index).copied().and_then(|machine| correction_nm.get_mut(machine));
-            if let Some(place) = place {
-                *place = held;
+        for (((axis, goal), room), machine) in state.axes.iter_mut().zip(wanted).zip(rooms).zip(plane) {
+            out.status.set(Status::SATURATED, plan.limits.step(axis, goal));
+            out.status.set(Status::LAGGING, !axis.is_on_target());
+            let (nm, held) = room.hold(nanometres(axis.correction()));
+            out.status.set(Status::JOINT_LIMITED, held);
+            out.status.set(Status::WARN, nm.unsigned_abs() > plan.warn_nm);
+            if let (Some(to), Some(axis)) = (out.correction_nm.get_mut(machine), out.axes.get_mut(machine)) {
+                *to = nm;
+                *axis = axis.saturating_add(nm.into());
             }
         }
-        status.set(Status::FADED, state.fade < FADE_ONE);
+        out.status.set(Status::FADED, state.fade < FADE_ONE);
     }
 
-    /// Whether a setpoint with the correction wanted (2⁻⁸ nm) would pass a joint limit that the setpoint keeps.
+    /// How far a correction may carry an axis. A setpoint beyond a limit is the controller's affair; the correction
+    /// then does not carry it farther out.
     #[inline]
-    fn passes_joint_limit(&self, mapping: &Mapping, setpoint: &Setpoint, wanted: [i32; 2]) -> bool {
-        let mut passes = false;
-        for (index, fine) in wanted.into_iter().enumerate() {
-            passes |= self.within_joint_limits(mapping, setpoint, index, nanometres(FineOffset::from_bits(fine))).1;
-        }
-        passes
-    }
-
-    /// A correction held back so that it does not carry its axis over a limit, and whether it was.
-    #[inline]
-    fn within_joint_limits(&self, mapping: &Mapping, setpoint: &Setpoint, index: usize, nm: i32) -> (i32, bool) {
-        let machine = mapping.plane().get(index).copied().unwrap_or(0);
+    fn room(&self, setpoint: &Setpoint, machine: usize) -> Room {
         let position = setpoint.axes.get(machine).copied().unwrap_or(0);
         let (low, high) = self.settings.joint_limits_nm.get(machine).copied().unwrap_or((i64::MIN, i64::MAX));
-        let corrected = position.saturating_add(nm.into());
-        // A setpoint beyond a limit is the controller's affair; the correction does not carry it farther out.
-        if corrected > high && nm > 0 {
-            (high.max(position).wrapping_sub(position) as i32, true)
-        } else if corrected < low && nm < 0 {
-            (low.min(position).wrapping_sub(position) as i32, true)
-        } else {
-            (nm, false)
-        }
+        let narrow = |room: i64| room.clamp(0, i64::from(i32::MAX)) as i32;
+        Room { down: narrow(position.saturating_sub(low)), up: narrow(high.saturating_sub(position)) }
+    }
+}
+
+/// Way to the joint limits of an axis, nm, not negative.
+#[derive(Clone, Copy)]
+struct Room {
+    down: i32,
+    up: i32,
+}
+
+impl Room {
+    /// A correction held back to the room, and whether it was.
+    #[inline]
+    fn hold(self, nm: i32) -> (i32, bool) {
+        let held = nm.min(self.up).max(self.down.wrapping_neg());
+        (held, held != nm)
     }
 }
 

@@ -6,7 +6,9 @@
 mod canon;
 mod correct;
 mod demo;
+mod image;
 mod inspect;
+mod replay;
 mod simulate;
 mod terminal;
 
@@ -49,6 +51,10 @@ enum Command {
     Inspect(inspect::Arguments),
     /// From a probe file to the corrected program or the image for the coprocessor.
     Correct(correct::Arguments),
+    /// Recorded setpoints through the device's own code.
+    Replay(replay::Arguments),
+    /// A correction image as text.
+    Image(image::Arguments),
     /// Canonical moves of a program, in the text format of LinuxCNC's `rs274 -g`.
     Canon(canon::Arguments),
 }
@@ -79,6 +85,8 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Simulate(arguments) => simulate::run(&arguments, terminal),
         Command::Inspect(arguments) => inspect::run(&arguments, terminal),
         Command::Correct(arguments) => correct::run(&arguments, terminal),
+        Command::Replay(arguments) => replay::run(&arguments, terminal),
+        Command::Image(arguments) => image::run(&arguments, terminal),
         Command::Canon(arguments) => canon::run(&arguments, terminal),
     }
 }

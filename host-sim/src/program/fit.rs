@@ -9,7 +9,8 @@
 //!
 //! Free arcs need no more pieces than biarcs with matched tangents, because the whole tolerance goes into their
 //! number; the heading steps that remain between pieces are of the order of 4·tolerance/length. In the end the
-//! tolerance is lowered as far as the number of pieces allows, which spreads the samples evenly over them.
+//! tolerance is lowered as far as the number of pieces, and of arcs among them, allows: the samples are then spread
+//! evenly over them.
 //!
 //! Only sums, products, quotients and square roots are used: the result is the same on every host, and turned by 90°
 //! or mirrored with its input.
@@ -60,13 +61,17 @@ pub fn fit(samples: Samples<'_>, tolerance: f64) -> Vec<Piece> {
     for _ in 0..10 {
         let middle = 0.5 * (low + high);
         let finer = greedy(samples, middle);
-        if finer.len() <= best.len() {
+        if finer.len() <= best.len() && arcs(&finer) <= arcs(&best) {
             (best, high) = (finer, middle);
         } else {
             low = middle;
         }
     }
     best
+}
+
+fn arcs(pieces: &[Piece]) -> usize {
+    pieces.iter().filter(|piece| piece.shape != Shape::Line).count()
 }
 
 fn greedy(samples: Samples<'_>, tolerance: f64) -> Vec<Piece> {
@@ -247,6 +252,13 @@ mod tests {
                 .collect();
             assert_eq!(fit(same(&turned), 1_000.0), expected, "map {index}");
         }
+    }
+
+    #[test]
+    fn a_short_chord_of_a_large_circle_stays_a_line() {
+        let on_circle = |i: i32| [f64::from(i) * 13_000.0, -(f64::from(i) * 13_000.0).powi(2) / 2e8];
+        let path: Vec<_> = (0..4).map(on_circle).collect();
+        assert_eq!(fit(same(&path), 1_000.0), [Piece { end: 3, shape: Shape::Line }]);
     }
 
     #[test]
