@@ -1,10 +1,10 @@
 //! Programs → contours: the paper's program, its variants, and what a real program surrounds a contour with.
 
-use truepath_core::geometry::Side;
 use truepath_core::gcode::{
-    Candidate, ContourOptions, ContourProgram, GcodeError, LineRange, Spindle, Units, WarningKind,
-    find_contours, read_contour,
+    Candidate, ContourOptions, ContourProgram, GcodeError, LineRange, Spindle, Units, WarningKind, find_contours,
+    read_contour,
 };
+use truepath_core::geometry::Side;
 use truepath_core::geometry::{Block, Contour, Curve, Point, Shape};
 use truepath_core::units::{Offset, Position, Real};
 

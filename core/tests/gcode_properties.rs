@@ -68,7 +68,12 @@ fn any_move() -> impl Strategy<Value = Move> {
     let near = -9_000i64..9_000;
     prop_oneof![
         (far.clone(), far.clone()).prop_map(|by| Move::Line { by }),
-        ((far.clone(), far.clone()), prop_oneof![Just(1u8), Just(2), Just(3), Just(4)], (near.clone(), near), any::<bool>())
+        (
+            (far.clone(), far.clone()),
+            prop_oneof![Just(1u8), Just(2), Just(3), Just(4)],
+            (near.clone(), near),
+            any::<bool>()
+        )
             .prop_map(|(to_centre, quarters, off, ccw)| Move::Centre { to_centre, quarters, off, ccw }),
         ((far.clone(), far), 1i64..90_000_000, any::<bool>(), any::<bool>())
             .prop_map(|(by, more, long, ccw)| Move::Radius { by, more, long, ccw }),

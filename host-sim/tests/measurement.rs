@@ -71,10 +71,7 @@ fn a_stray_point_is_set_aside_with_a_reason_and_the_rest_is_used() {
     assert_eq!(measurement.contacts.len(), 4);
     let remarks = measurement.remarks(&file);
     assert!(remarks[0].starts_with("probe.txt:5: set aside: "), "{}", remarks[0]);
-    assert_eq!(
-        remarks[1],
-        "probe.txt:6: set aside: 35.000 mm above the cutter's tip, outside the engaged depth"
-    );
+    assert_eq!(remarks[1], "probe.txt:6: set aside: 35.000 mm above the cutter's tip, outside the engaged depth");
 }
 
 #[test]
@@ -100,14 +97,7 @@ fn wrong_files_are_refused_with_their_place_and_what_to_do() {
     let cases: Vec<(&str, &Pass, String, &str, usize, &str)> = vec![
         ("empty", &metric, String::new(), "M005", 1, "the file holds no probe point"),
         ("blank lines", &metric, "\n\n  \n".to_owned(), "M005", 1, "the file holds no probe point"),
-        (
-            "cut off",
-            &metric,
-            good() + "27.09 50",
-            "M003",
-            5,
-            "`27.09 50`: found 2 numbers in this line; expected 9",
-        ),
+        ("cut off", &metric, good() + "27.09 50", "M003", 5, "`27.09 50`: found 2 numbers in this line; expected 9"),
         (
             "a word",
             &metric,

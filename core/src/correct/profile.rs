@@ -46,7 +46,7 @@ impl Band {
     /// The whole engaged depth.
     pub const WHOLE: Self = Self { from: Real::ZERO, to: Real::ONE };
 
-    /// Middle of the k-th of [`HEIGHTS`] even slices.
+    /// Middle of the k-th of twelve even slices.
     pub fn at(self, k: i64) -> Real {
         self.from
             + (self.to - self.from) * Real::ratio(k.saturating_mul(2).saturating_add(1), HEIGHTS.saturating_mul(2))

@@ -1,6 +1,6 @@
 //! Plane geometry: points, directions, lines, arcs and the contour made of them.
 //!
-//! Everything here turns by 90° and mirrors with its input to the last bit; see [`crate::units::round`].
+//! Everything here turns by 90° and mirrors with its input to the last bit; see [`crate::units`].
 
 mod contour;
 mod curve;

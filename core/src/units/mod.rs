@@ -4,7 +4,7 @@
 //!   (0.0001 in = 2540 nm). A position is a place, an offset a difference of places; two positions cannot be added.
 //! * [`Real`] is the general number of the model (forces in newtons, angles in radians, chip thickness in
 //!   millimetres, …): 31 integer and 32 fraction bits, saturating.
-//! * [`round`] holds the only rounding of the crate. It is odd-symmetric, so a mirrored contour gives mirrored bits.
+//! * `round.rs` ([`shift_rounded`], [`div_rounded`]) holds the only rounding of the crate. It is odd-symmetric, so a mirrored contour gives mirrored bits.
 
 mod length;
 mod power;
