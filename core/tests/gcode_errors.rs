@@ -254,7 +254,7 @@ const TABLE: &[(&[u8], &str)] = &[
     ),
     (
         b"S\nG1 X1\nG0 Z1\nG1 X2\nY2\nG0 X0\nG1 Y5\nM2",
-        "line 4, column 1: G071: 3 contours found, the first two on line 2 and lines 4-5; name the one to correct in a [[feature]] of the job (blocks = [first line, last line])",
+        "line 4, column 1: G071: 3 contours found, the first two on line 2 and lines 4-5; give a program that holds the finishing contour alone",
     ),
     (
         b"S\nG1 X1\nX2\nX3\nX4\nX5\nM2",

@@ -63,11 +63,15 @@ fn judge(limits: &Limits, before: &State, after: &State, setpoint: &Setpoint, ou
 /// the limiter is asked for more than it may give all the time, and for a stop right at the clamp.
 fn harsh() -> (Vec<(i64, i64)>, Machine) {
     let points = eight(6.0);
-    let clamp = 100_000;
+    let clamp = 20_000;
     let mut harsh = settings();
     harsh.feed = FeedLaw::new(harsh.feed.per_tooth, 6, SPINDLE, Real::ONE, Real::ZERO, Real::from_int(2));
     harsh.limits.clamp = Offset::from_nm(clamp);
     harsh.limits.warn = Offset::from_nm(clamp / 2);
+    // At the feed the target moves by 2.7 µm per tick from clamp to clamp: it can be caught up with, and then the stop
+    // at the clamp takes 12 µm.
+    harsh.limits.slew_nm_per_s = 4_000_000;
+    harsh.limits.acceleration_nm_per_s2 = 300_000_000;
     let mut made = nodes(points.iter().copied());
     for (i, node) in made.iter_mut().enumerate() {
         let (x, y) = [(clamp, 0), (-clamp, 0), (0, -clamp), (0, clamp)][i / 7 % 4];
@@ -78,16 +82,19 @@ fn harsh() -> (Vec<(i64, i64)>, Machine) {
     (points, machine)
 }
 
-/// States of an exact run, each with its last setpoint: where the streams begin.
-fn beginnings() -> (Rewriter<'static>, ArmRequest, Vec<(State, Setpoint)>) {
+type Beginning = (State, Setpoint, (i64, i64));
+
+/// States of an exact run, each with its last setpoint and step: where the streams begin.
+fn beginnings() -> (Rewriter<'static>, ArmRequest, Vec<Beginning>) {
     let (points, m) = harsh();
     let mut m = m.armed();
-    let mut found = vec![(m.state, m.next)];
+    let mut found = vec![(m.state, m.next, (FEED, 0))];
     m.send(points[0].0, points[0].1, GATE);
     for &(x, y) in along(&points, FEED).iter() {
+        let [x0, y0, ..] = m.next.axes;
         m.send(x, y, PASS);
         if m.next.sequence % 37 == 0 {
-            found.push((m.state, m.next));
+            found.push((m.state, m.next, (x - x0, y - y0)));
         }
     }
     (m.rewriter, m.request, found)
@@ -126,9 +133,7 @@ fn a_million_random_streams_never_leave_the_limits() {
     let mut seen = [0u64; 6];
     let mut most = 0;
     for stream in 0..STREAMS {
-        let (mut state, mut sp) = beginnings[random.below(beginnings.len() as u64) as usize];
-        let (x, y) = (random.around(FEED), random.around(FEED));
-        let mut direction = (x, y);
+        let (mut state, mut sp, mut direction) = beginnings[random.below(beginnings.len() as u64) as usize];
         for _ in 0..16 + random.below(32) {
             disturb(&mut random, &mut direction, &mut sp);
             let before = state;
@@ -150,7 +155,7 @@ fn a_million_random_streams_never_leave_the_limits() {
     }
     // The streams must have been everywhere but in `Off`, and with corrections of size.
     assert!(seen[1..].iter().all(|&ticks| ticks > 100_000) && seen[0] == 0, "{seen:?}");
-    assert!((90_000..=100_000).contains(&most), "{most}");
+    assert!((19_900..=20_000).contains(&most), "{most}");
 }
 
 #[test]
@@ -159,8 +164,7 @@ fn long_streams_end_at_rest_in_bypass_after_a_stop() {
     let limits = rewriter.limits().unwrap();
     let mut random = Random(77);
     for _ in 0..300 {
-        let (mut state, mut sp) = beginnings[1 + random.below(beginnings.len() as u64 - 1) as usize];
-        let mut direction = (FEED, 0);
+        let (mut state, mut sp, mut direction) = beginnings[1 + random.below(beginnings.len() as u64 - 1) as usize];
         for _ in 0..500 {
             disturb(&mut random, &mut direction, &mut sp);
             let before = state;

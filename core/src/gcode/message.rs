@@ -1,8 +1,8 @@
-//! The sentences of errors and warnings: what was found, what was expected, what to do.
+//! The sentences of errors: what was found, what was expected, what to do.
 
 use core::fmt;
 
-use super::{Dialect, GcodeError, GcodeErrorKind, LineRange, Warning, WarningKind};
+use super::{Dialect, GcodeError, GcodeErrorKind, LineRange};
 use crate::units::Offset;
 
 /// A length in millimetres with as many decimals as it needs, at most six.
@@ -36,7 +36,7 @@ impl fmt::Display for Byte {
 }
 
 /// A letter.
-struct Letter(u8);
+pub(super) struct Letter(pub(super) u8);
 
 impl fmt::Display for Letter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -246,7 +246,7 @@ impl GcodeErrorKind {
             ),
             Self::SeveralContours { count, first, second } => write!(
                 f,
-                "{count} contours found, the first two on {first} and {second}; name the one to correct in a [[feature]] of the job (blocks = [first line, last line])"
+                "{count} contours found, the first two on {first} and {second}; give a program that holds the finishing contour alone"
             ),
             Self::ContourTooLong { limit } => {
                 write!(f, "the contour has more than {limit} blocks, which is what the buffer holds; choose fewer lines, or split the program")
@@ -268,36 +268,6 @@ impl GcodeErrorKind {
 }
 
 impl fmt::Display for GcodeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}, column {}: {}: {}", self.line, self.column, self.kind.code(), self.kind)
-    }
-}
-
-impl fmt::Display for WarningKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::PercentMissing => f.write_str("the program does not begin and end with `%`; make sure that the file is complete"),
-            Self::OutsidePercent => f.write_str("text outside the two `%` is ignored"),
-            Self::EndMissing => f.write_str("the program does not end with M2 or M30; make sure that the file is complete"),
-            Self::TextAfterEnd => f.write_str("text after the end of the program (M2, M30) is ignored"),
-            Self::FeedMissing => f.write_str("a cutting move has no feed; give F before it"),
-            Self::UnitsAssumed => f.write_str("neither G20 nor G21 before the first length; millimetres or inches are taken as set in the options"),
-            Self::UnitsWithFeed => f.write_str("F stands in the block that changes the unit; it is read in the new unit"),
-            Self::BlockDeleteExecuted => f.write_str("a block with `/` is executed; it changes the part if the machine skips it"),
-            Self::BlockDeleteSkipped => f.write_str("a block with `/` is skipped; it changes the part if the machine executes it"),
-            Self::UnknownM { m } => write!(f, "M{m} is not known here; it is kept, and taken not to move an axis"),
-            Self::BareG53 => f.write_str("G53 without axis words has no effect"),
-            Self::UnusedOffsetNumber { letter } => {
-                write!(f, "{} is given without the code that uses it; it has no effect here", Letter(letter))
-            }
-            Self::CompensationNotApplied => f.write_str(
-                "G41/G42: the program is read as the path of the cutter's centre and tells the side of the wall; the D offset must be zero or wear only",
-            ),
-        }
-    }
-}
-
-impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "line {}, column {}: {}: {}", self.line, self.column, self.kind.code(), self.kind)
     }

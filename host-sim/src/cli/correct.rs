@@ -75,7 +75,8 @@ fn words(s: &CorrectSummary, arguments: &Arguments) -> String {
     );
     for (name, p) in &s.identified {
         let seen = if p.observable { "" } else { "  not decided by the points" };
-        text += &format!("  {name:<24} {:>10.4} {:>10.4} {:>8.4} {:<5}{seen}\n", p.value, p.sigma, p.prior, p.unit);
+        text +=
+            &format!("  {name:<24} {:>10.4} {:>10.4} {:>8.4} {:<5}{seen}\n", p.value + 0.0, p.sigma, p.prior, p.unit);
     }
     text += &format!("\nwritten to {}\n", arguments.output.display());
     text
