@@ -123,6 +123,7 @@ impl Limits {
         let missing = axis.target.wrapping_sub(axis.position);
         let approach = self.braking(missing.unsigned_abs());
         let wish = within(goal.wrapping_sub(axis.target), v).wrapping_add(within(missing, approach));
+        // The table ends at ±V, so this is also the limit of speed.
         let wish = if wish >= 0 {
             let room = self.clamp.wrapping_sub(axis.position).max(0).unsigned_abs();
             wish.min(self.braking(room))
@@ -130,7 +131,6 @@ impl Limits {
             let room = self.clamp.wrapping_add(axis.position).max(0).unsigned_abs();
             wish.max(self.braking(room).wrapping_neg())
         };
-        let wish = within(wish, v);
         let velocity = wish.max(axis.velocity.wrapping_sub(a)).min(axis.velocity.wrapping_add(a));
         axis.velocity = velocity;
         axis.position = axis.position.wrapping_add(velocity);

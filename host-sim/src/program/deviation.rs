@@ -2,6 +2,8 @@
 
 use truepath_core::geometry::{Curve, Shape};
 
+use super::vector::{cross, dot, length, minus};
+
 /// The largest distance of a sample from a curve, nanometres.
 pub(super) fn deviation(samples: &[[i64; 2]], curve: &Curve) -> f64 {
     samples.iter().map(|&sample| distance(sample, curve)).fold(0.0, f64::max)
@@ -36,19 +38,6 @@ fn distance(sample: [i64; 2], curve: &Curve) -> f64 {
             if beside { ends.min((length(spoke) - radius).abs()) } else { ends }
         }
     }
-}
-
-fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] - b[0], a[1] - b[1]]
-}
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-fn length(a: [f64; 2]) -> f64 {
-    dot(a, a).sqrt()
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@
 //!
 //! Limits: arcs of at most 160°, radii up to 10 m.
 
+use super::vector::{cross, dot, minus};
 /// What runs from one sample to a later one. Lengths in nanometres, relative to the first sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
@@ -168,16 +169,6 @@ fn shape(samples: Samples<'_>, start: usize, end: usize, tolerance: f64) -> Opti
 fn parameter((u, v): (f64, f64), chord: f64) -> Option<(f64, f64)> {
     let w = u * (chord - u) - v * v;
     (w > 0.0).then(|| (-v / w, w))
-}
-
-fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] - b[0], a[1] - b[1]]
-}
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ mod header;
 mod line;
 mod pen;
 mod survey;
+mod vector;
 mod writer;
 
 use std::ops::Range;
