@@ -68,8 +68,8 @@ fn harsh() -> (Vec<(i64, i64)>, Machine) {
     harsh.feed = FeedLaw::new(harsh.feed.per_tooth, 6, SPINDLE, Real::ONE, Real::ZERO, Real::from_int(2));
     harsh.limits.clamp = Offset::from_nm(clamp);
     harsh.limits.warn = Offset::from_nm(clamp / 2);
-    // At the feed the target moves by 2.7 µm per tick from clamp to clamp: it can be caught up with at the limit of speed, and then the stop
-    // at the clamp takes 12 µm.
+    // At the feed the target moves by 2.7 µm per tick from clamp to clamp: it can just be caught up with at the limit of
+    // speed, and then the stop at the clamp takes 12 µm.
     harsh.limits.slew_nm_per_s = 3_000_000;
     harsh.limits.acceleration_nm_per_s2 = 300_000_000;
     let mut made = nodes(points.iter().copied());

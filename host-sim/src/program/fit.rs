@@ -18,6 +18,7 @@
 //! Limits: arcs of at most 160°, radii up to 10 m.
 
 use super::vector::{cross, dot, minus};
+
 /// What runs from one sample to a later one. Lengths in nanometres, relative to the first sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
