@@ -145,6 +145,11 @@ fn off_the_wall(pass: &Pass, file: &Source, contacts: &Contacts, readings: &[Rea
             "they fit with another ball",
             "check ball_diameter_mm: it is a diameter, and the file must hold ball centres, not surface points",
         ),
+        Suspicion::OtherSide => (
+            "M016",
+            "they fit a wall on the other side of travel",
+            "change wall in the job (or G41/G42 in the program): it is the side of the finished wall as seen in the direction of travel",
+        ),
         Suspicion::Frame => (
             "M014",
             "probably they are in another frame",

@@ -166,6 +166,13 @@ fn wrong_files_are_refused_with_their_place_and_what_to_do() {
 }
 
 #[test]
+fn a_wall_on_the_wrong_side_is_named() {
+    let left = pass(&[("wall = \"right\"", "wall = \"left\"")], PROGRAM);
+    let Err(Failure::Input(error)) = read(&left, &good()) else { panic!("accepted") };
+    assert_eq!(error.code(), "M016");
+}
+
+#[test]
 fn surface_points_given_as_ball_centres_are_named() {
     // A ball of 16 mm: surface points lie 8 mm behind where centres would.
     let big = pass(&[("ball_diameter_mm = 6.0", "ball_diameter_mm = 16.0")], PROGRAM);

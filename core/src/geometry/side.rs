@@ -12,6 +12,13 @@ pub enum Side {
 }
 
 impl Side {
+    /// The other side.
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
     /// The normal towards the wall for a direction of travel.
     pub fn normal(self, heading: Direction) -> Direction {
         match self {

@@ -68,6 +68,8 @@ pub enum Suspicion {
     Millimetres,
     /// They fit when taken as surface points, or the ball's diameter was given as its radius or the other way.
     BallRadius,
+    /// They fit a wall on the other side of travel.
+    OtherSide,
     /// Nothing simple: probably another frame (machine instead of work coordinates).
     Frame,
 }
@@ -160,6 +162,10 @@ pub fn suspect(contacts: &Contacts, readings: &[Reading]) -> Option<Suspicion> {
     }
     if enough(contacts.fitting(readings, times(10, 254))) {
         return Some(Suspicion::Millimetres);
+    }
+    let other = Contacts::new(contacts.contour, Setting { wall: contacts.setting.wall.other(), ..contacts.setting });
+    if enough(other.fitting(readings, |p| p)) {
+        return Some(Suspicion::OtherSide);
     }
     let ball = contacts.setting.ball_radius;
     for radius in [Offset::ZERO, ball + ball, Offset::from_nm(ball.nm() / 2)] {
