@@ -110,6 +110,7 @@ fn designed(machine: &Loop) -> Vec<Node> {
         displacements: &mut vec![Vector::ZERO; w],
         profiles: &mut vec![Profile::default(); n],
         updates: &mut vec![Update::default(); n],
+        best: &mut vec![Node::default(); n],
     };
     correct::design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
     nodes

@@ -40,6 +40,7 @@ fn left_by(law: &str, blocks: &[Block]) -> (f64, f64) {
         displacements: &mut vec![Vector::ZERO; w],
         profiles: &mut vec![Profile::default(); n],
         updates: &mut vec![Update::default(); n],
+        best: &mut vec![Node::default(); n],
     };
     let wanted = Design { law, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
     design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace);

@@ -137,11 +137,13 @@ pub fn corrected(machine: &Loop, identified: &Identified, wanted: Design, mut pr
     let mut displacements = vec![Vector::ZERO; working];
     let mut profiles = vec![Profile::default(); count];
     let mut updates = vec![Update::default(); count];
+    let mut best = vec![Node::default(); count];
     let mut workspace = DesignWorkspace {
         states: &mut states,
         displacements: &mut displacements,
         profiles: &mut profiles,
         updates: &mut updates,
+        best: &mut best,
     };
     let mut nodes = vec![Node::default(); count];
     let mut predicted = vec![Predicted::default(); count];

@@ -65,6 +65,7 @@ struct Lent {
     displacements: Vec<Vector>,
     profiles: Vec<Profile>,
     updates: Vec<Update>,
+    best: Vec<Node>,
 }
 
 impl Lent {
@@ -80,6 +81,7 @@ impl Lent {
             displacements: vec![Vector::ZERO; working],
             profiles: vec![Profile::default(); contour],
             updates: vec![Update::default(); contour],
+            best: vec![Node::default(); contour],
         }
     }
     fn points(&mut self) -> PredictionWorkspace<'_> {
@@ -91,6 +93,7 @@ impl Lent {
             displacements: &mut self.displacements,
             profiles: &mut self.profiles,
             updates: &mut self.updates,
+            best: &mut self.best,
         }
     }
 }

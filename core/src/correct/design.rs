@@ -2,7 +2,8 @@
 
 use super::paper::PaperTransfer;
 use super::profile::{Band, Profile, Target, profile};
-use crate::cut::{ForceTable, Loop, Passage, State};
+use super::refine::{Update, refine, settle_ends};
+use crate::cut::{ForceTable, Loop, Passage, Path, State};
 use crate::geometry::Vector;
 use crate::identify::{Fit, Prior};
 use crate::units::{Offset, Real};
@@ -56,21 +57,8 @@ pub struct Design {
     pub max_gouge: Option<Offset>,
 }
 
-/// What one refinement does to a cutter position.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Update {
-    sum: Offset,
-    count: u32,
-}
-
-impl Update {
-    fn mean(&self) -> Offset {
-        self.sum.scaled(Real::ratio(1, i64::from(self.count.max(1))))
-    }
-}
-
-/// Buffers lent by the caller: `states` and `displacements` as long as the path's working range, `profiles` and
-/// `updates` as long as the contour's own samples.
+/// Buffers lent by the caller: `states` and `displacements` as long as the path's working range, `profiles`,
+/// `updates` and `best` as long as the contour's own samples.
 #[derive(Debug)]
 pub struct DesignWorkspace<'a> {
     /// States of the elastic loop.
@@ -81,6 +69,8 @@ pub struct DesignWorkspace<'a> {
     pub profiles: &'a mut [Profile],
     /// Changes of the correction.
     pub updates: &'a mut [Update],
+    /// The best correction so far.
+    pub best: &'a mut [Node],
 }
 
 /// Refinements on the predicted wall error.
@@ -88,15 +78,27 @@ const REFINEMENTS: usize = 24;
 /// The largest wall error at which refinement stops early.
 const SETTLED: Offset = Offset::from_nm(200);
 /// Refinements without a tenth of improvement after which it stops: what is left cannot be reached by this cutter.
-const PATIENCE: usize = 5;
+const PATIENCE: usize = 8;
 
-/// The commanded displacement at a sample of the path: the correction of the contour, held beyond its ends.
-fn commanded(nodes: &[Node], first: usize, index: usize) -> Vector {
+/// The commanded displacement at a sample of the path: the correction of the contour. Beyond its ends it is held, or
+/// taken from the other end where the contour closes.
+fn commanded(path: &Path, nodes: &[Node], index: usize) -> Vector {
     let last = nodes.len().saturating_sub(1);
-    nodes.get(index.saturating_sub(first).min(last)).map_or(Vector::ZERO, Node::total)
+    let mut at = index.saturating_sub(path.first());
+    if path.is_closed()
+        && (index < path.first() || at > last)
+        && let Some(sample) = path.samples().get(index)
+    {
+        let round = if index < path.first() { path.length() } else { -path.length() };
+        at = path.index_at(sample.s + round).saturating_sub(path.first());
+    }
+    nodes.get(at.min(last)).map_or(Vector::ZERO, Node::total)
 }
 
 /// Makes the correction: `nodes` and `predicted` as long as the contour's own samples.
+///
+/// Near a sharp inside corner the correction of the straight wall is held: there the load changes the moment the
+/// direction does, and a correction that followed it would be driven into the wall by a machine that cannot.
 /// Returns the summary of the last pass of the elastic loop.
 pub fn design(
     machine: &Loop,
@@ -106,10 +108,8 @@ pub fn design(
     workspace: &mut DesignWorkspace,
 ) -> Passage {
     let path = machine.path;
-    let (first, from) = (path.first(), path.working().start);
     nodes.fill(Node::default());
-    let mut passage = machine.run(from, workspace.states, |_| Vector::ZERO);
-    profile(machine, workspace.states, wanted.band, workspace.displacements, workspace.profiles);
+    pass(machine, wanted, nodes, workspace);
     for (p, before) in predicted.iter_mut().zip(workspace.profiles.iter()) {
         p.before = *before;
     }
@@ -118,24 +118,49 @@ pub fn design(
         Law::Mirror => one_shot(machine, wanted.band, nodes, true, workspace.states),
         Law::Paper(transfer) => transfer.fill(machine, workspace.states, nodes),
     }
-    let (mut best, mut since_best) = (Offset::MAX, 0usize);
-    for refinement in 0..=REFINEMENTS {
-        passage = machine.run(from, workspace.states, |i| commanded(nodes, first, i));
-        profile(machine, workspace.states, wanted.band, workspace.displacements, workspace.profiles);
-        if wanted.law != Law::Model || refinement == REFINEMENTS {
+    let mut passage = Passage::default();
+    let (mut best, mut is_best) = (Offset::MAX, true);
+    let (mut milestone, mut since) = (Offset::MAX, 0usize);
+    for _ in 0..=REFINEMENTS {
+        settle_ends(path, nodes);
+        passage = pass(machine, wanted, nodes, workspace);
+        let largest = worst(wanted, path, workspace.profiles);
+        if largest < milestone.scaled(Real::ratio(9, 10)) {
+            (milestone, since) = (largest, 0);
+        } else {
+            since = since.saturating_add(1);
+        }
+        is_best = largest < best;
+        if is_best {
+            best = largest;
+            copy(nodes, workspace.best);
+        }
+        if wanted.law != Law::Model || largest < SETTLED || since > PATIENCE {
             break;
         }
-        let largest = worst(wanted, workspace.profiles);
-        since_best = if largest < best.scaled(Real::ratio(9, 10)) { 0 } else { since_best.saturating_add(1) };
-        best = best.min(largest);
-        if largest < SETTLED || since_best > PATIENCE {
-            break;
-        }
-        refine(machine, wanted, nodes, workspace);
+        refine(path, wanted, nodes, workspace.profiles, workspace.updates);
+    }
+    if !is_best {
+        copy(workspace.best, nodes);
+        passage = pass(machine, wanted, nodes, workspace);
     }
     for (p, after) in predicted.iter_mut().zip(workspace.profiles.iter()) {
         p.after = *after;
     }
+    passage
+}
+
+fn copy(from: &[Node], to: &mut [Node]) {
+    for (slot, node) in to.iter_mut().zip(from) {
+        *slot = *node;
+    }
+}
+
+/// One pass of the cutter with a correction: states and profiles of the workspace.
+fn pass(machine: &Loop, wanted: &Design, nodes: &[Node], workspace: &mut DesignWorkspace) -> Passage {
+    let path = machine.path;
+    let passage = machine.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
+    profile(machine, workspace.states, wanted.band, workspace.displacements, workspace.profiles);
     passage
 }
 
@@ -169,49 +194,10 @@ fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorr
     }
 }
 
-/// One refinement: every cutter position moves along the normal by the mean error of the wall places it made (over
-/// samples and heights); positions that made none follow their neighbours.
-fn refine(machine: &Loop, wanted: &Design, nodes: &mut [Node], workspace: &mut DesignWorkspace) {
-    let updates = &mut *workspace.updates;
-    updates.fill(Update::default());
-    for (index, profile) in workspace.profiles.iter().enumerate() {
-        let error = profile.aim(wanted.target, wanted.max_gouge);
-        for maker in profile.makers(index) {
-            if let Some(update) = updates.get_mut(maker) {
-                update.sum += error;
-                update.count = update.count.saturating_add(1);
-            }
-        }
-    }
-    fill_gaps(updates);
-    let samples = machine.path.samples().iter().skip(machine.path.first());
-    for ((node, update), sample) in nodes.iter_mut().zip(updates.iter()).zip(samples) {
-        // The refinement follows the chip: it comes from the change of load along the path.
-        node.chip = node.chip + sample.normal.times(update.mean());
-    }
-}
-
-/// The largest error the target sees.
-fn worst(wanted: &Design, profiles: &[Profile]) -> Offset {
-    profiles.iter().map(|p| p.aim(wanted.target, wanted.max_gouge).abs()).max().unwrap_or_default()
-}
-
-/// Gives updates that have no wall of their own the straight line between their neighbours'.
-fn fill_gaps(updates: &mut [Update]) {
-    let mut at = 0usize;
-    while at < updates.len() {
-        let gap = updates.iter().skip(at).take_while(|u| u.count == 0).count();
-        if gap > 0 {
-            let before = at.checked_sub(1).and_then(|i| updates.get(i)).map(Update::mean);
-            let after = updates.get(at.saturating_add(gap)).map(Update::mean);
-            let (from, to) = (before.or(after).unwrap_or_default(), after.or(before).unwrap_or_default());
-            for (k, slot) in updates.iter_mut().skip(at).take(gap).enumerate() {
-                let u = Real::ratio(k.saturating_add(1) as i64, gap.saturating_add(1) as i64);
-                *slot = Update { sum: from + (to - from).scaled(u), count: 1 };
-            }
-        }
-        at = at.saturating_add(gap).saturating_add(1);
-    }
+/// The largest error the target sees, away from sharp inside corners, where the correction is held.
+fn worst(wanted: &Design, path: &Path, profiles: &[Profile]) -> Offset {
+    let followed = profiles.iter().zip(path.samples().iter().skip(path.first())).filter(|(_, s)| !s.near_corner);
+    followed.map(|(p, _)| p.aim(wanted.target, wanted.max_gouge).abs()).max().unwrap_or_default()
 }
 
 /// Standard deviation of the corrected wall error beside each sample, from the covariance of the fit.
@@ -246,7 +232,7 @@ pub fn uncertainty(
         }
         let displaced =
             Loop { path, table: &table, coefficients: parameters.coefficients, compliance: parameters.compliance };
-        displaced.run(path.working().start, workspace.states, |i| commanded(nodes, path.first(), i));
+        displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
         profile(&displaced, workspace.states, wanted.band, workspace.displacements, workspace.profiles);
         for ((s, p), base) in sigma.iter_mut().zip(workspace.profiles.iter()).zip(predicted) {
             let change = p.aim(wanted.target, None) - base.after.aim(wanted.target, None);

@@ -8,7 +8,9 @@
 mod design;
 mod paper;
 mod profile;
+mod refine;
 
-pub use design::{Design, DesignWorkspace, Law, Node, Predicted, Update, design, uncertainty};
+pub use design::{Design, DesignWorkspace, Law, Node, Predicted, design, uncertainty};
 pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, Profile, Target, profile};
+pub use refine::Update;

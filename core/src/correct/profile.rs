@@ -39,7 +39,9 @@ pub struct Profile {
     /// At the tip.
     pub tip: Offset,
     /// For every height the sample whose cutter position made the wall, counted from the one beside it.
-    made_by: [i16; HEIGHTS as usize],
+    made_by: [i32; HEIGHTS as usize],
+    /// Whether a wall stands there; see [`Sample::on_wall`](crate::cut::Sample::on_wall).
+    pub on_wall: bool,
 }
 
 impl Band {
@@ -74,7 +76,8 @@ impl Profile {
     /// The samples, counted along the contour, whose cutter positions made the wall beside sample `index`, one for
     /// every height.
     pub fn makers(&self, index: usize) -> impl Iterator<Item = usize> + '_ {
-        self.made_by.iter().filter_map(move |shift| index.checked_add_signed(isize::from(*shift)))
+        let shifts = self.made_by.iter().filter(|_| self.on_wall);
+        shifts.filter_map(move |shift| index.checked_add_signed(*shift as isize))
     }
 }
 
@@ -85,7 +88,9 @@ impl Profile {
 pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut [Vector], profiles: &mut [Profile]) {
     let path = machine.path;
     let first = path.first();
-    profiles.fill(Profile { lowest: Offset::MAX, highest: -Offset::MAX, ..Profile::default() });
+    for (p, sample) in profiles.iter_mut().zip(path.samples().iter().skip(first)) {
+        *p = Profile { lowest: Offset::MAX, highest: -Offset::MAX, on_wall: sample.on_wall, ..Profile::default() };
+    }
     for k in 0..=HEIGHTS {
         let tip = k == HEIGHTS;
         let height = if tip { Real::ZERO } else { band.at(k) };
@@ -94,13 +99,13 @@ pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut
         let mut guess = first;
         for (i, p) in profiles.iter_mut().enumerate() {
             let index = first.saturating_add(i);
-            let Some(wall) = envelope.error(index, guess) else { continue };
+            let Some(wall) = envelope.error(index, guess).filter(|_| p.on_wall) else { continue };
             guess = wall.made_by.saturating_add(1);
             if tip {
                 p.tip = wall.error;
             } else {
                 if let Some(slot) = p.made_by.get_mut(k as usize) {
-                    *slot = (wall.made_by as i64).saturating_sub(index as i64) as i16;
+                    *slot = (wall.made_by as i64).saturating_sub(index as i64) as i32;
                 }
                 p.mean += wall.error;
                 p.lowest = p.lowest.min(wall.error);
@@ -109,6 +114,9 @@ pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut
         }
     }
     for p in profiles.iter_mut() {
+        if !p.on_wall {
+            *p = Profile::default();
+        }
         p.mean = p.mean.scaled(Real::ratio(1, HEIGHTS));
     }
 }

@@ -28,7 +28,13 @@ impl Path<'_> {
     /// with the place where the cutter is, not with the place it was sent to.
     pub fn frame(&self, index: usize, displacement: Vector) -> Option<Frame> {
         let samples = self.samples();
-        let centre = samples.get(index)?.point + displacement;
+        let own = samples.get(index)?;
+        let centre = own.point + displacement;
+        // Where the normal turns on the spot there is no path to be displaced along.
+        let shares = |other: Option<&Sample>| other.is_some_and(|o| o.point == own.point);
+        if shares(samples.get(index.saturating_add(1))) || shares(index.checked_sub(1).and_then(|i| samples.get(i))) {
+            return Some(Frame { normal: own.normal, heading: self.setup().wall.heading(own.normal), index });
+        }
         let mut at = index;
         for _ in 0..FRAME_STEPS {
             let here = samples.get(at)?;

@@ -2,11 +2,13 @@
 
 mod cantilever;
 mod compliance;
+mod corner;
 mod elastic;
 mod engagement;
 mod force;
 mod path;
 mod setup;
+mod walk;
 mod wall;
 
 pub use cantilever::{Cantilever, ToolMaterial};

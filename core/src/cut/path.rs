@@ -2,11 +2,14 @@
 //!
 //! The raw stock is the surface an earlier pass left: the parallel curve of the path, radius − allowance towards the
 //! wall. It is held sample by sample beside the path (P23 keeps machined wall, cutting arc and raw stock as three
-//! runs of such arrays), so the walk over it costs the same however long the contour is. Before the first and behind
-//! the last block path and stock are continued straight: a contour that starts by plunging starts fully engaged.
+//! runs of such arrays), so the walk over it costs the same however long the contour is. A closed contour
+//! runs on into itself; before the first and behind the last block of any other, path and stock are continued straight: a
+//! contour that starts by plunging starts fully engaged.
 
+use super::corner;
 use super::setup::{CutSetup, Helix, WallLaw};
-use crate::geometry::{Contour, Direction, FACET_TURN_LIMIT, Point, Side};
+use super::walk::{closes_smoothly, margin, walk};
+use crate::geometry::{Contour, Direction, Point, Side};
 use crate::units::{Offset, Real};
 
 /// One sample of the path.
@@ -26,6 +29,10 @@ pub struct Sample {
     pub block: u32,
     /// Whether `stock` is part of the surface; at a sharp outside corner the parallel curve crosses itself.
     pub on_surface: bool,
+    /// Whether a wall stands beside it; at a sharp outside corner the rest of the path cuts it away.
+    pub on_wall: bool,
+    /// Whether it lies so near to a sharp inside corner that the load changes faster than a machine can follow.
+    pub near_corner: bool,
 }
 
 impl Sample {
@@ -38,6 +45,8 @@ impl Sample {
         feed: Real::ZERO,
         block: 0,
         on_surface: true,
+        on_wall: true,
+        near_corner: false,
     };
 }
 
@@ -49,6 +58,8 @@ pub struct Path<'a> {
     count: usize,
     step: Offset,
     stock_step: Offset,
+    crowded: bool,
+    closed: bool,
     setup: CutSetup,
     helix: Helix,
 }
@@ -70,9 +81,8 @@ pub enum PathError {
     },
 }
 
-/// A turn of the normal at a sharp inside corner is sampled this finely, rad.
-const PIVOT_STEP: Real = Real::ratio(1, 100);
-
+/// What programs lose by rounding their coordinates.
+const ROUNDING: Offset = Offset::from_um(2);
 impl<'a> Path<'a> {
     /// How many samples [`Path::sample`] needs at a step.
     pub fn samples_needed(contour: &Contour, setup: &CutSetup, step: Offset) -> usize {
@@ -92,10 +102,11 @@ impl<'a> Path<'a> {
         buffer: &'a mut [Sample],
     ) -> Result<Self, PathError> {
         for block in contour.blocks() {
-            // The wall lies inside an arc that turns towards it: the arc must be wider than the cutter.
+            // The wall lies inside an arc that turns towards it: the arc must be as wide as the cutter (and is
+            // exactly that where a control rolls round a sharp corner).
             if let Some(radius) = block.curve.signed_radius() {
                 let towards_wall = (radius > Offset::ZERO) == (setup.wall == Side::Left);
-                if towards_wall && radius.abs() <= setup.radius - setup.allowance {
+                if towards_wall && radius.abs() + ROUNDING < setup.radius {
                     return Err(PathError::NoWall { line: block.line });
                 }
             }
@@ -112,7 +123,7 @@ impl<'a> Path<'a> {
             }
         });
         let used = buffer.get_mut(..needed).unwrap_or_default();
-        remove_crossings(used, setup);
+        corner::mark(used, setup);
         let samples: &'a [Sample] = used;
         let inside = |s: &&Sample| s.s >= Offset::ZERO && s.s <= contour.length();
         let first = samples.iter().take_while(|s| s.s < Offset::ZERO).count();
@@ -121,7 +132,10 @@ impl<'a> Path<'a> {
             samples.iter().zip(samples.iter().skip(1)).map(|(a, b)| f(a).distance(f(b))).max().unwrap_or_default()
         };
         let (step, stock_step) = (gap(|s| s.point), gap(|s| s.stock));
-        Ok(Self { samples, first, count, step, stock_step, setup: *setup, helix: setup.helix() })
+        let crowds = |(a, b): (&Sample, &Sample)| a.point.distance(b.point).nm().saturating_mul(8) < step.nm();
+        let crowded = samples.iter().zip(samples.iter().skip(1)).any(crowds);
+        let (closed, helix) = (closes_smoothly(contour, setup), setup.helix());
+        Ok(Self { samples, first, count, step, stock_step, crowded, closed, setup: *setup, helix })
     }
 
     /// The same path under another wall law.
@@ -158,6 +172,18 @@ impl<'a> Path<'a> {
     pub const fn stock_step(&self) -> Offset {
         self.stock_step
     }
+    /// Whether samples stand much closer together in some places than in others.
+    pub(super) const fn is_crowded(&self) -> bool {
+        self.crowded
+    }
+    /// Whether the end of the contour runs on into its start: there is then no seam.
+    pub const fn is_closed(&self) -> bool {
+        self.closed
+    }
+    /// Length of the contour itself.
+    pub fn length(&self) -> Offset {
+        self.samples.get(self.first.saturating_add(self.count).saturating_sub(1)).map_or(Offset::ZERO, |s| s.s)
+    }
     /// The cut it was sampled for.
     pub const fn setup(&self) -> &CutSetup {
         &self.setup
@@ -178,110 +204,5 @@ impl<'a> Path<'a> {
             (Some(a), Some(b)) if (s - a.s) < (b.s - s) => before,
             _ => after,
         }
-    }
-}
-
-/// How far beyond the contour's ends the cutter positions still shape its wall: the reach of the envelope.
-fn margin(setup: &CutSetup) -> Offset {
-    Offset::from_nm(setup.radius.nm() / 2)
-}
-
-/// Length of the straight run before and behind the contour: the margin, and from there the look-ahead of the
-/// engagement (2.2 radii).
-fn run_out(setup: &CutSetup) -> Offset {
-    margin(setup) + setup.radius.scaled(Real::ratio(23, 10))
-}
-
-/// Produces the samples in order: even steps on every block, so that the ends of blocks, where the engagement has its
-/// kinks, are samples; at a sharp inside corner the normal turns on the spot, which is how the wall there is formed.
-fn walk(contour: &Contour, setup: &CutSetup, step: Offset, mut emit: impl FnMut(Sample)) {
-    let blocks = contour.blocks();
-    let (Some(start), Some(end)) = (blocks.first(), blocks.last()) else { return };
-    let reach = setup.radius - setup.allowance;
-    let mut give = |s: Offset, point: Point, heading: Direction, block: usize| {
-        let normal = setup.wall.normal(heading);
-        let feed = blocks.get(block).map_or(Real::ZERO, |b| b.feed);
-        let stock = point + normal.times(reach);
-        emit(Sample { s, point, normal, stock, feed, block: block as u32, on_surface: true });
-    };
-    let straight = run_out(setup);
-    let steps = pieces(straight, step);
-    let (point, heading) = (start.curve.start(), start.curve.start_heading());
-    for k in 0..steps {
-        let back = straight.scaled(Real::ratio(steps.saturating_sub(k), steps));
-        give(-back, point - heading.times(back), heading, 0);
-    }
-    for (index, block) in blocks.iter().enumerate() {
-        let before = index.checked_sub(1).and_then(|i| blocks.get(i));
-        if let Some(before) = before {
-            pivot(before.curve.end_heading(), block.curve.start_heading(), setup, |heading| {
-                give(block.s - start.s, block.curve.start(), heading, index);
-            });
-        }
-        let steps = pieces(block.curve.length(), step);
-        for k in 0..steps {
-            let s = block.s - start.s + block.curve.length().scaled(Real::ratio(k, steps));
-            if let Some(place) = contour.at(s, index) {
-                give(s, place.point, place.heading, index);
-            }
-        }
-    }
-    if let Some(place) = contour.at(contour.length(), blocks.len()) {
-        give(contour.length(), place.point, place.heading, place.block);
-    }
-    let steps = pieces(straight, step);
-    let (point, heading) = (end.curve.end(), end.curve.end_heading());
-    for k in 1..=steps {
-        let ahead = straight.scaled(Real::ratio(k, steps));
-        give(contour.length() + ahead, point + heading.times(ahead), heading, blocks.len().saturating_sub(1));
-    }
-}
-
-fn pieces(length: Offset, step: Offset) -> i64 {
-    let step = step.nm().max(1);
-    length.nm().saturating_add(step.saturating_sub(1)).checked_div(step).unwrap_or(1).max(1)
-}
-
-/// Headings between two, when the corner opens towards the wall (an inside corner of the part).
-fn pivot(from: Direction, to: Direction, setup: &CutSetup, mut emit: impl FnMut(Direction)) {
-    let turn = from.angle_to(to);
-    let inside = (turn > Real::ZERO) == (setup.wall == Side::Right);
-    if !inside || from.dot(to) >= FACET_TURN_LIMIT {
-        return;
-    }
-    let steps = (turn.abs() / PIVOT_STEP).floor().max(1);
-    for k in 0..steps {
-        emit(from.turned(turn * Real::ratio(k, steps)));
-    }
-}
-
-/// Drops stock samples that an earlier pass along the same path removed: at a sharp outside corner the parallel
-/// curve of one leg lies within reach of the other.
-fn remove_crossings(samples: &mut [Sample], setup: &CutSetup) {
-    let reach = setup.radius - setup.allowance;
-    let limit = reach - Offset::from_um(1);
-    let outside_corner = |a: &Sample, b: &Sample| {
-        let turn = a.normal.cross(b.normal);
-        let towards_wall = (turn > Real::ZERO) == (setup.wall == Side::Left);
-        towards_wall && a.normal.dot(b.normal) < FACET_TURN_LIMIT
-    };
-    let mut corner = 1usize;
-    while corner < samples.len() {
-        let is_corner = match (samples.get(corner.saturating_sub(1)), samples.get(corner)) {
-            (Some(a), Some(b)) => outside_corner(a, b),
-            _ => false,
-        };
-        if is_corner {
-            let (left, right) = samples.split_at_mut(corner);
-            let near = |from: Point| move |s: &&mut Sample| s.point.distance(from) <= reach + reach;
-            let at = right.first().map(|s| s.point).unwrap_or_default();
-            for a in left.iter_mut().rev().take_while(near(at)) {
-                for b in right.iter_mut().take_while(near(at)) {
-                    a.on_surface &= a.stock.distance(b.point) >= limit;
-                    b.on_surface &= b.stock.distance(a.point) >= limit;
-                }
-            }
-        }
-        corner = corner.saturating_add(1);
     }
 }

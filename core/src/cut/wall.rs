@@ -7,7 +7,7 @@
 use super::elastic::{Loop, State};
 use super::path::{Path, Sample};
 use crate::geometry::{Direction, Point, Vector};
-use crate::units::{Offset, isqrt_rounded};
+use crate::units::{Offset, Real, isqrt_rounded};
 
 /// Cutter positions at one height, in the order of the path, ready for the wall to be read off.
 #[derive(Clone, Copy, Debug)]
@@ -27,9 +27,6 @@ pub struct WallError {
     pub made_by: usize,
 }
 
-/// Strides of the search for the deepest circle, in units of an eighth of the reach.
-const REACH_IN_RADII: i64 = 2;
-
 impl<'a> Envelope<'a> {
     /// Takes the displacements of samples `from..from + displacements.len()`.
     pub const fn new(path: &'a Path<'a>, from: usize, displacements: &'a [Vector]) -> Self {
@@ -37,14 +34,15 @@ impl<'a> Envelope<'a> {
     }
 
     /// Fills `displacements` with the cutter's displacement at a height (fraction of the engaged depth).
-    pub fn displace(machine: &Loop, states: &[State], fraction: crate::units::Real, displacements: &mut [Vector]) {
+    pub fn displace(machine: &Loop, states: &[State], fraction: Real, displacements: &mut [Vector]) {
         for (slot, state) in displacements.iter_mut().zip(states) {
             *slot = machine.at_height(state, fraction);
         }
     }
 
     /// The wall error beside sample `index`. `guess` is where to look first: the sample that made the wall beside the
-    /// neighbour. The search is bounded: a coarse look to both sides, then a descent to the nearest minimum.
+    /// neighbour. The search is bounded: a coarse look half a radius to both sides, then a descent to the nearest
+    /// minimum.
     pub fn error(&self, index: usize, guess: usize) -> Option<WallError> {
         let sample = self.path.samples().get(index)?;
         let wall = self.path.wall(sample);
@@ -58,12 +56,23 @@ impl<'a> Envelope<'a> {
             }
         };
         consider(guess);
-        let reach = self.path.setup().radius.nm() / REACH_IN_RADII;
-        let far = reach.checked_div(self.path.step().nm()).unwrap_or(0).unsigned_abs() as usize;
-        for eighth in 1..=8usize {
-            let stride = far.saturating_mul(eighth) / 8;
-            consider(index.saturating_add(stride));
-            consider(index.saturating_sub(stride));
+        let reach = Offset::from_nm(self.path.setup().radius.nm() / 2);
+        let mut far = reach.nm().checked_div(self.path.step().nm()).unwrap_or(0).unsigned_abs() as usize;
+        if self.path.is_crowded() {
+            // Samples that stand close together hide what lies beyond them: look by arc length.
+            for eighth in 1..=8 {
+                let away = reach.scaled(Real::ratio(eighth, 8));
+                consider(self.path.index_at(sample.s + away));
+                consider(self.path.index_at(sample.s - away));
+            }
+            let (from, to) = (self.path.index_at(sample.s - reach), self.path.index_at(sample.s + reach));
+            far = to.saturating_sub(from) / 2;
+        } else {
+            for eighth in 1..=8usize {
+                let stride = far.saturating_mul(eighth) / 8;
+                consider(index.saturating_add(stride));
+                consider(index.saturating_sub(stride));
+            }
         }
         // Descent with halving strides.
         let mut stride = (far / 8).max(1);

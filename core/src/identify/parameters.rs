@@ -170,11 +170,21 @@ impl Prior {
             },
             edge_level,
             edge_ratio,
-            compliance: Compliance { mean: mean.max(least), difference, cross, bend: bend.max(-Real::HALF) },
+            compliance: positive(mean.max(least), difference, cross, bend.max(-Real::HALF)),
             radius: Offset::from_mm(radius),
             datum: Vector { x: Offset::from_mm(dx), y: Offset::from_mm(dy) },
         }
     }
+}
+
+/// A compliance that yields to every force: |difference| and cross term below 95 % of what would make it rigid or
+/// negative in some direction.
+fn positive(mean: Real, difference: Real, cross: Real, bend: Real) -> Compliance {
+    let within = |v: Real, room: Real| v.max(-room).min(room);
+    let share = Real::ratio(95, 100);
+    let difference = within(difference, mean * share);
+    let room = Real::dot(mean, mean, -difference, difference).sqrt() * share;
+    Compliance { mean, difference, cross: within(cross, room), bend }
 }
 
 impl Parameters {
