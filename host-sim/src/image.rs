@@ -10,7 +10,7 @@ use truepath_core::units::{Offset, Real};
 
 use crate::correction::Identified;
 use crate::diagnostics::{Failure, InputError};
-use crate::pass::{Pass, STEP};
+use crate::pass::Pass;
 use crate::report::mm;
 
 /// Nodes nearer to each other than this are one: at a sharp inside corner the normal turns on the spot.
@@ -122,7 +122,7 @@ fn settings(
             z_high: z + HEIGHT_TOLERANCE,
             gate_height: GATE_HEIGHT,
         },
-        node_step: STEP,
+        node_step: pass.step(),
     })
 }
 

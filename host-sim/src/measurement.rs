@@ -12,7 +12,7 @@ use crate::pass::{Pass, length_unit};
 
 /// Readings kept at most.
 const LARGEST_FILE: usize = 1 << 20;
-/// A reading farther than this from the nominal wall (or than the allowance, if that is more) is not of this wall.
+/// A reading farther than this from the nominal wall is not of this wall.
 const REACH: Offset = Offset::from_um(1_000);
 
 /// What a probe file says about a pass.
@@ -48,11 +48,11 @@ impl Measurement {
             tip_z: pass.contour.z,
             axial_depth: pass.job.cut.axial_depth,
             z_is_tip: probe.z_reference == ZReference::Tip,
-            reach: REACH.max(pass.setup.allowance),
+            reach: REACH,
         };
         let on_wall = Contacts::new(pass.path_contour(), setting);
         if let Some(suspicion) = suspect(&on_wall, &readings) {
-            return Err(off_the_wall(pass, file, &on_wall, &readings, suspicion).into());
+            return Err(off_the_wall(file, &on_wall, &readings, suspicion).into());
         }
         let mut contacts = Vec::with_capacity(count);
         let mut rejected = Vec::new();
@@ -125,8 +125,8 @@ fn line_span(file: &Source, line: u32) -> std::ops::Range<usize> {
     start..start + len
 }
 
-fn off_the_wall(pass: &Pass, file: &Source, contacts: &Contacts, readings: &[Reading], why: Suspicion) -> InputError {
-    let reach = mm(REACH.max(pass.setup.allowance));
+fn off_the_wall(file: &Source, contacts: &Contacts, readings: &[Reading], why: Suspicion) -> InputError {
+    let reach = mm(REACH);
     let first = readings.iter().find(|r| matches!(contacts.contact(r), Err(Rejected::OffTheWall { .. })));
     let span = first.map_or(0..0, |r| line_span(file, r.line));
     let (code, guess, help) = match why {

@@ -14,8 +14,8 @@ use truepath_core::units::{Offset, Real};
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::job::{CutterMaterial, ForceModel, Job};
 
-/// Distance between the samples of a path.
-pub const STEP: Offset = Offset::from_um(100);
+/// Largest distance between the samples of a path.
+const STEP: Offset = Offset::from_um(100);
 /// Blocks a program may hold before the buffer is enlarged.
 const FIRST_BUFFER: usize = 1 << 12;
 /// Blocks a program may hold at all.
@@ -70,7 +70,14 @@ impl Pass {
             .into());
         }
         let (mut blocks, contour) = read_blocks(&program)?;
-        let warnings = contour.summary.warnings.as_slice().iter().map(|w| format!("{}: {w}", program.name())).collect();
+        let mut warnings: Vec<String> =
+            contour.summary.warnings.as_slice().iter().map(|w| format!("{}: {w}", program.name())).collect();
+        if contour.spindle == Spindle::Stopped {
+            warnings.push(format!(
+                "{}: neither M3 nor M4 before the contour: a clockwise spindle is assumed, on which climb or conventional depends",
+                program.name()
+            ));
+        }
         let mut pass = Self {
             program_crc: program_crc(program.bytes()),
             setup: setup(&job, &contour)?,
@@ -98,6 +105,11 @@ impl Pass {
         Ok(pass)
     }
 
+    /// Distance between the samples of the path: 0.1 mm, or a fiftieth of a small cutter's diameter.
+    pub fn step(&self) -> Offset {
+        STEP.min(Offset::from_nm(self.setup.radius.nm() / 25))
+    }
+
     /// The contour.
     pub fn path_contour(&self) -> Contour<'_> {
         Contour::new(&self.blocks).unwrap_or_else(|| unreachable!("the reader gives blocks end to end"))
@@ -109,12 +121,12 @@ impl Pass {
     /// When an outside arc is so tight that it leaves no wall.
     pub fn sample<'a>(&self, buffer: &'a mut PathBuffer) -> Result<Path<'a>, Failure> {
         let contour = self.path_contour();
-        buffer.0 = vec![Sample::BLANK; Path::samples_needed(&contour, &self.setup, STEP)];
-        Path::sample(&contour, &self.setup, STEP, &mut buffer.0).map_err(|error| match error {
+        buffer.0 = vec![Sample::BLANK; Path::samples_needed(&contour, &self.setup, self.step())];
+        Path::sample(&contour, &self.setup, self.step(), &mut buffer.0).map_err(|error| match error {
             PathError::NoWall { line } => InputError::new(
                 "J013",
                 "this arc turns round the wall more tightly than the cutter: it leaves no wall to correct",
-                "an outside arc of the path wider than the cutter's radius less the allowance",
+                "an outside arc of the path at least as wide as the cutter's radius",
                 "check the side (wall = \"left\" or \"right\") and the cutter's diameter in the job",
             )
             .at(&self.program, self.program.span_at(line, 1, 1))

@@ -128,7 +128,7 @@ fn wrong_files_are_refused_with_their_place_and_what_to_do() {
             scale(1.0),
             "M012",
             1,
-            "most readings are farther than 3 mm from the nominal wall; they fit when read as millimetres; expected readings on the wall of this contour",
+            "most readings are farther than 1 mm from the nominal wall; they fit when read as millimetres; expected readings on the wall of this contour",
         ),
         (
             "inches after a metric program",
@@ -136,7 +136,7 @@ fn wrong_files_are_refused_with_their_place_and_what_to_do() {
             scale(1.0 / 25.4),
             "M011",
             1,
-            "most readings are farther than 3 mm from the nominal wall; they fit when read as inches; expected readings on the wall of this contour",
+            "most readings are farther than 1 mm from the nominal wall; they fit when read as inches; expected readings on the wall of this contour",
         ),
         (
             "machine coordinates",
@@ -144,7 +144,7 @@ fn wrong_files_are_refused_with_their_place_and_what_to_do() {
             line(-372.91, -250.0, -410.0) + &line(-338.9, -276.91, -410.0),
             "M014",
             1,
-            "most readings are farther than 3 mm from the nominal wall; probably they are in another frame; expected readings on the wall of this contour",
+            "most readings are farther than 1 mm from the nominal wall; probably they are in another frame; expected readings on the wall of this contour",
         ),
         (
             "above the cut",

@@ -48,7 +48,7 @@ impl Offset {
     pub const fn from_mm(mm: Real) -> Self {
         Self(shift_rounded((mm.bits() as i128).saturating_mul(1_000_000), Real::FRACTION_BITS) as i64)
     }
-    /// Millimetres, rounded to 2⁻³² mm; saturates beyond ±2147 m.
+    /// Millimetres, rounded to 2⁻³² mm; saturates beyond ±2147 km.
     pub const fn mm(self) -> Real {
         Real::ratio(self.0, 1_000_000)
     }

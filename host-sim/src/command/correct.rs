@@ -2,7 +2,10 @@
 
 use std::path::Path as FilePath;
 
+use truepath_core::correct::Law;
 use truepath_core::cut::{Loop, Path};
+use truepath_core::identify::Parameter;
+use truepath_core::units::Offset;
 
 use crate::correction::{Correction, Identified, corrected, identified, law, wanted};
 use crate::diagnostics::{Failure, InputError, Source};
@@ -75,6 +78,7 @@ pub fn correct(
     let sampled = pass.sample(&mut buffer)?;
     let identified = identified(pass, &sampled, measurement);
     progress(0.2);
+    check_fit(pass, &identified)?;
     let path = sampled.with_law(identified.law);
     let table = identified.table();
     let machine = identified.machine(&path, &table);
@@ -83,7 +87,7 @@ pub fn correct(
     check_clamp(pass, &path, &correction)?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.iter().cloned());
-    warnings.extend(doubts(pass, &identified, &correction, &machine));
+    warnings.extend(doubts(pass, route, &identified, &correction, &machine));
     let summary = correct_summary(pass, &identified, &correction, measurement.rejected.len(), warnings);
     let (mut program, mut image) = (None, None);
     match route {
@@ -131,6 +135,26 @@ fn corrected_program(pass: &Pass, path: &Path, correction: &Correction) -> Resul
     Ok(rewrite_program(&pass.program, &block_edits(pass, path, &correction.nodes), &options)?.text)
 }
 
+/// Points most of which contradict each other or the job are no basis for a correction.
+fn check_fit(pass: &Pass, identified: &Identified) -> Result<(), Failure> {
+    let (outliers, points) = (identified.fit.outliers, identified.observations.len());
+    if outliers * 2 <= points {
+        return Ok(());
+    }
+    let worst = identified.observations.iter().max_by_key(|o| o.residual().abs());
+    let example = worst.map_or(String::new(), |o| {
+        format!("; at s = {:.2} mm {:.4} mm were measured, {:.4} mm would fit", mm(o.s), mm(o.error), mm(o.predicted))
+    });
+    Err(InputError::new(
+        "M020",
+        format!("{outliers} of {points} points fit neither each other nor any machine like the one in the job{example}"),
+        "probe points of one part cut by this program",
+        "check ball_diameter_mm, allowance_mm, the side of the wall and that the probed part is the one of this program",
+    )
+    .at(pass.job.source(), pass.job.span("probe.ball_diameter_mm"))
+    .into())
+}
+
 /// A correction cut by the clamp is an error, never silent.
 fn check_clamp(pass: &Pass, path: &Path, correction: &Correction) -> Result<(), Failure> {
     let size = |i: usize| {
@@ -162,7 +186,7 @@ fn check_clamp(pass: &Pass, path: &Path, correction: &Correction) -> Result<(), 
 }
 
 /// What the user should doubt.
-fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
+fn doubts(pass: &Pass, route: Route, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
     let mut out = Vec::new();
     if identified.fit.outliers > 0 {
         let lines: Vec<String> = identified
@@ -180,6 +204,35 @@ fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine
             mm(correction.passage.worst_residual)
         ));
     }
+    let held = machine.path.samples().iter().filter(|s| s.near_corner).count();
+    if held > 0 {
+        let line =
+            machine.path.samples().iter().find(|s| s.near_corner).and_then(|s| pass.blocks.get(s.block as usize));
+        out.push(format!(
+            "a sharp inside corner near line {}: the load changes there the moment the direction does, so the correction of the straight wall is held and up to {:.3} mm stay; give the path an arc there",
+            line.map_or(0, |b| b.line),
+            correction.predicted.iter().map(|p| mm(p.after.mean.abs())).fold(0.0, f64::max)
+        ));
+    }
+    if let Some(limit) = correction.wanted.max_gouge {
+        let deepest = correction.predicted.iter().map(|p| -p.after.lowest).max().unwrap_or_default();
+        if deepest > limit + Offset::from_um(1) {
+            out.push(format!(
+                "max_gouge_mm = {} is not kept: {:.4} mm are predicted{}",
+                mm(limit),
+                mm(deepest),
+                if correction.wanted.law == Law::Model { "" } else { " (only law = \"model\" heeds it)" }
+            ));
+        }
+    }
+    let far = identified.fit.theta.iter().zip(Parameter::ALL).filter(|(t, _)| crate::report::float(t.abs()) > 2.5);
+    for (theta, parameter) in far {
+        out.push(format!(
+            "{} came out {:.1} standard deviations from what the job says: check the job, or probe more places",
+            parameter.name(),
+            crate::report::float(theta.abs())
+        ));
+    }
     let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
     let sigma = correction.sigma.iter().copied().max().unwrap_or_default();
     if sigma.nm() * 8 > peak.nm() {
@@ -188,7 +241,7 @@ fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine
             mm(sigma)
         ));
     }
-    if correction.nodes.len() > crate::image::DEVICE_NODES {
+    if route == Route::Coprocessor && correction.nodes.len() > crate::image::DEVICE_NODES {
         out.push(format!(
             "the correction has {} nodes; the coprocessor holds {}: its image would be refused there",
             correction.nodes.len(),

@@ -37,11 +37,12 @@ pub struct Options<'a> {
 pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     let pass = Pass::read(Job::read(options.job)?)?;
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
+    let mut warnings = pass.warnings.clone();
     let (by, trace) = match options.plant {
-        None => ("core", predicted(&pass)?),
+        None => ("core", predicted(&pass, &mut warnings)?),
         Some(file) => ("plant", milled(&pass, &read_machine(file)?)?),
     };
-    let summary = simulate_summary(&pass, by, &trace, pass.warnings.clone());
+    let summary = simulate_summary(&pass, by, &trace, warnings);
     folder.write("trace.csv", &trace_csv(&trace)?)?;
     folder.write("summary.json", &json(&summary)?)?;
     folder.write("trace.svg", &crate::plot::trace(&trace)?)?;
@@ -59,18 +60,25 @@ pub fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Failure> {
     Ok(text)
 }
 
-/// The uncorrected pass as the core predicts it from the job's priors.
+/// The uncorrected pass as the core predicts it from the job's priors; adds to the warnings what is doubtful.
 ///
 /// # Errors
 /// As [`Pass::sample`].
-pub fn predicted(pass: &Pass) -> Result<Trace, Failure> {
+pub fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<Trace, Failure> {
     let mut buffer = PathBuffer::default();
     let path = pass.sample(&mut buffer)?;
     let prior = pass.prior(pass.setup.law).mean;
     let table = ForceTable::new(prior.coefficients.size_exponent);
     let machine = Loop { path: &path, table: &table, coefficients: prior.coefficients, compliance: prior.compliance };
     let mut states = vec![State::REST; path.working().len()];
-    machine.run(path.working().start, &mut states, |_| Vector::ZERO);
+    let passage = machine.run(path.working().start, &mut states, |_| Vector::ZERO);
+    if passage.unsettled > 0 {
+        warnings.push(format!(
+            "the elastic loop did not settle at {} places (worst residual {:.4} mm): the machine is too soft for this cut",
+            passage.unsettled,
+            mm(passage.worst_residual)
+        ));
+    }
     let mut displacements = vec![Vector::ZERO; states.len()];
     let mut profiles = vec![Profile::default(); path.count()];
     profile(&machine, &states, Band::WHOLE, &mut displacements, &mut profiles);

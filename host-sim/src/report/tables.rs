@@ -129,9 +129,10 @@ struct CorrectionRow {
     y_mm: f64,
     dx_mm: f64,
     dy_mm: f64,
-    predicted_error_before_mm: f64,
-    predicted_error_after_mm: f64,
-    sigma_mm: f64,
+    /// Empty where an outside corner leaves no wall.
+    predicted_error_before_mm: Option<f64>,
+    predicted_error_after_mm: Option<f64>,
+    sigma_mm: Option<f64>,
 }
 
 /// `correction.csv`: for every sample of the contour its nominal place, the correction and the wall error of the
@@ -142,7 +143,7 @@ struct CorrectionRow {
 pub fn correction_csv(machine: &Loop, correction: &Correction) -> Result<Vec<u8>, Failure> {
     let path = machine.path;
     let samples = &path.samples()[path.first()..path.first() + path.count()];
-    let aim = |p: &truepath_core::correct::Profile, target: Target| mm(p.aim(target, None));
+    let aim = |p: &truepath_core::correct::Profile, target: Target| p.on_wall.then(|| mm(p.aim(target, None)));
     table(samples.iter().enumerate().map(|(i, sample)| {
         let total = correction.nodes[i].total();
         let predicted = &correction.predicted[i];
@@ -154,7 +155,7 @@ pub fn correction_csv(machine: &Loop, correction: &Correction) -> Result<Vec<u8>
             dy_mm: mm(total.y),
             predicted_error_before_mm: aim(&predicted.before, correction.wanted.target),
             predicted_error_after_mm: aim(&predicted.after, correction.wanted.target),
-            sigma_mm: mm(correction.sigma[i]),
+            sigma_mm: predicted.after.on_wall.then(|| mm(correction.sigma[i])),
         }
     }))
 }
