@@ -7,6 +7,7 @@ use truepath_core::correct::{
 use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{Fit, Observation, PredictionWorkspace, Prior, identify, identify_law};
+use truepath_core::image::MAX_CLAMP_NM;
 use truepath_core::probe::Contact;
 use truepath_core::units::{Offset, Position, Real};
 
@@ -154,4 +155,17 @@ pub fn corrected(machine: &Loop, identified: &Identified, wanted: Design, mut pr
     uncertainty(machine, belief, &wanted, &nodes, &predicted, &mut sigma, &mut workspace);
     progress(1.0);
     Correction { nodes, predicted, sigma, wanted, passage }
+}
+
+/// What to do about a correction beyond the clamp: the peak and a tenth of it, rounded up to a hundredth, where that may
+/// be a deflection at all.
+pub fn clamp_help(peak: Offset) -> String {
+    let proposal = (crate::report::mm(peak) * 110.0).ceil() / 100.0;
+    if proposal > crate::report::mm(Offset::from_nm(MAX_CLAMP_NM)) {
+        return "no cutter deflects that much: check the side of the wall, the cutter's diameter and the probe file"
+            .to_owned();
+    }
+    format!(
+        "if a correction that large is meant, set clamp_mm = {proposal} in [correct]; otherwise check the probe file and the cut"
+    )
 }

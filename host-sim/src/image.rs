@@ -134,7 +134,6 @@ fn fine(pass: &Pass, v: Vector) -> Result<[FineOffset; 2], Failure> {
 }
 
 fn beyond_clamp(pass: &Pass, reach: Offset) -> Failure {
-    let proposal = (mm(reach) * 110.0).ceil() / 100.0;
     InputError::new(
         "J018",
         format!(
@@ -143,7 +142,7 @@ fn beyond_clamp(pass: &Pass, reach: Offset) -> Failure {
             mm(pass.job.correct.clamp)
         ),
         "a correction that leaves room for a feed override of 110 %",
-        format!("if a correction that large is meant, set clamp_mm = {proposal} in [correct]"),
+        crate::correction::clamp_help(reach),
     )
     .at(pass.job.source(), pass.job.span("correct.clamp_mm"))
     .into()

@@ -224,7 +224,7 @@ fn setup(job: &Job, contour: &ContourProgram) -> Result<CutSetup, Failure> {
         .into());
     };
     let diameter = job.tool.measured_diameter.unwrap_or(job.tool.diameter);
-    Ok(CutSetup {
+    let setup = CutSetup {
         radius: Offset::from_nm(diameter.nm() / 2),
         teeth: job.tool.teeth,
         helix_deg: job.tool.helix_deg,
@@ -237,7 +237,21 @@ fn setup(job: &Job, contour: &ContourProgram) -> Result<CutSetup, Failure> {
             ForceModel::Mean => WallLaw::Mean,
             ForceModel::Helical | ForceModel::Auto => WallLaw::Helical,
         },
-    })
+    };
+    if !setup.fits_force_table() {
+        return Err(InputError::new(
+            "J019",
+            format!(
+                "a helix of this angle winds round the cutter too often over an axial depth of {} mm",
+                job.cut.axial_depth.nm() as f64 / 1e6
+            ),
+            "at most 64 flutes in the stock at once",
+            "check axial_depth_mm, diameter_mm, teeth and helix_deg",
+        )
+        .at(job.source(), job.span("cut.axial_depth_mm"))
+        .into());
+    }
+    Ok(setup)
 }
 
 /// The unit of the program's words, for the files a control writes in it.

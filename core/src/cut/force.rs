@@ -9,13 +9,11 @@
 //!
 //! Limits: rigid tooth spacing (no runout); chip thickness from the circular path; 0 ≤ φ₁ ≤ π.
 
-use super::setup::{Coefficients, CutSetup, Helix, Milling};
+use super::setup::{Coefficients, CutSetup, Helix, MAX_FLUTES, Milling};
 use crate::units::{Real, pow, sin_cos};
 
 /// Intervals of the table over 0…π. With cubic interpolation the error is below 10⁻⁹ of the coefficients.
 const INTERVALS: usize = 256;
-/// Flutes that can be in the stock at once: 12 teeth at 60° helix over an axial depth of 8 radii stay below it.
-const MAX_FLUTES: i64 = 64;
 
 /// A force or its antiderivative, split by origin; N (or N/mm·rad) in the wall frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -70,6 +70,8 @@ pub struct Helix {
     pub pitch: Real,
 }
 
+/// Flutes in the stock at once that the force is summed over: 12 teeth at 60° helix over an axial depth of 15 radii.
+pub(super) const MAX_FLUTES: i64 = 64;
 /// Chip thickness at which the chip coefficients are stated, mm.
 const REFERENCE_CHIP: Real = Real::ratio(5, 100);
 /// The least turn of a tooth over the engaged depth that is distinguished from a straight flute, rad.
@@ -86,6 +88,11 @@ impl CutSetup {
     /// Feed per tooth, mm, for a feed in mm/min.
     pub fn feed_per_tooth(&self, feed: Real) -> Real {
         feed / (self.spindle_rpm * Real::from_int(self.teeth.into()))
+    }
+    /// Whether so few flutes are in the stock at once that all of them are summed.
+    pub fn fits_force_table(&self) -> bool {
+        let helix = self.helix();
+        self.axial_depth * helix.lag_per_mm + Real::PI <= helix.pitch * Real::from_int(MAX_FLUTES as i32)
     }
     /// The edges of the cutter. A straight flute is given a lag of 0.02 rad over the engaged depth, which changes its
     /// force by less than the tooth entry it smooths.

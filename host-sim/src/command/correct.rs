@@ -7,7 +7,7 @@ use truepath_core::cut::{Loop, Path};
 use truepath_core::identify::Parameter;
 use truepath_core::units::Offset;
 
-use crate::correction::{Correction, Identified, corrected, identified, law, wanted};
+use crate::correction::{Correction, Identified, clamp_help, corrected, identified, law, wanted};
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::job::{Job, Route};
 use crate::measurement::Measurement;
@@ -168,8 +168,6 @@ fn check_clamp(pass: &Pass, path: &Path, correction: &Correction) -> Result<(), 
     }
     let at = path.samples()[path.first() + worst];
     let peak = mm(size(worst));
-    // The peak and a tenth of it, rounded up to a hundredth.
-    let proposal = (peak * 110.0).ceil() / 100.0;
     Err(InputError::new(
         "J017",
         format!(
@@ -179,7 +177,7 @@ fn check_clamp(pass: &Pass, path: &Path, correction: &Correction) -> Result<(), 
             mm(clamp)
         ),
         "a correction inside the clamp",
-        format!("if a correction that large is meant, set clamp_mm = {proposal} in [correct]; otherwise check the probe file and the cut"),
+        clamp_help(size(worst)),
     )
     .at(pass.job.source(), pass.job.span("correct.clamp_mm"))
     .into())

@@ -31,7 +31,7 @@ pub(super) fn correct(source: &Source, section: Option<&Section<'_>>, depth: Off
     correct.tolerance = section
         .number("tolerance_mm", Limits::within("0.0001", "0.1", "mm"))?
         .map_or(correct.tolerance, Decimal::as_mm);
-    correct.clamp = section.number("clamp_mm", Limits::above("0", "5", "mm"))?.map_or(correct.clamp, Decimal::as_mm);
+    correct.clamp = section.number("clamp_mm", Limits::above("0", "4", "mm"))?.map_or(correct.clamp, Decimal::as_mm);
     correct.target = section.choice("target", &TARGETS)?.unwrap_or(correct.target);
     correct.band = band(source, section, depth)?.unwrap_or(correct.band);
     correct.max_gouge = section.number("max_gouge_mm", Limits::within("0", "1", "mm"))?.map(Decimal::as_mm);

@@ -187,7 +187,7 @@ pub struct Correct {
     pub law: Law,
     /// How far the written path may leave the computed one, 0.0001…0.1 mm.
     pub tolerance: Offset,
-    /// The largest correction allowed, above 0, up to 5 mm; 0.5 mm unless the job names more.
+    /// The largest correction allowed, above 0, up to 4 mm; 0.5 mm unless the job names more.
     pub clamp: Offset,
     /// What of the wall's error is brought to zero.
     pub target: Target,
