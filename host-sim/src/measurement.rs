@@ -69,14 +69,14 @@ impl Measurement {
         Ok(Self { contacts, rejected, noise: probe.noise })
     }
 
-    /// The contacts as observations for the fit. Readings of one place whose feet differ by less than 5 µm are taken
-    /// at their common foot, where the elastic loop is solved once.
+    /// The contacts as observations for the fit. Those of one place are taken at their common foot, where the elastic
+    /// loop is solved once.
     pub fn observations(&self) -> Vec<Observation> {
         let mut place: Option<Offset> = None;
         self.contacts
             .iter()
             .map(|c| {
-                let s = place.filter(|p| c.s - *p < Offset::from_um(5)).unwrap_or(c.s);
+                let s = place.filter(|p| same_place(*p, c.s)).unwrap_or(c.s);
                 place = Some(s);
                 Observation::new(s, c.height, c.error, self.noise, c.normal)
             })
@@ -90,6 +90,12 @@ impl Measurement {
             .map(|(line, reason)| format!("{}:{line}: set aside: {}", file.name(), why(reason)))
             .collect()
     }
+}
+
+/// Whether two contacts were probed at one place of the contour, at different heights: their feet differ by the error
+/// of the wall only.
+pub fn same_place(a: Offset, b: Offset) -> bool {
+    (b - a).abs() < Offset::from_um(5)
 }
 
 fn mm(v: Offset) -> f64 {

@@ -6,10 +6,10 @@ use clap::{Args, ValueEnum};
 
 use super::{Terminal, print};
 use crate::command::correct::{Options, run as correct};
-use crate::command::simulate::json;
 use crate::diagnostics::Failure;
 use crate::job::Route;
 use crate::report::CorrectSummary;
+use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

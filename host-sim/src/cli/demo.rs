@@ -6,8 +6,8 @@ use clap::Args;
 
 use super::{Terminal, print};
 use crate::command::demo::{Outcome, run as demo};
-use crate::command::simulate::json;
 use crate::diagnostics::Failure;
+use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

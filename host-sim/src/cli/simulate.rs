@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{Terminal, print};
-use crate::command::simulate::{Options, json, run as simulate};
+use crate::command::simulate::{Options, run as simulate};
 use crate::diagnostics::Failure;
+use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -16,7 +16,7 @@ use crate::pass::{Pass, PathBuffer};
 use crate::program::{RewriteOptions, rewrite_program};
 use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, image_nodes, mm, points_csv};
 
-use super::simulate::json;
+use crate::report::json;
 
 /// Files this command may write.
 const FILES: &[&str] = &[

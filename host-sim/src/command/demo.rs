@@ -4,7 +4,6 @@
 use std::path::{Path as FilePath, PathBuf};
 
 use crate::command::correct::{Corrected, correct};
-use crate::command::simulate::json;
 use crate::diagnostics::{Failure, Source};
 use crate::job::{Job, Route};
 use crate::measurement::Measurement;
@@ -12,6 +11,7 @@ use crate::output::OutputFolder;
 use crate::pass::Pass;
 use crate::plant::{Milled, Score};
 use crate::plot;
+use crate::report::json;
 use crate::workshop;
 
 /// A part of the story.

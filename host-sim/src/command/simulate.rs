@@ -11,7 +11,7 @@ use crate::job::Job;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
 use crate::plant;
-use crate::report::{SimulateSummary, Trace, TraceRow, mm, simulate_summary, trace, trace_csv};
+use crate::report::{SimulateSummary, Trace, TraceRow, json, mm, simulate_summary, trace, trace_csv};
 use crate::workshop;
 
 /// Files this command may write.
@@ -48,16 +48,6 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     folder.write("trace.svg", &crate::plot::trace(&trace)?)?;
     folder.commit()?;
     Ok(summary)
-}
-
-/// A summary as JSON text.
-///
-/// # Errors
-/// Internal, when it cannot be written.
-pub fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Failure> {
-    let mut text = serde_json::to_vec_pretty(value).map_err(|e| Failure::Internal(format!("JSON: {e}")))?;
-    text.push(b'\n');
-    Ok(text)
 }
 
 /// The uncorrected pass as the core predicts it from the job's priors; adds to the warnings what is doubtful.

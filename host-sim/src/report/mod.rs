@@ -12,6 +12,8 @@ pub use tables::{Trace, TraceRow, correction_csv, points_csv, trace, trace_csv, 
 
 use truepath_core::units::{Offset, Real};
 
+use crate::diagnostics::Failure;
+
 /// Millimetres of a length, for reports.
 pub fn mm(v: Offset) -> f64 {
     v.nm() as f64 / 1e6
@@ -20,4 +22,14 @@ pub fn mm(v: Offset) -> f64 {
 /// A number of the model, for reports.
 pub fn float(v: Real) -> f64 {
     v.bits() as f64 / 4_294_967_296.0
+}
+
+/// A summary as JSON text.
+///
+/// # Errors
+/// Internal, when it cannot be written.
+pub fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Failure> {
+    let mut text = serde_json::to_vec_pretty(value).map_err(|e| Failure::Internal(format!("JSON: {e}")))?;
+    text.push(b'\n');
+    Ok(text)
 }

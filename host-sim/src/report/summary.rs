@@ -207,7 +207,7 @@ pub struct InspectSummary {
 pub fn inspect_summary(contacts: &[Contact], rejected: usize, warnings: Vec<String>) -> InspectSummary {
     let errors: Vec<f64> = contacts.iter().map(|c| mm(c.error)).collect();
     let n = errors.len().max(1) as f64;
-    let place = |a: &Contact, b: &Contact| (b.s - a.s).abs() < Offset::from_um(5);
+    let place = |a: &Contact, b: &Contact| crate::measurement::same_place(a.s, b.s);
     let spread = contacts
         .chunk_by(place)
         .map(|group| {
