@@ -191,8 +191,3 @@ pub fn chip_area(setup: &CutSetup, feed_per_tooth: Real, engaged: Real) -> Real 
     let (_, cosine) = sin_cos(engaged);
     setup.axial_depth * feed_per_tooth * (Real::ONE - cosine)
 }
-
-/// Volume removed per tooth, chip area × cutter radius, mm³.
-pub fn chip_volume(setup: &CutSetup, feed_per_tooth: Real, engaged: Real) -> Real {
-    chip_area(setup, feed_per_tooth, engaged) * setup.radius.mm()
-}

@@ -15,7 +15,7 @@ pub use cantilever::{Cantilever, ToolMaterial};
 pub use compliance::Compliance;
 pub use elastic::{Loop, Passage, State};
 pub use engagement::Frame;
-pub use force::{ForceTable, SplitForce, chip_area, chip_volume};
+pub use force::{ForceTable, SplitForce, chip_area};
 pub use path::{Path, PathError, Sample};
 pub use setup::{Coefficients, CutSetup, Helix, Milling, WallLaw};
 pub use wall::{Envelope, WallError};

@@ -56,17 +56,6 @@ impl Contour<'_> {
             visit(Nearest { s: block.s - origin + length.scaled(fraction), left, beside, block: index });
         }
     }
-
-    /// The nearest place of all; `None` for an empty contour.
-    pub fn nearest(&self, point: Point) -> Option<Nearest> {
-        let mut best: Option<Nearest> = None;
-        self.feet(point, |n| {
-            if best.is_none_or(|b| n.left.abs() < b.left.abs()) {
-                best = Some(n);
-            }
-        });
-        best
-    }
 }
 
 /// The same angle counted in the sense of `sweep`, 0…2π in magnitude.

@@ -26,9 +26,6 @@ pub struct Fit {
     pub evidence: Real,
 }
 
-/// Buffers of the fit, lent by the caller.
-pub type FitWorkspace<'a> = PredictionWorkspace<'a>;
-
 /// Gauss–Newton steps at most.
 const MAX_STEPS: u32 = 12;
 /// Residual, in standard deviations, from which a point loses weight (Huber's constant).
@@ -52,7 +49,7 @@ pub fn identify(
     prior: &Prior,
     observations: &mut [Observation],
     commanded: impl Fn(usize) -> Vector + Copy,
-    workspace: &mut FitWorkspace,
+    workspace: &mut PredictionWorkspace,
 ) -> Fit {
     let mut theta = [Real::ZERO; COUNT];
     let mut table = ForceTable::new(prior.mean.coefficients.size_exponent);
@@ -114,7 +111,7 @@ pub fn identify_law(
     around: impl Fn(WallLaw) -> Prior,
     observations: &mut [Observation],
     commanded: impl Fn(usize) -> Vector + Copy,
-    workspace: &mut FitWorkspace,
+    workspace: &mut PredictionWorkspace,
 ) -> (WallLaw, Prior, Fit) {
     let mut under = |law, observations: &mut [Observation]| {
         let prior = around(law);
@@ -134,7 +131,7 @@ fn evaluate(
     theta: &[Real; COUNT],
     observations: &mut [Observation],
     commanded: impl Fn(usize) -> Vector,
-    workspace: &mut FitWorkspace,
+    workspace: &mut PredictionWorkspace,
 ) -> Real {
     let parameters = prior.at(theta);
     renew(table, &parameters);
@@ -163,7 +160,7 @@ fn linearise(
     theta: &[Real; COUNT],
     observations: &mut [Observation],
     commanded: impl Fn(usize) -> Vector + Copy,
-    workspace: &mut FitWorkspace,
+    workspace: &mut PredictionWorkspace,
 ) -> Information {
     for (k, (parameter, sigma)) in Parameter::ALL.iter().zip(&prior.sigma).enumerate() {
         let direct = |o: &Observation| match parameter {

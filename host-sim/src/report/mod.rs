@@ -8,7 +8,7 @@ pub use path::{block_edits, image_nodes};
 pub use summary::{
     CorrectSummary, InspectSummary, Parameter, SimulateSummary, correct_summary, inspect_summary, simulate_summary,
 };
-pub use tables::{Trace, TraceRow, correction_csv, points_csv, trace, trace_csv, wall_at_height};
+pub use tables::{Trace, TraceRow, correction_csv, points_csv, trace, trace_csv};
 
 use truepath_core::units::{Offset, Real};
 

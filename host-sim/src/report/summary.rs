@@ -157,6 +157,10 @@ pub struct SimulateSummary {
     pub max_arc_deg: f64,
     /// Largest mean force, N.
     pub max_force_n: f64,
+    /// Largest chip area per tooth (P23's analogue of the removal rate), mm².
+    pub max_chip_area_mm2: f64,
+    /// Largest volume per tooth, chip area × cutter radius, mm³.
+    pub max_chip_volume_mm3: f64,
     /// Climb or conventional.
     pub milling: &'static str,
     /// What the user should know.
@@ -175,6 +179,8 @@ pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warni
         rms_error_mm: (finite.iter().map(|e| e * e).sum::<f64>() / finite.len().max(1) as f64).sqrt(),
         max_arc_deg: most(|r| r.arc_deg),
         max_force_n: most(|r| r.force_n),
+        max_chip_area_mm2: most(|r| r.chip_area_mm2),
+        max_chip_volume_mm3: most(|r| r.chip_area_mm2) * mm(pass.setup.radius),
         milling: crate::pass::milling_name(pass.setup.milling),
         warnings,
     }

@@ -1,10 +1,8 @@
 //! Tables. Column names carry their units; their order is part of the contract.
 
 use truepath_core::correct::Target;
-use truepath_core::cut::{Envelope, Loop, State, chip_area};
-use truepath_core::geometry::Vector;
+use truepath_core::cut::{Loop, State, chip_area};
 use truepath_core::probe::Contact;
-use truepath_core::units::Real;
 
 use super::{float, mm};
 use crate::correction::Correction;
@@ -69,23 +67,6 @@ pub fn trace(machine: &Loop, states: &[State], errors_mm: &[f64]) -> Trace {
         }
     })
     .collect()
-}
-
-/// Predicted wall error at one height beside every sample of the contour, mm.
-pub fn wall_at_height(machine: &Loop, states: &[State], fraction: Real) -> Vec<f64> {
-    let path = machine.path;
-    let mut displacements = vec![Vector::ZERO; states.len()];
-    Envelope::displace(machine, states, fraction, &mut displacements);
-    let envelope = Envelope::new(path, path.working().start, &displacements);
-    let mut guess = path.first();
-    (path.first()..path.first() + path.count())
-        .map(|index| {
-            envelope.error(index, guess).map_or(f64::NAN, |e| {
-                guess = e.made_by + 1;
-                mm(e.error)
-            })
-        })
-        .collect()
 }
 
 fn table<T: serde::Serialize>(rows: impl IntoIterator<Item = T>) -> Result<Vec<u8>, Failure> {
