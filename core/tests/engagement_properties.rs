@@ -114,3 +114,14 @@ fn a_sharp_inside_corner_is_entered_and_left() {
     assert!((degrees[0] - straight).abs() < 0.01 && (degrees[degrees.len() - 1] - straight).abs() < 0.01);
     assert!(peak > 115.0 && peak < 130.0, "{peak}");
 }
+
+#[test]
+fn circle_and_stock_that_meet_at_a_small_angle_are_crossed_exactly() {
+    // A path of 0.30 mm about an inside corner, 2 % of the radius to cut: the circles differ by a tenth.
+    let (_, arc) = placed(0.301_35, false, 0.0, (0.0, 0.0));
+    let (r, h, rho) = (2.009, 0.04, 0.301_35);
+    let got = middle(&path(&chain(&[arc], 400.0), &cut(2_009, 40, Side::Left), 50));
+    let stock: f64 = rho + r - h;
+    let expected = ((stock * stock - rho * rho - r * r) / (2.0 * rho * r)).acos().to_degrees();
+    assert!((got - expected).abs() < 0.01, "{got} instead of {expected}");
+}

@@ -102,6 +102,9 @@ impl Path<'_> {
     }
 }
 
+/// Newton steps for the crossing of the circle with the curved stock between two samples.
+const CROSSING_STEPS: usize = 4;
+
 /// Where the stock between two samples, the first inside the circle and the second outside, crosses it. The stock
 /// bulges from the chord like the arc its normals belong to.
 fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
@@ -118,11 +121,15 @@ fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
     let Some(along) = chord.direction() else { return a.stock };
     let sagitta = along.right().times(chord.length().scaled(turn * Real::ratio(1, 8)));
     let at = |u: Real| a.stock + chord.scaled(u) + sagitta.scaled(u * (Real::ONE - u) * Real::from_int(4));
-    // One Newton step along the chord for the bulge.
-    let point = at(u);
-    let reach = point.from(centre);
-    let Some(out) = reach.direction() else { return point };
-    let slope = chord.along(out);
-    let miss = reach.length() - radius;
-    point - chord.scaled(miss.over(slope))
+    // The chord gives the start; where stock and circle meet at a small angle its bulge takes a few Newton steps.
+    let (mut u, mut point) = (u, at(u));
+    for _ in 0..CROSSING_STEPS {
+        let reach = point.from(centre);
+        let Some(out) = reach.direction() else { break };
+        let tangent = chord + sagitta.scaled((Real::ONE - u - u) * Real::from_int(4));
+        let miss = reach.length() - radius;
+        u = (u - miss.over(tangent.along(out))).max(Real::ZERO).min(Real::ONE);
+        point = at(u);
+    }
+    point
 }
