@@ -9,6 +9,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | [`checksum`] | CRC-32 of programs, images and frames |
 //! | [`units`] | fixed-point lengths and numbers, the one rounding, trigonometry, roots |
 //! | [`geometry`] | vectors, directions, lines, arcs, contours and their sampling |
 //! | [`gcode`] | bytes → words → modal interpreter → canonical moves → contour |
@@ -33,6 +34,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod checksum;
 pub mod correct;
 pub mod cut;
 pub mod gcode;

@@ -36,7 +36,7 @@ fn told(pass: Pass, places: &[f64]) -> Told {
     let first = workshop::mill(&pass, &machine, None).unwrap();
     let probe = workshop::probe(&pass, &first, places, &[0.5], 6.0).unwrap();
     let measurement = Measurement::read(&pass, &Source::new("probe.txt", probe.into_bytes())).unwrap();
-    let corrected = correct(&pass, &measurement, &[], Route::Program, &mut |_| ())
+    let corrected = correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ())
         .unwrap_or_else(|e: Failure| panic!("{}", e.render(truepath::diagnostics::Form::Plain)));
     let commanded = workshop::commanded(&pass, corrected.program.as_deref().unwrap()).unwrap();
     let second = workshop::mill(&pass, &machine, Some(&commanded)).unwrap();

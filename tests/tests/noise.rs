@@ -40,7 +40,7 @@ fn left(changes: &[(&str, &str)], places: &[f64]) -> Vec<f64> {
             touched.machine.seed = machine.seed;
             let probe = workshop::probe(&pass, &touched, places, &[0.5], 6.0).unwrap();
             let measurement = Measurement::read(&pass, &source("probe.txt", probe)).unwrap();
-            let corrected = correct(&pass, &measurement, &[], Route::Program, &mut |_| ()).unwrap();
+            let corrected = correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
             let commanded = workshop::commanded(&pass, &corrected.program.unwrap()).unwrap();
             workshop::mill(&pass, &machine, Some(&commanded)).unwrap().score().max_error_mm
         })

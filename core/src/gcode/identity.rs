@@ -1,15 +1,14 @@
 //! What a program is recognised by: its check sum, and the mark of a corrected program.
 
 use super::decimal::is_blank;
+use crate::checksum::crc32;
 
 /// The mark that a corrected program carries as a comment.
 pub const CORRECTED_MARK: &str = "(TRUEPATH CORRECTED)";
 
-const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
-
 /// CRC-32 (ISO-HDLC, as in zip and Ethernet) of the bytes of a program as they are, line ends included.
 pub fn program_crc(program: &[u8]) -> u32 {
-    CRC.checksum(program)
+    crc32(program)
 }
 
 /// Whether a comment of the file begins with `TRUEPATH CORRECTED`, in any case, wherever it stands: a correction

@@ -21,8 +21,7 @@ mod header;
 mod node;
 mod read;
 
-use crc::{CRC_32_ISO_HDLC, Crc};
-
+pub use crate::checksum::crc32;
 pub use build::{build, image_bytes, peak};
 pub(crate) use check::scaled;
 pub use dump::dump;
@@ -50,13 +49,6 @@ pub const MAX_CLAMP_NM: i64 = 4_000_000;
 pub const MAX_NODES: usize = 1 << 20;
 /// Bytes of the checksum at the end.
 const CRC_BYTES: usize = 4;
-
-static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
-
-/// CRC-32 (ISO-HDLC) of bytes: the checksum of images and frames, and the name of a program in a [`Binding`].
-pub fn crc32(bytes: &[u8]) -> u32 {
-    CRC.checksum(bytes)
-}
 
 /// A checked image, borrowed from the bytes it lies in.
 #[derive(Clone, Copy, Debug)]

@@ -53,9 +53,9 @@ pub struct Corrected {
     pub correction: Correction,
     /// The summary.
     pub summary: CorrectSummary,
-    /// The corrected program, when the route is the program.
+    /// The corrected program, when that is a route.
     pub program: Option<Vec<u8>>,
-    /// The image, when the route is the coprocessor.
+    /// The image, when that is a route.
     pub image: Option<Vec<u8>>,
     /// `correction.csv`.
     pub table: Vec<u8>,
@@ -63,7 +63,7 @@ pub struct Corrected {
     pub picture: Vec<u8>,
 }
 
-/// Corrects a pass from a measurement, in memory.
+/// Corrects a pass from a measurement, in memory, for one or both routes.
 ///
 /// # Errors
 /// What is wrong with program or measurement, and a correction beyond the clamp.
@@ -71,7 +71,7 @@ pub fn correct(
     pass: &Pass,
     measurement: &Measurement,
     remarks: &[String],
-    route: Route,
+    routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Corrected, Failure> {
     let mut buffer = PathBuffer::default();
@@ -87,13 +87,15 @@ pub fn correct(
     check_clamp(pass, &path, &correction)?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.iter().cloned());
-    warnings.extend(doubts(pass, route, &identified, &correction, &machine));
+    warnings.extend(doubts(pass, routes, &identified, &correction, &machine));
     let summary = correct_summary(pass, &identified, &correction, measurement.rejected.len(), warnings);
     let (mut program, mut image) = (None, None);
-    match route {
-        Route::Program => program = Some(corrected_program(pass, &path, &correction)?),
-        Route::Coprocessor => {
-            image = Some(crate::image::build(pass, &identified, image_nodes(&path, &correction.nodes))?);
+    for route in routes {
+        match route {
+            Route::Program => program = Some(corrected_program(pass, &path, &correction)?),
+            Route::Coprocessor => {
+                image = Some(crate::image::build(pass, &identified, image_nodes(&path, &correction.nodes))?);
+            }
         }
     }
     let table = correction_csv(&machine, &correction)?;
@@ -114,7 +116,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     let measurement = Measurement::read(&pass, &file)?;
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
     let route = options.route.unwrap_or(pass.job.correct.route);
-    let done = correct(&pass, &measurement, &measurement.remarks(&file), route, progress)?;
+    let done = correct(&pass, &measurement, &measurement.remarks(&file), &[route], progress)?;
     if let Some(text) = &done.program {
         folder.write("corrected.nc", text)?;
     }
@@ -184,7 +186,13 @@ fn check_clamp(pass: &Pass, path: &Path, correction: &Correction) -> Result<(), 
 }
 
 /// What the user should doubt.
-fn doubts(pass: &Pass, route: Route, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
+fn doubts(
+    pass: &Pass,
+    routes: &[Route],
+    identified: &Identified,
+    correction: &Correction,
+    machine: &Loop,
+) -> Vec<String> {
     let mut out = Vec::new();
     if identified.fit.outliers > 0 {
         let lines: Vec<String> = identified
@@ -239,7 +247,7 @@ fn doubts(pass: &Pass, route: Route, identified: &Identified, correction: &Corre
             mm(sigma)
         ));
     }
-    if route == Route::Coprocessor && correction.nodes.len() > crate::image::DEVICE_NODES {
+    if routes.contains(&Route::Coprocessor) && correction.nodes.len() > crate::image::DEVICE_NODES {
         out.push(format!(
             "the correction has {} nodes; the coprocessor holds {}: its image would be refused there",
             correction.nodes.len(),

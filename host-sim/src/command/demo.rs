@@ -125,8 +125,9 @@ fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(
     let measurement = Measurement::read(&pass, &file)?;
 
     let remarks = measurement.remarks(&file);
-    let corrected = correct(&pass, &measurement, &remarks, Route::Program, &mut |share| progress(0.3 + 0.3 * share))?;
-    let image = correct(&pass, &measurement, &remarks, Route::Coprocessor, &mut |_| ())?;
+    // A user takes one of the routes; the demonstration shows both.
+    let routes = [Route::Program, Route::Coprocessor];
+    let corrected = correct(&pass, &measurement, &remarks, &routes, &mut |share| progress(0.3 + 0.3 * share))?;
     let text = corrected.program.as_deref().unwrap_or_default();
     let second = workshop::mill(&pass, &machine, Some(&workshop::commanded(&pass, text)?))?;
     progress(0.9);
@@ -137,7 +138,7 @@ fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(
     out.write("plant.toml", story.plant.as_bytes())?;
     out.write("probe.txt", probe.as_bytes())?;
     out.write("corrected.nc", text)?;
-    out.write("correction.tpi", image.image.as_deref().unwrap_or_default())?;
+    out.write("correction.tpi", corrected.image.as_deref().unwrap_or_default())?;
     out.write("correction.csv", &corrected.table)?;
     out.write("summary.json", &json(&corrected.summary)?)?;
     out.write("before-after.svg", &picture(story, &pass, (&first, &before), (&second, &after))?)?;
