@@ -18,7 +18,9 @@
 //! | [`identify`] | probe errors and the cut model → compliance, coefficients, covariance |
 //! | [`correct`] | the cut model → correction array |
 //! | [`image`] | correction array ↔ bytes |
+//! | [`job`] | job, program and measurement → image: what the command line and the device both run |
 //! | [`rewrite`] | setpoint → corrected setpoint, the only code in the servo cycle |
+//! | [`link`] | frames and messages of both links, and what becomes of a frame |
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -41,6 +43,8 @@ pub mod gcode;
 pub mod geometry;
 pub mod identify;
 pub mod image;
+pub mod job;
+pub mod link;
 pub mod probe;
 pub mod rewrite;
 pub mod units;

@@ -227,11 +227,11 @@ pub fn nominal_wall(pass: &Pass) -> (Vec<f64>, Wall) {
         let s = contour.length().scaled(truepath_core::units::Real::ratio(k, pieces));
         let Some(place) = contour.at(s, hint) else { continue };
         hint = place.block;
-        let towards_wall = match pass.setup.wall {
+        let towards_wall = match pass.core.setup.wall {
             Side::Left => place.heading.left(),
             Side::Right => place.heading.right(),
         };
-        let wall = place.point + towards_wall.times(pass.setup.radius);
+        let wall = place.point + towards_wall.times(pass.core.setup.radius);
         let inward = towards_wall.reversed();
         out.0.push(mm(s));
         out.1.push((

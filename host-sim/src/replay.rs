@@ -66,7 +66,7 @@ pub fn replay(
 ) -> Result<Summary, Failure> {
     let nominal_millirpm = image.settings().feed.spindle_millirpm;
     let request = ArmRequest { binding: image.settings().binding, part_serial, frame: frame(placement) };
-    let rewriter = Rewriter::new(settings(setpoints.period_ns)?, Some(image)).map_err(|e| {
+    let rewriter = Rewriter::new(settings(setpoints.period_ns), Some(image)).map_err(|e| {
         InputError::new("R001", e.to_string(), "", "record the setpoints at the rate of the machine's servo cycle")
     })?;
     let mut state = State::default();
@@ -95,14 +95,14 @@ pub fn replay(
     Ok(tally.summary(state.mode(), state.reason()))
 }
 
-/// The settings of a device at 1 kHz, scaled to another rate.
-fn settings(period_ns: i64) -> Result<Settings, InputError> {
+/// The settings of a device at 1 kHz, scaled to another rate; the rewriter checks that there is such a rate.
+pub fn settings(period_ns: i64) -> Settings {
     let hz = (1_000_000_000 + period_ns / 2) / period_ns.max(1);
     let tick_hz = u32::try_from(hz).unwrap_or(u32::MAX);
     let per_second = |at_1_khz: u32| ((u64::from(at_1_khz) * u64::from(tick_hz)).div_ceil(1000)).max(1) as u32;
     let slow = Settings::at_1_khz();
     let smoothing_ticks = per_second(1 << slow.feed_smoothing);
-    Ok(Settings {
+    Settings {
         tick_hz,
         // 1 m/s whatever the rate; faster moves are rapids.
         max_step: Offset::from_nm((slow.max_step.nm() * 1000 / i64::from(tick_hz.max(1))).clamp(1, 8_000_000)),
@@ -111,7 +111,7 @@ fn settings(period_ns: i64) -> Result<Settings, InputError> {
         fade_ticks: per_second(slow.fade_ticks).min(65_536),
         feed_smoothing: smoothing_ticks.ilog2().min(12),
         ..slow
-    })
+    }
 }
 
 fn frame(placement: &Placement) -> Frame {

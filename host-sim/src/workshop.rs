@@ -38,7 +38,7 @@ fn path(pass: &Pass) -> Result<plant::Path, PlantError> {
             }
         })
         .collect();
-    let side = match pass.setup.wall {
+    let side = match pass.core.setup.wall {
         Side::Left => plant::Side::Left,
         Side::Right => plant::Side::Right,
     };
@@ -47,7 +47,7 @@ fn path(pass: &Pass) -> Result<plant::Path, PlantError> {
 
 /// The cut of a pass for the plant.
 fn cut(pass: &Pass) -> plant::Cut {
-    let setup = &pass.setup;
+    let setup = &pass.core.setup;
     let first = pass.blocks.first().map_or(0.0, |b| float(b.feed));
     let changes = pass.blocks.windows(2).filter(|w| w[0].feed != w[1].feed);
     plant::Cut {
@@ -61,7 +61,7 @@ fn cut(pass: &Pass) -> plant::Cut {
             .collect(),
         spindle_rpm: float(setup.spindle_rpm),
         allowance_mm: mm(setup.allowance),
-        spindle: match pass.contour.spindle {
+        spindle: match pass.core.contour.spindle {
             Spindle::CounterClockwise => plant::Spindle::CounterClockwise,
             Spindle::Clockwise | Spindle::Stopped => plant::Spindle::Clockwise,
         },
@@ -88,7 +88,7 @@ pub fn probe(pass: &Pass, milled: &Milled, places_mm: &[f64], levels: &[f64], ba
         s_mm: places_mm.to_vec(),
         levels: levels.to_vec(),
         ball_diameter_mm: ball_mm,
-        tip_z_mm: pass.contour.z.nm() as f64 / 1e6,
+        tip_z_mm: pass.core.contour.z.nm() as f64 / 1e6,
     };
     plant::probe(milled, &plan).map(|touches| plant::probeopen_text(&touches)).map_err(|e| refused(&e))
 }

@@ -82,7 +82,7 @@ fn a_closed_contour_has_no_seam() {
     assert!(high - low < 0.02 * high, "{low} … {high}");
     let text = String::from_utf8(told.corrected.program.unwrap()).unwrap();
     assert!(text.contains("G3"), "{text}");
-    let length = told.pass.contour.length.nm() as f64 / 1e6;
+    let length = told.pass.core.contour.length.nm() as f64 / 1e6;
     assert!(worst(&told.second, 8.0, length - 8.0) < 0.01);
 }
 

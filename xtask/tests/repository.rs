@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules of the core in the order in which data flows; none uses one that comes later.
-const LAYERS: [&str; 10] =
-    ["checksum", "units", "geometry", "gcode", "probe", "cut", "identify", "correct", "image", "rewrite"];
+const LAYERS: [&str; 12] = [
+    "checksum", "units", "geometry", "gcode", "probe", "cut", "identify", "correct", "image", "job", "rewrite", "link",
+];
 /// Names under which unrelated things gather.
 const CATCH_ALL: [&str; 6] = ["util", "utils", "common", "helpers", "manager", "misc"];
 /// A source file longer than this holds more than one concept.

@@ -95,6 +95,20 @@ fn commanded(path: &Path, nodes: &[Node], index: usize) -> Vector {
     nodes.get(at.min(last)).map_or(Vector::ZERO, Node::total)
 }
 
+/// What a design tells while it works.
+#[derive(Clone, Copy, Debug)]
+pub enum DesignStep<'a> {
+    /// The walls that the uncorrected cut leaves, one beside each sample of the contour.
+    Uncorrected(&'a [Profile]),
+    /// How far it is.
+    Done {
+        /// Passes of the cutter that are computed.
+        passes: u16,
+        /// Share of the longest possible design, ‰, rising; a design that settles early ends before 1000.
+        permille: u16,
+    },
+}
+
 /// Makes the correction: `nodes` and `predicted` as long as the contour's own samples.
 ///
 /// Near a sharp inside corner the correction of the straight wall is held: there the load changes the moment the
@@ -107,9 +121,32 @@ pub fn design(
     predicted: &mut [Predicted],
     workspace: &mut DesignWorkspace,
 ) -> Passage {
+    design_observed(machine, wanted, nodes, predicted, workspace, &mut |_| ())
+}
+
+/// As [`design`], observed; `predicted` may be empty where the predictions are not needed one by one. On return
+/// `workspace.profiles` holds the corrected wall.
+pub fn design_observed(
+    machine: &Loop,
+    wanted: &Design,
+    nodes: &mut [Node],
+    predicted: &mut [Predicted],
+    workspace: &mut DesignWorkspace,
+    observe: &mut dyn FnMut(DesignStep<'_>),
+) -> Passage {
     let path = machine.path;
+    let mut passes = 0u16;
+    let mut pass = |nodes: &[Node], workspace: &mut DesignWorkspace, observe: &mut dyn FnMut(DesignStep<'_>)| {
+        let passage = pass(machine, wanted, nodes, workspace, &mut |share| {
+            observe(DesignStep::Done { passes, permille: permille(passes, share) });
+        });
+        passes = passes.saturating_add(1);
+        observe(DesignStep::Done { passes, permille: permille(passes, 0) });
+        passage
+    };
     nodes.fill(Node::default());
-    pass(machine, wanted, nodes, workspace);
+    pass(nodes, workspace, observe);
+    observe(DesignStep::Uncorrected(workspace.profiles));
     for (p, before) in predicted.iter_mut().zip(workspace.profiles.iter()) {
         p.before = *before;
     }
@@ -123,7 +160,7 @@ pub fn design(
     let (mut milestone, mut since) = (Offset::MAX, 0usize);
     for _ in 0..=REFINEMENTS {
         settle_ends(path, nodes);
-        passage = pass(machine, wanted, nodes, workspace);
+        passage = pass(nodes, workspace, observe);
         let largest = worst(wanted, path, workspace.profiles);
         if largest < milestone.scaled(Real::ratio(9, 10)) {
             (milestone, since) = (largest, 0);
@@ -142,7 +179,7 @@ pub fn design(
     }
     if !is_best {
         copy(workspace.best, nodes);
-        passage = pass(machine, wanted, nodes, workspace);
+        passage = pass(nodes, workspace, observe);
     }
     for (p, after) in predicted.iter_mut().zip(workspace.profiles.iter()) {
         p.after = *after;
@@ -156,10 +193,30 @@ fn copy(from: &[Node], to: &mut [Node]) {
     }
 }
 
-/// One pass of the cutter with a correction: states and profiles of the workspace.
-fn pass(machine: &Loop, wanted: &Design, nodes: &[Node], workspace: &mut DesignWorkspace) -> Passage {
+/// Share of the longest possible design, ‰, after some passes and a share (‰) of the next.
+fn permille(passes: u16, share: u16) -> u16 {
+    // The uncorrected pass, all refinements, and once more the best.
+    const MOST: u32 = REFINEMENTS as u32 + 3;
+    let done = u32::from(passes).saturating_mul(1000).saturating_add(u32::from(share));
+    (done / MOST).min(1000) as u16
+}
+
+/// One pass of the cutter with a correction: states and profiles of the workspace. `observe` is told the share of the
+/// elastic loop that is done, ‰.
+fn pass(
+    machine: &Loop,
+    wanted: &Design,
+    nodes: &[Node],
+    workspace: &mut DesignWorkspace,
+    observe: &mut dyn FnMut(u16),
+) -> Passage {
     let path = machine.path;
-    let passage = machine.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
+    let working = path.working();
+    let passage = machine.run(working.start, workspace.states, |i| {
+        let done = i.saturating_sub(working.start).saturating_mul(1000);
+        observe(done.checked_div(working.len()).unwrap_or(0).min(1000) as u16);
+        commanded(path, nodes, i)
+    });
     profile(machine, workspace.states, wanted.band, workspace.displacements, workspace.profiles);
     passage
 }

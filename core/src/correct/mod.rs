@@ -10,7 +10,7 @@ mod paper;
 mod profile;
 mod refine;
 
-pub use design::{Design, DesignWorkspace, Law, Node, Predicted, design, uncertainty};
+pub use design::{Design, DesignStep, DesignWorkspace, Law, Node, Predicted, design, design_observed, uncertainty};
 pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, Profile, Target, profile};
 pub use refine::Update;

@@ -38,8 +38,9 @@ pub struct Profile {
     pub highest: Offset,
     /// At the tip.
     pub tip: Offset,
-    /// For every height the sample whose cutter position made the wall, counted from the one beside it.
-    made_by: [i32; HEIGHTS as usize],
+    /// For every height the sample whose cutter position made the wall, counted from the one beside it, within 16 bits: the
+    /// cutter's positions half a radius away are some hundred samples off.
+    made_by: [i16; HEIGHTS as usize],
     /// Whether a wall stands there; see [`Sample::on_wall`](crate::cut::Sample::on_wall).
     pub on_wall: bool,
 }
@@ -105,7 +106,8 @@ pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut
                 p.tip = wall.error;
             } else {
                 if let Some(slot) = p.made_by.get_mut(k as usize) {
-                    *slot = (wall.made_by as i64).saturating_sub(index as i64) as i32;
+                    let shift = (wall.made_by as i64).saturating_sub(index as i64);
+                    *slot = shift.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
                 }
                 p.mean += wall.error;
                 p.lowest = p.lowest.min(wall.error);

@@ -112,7 +112,7 @@ impl Loop<'_> {
     }
 
     /// Runs the loop over samples `from..from + states.len()`; `commanded` gives the commanded displacement of each.
-    pub fn run(&self, from: usize, states: &mut [State], commanded: impl Fn(usize) -> Vector) -> Passage {
+    pub fn run(&self, from: usize, states: &mut [State], mut commanded: impl FnMut(usize) -> Vector) -> Passage {
         let mut passage = Passage::default();
         let mut guess = Vector::ZERO;
         let mut feed = None;

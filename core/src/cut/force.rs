@@ -93,19 +93,32 @@ impl Basis {
 }
 
 impl ForceTable {
+    /// An empty table, to be [tabulated](Self::tabulate) where it lies.
+    pub const BLANK: Self = {
+        const NOTHING: Basis =
+            Basis { chip_sine: Real::ZERO, chip_cosine: Real::ZERO, sine: Real::ZERO, cosine: Real::ZERO };
+        Self { sums: [NOTHING; INTERVALS + 1], density: [NOTHING; INTERVALS + 1], size_exponent: Real::ZERO }
+    };
+
     /// Tabulates the antiderivatives for a size exponent (0…0.5).
     pub fn new(size_exponent: Real) -> Self {
+        let mut table = Self::BLANK;
+        table.tabulate(size_exponent);
+        table
+    }
+
+    /// Makes it the table for another size exponent, in place: a table takes 16 KiB.
+    #[inline(never)]
+    pub fn tabulate(&mut self, size_exponent: Real) {
         let step = Real::PI / Real::from_int(INTERVALS as i32);
-        let mut sums = [Basis::default(); INTERVALS + 1];
-        let mut density = [Basis::default(); INTERVALS + 1];
         let mut running = Basis::default();
-        for (i, (sum, d)) in sums.iter_mut().zip(density.iter_mut()).enumerate() {
+        for (i, (sum, d)) in self.sums.iter_mut().zip(self.density.iter_mut()).enumerate() {
             let angle = Real::PI * Real::ratio(i as i64, INTERVALS as i64);
             *d = Basis::at(size_exponent, angle);
             *sum = running;
             running = running.plus(cell(size_exponent, angle, step));
         }
-        Self { sums, density, size_exponent }
+        self.size_exponent = size_exponent;
     }
 
     /// The size exponent it was made for.

@@ -16,6 +16,11 @@ pub struct Block {
     pub line: u32,
 }
 
+impl Block {
+    /// What a lent buffer is filled with before a contour is read into it.
+    pub const BLANK: Self = Self { curve: Curve::SHORTEST, s: Offset::ZERO, feed: Real::ZERO, line: 0 };
+}
+
 /// Lines and arcs end to end, in a slice lent by the caller.
 #[derive(Clone, Copy, Debug)]
 pub struct Contour<'a> {

@@ -46,6 +46,15 @@ pub enum ArcError {
 const ARC_TOLERANCE_NM: i64 = 28_300;
 
 impl Curve {
+    /// A line of one nanometre along x from the origin, with which buffers are filled.
+    pub(super) const SHORTEST: Self = Self {
+        start: Point::from_nm(0, 0),
+        end: Point::from_nm(1, 0),
+        length: Offset::from_nm(1),
+        start_heading: Direction::X,
+        shape: Shape::Line,
+    };
+
     /// A line; `None` when it has no length.
     pub fn line(start: Point, end: Point) -> Option<Self> {
         let vector = end.from(start);

@@ -51,11 +51,26 @@ pub fn identify(
     commanded: impl Fn(usize) -> Vector + Copy,
     workspace: &mut PredictionWorkspace,
 ) -> Fit {
+    identify_observed(path, prior, observations, commanded, workspace, &mut |_| ())
+}
+
+/// As [`identify`]; `observe` is told the share of the longest possible fit that is done, ‰, rising: a fit that settles
+/// early ends before 1000.
+pub fn identify_observed(
+    path: &Path,
+    prior: &Prior,
+    observations: &mut [Observation],
+    commanded: impl Fn(usize) -> Vector + Copy,
+    workspace: &mut PredictionWorkspace,
+    observe: &mut dyn FnMut(u16),
+) -> Fit {
+    let task = Task { path, prior, commanded };
     let mut theta = [Real::ZERO; COUNT];
-    let mut table = ForceTable::new(prior.mean.coefficients.size_exponent);
-    let mut cost = evaluate(path, &mut table, prior, &theta, observations, commanded, workspace);
+    let mut table = ForceTable::BLANK;
+    table.tabulate(prior.mean.coefficients.size_exponent);
+    let mut cost = task.evaluate(&mut table, &theta, observations, workspace);
     let mut steps = 0;
-    let mut information = linearise(path, &table, prior, &theta, observations, commanded, workspace);
+    let mut information = task.linearise(&table, &theta, observations, workspace, &mut |k| observe(permille(0, k)));
     while steps < MAX_STEPS {
         steps = steps.saturating_add(1);
         let step = information.step();
@@ -67,7 +82,7 @@ pub fn identify(
             for (t, s) in trial.iter_mut().zip(&step) {
                 *t += *s * share;
             }
-            let trial_cost = evaluate(path, &mut table, prior, &trial, observations, commanded, workspace);
+            let trial_cost = task.evaluate(&mut table, &trial, observations, workspace);
             if trial_cost <= cost {
                 break (Some(trial), trial_cost);
             }
@@ -80,12 +95,12 @@ pub fn identify(
         theta = accepted;
         let settled = largest < Real::ratio(1, 2000) || cost - new_cost < Real::ratio(1, 100_000);
         cost = new_cost;
-        information = linearise(path, &table, prior, &theta, observations, commanded, workspace);
+        information = task.linearise(&table, &theta, observations, workspace, &mut |k| observe(permille(steps, k)));
         if settled {
             break;
         }
     }
-    cost = evaluate(path, &mut table, prior, &theta, observations, commanded, workspace);
+    cost = task.evaluate(&mut table, &theta, observations, workspace);
     let outliers = observations.iter().filter(|o| o.weight < Real::ratio(3, 10)).count();
     let ln_determinant = information.log2_determinant() * Real::ratio(693_147_181, 1_000_000_000);
     Fit {
@@ -113,100 +128,127 @@ pub fn identify_law(
     commanded: impl Fn(usize) -> Vector + Copy,
     workspace: &mut PredictionWorkspace,
 ) -> (WallLaw, Prior, Fit) {
-    let mut under = |law, observations: &mut [Observation]| {
-        let prior = around(law);
-        let fit = identify(&path.with_law(law), &prior, observations, commanded, workspace);
-        (law, prior, fit)
-    };
-    let mean = under(WallLaw::Mean, observations);
-    let helical = under(WallLaw::Helical, observations);
-    if mean.2.evidence > helical.2.evidence + DECISIVE { under(WallLaw::Mean, observations) } else { helical }
+    identify_law_observed(path, around, observations, commanded, workspace, &mut |_| ())
 }
 
-/// Predicts all points and returns the robust cost; sets their weights.
-fn evaluate(
+/// As [`identify_law`], observed as [`identify_observed`].
+pub fn identify_law_observed(
     path: &Path,
-    table: &mut ForceTable,
-    prior: &Prior,
-    theta: &[Real; COUNT],
-    observations: &mut [Observation],
-    commanded: impl Fn(usize) -> Vector,
-    workspace: &mut PredictionWorkspace,
-) -> Real {
-    let parameters = prior.at(theta);
-    renew(table, &parameters);
-    predict(path, table, &parameters, commanded, observations, workspace);
-    let mut cost = theta.iter().fold(Real::ZERO, |sum, t| sum + *t * *t);
-    for o in observations.iter_mut() {
-        let residual = o.residual().abs();
-        // Huber: quadratic near zero, linear in the tails.
-        (o.weight, cost) = if residual <= HUBER {
-            (Real::ONE, cost + residual * residual)
-        } else {
-            (HUBER / residual, cost + HUBER * (residual + residual - HUBER))
-        };
-    }
-    cost
-}
-
-/// Sensitivities and the normal equations at a point just evaluated.
-///
-/// Radius and datum act on the measurement and are known; the others are central difference quotients, so that a
-/// parameter whose sign turns with the part has the same sensitivity with the other sign.
-fn linearise(
-    path: &Path,
-    table: &ForceTable,
-    prior: &Prior,
-    theta: &[Real; COUNT],
+    around: impl Fn(WallLaw) -> Prior,
     observations: &mut [Observation],
     commanded: impl Fn(usize) -> Vector + Copy,
     workspace: &mut PredictionWorkspace,
-) -> Information {
-    for (k, (parameter, sigma)) in Parameter::ALL.iter().zip(&prior.sigma).enumerate() {
-        let direct = |o: &Observation| match parameter {
-            Parameter::Radius => Some(Real::ONE),
-            Parameter::DatumX => Some(-o.normal.x),
-            Parameter::DatumY => Some(-o.normal.y),
-            _ => None,
-        };
+    observe: &mut dyn FnMut(u16),
+) -> (WallLaw, Prior, Fit) {
+    let mut under = |law, observations: &mut [Observation], fits: u16| {
+        let prior = around(law);
+        let third = &mut |permille: u16| observe(fits.saturating_mul(1000).saturating_add(permille) / 3);
+        let fit = identify_observed(&path.with_law(law), &prior, observations, commanded, workspace, third);
+        (law, prior, fit)
+    };
+    let mean = under(WallLaw::Mean, observations, 0);
+    let helical = under(WallLaw::Helical, observations, 1);
+    if mean.2.evidence > helical.2.evidence + DECISIVE { under(WallLaw::Mean, observations, 2) } else { helical }
+}
+
+/// Share of the longest possible fit that is done after some steps and parameters of the next linearisation, ‰.
+fn permille(steps: u32, parameters: usize) -> u16 {
+    let done = steps.saturating_mul(COUNT as u32).saturating_add(parameters as u32).saturating_mul(1000);
+    let whole = MAX_STEPS.saturating_add(1).saturating_mul(COUNT as u32);
+    u16::try_from(done.checked_div(whole).unwrap_or(0)).unwrap_or(1000)
+}
+
+/// What is fitted: a machine believed in, on a path, at displacements that were commanded.
+struct Task<'t, C> {
+    path: &'t Path<'t>,
+    prior: &'t Prior,
+    commanded: C,
+}
+
+impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
+    /// Predicts all points and returns the robust cost; sets their weights.
+    fn evaluate(
+        &self,
+        table: &mut ForceTable,
+        theta: &[Real; COUNT],
+        observations: &mut [Observation],
+        workspace: &mut PredictionWorkspace,
+    ) -> Real {
+        let parameters = self.prior.at(theta);
+        renew(table, &parameters);
+        predict(self.path, table, &parameters, self.commanded, observations, workspace);
+        let mut cost = theta.iter().fold(Real::ZERO, |sum, t| sum + *t * *t);
         for o in observations.iter_mut() {
-            let value = direct(o).map(|d| Offset::from_mm(*sigma).over(o.deviation()) * d);
-            set(o, k, value.unwrap_or(Real::ZERO));
-        }
-        if *sigma == Real::ZERO || observations.iter().any(|o| direct(o).is_some()) {
-            continue;
-        }
-        for side in [DIFFERENCE, -DIFFERENCE] {
-            let mut moved = *theta;
-            if let Some(t) = moved.get_mut(k) {
-                *t += side;
-            }
-            let parameters = prior.at(&moved);
-            let changed;
-            let table = if parameters.coefficients.size_exponent == table.size_exponent() {
-                table
+            let residual = o.residual().abs();
+            // Huber: quadratic near zero, linear in the tails.
+            (o.weight, cost) = if residual <= HUBER {
+                (Real::ONE, cost + residual * residual)
             } else {
-                changed = ForceTable::new(parameters.coefficients.size_exponent);
-                &changed
+                (HUBER / residual, cost + HUBER * (residual + residual - HUBER))
             };
-            // The prediction at the point itself is needed again: it is kept aside.
+        }
+        cost
+    }
+
+    /// Sensitivities and the normal equations at a point just evaluated; `observe` is told how many parameters are done.
+    ///
+    /// Radius and datum act on the measurement and are known; the others are central difference quotients, so that a
+    /// parameter whose sign turns with the part has the same sensitivity with the other sign.
+    fn linearise(
+        &self,
+        table: &ForceTable,
+        theta: &[Real; COUNT],
+        observations: &mut [Observation],
+        workspace: &mut PredictionWorkspace,
+        observe: &mut dyn FnMut(usize),
+    ) -> Information {
+        let mut changed = ForceTable::BLANK;
+        for (k, (parameter, sigma)) in Parameter::ALL.iter().zip(&self.prior.sigma).enumerate() {
+            observe(k);
+            let direct = |o: &Observation| match parameter {
+                Parameter::Radius => Some(Real::ONE),
+                Parameter::DatumX => Some(-o.normal.x),
+                Parameter::DatumY => Some(-o.normal.y),
+                _ => None,
+            };
             for o in observations.iter_mut() {
-                o.base = o.predicted;
+                let value = direct(o).map(|d| Offset::from_mm(*sigma).over(o.deviation()) * d);
+                set(o, k, value.unwrap_or(Real::ZERO));
             }
-            predict(path, table, &parameters, commanded, observations, workspace);
-            for o in observations.iter_mut() {
-                let change = (o.predicted - o.base).over(o.deviation()) / (side + side);
-                o.predicted = o.base;
-                let sum = o.sensitivity.get(k).copied().unwrap_or_default() + change;
-                set(o, k, sum);
+            if *sigma == Real::ZERO || observations.iter().any(|o| direct(o).is_some()) {
+                continue;
+            }
+            for side in [DIFFERENCE, -DIFFERENCE] {
+                let mut moved = *theta;
+                if let Some(t) = moved.get_mut(k) {
+                    *t += side;
+                }
+                let parameters = self.prior.at(&moved);
+                let table = if parameters.coefficients.size_exponent == table.size_exponent() {
+                    table
+                } else {
+                    changed.tabulate(parameters.coefficients.size_exponent);
+                    &changed
+                };
+                // The prediction at the point itself is needed again: it is kept aside.
+                for o in observations.iter_mut() {
+                    o.base = o.predicted;
+                }
+                predict(self.path, table, &parameters, self.commanded, observations, workspace);
+                for o in observations.iter_mut() {
+                    let change = (o.predicted - o.base).over(o.deviation()) / (side + side);
+                    o.predicted = o.base;
+                    let sum = o.sensitivity.get(k).copied().unwrap_or_default() + change;
+                    set(o, k, sum);
+                }
             }
         }
+        let mut information = Information::prior(theta);
+        for o in observations.iter() {
+            information.add(&o.sensitivity, o.residual(), o.weight);
+        }
+        information
     }
-    let mut information = Information::prior(theta);
-    for o in observations.iter() {
-        information.add(&o.sensitivity, o.residual(), o.weight);
-    }
-    information
 }
 
 fn set(observation: &mut Observation, k: usize, value: Real) {
@@ -217,6 +259,6 @@ fn set(observation: &mut Observation, k: usize, value: Real) {
 
 fn renew(table: &mut ForceTable, parameters: &Parameters) {
     if table.size_exponent() != parameters.coefficients.size_exponent {
-        *table = ForceTable::new(parameters.coefficients.size_exponent);
+        table.tabulate(parameters.coefficients.size_exponent);
     }
 }

@@ -10,7 +10,7 @@ mod observation;
 mod parameters;
 mod solve;
 
-pub use fit::{Fit, identify, identify_law};
+pub use fit::{Fit, identify, identify_law, identify_law_observed, identify_observed};
 pub use observation::{Observation, PredictionWorkspace, predict};
 pub use parameters::{COUNT, Parameter, Parameters, Prior};
 pub use solve::{Information, Matrix, square_root};

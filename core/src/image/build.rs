@@ -1,9 +1,11 @@
 //! Correction array → bytes.
 
+use core::borrow::Borrow;
+
 use super::check::reach_nm;
 use super::{
-    CRC_BYTES, FACTOR_ONE, FeedLaw, HEADER_BYTES, Header, Image, ImageError, ImageNode, ImageSettings, MAX_NODES,
-    NODE_BYTES, Node, crc32,
+    CRC_BYTES, FACTOR_ONE, FeedLaw, Field, HEADER_BYTES, Header, Image, ImageError, ImageNode, ImageSettings,
+    MAX_NODES, NODE_BYTES, Node, crc32,
 };
 use crate::geometry::Point;
 use crate::units::Offset;
@@ -15,9 +17,10 @@ pub const fn image_bytes(nodes: usize) -> usize {
 
 /// The longest correction vector among nodes, over the feed window of a law and at the nominal feed: the clamp of
 /// an image must be at least this.
-pub fn peak(nodes: &[ImageNode], feed: &FeedLaw) -> Offset {
+pub fn peak<N: Borrow<ImageNode>>(nodes: impl IntoIterator<Item = N>, feed: &FeedLaw) -> Offset {
     let factors = [feed.factor_at(feed.ratio_low), FACTOR_ONE, feed.factor_at(feed.ratio_high)];
-    Offset::from_nm(nodes.iter().map(|n| reach_nm(n.chip, n.edge, &factors)).max().unwrap_or(0))
+    let reach = |n: N| reach_nm(n.borrow().chip, n.borrow().edge, &factors);
+    Offset::from_nm(nodes.into_iter().map(reach).max().unwrap_or(0))
 }
 
 /// Writes an image into a lent buffer and gives it back, checked; its bytes are the first [`image_bytes`] of the
@@ -26,12 +29,19 @@ pub fn peak(nodes: &[ImageNode], feed: &FeedLaw) -> Offset {
 /// # Errors
 /// The buffer is too small, a setting is outside its range, nodes are too close or too far apart, a node lies beyond
 /// 2.1 m from the first, or a correction exceeds the clamp within the feed window. Nothing is cut in silence.
-pub fn build<'b>(settings: &ImageSettings, nodes: &[ImageNode], buffer: &'b mut [u8]) -> Result<Image<'b>, ImageError> {
-    let origin = nodes.first().map_or(Point::from_nm(0, 0), |n| n.point);
-    let count = nodes.len();
+///
+/// The nodes are walked through twice, so that they may be made on the way and need no array of their own.
+pub fn build<'b, N: Borrow<ImageNode>>(
+    settings: &ImageSettings,
+    nodes: impl IntoIterator<Item = N, IntoIter: Clone>,
+    buffer: &'b mut [u8],
+) -> Result<Image<'b>, ImageError> {
+    let nodes = nodes.into_iter();
+    let origin = nodes.clone().next().map_or(Point::from_nm(0, 0), |n| n.borrow().point);
+    let count = nodes.clone().count();
     if !(2..=MAX_NODES).contains(&count) {
         let value = i64::try_from(count).unwrap_or(i64::MAX);
-        return Err(ImageError::Range { name: "number of nodes", value, low: 2, high: MAX_NODES as i64 });
+        return Err(ImageError::Range { name: Field::Nodes, value, low: 2, high: MAX_NODES as i64 });
     }
     let needed = image_bytes(count);
     let found = buffer.len();
@@ -52,14 +62,22 @@ pub fn build<'b>(settings: &ImageSettings, nodes: &[ImageNode], buffer: &'b mut 
     Image::new_checked(bytes)
 }
 
-fn write_nodes(nodes: &[ImageNode], origin: Point, body: &mut [u8]) -> Result<(), ImageError> {
-    for (index, (node, place)) in nodes.iter().zip(body.as_chunks_mut::<NODE_BYTES>().0).enumerate() {
-        let mut stored = relative(node, origin, index)?;
-        if let Some(next) = nodes.get(index.saturating_add(1)) {
-            let next = relative(next, origin, index.saturating_add(1))?;
-            (stored.length, stored.reciprocal) = stored.derived(&next);
+fn write_nodes<N: Borrow<ImageNode>>(
+    nodes: impl Iterator<Item = N>,
+    origin: Point,
+    body: &mut [u8],
+) -> Result<(), ImageError> {
+    let places = body.as_chunks_mut::<NODE_BYTES>().0.iter_mut();
+    let mut before: Option<(Node, &mut [u8; NODE_BYTES])> = None;
+    for (index, (node, place)) in nodes.zip(places).enumerate() {
+        let node = relative(node.borrow(), origin, index)?;
+        if let Some((mut stored, place)) = before.replace((node, place)) {
+            (stored.length, stored.reciprocal) = stored.derived(&node);
+            *place = stored.encode();
         }
-        *place = stored.encode();
+    }
+    if let Some((last, place)) = before {
+        *place = last.encode();
     }
     Ok(())
 }

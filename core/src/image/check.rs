@@ -1,13 +1,13 @@
 //! What makes a well-framed image trustworthy: ranges, spacing, derived fields, clamp.
 
 use super::{
-    FACTOR_ONE, FineOffset, Header, Image, ImageError, MAX_CLAMP_NM, MAX_NODES, MAX_SPACING_NM, MIN_SPACING_NM, Node,
-    RATIO_ONE,
+    FACTOR_ONE, Field, FineOffset, Header, Image, ImageError, MAX_CLAMP_NM, MAX_NODES, MAX_SPACING_NM, MIN_SPACING_NM,
+    Node, RATIO_ONE,
 };
 use crate::units::isqrt_rounded;
 use crate::units::shift_rounded_i64;
 
-fn within(name: &'static str, value: i64, low: i64, high: i64) -> Result<(), ImageError> {
+fn within(name: Field, value: i64, low: i64, high: i64) -> Result<(), ImageError> {
     if (low..=high).contains(&value) { Ok(()) } else { Err(ImageError::Range { name, value, low, high }) }
 }
 
@@ -16,29 +16,24 @@ pub(super) fn header(header: &Header) -> Result<(), ImageError> {
     /// Coordinates of a program: ±1000 m keeps every difference of the servo cycle far from its end.
     const PLACE: i64 = 1_000_000_000_000;
     let s = &header.settings;
-    within("number of nodes", i64::from(header.node_count), 2, MAX_NODES as i64)?;
-    within(
-        "feed per tooth (2^-8 nm)",
-        i64::from(s.feed.per_tooth.bits()),
-        1 << FineOffset::FRACTION_BITS,
-        8_000_000 << 8,
-    )?;
-    within("number of teeth", i64::from(s.feed.teeth), 1, 64)?;
-    within("size exponent (2^-16)", i64::from(s.feed.size_exponent), 0, i64::from(RATIO_ONE))?;
-    within("lower feed ratio (2^-16)", i64::from(s.feed.ratio_low), 0, i64::from(RATIO_ONE))?;
-    within("upper feed ratio (2^-16)", i64::from(s.feed.ratio_high), RATIO_ONE.into(), i64::from(RATIO_ONE) << 1)?;
-    within("clamp (nm)", s.limits.clamp.nm(), 1, MAX_CLAMP_NM)?;
-    within("warn level (nm)", s.limits.warn.nm(), 0, s.limits.clamp.nm())?;
-    within("slew limit (nm/s)", i64::from(s.limits.slew_nm_per_s), 1, 4_000_000_000)?;
+    within(Field::Nodes, i64::from(header.node_count), 2, MAX_NODES as i64)?;
+    within(Field::FeedPerTooth, i64::from(s.feed.per_tooth.bits()), 1 << FineOffset::FRACTION_BITS, 8_000_000 << 8)?;
+    within(Field::Teeth, i64::from(s.feed.teeth), 1, 64)?;
+    within(Field::SizeExponent, i64::from(s.feed.size_exponent), 0, i64::from(RATIO_ONE))?;
+    within(Field::RatioLow, i64::from(s.feed.ratio_low), 0, i64::from(RATIO_ONE))?;
+    within(Field::RatioHigh, i64::from(s.feed.ratio_high), RATIO_ONE.into(), i64::from(RATIO_ONE) << 1)?;
+    within(Field::Clamp, s.limits.clamp.nm(), 1, MAX_CLAMP_NM)?;
+    within(Field::Warn, s.limits.warn.nm(), 0, s.limits.clamp.nm())?;
+    within(Field::Slew, i64::from(s.limits.slew_nm_per_s), 1, 4_000_000_000)?;
     let acceleration = i64::try_from(s.limits.acceleration_nm_per_s2).unwrap_or(i64::MAX);
-    within("acceleration limit (nm/s^2)", acceleration, 1, 1_000_000_000_000)?;
-    within("path tolerance (nm)", s.window.tolerance.nm(), 1_000, 5_000_000)?;
-    within("lower end of the pass (nm)", s.window.z_low.nm(), -PLACE, s.window.z_high.nm().min(PLACE))?;
-    within("upper end of the pass (nm)", s.window.z_high.nm(), -PLACE, PLACE)?;
-    within("height of the gate (nm)", s.window.gate_height.nm(), 0, 1_000_000_000)?;
-    within("node step (nm)", s.node_step.nm(), MIN_SPACING_NM, MAX_SPACING_NM)?;
-    within("x of the origin (nm)", header.origin.x.nm(), -PLACE, PLACE)?;
-    within("y of the origin (nm)", header.origin.y.nm(), -PLACE, PLACE)?;
+    within(Field::Acceleration, acceleration, 1, 1_000_000_000_000)?;
+    within(Field::Tolerance, s.window.tolerance.nm(), 1_000, 5_000_000)?;
+    within(Field::PassLow, s.window.z_low.nm(), -PLACE, s.window.z_high.nm().min(PLACE))?;
+    within(Field::PassHigh, s.window.z_high.nm(), -PLACE, PLACE)?;
+    within(Field::Gate, s.window.gate_height.nm(), 0, 1_000_000_000)?;
+    within(Field::NodeStep, s.node_step.nm(), MIN_SPACING_NM, MAX_SPACING_NM)?;
+    within(Field::OriginX, header.origin.x.nm(), -PLACE, PLACE)?;
+    within(Field::OriginY, header.origin.y.nm(), -PLACE, PLACE)?;
     factor_table(&s.feed.factor)
 }
 

@@ -2,8 +2,12 @@
 
 use core::fmt;
 
+use serde::{Deserialize, Serialize};
+
+use super::Field;
+
 /// Why bytes are not an image, or why an image cannot be made. The sentence of each variant is the text shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ImageError {
     /// The buffer is too small for the image.
     Buffer {
@@ -47,7 +51,7 @@ pub enum ImageError {
     /// A value of the header is outside its range.
     Range {
         /// Name and unit of the value.
-        name: &'static str,
+        name: Field,
         /// The value.
         value: i64,
         /// Least permitted.

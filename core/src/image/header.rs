@@ -2,6 +2,8 @@
 //!
 //! 288 bytes, little endian; places are listed in [`Header::encode`]. Lengths are nanometres unless said otherwise.
 
+use serde::{Deserialize, Serialize};
+
 use super::feed_law::FeedLaw;
 use super::{FACTOR_NODES, FLAG_CLOSED, FORMAT, FineOffset, MAGIC, SEMANTICS, read};
 use crate::geometry::Point;
@@ -11,7 +13,7 @@ use crate::units::{Offset, Position};
 pub const HEADER_BYTES: usize = 288;
 
 /// What an image belongs to. Arming compares every field with what the controller sends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Binding {
     /// CRC-32 (ISO-HDLC) of the bytes of the original program.
     pub program_crc: u32,

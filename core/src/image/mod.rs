@@ -16,6 +16,7 @@ mod check;
 mod dump;
 mod error;
 mod feed_law;
+mod field;
 mod fine;
 mod header;
 mod node;
@@ -27,6 +28,7 @@ pub(crate) use check::scaled;
 pub use dump::dump;
 pub use error::ImageError;
 pub use feed_law::{FACTOR_BITS, FACTOR_NODES, FACTOR_ONE, FeedLaw, RATIO_BITS, RATIO_ONE};
+pub use field::Field;
 pub use fine::FineOffset;
 pub use header::{Binding, CorrectionLimits, HEADER_BYTES, Header, ImageSettings, PathWindow};
 pub use node::{ImageNode, NODE_BYTES, Node};
@@ -47,6 +49,10 @@ pub const MAX_SPACING_NM: i64 = 1_000_000;
 pub const MAX_CLAMP_NM: i64 = 4_000_000;
 /// Most nodes of an image: 100 m of path at 0.1 mm.
 pub const MAX_NODES: usize = 1 << 20;
+/// Most nodes of an image that a coprocessor holds. A slot of its flash is three sectors of 128 KiB; less one flash
+/// word for the commit and one for the head of the slot (32 bytes each) that is room for 12,276 nodes, rounded down
+/// so that the head may grow. 1.2 m of path at 0.1 mm.
+pub const DEVICE_NODES: usize = 12_000;
 /// Bytes of the checksum at the end.
 const CRC_BYTES: usize = 4;
 

@@ -44,6 +44,18 @@ pub struct Contact {
     pub error: Offset,
 }
 
+impl Contact {
+    /// What a lent buffer is filled with before contacts are written into it.
+    pub const BLANK: Self = Self {
+        line: 0,
+        point: Point::from_nm(0, 0),
+        s: Offset::ZERO,
+        normal: Direction::X,
+        height: Real::ZERO,
+        error: Offset::ZERO,
+    };
+}
+
 /// Why a reading is set aside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rejected {

@@ -1,13 +1,15 @@
 //! Commands between ticks: acknowledge, arm, disarm. They come from the controller or the operator, outside the servo
 //! cycle.
 
+use serde::{Deserialize, Serialize};
+
 use super::refusal::{Identity, Refusal};
 use super::state::{Mode, Spent, State};
 use super::{Frame, Phase, Reason, Rewriter};
 use crate::image::Binding;
 
 /// What the controller says it is about to do: the operator's confirmation for one pass of one part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ArmRequest {
     /// Program, feature, pass, tool, tool offset, setup; every number must be that of the image.
     pub binding: Binding,

@@ -4,6 +4,8 @@
 //! says which machine axis it is. Work offset, G52/G92 and tool offset are sums in `offset`; the unit is always the
 //! nanometre. The controller sends the frame with its own checksum, and the checksum alone with every setpoint.
 
+use serde::{Deserialize, Serialize};
+
 use super::Refusal;
 use crate::geometry::Point;
 use crate::image::crc32;
@@ -17,7 +19,7 @@ pub const TURN_BITS: u32 = 30;
 pub const TURN_ONE: i32 = 1 << TURN_BITS;
 
 /// The machine axis a program axis drives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct AxisMap {
     /// Index of the axis in a setpoint, 0…5.
     pub axis: u8,
@@ -26,7 +28,7 @@ pub struct AxisMap {
 }
 
 /// The transform, as the controller sends it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Frame {
     /// Machine coordinate of the program's origin on the axes of X, Y, Z, nm.
     pub offset_nm: [i64; 3],

@@ -8,6 +8,8 @@
 //! All arithmetic is integer and odd in the coordinates, so shifting, turning by 90° and mirroring the image together
 //! with the setpoints gives the same place to the last bit.
 
+use serde::{Deserialize, Serialize};
+
 use crate::image::{Image, Node};
 use crate::units::shift_rounded_i64;
 
@@ -23,7 +25,7 @@ pub const FRACTION_ONE: u32 = 1 << FRACTION_BITS;
 const FAR_NM: u64 = 1 << 24;
 
 /// A place on the path.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Place {
     /// Index of the node at or before it.
     pub node: u32,

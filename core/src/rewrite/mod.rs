@@ -26,11 +26,13 @@ mod follow;
 mod frame;
 mod limit;
 mod locate;
+mod off;
 mod reason;
 mod refusal;
 mod setpoint;
 mod settings;
 mod state;
+mod telemetry;
 mod tick;
 
 pub use command::ArmRequest;
@@ -38,10 +40,10 @@ pub use digest::Digest;
 pub use frame::{AXES, AxisMap, Frame, TURN_BITS, TURN_ONE};
 pub use limit::{AxisState, Limits};
 pub use locate::{ADVANCE_LIMIT, Place};
-pub use reason::Reason;
+pub use reason::{Reason, UnknownReason};
 pub use refusal::{Identity, Refusal};
 pub use setpoint::{Flags, Output, Setpoint, Status};
-pub use settings::{Settings, SettingsError};
+pub use settings::{Setting, Settings, SettingsError};
 pub use state::{Mode, SPENT_CAPACITY, Spent, State};
 
 use crate::image::Image;

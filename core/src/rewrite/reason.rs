@@ -2,8 +2,11 @@
 
 use core::fmt;
 
+use serde::{Deserialize, Serialize};
+
 /// The reason, with a number that stays the same from version to version: 0 none, 1…15 regular ends, 16… faults.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(into = "u16", try_from = "u16")]
 #[repr(u16)]
 pub enum Reason {
     /// Nothing happened since the arming.
@@ -45,9 +48,34 @@ pub enum Reason {
     SequenceBroken = 29,
     /// The corrected position would pass a joint limit.
     JointLimit = 30,
+    /// No setpoint came for too long.
+    Silence = 31,
 }
 
 impl Reason {
+    /// All of them in the order of their numbers.
+    pub const ALL: [Self; 20] = [
+        Self::None,
+        Self::Completed,
+        Self::Disarmed,
+        Self::ProgramEnd,
+        Self::EmergencyStop,
+        Self::Abort,
+        Self::ToolChange,
+        Self::DrivesDisabled,
+        Self::FrameChanged,
+        Self::ImageChanged,
+        Self::Jump,
+        Self::OffPath,
+        Self::Backwards,
+        Self::LeftGate,
+        Self::LeftPass,
+        Self::BelowPass,
+        Self::MovedInHold,
+        Self::SequenceBroken,
+        Self::JointLimit,
+        Self::Silence,
+    ];
     /// Its number.
     pub const fn code(self) -> u16 {
         self as u16
@@ -80,6 +108,32 @@ impl fmt::Display for Reason {
             Self::MovedInHold => "the setpoint moved away during a feed hold",
             Self::SequenceBroken => "setpoints were repeated, or more were lost than permitted",
             Self::JointLimit => "the corrected position would pass a joint limit",
+            Self::Silence => "no setpoint came for too long",
         })
     }
 }
+
+impl From<Reason> for u16 {
+    fn from(reason: Reason) -> Self {
+        reason.code()
+    }
+}
+
+impl TryFrom<u16> for Reason {
+    type Error = UnknownReason;
+    fn try_from(code: u16) -> Result<Self, UnknownReason> {
+        Self::ALL.into_iter().find(|reason| reason.code() == code).ok_or(UnknownReason(code))
+    }
+}
+
+/// A number that stands for no reason in this version.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnknownReason(pub u16);
+
+impl fmt::Display for UnknownReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} is no reason", self.0)
+    }
+}
+
+impl core::error::Error for UnknownReason {}

@@ -2,10 +2,12 @@
 
 use core::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::Mode;
 
 /// Why a command had no effect. A mismatch carries both sides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Refusal {
     /// The command does not belong to the present state.
     State(Mode),
@@ -13,6 +15,8 @@ pub enum Refusal {
     NoImage,
     /// The drives are still enabled.
     DrivesEnabled,
+    /// No setpoints arrive, so nobody says what the drives do.
+    NoSetpoints,
     /// An identity number is another one.
     Identity {
         /// What it names.
@@ -53,7 +57,7 @@ pub enum Refusal {
 }
 
 /// The identity numbers that must agree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Identity {
     /// CRC-32 of the program.
     Program,
@@ -80,6 +84,7 @@ impl Refusal {
             Self::FrameDamaged { .. } => 5,
             Self::FrameNotRigid { .. } => 6,
             Self::FrameAxes { .. } => 7,
+            Self::NoSetpoints => 8,
             Self::Identity { what: Identity::Program, .. } => 16,
             Self::Identity { what: Identity::Feature, .. } => 17,
             Self::Identity { what: Identity::Pass, .. } => 18,
@@ -96,6 +101,7 @@ impl fmt::Display for Refusal {
             Self::State(mode) => write!(f, "not possible in state {mode}"),
             Self::NoImage => f.write_str("there is no image"),
             Self::DrivesEnabled => f.write_str("the drives are still enabled"),
+            Self::NoSetpoints => f.write_str("no setpoints arrive"),
             Self::PartRepeated { part_serial } => {
                 write!(f, "part {part_serial} has been armed for this pass before; a second correction would gouge")
             }

@@ -1,11 +1,13 @@
 //! What comes in and what goes out, once per tick.
 
+use serde::{Deserialize, Serialize};
+
 use super::frame::AXES;
 use super::locate::Place;
 use super::{Mode, Reason};
 
 /// Bits that come with a setpoint.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Flags(pub u16);
 
 impl Flags {
@@ -54,7 +56,7 @@ pub struct Setpoint {
 }
 
 /// Bits that go out with a corrected setpoint.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Status(pub u16);
 
 impl Status {

@@ -2,11 +2,13 @@
 
 use core::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::frame::AXES;
 use crate::units::Offset;
 
 /// Times and limits of the machine the rewriter sits in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Settings {
     /// Setpoints per second, 10 … 100 000.
     pub tick_hz: u32,
@@ -51,12 +53,12 @@ impl Settings {
         let range = |name, value: i64, low: i64, high: i64| {
             if (low..=high).contains(&value) { Ok(()) } else { Err(SettingsError::Range { name, value, low, high }) }
         };
-        range("tick rate (Hz)", self.tick_hz.into(), 10, 100_000)?;
-        range("largest step (nm)", self.max_step.nm(), 1, 8_000_000)?;
-        range("lost frames", self.max_lost_frames.into(), 0, 16)?;
-        range("hold after (ticks)", self.hold_after_ticks.into(), 2, 1 << 31)?;
-        range("fade (ticks)", self.fade_ticks.into(), 1, 65_536)?;
-        range("feed smoothing (binary logarithm of ticks)", self.feed_smoothing.into(), 0, 12)?;
+        range(Setting::TickRate, self.tick_hz.into(), 10, 100_000)?;
+        range(Setting::LargestStep, self.max_step.nm(), 1, 8_000_000)?;
+        range(Setting::LostFrames, self.max_lost_frames.into(), 0, 16)?;
+        range(Setting::HoldAfter, self.hold_after_ticks.into(), 2, 1 << 31)?;
+        range(Setting::Fade, self.fade_ticks.into(), 1, 65_536)?;
+        range(Setting::FeedSmoothing, self.feed_smoothing.into(), 0, 12)?;
         for (axis, (low, high)) in self.joint_limits_nm.iter().enumerate() {
             if low > high {
                 return Err(SettingsError::JointLimits { axis });
@@ -66,13 +68,43 @@ impl Settings {
     }
 }
 
+/// A setting with a range. Its sentence gives name and unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Setting {
+    /// [`Settings::tick_hz`].
+    TickRate,
+    /// [`Settings::max_step`].
+    LargestStep,
+    /// [`Settings::max_lost_frames`].
+    LostFrames,
+    /// [`Settings::hold_after_ticks`].
+    HoldAfter,
+    /// [`Settings::fade_ticks`].
+    Fade,
+    /// [`Settings::feed_smoothing`].
+    FeedSmoothing,
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TickRate => "tick rate (Hz)",
+            Self::LargestStep => "largest step (nm)",
+            Self::LostFrames => "lost frames",
+            Self::HoldAfter => "hold after (ticks)",
+            Self::Fade => "fade (ticks)",
+            Self::FeedSmoothing => "feed smoothing (binary logarithm of ticks)",
+        })
+    }
+}
+
 /// Why a rewriter cannot be made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SettingsError {
     /// A value is outside its range.
     Range {
         /// Name and unit.
-        name: &'static str,
+        name: Setting,
         /// The value.
         value: i64,
         /// Least permitted.

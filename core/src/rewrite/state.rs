@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::feed::FeedRatio;
 use super::frame::{Local, Mapping};
 use super::limit::AxisState;
@@ -16,7 +18,7 @@ pub(super) const FADE_ONE: i32 = 1 << FADE_BITS;
 pub const SPENT_CAPACITY: usize = 16;
 
 /// The states of the safety contract.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum Mode {
     /// After power-up or reset: nothing goes out, until the controller acknowledges that the drives are disabled.
@@ -60,7 +62,7 @@ pub(super) enum Phase {
 }
 
 /// A pass of a part that has been armed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Spent {
     /// Serial number of the part.
     pub part_serial: u32,

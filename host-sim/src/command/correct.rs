@@ -5,16 +5,17 @@ use std::path::Path as FilePath;
 use truepath_core::correct::Law;
 use truepath_core::cut::{Loop, Path};
 use truepath_core::identify::Parameter;
+use truepath_core::job;
 use truepath_core::units::Offset;
 
-use crate::correction::{Correction, Identified, clamp_help, corrected, identified, law, wanted};
-use crate::diagnostics::{Failure, InputError, Source};
+use crate::correction::{Correction, Identified, corrected, identified};
+use crate::diagnostics::{Failure, Source};
 use crate::job::{Job, Route};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
 use crate::program::{RewriteOptions, rewrite_program};
-use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, image_nodes, mm, points_csv};
+use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, mm, points_csv};
 
 use crate::report::json;
 
@@ -76,26 +77,22 @@ pub fn correct(
 ) -> Result<Corrected, Failure> {
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
-    let identified = identified(pass, &sampled, measurement);
+    let identified = identified(pass, &sampled, measurement, |share| progress(0.2 * share))?;
     progress(0.2);
-    check_fit(pass, &identified)?;
-    let path = sampled.with_law(identified.law);
+    let path = sampled.with_law(identified.law());
     let table = identified.table();
     let machine = identified.machine(&path, &table);
-    let law = law(pass, &machine, &measurement.contacts, pass.job.correct.law);
-    let correction = corrected(&machine, &identified, wanted(pass, law), |share| progress(0.2 + 0.7 * share));
-    check_clamp(pass, &path, &correction)?;
+    let law = job::law(&pass.core, &machine, &measurement.contacts);
+    let correction = corrected(pass, &machine, &identified, law, |share| progress(0.2 + 0.7 * share))?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.iter().cloned());
-    warnings.extend(doubts(pass, routes, &identified, &correction, &machine));
+    warnings.extend(doubts(pass, &identified, &correction, &machine));
     let summary = correct_summary(pass, &identified, &correction, measurement.rejected.len(), warnings);
     let (mut program, mut image) = (None, None);
     for route in routes {
         match route {
             Route::Program => program = Some(corrected_program(pass, &path, &correction)?),
-            Route::Coprocessor => {
-                image = Some(crate::image::build(pass, &identified, image_nodes(&path, &correction.nodes))?);
-            }
+            Route::Coprocessor => image = Some(crate::image::build(pass, &identified, &path, &correction)?),
         }
     }
     let table = correction_csv(&machine, &correction)?;
@@ -115,7 +112,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     let file = Source::read(options.probe)?;
     let measurement = Measurement::read(&pass, &file)?;
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
-    let route = options.route.unwrap_or(pass.job.correct.route);
+    let route = options.route.unwrap_or(pass.job.route);
     let done = correct(&pass, &measurement, &measurement.remarks(&file), &[route], progress)?;
     if let Some(text) = &done.program {
         folder.write("corrected.nc", text)?;
@@ -133,68 +130,14 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
 }
 
 fn corrected_program(pass: &Pass, path: &Path, correction: &Correction) -> Result<Vec<u8>, Failure> {
-    let options = RewriteOptions { tolerance: pass.job.correct.tolerance, ..RewriteOptions::default() };
+    let options = RewriteOptions { tolerance: pass.job.tolerance, ..RewriteOptions::default() };
     Ok(rewrite_program(&pass.program, &block_edits(pass, path, &correction.nodes), &options)?.text)
 }
 
-/// Points most of which contradict each other or the job are no basis for a correction.
-fn check_fit(pass: &Pass, identified: &Identified) -> Result<(), Failure> {
-    let (outliers, points) = (identified.fit.outliers, identified.observations.len());
-    if outliers * 2 <= points {
-        return Ok(());
-    }
-    let worst = identified.observations.iter().max_by_key(|o| o.residual().abs());
-    let example = worst.map_or(String::new(), |o| {
-        format!("; at s = {:.2} mm {:.4} mm were measured, {:.4} mm would fit", mm(o.s), mm(o.error), mm(o.predicted))
-    });
-    Err(InputError::new(
-        "M020",
-        format!("{outliers} of {points} points fit neither each other nor any machine like the one in the job{example}"),
-        "probe points of one part cut by this program",
-        "check ball_diameter_mm, allowance_mm, the side of the wall and that the probed part is the one of this program",
-    )
-    .at(pass.job.source(), pass.job.span("probe.ball_diameter_mm"))
-    .into())
-}
-
-/// A correction cut by the clamp is an error, never silent.
-fn check_clamp(pass: &Pass, path: &Path, correction: &Correction) -> Result<(), Failure> {
-    let size = |i: usize| {
-        let total = correction.nodes[i].total();
-        total.x.abs().max(total.y.abs())
-    };
-    let Some(worst) = (0..correction.nodes.len()).max_by_key(|i| size(*i)) else { return Ok(()) };
-    let clamp = pass.job.correct.clamp;
-    if size(worst) <= clamp {
-        return Ok(());
-    }
-    let at = path.samples()[path.first() + worst];
-    let peak = mm(size(worst));
-    Err(InputError::new(
-        "J017",
-        format!(
-            "the correction reaches {peak:.3} mm at X{:.3} Y{:.3}, beyond clamp_mm = {}",
-            at.point.x.nm() as f64 / 1e6,
-            at.point.y.nm() as f64 / 1e6,
-            mm(clamp)
-        ),
-        "a correction inside the clamp",
-        clamp_help(size(worst)),
-    )
-    .at(pass.job.source(), pass.job.span("correct.clamp_mm"))
-    .into())
-}
-
 /// What the user should doubt.
-fn doubts(
-    pass: &Pass,
-    routes: &[Route],
-    identified: &Identified,
-    correction: &Correction,
-    machine: &Loop,
-) -> Vec<String> {
+fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
     let mut out = Vec::new();
-    if identified.fit.outliers > 0 {
+    if identified.fit().outliers > 0 {
         let lines: Vec<String> = identified
             .observations
             .iter()
@@ -231,7 +174,7 @@ fn doubts(
             ));
         }
     }
-    let far = identified.fit.theta.iter().zip(Parameter::ALL).filter(|(t, _)| crate::report::float(t.abs()) > 2.5);
+    let far = identified.fit().theta.iter().zip(Parameter::ALL).filter(|(t, _)| crate::report::float(t.abs()) > 2.5);
     for (theta, parameter) in far {
         out.push(format!(
             "{} came out {:.1} standard deviations from what the job says: check the job, or probe more places",
@@ -247,13 +190,6 @@ fn doubts(
             mm(sigma)
         ));
     }
-    if routes.contains(&Route::Coprocessor) && correction.nodes.len() > crate::image::DEVICE_NODES {
-        out.push(format!(
-            "the correction has {} nodes; the coprocessor holds {}: its image would be refused there",
-            correction.nodes.len(),
-            crate::image::DEVICE_NODES
-        ));
-    }
     if let Some(reversal) = reversal(pass, machine, correction) {
         out.push(reversal);
     }
@@ -265,7 +201,7 @@ fn reversal(pass: &Pass, machine: &Loop, correction: &Correction) -> Option<Stri
     let path = machine.path;
     let samples = &path.samples()[path.first()..path.first() + path.count()];
     for axis in 0..2 {
-        let backlash = [pass.job.machine.backlash_x, pass.job.machine.backlash_y][axis];
+        let backlash = pass.job.backlash[axis];
         if backlash.nm() == 0 {
             continue;
         }

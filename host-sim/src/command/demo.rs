@@ -179,7 +179,7 @@ fn picture(
     let (s, wall) = plot::nominal_wall(pass);
     // The ends, where the cutter plunges and lifts, are not judged.
     let trim = (0.8 * first.cut.radius_mm).max(6.0);
-    let length = crate::report::mm(pass.contour.length);
+    let length = crate::report::mm(pass.core.contour.length);
     let along = |milled: &Milled| {
         let errors = milled.mean_errors();
         let judged = |s: f64| s > trim && s < length - trim;

@@ -44,7 +44,7 @@ pub fn run(job: &FilePath, probe: &FilePath) -> Result<Inspection, Failure> {
     let measurement = Measurement::read(&pass, &file)?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(measurement.remarks(&file));
-    let depth = mm(pass.job.cut.axial_depth);
+    let depth = mm(pass.job.numbers.cut.axial_depth);
     let contacts = measurement.contacts.iter().map(|c| Point {
         line: c.line,
         s_mm: mm(c.s),

@@ -57,7 +57,7 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
 pub fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<Trace, Failure> {
     let mut buffer = PathBuffer::default();
     let path = pass.sample(&mut buffer)?;
-    let prior = pass.prior(pass.setup.law).mean;
+    let prior = pass.core.prior(pass.core.setup.law).mean;
     let table = ForceTable::new(prior.coefficients.size_exponent);
     let machine = Loop { path: &path, table: &table, coefficients: prior.coefficients, compliance: prior.compliance };
     let mut states = vec![State::REST; path.working().len()];

@@ -4,6 +4,9 @@ use std::cell::RefCell;
 use std::path::Path;
 
 use toml::de::DeTable;
+use truepath_core::geometry::Side;
+use truepath_core::job::{Cut, Force, ForceModel, Machine, Probe, ZReference};
+use truepath_core::probe::Format;
 use truepath_core::units::{Offset, Real};
 
 use super::check_correct::correct;
@@ -11,7 +14,7 @@ use super::check_tool::{reach, tool};
 use super::document::{Section, Spans};
 use super::limits::Limits;
 use super::material::MATERIALS;
-use super::{Cut, Decimal, Force, ForceModel, Job, Machine, Probe, ProbeFormat, Side, ZReference};
+use super::{Decimal, Job};
 use crate::diagnostics::{InputError, Source};
 
 /// Standard deviation of a reading when the job does not say: 2 µm.
@@ -55,22 +58,19 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     let cut = cut(&root.required_section("cut", "axial_depth_mm")?)?;
     reach(&source, &tool_section, &tool, &cut)?;
     let force = force(&source, &root.required_section("force", "the four coefficients, or material = \"steel-40\"")?)?;
-    let machine = machine(&root.required_section("machine", "stiffness_x_n_per_mm and stiffness_y_n_per_mm")?)?;
+    let (machine, backlash) =
+        machine(&root.required_section("machine", "stiffness_x_n_per_mm and stiffness_y_n_per_mm")?)?;
     let probe = root.section("probe")?.map(|section| probe(&section)).transpose()?;
-    let correct = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
+    let (correct, tolerance, route) = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
     root.close()?;
     let program = folder.join(program.0);
     drop(root);
     Ok(Job {
         program,
-        wall,
-        allowance,
-        tool,
-        cut,
-        force,
-        machine,
-        probe,
-        correct,
+        numbers: truepath_core::job::Job { wall, allowance, tool, cut, force, machine, probe, correct },
+        backlash,
+        tolerance,
+        route,
         spans: spans.into_inner(),
         source: source.clone(),
     })
@@ -155,7 +155,7 @@ fn force(source: &Source, section: &Section<'_>) -> Result<Force, InputError> {
         let kte = section.required_number(KEYS[2], edge)?.as_real();
         let kre = section.required_number(KEYS[3], edge)?.as_real();
         section.close()?;
-        return Ok(Force { ktc, krc, kte, kre, model, material: None });
+        return Ok(Force { ktc, krc, kte, kre, model });
     };
     if let Some(value) = KEYS.into_iter().find_map(|key| section.value(key)) {
         let found = format!("{} is given as well as force.material", value.path);
@@ -165,26 +165,29 @@ fn force(source: &Source, section: &Section<'_>) -> Result<Force, InputError> {
         );
     }
     section.close()?;
-    let row = MATERIALS[index];
-    let [ktc, krc, kte, kre] = row.coefficients.map(|text| Decimal::parse(text).map_or(Real::ZERO, Decimal::as_real));
-    Ok(Force { ktc, krc, kte, kre, model, material: Some(row.name) })
+    let [ktc, krc, kte, kre] =
+        MATERIALS[index].coefficients.map(|text| Decimal::parse(text).map_or(Real::ZERO, Decimal::as_real));
+    Ok(Force { ktc, krc, kte, kre, model })
 }
 
-fn machine(section: &Section<'_>) -> Result<Machine, InputError> {
+/// Stiffness, and the backlash of both axes.
+fn machine(section: &Section<'_>) -> Result<(Machine, [Offset; 2]), InputError> {
     let stiffness = Limits::within("10", "1000000", "N/mm");
-    let backlash = Limits::within("0", "1", "mm");
     let machine = Machine {
         stiffness_x: section.required_number("stiffness_x_n_per_mm", stiffness)?.as_real(),
         stiffness_y: section.required_number("stiffness_y_n_per_mm", stiffness)?.as_real(),
-        backlash_x: section.number("backlash_x_mm", backlash)?.map_or(Offset::ZERO, Decimal::as_mm),
-        backlash_y: section.number("backlash_y_mm", backlash)?.map_or(Offset::ZERO, Decimal::as_mm),
     };
+    let backlash = |key| {
+        let number = section.number(key, Limits::within("0", "1", "mm"))?;
+        Ok::<_, InputError>(number.map_or(Offset::ZERO, Decimal::as_mm))
+    };
+    let backlash = [backlash("backlash_x_mm")?, backlash("backlash_y_mm")?];
     section.close()?;
-    Ok(machine)
+    Ok((machine, backlash))
 }
 
 fn probe(section: &Section<'_>) -> Result<Probe, InputError> {
-    const FORMATS: [(&str, ProbeFormat); 2] = [("linuxcnc", ProbeFormat::LinuxCnc), ("columns", ProbeFormat::Columns)];
+    const FORMATS: [(&str, Format); 2] = [("linuxcnc", Format::Linuxcnc), ("columns", Format::Columns)];
     const REFERENCES: [(&str, ZReference); 2] = [("centre", ZReference::Centre), ("tip", ZReference::Tip)];
     let ball_diameter = section.required_number("ball_diameter_mm", Limits::within("0.1", "50", "mm"))?.as_mm();
     let format =

@@ -1,11 +1,13 @@
 //! The `[correct]` table.
 
+use truepath_core::correct::Target;
+use truepath_core::job::{Correct, LawName};
 use truepath_core::units::Offset;
 
 use super::check::text_of;
 use super::document::Section;
 use super::limits::Limits;
-use super::{Correct, Decimal, Law, Route, Target};
+use super::{Decimal, Route};
 use crate::diagnostics::{InputError, Source};
 
 /// Correction allowed when the job does not say: 0.5 mm.
@@ -13,31 +15,35 @@ const DEFAULT_CLAMP: Offset = Offset::from_um(500);
 /// Tolerance of the written path when the job does not say: 1 µm.
 const DEFAULT_TOLERANCE: Offset = Offset::from_um(1);
 
-pub(super) fn correct(source: &Source, section: Option<&Section<'_>>, depth: Offset) -> Result<Correct, InputError> {
-    const LAWS: [(&str, Law); 3] = [("model", Law::Model), ("mirror", Law::Mirror), ("paper", Law::Paper)];
+/// What the table says; the tolerance of the written path and the route concern the command line only.
+pub(super) fn correct(
+    source: &Source,
+    section: Option<&Section<'_>>,
+    depth: Offset,
+) -> Result<(Correct, Offset, Route), InputError> {
+    const LAWS: [(&str, LawName); 3] =
+        [("model", LawName::Model), ("mirror", LawName::Mirror), ("paper", LawName::Paper)];
     const TARGETS: [(&str, Target); 3] = [("mean", Target::Mean), ("tip", Target::Tip), ("minimax", Target::Minimax)];
     const ROUTES: [(&str, Route); 2] = [("program", Route::Program), ("coprocessor", Route::Coprocessor)];
     let mut correct = Correct {
-        law: Law::Model,
-        tolerance: DEFAULT_TOLERANCE,
+        law: LawName::Model,
         clamp: DEFAULT_CLAMP,
         target: Target::Mean,
         band: [Offset::ZERO, depth],
         max_gouge: None,
-        route: Route::Program,
     };
-    let Some(section) = section else { return Ok(correct) };
+    let Some(section) = section else { return Ok((correct, DEFAULT_TOLERANCE, Route::Program)) };
     correct.law = section.choice("law", &LAWS)?.unwrap_or(correct.law);
-    correct.tolerance = section
+    let tolerance = section
         .number("tolerance_mm", Limits::within("0.0001", "0.1", "mm"))?
-        .map_or(correct.tolerance, Decimal::as_mm);
+        .map_or(DEFAULT_TOLERANCE, Decimal::as_mm);
     correct.clamp = section.number("clamp_mm", Limits::above("0", "4", "mm"))?.map_or(correct.clamp, Decimal::as_mm);
     correct.target = section.choice("target", &TARGETS)?.unwrap_or(correct.target);
     correct.band = band(source, section, depth)?.unwrap_or(correct.band);
     correct.max_gouge = section.number("max_gouge_mm", Limits::within("0", "1", "mm"))?.map(Decimal::as_mm);
-    correct.route = section.choice("route", &ROUTES)?.unwrap_or(correct.route);
+    let route = section.choice("route", &ROUTES)?.unwrap_or(Route::Program);
     section.close()?;
-    Ok(correct)
+    Ok((correct, tolerance, route))
 }
 
 fn band(source: &Source, section: &Section<'_>, depth: Offset) -> Result<Option<[Offset; 2]>, InputError> {

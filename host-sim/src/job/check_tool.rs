@@ -1,9 +1,12 @@
 //! The `[tool]` table.
 
+use truepath_core::cut::ToolMaterial;
+use truepath_core::job::{Cut, Stickout, Tool};
+
+use super::Decimal;
 use super::check::text_of;
 use super::document::Section;
 use super::limits::Limits;
-use super::{Cantilever, Cut, CutterMaterial, Decimal, Tool};
 use crate::diagnostics::{InputError, Source};
 
 pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, InputError> {
@@ -30,9 +33,10 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, Input
     };
     let helix_deg = section.required_number("helix_deg", Limits::within("0", "60", "degrees"))?.as_real();
     let stickout = section.number("stickout_mm", Limits::above("0", "500", "mm"))?.map(Decimal::as_mm);
-    let material = section.choice("material", &[("HSS", CutterMaterial::Hss), ("carbide", CutterMaterial::Carbide)])?;
+    let materials = [("HSS", ToolMaterial::HighSpeedSteel), ("carbide", ToolMaterial::Carbide)];
+    let material = section.choice("material", &materials)?;
     let cantilever = match (stickout, material) {
-        (Some(stickout), Some(material)) => Some(Cantilever { stickout, material }),
+        (Some(length), Some(material)) => Some(Stickout { length, material }),
         (None, None) => None,
         (given, _) => {
             let (there, other) =
@@ -56,7 +60,7 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, Input
 /// The cutter must stick out at least as far as it cuts deep.
 pub(super) fn reach(source: &Source, section: &Section<'_>, tool: &Tool, cut: &Cut) -> Result<(), InputError> {
     match (tool.cantilever, section.value("stickout_mm")) {
-        (Some(c), Some(value)) if c.stickout < cut.axial_depth => {
+        (Some(c), Some(value)) if c.length < cut.axial_depth => {
             let expected = format!("at least cut.axial_depth_mm, {} mm", text_of(cut.axial_depth));
             let found = format!("tool.stickout_mm is {}", source.excerpt(value.span.clone()));
             Err(InputError::new("J008", found, expected, "measure from the collet to the cutter's tip")

@@ -4,7 +4,7 @@ mod path;
 mod summary;
 mod tables;
 
-pub use path::{block_edits, image_nodes};
+pub use path::block_edits;
 pub use summary::{
     CorrectSummary, InspectSummary, Parameter, SimulateSummary, correct_summary, inspect_summary, simulate_summary,
 };

@@ -1,4 +1,4 @@
-//! The corrected centre path, as the program writer and the image want it.
+//! The corrected centre path, as the program writer wants it.
 
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
@@ -52,10 +52,4 @@ pub fn block_edits(pass: &Pass, path: &Path, nodes: &[Node]) -> Vec<BlockEdit> {
         }
     }
     edits
-}
-
-/// The samples of the contour with their feed (mm/min) and correction, in the order of travel.
-pub fn image_nodes<'a>(path: &'a Path, nodes: &'a [Node]) -> impl Iterator<Item = (Point, Real, Node)> + 'a {
-    let samples = &path.samples()[path.first()..path.first() + path.count()];
-    samples.iter().zip(nodes).map(|(s, n)| (s.point, s.feed, *n))
 }

@@ -93,23 +93,23 @@ pub fn correct_summary(
         worst_gouge_mm: largest(predicted.iter().map(|p| -p.after.lowest)).max(0.0),
         max_correction_mm: largest(correction.nodes.iter().map(|n| n.total().x.abs().max(n.total().y.abs()))),
         law: law_name(&correction.wanted.law),
-        wall_law: wall_law_name(identified.law),
-        milling: crate::pass::milling_name(pass.setup.milling),
+        wall_law: wall_law_name(identified.law()),
+        milling: crate::pass::milling_name(pass.core.setup.milling),
         identified: parameters(identified),
         points_used: observations.len(),
-        points_outlying: identified.fit.outliers,
+        points_outlying: identified.fit().outliers,
         points_rejected: rejected,
         fit_residual_mm: (squares / observations.len().max(1) as f64).sqrt(),
-        program_crc32: format!("{:08x}", pass.program_crc),
+        program_crc32: format!("{:08x}", pass.core.program_crc),
         warnings,
     }
 }
 
 fn parameters(identified: &Identified) -> BTreeMap<&'static str, Parameter> {
-    let (values, prior) = (identified.fit.parameters.values(), identified.prior.value());
-    let each = identify::Parameter::ALL.iter().enumerate().filter(|(i, _)| identified.prior.sigma[*i] != Real::ZERO);
+    let (values, prior) = (identified.fit().parameters.values(), identified.prior().value());
+    let each = identify::Parameter::ALL.iter().enumerate().filter(|(i, _)| identified.prior().sigma[*i] != Real::ZERO);
     each.map(|(i, parameter)| {
-        let (prior_sigma, remaining) = (float(identified.prior.sigma[i]), float(identified.fit.remaining(i)));
+        let (prior_sigma, remaining) = (float(identified.prior().sigma[i]), float(identified.fit().remaining(i)));
         let value = Parameter {
             value: float(values[i]),
             sigma: prior_sigma * remaining,
@@ -174,14 +174,14 @@ pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warni
     SimulateSummary {
         version: 1,
         by,
-        length_mm: mm(pass.contour.length),
+        length_mm: mm(pass.core.contour.length),
         max_error_mm: most(|r| r.error_mm.abs()),
         rms_error_mm: (finite.iter().map(|e| e * e).sum::<f64>() / finite.len().max(1) as f64).sqrt(),
         max_arc_deg: most(|r| r.arc_deg),
         max_force_n: most(|r| r.force_n),
         max_chip_area_mm2: most(|r| r.chip_area_mm2),
-        max_chip_volume_mm3: most(|r| r.chip_area_mm2) * mm(pass.setup.radius),
-        milling: crate::pass::milling_name(pass.setup.milling),
+        max_chip_volume_mm3: most(|r| r.chip_area_mm2) * mm(pass.core.setup.radius),
+        milling: crate::pass::milling_name(pass.core.setup.milling),
         warnings,
     }
 }
@@ -213,7 +213,7 @@ pub struct InspectSummary {
 pub fn inspect_summary(contacts: &[Contact], rejected: usize, warnings: Vec<String>) -> InspectSummary {
     let errors: Vec<f64> = contacts.iter().map(|c| mm(c.error)).collect();
     let n = errors.len().max(1) as f64;
-    let place = |a: &Contact, b: &Contact| crate::measurement::same_place(a.s, b.s);
+    let place = |a: &Contact, b: &Contact| truepath_core::job::same_place(a.s, b.s);
     let spread = contacts
         .chunk_by(place)
         .map(|group| {

@@ -56,7 +56,7 @@ fn nodes(count: i64) -> Vec<ImageNode> {
 
 fn bytes(count: i64) -> Vec<u8> {
     let mut buffer = vec![0; image_bytes(count as usize)];
-    build(&settings(), &nodes(count), &mut buffer).unwrap();
+    build(&settings(), nodes(count), &mut buffer).unwrap();
     buffer
 }
 
@@ -126,8 +126,8 @@ fn a_wrong_value_behind_a_right_checksum_is_still_refused() {
     assert_eq!(resealed(|b| b[20] = 1), Err(ImageError::NotClosed));
     assert_eq!(resealed(|b| b[136 + 4 * 20 + 3] = 0), Err(ImageError::FactorTable { entry: 20 }));
     assert!(matches!(resealed(|b| b[100] = 4), Err(ImageError::Length { .. })));
-    assert!(matches!(resealed(|b| b[52] = 0), Err(ImageError::Range { name: "number of teeth", value: 0, .. })));
-    assert!(matches!(resealed(|b| b[79] = 1), Err(ImageError::Range { name: "clamp (nm)", .. })));
+    assert!(matches!(resealed(|b| b[52] = 0), Err(ImageError::Range { name: Field::Teeth, value: 0, .. })));
+    assert!(matches!(resealed(|b| b[79] = 1), Err(ImageError::Range { name: Field::Clamp, .. })));
     let node = HEADER_BYTES + 2 * NODE_BYTES;
     assert_eq!(resealed(|b| b[node + 24] ^= 1), Err(ImageError::Derived { node: 2 }));
     assert_eq!(resealed(|b| b[node] ^= 4), Err(ImageError::Derived { node: 1 }));
@@ -158,7 +158,7 @@ fn a_correction_that_the_feed_window_lifts_over_the_clamp_cannot_be_built() {
 fn what_does_not_fit_is_an_error_that_names_the_limit() {
     let mut small = vec![0; image_bytes(5) - 1];
     let found = small.len();
-    let error = build(&settings(), &nodes(5), &mut small).map(|i| i.crc());
+    let error = build(&settings(), nodes(5), &mut small).map(|i| i.crc());
     assert_eq!(error, Err(ImageError::Buffer { needed: found + 1, found }));
     let mut buffer = vec![0; image_bytes(5)];
     let mut far = nodes(5);
@@ -167,10 +167,10 @@ fn what_does_not_fit_is_an_error_that_names_the_limit() {
     let mut same = nodes(5);
     same[3] = same[2];
     assert!(matches!(build(&settings(), &same, &mut buffer), Err(ImageError::Spacing { node: 2, found_nm: 0, .. })));
-    assert!(matches!(build(&settings(), &nodes(1), &mut buffer), Err(ImageError::Range { value: 1, .. })));
+    assert!(matches!(build(&settings(), nodes(1), &mut buffer), Err(ImageError::Range { value: 1, .. })));
     let mut gate = settings();
     gate.window.gate_height = Offset::from_nm(-1);
-    assert!(matches!(build(&gate, &nodes(5), &mut buffer), Err(ImageError::Range { .. })));
+    assert!(matches!(build(&gate, nodes(5), &mut buffer), Err(ImageError::Range { .. })));
 }
 
 #[test]

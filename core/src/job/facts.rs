@@ -1,0 +1,165 @@
+//! A job in numbers: everything besides program and measurement that a correction follows from.
+//!
+//! It holds neither text nor floating point, so that it travels to the device in postcard (the compact form: fields
+//! in their order, lengths in nanometres and numbers in units of 2⁻³² as variable-length integers, about 110 bytes)
+//! and gives the same bits there. Ranges are those of the job file; [`Job::check`](super::Job::check) holds them.
+
+use serde::{Deserialize, Serialize};
+
+use crate::correct::Target;
+use crate::cut::ToolMaterial;
+use crate::geometry::Side;
+use crate::probe::Format;
+use crate::units::{Offset, Real};
+
+/// The job.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Job {
+    /// Side of travel of the finished wall; `None` leaves it to G41/G42 of the program.
+    #[serde(with = "super::wire")]
+    pub wall: Option<Side>,
+    /// Stock left on the wall before this pass, along the normal, above 0, up to 100 mm and below the cutter's diameter.
+    pub allowance: Offset,
+    /// The cutter.
+    pub tool: Tool,
+    /// How deep and how fast.
+    pub cut: Cut,
+    /// Prior of the cutting force.
+    pub force: Force,
+    /// Prior of the machine.
+    pub machine: Machine,
+    /// How the part was probed; `None` in a job that is only simulated.
+    pub probe: Option<Probe>,
+    /// How to correct.
+    pub correct: Correct,
+}
+
+/// The cutter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Tool {
+    /// Nominal diameter, 0.1…100 mm.
+    pub diameter: Offset,
+    /// Measured diameter, 0.1…110 mm and within 10 % of the nominal one.
+    pub measured_diameter: Option<Offset>,
+    /// Number of teeth, 1…12.
+    pub teeth: u8,
+    /// Helix angle, degrees, 0…60.
+    #[serde(with = "super::wire")]
+    pub helix_deg: Real,
+    /// What makes the cutter a cantilever; `None` when its own bending is not modelled.
+    pub cantilever: Option<Stickout>,
+}
+
+/// What the cutter's own compliance follows from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stickout {
+    /// From the collet to the tip, at least the axial depth, at most 500 mm.
+    pub length: Offset,
+    /// What the cutter is made of.
+    #[serde(with = "super::wire")]
+    pub material: ToolMaterial,
+}
+
+/// Depth and speeds of the pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cut {
+    /// Axial depth of cut, above 0, up to 200 mm.
+    pub axial_depth: Offset,
+    /// Spindle speed, 1…200,000 rev/min, overriding S of the program.
+    #[serde(with = "super::wire")]
+    pub spindle_rpm: Option<Real>,
+    /// Feed, 0.1…100,000 mm/min, overriding F of the program.
+    #[serde(with = "super::wire")]
+    pub feed_mm_per_min: Option<Real>,
+}
+
+/// Prior of the cutting force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Force {
+    /// Tangential chip coefficient, above 0, up to 20,000 N/mm².
+    #[serde(with = "super::wire")]
+    pub ktc: Real,
+    /// Radial chip coefficient, 0…20,000 N/mm².
+    #[serde(with = "super::wire")]
+    pub krc: Real,
+    /// Tangential edge coefficient, 0…500 N/mm.
+    #[serde(with = "super::wire")]
+    pub kte: Real,
+    /// Radial edge coefficient, 0…500 N/mm.
+    #[serde(with = "super::wire")]
+    pub kre: Real,
+    /// Which force makes the wall.
+    pub model: ForceModel,
+}
+
+/// Which force makes the wall at a height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ForceModel {
+    /// The mean over a revolution.
+    Mean,
+    /// The force at the instant the height is generated.
+    Helical,
+    /// By evidence of the probe points; helical when they cannot tell.
+    Auto,
+}
+
+/// Prior of the machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Machine {
+    /// Stiffness along x, 10…1,000,000 N/mm.
+    #[serde(with = "super::wire")]
+    pub stiffness_x: Real,
+    /// Stiffness along y, 10…1,000,000 N/mm.
+    #[serde(with = "super::wire")]
+    pub stiffness_y: Real,
+}
+
+/// How the part was probed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Probe {
+    /// Diameter of the ball, 0.1…50 mm.
+    pub ball_diameter: Offset,
+    /// Format of the measurement file. LinuxCNC writes the program's unit, columns are millimetres.
+    #[serde(with = "super::wire")]
+    pub format: Format,
+    /// What the Z in the file is.
+    pub z_reference: ZReference,
+    /// Standard deviation of one reading, above 0, up to 0.1 mm.
+    pub noise: Offset,
+}
+
+/// What the Z of a measurement is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ZReference {
+    /// The ball's centre.
+    Centre,
+    /// The ball's lowest point.
+    Tip,
+}
+
+/// How to correct.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Correct {
+    /// The law.
+    pub law: LawName,
+    /// The largest correction allowed, above 0, up to 4 mm.
+    pub clamp: Offset,
+    /// What of the wall's error is brought to zero.
+    #[serde(with = "super::wire")]
+    pub target: Target,
+    /// Heights above the cutter's tip over which the target is taken, rising, within the axial depth.
+    pub band: [Offset; 2],
+    /// The deepest gouge allowed at any height, 0…1 mm; wins over the target.
+    pub max_gouge: Option<Offset>,
+}
+
+/// The law of correction, before what it needs of the measurement is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LawName {
+    /// The identified model at the nominal engagement, iterated on the predicted wall error.
+    Model,
+    /// The deflection mirrored once.
+    Mirror,
+    /// Petrakov & Romanov 2023, equations (8)–(12), as printed.
+    Paper,
+}

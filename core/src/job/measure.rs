@@ -1,0 +1,96 @@
+//! A probe file → contacts on the wall → observations for the fit.
+
+use super::{Buffer, JobError, Pass, ZReference};
+use crate::geometry::Contour;
+use crate::identify::Observation;
+use crate::probe::{Contact, Contacts, Reading, Rejected, Setting, read, suspect};
+use crate::units::Offset;
+
+/// A reading farther than this from the nominal wall is not of this wall.
+pub const REACH: Offset = Offset::from_um(1_000);
+/// Feet nearer to each other along the contour are of one place, probed at different heights: they differ by the error
+/// of the wall only.
+const ONE_PLACE: Offset = Offset::from_um(5);
+
+/// Reads a probe file into `readings` and its contacts into `contacts`, in the order of the contour, then of height;
+/// returns how many there are. `set_aside` is given the line and the reason of each reading that is not used.
+///
+/// # Errors
+/// A job without probe, what is wrong with the file, a buffer too short, and a wrong unit, frame, side or ball, named,
+/// when most readings are off the wall or none can be used.
+pub fn contacts(
+    pass: &Pass,
+    contour: Contour,
+    file: &[u8],
+    readings: &mut [Reading],
+    contacts: &mut [Contact],
+    mut set_aside: impl FnMut(u32, Rejected),
+) -> Result<usize, JobError> {
+    let probe = pass.job.probe.ok_or(JobError::NoProbe)?;
+    let count = read(file, probe.format, pass.probe_unit(probe.format), readings).map_err(JobError::Measurement)?;
+    let readings = readings.get(..count).unwrap_or_default();
+    let on_wall = Contacts::new(
+        contour,
+        Setting {
+            ball_radius: Offset::from_nm(probe.ball_diameter.nm() / 2),
+            cutter_radius: pass.setup.radius,
+            wall: pass.setup.wall,
+            tip_z: pass.contour.z,
+            axial_depth: pass.job.cut.axial_depth,
+            z_is_tip: probe.z_reference == ZReference::Tip,
+            reach: REACH,
+        },
+    );
+    if let Some(suspicion) = suspect(&on_wall, readings) {
+        let off = readings.iter().find(|r| matches!(on_wall.contact(r), Err(Rejected::OffTheWall { .. })));
+        return Err(JobError::OffTheWall { suspicion, line: off.map_or(1, |r| r.line) });
+    }
+    let lent = contacts.len();
+    let mut used = 0usize;
+    let mut first_rejected = None;
+    for reading in readings {
+        match on_wall.contact(reading) {
+            Ok(contact) => {
+                *contacts.get_mut(used).ok_or(JobError::full(Buffer::Points, count, lent))? = contact;
+                used = used.saturating_add(1);
+            }
+            Err(reason) => {
+                first_rejected =
+                    first_rejected.or(Some(JobError::NoContact { line: reading.line, reason, tip: pass.contour.z }));
+                set_aside(reading.line, reason);
+            }
+        }
+    }
+    match (used, first_rejected) {
+        (0, Some(error)) => return Err(error),
+        _ => contacts.get_mut(..used).unwrap_or_default().sort_unstable_by_key(|c| (c.s, c.height, c.line)),
+    }
+    Ok(used)
+}
+
+/// The contacts as observations for the fit. Those of one place are taken at their common foot, where the elastic loop
+/// is solved once.
+///
+/// # Errors
+/// When `observations` is shorter than `contacts`.
+pub fn observations<'o>(
+    contacts: &[Contact],
+    noise: Offset,
+    observations: &'o mut [Observation],
+) -> Result<&'o mut [Observation], JobError> {
+    let lent = observations.len();
+    let used = observations.get_mut(..contacts.len());
+    let used = used.ok_or(JobError::full(Buffer::Points, contacts.len(), lent))?;
+    let mut place: Option<Offset> = None;
+    for (slot, c) in used.iter_mut().zip(contacts) {
+        let s = place.filter(|p| same_place(*p, c.s)).unwrap_or(c.s);
+        place = Some(s);
+        *slot = Observation::new(s, c.height, c.error, noise, c.normal);
+    }
+    Ok(used)
+}
+
+/// Whether two feet on the contour are of one place, probed at different heights.
+pub fn same_place(a: Offset, b: Offset) -> bool {
+    (b - a).abs() < ONE_PLACE
+}

@@ -1,0 +1,137 @@
+//! One pass of the cutter as job and program describe it: the contour, the cut, the sampled path.
+
+use super::{Buffer, ForceModel, Job, JobError};
+use crate::cut::{Cantilever, Coefficients, Compliance, CutSetup, Milling, Path, PathError, Sample, WallLaw};
+use crate::gcode::{
+    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Spindle, Units, is_marked_corrected, program_crc,
+    read_contour,
+};
+use crate::geometry::{Block, Contour};
+use crate::identify::Prior;
+use crate::probe::{Format, LengthUnit};
+use crate::units::{Offset, Real};
+
+/// Largest distance between the samples of a path.
+const STEP: Offset = Offset::from_um(100);
+
+/// A pass: what job and program say together.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// The job.
+    pub job: Job,
+    /// What the program says about the contour.
+    pub contour: ContourProgram,
+    /// CRC-32 of the program.
+    pub program_crc: u32,
+    /// The cut; its law is helical unless the job says mean.
+    pub setup: CutSetup,
+}
+
+impl Pass {
+    /// Reads the contour of a program into `blocks` and puts it together with a job. The blocks carry the feed of the
+    /// job where it gives one; those in use are the first [`ContourProgram::blocks`].
+    ///
+    /// # Errors
+    /// A job out of range, whatever is wrong with the program, and what the two contradict each other in.
+    pub fn read(job: &Job, program: &[u8], blocks: &mut [Block]) -> Result<Self, JobError> {
+        job.check()?;
+        if is_marked_corrected(program) {
+            return Err(JobError::Corrected);
+        }
+        let contour = read_contour(program, blocks, &ContourOptions::default()).map_err(JobError::Program)?;
+        let setup = setup(job, &contour)?;
+        for block in blocks.iter_mut().take(contour.blocks) {
+            block.feed = job.cut.feed_mm_per_min.unwrap_or(block.feed);
+            if block.feed <= Real::ZERO {
+                return Err(JobError::NoFeed { line: block.line });
+            }
+        }
+        Ok(Self { job: *job, contour, program_crc: program_crc(program), setup })
+    }
+
+    /// Distance between the samples of the path: 0.1 mm, or a fiftieth of a small cutter's diameter.
+    pub fn step(&self) -> Offset {
+        STEP.min(Offset::from_nm(self.setup.radius.nm() / 25))
+    }
+
+    /// The contour of the blocks that were read.
+    ///
+    /// # Errors
+    /// When they are not those of a contour.
+    pub fn path_contour(blocks: &[Block]) -> Result<Contour<'_>, JobError> {
+        let none = GcodeError { kind: GcodeErrorKind::NoContour, line: 1, column: 1, start: 0, len: 0 };
+        Contour::new(blocks).ok_or(JobError::Program(none))
+    }
+
+    /// Samples the path of a contour into a buffer. A contour that cannot fit is refused before it is walked along.
+    ///
+    /// # Errors
+    /// When the buffer is too short, or an outside arc is so tight that it leaves no wall.
+    pub fn sample<'a>(&self, contour: &Contour, buffer: &'a mut [Sample]) -> Result<Path<'a>, JobError> {
+        let lent = buffer.len();
+        // Every block but the first may save one sample.
+        let steps = contour.length().nm().checked_div(self.step().nm()).unwrap_or(0).unsigned_abs() as usize;
+        let least = steps.saturating_sub(contour.blocks().len());
+        if least > lent {
+            return Err(JobError::full(Buffer::Samples, least, lent));
+        }
+        Path::sample(contour, &self.setup, self.step(), buffer).map_err(|error| match error {
+            PathError::NoWall { line } => JobError::Undercut { line },
+            PathError::BufferTooShort { needed, lent } => JobError::full(Buffer::Samples, needed, lent),
+        })
+    }
+
+    /// The prior of machine and material for a wall law.
+    pub fn prior(&self, law: WallLaw) -> Prior {
+        Prior::around(self.coefficients(), self.compliance(), law)
+    }
+
+    /// The stated force coefficients.
+    pub const fn coefficients(&self) -> Coefficients {
+        let force = &self.job.force;
+        Coefficients { ktc: force.ktc, krc: force.krc, kte: force.kte, kre: force.kre, size_exponent: Real::ZERO }
+    }
+
+    /// The stated compliance, with that of the cutter where the job describes it.
+    pub fn compliance(&self) -> Compliance {
+        let machine = Compliance::from_stiffness(self.job.machine.stiffness_x, self.job.machine.stiffness_y);
+        let tool = &self.job.tool;
+        let Some(stickout) = tool.cantilever else { return machine };
+        Cantilever::new(tool.diameter, tool.teeth, stickout.length, self.setup.axial_depth, stickout.material)
+            .mounted_in(machine)
+    }
+
+    /// The unit of a measurement file in a format: a control writes in that of the program.
+    pub const fn probe_unit(&self, format: Format) -> LengthUnit {
+        match (format, self.contour.units) {
+            (Format::Linuxcnc, Units::Inches) => LengthUnit::Inch,
+            (Format::Linuxcnc, Units::Millimetres) | (Format::Columns, _) => LengthUnit::Millimetre,
+        }
+    }
+}
+
+/// The cut, from job and program together.
+fn setup(job: &Job, contour: &ContourProgram) -> Result<CutSetup, JobError> {
+    let wall = match (job.wall, contour.wall) {
+        (Some(job), Some(program)) if job != program => return Err(JobError::WallsDiffer),
+        (Some(side), _) | (None, Some(side)) => side,
+        (None, None) => return Err(JobError::NoWall),
+    };
+    let speed = job.cut.spindle_rpm.or(contour.speed).filter(|s| *s > Real::ZERO);
+    let diameter = job.tool.measured_diameter.unwrap_or(job.tool.diameter);
+    let setup = CutSetup {
+        radius: Offset::from_nm(diameter.nm() / 2),
+        teeth: job.tool.teeth,
+        helix_deg: job.tool.helix_deg,
+        axial_depth: job.cut.axial_depth.mm(),
+        allowance: job.allowance,
+        spindle_rpm: speed.ok_or(JobError::NoSpeed)?,
+        wall,
+        milling: Milling::of(wall, contour.spindle != Spindle::CounterClockwise),
+        law: match job.force.model {
+            ForceModel::Mean => WallLaw::Mean,
+            ForceModel::Helical | ForceModel::Auto => WallLaw::Helical,
+        },
+    };
+    if setup.fits_force_table() { Ok(setup) } else { Err(JobError::Flutes) }
+}

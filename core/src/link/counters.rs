@@ -1,0 +1,57 @@
+//! What is counted on the setpoint link.
+
+use serde::{Deserialize, Serialize};
+
+use crate::rewrite::Reason;
+
+/// Reasons that are faults have the numbers 16 … 31.
+const FIRST_FAULT: u16 = 16;
+
+/// Counts since the reset or `ClearCounters`; each stands still at its end instead of wrapping.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counters {
+    /// Frames accepted.
+    pub accepted: u32,
+    /// Answers given in time.
+    pub answered: u32,
+    /// Frames that were damaged, of another length, kind, version or number of axes.
+    pub damaged: u32,
+    /// Frames with the sequence of the last accepted one.
+    pub repeated: u32,
+    /// Frames with one of the 63 sequences before the last accepted one.
+    pub out_of_order: u32,
+    /// Frames missing in gaps that were small enough.
+    pub lost: u32,
+    /// Sequences from elsewhere: larger gaps, restarts of the controller.
+    pub jumps: u32,
+    /// Answers withheld because they were late.
+    pub late: u32,
+    /// Times at which no frame came for too long.
+    pub silences: u32,
+    /// Faults by their reason: the number of a reason less 16 is the index.
+    pub faults: [u32; 16],
+    /// Requests of the configuration link that arrived undamaged.
+    pub messages: u32,
+    /// Messages of the configuration link that were damaged.
+    pub messages_damaged: u32,
+}
+
+impl Counters {
+    /// Counts one more.
+    #[inline]
+    pub(super) fn one_more(counter: &mut u32) {
+        *counter = counter.saturating_add(1);
+    }
+    /// Counts a fault by its reason; regular ends are not counted.
+    #[inline]
+    pub(super) fn fault(&mut self, reason: Reason) {
+        let index = usize::from(reason.code().wrapping_sub(FIRST_FAULT));
+        if let Some(counter) = self.faults.get_mut(index) {
+            Self::one_more(counter);
+        }
+    }
+    /// How often a fault happened; 0 for a regular end.
+    pub fn faults_of(&self, reason: Reason) -> u32 {
+        self.faults.get(usize::from(reason.code().wrapping_sub(FIRST_FAULT))).copied().unwrap_or(0)
+    }
+}

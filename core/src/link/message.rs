@@ -1,0 +1,157 @@
+//! Requests and replies of the configuration link, in postcard.
+//!
+//! The order of the variants is the number on the wire; new ones go to the end. What each does, and in which modes it
+//! is taken, stands in `docs/link.md`. Byte slices are borrowed from the frame they came in.
+
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+use super::denial::Denial;
+use super::device::{DeviceStatus, Hello, Item, Progress, Slot};
+use super::settings::DeviceSettings;
+use super::trace::{TRACE_SAMPLES, TraceSample};
+use crate::rewrite::ArmRequest;
+
+/// Most bytes of a message with its CRC-32, before COBS.
+pub const MESSAGE_BYTES: usize = 1_280;
+/// Most bytes of a message on the wire: with COBS and the 0x00 at its end.
+pub const PACKET_BYTES: usize = cobs::max_encoding_length(MESSAGE_BYTES).saturating_add(1);
+/// Most bytes of an item in one [`Ask::Chunk`], and of frames in one [`Reply::Recording`].
+pub const CHUNK_BYTES: usize = 1_024;
+
+/// What a client sends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Request<'a> {
+    /// Chosen by the client; the response carries it.
+    pub id: u16,
+    /// The request.
+    #[serde(borrow)]
+    pub ask: Ask<'a>,
+}
+
+/// What the device answers.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Response<'a> {
+    /// That of the request.
+    pub id: u16,
+    /// What became of it.
+    #[serde(borrow)]
+    pub answer: Result<Reply<'a>, Denial>,
+}
+
+/// The requests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Ask<'a> {
+    /// Who is there.
+    Hello,
+    /// Mode, reason, counters, active image.
+    Status,
+    /// The controller has disabled the drives.
+    AcknowledgeDrivesDisabled,
+    /// What `Arm` would say.
+    Check(ArmRequest),
+    /// Arms the active image for one pass of one part.
+    Arm(ArmRequest),
+    /// Ends the arming.
+    Disarm,
+    /// Begins or resumes an upload.
+    Begin {
+        /// What is sent.
+        item: Item,
+        /// Its bytes in all.
+        length: u32,
+        /// CRC-32 of all of them.
+        crc: u32,
+    },
+    /// A piece of the upload.
+    Chunk {
+        /// Where it goes; that named by [`Reply::Next`].
+        offset: u32,
+        /// At most [`CHUNK_BYTES`].
+        bytes: &'a [u8],
+    },
+    /// The upload is complete: check and keep it.
+    Commit,
+    /// Both image slots.
+    List,
+    /// Makes the image of a slot the active one.
+    Activate {
+        /// 0 or 1.
+        slot: u8,
+        /// Checksum of the image that is meant.
+        crc: u32,
+    },
+    /// No image is active any more.
+    Deactivate,
+    /// The settings in use.
+    Settings,
+    /// Other settings.
+    Configure(DeviceSettings),
+    /// Sets the counters to zero.
+    ClearCounters,
+    /// Samples since the last time.
+    Trace,
+    /// Frames before the last fault.
+    Recording {
+        /// Number of the first one wanted; 0 is the oldest.
+        from: u32,
+    },
+    /// Lets the recorder run again.
+    ReleaseRecording,
+    /// Makes an image on the device.
+    Compute,
+    /// How far `Compute` is.
+    Progress,
+    /// Resets the device.
+    Restart {
+        /// By letting the watchdog run out.
+        watchdog: bool,
+    },
+}
+
+/// The replies.
+#[expect(clippy::large_enum_variant, reason = "without an allocator there is no box; a response lies on a stack once")]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Reply<'a> {
+    /// Carried out.
+    Done,
+    /// To `Hello`.
+    #[serde(borrow)]
+    Hello(Hello<'a>),
+    /// To `Status`.
+    Status(DeviceStatus),
+    /// Where the next chunk goes; the length when the upload is complete.
+    Next {
+        /// Bytes from the start of the item.
+        offset: u32,
+    },
+    /// The item is complete and undamaged. An image also has its commit word.
+    Committed {
+        /// Slot of the image; 0 for the other items.
+        slot: u8,
+        /// CRC-32 of the item; of an image the one at its end, its name.
+        crc: u32,
+    },
+    /// To `List`.
+    Slots([Slot; 2]),
+    /// To `Settings`.
+    Settings(DeviceSettings),
+    /// To `Trace`.
+    Trace {
+        /// Samples lost since the last time because nobody asked.
+        dropped: u32,
+        /// Oldest first.
+        samples: Vec<TraceSample, TRACE_SAMPLES>,
+    },
+    /// To `Recording`.
+    Recording {
+        /// Frames recorded.
+        total: u32,
+        /// Number of the first one here.
+        from: u32,
+        /// Whole raw frames, at most [`CHUNK_BYTES`].
+        bytes: &'a [u8],
+    },
+    /// To `Progress`.
+    Progress(Progress),
+}

@@ -1,0 +1,88 @@
+//! Rows of the table: what the setpoint link may do.
+
+use super::{CORRECTED, DROPPED, FAULT, LONGEST, NOTHING, OFF, RAMP, Row, SAME, new};
+
+pub const LINK: &[Row] = &[
+    new(
+        "frame damaged (CRC, length, kind, version, axes)",
+        NOTHING,
+        SAME,
+        None,
+        None,
+        tests!("core/tests/safety_link" a_damaged_frame, "core/tests/link_endpoint" a_damaged_frame_changes_nothing_and_is_not_answered_in_every_mode,
+        "firmware/tests/wire_setpoints" damaged_repeated_and_old_frames_get_no_answer_and_are_counted),
+    ),
+    new(
+        "up to 2 frames lost in a row",
+        CORRECTED,
+        SAME,
+        None,
+        None,
+        tests!("core/tests/safety_link" a_few_lost_frames, "core/tests/link_endpoint" a_few_lost_frames_are_corrected_over_in_every_mode),
+    ),
+    new(
+        "more than 2 frames lost in a row",
+        RAMP,
+        FAULT,
+        Some(1),
+        LONGEST,
+        tests!("core/tests/safety_link" too_many_lost_frames, "core/tests/link_endpoint" more_lost_frames_or_a_sequence_from_elsewhere_end_what_is_armed_or_active),
+    ),
+    new(
+        "frame repeated",
+        NOTHING,
+        SAME,
+        None,
+        None,
+        tests!("core/tests/safety_link" a_repeated_frame, "core/tests/link_endpoint" a_repeated_frame_is_neither_followed_nor_answered_in_every_mode),
+    ),
+    new(
+        "two frames exchanged",
+        "corrected; nothing is forwarded for the late one",
+        SAME,
+        None,
+        None,
+        tests!("core/tests/safety_link" exchanged_frames, "core/tests/link_endpoint" an_exchanged_pair_is_a_lost_frame_and_a_late_one_in_every_mode),
+    ),
+    new(
+        "sequence from elsewhere",
+        RAMP,
+        FAULT,
+        Some(1),
+        LONGEST,
+        tests!("core/tests/safety_link" a_sequence_from_elsewhere),
+    ),
+    new(
+        "controller counts anew, by less than 64",
+        "nothing until it is noticed; then the correction ramps to zero",
+        FAULT,
+        Some(4),
+        LONGEST,
+        tests!("core/tests/safety_link" a_count_that_begins_anew, "core/tests/link_sequence" a_controller_that_counts_anew_is_heard_again_within_a_few_frames),
+    ),
+    new(
+        "up to 2 deadlines missed in a row",
+        NOTHING,
+        SAME,
+        None,
+        None,
+        tests!("core/tests/safety_link" a_few_missed_deadlines, "core/tests/link_endpoint" a_late_answer_is_withheld_and_counts_like_a_lost_frame_in_every_mode),
+    ),
+    new(
+        "more than 2 deadlines missed in a row",
+        "nothing for the late ones; then the correction ramps to zero",
+        FAULT,
+        Some(4),
+        LONGEST,
+        tests!("core/tests/safety_link" too_many_missed_deadlines, "firmware/tests/wire_setpoints" an_answer_that_would_be_late_is_withheld_and_too_many_of_them_end_the_correction),
+    ),
+    new(
+        "silence",
+        DROPPED,
+        OFF,
+        Some(20),
+        Some(0),
+        tests!("core/tests/safety_link" silence, "core/tests/link_endpoint" silence_drops_the_drives_in_every_mode_and_nothing_goes_out_until_they_are_acknowledged_as_disabled,
+        "firmware/tests/wire_setpoints" silence_drops_the_drives_in_every_state),
+    ),
+];

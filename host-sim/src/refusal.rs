@@ -1,0 +1,229 @@
+//! What the core refuses in job, program or measurement, as the user meets it: with the place in the file, what was
+//! expected and what to do.
+
+use truepath_core::image::MAX_CLAMP_NM;
+use truepath_core::job::{JobError, REACH};
+use truepath_core::probe::{ProbeError, Rejected, Suspicion};
+use truepath_core::units::Offset;
+
+use crate::diagnostics::{Failure, InputError, Source};
+use crate::job::Job;
+use crate::report::mm;
+
+/// The files an error may point into.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The job.
+    pub job: &'a Job,
+    /// Its program.
+    pub program: &'a Source,
+    /// The probe file, once there is one.
+    pub probe: Option<&'a Source>,
+}
+
+impl Inputs<'_> {
+    /// The failure for an error of the core.
+    pub fn refused(&self, error: &JobError) -> Failure {
+        let at_job = |e: InputError, key: &str| Failure::from(e.at(self.job.source(), self.job.span(key)));
+        let at_line = |e: InputError, line: u32| Failure::from(e.at(self.program, self.program.span_at(line, 1, 1)));
+        match *error {
+            JobError::Program(error) => InputError::of_program(self.program, &error).into(),
+            JobError::NoFeed { line } => at_line(of_job(error), line),
+            JobError::Undercut { line } => at_line(of_job(error), line),
+            JobError::Measurement(error) => {
+                self.probe.map_or_else(|| Failure::Internal(error.to_string()), |file| of_probe(file, &error).into())
+            }
+            JobError::OffTheWall { line, .. } | JobError::NoContact { line, .. } => {
+                let error = of_contacts(error, self.job);
+                match self.probe {
+                    Some(file) => error.at(file, line_span(file, line)).into(),
+                    None => error.into(),
+                }
+            }
+            JobError::Corrected => at_job(of_job(error), "program"),
+            JobError::WallsDiffer | JobError::NoWall => at_job(of_job(error), "wall"),
+            JobError::NoSpeed | JobError::FeedPerTooth => at_job(of_job(error), "cut"),
+            JobError::Flutes => at_job(of_job(error), "cut.axial_depth_mm"),
+            JobError::Unfit { .. } => at_job(of_correction(error), "probe.ball_diameter_mm"),
+            JobError::BeyondClamp { .. } | JobError::NoFeedWindow { .. } => {
+                at_job(of_correction(error), "correct.clamp_mm")
+            }
+            JobError::TooManyNodes { .. } | JobError::Image(_) => at_job(of_correction(error), "correct"),
+            JobError::Range { .. } | JobError::NoProbe => at_job(of_job(error), ""),
+            JobError::Compact | JobError::Full { .. } => Failure::Internal(error.to_string()),
+        }
+    }
+}
+
+/// What job and program lack or contradict each other in.
+fn of_job(error: &JobError) -> InputError {
+    let (expected, help) = match error {
+        JobError::Corrected => (
+            "the original program",
+            "name the original program in the job: correcting a correction would move the wall twice",
+        ),
+        JobError::NoFeed { .. } => {
+            ("a feed rate", "add an F word to the program, or feed_mm_per_min to [cut] of the job")
+        }
+        JobError::Undercut { .. } => (
+            "an outside arc of the path at least as wide as the cutter's radius",
+            "check the side (wall = \"left\" or \"right\") and the cutter's diameter in the job",
+        ),
+        JobError::WallsDiffer => (
+            "the same side in both",
+            "remove wall from the job: G41 means the wall is on the right of travel, G42 on the left",
+        ),
+        JobError::NoWall => (
+            "wall = \"left\" or wall = \"right\", as seen in the direction of travel",
+            "add wall to the job (inside pockets cut counter-clockwise have it on the right)",
+        ),
+        JobError::NoSpeed => {
+            ("an S word before the contour, or spindle_rpm in [cut]", "add spindle_rpm to [cut] of the job")
+        }
+        JobError::Flutes => {
+            ("at most 64 flutes in the stock at once", "check axial_depth_mm, diameter_mm, teeth and helix_deg")
+        }
+        JobError::FeedPerTooth => ("a feed per tooth up to 8 mm", "check feed, spindle speed and number of teeth"),
+        _ => ("", "correct the job"),
+    };
+    let sentence = error.to_string();
+    let found = error.line().and_then(|line| sentence.strip_prefix(&format!("line {line}: "))).unwrap_or(&sentence);
+    InputError::new(error.code(), found, expected, help)
+}
+
+/// What is wrong with a probe file.
+fn of_probe(file: &Source, error: &ProbeError) -> InputError {
+    let found = match error.len {
+        0 => error.kind.to_string(),
+        _ => format!("`{}`: {}", file.excerpt(error.start..error.start + error.len), error.kind),
+    };
+    let (found, expected) = found.split_once("; ").map_or((found.as_str(), ""), |(a, b)| (a, b));
+    let expected = expected.trim_end_matches(" was expected").trim_start_matches("expected ");
+    InputError::new(error.kind.code(), found, expected, error.kind.help())
+        .at(file, error.start..error.start + error.len)
+}
+
+/// Readings that do not belong to the wall of the job.
+fn of_contacts(error: &JobError, job: &Job) -> InputError {
+    match error {
+        JobError::OffTheWall { suspicion, .. } => {
+            let (guess, help) = suspected(*suspicion);
+            let found = format!("most readings are farther than {} mm from the nominal wall; {guess}", mm(REACH));
+            InputError::new(error.code(), found, "readings on the wall of this contour", help)
+        }
+        JobError::NoContact { reason, tip, .. } => {
+            let tip = tip.nm() as f64 / 1e6;
+            let top = tip + mm(job.numbers.cut.axial_depth);
+            InputError::new(
+                error.code(),
+                format!("no reading can be used; the first one is {}", why(reason)),
+                format!("ball centres between Z {tip} and Z {top} beside the wall"),
+                "probe within the engaged depth; check axial_depth_mm and z_reference in the job",
+            )
+        }
+        _ => InputError::new(error.code(), error.to_string(), "", "check the probe file"),
+    }
+}
+
+const fn suspected(why: Suspicion) -> (&'static str, &'static str) {
+    match why {
+        Suspicion::Inches => (
+            "they fit when read as inches",
+            "the file is in inches and the program in millimetres: convert it, or probe with the program's unit active",
+        ),
+        Suspicion::Millimetres => (
+            "they fit when read as millimetres",
+            "the file is in millimetres and the program in inches: convert it, or probe with the program's unit active",
+        ),
+        Suspicion::BallRadius => (
+            "they fit with another ball",
+            "check ball_diameter_mm: it is a diameter, and the file must hold ball centres, not surface points",
+        ),
+        Suspicion::OtherSide => (
+            "they fit a wall on the other side of travel",
+            "change wall in the job (or G41/G42 in the program): it is the side of the finished wall as seen in the direction of travel",
+        ),
+        Suspicion::Frame => (
+            "probably they are in another frame",
+            "the file must be in the work coordinates of the program (G54), not in machine coordinates; check also the program named in the job and the side of the wall",
+        ),
+    }
+}
+
+/// Why a reading is set aside.
+pub fn why(reason: &Rejected) -> String {
+    match reason {
+        Rejected::OffTheWall { distance } if *distance == Offset::MAX => "beyond the ends of the contour".to_owned(),
+        Rejected::OffTheWall { distance } => format!("{:.3} mm from the nominal wall", mm(*distance)),
+        Rejected::OffHeight { height } => {
+            format!("{:.3} mm above the cutter's tip, outside the engaged depth", mm(*height))
+        }
+    }
+}
+
+/// A correction that must not be made.
+fn of_correction(error: &JobError) -> InputError {
+    let code = error.code();
+    match *error {
+        JobError::Unfit { s, measured, fitting, .. } => InputError::new(
+            code,
+            format!(
+                "{error}; at s = {:.2} mm {:.4} mm were measured, {:.4} mm would fit",
+                mm(s),
+                mm(measured),
+                mm(fitting)
+            ),
+            "probe points of one part cut by this program",
+            "check ball_diameter_mm, allowance_mm, the side of the wall and that the probed part is the one of this program",
+        ),
+        JobError::BeyondClamp { reach, clamp, at } => InputError::new(
+            code,
+            format!(
+                "the correction reaches {:.3} mm at X{:.3} Y{:.3}, beyond clamp_mm = {}",
+                mm(reach),
+                at.x.nm() as f64 / 1e6,
+                at.y.nm() as f64 / 1e6,
+                mm(clamp)
+            ),
+            "a correction inside the clamp",
+            clamp_help(reach),
+        ),
+        JobError::NoFeedWindow { reach, clamp } => InputError::new(
+            code,
+            format!(
+                "at 110 % of the programmed feed the correction reaches {:.3} mm, beyond clamp_mm = {}",
+                mm(reach),
+                mm(clamp)
+            ),
+            "a correction that leaves room for a feed override of 110 %",
+            clamp_help(reach),
+        ),
+        JobError::TooManyNodes { limit, .. } => InputError::new(
+            code,
+            error.to_string(),
+            format!("at most {limit} nodes: about {:.1} m of contour at 0.1 mm", f64::from(limit) / 10_000.0),
+            "cut the contour in two programs, or correct in the program instead (route = \"program\")",
+        ),
+        _ => InputError::new(code, error.to_string(), "", "correct in the program instead (route = \"program\")"),
+    }
+}
+
+/// What to do about a correction beyond the clamp: the peak and a tenth of it, rounded up to a hundredth, where that may
+/// be a deflection at all.
+fn clamp_help(peak: Offset) -> String {
+    let proposal = (mm(peak) * 110.0).ceil() / 100.0;
+    if proposal > mm(Offset::from_nm(MAX_CLAMP_NM)) {
+        return "no cutter deflects that much: check the side of the wall, the cutter's diameter and the probe file"
+            .to_owned();
+    }
+    format!(
+        "if a correction that large is meant, set clamp_mm = {proposal} in [correct]; otherwise check the probe file and the cut"
+    )
+}
+
+/// The whole line of a reading.
+fn line_span(file: &Source, line: u32) -> std::ops::Range<usize> {
+    let start = file.span_at(line, 1, 0).start;
+    let len = file.bytes()[start..].iter().take_while(|b| !matches!(b, b'\n' | b'\r')).count();
+    start..start + len
+}
