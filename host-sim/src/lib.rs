@@ -1,5 +1,6 @@
 #![doc = include_str!("../../README.md")]
 
+pub mod bench;
 pub mod canon;
 pub mod cli;
 pub mod command;
@@ -13,6 +14,7 @@ pub mod pass;
 pub mod plant;
 pub mod plot;
 pub mod program;
+pub mod refusal;
 pub mod replay;
 pub mod report;
 pub mod setpoints;

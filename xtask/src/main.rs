@@ -6,9 +6,12 @@
 mod bench;
 mod checks;
 mod device;
+mod firmware;
+mod hil;
 mod judge;
 mod repository;
 mod step;
+mod toolchain;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -27,7 +30,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Task {
-    /// Everything a change has to pass: fmt, lint, doc, device, test-only.
+    /// Everything a change has to pass: fmt, lint, doc, device, test-only, hil.
     Test,
     /// Formatting of every source file.
     Fmt {
@@ -47,6 +50,32 @@ enum Task {
     },
     /// Builds the core for the microcontroller and checks what is in it.
     Device,
+    /// Builds the firmware of one board or of all, and compares its sizes with docs/firmware.md.
+    Firmware {
+        /// Only this board.
+        #[arg(long)]
+        board: Option<firmware::Board>,
+        /// Write the sizes into docs/firmware.md instead of comparing them.
+        #[arg(long)]
+        write: bool,
+    },
+    /// The emulated bench: host debug, host release and the emulated firmware give the same bits, faults included.
+    Hil,
+    /// The long campaign of faults on the emulated board; writes docs/campaign.md.
+    Campaign,
+    /// Proofs on the firmware: no panic, no soft float, no division call, no formatting in the setpoint path; worst-case
+    /// stack.
+    Elf {
+        /// Write the stack into docs/firmware.md instead of comparing it.
+        #[arg(long)]
+        write: bool,
+    },
+    /// Instructions of the setpoint path on the emulated board, against firmware/budget.toml.
+    Budget {
+        /// Renew the budget and the tables of docs/firmware.md.
+        #[arg(long)]
+        write: bool,
+    },
     /// Time (criterion) or instructions (callgrind) of the kernels of the core.
     Bench {
         /// Count instructions with valgrind instead of measuring time.
@@ -80,12 +109,18 @@ fn main() -> ExitCode {
             report.run(Step::new("doc", checks::doc));
             report.run(Step::new("device", device::check));
             report.run(Step::new("test-only", || checks::tests(&[])));
+            report.run(Step::new("hil", hil::check));
         }
         Task::Fmt { write } => report.run(Step::new("fmt", || checks::format(write))),
         Task::Lint => report.run(Step::new("lint", checks::lint)),
         Task::Doc => report.run(Step::new("doc", checks::doc)),
         Task::TestOnly { arguments } => report.run(Step::new("test-only", || checks::tests(&arguments))),
         Task::Device => report.run(Step::new("device", device::check)),
+        Task::Firmware { board, write } => report.run(Step::new("firmware", || firmware::build(board, write))),
+        Task::Hil => report.run(Step::new("hil", hil::check)),
+        Task::Campaign => report.run(Step::new("campaign", hil::campaign)),
+        Task::Elf { write } => report.run(Step::new("elf", || firmware::elf::check(write))),
+        Task::Budget { write } => report.run(Step::new("budget", || firmware::budget::check(write))),
         Task::Bench { count: true, write, .. } => report.run(Step::new("bench --count", || bench::count(write))),
         Task::Bench { no_run, write, arguments, .. } => {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))

@@ -8,9 +8,11 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
-use super::TARGET;
 use crate::repository::{cargo, is_root, may_install, program, read, run};
 use crate::step::Failure;
+
+/// Cortex-M4F and M7 with the floats in registers.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// Debian's packages, as of the security suite of Debian 12. They move, so no version is named.
 const PACKAGES: [&str; 3] = ["cargo-web", "rustc-web", "rust-web-src"];
@@ -39,7 +41,7 @@ impl Toolchain {
         if debian_is_complete() {
             return Ok(Self::Debian);
         }
-        if may_install() && install().is_ok() && debian_is_complete() {
+        if may_install() && install(&PACKAGES).is_ok() && debian_is_complete() {
             return Ok(Self::Debian);
         }
         Err(Failure::Missing(format!(
@@ -55,6 +57,19 @@ impl Toolchain {
             Self::Own => "the installed target",
             Self::Debian => "Debian's compiler, core built from source",
         }
+    }
+
+    /// Version of its compiler, `1.96.0`: sizes and instruction counts are only the same with the same one.
+    ///
+    /// # Errors
+    /// When it does not say.
+    pub fn version(&self) -> Result<String, Failure> {
+        let rustc = match self {
+            Self::Own => std::env::var_os("RUSTC").unwrap_or_else(|| OsString::from("rustc")),
+            Self::Debian => OsString::from("/usr/bin/rustc"),
+        };
+        let said = read(program(rustc).arg("--version"))?;
+        said.split_whitespace().nth(1).map(str::to_owned).ok_or_else(|| Failure::found(format!("rustc said {said}")))
     }
 
     /// Its cargo.
@@ -103,7 +118,11 @@ fn minor(version: &str) -> Option<u32> {
     version.strip_prefix("rustc 1.")?.split('.').next()?.parse().ok()
 }
 
-fn install() -> Result<(), Failure> {
+/// Installs packages of Debian.
+///
+/// # Errors
+/// When that does not succeed.
+pub fn install(packages: &[&str]) -> Result<(), Failure> {
     let apt = || {
         let mut command = if is_root() { program("apt-get") } else { program("sudo") };
         if !is_root() {
@@ -112,7 +131,7 @@ fn install() -> Result<(), Failure> {
         command
     };
     run(apt().args(["update", "--quiet"]))?;
-    run(apt().args(["install", "--yes", "--quiet", "--no-install-recommends"]).args(PACKAGES))
+    run(apt().args(["install", "--yes", "--quiet", "--no-install-recommends"]).args(packages))
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@
 mod canon;
 mod correct;
 mod demo;
+mod device;
+mod hil;
 mod image;
 mod inspect;
 mod replay;
@@ -55,6 +57,10 @@ enum Command {
     Replay(replay::Arguments),
     /// A correction image as text.
     Image(image::Arguments),
+    /// A board under setpoints and faults, every answer compared with the host's own code.
+    Hil(hil::Arguments),
+    /// A coprocessor over its configuration link.
+    Device(device::Arguments),
     /// Canonical moves of a program, in the text format of LinuxCNC's `rs274 -g`.
     Canon(canon::Arguments),
 }
@@ -87,6 +93,8 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Correct(arguments) => correct::run(&arguments, terminal),
         Command::Replay(arguments) => replay::run(&arguments, terminal),
         Command::Image(arguments) => image::run(&arguments, terminal),
+        Command::Hil(arguments) => hil::run(&arguments, terminal),
+        Command::Device(arguments) => device::run(&arguments, terminal),
         Command::Canon(arguments) => canon::run(&arguments, terminal),
     }
 }

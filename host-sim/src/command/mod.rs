@@ -2,5 +2,7 @@
 
 pub mod correct;
 pub mod demo;
+pub mod device;
+pub mod hil;
 pub mod inspect;
 pub mod simulate;

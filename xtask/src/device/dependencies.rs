@@ -1,8 +1,8 @@
 //! Which crates the core brings onto the microcontroller: only those listed here, each for its reason.
 
-use super::TARGET;
 use crate::repository::{cargo, read};
 use crate::step::Failure;
+use crate::toolchain::TARGET;
 
 /// Crates that may be part of the core's build for the microcontroller, with the reason.
 const ALLOWED: &[(&str, &str)] = &[

@@ -4,17 +4,13 @@ mod code;
 mod dependencies;
 mod operations;
 mod rules;
-mod toolchain;
 
 use std::collections::BTreeMap;
 
 use crate::repository::{run, target};
 use crate::step::{Failure, Outcome, Passed};
+use crate::toolchain::{TARGET, Toolchain};
 use code::Code;
-use toolchain::Toolchain;
-
-/// Cortex-M4F and M7 with single-precision floats.
-pub const TARGET: &str = "thumbv7em-none-eabihf";
 
 /// Builds the core for the microcontroller and checks what is in it.
 pub fn check() -> Outcome {

@@ -1,0 +1,45 @@
+//! The end of a run that must not go on: panic or fault. The drives go first, then the log, then the reset.
+
+use core::panic::PanicInfo;
+
+use cortex_m::peripheral::SCB;
+use cortex_m_rt::{ExceptionFrame, exception};
+use embassy_stm32::pac::{GPIOB, GPIOE};
+
+/// Drive enable PE11 and its lamp low, fault PE9 and its lamp high, past every driver.
+fn drop_drives() {
+    GPIOE.bsrr().write(|w| {
+        w.set_br(11, true);
+        w.set_bs(9, true);
+    });
+    GPIOB.bsrr().write(|w| {
+        w.set_br(0, true);
+        w.set_bs(14, true);
+    });
+}
+
+/// Resets by software, on request.
+pub fn restart() -> ! {
+    cortex_m::interrupt::disable();
+    drop_drives();
+    SCB::sys_reset()
+}
+
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    drop_drives();
+    defmt::error!("hard fault at {=u32:#x}; drives disabled, reset", frame.pc());
+    SCB::sys_reset()
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo) -> ! {
+    cortex_m::interrupt::disable();
+    drop_drives();
+    // File and line without the message: formatting it would bring the formatting of the core library along.
+    match info.location() {
+        Some(at) => defmt::error!("panic in {=str}:{=u32}; drives disabled, reset", at.file(), at.line()),
+        None => defmt::error!("panic; drives disabled, reset"),
+    }
+    SCB::sys_reset()
+}

@@ -1,0 +1,57 @@
+//! The setpoint link on a UART: received by DMA into a ring, read when the line falls idle.
+
+use embassy_futures::select::{Either, select};
+use embassy_stm32::mode::Async;
+use embassy_stm32::usart::{RingBufferedUartRx, UartTx};
+use embassy_time::Instant;
+use heapless::Vec;
+use truepath_core::link::MAX_ANSWER_BYTES;
+
+use super::memory::SetpointBuffers;
+use super::start::{BoardOutputs, Clockwork};
+use super::watchdog;
+use crate::board::SetpointSide;
+use crate::board::config_link::Tick;
+
+/// Bytes per second of the link.
+pub const BAUD: u32 = 3_000_000;
+/// Most answers to what was read at once: the shortest frame takes 34 bytes of the 96.
+const ANSWERS: usize = 3 * (MAX_ANSWER_BYTES + 2);
+
+/// The task: bytes in, answers out, time-outs by the tick.
+#[embassy_executor::task]
+pub async fn setpoint_uart(
+    mut receiver: RingBufferedUartRx<'static>,
+    mut sender: UartTx<'static, Async>,
+    buffers: &'static mut SetpointBuffers,
+    mut side: SetpointSide,
+    mut outputs: BoardOutputs,
+    tick: &'static Tick,
+) {
+    loop {
+        match select(receiver.read(&mut buffers.received), tick.wait()).await {
+            Either::First(Ok(taken)) => {
+                let arrived_us = Instant::now().as_micros();
+                let mut answers: Vec<u8, ANSWERS> = Vec::new();
+                let bytes = buffers.received.get(..taken).unwrap_or(&[]);
+                side.servo().receive(bytes, arrived_us, &Clockwork, &mut |answer: &[u8]| {
+                    // It has room for as many answers as there are frames in a chunk.
+                    let _ = answers.extend_from_slice(answer);
+                });
+                // The DMA does not reach the memory of the stack.
+                if let Some(place) = buffers.sent.get_mut(..answers.len()) {
+                    place.copy_from_slice(&answers);
+                    // What cannot be sent is an answer that does not come: the controller's time-out.
+                    let _ = sender.write(place).await;
+                }
+            }
+            // Noise, or an overrun: reception begins anew, and the frame it fell into is damaged.
+            Either::First(Err(_)) => receiver.start_uart(),
+            Either::Second(()) => {
+                watchdog::setpoint_task_lives();
+                side.servo().watch(Instant::now().as_micros());
+            }
+        }
+        outputs.follow(side.servo());
+    }
+}

@@ -1,0 +1,133 @@
+//! From the start-up code to the running device.
+
+use embassy_executor::SpawnToken;
+use embassy_stm32::gpio::{Input, Level, Output, Pull, Speed};
+use embassy_stm32::pac::RCC;
+use embassy_stm32::spi::{self, SlaveSelectPolarity, Spi};
+use embassy_stm32::usart::{self, BufferedUart, Uart};
+use embassy_time::{Duration, Ticker};
+use static_cell::StaticCell;
+use truepath_core::link::ResetCause;
+
+use super::config_task::{self, config_task};
+use super::flash::Bank2;
+use super::interrupts::{self, Lines, SETPOINT_LINK};
+use super::setpoint_spi::setpoint_spi;
+use super::setpoint_uart::{self, setpoint_uart};
+use super::{NAME, background, clocks, memory, watchdog};
+use crate::board::config_link::{SharedDesk, Tick};
+use crate::board::{Outputs, ServoCell};
+use crate::desk::{Board, Desk};
+
+/// Drive enable and fault, each with its lamp.
+pub type BoardOutputs = Outputs<Output<'static>, 2>;
+
+/// The time of the board.
+#[derive(Clone, Copy, Debug)]
+pub struct Clockwork;
+
+static SETPOINT_TICK: Tick = Tick::new();
+static CONFIG_TICK: Tick = Tick::new();
+
+/// Runs the device. Called once, by the entry of the image.
+pub fn run() -> ! {
+    static SERVO: ServoCell = ServoCell::new();
+    static DESK: StaticCell<SharedDesk<Bank2>> = StaticCell::new();
+    static TO_CONTROLLER: StaticCell<[u8; 2048]> = StaticCell::new();
+    static FROM_CONTROLLER: StaticCell<[u8; 2048]> = StaticCell::new();
+
+    if let Some(mut core) = cortex_m::Peripherals::take() {
+        core.SCB.enable_icache();
+    }
+    let last_reset = reset_cause();
+    let mut config = clocks::config();
+    config.dma_interrupt_priority = SETPOINT_LINK;
+    let p = embassy_stm32::init(config);
+    // The drives first: they stay off until the controller has acknowledged them.
+    let outputs = BoardOutputs::new(
+        [Output::new(p.PE11, Level::Low, Speed::Low), Output::new(p.PB0, Level::Low, Speed::Low)],
+        [Output::new(p.PE9, Level::Low, Speed::Low), Output::new(p.PB14, Level::Low, Speed::Low)],
+    );
+    defmt::info!("truepath {=str}, board {=str}, reset cause {=u8}", env!("CARGO_PKG_VERSION"), NAME, last_reset as u8);
+    // SAFETY: nothing in these regions is used before.
+    unsafe { memory::wake() };
+
+    let (desk, servo) = Desk::start(Bank2::new(p.FLASH), memory::lend(), Board { name: NAME, last_reset }, 0);
+    let desk = DESK.init(SharedDesk::new(desk));
+    // SAFETY: once, here, before the setpoint task is spawned; above it run only interrupts that leave the servo alone.
+    let side = unsafe { SERVO.fill(servo) };
+    let [setpoint, configuration] = interrupts::start();
+
+    let strap = Input::new(p.PE13, Pull::Up);
+    cortex_m::asm::delay(48_000);
+    if strap.is_high() {
+        let mut config = usart::Config::default();
+        config.baudrate = setpoint_uart::BAUD;
+        let uart = must(Uart::new(p.USART6, p.PG9, p.PG14, p.DMA1_CH1, p.DMA1_CH0, Lines, config));
+        let (sender, receiver) = uart.split();
+        let receiver = receiver.into_ring_buffered(memory::setpoint_ring());
+        let buffers = memory::setpoint_buffers();
+        setpoint.spawn(token(setpoint_uart(receiver, sender, buffers, side, outputs, &SETPOINT_TICK)));
+    } else {
+        let mut config = spi::Config::default();
+        config.nss_polarity = SlaveSelectPolarity::ActiveLow;
+        let spi = Spi::new_slave(p.SPI1, p.PA5, p.PB5, p.PA6, p.PA4, p.DMA1_CH2, p.DMA1_CH3, Lines, config);
+        let ready = Output::new(p.PF14, Level::Low, Speed::VeryHigh);
+        let buffers = memory::setpoint_buffers();
+        setpoint.spawn(token(setpoint_spi(spi, ready, buffers, side, outputs, &SETPOINT_TICK)));
+    }
+    let mut config = usart::Config::default();
+    config.baudrate = config_task::BAUD;
+    let (to, from) = (TO_CONTROLLER.init([0; 2048]), FROM_CONTROLLER.init([0; 2048]));
+    let (sender, receiver) = must(BufferedUart::new(p.USART3, p.PD9, p.PD8, to, from, Lines, config)).split();
+    configuration.spawn(token(config_task(receiver, sender, &CONFIG_TICK, desk, &SERVO)));
+    setpoint.spawn(token(tick()));
+    watchdog::start(p.IWDG1);
+    background::run(desk, &SERVO)
+}
+
+/// Wakes both tasks each millisecond.
+#[embassy_executor::task]
+async fn tick() {
+    let mut ticker = Ticker::every(Duration::from_millis(1));
+    loop {
+        ticker.next().await;
+        SETPOINT_TICK.signal(());
+        CONFIG_TICK.signal(());
+    }
+}
+
+/// Why the last reset happened; clears the flags (RM0433, 8.7.37).
+fn reset_cause() -> ResetCause {
+    let flags = RCC.rsr().read();
+    RCC.rsr().modify(|w| w.set_rmvf(true));
+    if flags.iwdg1rstf() {
+        ResetCause::Watchdog
+    } else if flags.sftrstf() {
+        ResetCause::Software
+    } else if flags.porrstf() {
+        ResetCause::PowerOn
+    } else if flags.borrstf() {
+        ResetCause::BrownOut
+    } else if flags.pinrstf() {
+        ResetCause::Pin
+    } else {
+        ResetCause::Unknown
+    }
+}
+
+/// A task's place, of which there is one.
+fn token<S, E>(made: Result<SpawnToken<S>, E>) -> SpawnToken<S> {
+    match made {
+        Ok(token) => token,
+        Err(_) => unreachable!("each task has one place, and this is its only use"),
+    }
+}
+
+/// A driver whose configuration is constant.
+fn must<T, E>(made: Result<T, E>) -> T {
+    match made {
+        Ok(driver) => driver,
+        Err(_) => unreachable!("the rates are within the range of the peripheral"),
+    }
+}

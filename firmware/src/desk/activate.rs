@@ -1,0 +1,124 @@
+//! Which image is in use, and whose turn it is with the image buffer.
+
+use embedded_storage::nor_flash::NorFlash;
+use truepath_core::link::{ActiveImage, Denial, DeviceSettingsError, Reply, Slot};
+use truepath_core::rewrite::Settings;
+
+use super::office::{Office, idle};
+use crate::active::{LoadError, Loaded};
+use crate::servo::ServoAccess;
+use crate::slots;
+
+impl From<LoadError> for Denial {
+    fn from(error: LoadError) -> Self {
+        match error {
+            LoadError::Image(error) => Self::Image(error),
+            LoadError::Settings(error) => Self::Settings(DeviceSettingsError::Rewriter(error)),
+        }
+    }
+}
+
+impl<'a, F: NorFlash> Office<'a, F> {
+    /// Uses an image, after resets as well. An image that does not pass leaves everything as it was.
+    pub fn activate<'s>(&mut self, wanted: ActiveImage, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+        idle(servo)?;
+        self.not_computing()?;
+        let before = self.active;
+        let settings = self.settings().rewriter;
+        let done = self
+            .load(wanted, &settings, servo)
+            .and_then(|()| self.ledger.change(&mut self.flash, |now| now.active = Some(wanted)).map_err(Denial::from));
+        if let Err(denial) = done {
+            self.back_to(before, servo);
+            return Err(denial);
+        }
+        Ok(Reply::Done)
+    }
+
+    pub fn deactivate<'s>(&mut self, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+        idle(servo)?;
+        self.not_computing()?;
+        self.ledger.change(&mut self.flash, |now| now.active = None)?;
+        self.borrow_image(servo)?;
+        self.active = None;
+        Ok(Reply::Done)
+    }
+
+    /// The image buffer at the desk; the servo then passes setpoints on without an image.
+    pub fn borrow_image(&mut self, servo: &impl ServoAccess<'a>) -> Result<(), Denial> {
+        if self.image.is_none() {
+            let loaded = servo.with(|servo| servo.take_image());
+            let Some(loaded) = loaded else { return Err(Denial::Mode(servo.with(|servo| servo.mode()))) };
+            self.image = Some(loaded.unload());
+        }
+        Ok(())
+    }
+
+    /// Reads the image of a slot into the buffer and puts it in use.
+    pub fn load(
+        &mut self,
+        wanted: ActiveImage,
+        settings: &Settings,
+        servo: &impl ServoAccess<'a>,
+    ) -> Result<(), Denial> {
+        self.borrow_image(servo)?;
+        self.active = None;
+        let buffer = self.image.take().ok_or(Denial::Busy)?;
+        match slots::read(&mut self.flash, wanted.slot, wanted.crc, buffer) {
+            Ok(length) => self.put_in_use(buffer, length, settings, servo)?,
+            Err(denial) => {
+                self.image = Some(buffer);
+                if matches!(denial, Denial::Image(_) | Denial::Checksum { .. } | Denial::Flash { .. })
+                    && let Some(slot) = self.slots.get_mut(usize::from(wanted.slot))
+                {
+                    *slot = Slot::Damaged;
+                }
+                return Err(denial);
+            }
+        }
+        self.active = Some(wanted);
+        Ok(())
+    }
+
+    /// Makes the rewriter anew for other settings, from the image in the buffer.
+    pub fn reload(&mut self, settings: &Settings, servo: &impl ServoAccess<'a>) -> Result<(), Denial> {
+        let Some(active) = self.active else { return Ok(()) };
+        self.borrow_image(servo)?;
+        let Some(&Slot::Image { length, .. }) = self.slots.get(usize::from(active.slot)) else {
+            return Err(Denial::NoImage { slot: active.slot });
+        };
+        let buffer = self.image.take().ok_or(Denial::Busy)?;
+        self.put_in_use(buffer, length as usize, settings, servo)
+    }
+
+    /// The image that was in use, read anew after the buffer served for something else. If the flash does not give it
+    /// any more, none is in use.
+    pub fn back_to(&mut self, before: Option<ActiveImage>, servo: &impl ServoAccess<'a>) {
+        let settings = self.settings().rewriter;
+        self.active = None;
+        if let Some(before) = before {
+            let _ = self.load(before, &settings, servo);
+        }
+    }
+
+    fn put_in_use(
+        &mut self,
+        buffer: &'a mut [u8],
+        length: usize,
+        settings: &Settings,
+        servo: &impl ServoAccess<'a>,
+    ) -> Result<(), Denial> {
+        let loaded = Loaded::load(buffer, length, settings).map_err(|(buffer, error)| {
+            self.image = Some(buffer);
+            Denial::from(error)
+        })?;
+        let (back, mode) = servo.with(|servo| (servo.give_image(loaded), servo.mode()));
+        match back {
+            None => Ok(()),
+            Some(loaded) => {
+                self.image = Some(loaded.unload());
+                Err(Denial::Mode(mode))
+            }
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Acknowledge, arm, disarm, configure.
+
+use embedded_storage::nor_flash::NorFlash;
+use truepath_core::link::{Denial, DeviceSettings, DeviceSettingsError, Reply};
+use truepath_core::rewrite::{ArmRequest, Mode, Refusal, Rewriter, Spent};
+
+use super::office::Office;
+use crate::flash::LEDGER_SECTORS;
+use crate::ledger::JournalFailed;
+use crate::servo::ServoAccess;
+
+impl From<JournalFailed> for Denial {
+    fn from(_: JournalFailed) -> Self {
+        Self::Flash { address: LEDGER_SECTORS.start() }
+    }
+}
+
+impl<'a, F: NorFlash> Office<'a, F> {
+    pub fn acknowledge<'s>(&mut self, now_us: u64, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+        servo.with(|servo| servo.acknowledge(now_us)).map_err(Denial::Refused)?;
+        Ok(Reply::Done)
+    }
+
+    pub fn check<'s>(&self, request: &ArmRequest, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+        self.would_spend(request, servo)?;
+        Ok(Reply::Done)
+    }
+
+    /// The pass of the part that arming would spend. The ledger is asked as well as the servo: it also knows of
+    /// armings that failed after they were written.
+    fn would_spend(&self, request: &ArmRequest, servo: &impl ServoAccess<'a>) -> Result<Spent, Denial> {
+        self.not_computing()?;
+        let pass = servo.with(|servo| servo.check(request)).map_err(Denial::Refused)?;
+        if self.ledger.now().is_spent(&pass) {
+            return Err(Denial::Refused(Refusal::PartRepeated { part_serial: pass.part_serial }));
+        }
+        Ok(pass)
+    }
+
+    /// The pass of the part is spent in the ledger before the arming can have any effect; should the arming then fail
+    /// (the link fell silent meanwhile), it stays spent.
+    pub fn arm<'s>(&mut self, request: &ArmRequest, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+        let pass = self.would_spend(request, servo)?;
+        self.ledger.change(&mut self.flash, |now| now.spend(pass))?;
+        servo.with(|servo| servo.arm(request)).map_err(Denial::Refused)?;
+        Ok(Reply::Done)
+    }
+
+    pub fn disarm<'s>(&mut self, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+        servo.with(|servo| servo.disarm()).map_err(Denial::Refused)?;
+        Ok(Reply::Done)
+    }
+
+    pub fn configure<'s>(
+        &mut self,
+        settings: DeviceSettings,
+        servo: &impl ServoAccess<'a>,
+    ) -> Result<Reply<'s>, Denial> {
+        match servo.with(|servo| servo.mode()) {
+            Mode::Off => self.not_computing()?,
+            mode => return Err(Denial::Mode(mode)),
+        }
+        settings.check().map_err(Denial::Settings)?;
+        let wrong = |error| Denial::Settings(DeviceSettingsError::Rewriter(error));
+        let bare = Rewriter::new(settings.rewriter, None).map_err(wrong)?;
+        let before = *self.settings();
+        // The image must go with the new settings before they are kept.
+        self.reload(&settings.rewriter, servo).or_else(|denial| {
+            self.reload(&before.rewriter, servo)?;
+            Err(denial)
+        })?;
+        if let Err(failed) = self.ledger.change(&mut self.flash, |now| now.settings = settings) {
+            self.reload(&before.rewriter, servo)?;
+            return Err(failed.into());
+        }
+        servo.with(|servo| servo.configure(settings, bare)).map_err(Denial::Refused)?;
+        Ok(Reply::Done)
+    }
+}

@@ -1,0 +1,114 @@
+//! Uploads: an image to the idle slot, the other items to RAM.
+
+use embedded_storage::nor_flash::NorFlash;
+use truepath_core::link::{CHUNK_BYTES, Denial, Item, Reply, Slot};
+
+use super::office::{Office, idle};
+use crate::servo::ServoAccess;
+use crate::shelf::Shelf;
+use crate::slots::{SLOT_IMAGE_BYTES, Upload};
+
+impl<'a, F: NorFlash> Office<'a, F> {
+    pub fn begin<'s>(
+        &mut self,
+        item: Item,
+        length: u32,
+        crc: u32,
+        servo: &impl ServoAccess<'a>,
+    ) -> Result<Reply<'s>, Denial> {
+        idle(servo)?;
+        self.not_computing()?;
+        self.current = None;
+        self.upload = None;
+        let offset =
+            if item == Item::Image { self.begin_image(length, crc)? } else { self.shelf(item)?.begin(length, crc)? };
+        self.current = Some(item);
+        Ok(Reply::Next { offset })
+    }
+
+    fn begin_image(&mut self, length: u32, crc: u32) -> Result<u32, Denial> {
+        let most = SLOT_IMAGE_BYTES as u32;
+        if length == 0 || length > most {
+            return Err(Denial::TooLong { item: Item::Image, length, most });
+        }
+        let slots = self.list();
+        let upload = match Upload::begin(&mut self.flash, &slots, length, crc) {
+            Ok(upload) => upload,
+            Err((slot, denial)) => {
+                self.slots[usize::from(slot)] = Slot::Damaged;
+                return Err(denial);
+            }
+        };
+        if !upload.is_committed() {
+            self.slots[usize::from(upload.slot())] = upload.held();
+        }
+        let next = upload.next();
+        self.upload = Some(upload);
+        Ok(next)
+    }
+
+    pub fn chunk<'s>(&mut self, offset: u32, bytes: &[u8], servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+        idle(servo)?;
+        self.not_computing()?;
+        let item = self.current.ok_or(Denial::NoUpload)?;
+        let too_long = bytes.len() > CHUNK_BYTES;
+        let Some(upload) = self.upload.as_mut().filter(|_| item == Item::Image) else {
+            let shelf = self.shelf(item)?;
+            if too_long {
+                return Err(Denial::Offset { expected: shelf.next(), found: offset, bytes: bytes.len() as u32 });
+            }
+            return Ok(Reply::Next { offset: shelf.chunk(offset, bytes)? });
+        };
+        if too_long {
+            return Err(Denial::Offset { expected: upload.next(), found: offset, bytes: bytes.len() as u32 });
+        }
+        let done = upload.chunk(&mut self.flash, offset, bytes);
+        // An image that was there before stays one.
+        let (slot, held) = (upload.slot(), (!upload.is_committed()).then(|| upload.held()));
+        if let Err(Denial::Flash { .. }) = done {
+            // What is in the slot is found out by the next `Begin`.
+            self.current = None;
+            self.upload = None;
+        }
+        if let Some(held) = held {
+            self.slots[usize::from(slot)] = held;
+        }
+        Ok(Reply::Next { offset: done? })
+    }
+
+    pub fn commit<'s>(&mut self, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+        idle(servo)?;
+        self.not_computing()?;
+        let item = self.current.ok_or(Denial::NoUpload)?;
+        if item != Item::Image {
+            let crc = self.shelf(item)?.commit()?;
+            return Ok(Reply::Committed { slot: 0, crc });
+        }
+        let before = self.active;
+        let mut upload = self.upload.ok_or(Denial::NoUpload)?;
+        upload.is_complete()?;
+        if before.is_some() {
+            self.borrow_image(servo)?;
+        }
+        let buffer = self.image.as_deref_mut().ok_or(Denial::Busy)?;
+        let done = upload.commit(&mut self.flash, buffer);
+        self.back_to(before, servo);
+        self.slots[usize::from(upload.slot())] = match done {
+            Ok(held) => held,
+            Err(_) => Slot::Damaged,
+        };
+        self.current = None;
+        self.upload = None;
+        done.map(|_| Reply::Committed { slot: upload.slot(), crc: upload.crc() })
+    }
+
+    fn shelf(&mut self, item: Item) -> Result<&mut Shelf<'a>, Denial> {
+        let shelves = self.shelves.as_mut().ok_or(Denial::Busy)?;
+        match item {
+            Item::Program => Ok(&mut shelves.program),
+            Item::Job => Ok(&mut shelves.job),
+            Item::Probe => Ok(&mut shelves.probe),
+            Item::Image => Err(Denial::NoUpload),
+        }
+    }
+}

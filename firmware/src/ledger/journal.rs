@@ -1,0 +1,172 @@
+//! An append-only journal of whole records in two sectors: the newest undamaged record counts.
+//!
+//! A record has a place of 1,024 bytes: one head word, then the payload. The payload is programmed first, the head
+//! last; so the head is the commit word. When a sector is full, the other one is erased and the next record begins
+//! it; the sector with the newest record is never erased. Power may fail anywhere: the newest record whose head was
+//! programmed is found again, a place that was begun is passed over, and a sector whose erase was interrupted is
+//! erased again before it is used, because the newest record is not in it.
+//!
+//! A sector is good for 10,000 erases (DS12110), the journal so for 2.5 million records.
+//!
+//! Why not the map of `sequential-storage` 8: it takes a page for open when its first and last words are blank, so
+//! what an interrupted erase left between them would be read as its newest items; and it gives up on a word that
+//! fails its ECC instead of passing it over.
+//!
+//! Head word, little endian: 0 magic `TPL1`, 4 sequence, 8 bytes of payload, 12 CRC-32 of the payload, 16 zeros,
+//! 28 CRC-32 of the 28 bytes before.
+
+use embedded_storage::nor_flash::NorFlash;
+use truepath_core::image::crc32;
+
+use crate::flash::{BLANK, LEDGER_SECTORS, SECTOR_BYTES, WORD_BYTES, Word, sector_start};
+
+/// Bytes of the place of a record.
+const PLACE_BYTES: usize = 1024;
+/// Most bytes of a payload.
+pub const PAYLOAD_BYTES: usize = PLACE_BYTES - WORD_BYTES;
+/// Places in a sector.
+pub const PLACES: usize = SECTOR_BYTES / PLACE_BYTES;
+/// Places that are tried when programming fails, before the journal gives up.
+const ATTEMPTS: usize = 3;
+const MAGIC: [u8; 4] = *b"TPL1";
+
+/// Where a record lies: sector of the journal (0 or 1) and place in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Place {
+    sector: usize,
+    index: usize,
+}
+
+impl Place {
+    fn offset(self) -> u32 {
+        sector_start(LEDGER_SECTORS.first + self.sector) + (self.index * PLACE_BYTES) as u32
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Head {
+    sequence: u32,
+    length: usize,
+    crc: u32,
+}
+
+impl Head {
+    fn encode(self) -> [u8; WORD_BYTES] {
+        let mut word = [0; WORD_BYTES];
+        let fields = [u32::from_le_bytes(MAGIC), self.sequence, self.length as u32, self.crc];
+        for (to, field) in word.as_chunks_mut::<4>().0.iter_mut().zip(fields) {
+            *to = field.to_le_bytes();
+        }
+        let sum = crc32(&word[..WORD_BYTES - 4]);
+        word[WORD_BYTES - 4..].copy_from_slice(&sum.to_le_bytes());
+        word
+    }
+    fn decode(word: &[u8; WORD_BYTES]) -> Option<Self> {
+        let field = |at: usize| u32::from_le_bytes([word[at], word[at + 1], word[at + 2], word[at + 3]]);
+        let sound = word.starts_with(&MAGIC) && field(28) == crc32(&word[..28]);
+        let head = Self { sequence: field(4), length: field(8) as usize, crc: field(12) };
+        (sound && head.length <= PAYLOAD_BYTES).then_some(head)
+    }
+}
+
+/// The journal. It knows its place; the flash is lent for each call.
+#[derive(Clone, Copy, Debug)]
+pub struct Journal {
+    /// Where the next record goes; none when the other sector has to be erased first.
+    next: Option<Place>,
+    /// Sector of the newest record; none before the first.
+    current: Option<usize>,
+    sequence: u32,
+}
+
+/// The record could not be written; the newest one before it still counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JournalFailed;
+
+impl Journal {
+    /// Finds the newest record and copies its payload; gives the journal and the length of the payload, if any.
+    pub fn open<F: NorFlash>(flash: &mut F, payload: &mut [u8; PAYLOAD_BYTES]) -> (Self, Option<usize>) {
+        let mut newest: Option<(Place, Head)> = None;
+        for place in (0..LEDGER_SECTORS.count).flat_map(|sector| (0..PLACES).map(move |index| Place { sector, index }))
+        {
+            let Some(head) = read_head(flash, place) else { continue };
+            let newer = newest.is_none_or(|(_, n)| head.sequence > n.sequence);
+            if newer && read_payload(flash, place, head, payload) {
+                newest = Some((place, head));
+            }
+        }
+        let Some((place, head)) = newest else {
+            return (Self { next: None, current: None, sequence: 0 }, None);
+        };
+        // A newer head with a damaged payload may have been read over it.
+        read_payload(flash, place, head, payload);
+        let last = (place.index..PLACES).rev().find(|&index| !is_blank(flash, Place { index, ..place }));
+        let index = last.map_or(place.index, |last| last) + 1;
+        let next = (index < PLACES).then_some(Place { index, ..place });
+        (Self { next, current: Some(place.sector), sequence: head.sequence }, Some(head.length))
+    }
+
+    /// Writes a record and reads it back. It counts from the moment at which this returns, at the latest.
+    ///
+    /// # Errors
+    /// The payload is longer than [`PAYLOAD_BYTES`] or the flash failed at several places.
+    pub fn append<F: NorFlash>(&mut self, flash: &mut F, payload: &[u8]) -> Result<(), JournalFailed> {
+        if payload.len() > PAYLOAD_BYTES {
+            return Err(JournalFailed);
+        }
+        // Counted up even if it fails: what a failed attempt may have left must be older than the next record.
+        self.sequence += 1;
+        let head = Head { sequence: self.sequence, length: payload.len(), crc: crc32(payload) };
+        for _ in 0..ATTEMPTS {
+            let place = match self.next {
+                Some(place) => place,
+                None => self.begin_sector(flash)?,
+            };
+            // Whatever becomes of it, this place is not tried again.
+            self.next = (place.index + 1 < PLACES).then_some(Place { index: place.index + 1, ..place });
+            if program(flash, place, head, payload) {
+                self.current = Some(place.sector);
+                return Ok(());
+            }
+        }
+        Err(JournalFailed)
+    }
+
+    /// Erases the sector that does not hold the newest record; slow, once in [`PLACES`] records.
+    fn begin_sector<F: NorFlash>(&mut self, flash: &mut F) -> Result<Place, JournalFailed> {
+        let sector = self.current.map_or(0, |current| 1 - current);
+        let start = sector_start(LEDGER_SECTORS.first + sector);
+        flash.erase(start, start + SECTOR_BYTES as u32).map_err(|_| JournalFailed)?;
+        Ok(Place { sector, index: 0 })
+    }
+}
+
+fn read_head<F: NorFlash>(flash: &mut F, place: Place) -> Option<Head> {
+    Word::read(flash, place.offset()).written().as_ref().and_then(Head::decode)
+}
+
+fn read_payload<F: NorFlash>(flash: &mut F, place: Place, head: Head, payload: &mut [u8; PAYLOAD_BYTES]) -> bool {
+    let payload = &mut payload[..head.length];
+    flash.read(place.offset() + WORD_BYTES as u32, payload).is_ok() && crc32(payload) == head.crc
+}
+
+fn is_blank<F: NorFlash>(flash: &mut F, place: Place) -> bool {
+    (0..PLACE_BYTES).step_by(WORD_BYTES).all(|at| Word::read(flash, place.offset() + at as u32).is_blank())
+}
+
+/// Payload, then head, then the proof that both can be read.
+fn program<F: NorFlash>(flash: &mut F, place: Place, head: Head, payload: &[u8]) -> bool {
+    let body = place.offset() + WORD_BYTES as u32;
+    for (piece, at) in payload.chunks(WORD_BYTES).zip((body..).step_by(WORD_BYTES)) {
+        let mut word = [0; WORD_BYTES];
+        word[..piece.len()].copy_from_slice(piece);
+        // A word of ones reads the same unprogrammed.
+        if word != BLANK && flash.write(at, &word).is_err() {
+            return false;
+        }
+    }
+    let mut back = [0; PAYLOAD_BYTES];
+    flash.write(place.offset(), &head.encode()).is_ok()
+        && read_head(flash, place).is_some_and(|found| found.sequence == head.sequence && found.crc == head.crc)
+        && read_payload(flash, place, head, &mut back)
+}

@@ -1,0 +1,102 @@
+//! What the device remembers over resets: the active image, its settings, the armed passes of parts, its boots.
+//!
+//! All of it is one record of the journal, so that every change is whole or has not happened. A copy in RAM is read;
+//! it changes only after the flash has taken the change.
+
+mod journal;
+
+use embedded_storage::nor_flash::NorFlash;
+use serde::{Deserialize, Serialize};
+use truepath_core::link::{ActiveImage, DeviceSettings};
+use truepath_core::rewrite::{SPENT_CAPACITY, Spent};
+
+use journal::{Journal, PAYLOAD_BYTES};
+pub use journal::{JournalFailed, PLACES};
+
+/// The record. The order is that of importance: of a record that another firmware has written, as much is taken as
+/// can be read from the front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Remembered {
+    /// Armed passes of parts, newest first.
+    pub spent: [Option<Spent>; SPENT_CAPACITY],
+    /// The image in use.
+    pub active: Option<ActiveImage>,
+    /// Settings.
+    pub settings: DeviceSettings,
+    /// Resets; it stands still at its end.
+    pub boots: u32,
+}
+
+impl Remembered {
+    /// A pass of a part was armed.
+    pub fn spend(&mut self, pass: Spent) {
+        self.spent.rotate_right(1);
+        self.spent[0] = Some(pass);
+    }
+    /// Whether a pass of a part was armed.
+    pub fn is_spent(&self, pass: &Spent) -> bool {
+        self.spent.iter().flatten().any(|spent| spent == pass)
+    }
+}
+
+impl Default for Remembered {
+    /// A device as it leaves the factory.
+    fn default() -> Self {
+        Self { active: None, spent: [None; SPENT_CAPACITY], settings: DeviceSettings::at_1_khz(), boots: 0 }
+    }
+}
+
+/// The record and the journal it is kept in.
+#[derive(Clone, Copy, Debug)]
+pub struct Ledger {
+    journal: Journal,
+    now: Remembered,
+}
+
+impl Ledger {
+    /// Reads the newest record; a device without one is as it left the factory. Settings that are out of range, or
+    /// those of another firmware, count as none; the armed passes of parts are kept then.
+    pub fn open<F: NorFlash>(flash: &mut F) -> Self {
+        let mut payload = [0; PAYLOAD_BYTES];
+        let (journal, length) = Journal::open(flash, &mut payload);
+        let mut now = length.map(|length| read(&payload[..length])).unwrap_or_default();
+        if now.settings.check().is_err() {
+            now.settings = DeviceSettings::at_1_khz();
+        }
+        Self { journal, now }
+    }
+    /// What is remembered.
+    pub const fn now(&self) -> &Remembered {
+        &self.now
+    }
+    /// Remembers something else. Takes about 20 programmed words; once in [`PLACES`] changes a sector is erased first.
+    ///
+    /// # Errors
+    /// The flash did not take it: what was remembered before is still remembered.
+    pub fn change<F: NorFlash>(
+        &mut self,
+        flash: &mut F,
+        change: impl FnOnce(&mut Remembered),
+    ) -> Result<(), JournalFailed> {
+        let mut next = self.now;
+        change(&mut next);
+        if next == self.now {
+            return Ok(());
+        }
+        let mut payload = [0; PAYLOAD_BYTES];
+        let bytes = postcard::to_slice(&next, &mut payload).map_err(|_| JournalFailed)?;
+        self.journal.append(flash, bytes)?;
+        self.now = next;
+        Ok(())
+    }
+}
+
+fn read(payload: &[u8]) -> Remembered {
+    let mut now = Remembered::default();
+    if let Ok(whole) = postcard::from_bytes(payload) {
+        now = whole;
+    } else if let Ok((spent, _)) = postcard::take_from_bytes(payload) {
+        now.spent = spent;
+    }
+    now
+}

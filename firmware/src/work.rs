@@ -1,0 +1,106 @@
+//! The on-board correction: program, job and probe log → image, apart from both links.
+//!
+//! `Compute` makes a [`Work`] of the uploaded items and the image buffer; whoever has time runs it (the board at its
+//! lowest priority, in the memory it lends), and hands it back to the desk, which writes the image to the idle slot.
+//! Meanwhile the desk answers, and a [`Meter`] tells how far the work is.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use truepath_core::job::{self, Job, JobError, Workspace};
+use truepath_core::link::{ComputeFailure, Stage};
+
+use crate::shelf::Shelf;
+
+/// How far a work is: written by it, read by the desk, without a lock.
+#[derive(Debug, Default)]
+pub struct Meter(AtomicU32);
+
+impl Meter {
+    /// At nothing.
+    pub const fn new() -> Self {
+        Self(AtomicU32::new(0))
+    }
+    /// Stage, as its number, and the share of it that is done, 0 … 1000.
+    fn set(&self, stage: Stage, permille: u16) {
+        self.0.store((stage as u32) << 16 | u32::from(permille), Ordering::Relaxed);
+    }
+    /// What was set last.
+    pub fn read(&self) -> (Stage, u16) {
+        const STAGES: [Stage; 7] =
+            [Stage::Job, Stage::Program, Stage::Probe, Stage::Cut, Stage::Identify, Stage::Correct, Stage::Write];
+        let bits = self.0.load(Ordering::Relaxed);
+        let stage = STAGES.into_iter().find(|&stage| stage as u32 == bits >> 16).unwrap_or(Stage::Job);
+        (stage, bits as u16)
+    }
+}
+
+/// One image to be made.
+pub struct Work<'a> {
+    /// The items, complete.
+    pub(crate) shelves: Shelves<'a>,
+    /// Where the image goes.
+    pub(crate) image: &'a mut [u8],
+    meter: &'a Meter,
+    pub(crate) made: Option<Result<usize, ComputeFailure>>,
+}
+
+/// Program, job and probe log.
+pub struct Shelves<'a> {
+    /// The program.
+    pub program: Shelf<'a>,
+    /// The job, in its compact form.
+    pub job: Shelf<'a>,
+    /// The probe log.
+    pub probe: Shelf<'a>,
+}
+
+impl<'a> Work<'a> {
+    pub(crate) fn new(shelves: Shelves<'a>, image: &'a mut [u8], meter: &'a Meter) -> Self {
+        meter.set(Stage::Job, 0);
+        Self { shelves, image, meter, made: None }
+    }
+
+    /// Makes the image. Takes seconds to minutes; everything it needs is in itself and in `workspace`.
+    pub fn run(&mut self, workspace: &mut Workspace<'_>) {
+        let Self { shelves, image, meter, made } = self;
+        let job = match Job::from_compact(shelves.job.content().unwrap_or(&[])) {
+            Ok(job) => job,
+            Err(error) => {
+                *made = Some(Err(failure(Stage::Job, &error)));
+                return;
+            }
+        };
+        let program = shelves.program.content().unwrap_or(&[]);
+        let probe = shelves.probe.content().unwrap_or(&[]);
+        let result = job::image(&job, program, probe, workspace, image, &mut |stage, permille| {
+            meter.set(link_stage(stage), permille);
+        });
+        let reached = meter.read().0;
+        *made = Some(result.map(|made| made.bytes as usize).map_err(|error| failure(reached, &error)));
+    }
+}
+
+fn link_stage(stage: job::Stage) -> Stage {
+    match stage {
+        job::Stage::Reading => Stage::Program,
+        job::Stage::Sampling => Stage::Cut,
+        job::Stage::Contacts => Stage::Probe,
+        job::Stage::Identification => Stage::Identify,
+        job::Stage::Design => Stage::Correct,
+        job::Stage::Image => Stage::Write,
+    }
+}
+
+/// A failure as it travels. The code is that of the command line as a number: three digits, and in front of them 0 for
+/// `J`, 1 for `G`, 2 for `M`, 3 for `I`, 4 for `W`.
+fn failure(stage: Stage, error: &JobError) -> ComputeFailure {
+    let failed = error.failed();
+    let [letter, digits @ ..] = failed.code;
+    let number = digits.iter().fold(0u16, |sum, digit| sum * 10 + u16::from(digit.saturating_sub(b'0').min(9)));
+    let group = [b'J', b'G', b'M', b'I', b'W'].iter().position(|&known| known == letter).unwrap_or(9);
+    let column = match error {
+        JobError::Program(error) => error.column,
+        _ => 0,
+    };
+    ComputeFailure { stage, code: group as u16 * 1000 + number, line: failed.line, column }
+}

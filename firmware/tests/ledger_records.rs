@@ -1,0 +1,155 @@
+//! The ledger's records, written by hand from their layout.
+
+use embedded_storage::nor_flash::NorFlash;
+use truepath_core::checksum::crc32;
+use truepath_core::link::{ActiveImage, DeviceSettings};
+use truepath_core::rewrite::Spent;
+use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Cut, LEDGER_SECTORS, Moment, Nor, SECTOR_BYTES, WordState};
+use truepath_fw::ledger::{Ledger, PLACES, Remembered};
+
+fn erased() -> Nor<'static> {
+    let bytes = vec![0; BANK_BYTES].leak().try_into().unwrap();
+    Nor::erased(bytes, vec![WordState::Blank; BANK_WORDS].leak().try_into().unwrap())
+}
+
+fn part(part_serial: u32) -> Spent {
+    Spent { part_serial, program_crc: 2, feature: 3, pass: 4 }
+}
+
+/// A record at a place, as the layout says; `crc` is that of the payload in its head.
+fn record(nor: &mut Nor<'_>, sector: usize, place: usize, sequence: u32, payload: &[u8], crc: u32) {
+    let at = LEDGER_SECTORS.start() + (sector * SECTOR_BYTES + place * 1_024) as u32;
+    let mut padded = payload.to_vec();
+    padded.resize(payload.len().next_multiple_of(32), 0);
+    nor.write(at + 32, &padded).unwrap();
+    let mut head = [0; 32];
+    head[..4].copy_from_slice(b"TPL1");
+    head[4..8].copy_from_slice(&sequence.to_le_bytes());
+    head[8..12].copy_from_slice(&(payload.len() as u32).to_le_bytes());
+    head[12..16].copy_from_slice(&crc.to_le_bytes());
+    let sum = crc32(&head[..28]);
+    head[28..].copy_from_slice(&sum.to_le_bytes());
+    nor.write(at, &head).unwrap();
+}
+
+fn payload(boots: u32) -> Vec<u8> {
+    let mut remembered = Remembered { boots, ..Remembered::default() };
+    remembered.spend(part(boots));
+    let mut buffer = [0; 992];
+    postcard::to_slice(&remembered, &mut buffer).unwrap().to_vec()
+}
+
+#[test]
+fn the_newest_undamaged_record_counts_wherever_it_lies() {
+    let mut nor = erased();
+    for (sector, place, sequence) in [(1, 0, 7), (1, 1, 8), (0, 5, 9), (0, 2, 3)] {
+        let payload = payload(sequence);
+        record(&mut nor, sector, place, sequence, &payload, crc32(&payload));
+    }
+    assert_eq!(Ledger::open(&mut nor).now().boots, 9);
+    // Newer ones whose payload is not what the head says, or that are no record at all.
+    let damaged = payload(10);
+    record(&mut nor, 0, 6, 10, &damaged, crc32(&damaged) ^ 1);
+    record(&mut nor, 0, 7, 11, &[], 5);
+    let at = LEDGER_SECTORS.start() + 8 * 1_024;
+    nor.write(at, &[0; 32]).unwrap();
+    let mut ledger = Ledger::open(&mut nor);
+    assert_eq!(ledger.now().boots, 9);
+    assert!(ledger.now().is_spent(&part(9)));
+    // And what is written now goes behind all of that.
+    ledger.change(&mut nor, |now| now.boots = 50).unwrap();
+    assert_eq!(Ledger::open(&mut nor).now().boots, 50);
+    assert_eq!(nor.word_state(LEDGER_SECTORS.start() + 9 * 1_024), WordState::Programmed);
+}
+
+#[test]
+fn a_record_of_another_firmware_still_tells_which_parts_were_armed() {
+    let mut nor = erased();
+    // The settings behind it have another layout: longer, and cut off.
+    for (place, bytes) in [payload(1), payload(2)].into_iter().enumerate() {
+        let mut bytes = bytes;
+        let end = bytes.len() - 9;
+        bytes.truncate(end);
+        record(&mut nor, 0, place, place as u32 + 1, &bytes, crc32(&bytes));
+    }
+    let ledger = Ledger::open(&mut nor);
+    assert!(ledger.now().is_spent(&part(2)));
+    assert_eq!(ledger.now().settings, DeviceSettings::at_1_khz());
+}
+
+#[test]
+fn settings_that_are_out_of_range_count_as_none() {
+    let mut nor = erased();
+    let mut wrong = Remembered { boots: 4, ..Remembered::default() };
+    wrong.settings.axes = 9;
+    let mut buffer = [0; 992];
+    let bytes = postcard::to_slice(&wrong, &mut buffer).unwrap();
+    record(&mut nor, 0, 0, 1, bytes, crc32(bytes));
+    let ledger = Ledger::open(&mut nor);
+    assert_eq!((ledger.now().boots, ledger.now().settings), (4, DeviceSettings::at_1_khz()));
+}
+
+#[test]
+fn the_longest_record_fits_into_its_place() {
+    let mut nor = erased();
+    let mut ledger = Ledger::open(&mut nor);
+    let longest = |now: &mut Remembered| {
+        let most = Spent { part_serial: u32::MAX, program_crc: u32::MAX, feature: u32::MAX, pass: u32::MAX };
+        now.spent = [Some(most); 16];
+        now.active = Some(ActiveImage { slot: 255, crc: u32::MAX });
+        now.boots = u32::MAX;
+        now.settings.silence_us = 10_000_000;
+        now.settings.deadline_us = 1_000_000;
+        now.settings.rewriter.joint_limits_nm = [(i64::MIN, i64::MAX); 6];
+        now.settings.rewriter.hold_after_ticks = 1 << 31;
+        now.settings.rewriter.spindle_stale_ticks = u32::MAX;
+    };
+    ledger.change(&mut nor, longest).unwrap();
+    assert_eq!(Ledger::open(&mut nor).now(), ledger.now());
+}
+
+#[test]
+fn thousands_of_changes_wear_both_sectors_alike() {
+    let mut nor = erased();
+    let mut ledger = Ledger::open(&mut nor);
+    let rounds = 10;
+    for boots in 1..=(2 * rounds * PLACES) as u32 {
+        ledger.change(&mut nor, |now| now.boots = boots).unwrap();
+        if boots % 100 == 0 {
+            ledger = Ledger::open(&mut nor);
+            assert_eq!(ledger.now().boots, boots);
+        }
+    }
+    assert_eq!(nor.wear().erased_sectors, 2 * rounds as u32);
+}
+
+#[test]
+fn a_change_that_changes_nothing_costs_nothing() {
+    let mut nor = erased();
+    let mut ledger = Ledger::open(&mut nor);
+    ledger.change(&mut nor, |now| now.boots = 1).unwrap();
+    let before = nor.wear();
+    ledger.change(&mut nor, |now| now.boots = 1).unwrap();
+    assert_eq!(nor.wear(), before);
+}
+
+#[test]
+fn power_that_fails_at_every_start_leaves_the_next_change_its_place() {
+    let mut nor = erased();
+    let mut ledger = Ledger::open(&mut nor);
+    ledger.change(&mut nor, |now| now.spend(part(1))).unwrap();
+    for start in 0..3 * PLACES as u32 {
+        // Some words of the record are written, one is torn, the head never is.
+        nor.cut(Some(Cut { after_operations: start % 4, moment: Moment::Within(start) }));
+        let mut ledger = Ledger::open(&mut nor);
+        ledger.change(&mut nor, |now| now.boots = start + 1).unwrap_err();
+        assert!(!nor.is_powered());
+        nor.power_up();
+        assert!(Ledger::open(&mut nor).now().is_spent(&part(1)), "start {start}");
+    }
+    let mut ledger = Ledger::open(&mut nor);
+    let before = nor.wear().programmed_words;
+    ledger.change(&mut nor, |now| now.spend(part(2))).unwrap();
+    assert!(nor.wear().programmed_words - before < 32, "at the first attempt");
+    assert!(Ledger::open(&mut nor).now().is_spent(&part(1)) && Ledger::open(&mut nor).now().is_spent(&part(2)));
+}

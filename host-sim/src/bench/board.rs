@@ -1,0 +1,53 @@
+//! What the bench needs of a board: the configuration link, and setpoints with commands in their order.
+
+use super::client::Client;
+use super::error::BenchError;
+use super::wire::Wire;
+
+/// One step of the bench, in the order in which the board gets them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// So many microseconds pass. A board with a clock of its own waits for its tick instead.
+    Time(u32),
+    /// Bytes on the setpoint link.
+    Setpoint {
+        /// The bytes.
+        bytes: Vec<u8>,
+        /// Answers that are expected to them: 0 or 1, more where a lost delimiter is found.
+        answers: u32,
+    },
+    /// A packet on the configuration link; there is one answer.
+    Request(Vec<u8>),
+}
+
+/// What came back.
+#[derive(Clone, Debug, Default)]
+pub struct Exchange {
+    /// Bytes of the setpoint link.
+    pub answers: Vec<u8>,
+    /// Bytes of the configuration link.
+    pub replies: Vec<u8>,
+    /// Time from the sending of a frame to the arrival of its answer, ns; empty where that means nothing.
+    pub round_trips_ns: Vec<u64>,
+}
+
+/// Ids between two series of requests.
+pub(super) const IDS: u16 = 4_099;
+
+/// A board under test.
+pub trait Board {
+    /// What it is, for the report.
+    fn describe(&self) -> String;
+    /// Whether its clock is that of the events, so that every run gives the same bytes whatever the machine is doing.
+    fn is_stepped(&self) -> bool;
+    /// A client of its configuration link.
+    fn client(&mut self) -> Client<&mut dyn Wire>;
+    /// The first id for a new series of requests, far from those of the series before: a device takes a repeated id
+    /// for a repeated request.
+    fn first_id(&mut self) -> u16;
+    /// Sends events and collects what comes back, up to what is expected.
+    ///
+    /// # Errors
+    /// The connection is lost. An answer that does not come is no error here: it is missing in what came back.
+    fn exchange(&mut self, events: &[Event]) -> Result<Exchange, BenchError>;
+}

@@ -1,0 +1,204 @@
+//! `truepath device`: a coprocessor over its configuration link.
+
+mod arguments;
+mod monitor;
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use serde::Serialize;
+use truepath_core::link::{Ask, DeviceStatus, Slot};
+use truepath_core::rewrite::Reason;
+
+pub(super) use arguments::Arguments;
+use arguments::Task;
+
+use super::{Terminal, image, print};
+use crate::bench::{BenchError, Client, Ingredients, Line, compute};
+use crate::command::device::{activate, changed, info, named, recording, recording_setpoints, recording_table, upload};
+use crate::command::hil::Counts;
+use crate::diagnostics::{Failure, Source};
+use crate::job::Job;
+use crate::output::write_file;
+use crate::report::json;
+
+pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let mut client = connect(arguments)?;
+    match &arguments.task {
+        Task::List => {
+            let slots = client.slots()?;
+            say(terminal, &slots, || slots_words(&slots))
+        }
+        Task::Info => {
+            let info = info(&mut client)?;
+            let status = client.status()?;
+            let both = serde_json::json!({ "device": info, "status": status });
+            say(terminal, &both, || {
+                format!(
+                    "{} with firmware {}, {} axes, images up to {} nodes\n\
+                     link {}, image format {}, semantics {}; {} boots, the last by {:?}\n{}",
+                    info.board,
+                    info.firmware,
+                    info.axes,
+                    info.most_nodes,
+                    info.link_version,
+                    info.image_format,
+                    info.semantics,
+                    info.boots,
+                    info.last_reset,
+                    status_words(&status)
+                )
+            })
+        }
+        Task::Upload { image: path, activate } => {
+            let bytes = image::read(path)?;
+            image::check(&bytes, path)?;
+            let mut bar = terminal.progress("uploading", bytes.len() as u64);
+            let done = upload(&mut client, &bytes, *activate, |there| bar.reached(there))?;
+            drop(bar);
+            let both = serde_json::json!({ "slot": done.slot, "crc": format!("{:08x}", done.crc), "active": activate });
+            let word = if *activate { "active" } else { "not active yet: truepath device activate" };
+            say(terminal, &both, || format!("image {:08x} in slot {}, {word}\n", done.crc, done.slot))
+        }
+        Task::Activate { slot } => {
+            let crc = activate(&mut client, *slot)?;
+            let both = serde_json::json!({ "slot": slot, "crc": format!("{crc:08x}") });
+            say(terminal, &both, || format!("image {crc:08x} of slot {slot} is active\n"))
+        }
+        Task::Deactivate => done(&mut client, Ask::Deactivate, terminal, "no image is active"),
+        Task::Disarm => done(&mut client, Ask::Disarm, terminal, "disarmed"),
+        Task::Monitor { seconds, every_ms } => {
+            let end = seconds.map(Duration::from_secs);
+            monitor::run(&mut client, end, Duration::from_millis(*every_ms), terminal)
+        }
+        Task::Record { output, setpoints, release, force } => {
+            let axes = client.settings()?.axes;
+            let mut bar = terminal.progress("downloading", 1000);
+            let frames = recording(&mut client, axes, |n, all| bar.reached(1000 * n / all.max(1)))?;
+            drop(bar);
+            let text = if *setpoints {
+                recording_setpoints(&frames, client.settings()?.rewriter.tick_hz)
+            } else {
+                recording_table(&frames, axes)
+            };
+            write_file(output, *force, text.as_bytes())?;
+            if *release {
+                client.done(Ask::ReleaseRecording)?;
+            }
+            let both = serde_json::json!({ "frames": frames.len(), "file": output });
+            say(terminal, &both, || format!("{} frames in {}\n", frames.len(), output.display()))
+        }
+        Task::Settings { changes } => {
+            let mut settings = client.settings()?;
+            if !changes.is_empty() {
+                settings = changed(&settings, changes)?;
+                client.done(Ask::Configure(settings))?;
+            }
+            say(terminal, &settings, || {
+                named(&settings).iter().map(|(name, value)| format!("{name} = {value}\n")).collect()
+            })
+        }
+        Task::Counters { clear } => {
+            let status = client.status()?;
+            if *clear {
+                client.done(Ask::ClearCounters)?;
+            }
+            say(terminal, &status.counters, || counters_words(&status))
+        }
+        Task::Restart { watchdog } => done(&mut client, Ask::Restart { watchdog: *watchdog }, terminal, "restarted"),
+        Task::Compute { job, probe, activate: after, minutes } => {
+            let job = Job::read(job)?;
+            let program = job.read_program()?;
+            let probe = Source::read(probe)?;
+            let mut compact = [0; truepath_core::job::COMPACT_BYTES];
+            let compact = job.numbers.to_compact(&mut compact).map_err(|e| Failure::Internal(e.to_string()))?;
+            let ingredients = Ingredients { program: program.bytes(), job: compact, probe: probe.bytes() };
+            let mut bar = terminal.progress("computing on the device", truepath_core::link::Stage::Ended as u64 * 1000);
+            let patience = Duration::from_secs(60 * minutes);
+            let (made, time) = compute(&mut client, &ingredients, patience, |now| {
+                bar.reached(now.stage as u64 * 1000 + u64::from(now.permille));
+            })?;
+            drop(bar);
+            if *after {
+                activate(&mut client, made.slot)?;
+            }
+            let seconds = time.as_secs_f64();
+            let both = serde_json::json!({
+                "slot": made.slot, "crc": format!("{:08x}", made.crc), "length": made.length, "seconds": seconds });
+            say(terminal, &both, || {
+                format!("image {:08x} of {} bytes in slot {}, {seconds:.1} s\n", made.crc, made.length, made.slot)
+            })
+        }
+    }
+}
+
+fn connect(arguments: &Arguments) -> Result<Client<Line>, BenchError> {
+    let Some(name) = arguments.port.as_deref() else {
+        return Err(BenchError::Option {
+            found: "no port is named".to_owned(),
+            help: "add --port with a serial port, a Unix socket or tcp:HOST:PORT".to_owned(),
+        });
+    };
+    let line = Line::open(name, arguments.baud).map_err(|e| BenchError::open(name, &e))?;
+    // Not the id of the request before this one, which the device remembers.
+    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
+    Ok(Client::new(line, now.as_millis() as u16))
+}
+
+/// A request without an answer of its own.
+fn done(client: &mut Client<Line>, ask: Ask<'_>, terminal: &Terminal, words: &str) -> Result<(), Failure> {
+    client.done(ask)?;
+    say(terminal, &serde_json::json!({ "done": words }), || format!("{words}\n"))
+}
+
+/// The result, for machines or for people.
+fn say(terminal: &Terminal, value: &impl Serialize, words: impl FnOnce() -> String) -> Result<(), Failure> {
+    print(&if terminal.json() { json(value)? } else { words().into_bytes() })
+}
+
+fn slots_words(slots: &[Slot; 2]) -> String {
+    let one = |(index, slot): (usize, &Slot)| match slot {
+        Slot::Empty => format!("slot {index}: empty\n"),
+        Slot::Damaged => format!("slot {index}: damaged; the next upload erases it\n"),
+        Slot::Partial { length, crc, written } => {
+            format!("slot {index}: upload of {crc:08x} interrupted at {written} of {length} bytes\n")
+        }
+        Slot::Image { length, crc, generation, active, binding } => {
+            let word = if *active { ", ACTIVE" } else { "" };
+            format!(
+                "slot {index}: image {crc:08x}, {length} bytes, upload {generation}{word}\n        \
+                 program {:08x}, feature {}, pass {}, tool {}, offset {}, setup {}\n",
+                binding.program_crc, binding.feature, binding.pass, binding.tool, binding.tool_offset, binding.setup
+            )
+        }
+    };
+    slots.iter().enumerate().map(one).collect()
+}
+
+fn status_words(s: &DeviceStatus) -> String {
+    let image = s.active.map_or_else(|| "no image".to_owned(), |a| format!("image {:08x} of slot {}", a.crc, a.slot));
+    let drives = if s.drive_enable { "passed on" } else { "dropped" };
+    let recorder = if s.recording_frozen { "stands since the last fault" } else { "runs" };
+    format!(
+        "{} ({}), drive enable {drives}, {image}, recorder {recorder}, up for {:.1} s\n",
+        s.mode,
+        s.reason,
+        s.uptime_us as f64 / 1e6
+    )
+}
+
+fn counters_words(status: &DeviceStatus) -> String {
+    let c = Counts::from(&status.counters);
+    let mut text = format!(
+        "accepted {}\nanswered {}\ndamaged {}\nrepeated {}\nout of order {}\nlost {}\njumps {}\nlate {}\nsilences {}\n",
+        c.accepted, c.answered, c.damaged, c.repeated, c.out_of_order, c.lost, c.jumps, c.late, c.silences
+    );
+    for reason in (16..32).filter_map(|code| Reason::try_from(code).ok()) {
+        let count = status.counters.faults_of(reason);
+        if count > 0 {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "fault: {reason} {count}");
+        }
+    }
+    text
+}

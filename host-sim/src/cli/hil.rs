@@ -1,0 +1,246 @@
+//! `truepath hil`: a board under setpoints and faults, compared with the host answer by answer.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{Terminal, image, print};
+use crate::bench::{BenchError, Faults, Probability, RoundTrip};
+use crate::command::hil::{Kind, Options, Report, Source, on_board, open, recorded, run as hil, settings};
+use crate::diagnostics::{Failure, InputError};
+use crate::report::json;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The correction image.
+    #[arg(required_unless_present = "job")]
+    image: Option<PathBuf>,
+    /// Have the device make the image of this job first, and compare it with the one made here.
+    #[arg(long, value_name = "FILE", requires = "probe", conflicts_with = "image")]
+    job: Option<PathBuf>,
+    /// What the probe measured, for --job.
+    #[arg(long, value_name = "FILE", requires = "job")]
+    probe: Option<PathBuf>,
+    /// What is tested: the device in this process, the emulated one, or one on serial ports.
+    #[arg(long, value_enum, default_value_t = BoardArgument::Host)]
+    board: BoardArgument,
+    /// Recorded setpoints in program coordinates; otherwise a part is milled along the path of the image.
+    #[arg(long, value_name = "FILE", conflicts_with = "random")]
+    setpoints: Option<PathBuf>,
+    /// So many setpoints along the path with everything that can go wrong, in changing frames.
+    #[arg(long, value_name = "N", conflicts_with = "count")]
+    random: Option<u64>,
+    /// Setpoints in all. [default: 20000, or the file once]
+    #[arg(long, value_name = "N")]
+    count: Option<u64>,
+    /// How a board is reached: frame by frame, or in batches through shared memory. [default: bulk; uart for serial]
+    #[arg(long, value_enum)]
+    link: Option<LinkArgument>,
+    /// Setpoints per second of the controller. Over uart they also go out at this rate, when it is given.
+    #[arg(long, value_name = "HZ")]
+    rate: Option<u32>,
+    /// Answers that may be outstanding over uart.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
+    window: u32,
+    /// Axes of a setpoint.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(3..=6))]
+    axes: u8,
+    /// Seed of controller and faults: the same seed gives the same run.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    faults: FaultArguments,
+    #[command(flatten)]
+    place: PlaceArguments,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Faults of the cable, as probabilities 0 to 1 per frame")]
+struct FaultArguments {
+    /// Lost.
+    #[arg(long, value_name = "P", default_value = "0", value_parser = probability)]
+    drop: Probability,
+    /// Damaged.
+    #[arg(long, value_name = "P", default_value = "0", value_parser = probability)]
+    corrupt: Probability,
+    /// Overtaken by one to four others.
+    #[arg(long, value_name = "P", default_value = "0", value_parser = probability)]
+    reorder: Probability,
+    /// Sent twice.
+    #[arg(long, value_name = "P", default_value = "0", value_parser = probability)]
+    repeat: Probability,
+    /// A pause before it.
+    #[arg(long, value_name = "P", default_value = "0", value_parser = probability)]
+    pause: Probability,
+    /// Length of a pause, microseconds.
+    #[arg(long, value_name = "US", default_value_t = 25_000)]
+    pause_us: u32,
+    /// Every frame is late by up to so many microseconds.
+    #[arg(long, value_name = "US", default_value_t = 0)]
+    jitter: u32,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Where the board is")]
+struct PlaceArguments {
+    /// Firmware of the virtual board. [default: target/firmware/truepath-virtual]
+    #[arg(long, value_name = "FILE")]
+    elf: Option<PathBuf>,
+    /// Setpoint link: a serial port, a Unix socket, or tcp:HOST:PORT.
+    #[arg(long, value_name = "PORT", required_if_eq("board", "serial"))]
+    port: Option<String>,
+    /// Configuration link, as --port.
+    #[arg(long, value_name = "PORT", required_if_eq("board", "serial"))]
+    config_port: Option<String>,
+    /// Bits per second of serial ports.
+    #[arg(long, value_name = "BAUD", default_value_t = 921_600)]
+    baud: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum BoardArgument {
+    /// The device in this process.
+    Host,
+    /// The firmware in QEMU.
+    Virtual,
+    /// A real one.
+    Serial,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum LinkArgument {
+    Uart,
+    Bulk,
+}
+
+pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let options = options(arguments)?;
+    let given = arguments.image.as_deref().map(|path| {
+        let bytes = image::read(path)?;
+        image::check(&bytes, path).map(|_| ())?;
+        Ok::<_, InputError>(bytes)
+    });
+    let given = given.transpose()?;
+    let mut board = open(&kind(arguments)?, arguments.window, arguments.rate.is_some())?;
+    let made = match (&arguments.job, &arguments.probe) {
+        (Some(job), Some(probe)) => {
+            let settings = settings(&options, board.is_stepped())?;
+            Some(on_board(&mut *board, &settings, job, probe, &mut |_| ())?)
+        }
+        _ => None,
+    };
+    let bytes = given.or_else(|| made.as_ref().map(|m| m.image.clone())).unwrap_or_default();
+    let mut bar = terminal.progress("setpoints", 1000);
+    let mut report = hil(&mut *board, &bytes, &options, &mut |share| bar.reached((share * 1000.0) as u64))?;
+    drop(bar);
+    report.on_board = made;
+    print(&if terminal.json() { json(&report)? } else { words(&report).into_bytes() })?;
+    match report.difference {
+        Some(difference) => Err(BenchError::Differs(difference).into()),
+        None => Ok(()),
+    }
+}
+
+fn options(arguments: &Arguments) -> Result<Options, Failure> {
+    let (source, count, file_hz) = match (&arguments.setpoints, arguments.random) {
+        (Some(path), _) => {
+            let setpoints = recorded(path)?;
+            let hz = u32::try_from(1_000_000_000 / setpoints.period_ns.max(1)).unwrap_or(u32::MAX);
+            let rows = setpoints.rows.len() as u64;
+            (Source::Recorded(setpoints), arguments.count.unwrap_or(rows), Some(hz))
+        }
+        (None, Some(count)) => (Source::Random, count, None),
+        (None, None) => (Source::Path, arguments.count.unwrap_or(20_000), None),
+    };
+    let f = &arguments.faults;
+    let faults = Faults {
+        drop: f.drop,
+        corrupt: f.corrupt,
+        reorder: f.reorder,
+        repeat: f.repeat,
+        pause: f.pause,
+        pause_us: f.pause_us,
+        jitter_us: f.jitter,
+    };
+    let rate_hz = arguments.rate.or(file_hz).unwrap_or(1_000);
+    Ok(Options { source, count, axes: arguments.axes, rate_hz, faults, seed: arguments.seed })
+}
+
+fn kind(arguments: &Arguments) -> Result<Kind, BenchError> {
+    let place = &arguments.place;
+    let elf = place.elf.clone();
+    Ok(match (arguments.board, arguments.link) {
+        (BoardArgument::Host, Some(LinkArgument::Uart)) | (BoardArgument::Serial, Some(LinkArgument::Bulk)) => {
+            return Err(BenchError::Option {
+                found: "this board has no such link".to_owned(),
+                help: "the host board has bulk only, a serial one uart only".to_owned(),
+            });
+        }
+        (BoardArgument::Host, _) => Kind::Host,
+        (BoardArgument::Virtual, Some(LinkArgument::Uart)) => Kind::VirtualUart { elf },
+        (BoardArgument::Virtual, _) => Kind::VirtualBulk { elf },
+        (BoardArgument::Serial, _) => {
+            let names = [&place.port, &place.config_port].map(|name| name.clone().unwrap_or_default());
+            Kind::Ports { names, baud: place.baud }
+        }
+    })
+}
+
+fn probability(text: &str) -> Result<Probability, String> {
+    let share = text.parse().ok().and_then(Probability::new);
+    share.ok_or_else(|| "a probability from 0 to 1".to_owned())
+}
+
+fn words(report: &Report) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = write_words(report, &mut text);
+    text
+}
+
+fn write_words(r: &Report, out: &mut String) -> std::fmt::Result {
+    writeln!(out, "{} (firmware {}), {}", r.device.board, r.device.firmware, r.board)?;
+    if let Some(m) = &r.on_board {
+        writeln!(out, "image made on the device in {:.1} s: {:08x}, {} bytes, as here", m.seconds, m.crc, m.bytes)?;
+        if let Some(t) = &m.round_trip {
+            let count = m.setpoints_meanwhile;
+            writeln!(out, "meanwhile {count} setpoints were answered, round trip {}", round_trip(t))?;
+        }
+    }
+    writeln!(out, "{} setpoints, {} answers compared, {} parts armed", r.setpoints, r.answers, r.armed)?;
+    let [off, bypass, armed, active, hold, fault] = r.modes;
+    writeln!(out, "answers: Off {off}, Bypass {bypass}, Armed {armed}, Active {active}, Hold {hold}, Fault {fault}")?;
+    writeln!(out, "largest correction {:.6} mm", r.max_correction_mm)?;
+    let i = &r.injected;
+    let faults = [i.dropped, i.corrupted, i.reordered, i.repeated, i.pauses];
+    if faults.iter().any(|&count| count > 0) {
+        let [dropped, corrupted, reordered, repeated, pauses] = faults;
+        writeln!(
+            out,
+            "injected: {dropped} lost, {corrupted} damaged, {reordered} overtaken, {repeated} repeated, {pauses} pauses"
+        )?;
+    }
+    let c = &r.counters;
+    writeln!(
+        out,
+        "device: {} accepted, {} answered, {} damaged, {} repeated, {} out of order, {} lost, {} jumps, {} late, {} silences",
+        c.accepted, c.answered, c.damaged, c.repeated, c.out_of_order, c.lost, c.jumps, c.late, c.silences
+    )?;
+    for (reason, count) in &r.faults {
+        writeln!(out, "{count:>10} x {reason}")?;
+    }
+    writeln!(out, "{:.0} setpoints/s", r.setpoints_per_s)?;
+    if let Some(t) = &r.round_trip {
+        writeln!(out, "round trip {}", round_trip(t))?;
+    }
+    writeln!(out, "digest {} host {}", r.digest, r.host_digest)?;
+    writeln!(out, "{}", if r.identical { "identical" } else { "DIFFERENT" })
+}
+
+fn round_trip(t: &RoundTrip) -> String {
+    format!(
+        "min {:.0}, median {:.0}, 99 % {:.0}, max {:.0} us, with the noise of this machine",
+        t.min_us, t.median_us, t.p99_us, t.max_us
+    )
+}

@@ -1,0 +1,258 @@
+//! `device`: what a retrofit engineer asks of a coprocessor over its configuration link.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+use serde_json::Value;
+use truepath_core::link::{Ask, DeviceSettings, Item, Reply, ResetCause, SetpointFrame, Slot, setpoint_bytes};
+use truepath_core::rewrite::{AXES, Setpoint};
+
+use crate::bench::{BenchError, Client, Committed, Wire};
+
+/// Identity and sizes of a device.
+#[derive(Clone, Debug, Serialize)]
+#[expect(missing_docs, reason = "named as in core::link::Hello")]
+pub struct Info {
+    pub board: String,
+    pub firmware: String,
+    pub link_version: u8,
+    pub semantics: u32,
+    pub image_format: u16,
+    pub axes: u8,
+    pub most_nodes: u32,
+    pub slot_bytes: u32,
+    pub program_bytes: u32,
+    pub job_bytes: u32,
+    pub probe_bytes: u32,
+    pub boots: u32,
+    pub last_reset: ResetCause,
+}
+
+/// Asks who is there.
+///
+/// # Errors
+/// As [`Client::ask`].
+pub fn info<W: Wire>(client: &mut Client<W>) -> Result<Info, BenchError> {
+    match client.ask(Ask::Hello)? {
+        Reply::Hello(h) => Ok(Info {
+            board: h.board.to_owned(),
+            firmware: h.firmware.to_owned(),
+            link_version: h.link_version,
+            semantics: h.semantics,
+            image_format: h.image_format,
+            axes: h.axes,
+            most_nodes: h.most_nodes,
+            slot_bytes: h.slot_bytes,
+            program_bytes: h.program_bytes,
+            job_bytes: h.job_bytes,
+            probe_bytes: h.probe_bytes,
+            boots: h.boots,
+            last_reset: h.last_reset,
+        }),
+        other => Err(BenchError::Foreign(format!("{other:?}"))),
+    }
+}
+
+/// Uploads an image and, if wanted, makes it the active one.
+///
+/// # Errors
+/// As [`Client::upload`].
+pub fn upload<W: Wire>(
+    client: &mut Client<W>,
+    image: &[u8],
+    activate: bool,
+    progress: impl FnMut(u64),
+) -> Result<Committed, BenchError> {
+    let committed = client.upload(Item::Image, image, progress)?;
+    if activate {
+        client.done(Ask::Activate { slot: committed.slot, crc: committed.crc })?;
+    }
+    Ok(committed)
+}
+
+/// Makes the image of a slot the active one; gives its checksum.
+///
+/// # Errors
+/// There is no image in the slot; as [`Client::ask`].
+pub fn activate<W: Wire>(client: &mut Client<W>, slot: u8) -> Result<u32, BenchError> {
+    let slots = client.slots()?;
+    let Some(Slot::Image { crc, .. }) = slots.get(usize::from(slot)) else {
+        return Err(BenchError::Denied(truepath_core::link::Denial::NoImage { slot }));
+    };
+    let crc = *crc;
+    client.done(Ask::Activate { slot, crc })?;
+    Ok(crc)
+}
+
+/// A frame of the recorder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Recorded {
+    /// Undamaged.
+    Setpoint(Setpoint),
+    /// It arrived damaged.
+    Damaged,
+}
+
+/// Downloads the recorder: the raw frames before the last fault, oldest first. `progress` is told frames and all.
+///
+/// # Errors
+/// The recorder still runs; as [`Client::ask`].
+pub fn recording<W: Wire>(
+    client: &mut Client<W>,
+    axes: u8,
+    mut progress: impl FnMut(u64, u64),
+) -> Result<Vec<Recorded>, BenchError> {
+    let mut frames = Vec::new();
+    loop {
+        let next = frames.len() as u32;
+        let reply = client.ask(Ask::Recording { from: next })?;
+        let Reply::Recording { total, from, bytes } = reply else {
+            return Err(BenchError::Foreign(format!("{reply:?}")));
+        };
+        if from != next || bytes.is_empty() {
+            return Err(BenchError::Foreign(format!("frames from {from}, asked for {next}")));
+        }
+        frames.extend(
+            bytes
+                .chunks(setpoint_bytes(axes))
+                .map(|raw| SetpointFrame::decode(raw, axes).map_or(Recorded::Damaged, Recorded::Setpoint)),
+        );
+        progress(frames.len() as u64, total.into());
+        if frames.len() >= total as usize {
+            return Ok(frames);
+        }
+    }
+}
+
+/// A recording as a table: every axis, speed, flags, damaged frames as rows without numbers.
+pub fn recording_table(frames: &[Recorded], axes: u8) -> String {
+    let axes = usize::from(axes).min(AXES);
+    let mut text = String::from("frame,sequence,flags,spindle_rpm,spindle_age_ticks,frame_crc");
+    // Writing to a String cannot fail.
+    for axis in 0..axes {
+        let _ = write!(text, ",axis{axis}_mm");
+    }
+    text.push('\n');
+    for (index, frame) in frames.iter().enumerate() {
+        match frame {
+            Recorded::Damaged => {
+                let _ = writeln!(text, "{index},damaged,,,,{}", ",".repeat(axes));
+            }
+            Recorded::Setpoint(s) => {
+                let rpm = f64::from(s.spindle_millirpm) / 1000.0;
+                let _ = write!(
+                    text,
+                    "{index},{},{},{rpm},{},{:08x}",
+                    s.sequence, s.flags.0, s.spindle_age_ticks, s.frame_crc
+                );
+                for nm in &s.axes[..axes] {
+                    let _ = write!(text, ",{}", millimetres(*nm));
+                }
+                text.push('\n');
+            }
+        }
+    }
+    text
+}
+
+/// A recording as a file of setpoints for `replay` and `hil`: machine coordinates, the first three axes as X, Y, Z.
+/// Damaged frames leave a gap.
+pub fn recording_setpoints(frames: &[Recorded], tick_hz: u32) -> String {
+    let mut text = String::from("# frame = machine\nt_s,x_mm,y_mm,z_mm,spindle_rpm\n");
+    let good = || frames.iter().filter_map(|f| if let Recorded::Setpoint(s) = f { Some(s) } else { None });
+    let first = good().next().map_or(0, |s| s.sequence);
+    for s in good() {
+        let ticks = u64::from(s.sequence.wrapping_sub(first));
+        let ns = ticks * 1_000_000_000 / u64::from(tick_hz.max(1));
+        let [x, y, z] = [s.axes[0], s.axes[1], s.axes[2]].map(millimetres);
+        let rpm = f64::from(s.spindle_millirpm) / 1000.0;
+        let _ = writeln!(text, "{}.{:09},{x},{y},{z},{rpm}", ns / 1_000_000_000, ns % 1_000_000_000);
+    }
+    text
+}
+
+/// Nanometres as millimetres, exactly.
+fn millimetres(nm: i64) -> String {
+    let (sign, nm) = (if nm < 0 { "-" } else { "" }, nm.unsigned_abs());
+    format!("{sign}{}.{:06}", nm / 1_000_000, nm % 1_000_000)
+}
+
+/// Settings by name: `axes`, `deadline_us`, `rewriter.tick_hz` …, with their values.
+pub fn named(settings: &DeviceSettings) -> Vec<(String, Value)> {
+    let mut out = Vec::new();
+    if let Ok(value) = serde_json::to_value(settings) {
+        flatten("", &value, &mut out);
+    }
+    out
+}
+
+fn flatten(name: &str, value: &Value, out: &mut Vec<(String, Value)>) {
+    match value {
+        Value::Object(members) => {
+            for (key, value) in members {
+                let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
+                flatten(&name, value, out);
+            }
+        }
+        _ => out.push((name.to_owned(), value.clone())),
+    }
+}
+
+/// Settings with some of them changed, each as `name=value`.
+///
+/// # Errors
+/// A name or a value that there is not; ranges are the device's to check.
+pub fn changed(settings: &DeviceSettings, changes: &[String]) -> Result<DeviceSettings, BenchError> {
+    let option = |found: String, help: String| BenchError::Option { found, help };
+    let mut all = serde_json::to_value(settings).map_err(|e| BenchError::Foreign(e.to_string()))?;
+    for change in changes {
+        let names = || named(settings).into_iter().map(|(name, _)| name).collect::<Vec<_>>().join(", ");
+        let (name, text) = change
+            .split_once('=')
+            .ok_or_else(|| option(format!("\"{change}\" is no name=value"), "write axes=6".into()))?;
+        let place = all
+            .pointer_mut(&format!("/{}", name.replace('.', "/")))
+            .filter(|place| !place.is_object())
+            .ok_or_else(|| option(format!("there is no setting \"{name}\""), format!("one of {}", names())))?;
+        *place = serde_json::from_str(text)
+            .map_err(|_| option(format!("\"{text}\" is no value"), format!("{name} is {place} now")))?;
+    }
+    serde_json::from_value(all).map_err(|e| option(format!("settings: {e}"), "give values of the kind shown".into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_setting_is_changed_by_its_name_and_nothing_else_is() {
+        let settings = DeviceSettings::at_1_khz();
+        let wanted = ["axes=6".to_owned(), "rewriter.tick_hz=2000".to_owned()];
+        let new = changed(&settings, &wanted).expect("settings");
+        let mut expected = settings;
+        (expected.axes, expected.rewriter.tick_hz) = (6, 2000);
+        assert_eq!(new, expected);
+        for wrong in ["axis=6", "axes", "axes=many", "axes=300", "rewriter=1"] {
+            assert!(changed(&settings, &[wrong.to_owned()]).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_recording_is_a_file_that_replay_reads() {
+        let setpoint = |sequence, x| Setpoint {
+            axes: [x, -1, 2_000_000, 0, 0, 0],
+            spindle_millirpm: 1_500_500,
+            sequence,
+            ..Setpoint::default()
+        };
+        let frames: Vec<Recorded> =
+            (0..4).map(|k| Recorded::Setpoint(setpoint(u32::MAX.wrapping_add(k), -1_500_000 + i64::from(k)))).collect();
+        let text = recording_setpoints(&frames, 1000);
+        let source = crate::diagnostics::Source::new("recording.csv", text.into_bytes());
+        let read = crate::setpoints::Setpoints::parse(&source).expect("setpoints");
+        assert_eq!(read.period_ns, 1_000_000);
+        assert_eq!(read.rows[3].position_nm, [-1_499_997, -1, 2_000_000]);
+        let table = recording_table(&[Recorded::Damaged, frames[0]], 3);
+        assert_eq!(table.lines().map(|l| l.split(',').count()).collect::<Vec<_>>(), [9, 9, 9]);
+    }
+}

@@ -1,0 +1,142 @@
+//! `hil`: the device under setpoints and faults, every answer compared with the host's own code.
+
+mod on_board;
+mod place;
+mod report;
+
+use std::path::Path;
+
+use truepath_core::image::Image;
+use truepath_core::link::{Ask, DeviceSettings};
+use truepath_core::rewrite::ArmRequest;
+
+use crate::bench::traffic::{Controller, Manner, Recorded};
+use crate::bench::{Board, Campaign, Faults, Plan, Probability, Traffic, identify, prepare, to_off};
+use crate::diagnostics::{Failure, InputError};
+use crate::replay;
+use crate::setpoints::{Frame, Setpoints};
+
+pub use on_board::{OnBoard, on_board};
+pub use place::{Kind, open};
+use report::report;
+pub use report::{Counts, Report};
+
+/// What the controller sends.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// The image's own path, well behaved but for feed holds and overrides.
+    Path,
+    /// The same with mischief, in changing frames.
+    Random,
+    /// A file.
+    Recorded(Setpoints),
+}
+
+/// A run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// What is sent.
+    pub source: Source,
+    /// Setpoints in all; for a file rounded up to whole rounds.
+    pub count: u64,
+    /// Axes of a setpoint, 3…6.
+    pub axes: u8,
+    /// Setpoints per second.
+    pub rate_hz: u32,
+    /// Faults of the cable.
+    pub faults: Faults,
+    /// Seed of controller and cable.
+    pub seed: u64,
+}
+
+/// Runs setpoints through a board. `progress` is told the share done, 0…1.
+///
+/// # Errors
+/// The board cannot be reached, is of another version, or refuses; the options do not go together. A difference is no
+/// error here: it is in the report.
+pub fn run(
+    board: &mut dyn Board,
+    bytes: &[u8],
+    options: &Options,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Report, Failure> {
+    let image = Image::new_checked(bytes).map_err(|e| Failure::Internal(format!("an image that was checked: {e}")))?;
+    let device = identify(board)?;
+    let settings = settings(options, board.is_stepped())?;
+    let before = prepare(board, bytes, &settings, |_| ())?;
+    let plan = Plan { settings, faults: options.faults, seed: options.seed };
+    let campaign = Campaign::new(plan, image, board.is_stepped())?;
+    let mut traffic = traffic(image, options);
+    let outcome = campaign.run(&mut *traffic, board, |sent| progress(sent as f64 / options.count.max(1) as f64))?;
+    let counters = board.client().status()?.counters;
+    let report = report(board, device, &outcome, &counters);
+    if !board.is_stepped() {
+        // What the device was before; an emulator or a device in process is gone with the run.
+        to_off(board, settings.silence_us)?;
+        board.client().done(Ask::Configure(before))?;
+    }
+    Ok(report)
+}
+
+/// Settings for a run. Over streams the clock of the device is not ours: deadline and silence are then as long as they
+/// may be, so that no answer depends on how busy this machine is.
+///
+/// # Errors
+/// `H007` for a rate or a number of axes that there is not.
+pub fn settings(options: &Options, stepped: bool) -> Result<DeviceSettings, InputError> {
+    let period_ns = 1_000_000_000 / i64::from(options.rate_hz.max(1));
+    let rewriter = replay::settings(period_ns);
+    let (deadline_us, silence_us) = if stepped { (500, SILENCE_US) } else { (1_000_000, 10_000_000) };
+    let settings = DeviceSettings { rewriter, axes: options.axes, deadline_us, silence_us };
+    settings.check().map_err(|e| InputError::new("H007", e.to_string(), "", "choose other --rate or --axes"))?;
+    Ok(settings)
+}
+
+/// Silence of a board whose clock is ours, µs.
+pub const SILENCE_US: u32 = 20_000;
+
+fn traffic(image: Image<'_>, options: &Options) -> Box<dyn Traffic> {
+    let probability = |share| Probability::new(share).unwrap_or_default();
+    let manner = Manner {
+        count: options.count,
+        axes: options.axes,
+        tick_hz: options.rate_hz,
+        operate: probability(0.001),
+        disturb: probability(0.0),
+        frames: false,
+    };
+    // Parts of a run are numbered from its seed on, so that a device remembers none of them from the run before.
+    let serial = 1_000u32.wrapping_mul(options.seed as u32);
+    match &options.source {
+        Source::Path => Box::new(Controller::new(&image, manner, serial, options.seed)),
+        Source::Random => {
+            let manner = Manner { disturb: probability(0.0005), frames: true, ..manner };
+            Box::new(Controller::new(&image, manner, serial, options.seed))
+        }
+        Source::Recorded(setpoints) => {
+            let request = ArmRequest {
+                binding: image.settings().binding,
+                part_serial: serial,
+                frame: truepath_core::rewrite::Frame::identity(),
+            };
+            let rounds = options.count.div_ceil(setpoints.rows.len().max(1) as u64).max(1);
+            let nominal = image.settings().feed.spindle_millirpm;
+            Box::new(Recorded::new(setpoints.clone(), request, nominal, rounds.try_into().unwrap_or(u32::MAX)))
+        }
+    }
+}
+
+/// Recorded setpoints for a run: program coordinates, from a file.
+///
+/// # Errors
+/// As [`Setpoints::parse`]; `H007` for a file in machine coordinates.
+pub fn recorded(path: &Path) -> Result<Setpoints, InputError> {
+    let source = crate::diagnostics::Source::read(path)?;
+    let setpoints = Setpoints::parse(&source)?;
+    if setpoints.frame == Frame::Machine {
+        let found = "the setpoints are in machine coordinates";
+        let help = "record them in program coordinates (# frame = program): the bench arms with the identity frame";
+        return Err(InputError::new("H007", found, "program coordinates", help).at(&source, 0..1));
+    }
+    Ok(setpoints)
+}

@@ -1,0 +1,52 @@
+//! Where a board is, and how it is reached.
+
+use std::path::PathBuf;
+
+use crate::bench::{BenchError, Board, BulkBoard, Emulator, InProcess, Line, UartBoard, find_elf};
+
+/// Which board.
+#[derive(Clone, Debug)]
+pub enum Kind {
+    /// The device in this process.
+    Host,
+    /// The virtual board in QEMU, by batches in shared memory.
+    VirtualBulk {
+        /// The firmware; by default what `cargo xtask firmware` made.
+        elf: Option<PathBuf>,
+    },
+    /// The virtual board in QEMU, over its UARTs.
+    VirtualUart {
+        /// The firmware; by default what `cargo xtask firmware` made.
+        elf: Option<PathBuf>,
+    },
+    /// Two ports: setpoint link, configuration link.
+    Ports {
+        /// Serial ports, Unix sockets or `tcp:HOST:PORT`.
+        names: [String; 2],
+        /// Bits per second of a serial port.
+        baud: u32,
+    },
+}
+
+/// Opens a board. Over streams up to `window` answers may be outstanding, and with `paced` setpoints keep to the rate.
+///
+/// # Errors
+/// Emulator, firmware or port are missing.
+pub fn open(kind: &Kind, window: u32, paced: bool) -> Result<Box<dyn Board>, BenchError> {
+    let start = |elf: &Option<PathBuf>| Emulator::start(&find_elf(elf.as_deref())?);
+    Ok(match kind {
+        Kind::Host => Box::new(BulkBoard::new(InProcess::start()?)),
+        Kind::VirtualBulk { elf } => Box::new(BulkBoard::new(start(elf)?)),
+        Kind::VirtualUart { elf } => {
+            let emulator = start(elf)?;
+            let lines = emulator.lines()?;
+            let name = "virtual board in QEMU, UARTs over sockets".to_owned();
+            Box::new(UartBoard::new(name, lines, window, paced, Some(emulator)))
+        }
+        Kind::Ports { names, baud } => {
+            let line = |name: &str| Line::open(name, *baud).map_err(|e| BenchError::open(name, &e));
+            let lines = [line(&names[0])?, line(&names[1])?];
+            Box::new(UartBoard::new(names.join(", "), lines, window, paced, None))
+        }
+    })
+}

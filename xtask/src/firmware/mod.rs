@@ -1,0 +1,40 @@
+//! The firmware: its images, their sizes, proofs and costs.
+
+pub mod budget;
+mod document;
+pub mod elf;
+mod emulator;
+mod image;
+mod linker;
+mod rate;
+mod sizes;
+
+use std::path::PathBuf;
+
+pub use image::Board;
+use sizes::Sizes;
+
+use crate::bench::table::thousands;
+use crate::step::{Outcome, Passed};
+use crate::toolchain::{TARGET, Toolchain};
+
+/// Builds the images of one board or of all, prints their sizes and compares them with the document, or writes them
+/// there.
+pub fn build(board: Option<Board>, write: bool) -> Outcome {
+    let toolchain = Toolchain::find()?;
+    eprintln!("    {TARGET} by {}", toolchain.describe());
+    let boards: Vec<Board> = board.map_or(Board::ALL.to_vec(), |board| vec![board]);
+    let mut rows = Vec::new();
+    println!("{:<14} {:>10} {:>10} {:>10} {:>10} {:>10}", "board", "text", "data", "bss", "flash", "RAM");
+    for board in boards {
+        let elf: PathBuf = board.image().build(&toolchain, &[])?;
+        let sizes = Sizes::read(&elf)?;
+        let numbers = [sizes.text, sizes.data, sizes.bss, sizes.flash(), sizes.ram()].map(thousands);
+        let [text, data, bss, flash, ram] = &numbers;
+        println!("{:<14} {text:>10} {data:>10} {bss:>10} {flash:>10} {ram:>10}  {}", board.name(), elf.display());
+        rows.push([vec![board.name().to_owned()], numbers.to_vec()].concat());
+    }
+    let head = ["board", "text", "data", "bss", "flash", "RAM"];
+    document::settle("sizes", &head, &rows, &toolchain.version()?, write)?;
+    Ok(Passed::Done)
+}
