@@ -133,6 +133,26 @@ fn a_blended_corner_is_followed_from_one_leg_to_the_other() {
 }
 
 #[test]
+fn a_step_of_several_segments_round_a_corner_arrives_in_one_tick() {
+    let mut points: Vec<_> = (0..=50).map(|i| (i * MM / 10, 0)).collect();
+    points.extend((1..=50).map(|i| (5 * MM, i * MM / 10)));
+    // On the path, and a little inside of the corner, where the end of the first leg is not passed.
+    for inside in [0, 1, 20_000] {
+        let mut m = Machine::on(points.iter().copied()).active();
+        let (mut at, step) = (0, 290_000);
+        let mut out = m.stay();
+        while at + step < 10 * MM {
+            at += step;
+            out = m.send(at.min(5 * MM - inside), (at - 5 * MM).max(0) + inside, PASS);
+            let way = i64::from(out.place.node) * 100_000 + ((i64::from(out.place.fraction) * 100_000) >> 30);
+            assert_eq!(out.mode, Mode::Active, "{out:?}");
+            assert!((way - at).abs() <= inside + 2, "{inside}: {way} for {at}");
+        }
+        assert_eq!(out.place.node, 98);
+    }
+}
+
+#[test]
 fn the_same_setpoints_give_the_same_digest_and_one_bit_changes_it() {
     let run = |change: i64| {
         let mut m = Machine::on(eight(10.0)).active();

@@ -108,6 +108,9 @@ fn main() -> ExitCode {
             report.run(Step::new("lint", checks::lint));
             report.run(Step::new("doc", checks::doc));
             report.run(Step::new("device", device::check));
+            report.run(Step::new("firmware", || firmware::build(None, false)));
+            report.run(Step::new("elf", || firmware::elf::check(false)));
+            report.run(Step::new("budget", || firmware::budget::check(false)));
             report.run(Step::new("test-only", || checks::tests(&[])));
             report.run(Step::new("hil", hil::check));
         }

@@ -59,7 +59,7 @@ impl Toolchain {
         }
     }
 
-    /// Version of its compiler, `1.96.0`: sizes and instruction counts are only the same with the same one.
+    /// Its compiler, `1.96.0 of Debian`: sizes and instruction counts are only the same with the same one.
     ///
     /// # Errors
     /// When it does not say.
@@ -69,7 +69,8 @@ impl Toolchain {
             Self::Debian => OsString::from("/usr/bin/rustc"),
         };
         let said = read(program(rustc).arg("--version"))?;
-        said.split_whitespace().nth(1).map(str::to_owned).ok_or_else(|| Failure::found(format!("rustc said {said}")))
+        let version = said.split_whitespace().nth(1).ok_or_else(|| Failure::found(format!("rustc said {said}")))?;
+        Ok(version.to_owned() + if matches!(self, Self::Debian) { " of Debian" } else { "" })
     }
 
     /// Its cargo.

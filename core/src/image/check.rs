@@ -5,7 +5,7 @@ use super::{
     Node, RATIO_ONE,
 };
 use crate::units::isqrt_rounded;
-use crate::units::shift_rounded_i64;
+use crate::units::shift_rounded_i63;
 
 fn within(name: Field, value: i64, low: i64, high: i64) -> Result<(), ImageError> {
     if (low..=high).contains(&value) { Ok(()) } else { Err(ImageError::Range { name, value, low, high }) }
@@ -115,6 +115,6 @@ pub(super) fn reach_nm(chip: [FineOffset; 2], edge: [FineOffset; 2], factors: &[
 /// A part times a chip factor, units of 2⁻⁸ nm.
 #[inline]
 pub fn scaled(part: FineOffset, factor: i32) -> i64 {
-    // In range: 32 × 32 → 64 bits.
-    shift_rounded_i64(i64::from(part.bits()).wrapping_mul(i64::from(factor)), super::FACTOR_BITS)
+    // In range: a factor is at most 2, 2²⁵, so the product is below 2⁵⁷.
+    shift_rounded_i63(i64::from(part.bits()).wrapping_mul(i64::from(factor)), super::FACTOR_BITS)
 }

@@ -5,7 +5,7 @@
 //! neighbours, and stored so that the servo cycle needs neither a division nor a root; they are recomputed and
 //! compared when the image is opened.
 
-use super::{FineOffset, read};
+use super::{FineOffset, Image, read, scaled};
 use crate::geometry::Point;
 use crate::units::isqrt_rounded;
 
@@ -55,6 +55,14 @@ impl Node {
         }
     }
 
+    /// The correction at a chip factor, 2⁻⁸ nm. In range: an image holds it within the clamp, below 2³⁰, over the feed
+    /// window.
+    #[inline(always)]
+    pub(crate) fn full(&self, factor: i32) -> [i32; 2] {
+        let ([chip_x, chip_y], [edge_x, edge_y]) = (self.chip, self.edge);
+        [(chip_x, edge_x), (chip_y, edge_y)].map(|(chip, edge)| (scaled(chip, factor) as i32).wrapping_add(edge.bits()))
+    }
+
     /// Its 32 bytes.
     pub fn encode(&self) -> [u8; NODE_BYTES] {
         let words = [
@@ -87,6 +95,14 @@ impl Node {
         let bits = 64u32.saturating_sub(square.leading_zeros());
         let reciprocal = (1u128 << bits.saturating_add(30)).checked_div(u128::from(square)).unwrap_or(0);
         (length, reciprocal as u32)
+    }
+}
+
+impl<'a> Image<'a> {
+    /// The nodes from an index on as they are stored, to be decoded where they are needed; none beyond the last.
+    #[inline]
+    pub(crate) fn stored_from(&self, index: u32) -> &'a [[u8; NODE_BYTES]] {
+        self.nodes.get(index as usize..).unwrap_or(&[])
     }
 }
 

@@ -63,7 +63,7 @@ impl Rewriter<'_> {
                 return Err(Refusal::Identity { what, image, request });
             }
         }
-        let mapping = request.frame.mapping(plan.image.header().origin)?;
+        let mapping = request.frame.mapping(plan.image.header().origin, plan.level)?;
         let pass = Spent {
             part_serial: request.part_serial,
             program_crc: asked.program_crc,

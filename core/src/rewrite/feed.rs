@@ -7,12 +7,12 @@
 //! quantisation leaves no trace in the correction (cost: 0.02 % of the chip part elsewhere).
 
 use crate::image::{FeedLaw, FineOffset, RATIO_BITS, RATIO_ONE};
-use crate::units::shift_rounded_i64;
+use crate::units::shift_rounded_i31;
 
 /// Fraction bits of the smoothed ratio.
 const SMOOTH_BITS: u32 = 24;
 /// The largest ratio that is told apart, units of 2⁻²⁴: 4.
-const MOST: u64 = 4 << SMOOTH_BITS;
+const MOST: u32 = 4 << SMOOTH_BITS;
 /// Ratios this near to 1 are 1, units of 2⁻¹⁶.
 const DEAD_BAND: i32 = 1 << (RATIO_BITS - 12);
 
@@ -48,39 +48,44 @@ impl FeedScale {
 
     /// The ratio of one tick, units of 2⁻²⁴, at most 4. `way_nm` < 2²³; `millirpm` > 0.
     #[inline]
-    fn ratio(self, way_nm: u32, millirpm: u32) -> u64 {
+    fn ratio(self, way_nm: u32, millirpm: u32) -> u32 {
         let (reciprocal, shift) = reciprocal(millirpm);
-        // way · 2⁸ · mantissa, its high word; times the reciprocal: below 2⁶³.
-        let speed = u64::from(way_nm << 8).wrapping_mul(u64::from(self.mantissa)) >> 32;
-        let product = speed.wrapping_mul(u64::from(reciprocal));
-        // value = product · 2^(exponent + 32 − 8 + shift − 62)
-        let drop = 14i32.wrapping_sub(self.exponent).wrapping_sub(shift as i32);
-        match drop {
-            0..=62 => (shift_rounded_i64(product as i64, drop.unsigned_abs())).unsigned_abs().min(MOST),
-            63.. => 0,
-            _ => MOST,
-        }
+        let speed = high_word(way_nm << 8, self.mantissa);
+        // value = speed · reciprocal · 2^(exponent + 32 − 8 + shift − 62) = speed · reciprocal · 2^(left − 36)
+        let left = self.exponent.wrapping_add(22).wrapping_add(shift as i32);
+        let (high, drop) = if left >= 0 {
+            // A speed that leaves its word is a ratio above 2³² · 2³⁰ / 2³⁶.
+            if speed.leading_zeros() < left.unsigned_abs() {
+                return if speed == 0 { 0 } else { MOST };
+            }
+            (high_word(speed.wrapping_shl(left.unsigned_abs()), reciprocal), 4)
+        } else {
+            (high_word(speed, reciprocal), 4i32.wrapping_sub(left).min(31))
+        };
+        // The low word does not reach the rounding. The high word is below 2³¹.
+        let half = 1u32.wrapping_shl(drop.unsigned_abs()) >> 1;
+        (high.wrapping_add(half).wrapping_shr(drop.unsigned_abs())).min(MOST)
     }
 }
 
 impl FeedRatio {
     /// Takes in the way along the path of one tick. A way backwards counts as none.
-    #[inline]
-    pub fn update(&mut self, scale: FeedScale, way_nm: i64, millirpm: u32, smoothing: u32) {
+    #[inline(always)]
+    pub fn update(&mut self, scale: FeedScale, way_nm: i32, millirpm: u32, smoothing: u32) {
         if millirpm == 0 {
             return;
         }
         let way = way_nm.clamp(0, (1 << 23) - 1) as u32;
-        let now = scale.ratio(way, millirpm) as i64;
-        let change = shift_rounded_i64(now.wrapping_sub(i64::from(self.0)), smoothing & 15);
-        self.0 = self.0.wrapping_add(change as i32);
+        let away = (scale.ratio(way, millirpm) as i32).wrapping_sub(self.0);
+        let change = if smoothing == 0 { away } else { shift_rounded_i31(away, smoothing) };
+        self.0 = self.0.wrapping_add(change);
     }
 
     /// The ratio, units of 2⁻¹⁶, with the dead band about 1.
     #[inline]
     pub fn value(self) -> u32 {
         let one = RATIO_ONE as i32;
-        let away = (shift_rounded_i64(self.0.into(), SMOOTH_BITS - RATIO_BITS) as i32).wrapping_sub(one);
+        let away = shift_rounded_i31(self.0, SMOOTH_BITS - RATIO_BITS).wrapping_sub(one);
         let beyond = away.wrapping_sub(away.min(DEAD_BAND).max(DEAD_BAND.wrapping_neg()));
         one.wrapping_add(beyond).unsigned_abs()
     }
@@ -105,14 +110,20 @@ const fn start() -> [u32; 64] {
 #[inline]
 fn reciprocal(value: u32) -> (u32, u32) {
     let shift = value.leading_zeros();
-    let mantissa = u64::from(value) << shift;
-    let mut y = u64::from(START.get((mantissa >> 25 & 63) as usize).copied().unwrap_or(0));
+    let mantissa = value.wrapping_shl(shift);
+    let mut y = START.get((mantissa >> 25 & 63) as usize).copied().unwrap_or(0);
+    let times = |a: u32, b: u32| (u64::from(a).wrapping_mul(u64::from(b)) >> 31) as u32;
     for _ in 0..2 {
         // y·(2 − m·y), m·y near 1 as units of 2⁻³¹; rounded down, so y stays below 2³¹.
-        let defect = (1u64 << 32).wrapping_sub(mantissa.wrapping_mul(y) >> 31);
-        y = y.wrapping_mul(defect) >> 31;
+        y = times(y, times(mantissa, y).wrapping_neg());
     }
-    (y as u32, shift)
+    (y, shift)
+}
+
+/// The high word of a product.
+#[inline]
+fn high_word(a: u32, b: u32) -> u32 {
+    (u64::from(a).wrapping_mul(u64::from(b)) >> 32) as u32
 }
 
 #[cfg(test)]
@@ -169,8 +180,8 @@ mod tests {
             ratio.update(scale, if tick % 3 == 0 { 6_666 } else { 6_667 }, 1_500_000, 5);
             assert_eq!(ratio.value(), RATIO_ONE, "tick {tick}");
         }
-        ratio.update(scale, i64::MAX, 1, 5);
-        ratio.update(scale, i64::MIN, u32::MAX, 5);
+        ratio.update(scale, i32::MAX, 1, 5);
+        ratio.update(scale, i32::MIN, u32::MAX, 5);
         ratio.update(scale, 5, 0, 5);
         assert!(ratio.value() <= 4 * RATIO_ONE);
     }

@@ -2,33 +2,33 @@
 
 use super::feed::FeedRatio;
 use super::frame::Local;
-use super::locate::{FRACTION_ONE, Foot, Place, locate, product, square};
+use super::locate::{FRACTION_BITS, FRACTION_ONE, Foot, Place, dot, locate, product, square};
 use super::state::{FADE_BITS, FADE_ONE, Mode, Phase, State};
 use super::{Flags, Plan, Reason, Rewriter, Setpoint};
-use crate::image::{Node, scaled};
-use crate::units::shift_rounded_i64;
+use crate::image::Node;
+use crate::units::shift_rounded_i63;
 
 impl Rewriter<'_> {
-    /// Waits for the gate: the setpoint over the start of the path at gate height or lower, at feed speed, not
-    /// against the direction of the path, drives on and no feed hold. The first setpoint after arming only tells where the cutter is.
-    #[inline]
-    pub(super) fn wait(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint) {
+    /// Waits for the gate and says whether the setpoint has entered it: over the start of the path at gate height or
+    /// lower, at feed speed, not against the direction of the path, drives on and no feed hold. The first setpoint
+    /// after arming only tells where the cutter is.
+    #[inline(never)]
+    pub(super) fn enters(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint) -> bool {
         let at = state.local(setpoint);
         let before = core::mem::replace(&mut state.last, at);
         let (Some(at), Some(before)) = (at, before) else {
-            return;
+            return false;
         };
         let lost = setpoint.sequence.wrapping_sub(state.sequence);
-        let step = step(before, at);
-        let gate = plan.near_start(at) && at.z >= plan.z_bottom && at.z <= plan.z_gate;
+        let gate = plan.near_start(&at) && at.z >= plan.z_bottom && at.z <= plan.z_gate;
         let runs = setpoint.flags.has(Flags::DRIVES_ENABLED) && !setpoint.flags.has(Flags::FEED_HOLD);
-        if !gate || !runs || lost != 1 || self.is_jump(step, 1) {
-            return;
+        if !gate || !runs || lost != 1 || self.is_jump(&before, &at, 1) {
+            return false;
         }
         let ahead = plan.image.node(1);
         // In range: a step is below 2²³ nm, a segment below 2²⁰ nm.
-        if product(ahead.x, step.0 as i32).wrapping_add(product(ahead.y, step.1 as i32)) < 0 {
-            return;
+        if dot(ahead.x, ahead.y, at.x.wrapping_sub(before.x), at.y.wrapping_sub(before.y)) < 0 {
+            return false;
         }
         state.last = Some(before);
         state.mode = Mode::Active;
@@ -40,15 +40,17 @@ impl Rewriter<'_> {
         state.fade = FADE_ONE;
         state.ratio = FeedRatio::default();
         state.feed_in_window = true;
+        true
     }
 
     /// Takes the place, feed and fade to the new setpoint; gives the correction wanted, in program coordinates,
     /// 2⁻⁸ nm. Any reason to stop is left in `state`, and nothing is wanted any more.
-    #[inline]
+    #[inline(always)]
     pub(super) fn follow(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint) -> (i32, i32) {
-        match self.advance(plan, state, setpoint) {
-            Ok(()) => {
-                let judged = self.fade(plan, state, setpoint);
+        let advanced = self.arrive(state, setpoint).and_then(|moved| self.advance(plan, state, setpoint, moved));
+        match advanced {
+            Ok(way) => {
+                let judged = self.feed(plan, state, setpoint, way);
                 wanted(plan, state, judged)
             }
             Err(reason) => {
@@ -58,68 +60,82 @@ impl Rewriter<'_> {
         }
     }
 
-    fn advance(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint) -> Result<(), Reason> {
+    /// The setpoint in program coordinates becomes the last one, unless it is out of sequence or jumps.
+    #[inline(never)]
+    fn arrive(&self, state: &mut State, setpoint: &Setpoint) -> Result<Moved, Reason> {
         let ticks = setpoint.sequence.wrapping_sub(state.sequence);
         if ticks == 0 || ticks > self.settings.max_lost_frames.wrapping_add(1) {
             return Err(Reason::SequenceBroken);
         }
         let at = state.local(setpoint).ok_or(Reason::OffPath)?;
         let before = state.last.unwrap_or(at);
-        let step = step(before, at);
         state.last = Some(at);
-        if self.is_jump(step, ticks) {
+        if self.is_jump(&before, &at, ticks) {
             return Err(Reason::Jump);
         }
-        let moved = at != before;
-        state.still = if moved { 0 } else { state.still.saturating_add(1) };
-        if state.phase == Phase::Entry && at.z > plan.z_top {
-            if !plan.near_start(at) || at.z > plan.z_gate {
-                return Err(Reason::LeftGate);
-            }
-            return Ok(());
+        let moved = if (at.x, at.y) != (before.x, before.y) {
+            if ticks == 1 { Moved::Measured } else { Moved::Unmeasured }
+        } else if at.z != before.z {
+            Moved::Unmeasured
+        } else {
+            Moved::Not
+        };
+        state.still = if moved == Moved::Not { state.still.saturating_add(1) } else { 0 };
+        Ok(moved)
+    }
+
+    /// The place goes after the setpoint; gives the way along the path if it is that of one tick.
+    #[inline(never)]
+    fn advance(
+        &self,
+        plan: &Plan<'_>,
+        state: &mut State,
+        setpoint: &Setpoint,
+        moved: Moved,
+    ) -> Result<Option<i32>, Reason> {
+        let Some(at) = state.last else { return Err(Reason::OffPath) };
+        let at = &at;
+        if at.z > plan.z_top {
+            return above(plan, state, at);
         }
         state.phase = Phase::Path;
-        if at.z > plan.z_top {
-            return Err(if plan.at_end(state) { Reason::Completed } else { Reason::LeftPass });
-        }
         if at.z < plan.z_bottom {
             return Err(Reason::BelowPass);
         }
-        if self.holds(plan, state, setpoint, at, moved)? {
-            return Ok(());
+        if self.holds(plan, state, setpoint, at, moved != Moved::Not)? {
+            return Ok(None);
         }
-        let (foot, ahead) = locate(&plan.image, state.place.node, at);
-        let way = ahead.wrapping_sub(state.along.into());
+        let located = locate(&plan.image, state.place.node, at).ok_or(Reason::OffPath)?;
+        let (node, foot) = (located.node, located.foot);
+        let way = located.ahead.wrapping_sub(state.along as i32);
         if foot.distance_squared > plan.tolerance_squared {
-            let ended = plan.at_end(state) || plan.is_end(&foot);
+            let ended = plan.at_end(state) || plan.is_end(node, &foot);
             return Err(if ended { Reason::Completed } else { Reason::OffPath });
         }
         state.behind = state.behind.wrapping_sub(way).max(0);
         if state.behind > plan.tolerance_nm {
             return Err(Reason::Backwards);
         }
-        state.place = foot.place;
+        state.place = Place { node, fraction: foot.fraction };
         state.along = foot.along;
-        if step != (0, 0) && ticks == 1 {
-            state.ratio.update(plan.feed_scale, way, self.live_spindle(setpoint), self.settings.feed_smoothing);
-        }
-        Ok(())
+        Ok(if moved == Moved::Measured { Some(way) } else { None })
     }
 
     /// Enters and leaves `Hold`; says whether the place is frozen in this tick. With the feed-hold flag the place
     /// still follows until the axes stand, so that nothing is missing when they go on.
-    #[inline]
+    #[inline(always)]
     fn holds(
         &self,
         plan: &Plan<'_>,
         state: &mut State,
         setpoint: &Setpoint,
-        at: Local,
+        at: &Local,
         moved: bool,
     ) -> Result<bool, Reason> {
         let flag = setpoint.flags.has(Flags::FEED_HOLD);
         if state.mode == Mode::Hold {
-            if flag && !plan.is_near(step(state.held_at, at)) {
+            let held_at = &state.held_at;
+            if flag && !plan.is_near(at.x.wrapping_sub(held_at.x), at.y.wrapping_sub(held_at.y)) {
                 return Err(Reason::MovedInHold);
             }
             if moved && !flag {
@@ -127,92 +143,113 @@ impl Rewriter<'_> {
             }
         } else if !moved && (flag || state.still >= self.settings.hold_after_ticks) {
             state.mode = Mode::Hold;
-            state.held_at = at;
+            state.held_at = *at;
         }
         Ok(state.mode == Mode::Hold)
     }
 
-    /// Moves the fade factor one step; gives the feed ratio to correct for, units of 2⁻¹⁶.
+    /// Takes in the feed of a way and moves the fade factor one step; gives the feed ratio to correct for, units of
+    /// 2⁻¹⁶.
     ///
     /// The feed is judged only while the setpoint moves: a standing cutter makes no chips, and its correction stays
     /// what it was. When the conditions are met again, the correction comes back at the same rate.
-    #[inline]
-    fn fade(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint) -> u32 {
+    #[inline(never)]
+    fn feed(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint, way: Option<i32>) -> u32 {
+        let spindle = self.live_spindle(setpoint);
+        if let Some(way) = way {
+            state.ratio.update(plan.feed_scale, way, spindle, self.settings.feed_smoothing);
+        }
         let feed = &plan.image.settings().feed;
         let ratio = state.ratio.value();
+        let judged = ratio.max(feed.ratio_low).min(feed.ratio_high);
         if state.still == 0 {
-            state.feed_in_window = ratio >= feed.ratio_low && ratio <= feed.ratio_high;
+            state.feed_in_window = judged == ratio;
         }
         let loaded = !self.settings.require_spindle_load || setpoint.flags.has(Flags::SPINDLE_LOADED);
-        let change = if state.feed_in_window && loaded && self.live_spindle(setpoint) > 0 {
-            self.fade_step
-        } else {
-            self.fade_step.wrapping_neg()
-        };
+        let change =
+            if state.feed_in_window && loaded && spindle > 0 { self.fade_step } else { self.fade_step.wrapping_neg() };
         state.fade = state.fade.wrapping_add(change).clamp(0, FADE_ONE);
-        ratio.max(feed.ratio_low).min(feed.ratio_high)
+        judged
     }
 
     /// The spindle speed, 0 when it is stale.
-    #[inline]
+    #[inline(always)]
     fn live_spindle(&self, setpoint: &Setpoint) -> u32 {
         if setpoint.spindle_age_ticks < self.settings.spindle_stale_ticks { setpoint.spindle_millirpm } else { 0 }
     }
 
-    #[inline]
-    fn is_jump(&self, step: (i64, i64), ticks: u32) -> bool {
-        // In range: 8 mm times 17 ticks.
-        let most = self.settings.max_step.nm().wrapping_mul(i64::from(ticks)).unsigned_abs();
-        step.0.unsigned_abs() > most || step.1.unsigned_abs() > most
+    /// In range: the largest step is 8 mm, the ticks at most 17.
+    #[inline(always)]
+    fn is_jump(&self, before: &Local, at: &Local, ticks: u32) -> bool {
+        let most = (self.settings.max_step.nm() as u32).wrapping_mul(ticks);
+        at.x.abs_diff(before.x) > most || at.y.abs_diff(before.y) > most
     }
 }
 
-impl Plan<'_> {
-    #[inline]
-    fn is_near(&self, way: (i64, i64)) -> bool {
-        let most = self.tolerance_nm.unsigned_abs();
-        way.0.unsigned_abs() <= most
-            && way.1.unsigned_abs() <= most
-            && square(way.0 as i32, way.1 as i32) <= self.tolerance_squared
+/// A setpoint above the pass: in the gate before it, out of it at its end, anywhere else a fault.
+#[inline(always)]
+fn above(plan: &Plan<'_>, state: &State, at: &Local) -> Result<Option<i32>, Reason> {
+    if state.phase != Phase::Entry {
+        return Err(if plan.at_end(state) { Reason::Completed } else { Reason::LeftPass });
     }
-    #[inline]
-    fn near_start(&self, at: Local) -> bool {
-        self.is_near((at.x, at.y))
+    if plan.near_start(at) && at.z <= plan.z_gate { Ok(None) } else { Err(Reason::LeftGate) }
+}
+
+/// Whether a setpoint is another place than the one before.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Moved {
+    /// It is the same.
+    Not,
+    /// It is, but by the way of more than one tick, or in Z only: no measure of the feed.
+    Unmeasured,
+    /// It is, by the way of one tick.
+    Measured,
+}
+
+impl Plan<'_> {
+    #[inline(always)]
+    fn is_near(&self, x: i32, y: i32) -> bool {
+        // The largest components have squares of 2⁶², so the sum does not wrap.
+        square(x, y) <= self.tolerance_squared
+    }
+    #[inline(always)]
+    fn near_start(&self, at: &Local) -> bool {
+        self.is_near(at.x, at.y)
     }
     /// Whether less than the tolerance is left to the last node.
     #[inline]
     fn at_end(&self, state: &State) -> bool {
         let length = self.image.node(state.place.node as usize).length;
-        let left = i64::from(length).wrapping_sub(state.along.into());
+        let left = (length as i32).wrapping_sub(state.along as i32);
         state.place.node == self.last_segment && left <= self.tolerance_nm
     }
     #[inline]
-    fn is_end(&self, foot: &Foot) -> bool {
-        foot.place.node == self.last_segment && foot.place.fraction == FRACTION_ONE
+    fn is_end(&self, node: u32, foot: &Foot) -> bool {
+        node == self.last_segment && foot.fraction == FRACTION_ONE
     }
 }
 
-#[inline]
-fn step(from: Local, to: Local) -> (i64, i64) {
-    (to.x.wrapping_sub(from.x), to.y.wrapping_sub(from.y))
+/// The correction at the place: both ends of the segment scaled by the feed, then between them, then faded.
+#[inline(never)]
+fn wanted(plan: &Plan<'_>, state: &State, ratio: u32) -> (i32, i32) {
+    let [a, b, ..] = plan.image.stored_from(state.place.node) else {
+        return (0, 0);
+    };
+    let factor = plan.image.settings().feed.factor_at(ratio);
+    let fraction = state.place.fraction as i32;
+    let (a, b) = (Node::decode(a), Node::decode(b));
+    let ([a_x, a_y], [b_x, b_y]) = (a.full(factor), b.full(factor));
+    let (x, y) = (between(a_x, b_x, fraction), between(a_y, b_y, fraction));
+    if state.fade == FADE_ONE { (x, y) } else { (faded(x, state.fade), faded(y, state.fade)) }
 }
 
-/// The correction at the place: both ends of the segment scaled by the feed, then between them, then faded.
-#[inline]
-fn wanted(plan: &Plan<'_>, state: &State, ratio: u32) -> (i32, i32) {
-    let factor = plan.image.settings().feed.factor_at(ratio);
-    let index = state.place.node as usize;
-    let (a, b) = (plan.image.node(index), plan.image.node(index.wrapping_add(1)));
-    let part = |axis: usize| {
-        let at = |node: &Node| {
-            let (chip, edge) = (node.chip.get(axis).copied(), node.edge.get(axis).copied());
-            // In range: the image holds chip · factor + edge within the clamp, below 2³⁰, over the feed window.
-            scaled(chip.unwrap_or_default(), factor).wrapping_add(edge.unwrap_or_default().bits().into()) as i32
-        };
-        let (low, high) = (at(&a), at(&b));
-        let rise = product(high.wrapping_sub(low), state.place.fraction as i32);
-        let full = low.wrapping_add(shift_rounded_i64(rise, super::locate::FRACTION_BITS) as i32);
-        if state.fade == FADE_ONE { full } else { shift_rounded_i64(product(full, state.fade), FADE_BITS) as i32 }
-    };
-    (part(0), part(1))
+#[inline(always)]
+fn between(low: i32, high: i32, fraction: i32) -> i32 {
+    let rise = product(high.wrapping_sub(low), fraction);
+    low.wrapping_add(shift_rounded_i63(rise, FRACTION_BITS) as i32)
+}
+
+#[inline(always)]
+fn faded(full: i32, fade: i32) -> i32 {
+    shift_rounded_i63(product(full, fade), FADE_BITS) as i32
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::Refusal;
 use crate::geometry::Point;
 use crate::image::crc32;
-use crate::units::{shift_rounded, shift_rounded_i64};
+use crate::units::{shift_rounded, shift_rounded_i63};
 
 /// Axes of a setpoint.
 pub const AXES: usize = 6;
@@ -90,11 +90,12 @@ impl Frame {
         ]
     }
 
-    /// Checked and prepared for the servo cycle. `origin` is the first node of the image.
+    /// Checked and prepared for the servo cycle. `origin` is the first node of the image, `level` the Z from which
+    /// heights are counted, nm.
     ///
     /// # Errors
     /// The checksum is wrong, sine and cosine are not those of one angle, or the axes are not three different ones.
-    pub(super) fn mapping(&self, origin: Point) -> Result<Mapping, Refusal> {
+    pub(super) fn mapping(&self, origin: Point, level: i64) -> Result<Mapping, Refusal> {
         let computed = self.checksum();
         if computed != self.crc {
             return Err(Refusal::FrameDamaged { stored: self.crc, computed });
@@ -109,11 +110,15 @@ impl Frame {
         if x == y || y == z || x == z || [x, y, z].iter().any(|&a| usize::from(a) >= AXES) {
             return Err(Refusal::FrameAxes { x, y, z });
         }
-        let [ax, ay, az] = self.machine_nm(origin.x.nm(), origin.y.nm(), 0);
+        // Within half the range, so that the difference to a setpoint cannot wrap to a small one.
+        let anchor =
+            self.machine_nm(origin.x.nm(), origin.y.nm(), level).map(|nm| nm.clamp(i64::MIN >> 1, i64::MAX >> 1));
         let [mx, my, mz] = self.axes;
-        let signed = |map: AxisMap, value: i32| if map.reversed { value.saturating_neg() } else { value };
+        let signed = |map: AxisMap, value: i32| {
+            if map.reversed { value.saturating_neg() } else { value }
+        };
         Ok(Mapping {
-            anchor: [ax, ay, az],
+            anchor,
             matrix: [
                 [signed(mx, self.cosine), signed(my, self.sine)],
                 [signed(mx, self.sine.saturating_neg()), signed(my, self.cosine)],
@@ -133,7 +138,7 @@ impl AxisMap {
 /// A frame seen from the first node of an image, with the turn and the signs of X and Y in one matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Mapping {
-    /// Machine coordinates of the first node at program Z = 0.
+    /// Machine coordinates of the first node at the level of the image, within ±2⁶² nm.
     anchor: [i64; 3],
     /// Rows: program X, Y; columns: the machine axes of X, Y. Orthogonal, units of 2⁻³⁰.
     matrix: [[i32; 2]; 2],
@@ -142,34 +147,40 @@ pub(super) struct Mapping {
     height: AxisMap,
 }
 
-/// A setpoint in program coordinates: x and y from the first node of the image, z absolute, nm.
+/// A setpoint in program coordinates: x and y from the first node of the image, z from its level, nm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) struct Local {
-    pub x: i64,
-    pub y: i64,
-    pub z: i64,
+    pub x: i32,
+    pub y: i32,
+    pub z: i32,
 }
 
 impl Mapping {
-    /// The setpoint in program coordinates; `None` farther than 2.1 m from the first node.
-    #[inline]
+    /// The setpoint in program coordinates; `None` where a coordinate, of the machine or the program, is farther than
+    /// 2.1 m from the first node at its level.
+    #[inline(always)]
     pub fn local(&self, axes: &[i64; AXES]) -> Option<Local> {
         let [ax, ay, az] = self.anchor;
-        let from = |axis: u8, anchor: i64| axes.get(usize::from(axis)).copied().unwrap_or(0).saturating_sub(anchor);
-        let [mx, my] = self.plane;
-        let x = i32::try_from(from(mx, ax)).ok()?;
-        let y = i32::try_from(from(my, ay)).ok()?;
+        let [mx, my] = self.plane.map(usize::from);
+        let (x, y) = (axes.get(mx)?.wrapping_sub(ax), axes.get(my)?.wrapping_sub(ay));
+        let z = axes.get(usize::from(self.height.axis))?.wrapping_sub(az);
         let [[xx, xy], [yx, yy]] = self.matrix;
-        let z = self.height.signed(from(self.height.axis, az));
-        Some(Local { x: blend(x, xx, y, xy), y: blend(x, yx, y, yy), z })
+        let (a, b) = (blend(x as i32, xx, y as i32, xy), blend(x as i32, yx, y as i32, yy));
+        // One question for all: what is left of a coordinate above 32 bits, 0 when it fits them.
+        let beyond = |nm: i64| (nm.wrapping_add(1 << 31) >> 32) as i32;
+        if beyond(x) | beyond(y) | beyond(z) | beyond(a) | beyond(b) != 0 {
+            return None;
+        }
+        let z = z as i32;
+        Some(Local { x: a as i32, y: b as i32, z: if self.height.reversed { z.saturating_neg() } else { z } })
     }
 
     /// A correction in program coordinates on the machine axes of X and Y, the unit unchanged.
-    #[inline]
-    pub fn machine(&self, x: i32, y: i32) -> [i32; 2] {
+    #[inline(always)]
+    pub fn machine(&self, x: i32, y: i32) -> (i32, i32) {
         let [[xx, xy], [yx, yy]] = self.matrix;
         // In range: corrections are below 2³⁰, turned below 2³¹.
-        [blend(x, xx, y, yx) as i32, blend(x, xy, y, yy) as i32]
+        (blend(x, xx, y, yx) as i32, blend(x, xy, y, yy) as i32)
     }
 
     /// Indices of the machine axes of X and Y.
@@ -180,10 +191,10 @@ impl Mapping {
 }
 
 /// a·m + b·n with matrix entries, rounded once. In range: products below 2⁶¹, the sum below 2⁶².
-#[inline]
+#[inline(always)]
 fn blend(a: i32, m: i32, b: i32, n: i32) -> i64 {
     let product = |v: i32, by: i32| i64::from(v).wrapping_mul(i64::from(by));
-    shift_rounded_i64(product(a, m).wrapping_add(product(b, n)), TURN_BITS)
+    shift_rounded_i63(product(a, m).wrapping_add(product(b, n)), TURN_BITS)
 }
 
 #[cfg(test)]
@@ -197,12 +208,13 @@ mod tests {
         let axes = [(2, true), (0, false), (1, true)].map(|(axis, reversed)| AxisMap { axis, reversed });
         let frame =
             Frame { offset_nm: [1_000_003, -7, 55], cosine: 858_993_459, sine: 644_245_094, axes, crc: 0 }.sealed();
-        let mapping = frame.mapping(Point::from_nm(5_000, -6_000)).unwrap();
+        let mapping = frame.mapping(Point::from_nm(5_000, -6_000), 11).unwrap();
         for (x, y, z) in [(0, 0, 0), (123_456_789, -98_765_432, -4), (-300_000_000, 1, 7)] {
             let [a, b, c] = frame.machine_nm(5_000 + x, -6_000 + y, z);
             let back = mapping.local(&[b, c, a, 9, 9, 9]).unwrap();
-            assert!((back.x - x).abs() <= 2 && (back.y - y).abs() <= 2, "{back:?}");
-            assert_eq!(back.z, z);
+            let (bx, by) = (i64::from(back.x), i64::from(back.y));
+            assert!((bx - x).abs() <= 2 && (by - y).abs() <= 2, "{back:?}");
+            assert_eq!(i64::from(back.z), z - 11);
         }
         assert_eq!(mapping.plane(), [2, 0]);
     }
@@ -211,19 +223,19 @@ mod tests {
     fn a_frame_that_is_damaged_bent_or_short_of_an_axis_is_refused() {
         let good = Frame::identity();
         let origin = Point::from_nm(0, 0);
-        assert!(good.mapping(origin).is_ok());
+        assert!(good.mapping(origin, 0).is_ok());
         let damaged = Frame { sine: 1, ..good };
-        assert!(matches!(damaged.mapping(origin), Err(Refusal::FrameDamaged { .. })));
+        assert!(matches!(damaged.mapping(origin, 0), Err(Refusal::FrameDamaged { .. })));
         let bent = Frame { sine: 1 << 20, ..good }.sealed();
-        assert!(matches!(bent.mapping(origin), Err(Refusal::FrameNotRigid { .. })));
+        assert!(matches!(bent.mapping(origin, 0), Err(Refusal::FrameNotRigid { .. })));
         let mut twice = good;
         twice.axes[1] = twice.axes[0];
-        assert!(matches!(twice.sealed().mapping(origin), Err(Refusal::FrameAxes { .. })));
+        assert!(matches!(twice.sealed().mapping(origin, 0), Err(Refusal::FrameAxes { .. })));
     }
 
     #[test]
     fn a_setpoint_in_another_room_is_no_place() {
-        let mapping = Frame::identity().mapping(Point::from_nm(0, 0)).unwrap();
+        let mapping = Frame::identity().mapping(Point::from_nm(0, 0), 0).unwrap();
         assert!(mapping.local(&[i64::MAX, 0, 0, 0, 0, 0]).is_none());
         assert!(mapping.local(&[0, i64::MIN, 0, 0, 0, 0]).is_none());
     }

@@ -23,8 +23,11 @@ use super::SettingsError;
 use crate::image::{CorrectionLimits, FineOffset, MAX_CLAMP_NM};
 use crate::units::isqrt_rounded;
 
-/// Samples of the braking table: 8 exact ones, 8 per octave up to 2³², the end.
-const SAMPLES: usize = 241;
+/// Samples of the braking table: 8 exact ones, 8 per octave up to 2³², the end; up to 257 the last one is repeated, so
+/// that a byte is an index with a successor.
+const SAMPLES: usize = 257;
+/// The one that stands for 2³².
+const LAST_SAMPLE: usize = 240;
 /// No step may be larger, so that sums of three stay within 32 bits.
 const LARGEST_STEP: i64 = 1 << 29;
 
@@ -89,7 +92,7 @@ impl Limits {
         let acceleration = acceleration.min(LARGEST_STEP) as i32;
         let mut allowed = [0; SAMPLES];
         for (index, entry) in allowed.iter_mut().enumerate() {
-            *entry = braking_velocity(sample(index), acceleration).min(velocity.unsigned_abs());
+            *entry = braking_velocity(sample(index.min(LAST_SAMPLE)), acceleration).min(velocity.unsigned_abs());
         }
         let mut made = Self { clamp: clamp as i32, velocity, acceleration, ramp_ticks: 0, allowed };
         made.ramp_ticks = made.longest_ramp();
@@ -121,8 +124,10 @@ impl Limits {
         let goal = within(target, self.clamp);
         // In range: clamp < 2³⁰, so differences of two places are below 2³¹.
         let missing = axis.target.wrapping_sub(axis.position);
-        let approach = self.braking(missing.unsigned_abs());
-        let wish = within(goal.wrapping_sub(axis.target), v).wrapping_add(within(missing, approach));
+        let sign = missing >> 31;
+        let away = (missing ^ sign).wrapping_sub(sign);
+        let approach = (away.min(self.braking(away.unsigned_abs())) ^ sign).wrapping_sub(sign);
+        let wish = within(goal.wrapping_sub(axis.target), v).wrapping_add(approach);
         // The table ends at ±V, so this is also the limit of speed.
         let wish = if wish >= 0 {
             let room = self.clamp.wrapping_sub(axis.position).max(0).unsigned_abs();
@@ -139,20 +144,19 @@ impl Limits {
     }
 
     /// The table, interpolated: at most the velocity from which braking needs the distance.
-    #[inline]
+    #[inline(always)]
     fn braking(&self, distance: u32) -> i32 {
         if distance < 8 {
             return self.allowed.get(distance as usize).copied().unwrap_or(0) as i32;
         }
-        // Octave 3…31 and the next three bits.
-        let octave = 31u32.wrapping_sub(distance.leading_zeros());
-        let shift = octave.wrapping_sub(3);
-        let index = ((shift.wrapping_add(1) << 3) | (distance.wrapping_shr(shift) & 7)) as usize;
+        // Octave 3…31 and the next three bits give the sample, the others how far to the next one, units of 2⁻³².
+        let above = distance.leading_zeros();
+        let mantissa = distance.wrapping_shl(above);
+        let index = (28u32.wrapping_sub(above) << 3).wrapping_add(mantissa >> 28) as usize & 0xFF;
         let low = self.allowed.get(index).copied().unwrap_or(0);
-        let high = self.allowed.get(index.wrapping_add(1)).copied().unwrap_or(low);
-        let rest = distance & 1u32.wrapping_shl(shift).wrapping_sub(1);
+        let high = self.allowed.get(index.wrapping_add(1)).copied().unwrap_or(0);
         // Rounded down: the line must stay below the root.
-        let rise = u64::from(high.wrapping_sub(low)).wrapping_mul(u64::from(rest)).wrapping_shr(shift);
+        let rise = u64::from(high.wrapping_sub(low)).wrapping_mul(u64::from(mantissa << 4)) >> 32;
         low.wrapping_add(rise as u32) as i32
     }
 

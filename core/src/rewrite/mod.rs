@@ -57,8 +57,13 @@ pub struct Rewriter<'a> {
     settings: Settings,
     /// Change of the fade factor per tick, 2⁻¹⁶.
     fade_step: i32,
+    /// The joint limits of the settings, so far from the ends of the range that no correction can wrap over them.
+    joints: [(i64, i64); AXES],
     plan: Option<Plan<'a>>,
 }
+
+/// More than any correction.
+const FAR_JOINT: i64 = 1 << 32;
 
 /// An image prepared for the tick.
 #[derive(Clone, Debug)]
@@ -66,13 +71,15 @@ struct Plan<'a> {
     image: Image<'a>,
     limits: Limits,
     feed_scale: FeedScale,
-    tolerance_nm: i64,
+    tolerance_nm: i32,
     tolerance_squared: u64,
     last_segment: u32,
-    /// Pass window with tolerance, and the top of the gate, program coordinates, nm.
-    z_bottom: i64,
-    z_top: i64,
-    z_gate: i64,
+    /// Upper end of the pass, program Z, nm: heights are counted from it.
+    level: i64,
+    /// Pass window with tolerance, and the top of the gate, from the level, nm.
+    z_bottom: i32,
+    z_top: i32,
+    z_gate: i32,
     warn_nm: u32,
 }
 
@@ -85,7 +92,9 @@ impl<'a> Rewriter<'a> {
         settings.check()?;
         let plan = image.map(|image| Plan::new(image, settings.tick_hz)).transpose()?;
         let fade_step = 65_536u32.div_ceil(settings.fade_ticks.max(1)) as i32;
-        Ok(Self { settings, fade_step, plan })
+        let joints =
+            settings.joint_limits_nm.map(|(low, high)| (low.max(i64::MIN + FAR_JOINT), high.min(i64::MAX - FAR_JOINT)));
+        Ok(Self { settings, fade_step, joints, plan })
     }
 
     /// Its settings.
@@ -106,17 +115,19 @@ impl<'a> Plan<'a> {
     fn new(image: Image<'a>, tick_hz: u32) -> Result<Self, SettingsError> {
         let settings = image.settings();
         let window = settings.window;
-        let tolerance_nm = window.tolerance.nm();
-        let top = window.z_high + window.tolerance;
+        // In range: an image's tolerance is at most 5 mm, its gate 1 m. A pass deeper than 2.1 m ends there.
+        let tolerance_nm = window.tolerance.nm() as i32;
+        let depth = (window.z_high - window.z_low + window.tolerance).nm().min(i32::MAX.into());
         Ok(Self {
             limits: Limits::new(&settings.limits, tick_hz)?,
             feed_scale: FeedScale::new(&settings.feed, tick_hz),
             tolerance_nm,
-            tolerance_squared: tolerance_nm.unsigned_abs().saturating_mul(tolerance_nm.unsigned_abs()),
+            tolerance_squared: u64::from(tolerance_nm.unsigned_abs()).saturating_pow(2),
             last_segment: image.len().saturating_sub(2) as u32,
-            z_bottom: (window.z_low - window.tolerance).nm(),
-            z_top: top.nm(),
-            z_gate: (window.z_high + window.gate_height).nm().max(top.nm()),
+            level: window.z_high.nm(),
+            z_bottom: (depth as i32).wrapping_neg(),
+            z_top: tolerance_nm,
+            z_gate: (window.gate_height.nm() as i32).max(tolerance_nm),
             warn_nm: settings.limits.warn.nm().unsigned_abs() as u32,
             image,
         })

@@ -76,6 +76,10 @@ impl Status {
         self.0 & other.0 != 0
     }
     #[inline]
+    pub(super) const fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+    #[inline]
     pub(super) fn set(&mut self, other: Self, on: bool) {
         if on {
             self.0 |= other.0;

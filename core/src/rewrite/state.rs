@@ -98,7 +98,7 @@ pub struct State {
     /// Way along the path from the node of `place`, nm.
     pub(super) along: u32,
     /// How far the setpoint has gone back from its farthest place, nm.
-    pub(super) behind: i64,
+    pub(super) behind: i32,
     pub(super) ratio: FeedRatio,
     /// Whether the ratio was inside the window of the image when the setpoint last moved.
     pub(super) feed_in_window: bool,
@@ -158,6 +158,11 @@ impl State {
     #[inline]
     pub(super) fn local(&self, setpoint: &Setpoint) -> Option<Local> {
         self.mapping.as_ref()?.local(&setpoint.axes)
+    }
+    /// Whether nothing is left of the corrections.
+    #[inline]
+    pub(super) fn is_at_rest(&self) -> bool {
+        self.axes.iter().all(AxisState::is_at_rest_at_zero)
     }
     /// Whether the correction is on its way out.
     #[inline]

@@ -1,138 +1,172 @@
 //! One tick: outer events, place and target, limiter, output.
 
 use super::frame::AXES;
-use super::locate::Place;
+use super::limit::AxisState;
 use super::state::{FADE_ONE, Mode, State};
 use super::{Flags, Output, Plan, Reason, Rewriter, Setpoint, Status};
 use crate::image::FineOffset;
+use crate::units::shift_rounded_i31;
 
 impl Rewriter<'_> {
     /// Rewrites one setpoint. Cost is bounded; nothing in it can fail or panic.
+    ///
+    /// Its stages are functions of their own, because one large one spends a sixth of its instructions on keeping
+    /// values that no register has room for.
     pub fn tick(&self, state: &mut State, setpoint: &Setpoint) -> Output {
-        let mut out = Output {
-            axes: setpoint.axes,
-            correction_nm: [0; AXES],
-            forward: true,
-            mode: Mode::Off,
-            reason: Reason::None,
-            status: Status::default(),
-            place: Place::default(),
-            sequence: setpoint.sequence,
-        };
         match state.mode {
-            Mode::Off => state.drives_seen_enabled = setpoint.flags.has(Flags::DRIVES_ENABLED),
-            Mode::Bypass => {}
-            _ => self.run(state, setpoint, &mut out),
+            Mode::Off => {
+                state.drives_seen_enabled = setpoint.flags.has(Flags::DRIVES_ENABLED);
+                output(state, setpoint, [(0, 0), (1, 0)], Status(0))
+            }
+            Mode::Bypass => output(state, setpoint, [(0, 0), (1, 0)], Status(0)),
+            _ => self.run(state, setpoint),
         }
-        state.sequence = setpoint.sequence;
-        out.forward = state.mode != Mode::Off;
-        out.mode = state.mode;
-        out.reason = state.reason;
-        out.place = state.place;
-        out
     }
 
-    fn run(&self, state: &mut State, setpoint: &Setpoint, out: &mut Output) {
-        let at_rest = state.axes.iter().all(|a| a.is_at_rest_at_zero());
-        if state.is_ending() && at_rest {
+    #[inline(never)]
+    fn run(&self, state: &mut State, setpoint: &Setpoint) -> Output {
+        let mut added = [(0, 0), (1, 0)];
+        let mut status = Status(0);
+        if let Some((plan, (x, y))) = self.wanted(state, setpoint)
+            && let Some(mapping) = &state.mapping
+        {
+            let goal = mapping.machine(x, y);
+            let [mx, my] = mapping.plane();
+            status.set(Status::FADED, state.fade < FADE_ONE);
+            let [ax, ay] = &mut state.axes;
+            let (nm_x, status_x) = self.carry(plan, setpoint, mx, ax, goal.0);
+            let (nm_y, status_y) = self.carry(plan, setpoint, my, ay, goal.1);
+            added = [(mx, nm_x), (my, nm_y)];
+            status = status.with(status_x).with(status_y);
+            if status.has(Status::JOINT_LIMITED) && !state.is_ending() {
+                state.end(Reason::JointLimit);
+            }
+        }
+        output(state, setpoint, added, status)
+    }
+
+    /// The correction wanted, in program coordinates, 2⁻⁸ nm; none where nothing is to be added.
+    #[inline(always)]
+    fn wanted(&self, state: &mut State, setpoint: &Setpoint) -> Option<(&Plan<'_>, (i32, i32))> {
+        let ending = state.is_ending();
+        if ending && state.is_at_rest() {
             state.mode = Mode::Bypass;
-            return;
+            return None;
         }
         let Some(plan) = &self.plan else {
             // The image was taken away. Without it there are no limits to ramp by: the drives must stop first.
             state.reason = Reason::ImageChanged;
-            state.mode = if at_rest { Mode::Bypass } else { Mode::Off };
-            return;
+            state.mode = if state.is_at_rest() { Mode::Bypass } else { Mode::Off };
+            return None;
         };
-        if let Some(reason) = disturbance(plan, state, setpoint).filter(|_| !state.is_ending()) {
+        if ending {
+            return Some((plan, (0, 0)));
+        }
+        if let Some(reason) = disturbance(plan, state, setpoint) {
             state.end(reason);
+            return (state.mode != Mode::Bypass).then_some((plan, (0, 0)));
         }
-        if state.mode == Mode::Armed {
-            self.wait(plan, state, setpoint);
+        if state.mode == Mode::Armed && !self.enters(plan, state, setpoint) {
+            return None;
         }
-        let (x, y) = match state.mode {
-            Mode::Bypass | Mode::Armed => return,
-            _ if state.is_ending() => (0, 0),
-            _ => self.follow(plan, state, setpoint),
+        Some((plan, self.follow(plan, state, setpoint)))
+    }
+
+    /// Moves the correction of an axis one tick towards its goal; gives what of it may be added, nm.
+    #[inline(always)]
+    fn carry(
+        &self,
+        plan: &Plan<'_>,
+        setpoint: &Setpoint,
+        machine: usize,
+        axis: &mut AxisState,
+        goal: i32,
+    ) -> (i32, Status) {
+        let mut status = Status(0);
+        status.set(Status::SATURATED, plan.limits.step(axis, goal));
+        status.set(Status::LAGGING, !axis.is_on_target());
+        let (nm, limited) = self.held(setpoint, machine, nanometres(axis.correction().bits()));
+        status.set(Status::JOINT_LIMITED, limited);
+        status.set(Status::WARN, nm.unsigned_abs() > plan.warn_nm);
+        (nm, status)
+    }
+
+    /// A correction held back to the way that is left to the joint limits of its axis, and whether it was. A setpoint
+    /// beyond a limit is the controller's affair; the correction then does not carry it farther out.
+    #[inline(always)]
+    fn held(&self, setpoint: &Setpoint, machine: usize, nm: i32) -> (i32, bool) {
+        let (Some(&position), Some(&(low, high))) = (setpoint.axes.get(machine), self.joints.get(machine)) else {
+            return (nm, false);
         };
-        let (mut wanted, plane) = match &state.mapping {
-            Some(mapping) => (mapping.machine(x, y), mapping.plane()),
-            None => ([0; 2], [0, 1]),
-        };
-        let rooms = plane.map(|axis| self.room(setpoint, axis));
-        if wanted.iter().zip(rooms).any(|(&fine, room)| room.hold(nanometres(FineOffset::from_bits(fine))).1) {
-            state.end(Reason::JointLimit);
-            wanted = [0; 2];
+        let to = position.wrapping_add(nm.into());
+        if to >= low && to <= high { (nm, false) } else { held_back(position, low, high, nm) }
+    }
+}
+
+/// What leaves with a correction of two axes.
+#[inline(always)]
+fn output(state: &mut State, setpoint: &Setpoint, added: [(usize, i32); 2], status: Status) -> Output {
+    state.sequence = setpoint.sequence;
+    let mut axes = setpoint.axes;
+    let mut correction_nm = [0; AXES];
+    for (machine, nm) in added {
+        if let (Some(to), Some(axis)) = (correction_nm.get_mut(machine), axes.get_mut(machine)) {
+            *to = nm;
+            // Within the joint limits, or not farther out than the setpoint.
+            *axis = axis.wrapping_add(nm.into());
         }
-        for (((axis, goal), room), machine) in state.axes.iter_mut().zip(wanted).zip(rooms).zip(plane) {
-            out.status.set(Status::SATURATED, plan.limits.step(axis, goal));
-            out.status.set(Status::LAGGING, !axis.is_on_target());
-            let (nm, held) = room.hold(nanometres(axis.correction()));
-            out.status.set(Status::JOINT_LIMITED, held);
-            out.status.set(Status::WARN, nm.unsigned_abs() > plan.warn_nm);
-            if let (Some(to), Some(axis)) = (out.correction_nm.get_mut(machine), out.axes.get_mut(machine)) {
-                *to = nm;
-                *axis = axis.saturating_add(nm.into());
-            }
-        }
-        out.status.set(Status::FADED, state.fade < FADE_ONE);
     }
-
-    /// How far a correction may carry an axis. A setpoint beyond a limit is the controller's affair; the correction
-    /// then does not carry it farther out.
-    #[inline]
-    fn room(&self, setpoint: &Setpoint, machine: usize) -> Room {
-        let position = setpoint.axes.get(machine).copied().unwrap_or(0);
-        let (low, high) = self.settings.joint_limits_nm.get(machine).copied().unwrap_or((i64::MIN, i64::MAX));
-        let narrow = |room: i64| room.clamp(0, i64::from(i32::MAX)) as i32;
-        Room { down: narrow(position.saturating_sub(low)), up: narrow(high.saturating_sub(position)) }
+    Output {
+        axes,
+        correction_nm,
+        forward: state.mode != Mode::Off,
+        mode: state.mode,
+        reason: state.reason,
+        status,
+        place: state.place,
+        sequence: setpoint.sequence,
     }
 }
 
-/// Way to the joint limits of an axis, nm, not negative.
-#[derive(Clone, Copy)]
-struct Room {
-    down: i32,
-    up: i32,
+#[cold]
+fn held_back(position: i64, low: i64, high: i64, nm: i32) -> (i32, bool) {
+    let room = |room: i64| room.clamp(0, i32::MAX.into()) as i32;
+    let (down, up) = (room(position.saturating_sub(low)), room(high.saturating_sub(position)));
+    let held = nm.min(up).max(down.wrapping_neg());
+    (held, held != nm)
 }
 
-impl Room {
-    /// A correction held back to the room, and whether it was.
-    #[inline]
-    fn hold(self, nm: i32) -> (i32, bool) {
-        let held = nm.min(self.up).max(self.down.wrapping_neg());
-        (held, held != nm)
-    }
-}
-
-/// Whole nanometres of a correction; in range, a [`FineOffset`] ends at ±8.39 mm.
-#[inline]
-fn nanometres(fine: FineOffset) -> i32 {
-    fine.offset().nm() as i32
+/// Whole nanometres of a correction in steps of 2⁻⁸ nm; in range, a clamp is below 2³⁰ of them.
+#[inline(always)]
+fn nanometres(fine: i32) -> i32 {
+    shift_rounded_i31(fine, FineOffset::FRACTION_BITS)
 }
 
 /// An event from outside that ends every arming.
-#[inline]
+#[inline(always)]
 fn disturbance(plan: &Plan<'_>, state: &State, setpoint: &Setpoint) -> Option<Reason> {
+    const STOPS: Flags = Flags::EMERGENCY_STOP.with(Flags::ABORT).with(Flags::TOOL_CHANGE).with(Flags::PROGRAM_END);
     let flags = setpoint.flags;
-    let armed_only = state.mode == Mode::Armed;
-    // The most serious first.
-    if flags.has(Flags::EMERGENCY_STOP) {
-        Some(Reason::EmergencyStop)
-    } else if flags.has(Flags::ABORT) {
-        Some(Reason::Abort)
-    } else if flags.has(Flags::TOOL_CHANGE) {
-        Some(Reason::ToolChange)
-    } else if !flags.has(Flags::DRIVES_ENABLED) && !armed_only {
-        // Arming before the drives are enabled is usual; the gate asks for them.
-        Some(Reason::DrivesDisabled)
-    } else if setpoint.frame_crc != state.frame_crc {
-        Some(Reason::FrameChanged)
-    } else if plan.image.crc() != state.image_crc {
-        Some(Reason::ImageChanged)
-    } else if flags.has(Flags::PROGRAM_END) {
-        Some(Reason::ProgramEnd)
-    } else {
-        None
+    // Arming before the drives are enabled is usual; the gate asks for them.
+    let drives = flags.has(Flags::DRIVES_ENABLED) || state.mode == Mode::Armed;
+    let same = setpoint.frame_crc == state.frame_crc && plan.image.crc() == state.image_crc;
+    if drives && same && !flags.has(STOPS) {
+        return None;
     }
+    // The most serious first.
+    Some(if flags.has(Flags::EMERGENCY_STOP) {
+        Reason::EmergencyStop
+    } else if flags.has(Flags::ABORT) {
+        Reason::Abort
+    } else if flags.has(Flags::TOOL_CHANGE) {
+        Reason::ToolChange
+    } else if !drives {
+        Reason::DrivesDisabled
+    } else if setpoint.frame_crc != state.frame_crc {
+        Reason::FrameChanged
+    } else if plan.image.crc() != state.image_crc {
+        Reason::ImageChanged
+    } else {
+        Reason::ProgramEnd
+    })
 }

@@ -17,5 +17,5 @@ pub use length::{Offset, Position};
 pub use power::{exp2, log2, pow};
 pub use real::Real;
 pub use root::{hypot_nm, isqrt_rounded};
-pub use round::{div_rounded, shift_rounded, shift_rounded_i64};
+pub use round::{div_rounded, shift_rounded, shift_rounded_i31, shift_rounded_i63, shift_rounded_i64};
 pub use trig::{atan2, sin_cos};

@@ -1,7 +1,7 @@
 //! The one rounding of the crate: to nearest, ties away from zero.
 //!
 //! It is odd-symmetric, `round(-x) == -round(x)`, which is what makes a mirrored or turned contour give mirrored or
-//! turned bits. Everything that drops bits goes through one of the three widths below.
+//! turned bits. Everything that drops bits goes through one of the widths below.
 
 /// `value / 2^bits`, rounded to nearest, ties away from zero. `bits` ≤ 126.
 #[inline]
@@ -23,6 +23,27 @@ pub const fn shift_rounded_i64(value: i64, bits: u32) -> i64 {
     let half = 1u64 << bits.saturating_sub(1);
     let magnitude = value.unsigned_abs().saturating_add(half) >> bits;
     if value < 0 { (magnitude as i64).wrapping_neg() } else { magnitude as i64 }
+}
+
+/// `value / 2^bits` for a value within ±2⁶² and 1 ≤ `bits` ≤ 62, the same rounding in five instructions of a 32-bit
+/// processor: half is added, less one step where the value is negative, and the shift rounds down.
+#[inline]
+pub const fn shift_rounded_i63(value: i64, bits: u32) -> i64 {
+    let half = 1i64 << (bits.wrapping_sub(1) & 63);
+    // Up to 32 bits the half less the sign fits a word, which saves the upper half of its addition.
+    let half = if bits <= 32 {
+        ((half as u32).wrapping_add((value >> 63) as u32)) as i64
+    } else {
+        half.wrapping_add(value >> 63)
+    };
+    value.wrapping_add(half) >> (bits & 63)
+}
+
+/// `value / 2^bits` for a value within ±2³⁰ and 1 ≤ `bits` ≤ 30, the same rounding in 32 bits.
+#[inline]
+pub const fn shift_rounded_i31(value: i32, bits: u32) -> i32 {
+    let half = 1i32 << (bits.wrapping_sub(1) & 31);
+    value.wrapping_add(half.wrapping_add(value >> 31)) >> (bits & 31)
 }
 
 /// `numerator / denominator`, rounded to nearest, ties away from zero.
@@ -71,6 +92,16 @@ mod tests {
             prop_assert_eq!(div_rounded(-wide, d.into()), -div_rounded(wide, d.into()));
             let narrow = v >> 1;
             prop_assert_eq!(i128::from(shift_rounded_i64(narrow, bits)), shift_rounded(narrow.into(), bits));
+        }
+
+        #[test]
+        fn the_short_ways_round_like_the_long_one(v in any::<i64>(), drop in 1u32..63, bits in 1u32..63) {
+            // Every magnitude, and ties: the value as it is and with nothing but the half behind the point.
+            for v in [v >> drop, ((v >> drop) | 1) << (bits - 1).min(drop)] {
+                prop_assert_eq!(shift_rounded_i63(v >> 1, bits), shift_rounded_i64(v >> 1, bits));
+                let (v, bits) = ((v as i32) >> 1, bits.min(30));
+                prop_assert_eq!(i64::from(shift_rounded_i31(v, bits)), shift_rounded_i64(v.into(), bits));
+            }
         }
 
         #[test]

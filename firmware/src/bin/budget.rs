@@ -23,13 +23,13 @@ use measure::{Console, Series};
 use script::{Situation, run};
 
 /// Nodes of the contours; the costs must not depend on them.
-const CONTOURS: [usize; 2] = [10, 10_000];
+const CONTOURS: [usize; 3] = [10, 100, 10_000];
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
     measure::start();
     let mut console = Console::open();
-    for (axes, nodes) in [(3, CONTOURS[0]), (3, CONTOURS[1]), (6, CONTOURS[1])] {
+    for (axes, nodes) in [(3, CONTOURS[0]), (3, CONTOURS[1]), (3, CONTOURS[2]), (6, CONTOURS[2])] {
         let mut series = Series::all();
         let mut machine = Machine::new(axes, nodes);
         run(&mut machine, nodes, &mut series);

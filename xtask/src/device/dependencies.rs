@@ -20,8 +20,13 @@ const ALLOWED: &[(&str, &str)] = &[
     ("stable_deref_trait", "a marker trait, for heapless"),
     ("nom", "parsing of programs and probe files, without its allocator feature"),
     ("memchr", "byte search for nom"),
-    ("crc", "checksums of images"),
+    ("crc", "checksums of programs, images and frames"),
     ("crc-catalog", "polynomials for crc"),
+    ("cobs", "frames on byte streams"),
+    ("thiserror", "error texts of cobs"),
+    ("serde", "fields of messages"),
+    ("serde_core", "the traits of serde"),
+    ("postcard", "messages of the configuration link"),
 ];
 
 /// Features that would bring an allocator or the standard library.

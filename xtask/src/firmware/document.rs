@@ -43,11 +43,15 @@ fn written(head: &[&str], rows: &[Vec<String>], compiler: &str, old: &str) -> St
     } else {
         Vec::new()
     };
-    for row in rows {
-        let new = line(row);
-        match lines.iter_mut().find(|l| key(l) == key(&new)) {
-            Some(place) => *place = new,
-            None => lines.push(new),
+    let new: Vec<String> = rows.iter().map(|row| line(row)).collect();
+    if lines.iter().all(|old| new.iter().any(|new| key(new) == key(old))) {
+        lines = new;
+    } else {
+        for new in new {
+            match lines.iter_mut().find(|old| key(old) == key(&new)) {
+                Some(place) => *place = new,
+                None => lines.push(new),
+            }
         }
     }
     let rule: String =

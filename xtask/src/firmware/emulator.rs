@@ -14,7 +14,8 @@ const NAME: &str = "qemu-system-arm";
 /// It is missing and may not be installed.
 pub fn command() -> Result<Command, Failure> {
     let there = || succeeds(program(NAME).arg("--version"));
-    if !there() && !(may_install() && install(&[NAME]).is_ok() && there()) {
+    let installed = || may_install() && install(&[NAME]).is_ok() && there();
+    if !(there() || installed()) {
         return Err(Failure::Missing(format!("no emulator of the virtual board: apt-get install {NAME}")));
     }
     let mut command = program(NAME);

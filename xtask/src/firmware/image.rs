@@ -48,7 +48,8 @@ impl Board {
 }
 
 impl Image {
-    /// Builds it, and puts it into `target/firmware`; `extra` goes to the compiler of the binary itself.
+    /// Builds it, and puts it into `target/firmware`; `extra` goes to the compiler of the binary itself, and an image with
+    /// that gets a name of its own.
     ///
     /// # Errors
     /// When it does not build.
@@ -58,6 +59,9 @@ impl Image {
         let mut command = toolchain.cargo();
         command.args(["rustc", "--package", "truepath-fw", "--profile", "firmware", "--target", TARGET]);
         command.args(["--features", self.features, "--bin", self.bin, "--target-dir"]).arg(&directory);
+        command
+            .arg("--config")
+            .arg(format!("target.{TARGET}.rustflags=[\"--remap-path-prefix={}=/cargo\"]", cargo_home()));
         if !extra.is_empty() {
             // `-Z` options of the stable compiler; only this binary's own compilation sees them.
             command.env("RUSTC_BOOTSTRAP", "1").arg("--").args(extra);
@@ -65,9 +69,17 @@ impl Image {
         linker::provide(toolchain, &mut command)?;
         run(&mut command)?;
         let folder = target().join("firmware");
-        let (from, to) = (directory.join(TARGET).join("firmware").join(self.bin), folder.join(self.bin));
+        let name = if extra.is_empty() { self.bin.to_owned() } else { format!("{}-examined", self.bin) };
+        let (from, to) = (directory.join(TARGET).join("firmware").join(self.bin), folder.join(name));
         let copied = std::fs::create_dir_all(&folder).and_then(|()| std::fs::copy(&from, &to));
         copied.map_err(|e| Failure::found(format!("{} to {}: {e}", from.display(), to.display())))?;
         Ok(to)
     }
+}
+
+/// Where cargo keeps the sources of crates. Panics name files there; without a common name for it the size of an image
+/// would depend on who builds it.
+fn cargo_home() -> String {
+    let home = || std::env::var("HOME").map(|home| format!("{home}/.cargo"));
+    std::env::var("CARGO_HOME").or_else(|_| home()).unwrap_or_default().replace('\\', "/")
 }

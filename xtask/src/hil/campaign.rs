@@ -64,7 +64,10 @@ pub(super) fn short(bench: &Bench) -> Result<(), Failure> {
 pub fn run() -> Outcome {
     let bench = Bench::set_up()?;
     let commit = read(command("git").args(["rev-parse", "--short=12", "HEAD"]))?;
-    let changed = !read(command("git").args(["status", "--porcelain", "--untracked-files=no"]))?.trim().is_empty();
+    let changed =
+        !read(command("git").args(["status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/campaign.md"]))?
+            .trim()
+            .is_empty();
     let bulk = table(&bench, "bulk", |kind| kind.frames)?;
     let uart = table(&bench, "uart", |_| UART)?;
     let commit = format!("{}{}", commit.trim(), if changed { " with changes not committed" } else { "" });

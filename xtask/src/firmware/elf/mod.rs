@@ -43,8 +43,40 @@ const HANDLERS: [&str; 8] = [
     "truepath_fw::board::virtual_board::interrupts::timer0",
 ];
 
-const INDIRECT: &[Indirect] = &[];
-const RECURSION: &[Recursion] = &[];
+/// What a waker can do.
+const WAKER: &[&str] = &["embassy_executor::raw::waker::"];
+/// Closures that are told how far an on-board correction is, outermost first.
+const TOLD: &[&str] = &["Work>::run::{closure#0}>::{closure#2}", "Work>::run::{closure#0}>::{closure#3}"];
+const TOLD_OF_A_LAW: &[&str] = &["identified::{closure#0}>::{closure#0}::{closure#0}", TOLD[0], TOLD[1]];
+const FIT: &str = "identify_observed::<truepath_core::job::identification::identified::{closure#0}>::{closure#";
+
+const INDIRECT: &[Indirect] = &[
+    ("interrupts::config_executor", &["__config_task_task_inner_function::{closure#0}>>::poll"]),
+    ("interrupts::setpoint_executor", &["__setpoint_task_task_inner_function::{closure#0}>>::poll"]),
+    ("__config_task_task_inner_function", WAKER),
+    ("__setpoint_task_task_inner_function", WAKER),
+    ("uart::Uart as embedded_io_async", WAKER),
+    ("embassy_futures::select", WAKER),
+    ("interrupts::config_received", WAKER),
+    ("interrupts::config_transmitted", WAKER),
+    ("interrupts::setpoint_transmitted", WAKER),
+    ("interrupts::timer1", WAKER),
+    ("uart::Receiving>::on_received", WAKER),
+    ("background::run", WAKER),
+    (">::linearise", &[FIT]),
+    (FIT, TOLD_OF_A_LAW),
+    (TOLD_OF_A_LAW[0], TOLD),
+    ("design_observed", TOLD),
+];
+
+const RECURSION: &[Recursion] = &[
+    // A panic within the log of a panic finds the log taken and writes nothing.
+    ("rust_begin_unwind", 1),
+    // Sorting of at most 512 probe points: the standard library stops at twice the binary logarithm.
+    ("unstable::quicksort::quicksort", 18),
+    // The median of medians takes an eighth of the points each time.
+    ("median3_rec", 3),
+];
 
 /// Proves both; with `write` the stack goes into the document.
 pub fn check(write: bool) -> Outcome {

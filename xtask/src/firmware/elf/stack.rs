@@ -99,7 +99,13 @@ impl<'a> Search<'a> {
             if lists.is_empty() {
                 self.doubts.push(format!("{} calls through a register; nobody says where to", function.name));
             }
-            next.extend(lists.iter().flat_map(|parts| parts.iter()).flat_map(|part| self.graph.named(part)));
+            for part in lists.into_iter().flatten() {
+                let before = next.len();
+                next.extend(self.graph.named(part));
+                if next.len() == before {
+                    self.doubts.push(format!("{} is said to call {part}, which is not there", function.name));
+                }
+            }
         }
         let below =
             next.into_iter().map(|callee| self.from(callee)).max_by_key(|depth| depth.bytes).unwrap_or_default();
