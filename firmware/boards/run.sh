@@ -7,8 +7,8 @@ shift
 case "$(basename "$elf")" in
 *nucleo-h743*) exec probe-rs run --chip STM32H743ZITx "$@" "$elf" ;;
 *budget*)
-    exec qemu-system-arm -M mps2-an500 -display none -monitor none -serial stdio -icount shift=6,sleep=off \
-        -semihosting-config enable=on,target=native -kernel "$elf" "$@" ;;
+    exec qemu-system-arm -M mps2-an500 -display none -monitor none -no-reboot -icount shift=10,sleep=off \
+        -serial stdio -serial null -serial null -serial null -kernel "$elf" "$@" ;;
 *)
     links=${TRUEPATH_LINKS:-$(dirname "$elf")/links}
     mkdir -p "$links"

@@ -197,7 +197,10 @@ fn an_image_of_another_semantics_is_refused() {
     image[end..].copy_from_slice(&crc.to_le_bytes());
     rig.begin_item(Item::Image, &image, crc).unwrap();
     rig.chunks(0, &image, CHUNK_BYTES).unwrap();
-    assert_eq!(rig.commit(), Err(Denial::Image(ImageError::Semantics { found: 99, expected: truepath_core::image::SEMANTICS })));
+    assert_eq!(
+        rig.commit(),
+        Err(Denial::Image(ImageError::Semantics { found: 99, expected: truepath_core::image::SEMANTICS }))
+    );
 }
 
 #[test]

@@ -53,10 +53,11 @@ pub async fn serve<F: NorFlash>(
         // One packet at a time, so that there is one answer at a time.
         for piece in chunk.get(..taken).unwrap_or(&[]).split_inclusive(|&byte| byte == 0) {
             answer.clear();
-            let restart = lock(desk, tick, &keeper).await.receive(piece, keeper.now_us(), &servo, &mut |bytes: &[u8]| {
-                // It has room for the longest packet.
-                let _ = answer.extend_from_slice(bytes);
-            });
+            let restart =
+                lock(desk, tick, &keeper).await.receive(piece, keeper.now_us(), &servo, &mut |bytes: &[u8]| {
+                    // It has room for the longest packet.
+                    let _ = answer.extend_from_slice(bytes);
+                });
             // An answer that cannot be sent is asked for again.
             let _ = sender.write_all(&answer).await;
             if let Some(restart) = restart {

@@ -46,7 +46,9 @@ impl ServoAccess<'static> for &'static ServoCell {
     fn with<R>(&self, f: impl FnOnce(&mut Servo<'static>) -> R) -> R {
         critical_section::with(|_| {
             // SAFETY: interrupts are off, so the setpoint task does not run, and everybody else comes through here.
-            let Some(servo) = (unsafe { &mut *self.0.get() }) else { unreachable!("the servo is there before the tasks") };
+            let Some(servo) = (unsafe { &mut *self.0.get() }) else {
+                unreachable!("the servo is there before the tasks")
+            };
             f(servo)
         })
     }
@@ -56,7 +58,9 @@ impl SetpointSide {
     /// The servo.
     pub fn servo(&mut self) -> &mut Servo<'static> {
         // SAFETY: this is the setpoint task; whoever else has access switches interrupts off meanwhile.
-        let Some(servo) = (unsafe { &mut *self.0.0.get() }) else { unreachable!("the servo is there before the tasks") };
+        let Some(servo) = (unsafe { &mut *self.0.0.get() }) else {
+            unreachable!("the servo is there before the tasks")
+        };
         servo
     }
 }

@@ -60,8 +60,13 @@ pub fn check(write: bool) -> Outcome {
     Ok(Passed::Done)
 }
 
-const HEAD: [&str; 5] =
-    ["axes, nodes, situation", "tick", "tick, greatest", "whole exchange (UART)", "whole exchange (SPI)"];
+const HEAD: [&str; 5] = [
+    "axes, nodes, situation",
+    "tick, least … median",
+    "tick, greatest",
+    "whole exchange (UART)",
+    "whole exchange (SPI)",
+];
 
 /// Tick and whole exchange by situation, for the document.
 fn rows(costs: &BTreeMap<Key, Cost>) -> Vec<Vec<String>> {

@@ -83,10 +83,11 @@ pub fn lend() -> Memory<'static> {
 
 /// Buffers of the setpoint link. Called once, after [`wake`].
 pub fn setpoint_buffers() -> &'static mut SetpointBuffers {
-    lent!(".d2.setpoint", SetpointBuffers, SetpointBuffers {
-        received: [0; RECEIVED],
-        sent: [0; 3 * (MAX_ANSWER_BYTES + 2)],
-    })
+    lent!(
+        ".d2.setpoint",
+        SetpointBuffers,
+        SetpointBuffers { received: [0; RECEIVED], sent: [0; 3 * (MAX_ANSWER_BYTES + 2)] }
+    )
 }
 
 /// Ring of the reception on the UART. Called once, after [`wake`].

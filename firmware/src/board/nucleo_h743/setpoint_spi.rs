@@ -49,7 +49,8 @@ pub async fn setpoint_spi(
                 let mut answer = [0; MAX_ANSWER_BYTES];
                 let used = side.servo().frame(frame, arrived_us, &Clockwork, &mut answer);
                 if let Some(used) = used.filter(|&used| used == answer_bytes(axes)) {
-                    let [out, ignored] = [sent.get_mut(..used), received.get_mut(..used)].map(Option::unwrap_or_default);
+                    let [out, ignored] =
+                        [sent.get_mut(..used), received.get_mut(..used)].map(Option::unwrap_or_default);
                     out.copy_from_slice(answer.get(..used).unwrap_or(&[]));
                     ready.set_high();
                     // An answer that is not fetched in time is the controller's time-out.

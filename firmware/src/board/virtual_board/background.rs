@@ -2,14 +2,16 @@
 
 use truepath_core::job::Workspace;
 
-use super::config_task::{SharedDesk, carry_out};
+use super::config_task::carry_out;
 use super::shared_memory::SharedMemory;
 use super::{clock, memory};
 use crate::bench;
 use crate::board::ServoCell;
+use crate::board::config_link::{SharedDesk, work};
+use crate::flash::Nor;
 
 /// Never returns. The processor sleeps until the next interrupt, the tick at the latest, when nothing is to be done.
-pub fn run(desk: &'static SharedDesk, servo: &'static ServoCell) -> ! {
+pub fn run(desk: &'static SharedDesk<Nor<'static>>, servo: &'static ServoCell) -> ! {
     let mut shared = SharedMemory::ready();
     let mut workspace = memory::workshop().workspace();
     loop {
@@ -23,7 +25,7 @@ pub fn run(desk: &'static SharedDesk, servo: &'static ServoCell) -> ! {
 /// Runs a batch, if there is one.
 fn batch(
     shared: &mut SharedMemory,
-    desk: &'static SharedDesk,
+    desk: &'static SharedDesk<Nor<'static>>,
     servo: &'static ServoCell,
     workspace: &mut Workspace<'_>,
 ) -> bool {
@@ -42,18 +44,4 @@ fn batch(
         carry_out(restart);
     }
     true
-}
-
-/// Runs the computation that the configuration link asked for, if there is one.
-fn work(desk: &'static SharedDesk, servo: &'static ServoCell, workspace: &mut Workspace<'_>) -> bool {
-    let Ok(work) = desk.try_lock().map(|mut desk| desk.take_work()) else { return false };
-    let Some(mut work) = work else { return false };
-    work.run(workspace);
-    loop {
-        if let Ok(mut desk) = desk.try_lock() {
-            desk.finish(work, &servo);
-            return true;
-        }
-        cortex_m::asm::wfi();
-    }
 }

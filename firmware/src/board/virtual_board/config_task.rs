@@ -1,63 +1,43 @@
-//! The configuration task: requests in, responses out, and the watchdog.
+//! The configuration task on UART 1, and the watchdog it feeds.
 
-use embassy_futures::select::{Either, select};
-use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use embassy_sync::mutex::{Mutex, MutexGuard};
-use embassy_sync::signal::Signal;
-use embedded_io_async::{Read as _, Write as _};
-use heapless::Vec;
-use truepath_core::link::PACKET_BYTES;
-
-use super::uart::Uart;
+use super::uart::{Receiver, Sender};
 use super::{clock, fatal, watchdog};
 use crate::board::ServoCell;
-use crate::desk::{Desk, Restart};
+use crate::board::config_link::{Keeper, SharedDesk, Tick, serve};
+use crate::clock::Clock;
+use crate::desk::Restart;
 use crate::flash::Nor;
 
 /// Wakes the task each millisecond.
-pub static TICK: Signal<CriticalSectionRawMutex, ()> = Signal::new();
+pub static TICK: Tick = Tick::new();
 
-/// The desk, for this task and the background.
-pub type SharedDesk = Mutex<CriticalSectionRawMutex, Desk<'static, Nor<'static>>>;
+/// The board, as the configuration link sees it.
+struct Board;
 
-const CHUNK: usize = 64;
-
-/// The task. It never waits for anything while it has the desk.
-#[embassy_executor::task]
-pub async fn config_task(mut uart: Uart, desk: &'static SharedDesk, servo: &'static ServoCell) {
-    let mut chunk = [0; CHUNK];
-    let mut answer: Vec<u8, PACKET_BYTES> = Vec::new();
-    loop {
-        let taken = match select(uart.read(&mut chunk), TICK.wait()).await {
-            Either::First(Ok(taken)) => taken,
-            Either::Second(()) => {
-                watchdog::config_task_lives();
-                continue;
-            }
-        };
-        // One packet at a time, so that there is one answer at a time.
-        for piece in chunk.get(..taken).unwrap_or(&[]).split_inclusive(|&byte| byte == 0) {
-            answer.clear();
-            let restart = lock(desk).await.receive(piece, clock::now_us(), &servo, &mut |bytes: &[u8]| {
-                // It has room for the longest packet.
-                let _ = answer.extend_from_slice(bytes);
-            });
-            let Ok(()) = uart.write_all(&answer).await;
-            if let Some(restart) = restart {
-                carry_out(restart);
-            }
-        }
+impl Clock for Board {
+    fn now_us(&self) -> u64 {
+        clock::now_us()
     }
 }
 
-/// The desk, which the background may have for long: this task goes on reporting meanwhile.
-async fn lock(desk: &'static SharedDesk) -> MutexGuard<'static, CriticalSectionRawMutex, Desk<'static, Nor<'static>>> {
-    loop {
-        match select(desk.lock(), TICK.wait()).await {
-            Either::First(guard) => return guard,
-            Either::Second(()) => watchdog::config_task_lives(),
-        }
+impl Keeper for Board {
+    fn config_task_lives(&self) {
+        watchdog::config_task_lives();
     }
+    fn restart(&self, restart: Restart) {
+        carry_out(restart);
+    }
+}
+
+/// The task.
+#[embassy_executor::task]
+pub async fn config_task(
+    receiver: Receiver,
+    sender: Sender,
+    desk: &'static SharedDesk<Nor<'static>>,
+    servo: &'static ServoCell,
+) {
+    serve(receiver, sender, &TICK, desk, servo, Board).await
 }
 
 /// Resets, now or through the watchdog.

@@ -4,8 +4,7 @@ use core::panic::PanicInfo;
 
 use cortex_m::peripheral::SCB;
 
-use super::gpio::Output;
-use super::pins::{DRIVE_ENABLE, FAULT};
+use super::gpio::{DRIVE_ENABLE, FAULT, Output};
 use super::{kept, log};
 
 /// What cannot go on.

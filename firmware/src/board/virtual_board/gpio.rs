@@ -7,6 +7,11 @@ use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use volatile_register::WO;
 
+/// Bit of the drive enable in port 0.
+pub const DRIVE_ENABLE: u32 = 0;
+/// Bit of the fault output in port 0.
+pub const FAULT: u32 = 1;
+
 const BASE: usize = 0x4001_0000;
 const OUTPUT_ENABLE_SET: usize = BASE + 0x10;
 /// Writes to `BASE + 0x400 + 4 · mask` touch only the bits of the mask, of the lower byte.

@@ -19,7 +19,6 @@ mod interrupts;
 mod kept;
 mod log;
 mod memory;
-mod pins;
 mod setpoint_task;
 mod shared_memory;
 mod start;

@@ -119,7 +119,7 @@ impl Shared {
     }
 
     /// Makes the UART of this port.
-    pub fn open(&'static self, queue: &'static mut Queue<u8, RING>, lines: [Line; 2]) -> (Uart, Receiving) {
+    pub fn open(&'static self, queue: &'static mut Queue<u8, RING>, lines: [Line; 2]) -> (Receiver, Sender, Receiving) {
         let (producer, consumer) = queue.split();
         let registers = self.port.registers();
         // SAFETY: plain configuration; the handlers of both lines exist in `interrupts`.
@@ -130,7 +130,7 @@ impl Shared {
                 NVIC::unmask(line);
             }
         }
-        (Uart { shared: self, ring: consumer }, Receiving { shared: self, ring: producer })
+        (Receiver { shared: self, ring: consumer }, Sender { shared: self }, Receiving { shared: self, ring: producer })
     }
 
     /// The transmission interrupt: there is room again.
@@ -190,13 +190,13 @@ impl Receiving {
     }
 }
 
-/// The side of the task.
-pub struct Uart {
+/// What a task receives from.
+pub struct Receiver {
     shared: &'static Shared,
     ring: Consumer<'static, u8>,
 }
 
-impl Uart {
+impl Receiver {
     /// When the first packet was complete that was taken since this was last asked, µs; now, when none was. Ask after
     /// taking: a packet that becomes complete in between counts as older than it is, never as younger.
     pub fn arrived_us(&mut self) -> u64 {
@@ -219,11 +219,11 @@ impl Uart {
     }
 }
 
-impl ErrorType for Uart {
+impl ErrorType for Receiver {
     type Error = Infallible;
 }
 
-impl Read for Uart {
+impl Read for Receiver {
     async fn read(&mut self, buffer: &mut [u8]) -> Result<usize, Infallible> {
         poll_fn(|context| {
             self.shared.received.register(context.waker());
@@ -236,31 +236,46 @@ impl Read for Uart {
     }
 }
 
-impl Write for Uart {
-    async fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+/// What a task sends through.
+pub struct Sender {
+    shared: &'static Shared,
+}
+
+impl Sender {
+    /// Waits until the part takes a byte.
+    async fn ready(&self) {
         let registers = self.shared.port.registers();
-        for (sent, byte) in bytes.iter().enumerate() {
-            if registers.state.read() & TX_FULL != 0 && sent > 0 {
-                return Ok(sent);
+        let full = || registers.state.read() & TX_FULL != 0;
+        poll_fn(|context| {
+            self.shared.transmitted.register(context.waker());
+            if !full() {
+                return Poll::Ready(());
             }
-            poll_fn(|context| {
-                self.shared.transmitted.register(context.waker());
-                if registers.state.read() & TX_FULL == 0 {
-                    return Poll::Ready(());
-                }
-                // SAFETY: asks for the interrupt when there is room.
-                unsafe { registers.control.modify(|c| c | TX_INTERRUPT) };
-                // It may have become free in between, and then no interrupt comes.
-                if registers.state.read() & TX_FULL == 0 { Poll::Ready(()) } else { Poll::Pending }
-            })
-            .await;
+            // SAFETY: asks for the interrupt when there is room.
+            unsafe { registers.control.modify(|c| c | TX_INTERRUPT) };
+            // It may have become free in between, and then no interrupt comes.
+            if full() { Poll::Pending } else { Poll::Ready(()) }
+        })
+        .await;
+    }
+}
+
+impl ErrorType for Sender {
+    type Error = Infallible;
+}
+
+impl Write for Sender {
+    async fn write(&mut self, bytes: &[u8]) -> Result<usize, Infallible> {
+        for byte in bytes {
+            self.ready().await;
             // SAFETY: there is room.
-            unsafe { registers.data.write((*byte).into()) };
+            unsafe { self.shared.port.registers().data.write((*byte).into()) };
         }
         Ok(bytes.len())
     }
 
     async fn flush(&mut self) -> Result<(), Infallible> {
+        self.ready().await;
         Ok(())
     }
 }
