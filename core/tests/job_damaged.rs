@@ -74,6 +74,9 @@ fn replaced(field: usize, length: Offset, number: Real) -> Job {
         13 => job.correct.clamp = length,
         14 => job.correct.band[1] = length,
         15 => job.correct.max_gouge = Some(length),
+        16 => job.tool.number = Some(number.bits() as u32),
+        17 => job.tool.offset_number = number.bits() as u32,
+        18 => job.correct.setup = number.bits() as u32,
         _ => job.tool.teeth = number.bits() as u8,
     }
     job
@@ -99,7 +102,7 @@ proptest! {
     }
 
     #[test]
-    fn a_quantity_out_of_range_is_refused_before_the_program_is_read(field in 0usize..17, length in length(), number in number()) {
+    fn a_quantity_out_of_range_is_refused_before_the_program_is_read(field in 0usize..20, length in length(), number in number()) {
         let job = replaced(field, length, number);
         let part = Part { job, program: b"not a program", ..corner() };
         let range = matches!(made(&part), Err(JobError::Range { .. }));

@@ -4,9 +4,10 @@ mod job_support;
 
 use job_support::{Part, Room, corner, made, pocket, short, um};
 use truepath_core::cut::WallLaw;
-use truepath_core::image::{DEVICE_NODES, Image, image_bytes};
+use truepath_core::image::{Binding, DEVICE_NODES, Image, image_bytes};
 use truepath_core::job::{
-    Buffer, Buffers, COMPACT_BYTES, Counts, ForceModel, Job, JobError, LawName, Pass, Stage, Stickout, Workspace, image,
+    Buffer, Buffers, COMPACT_BYTES, Counts, ForceModel, Job, JobError, LARGEST_NUMBER, LawName, Pass, Stage, Stickout,
+    Workspace, image,
 };
 use truepath_core::units::{Offset, Real};
 
@@ -128,7 +129,7 @@ fn exactly_the_memory_needed_is_enough_and_one_less_names_its_buffer() {
 
 #[test]
 fn a_contour_far_too_long_is_refused_before_it_is_walked_along() {
-    let part = Part { program: b"G21 G90 S3000 M3\nG0 X0 Y0\nG1 Z-4 F300\nG1 X9000\nM30\n", ..short() };
+    let part = Part { program: b"G21 G90 S3000 M3\nT1 M6\nG0 X0 Y0\nG1 Z-4 F300\nG1 X9000\nM30\n", ..short() };
     let Err(JobError::Full { buffer: Buffer::Samples, needed, .. }) = made(&part) else { panic!("not refused") };
     assert!(needed > 110_000);
 }
@@ -142,7 +143,7 @@ fn a_contour_of_more_nodes_than_the_coprocessor_holds_is_refused_when_its_image_
     part.job.cut.axial_depth = um(1_000);
     part.job.correct.band = [Offset::ZERO, um(1_000)];
     part.job.correct.law = LawName::Mirror;
-    part.program = b"G21 G90 S30000 M3\nG0 X0 Y0\nG1 Z-1 F300\nG1 X260\nM30\n";
+    part.program = b"G21 G90 S30000 M3\nT1 M6\nG0 X0 Y0\nG1 Z-1 F300\nG1 X260\nM30\n";
     part.probe = b"100 0.52 -0.5 0 0 0 0 0 0\n200 0.52 -0.5 0 0 0 0 0 0\n";
     let mut room: Box<Buffers<4, 13_600, 13_200, 13_100, 4>> = Box::default();
     let mut out = vec![0; image_bytes(14_000)];
@@ -158,7 +159,7 @@ const _: () = assert!(size_of::<Eight>() <= 8 << 20);
 fn a_contour_of_sixteen_thousand_lines_fits_into_eight_mebibytes() {
     // A round wall of 78.2 mm, milled in lines of 0.03 mm: two of them are one sample.
     let lines = 16_384;
-    let mut program = String::from("G21 G90 S3000 M3\nG0 X78.2 Y0\nG1 Z-4 F300\n");
+    let mut program = String::from("G21 G90 S3000 M3\nT1 M6\nG0 X78.2 Y0\nG1 Z-4 F300\n");
     for k in 1..=lines {
         let (sine, cosine) = (f64::from(k) / f64::from(lines) * std::f64::consts::TAU).sin_cos();
         program += &format!("G1 X{:.6} Y{:.6}\n", 78.2 * cosine, 78.2 * sine);
@@ -194,6 +195,8 @@ fn a_job_survives_its_compact_form_and_nothing_else_is_one() {
     largest.cut.feed_mm_per_min = Some(Real::from_bits(100_000 << 32));
     largest.force.ktc = Real::from_bits((20_000 << 32) - 1);
     largest.correct.max_gouge = Some(Offset::from_nm(999_999));
+    (largest.tool.number, largest.tool.offset_number) = (Some(LARGEST_NUMBER), LARGEST_NUMBER);
+    largest.correct.setup = LARGEST_NUMBER;
     for job in [corner().job, pocket().job, short().job, largest] {
         let mut buffer = [0; COMPACT_BYTES];
         let bytes = job.to_compact(&mut buffer).unwrap().to_vec();
@@ -227,10 +230,49 @@ fn what_job_program_and_measurement_lack_is_named() {
         p.program = b"G21 G90\nG0 X0 Y0\nG1 Z-4 F300\nG1 X8\nM30\n";
     };
     assert_eq!(error(&no_speed), JobError::NoSpeed);
+    assert_eq!(error(&|p| p.job.tool.number = Some(7)), JobError::ToolsDiffer { job: 7, program: 1 });
     let no_feed = |p: &mut Part| {
         p.job.cut.feed_mm_per_min = None;
         p.program = b"G21 G90 S3000 M3\nG0 X0 Y0\nG0 Z-4\nG1 X8\nM30\n";
     };
     let failed = error(&no_feed).failed();
     assert_eq!((&failed.code, failed.line), (b"J012", 4));
+}
+
+/// A short wall whose program changes no tool.
+fn without_tool(tool_change: &'static str) -> Part {
+    let program = format!("G21 G90 G17\n{tool_change}\nS3000 M3\nG0 X0 Y0\nG1 Z-4 F300\nG1 X8\nG0 Z50\nM30\n");
+    Part { program: program.leak().as_bytes(), ..short() }
+}
+
+#[test]
+fn tool_offset_and_setup_of_an_image_are_those_of_the_job() {
+    let binding = |part: &Part| Image::new_checked(&made(part).unwrap().1).unwrap().settings().binding;
+    // The program says T1 M6; the job may repeat it, and adds offset and setup.
+    let given = binding(&short());
+    assert_eq!((given.feature, given.pass, given.tool, given.tool_offset, given.setup), (1, 1, 1, 0, 1));
+    let mut part = short();
+    (part.job.tool.number, part.job.tool.offset_number, part.job.correct.setup) = (Some(1), 21, 3);
+    assert_eq!(binding(&part), Binding { tool_offset: 21, setup: 3, ..given });
+    // Without a tool in the program, and with the empty spindle, it is the job's.
+    for tool_change in ["(no tool)", "T0 M6", "T4"] {
+        let mut part = without_tool(tool_change);
+        part.job.tool.number = Some(99_999);
+        assert_eq!(binding(&part).tool, 99_999);
+    }
+}
+
+#[test]
+fn without_a_tool_number_there_is_no_image_but_everything_else() {
+    for tool_change in ["(no tool)", "T0 M6"] {
+        let part = without_tool(tool_change);
+        let mut stages = vec![];
+        let mut room: Box<Room> = Box::default();
+        let mut out = vec![0; image_bytes(DEVICE_NODES)];
+        let tell = &mut |stage, _| stages.push(stage);
+        let refused = image(&part.job, part.program, part.probe, &mut room.workspace(), &mut out, tell);
+        // At once, and not after the work is done.
+        assert_eq!((refused, stages.as_slice()), (Err(JobError::NoTool), &[Stage::Reading][..]));
+        assert!(Pass::read(&part.job, part.program, room.workspace().blocks).is_ok());
+    }
 }

@@ -7,7 +7,7 @@ use truepath_core::link::{
     AnswerFrame, BEHIND, CHUNK_BYTES, DeviceSettings, Endpoint, FORWARD, LINK_VERSION, MESSAGE_BYTES, PACKET_BYTES,
     RESTART_AFTER, SetpointFrame, TRACE_SAMPLES, Verdict, answer_bytes, setpoint_bytes,
 };
-use truepath_core::rewrite::{Flags, Mode, Output, Place, Reason, Rewriter, Setpoint, Settings, Status};
+use truepath_core::rewrite::{Flags, Mode, Output, Place, Reason, Rewriter, Setpoint, Settings, SpentList, Status};
 
 const ONES: Setpoint = Setpoint {
     axes: [-1; 6],
@@ -145,18 +145,22 @@ fn flags_status_bits_modes_and_reasons_have_the_numbers_of_the_tables() {
     let reasons: Vec<_> = Reason::ALL.iter().map(|r| vec![r.code().to_string(), r.to_string()]).collect();
     assert_eq!(table(&page, "Types", "| reason"), reasons);
     assert!(Reason::ALL.iter().all(|r| r.is_fault() == (r.code() >= 16)));
+    let faults: Vec<_> = Reason::ALL.iter().filter(|r| r.is_fault()).map(|r| usize::from(r.code() - 16)).collect();
+    assert_eq!(faults, (0..Reason::FAULTS).collect::<Vec<_>>());
+    assert!(page.contains(&format!("`faults`: {} × u32", Reason::FAULTS)));
 }
 
 /// Gives sequences to an endpoint; the verdict on the last one.
 fn verdict(sequences: &[u32], damage: bool) -> (Verdict, bool) {
     let rewriter = Rewriter::new(Settings::at_1_khz(), None).unwrap();
-    let mut endpoint = Endpoint::new(DeviceSettings::at_1_khz(), [None; 16]);
+    let mut endpoint = Endpoint::new(DeviceSettings::at_1_khz(), SpentList::EMPTY);
     let mut last = (Verdict::Repeated, false);
     for (i, &sequence) in sequences.iter().enumerate() {
         let mut raw = bytes_of(Setpoint { sequence, ..Setpoint::default() }, 3);
         raw[30] ^= u8::from(damage && i + 1 == sequences.len());
-        let verdict = endpoint.frame(&rewriter, &raw, 0);
-        last = (verdict, endpoint.answer(0, &mut [0; 100]).is_some());
+        let now_us = 1_000 * i as u64;
+        let verdict = endpoint.frame(&rewriter, &raw, now_us);
+        last = (verdict, endpoint.answer(now_us, &mut [0; 100]).is_some());
     }
     last
 }

@@ -3,7 +3,7 @@
 mod link_support;
 use link_support::*;
 use truepath_core::link::{Recorder, TRACE_SAMPLES, Trace, TraceSample, setpoint_bytes};
-use truepath_core::rewrite::{Mode, Output, State};
+use truepath_core::rewrite::{Mode, Output, Reason, State};
 
 const BYTES: usize = setpoint_bytes(AXES);
 
@@ -37,11 +37,11 @@ fn after_a_fault_the_stated_number_of_frames_is_taken_and_then_all_are_read_olde
                 recorder.record(&frame(number));
             }
             assert_eq!(recorder.frames(0, 10_000), &[0u8; 0][..], "it runs");
-            recorder.fault();
+            recorder.fault(Reason::Abort);
             for number in before..before + 10 {
                 assert_eq!(recorder.is_frozen(), number >= before + 3);
                 recorder.record(&frame(number));
-                recorder.fault();
+                recorder.fault(Reason::Abort);
             }
             let end = before + 3;
             let expected: Vec<u8> = (end.saturating_sub(capacity as u8)..end).collect();
@@ -56,16 +56,32 @@ fn after_a_fault_the_stated_number_of_frames_is_taken_and_then_all_are_read_olde
 }
 
 #[test]
+fn at_a_silence_it_stands_at_once_because_no_frames_follow() {
+    for fault_before in [None, Some(Reason::Abort)] {
+        let mut buffer = [0; 8 * BYTES];
+        let mut recorder = Recorder::new(&mut buffer, BYTES, 3);
+        recorder.record(&frame(1));
+        fault_before.into_iter().for_each(|reason| recorder.fault(reason));
+        recorder.record(&frame(2));
+        assert!(!recorder.is_frozen());
+        recorder.fault(Reason::Silence);
+        assert!(recorder.is_frozen());
+        recorder.record(&frame(3));
+        assert_eq!(numbers(&recorder, 1_024), [1, 2]);
+    }
+}
+
+#[test]
 fn released_it_runs_again_from_nothing() {
     let mut buffer = [0; 4 * BYTES];
     let mut recorder = Recorder::new(&mut buffer, BYTES, 0);
     recorder.record(&frame(1));
-    recorder.fault();
+    recorder.fault(Reason::Abort);
     assert!(recorder.is_frozen());
     recorder.release();
     assert_eq!((recorder.is_frozen(), recorder.total()), (false, 0));
     recorder.record(&frame(2));
-    recorder.fault();
+    recorder.fault(Reason::Abort);
     assert_eq!(numbers(&recorder, 1_024), [2]);
 }
 
@@ -75,14 +91,14 @@ fn a_fault_is_never_recorded_over_and_frames_of_another_length_are_passed_over()
     let mut recorder = Recorder::new(&mut buffer, BYTES, 1_000);
     recorder.record(&frame(1)[1..]);
     recorder.record(&frame(1));
-    recorder.fault();
+    recorder.fault(Reason::Abort);
     for number in 2..100 {
         recorder.record(&frame(number));
     }
     assert_eq!(numbers(&recorder, 1_024), [1, 2, 3, 4], "as many as leave the frame of the fault");
     let mut nothing = Recorder::new(&mut [], BYTES, 3);
     nothing.record(&frame(1));
-    nothing.fault();
+    nothing.fault(Reason::Abort);
     assert_eq!(nothing.total(), 0);
 }
 

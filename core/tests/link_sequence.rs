@@ -2,28 +2,36 @@
 
 use proptest::prelude::*;
 use truepath_core::link::{BEHIND, DeviceSettings, Endpoint, LinkError, RESTART_AFTER, SetpointFrame, Verdict};
-use truepath_core::rewrite::{Rewriter, Setpoint, Settings};
+use truepath_core::rewrite::{Rewriter, Setpoint, Settings, SpentList};
 
 /// An endpoint that has accepted a sequence, and a way to give it others.
 struct Line {
     rewriter: Rewriter<'static>,
     endpoint: Endpoint,
+    now_us: u64,
 }
 
 impl Line {
     fn after(sequence: u32) -> Self {
         let rewriter = Rewriter::new(Settings::at_1_khz(), None).unwrap();
-        let mut line = Self { rewriter, endpoint: Endpoint::new(DeviceSettings::at_1_khz(), [None; 16]) };
+        let mut line =
+            Self { rewriter, endpoint: Endpoint::new(DeviceSettings::at_1_khz(), SpentList::EMPTY), now_us: 0 };
         assert_eq!(line.give(sequence), Verdict::Accepted, "whatever comes first is a beginning");
         line
     }
+    /// A frame one tick later.
     fn give(&mut self, sequence: u32) -> Verdict {
+        self.now_us += 1_000;
+        self.at_once(sequence)
+    }
+    /// A frame at the same time.
+    fn at_once(&mut self, sequence: u32) -> Verdict {
         let mut raw = [0; 100];
         let setpoint = Setpoint { sequence, ..Setpoint::default() };
         let bytes = SetpointFrame { axes: 3, setpoint }.encode(&mut raw).unwrap();
-        let verdict = self.endpoint.frame(&self.rewriter, &raw[..bytes], 0);
+        let verdict = self.endpoint.frame(&self.rewriter, &raw[..bytes], self.now_us);
         let mut answer = [0; 100];
-        assert_eq!(self.endpoint.answer(0, &mut answer).is_some(), verdict.is_accepted());
+        assert_eq!(self.endpoint.answer(self.now_us, &mut answer).is_some(), verdict.is_accepted());
         verdict
     }
 }
@@ -103,6 +111,31 @@ fn late_frames_that_do_not_follow_each_other_never_pass_for_a_restart() {
     }
     assert_eq!(line.give(1_001), Verdict::Accepted);
     assert_eq!(line.give(993), Verdict::OutOfOrder);
+}
+
+#[test]
+fn old_frames_in_a_burst_never_pass_for_a_restart() {
+    // At once behind a good frame, after two lost ones, and after as long a pause as a restart takes.
+    for pause in [0, 2, 3, 15] {
+        let mut line = Line::after(1_000);
+        line.now_us += pause * 1_000;
+        for sequence in 940..=1_000 {
+            assert!(!line.at_once(sequence).is_accepted(), "{sequence} after {pause}");
+        }
+        assert_eq!(line.give(1_001), Verdict::Accepted);
+    }
+    // At a good pace, but between good frames.
+    let mut line = Line::after(1_000);
+    for i in 1..60 {
+        assert_eq!(line.at_once(940 + i), Verdict::OutOfOrder);
+        assert_eq!(line.give(1_000 + i), Verdict::Accepted);
+    }
+    // At twice the pace they are refused longer: a run at less than two thirds of the time of its ticks is none.
+    let mut line = Line::after(1_000);
+    for sequence in [940, 941, 942, 943, 944] {
+        line.now_us += 500;
+        assert_eq!(line.at_once(sequence), Verdict::OutOfOrder);
+    }
 }
 
 proptest! {

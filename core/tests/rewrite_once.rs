@@ -1,8 +1,8 @@
-//! One part, one arming: whatever runs without a new arming runs uncorrected.
+//! One part, one arming: whatever runs without a new arming runs uncorrected, in a series of any length.
 
 mod rewrite_support;
 use rewrite_support::*;
-use truepath_core::rewrite::{Mode, Reason, Refusal, State};
+use truepath_core::rewrite::{Mode, Reason, Refusal, SPENT_CAPACITY, SPENT_FLOORS, Spent, SpentList, State};
 
 /// The whole program: plunge, path, retract. Gives whether any setpoint was corrected.
 fn whole_program(m: &mut Machine) -> bool {
@@ -59,6 +59,81 @@ fn armings_can_be_remembered_over_a_power_down() {
     assert!(!m.stay().forward);
     m.acknowledge();
     assert_eq!(m.rewriter.arm(&mut m.state, &m.request), Err(Refusal::PartRepeated { part_serial: 1 }));
+}
+
+#[test]
+fn every_part_of_a_long_series_stays_spent() {
+    let mut m = Machine::on(straight()).armed();
+    for part in 1..=100 {
+        if part > 1 {
+            m.request.part_serial = part;
+            m.rewriter.arm(&mut m.state, &m.request).unwrap();
+        }
+        m.rewriter.disarm(&mut m.state).unwrap();
+        for part_serial in 1..=part {
+            m.request.part_serial = part_serial;
+            let refused = m.rewriter.arm(&mut m.state, &m.request);
+            assert_eq!(refused, Err(Refusal::PartRepeated { part_serial }), "after {part}");
+        }
+    }
+}
+
+const fn pass(part_serial: u32, feature: u32) -> Spent {
+    Spent { part_serial, program_crc: 0x1234_5678, feature, pass: 1 }
+}
+
+#[test]
+fn as_many_passes_as_there_are_floors_are_remembered_for_ever_in_any_order() {
+    for passes in [1, 20, SPENT_FLOORS as u32] {
+        let (mut list, mut next) = (SpentList::EMPTY, vec![1; passes as usize]);
+        // Not in turn: some passes wait for thousands of armings of others.
+        let mut random = 1u32;
+        for _ in 0..20_000 {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let feature = ((random >> 16) % (passes * passes)).isqrt();
+            let serial = &mut next[feature as usize];
+            assert!(!list.contains(&pass(*serial, feature)));
+            list.spend(pass(*serial, feature));
+            *serial += 1;
+            for (feature, next) in next.iter().enumerate() {
+                let last = *next - 1;
+                assert!(last == 0 || list.contains(&pass(last, feature as u32)));
+                assert!(last == 0 || list.contains(&pass(1 + random % last, feature as u32)));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_newest_parts_may_come_in_any_order_and_a_floor_never_falls() {
+    let mut list = SpentList::EMPTY;
+    for serial in [9, 7, 8, 3] {
+        list.spend(pass(serial, 0));
+    }
+    assert!(!list.contains(&pass(2, 0)) && !list.contains(&pass(5, 0)) && !list.contains(&pass(10, 0)));
+    // 9, 7, 8 and 3 become floors, in this order.
+    for feature in 1..=SPENT_CAPACITY as u32 {
+        list.spend(pass(1, feature));
+    }
+    assert!((0..=9).all(|serial| list.contains(&pass(serial, 0))));
+    assert!(!list.contains(&pass(10, 0)));
+    // Another program, feature or pass has its own.
+    let other = pass(5, 0);
+    assert!(!list.contains(&Spent { program_crc: 1, ..other }));
+    assert!(!list.contains(&Spent { pass: 2, ..other }) && !list.contains(&pass(5, 17)));
+    assert_eq!(list.last(), Some(pass(1, SPENT_CAPACITY as u32)));
+}
+
+#[test]
+fn of_more_passes_than_that_the_one_longest_untouched_is_forgotten() {
+    let mut list = SpentList::EMPTY;
+    let most = (SPENT_CAPACITY + SPENT_FLOORS) as u32;
+    for feature in 0..most {
+        list.spend(pass(1, feature));
+    }
+    assert!((0..most).all(|feature| list.contains(&pass(1, feature))));
+    list.spend(pass(1, most));
+    assert!(!list.contains(&pass(1, 0)) && (1..=most).all(|feature| list.contains(&pass(1, feature))));
 }
 
 #[test]

@@ -89,6 +89,21 @@ fn a_count_that_begins_anew() {
 }
 
 #[test]
+fn old_frames_in_a_burst() {
+    let mut wire = active();
+    let old: Vec<_> = (1..=40)
+        .map(|_| {
+            wire.forward(1);
+            packet_of(&wire.next)
+        })
+        .collect();
+    for packet in old {
+        assert_eq!(wire.receive(&packet).unwrap().answer, None);
+    }
+    goes_on("old frames in a burst, up to 63 before the last one", wire);
+}
+
+#[test]
 fn a_few_missed_deadlines() {
     let mut wire = active();
     wire.delay_us = 501;
@@ -108,6 +123,42 @@ fn too_many_missed_deadlines() {
         wire.delay_us = if late > 0 { 501 } else { 0 };
         late -= 1;
         wire.forward(1)
+    });
+}
+
+#[test]
+fn too_many_answers_not_fetched() {
+    let row = row("more than 2 answers in a row not fetched (SPI)");
+    active().ends(row.noticed, row.out, Reason::SequenceBroken, |wire| {
+        let came = wire.forward(1);
+        wire.endpoint.withdraw();
+        came
+    });
+}
+
+#[test]
+fn setpoints_that_are_too_fast() {
+    let row = row("setpoints faster than the settings by more than half");
+    let mut longest = (0, 0, 0);
+    for tick_us in [50, 500, 666] {
+        // The window of 32 frames stands at any place when it begins.
+        for before in 0..32 {
+            let mut wire = active();
+            wire.forward(before + 1);
+            wire.tick_us = tick_us;
+            let noticed = (1..=200).find(|_| wire.forward(1).output().mode == Mode::Fault).unwrap();
+            longest = longest.max((noticed, before, tick_us));
+        }
+    }
+    let (noticed, before, tick_us) = longest;
+    assert_eq!(Some(noticed), row.noticed);
+    let mut wire = active();
+    wire.forward(before + 1);
+    wire.ends(row.noticed, row.out, Reason::FrameRate, |wire| {
+        wire.tick_us = tick_us;
+        let came = wire.forward(1);
+        wire.tick_us = TICK_US;
+        came
     });
 }
 

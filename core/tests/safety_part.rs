@@ -95,6 +95,37 @@ fn an_image_for_something_else() {
 }
 
 #[test]
+fn a_frame_onto_an_axis_that_is_not_sent() {
+    for axes in [[3, 1, 2], [0, 5, 2], [0, 1, 3]] {
+        let mut wire = Wire::bypass();
+        for (map, axis) in wire.request.frame.axes.iter_mut().zip(axes) {
+            map.axis = axis;
+        }
+        wire.request.frame = wire.request.frame.sealed();
+        wire.next.frame_crc = wire.request.frame.crc;
+        let [x, y, z] = axes;
+        let refused = Refusal::FrameAxes { x, y, z };
+        assert_eq!(wire.endpoint.check(&wire.rewriter, &wire.request), Err(refused));
+        assert_eq!(wire.endpoint.arm(&wire.rewriter, &wire.request), Err(refused));
+        stays_plain("frame onto an axis that is not sent", &mut wire);
+    }
+}
+
+#[test]
+fn arming_before_the_pace_is_known() {
+    let mut wire = Wire::reset();
+    wire.stay();
+    wire.endpoint.acknowledge(&wire.rewriter, wire.now_us).unwrap();
+    wire.next.flags = truepath_core::rewrite::Flags::DRIVES_ENABLED;
+    for _ in 0..31 {
+        wire.stay();
+    }
+    let refused = wire.endpoint.arm(&wire.rewriter, &wire.request);
+    assert_eq!(refused, Err(Refusal::FrameRate { tick_hz: 1_000, interval_ns: 0 }));
+    stays_plain("arming before 33 setpoints have come at the pace of the settings", &mut wire);
+}
+
+#[test]
 fn a_wrong_image() {
     let event = "wrong image: damaged, of another version, under another name";
     let mut bytes = vec![0; truepath_core::image::image_bytes(101)];

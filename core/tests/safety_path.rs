@@ -243,15 +243,51 @@ fn a_stale_spindle_speed() {
     fades("spindle speed not renewed", wire, older, |wire| wire.next.spindle_age_ticks = 0);
 }
 
+/// The load is asked for.
+fn load_wanted(mut wire: Wire) -> Wire {
+    let wanted = Settings { require_spindle_load: true, ..Settings::at_1_khz() };
+    wire.rewriter = Rewriter::new(wanted, wire.rewriter.image().copied()).unwrap();
+    wire
+}
+
 #[test]
 fn a_spindle_without_load() {
-    let mut wanted = Settings::at_1_khz();
-    wanted.require_spindle_load = true;
-    let mut wire = Wire::active();
-    wire.rewriter = Rewriter::new(wanted, wire.rewriter.image().copied()).unwrap();
+    let mut wire = load_wanted(Wire::active());
     wire.next.flags = wire.next.flags.with(Flags::SPINDLE_LOADED);
     assert!(!wire.forward(1).output().status.has(Status::FADED));
     let air = |wire: &mut Wire| wire.next.flags = Flags::DRIVES_ENABLED;
     let cuts = |wire: &mut Wire| wire.next.flags = Flags::DRIVES_ENABLED.with(Flags::SPINDLE_LOADED);
     fades("no load on the spindle, when it is asked for", wire, air, cuts);
+}
+
+#[test]
+fn a_spindle_without_load_while_the_axes_stand_or_above_the_pass() {
+    let row = row("no load on the spindle while the axes stand, or above the pass");
+    assert_eq!((row.noticed, row.out), (None, None));
+    // Standing, in a feed hold and without.
+    for flags in [Flags::DRIVES_ENABLED, Flags::DRIVES_ENABLED.with(Flags::FEED_HOLD)] {
+        let mut wire = load_wanted(Wire::active());
+        let before = wire.stay().output().correction_nm;
+        wire.next.flags = flags;
+        for _ in 0..600 {
+            let out = wire.stay().output();
+            assert!(!out.status.has(Status::FADED));
+            assert_eq!(out.correction_nm, before);
+        }
+        // What has faded away when the cutter stops does not come back without a load.
+        wire.next.flags = Flags::DRIVES_ENABLED;
+        let faded = wire.forward(200).output().correction_nm;
+        for _ in 0..600 {
+            let now = wire.stay().output().correction_nm;
+            assert!(now.iter().zip(faded).all(|(now, faded)| now.abs_diff(faded) < 2_000), "{now:?} {faded:?}");
+        }
+    }
+    // Down through the gate, slowly: whole at the first contact.
+    let mut wire = load_wanted(Wire::armed());
+    for i in 0..600 {
+        wire.send(0, 0, GATE - i);
+    }
+    let out = wire.stay().output();
+    assert_eq!((out.mode, out.status.has(Status::FADED)), (Mode::Active, false));
+    assert_ne!(out.correction_nm, [0; 6]);
 }

@@ -14,7 +14,7 @@ use truepath_core::link::{
     Counters, Deframer, DeviceSettings, Endpoint, Framed, LinkError, MAX_ANSWER_BYTES, MAX_SETPOINT_BYTES, Recorder,
     TRACE_SAMPLES, Trace, TraceSample, setpoint_bytes,
 };
-use truepath_core::rewrite::{ArmRequest, Mode, Reason, Refusal, Rewriter, SPENT_CAPACITY, Spent, State};
+use truepath_core::rewrite::{ArmRequest, Mode, Reason, Refusal, Rewriter, Spent, SpentList, State};
 
 use crate::active::Loaded;
 use crate::clock::Clock;
@@ -73,12 +73,7 @@ pub struct Servo<'a> {
 
 impl<'a> Servo<'a> {
     /// The servo after a reset: `Off`, without an image. `bare` is a rewriter for the same settings.
-    pub fn new(
-        settings: DeviceSettings,
-        bare: Rewriter<'static>,
-        spent: [Option<Spent>; SPENT_CAPACITY],
-        recording: &'a mut [u8],
-    ) -> Self {
+    pub fn new(settings: DeviceSettings, bare: Rewriter<'static>, spent: SpentList, recording: &'a mut [u8]) -> Self {
         Self {
             endpoint: Endpoint::new(settings, spent),
             bare,
@@ -122,6 +117,15 @@ impl<'a> Servo<'a> {
         recorder.record(raw);
         after(endpoint, recorder, trace);
         if verdict.is_accepted() { endpoint.answer(clock.now_us(), answer) } else { None }
+    }
+
+    /// The controller did not fetch the last answer by [`Servo::answer_by_us`]: it counts as withheld. Some stores.
+    pub fn withdraw(&mut self) {
+        self.endpoint.withdraw();
+    }
+    /// When the answer to the last accepted frame must have been fetched, µs. A load.
+    pub fn answer_by_us(&self) -> u64 {
+        self.endpoint.due_by_us()
     }
 
     /// Looks at the silence of the link.
@@ -271,7 +275,7 @@ fn after(endpoint: &mut Endpoint, recorder: &mut Recorder<'_>, trace: &mut Trace
     if let Some(output) = endpoint.due() {
         trace.record(endpoint.state(), output);
     }
-    if endpoint.take_fault().is_some() {
-        recorder.fault();
+    if let Some(reason) = endpoint.take_fault() {
+        recorder.fault(reason);
     }
 }

@@ -4,7 +4,7 @@ mod wire_support;
 use std::cell::{Cell, RefCell};
 
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
-use truepath_core::link::{Ask, Denial, ResetCause, Response, SetpointFrame, Slot, decode};
+use truepath_core::link::{Ask, Denial, DeviceSettings, ResetCause, Response, SetpointFrame, Slot, decode};
 use truepath_core::rewrite::{ArmRequest, Flags, Frame, Mode, Refusal, Setpoint};
 use truepath_fw::desk::{Board, Desk, IMAGE_BYTES, Memory};
 use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Nor, NorError, WordState};
@@ -54,12 +54,16 @@ fn mode(servo: &Interrupted) -> Mode {
     servo.servo.borrow().mode()
 }
 
-fn enable(desk: &mut TestDesk, servo: &Interrupted, sequence: u32) {
+fn enable(desk: &mut TestDesk, servo: &Interrupted) {
     servo.now_us.set(servo.now_us.get() + 2_000_000);
-    let setpoint = Setpoint { sequence, flags: Flags::default(), ..Setpoint::default() };
-    let (mut packet, now) = ([0; 128], servo.now_us.get());
-    let used = SetpointFrame { axes: 3, setpoint }.encode_packet(&mut packet).unwrap();
-    servo.servo.borrow_mut().receive(&packet[..used], now, &now, &mut |_: &[u8]| {});
+    // As many as it takes to know their rate.
+    for sequence in 0..40 {
+        servo.now_us.set(servo.now_us.get() + 1_000);
+        let setpoint = Setpoint { sequence, flags: Flags::default(), ..Setpoint::default() };
+        let (mut packet, now) = ([0; 128], servo.now_us.get());
+        let used = SetpointFrame { axes: 3, setpoint }.encode_packet(&mut packet).unwrap();
+        servo.servo.borrow_mut().receive(&packet[..used], now, &now, &mut |_: &[u8]| {});
+    }
     ask(desk, servo, 1_000, Ask::AcknowledgeDrivesDisabled).unwrap();
     assert_eq!(mode(servo), Mode::Bypass);
 }
@@ -78,6 +82,7 @@ fn silence_between_any_two_steps_of_a_request_leaves_the_device_off_and_in_order
     let board = Board { name: "test", last_reset: ResetCause::PowerOn };
     let (mut desk, servo) = Desk::start(bank(), memory, board, 0);
     let servo = Interrupted { servo: RefCell::new(servo), left: Cell::new(None), now_us: Cell::new(0) };
+    ask(&mut desk, &servo, 60, Ask::Configure(DeviceSettings::at_1_khz())).unwrap();
     let images = [image_of(straight()), image_of(wire_support::straight(10))];
     for (id, image) in (0..).step_by(10).zip(&images) {
         let length = image.len() as u32;
@@ -89,7 +94,7 @@ fn silence_between_any_two_steps_of_a_request_leaves_the_device_off_and_in_order
         ask(&mut desk, &servo, id + 9, Ask::Commit).unwrap();
     }
     ask(&mut desk, &servo, 50, Ask::Activate { slot: 0, crc: name(&images[0]) }).unwrap();
-    let (mut part_serial, mut sequence, mut interrupted, mut spent_without_arming) = (0, 0, 0, 0);
+    let (mut part_serial, mut interrupted, mut spent_without_arming) = (0, 0, 0);
     for before in 0..8 {
         part_serial += 1;
         let arm = Ask::Arm(ArmRequest { binding: part::settings().binding, part_serial, frame: Frame::identity() });
@@ -101,8 +106,7 @@ fn silence_between_any_two_steps_of_a_request_leaves_the_device_off_and_in_order
             Ask::Commit,
         ];
         for (k, what) in requests.into_iter().enumerate() {
-            sequence += 1;
-            enable(&mut desk, &servo, sequence);
+            enable(&mut desk, &servo);
             ask(&mut desk, &servo, 200, Ask::Activate { slot: 0, crc: name(&images[0]) }).unwrap();
             servo.left.set(Some(before));
             let answer = ask(&mut desk, &servo, 300 + before as u16, what);
@@ -110,8 +114,7 @@ fn silence_between_any_two_steps_of_a_request_leaves_the_device_off_and_in_order
             interrupted += u32::from(struck);
             assert_eq!(struck, mode(&servo) == Mode::Off, "{k}, {before}");
             if k == 0 && struck {
-                sequence += 1;
-                enable(&mut desk, &servo, sequence);
+                enable(&mut desk, &servo);
                 match ask(&mut desk, &servo, 400, arm) {
                     // Denied, but written to the ledger before: it stays spent.
                     Err(Denial::Refused(Refusal::PartRepeated { .. })) if answer.is_err() => spent_without_arming += 1,

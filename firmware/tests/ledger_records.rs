@@ -18,12 +18,24 @@ fn part(part_serial: u32) -> Spent {
 
 /// A record at a place, as the layout says; `crc` is that of the payload in its head.
 fn record(nor: &mut Nor<'_>, sector: usize, place: usize, sequence: u32, payload: &[u8], crc: u32) {
+    sealed_record(nor, *b"TPL2", sector, place, sequence, payload, crc);
+}
+
+fn sealed_record(
+    nor: &mut Nor<'_>,
+    magic: [u8; 4],
+    sector: usize,
+    place: usize,
+    sequence: u32,
+    payload: &[u8],
+    crc: u32,
+) {
     let at = LEDGER_SECTORS.start() + (sector * SECTOR_BYTES + place * 1_024) as u32;
     let mut padded = payload.to_vec();
     padded.resize(payload.len().next_multiple_of(32), 0);
     nor.write(at + 32, &padded).unwrap();
     let mut head = [0; 32];
-    head[..4].copy_from_slice(b"TPL1");
+    head[..4].copy_from_slice(&magic);
     head[4..8].copy_from_slice(&sequence.to_le_bytes());
     head[8..12].copy_from_slice(&(payload.len() as u32).to_le_bytes());
     head[12..16].copy_from_slice(&crc.to_le_bytes());
@@ -33,7 +45,8 @@ fn record(nor: &mut Nor<'_>, sector: usize, place: usize, sequence: u32, payload
 }
 
 fn payload(boots: u32) -> Vec<u8> {
-    let mut remembered = Remembered { boots, ..Remembered::default() };
+    let settings = Some(DeviceSettings::at_1_khz());
+    let mut remembered = Remembered { boots, settings, ..Remembered::default() };
     remembered.spend(part(boots));
     let mut buffer = [0; 992];
     postcard::to_slice(&remembered, &mut buffer).unwrap().to_vec()
@@ -74,19 +87,20 @@ fn a_record_of_another_firmware_still_tells_which_parts_were_armed() {
     }
     let ledger = Ledger::open(&mut nor);
     assert!(ledger.now().is_spent(&part(2)));
-    assert_eq!(ledger.now().settings, DeviceSettings::at_1_khz());
+    assert_eq!(ledger.now().settings, None);
 }
 
 #[test]
 fn settings_that_are_out_of_range_count_as_none() {
     let mut nor = erased();
-    let mut wrong = Remembered { boots: 4, ..Remembered::default() };
-    wrong.settings.axes = 9;
+    let settings = DeviceSettings { axes: 9, ..DeviceSettings::at_1_khz() };
+    let wrong = Remembered { boots: 4, settings: Some(settings), ..Remembered::default() };
     let mut buffer = [0; 992];
     let bytes = postcard::to_slice(&wrong, &mut buffer).unwrap();
     record(&mut nor, 0, 0, 1, bytes, crc32(bytes));
     let ledger = Ledger::open(&mut nor);
-    assert_eq!((ledger.now().boots, ledger.now().settings), (4, DeviceSettings::at_1_khz()));
+    assert_eq!((ledger.now().boots, ledger.now().settings), (4, None));
+    assert_eq!(ledger.now().settings_in_use(), DeviceSettings::at_1_khz());
 }
 
 #[test]
@@ -94,18 +108,35 @@ fn the_longest_record_fits_into_its_place() {
     let mut nor = erased();
     let mut ledger = Ledger::open(&mut nor);
     let longest = |now: &mut Remembered| {
-        let most = Spent { part_serial: u32::MAX, program_crc: u32::MAX, feature: u32::MAX, pass: u32::MAX };
-        now.spent = [Some(most); 16];
+        for feature in 0..100 {
+            now.spend(Spent { part_serial: u32::MAX, program_crc: u32::MAX, feature, pass: u32::MAX });
+        }
         now.active = Some(ActiveImage { slot: 255, crc: u32::MAX });
         now.boots = u32::MAX;
-        now.settings.silence_us = 10_000_000;
-        now.settings.deadline_us = 1_000_000;
-        now.settings.rewriter.joint_limits_nm = [(i64::MIN, i64::MAX); 6];
-        now.settings.rewriter.hold_after_ticks = 1 << 31;
-        now.settings.rewriter.spindle_stale_ticks = u32::MAX;
+        let mut settings =
+            DeviceSettings { deadline_us: 1_000_000, silence_us: 10_000_000, ..DeviceSettings::at_1_khz() };
+        settings.rewriter.joint_limits_nm = [(i64::MIN, i64::MAX); 6];
+        settings.rewriter.hold_after_ticks = 1 << 31;
+        settings.rewriter.spindle_stale_ticks = u32::MAX;
+        now.settings = Some(settings);
     };
     ledger.change(&mut nor, longest).unwrap();
+    assert!(ledger.now().settings.unwrap().check().is_ok());
     assert_eq!(Ledger::open(&mut nor).now(), ledger.now());
+}
+
+#[test]
+fn a_record_of_the_version_before_is_no_record() {
+    let mut nor = erased();
+    let bytes = payload(3);
+    record(&mut nor, 0, 0, 1, &bytes, crc32(&bytes));
+    assert_eq!(Ledger::open(&mut nor).now().boots, 3);
+    let mut nor = erased();
+    sealed_record(&mut nor, *b"TPL1", 0, 0, 1, &bytes, crc32(&bytes));
+    assert_eq!(*Ledger::open(&mut nor).now(), Remembered::default());
+    // And its place does not stand in the way of what comes.
+    Ledger::open(&mut nor).change(&mut nor, |now| now.boots = 8).unwrap();
+    assert_eq!(Ledger::open(&mut nor).now().boots, 8);
 }
 
 #[test]
@@ -137,6 +168,8 @@ fn a_change_that_changes_nothing_costs_nothing() {
 fn power_that_fails_at_every_start_leaves_the_next_change_its_place() {
     let mut nor = erased();
     let mut ledger = Ledger::open(&mut nor);
+    let configured = |now: &mut Remembered| now.settings = Some(DeviceSettings::at_1_khz());
+    ledger.change(&mut nor, configured).unwrap();
     ledger.change(&mut nor, |now| now.spend(part(1))).unwrap();
     for start in 0..3 * PLACES as u32 {
         // Some words of the record are written, one is torn, the head never is.

@@ -4,7 +4,7 @@ mod wire_support;
 use proptest::prelude::*;
 use truepath_core::checksum::crc32;
 use truepath_core::link::{Ask, Denial, PACKET_BYTES, Reply, Request, ResetCause, Response, decode, encode};
-use truepath_core::rewrite::Mode;
+use truepath_core::rewrite::{Flags, Mode, Refusal};
 use wire_support::part::straight;
 use wire_support::*;
 
@@ -60,6 +60,41 @@ fn a_request_that_comes_twice_is_answered_twice_and_carried_out_once() {
     let mut answer = rig.raw(&other).pop().unwrap();
     let answer: Response<'_> = decode(&mut answer).unwrap();
     assert_eq!(answer.answer, Ok(Reply::Next { offset: 128 }), "the same id with other content is another request");
+}
+
+#[test]
+fn an_arming_that_has_ended_is_not_called_done_when_it_is_asked_for_again() {
+    let mut rig = Rig::with_image(&image_of(straight()));
+    rig.enable();
+    let arming = request(500, Ask::Arm(rig.request(1)));
+    let first = rig.raw(&arming);
+    assert_eq!(response(first[0].clone()), (500, Ok(())));
+    assert_eq!(rig.raw(&arming), first);
+    let flags = rig.setpoint.flags;
+    rig.setpoint.flags = flags.with(Flags::EMERGENCY_STOP);
+    assert_eq!(rig.stay().unwrap().mode, Mode::Bypass);
+    rig.setpoint.flags = flags;
+    rig.stay();
+    let repeated = Err(Denial::Refused(Refusal::PartRepeated { part_serial: 1 }));
+    assert_eq!(response(rig.raw(&arming)[0].clone()), (500, repeated));
+    assert_eq!(rig.device().state().mode(), Mode::Bypass);
+}
+
+#[test]
+fn drives_that_were_dropped_are_acknowledged_anew_by_the_same_request() {
+    let mut rig = Rig::with_image(&image_of(straight()));
+    rig.setpoint.flags = Flags::default();
+    let acknowledge = request(3, Ask::AcknowledgeDrivesDisabled);
+    for _ in 0..3 {
+        rig.stay();
+        assert_eq!(response(rig.raw(&acknowledge)[0].clone()), (3, Ok(())));
+        assert_eq!(rig.device().state().mode(), Mode::Bypass);
+        rig.wait(25);
+        assert_eq!(rig.device().state().mode(), Mode::Off);
+        // Nobody sends setpoints: what was done before is not said again.
+        let silent = Err(Denial::Refused(Refusal::NoSetpoints));
+        assert_eq!(response(rig.raw(&acknowledge)[0].clone()), (3, silent));
+    }
 }
 
 #[test]

@@ -221,8 +221,10 @@ fn a_torn_word_anywhere_in_the_ledger_costs_at_most_the_newest_record() {
             rig.arm(part).unwrap();
             rig.done(Ask::Disarm).unwrap();
         }
-        // Boots, activate, three armings: five records of 1 KiB.
-        let newest = (6 * SECTOR_BYTES + 4 * 1_024) as u32;
+        // Boots, settings, activate, three armings: six records of 1 KiB.
+        let newest = (6 * SECTOR_BYTES + 5 * 1_024) as u32;
+        assert_eq!(rig.flash().word_state(newest), WordState::Programmed);
+        assert_eq!(rig.flash().word_state(newest + 1_024), WordState::Blank);
         if rig.flash().word_state(newest + word * 32) != WordState::Programmed {
             continue;
         }

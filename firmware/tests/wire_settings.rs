@@ -1,11 +1,15 @@
 //! Settings over the configuration link: ranges, keeping, and what they change.
 
 mod wire_support;
+use embedded_storage::nor_flash::NorFlash;
+use truepath_core::checksum::crc32;
 use truepath_core::link::{
-    Ask, Denial, DeviceSetting, DeviceSettings, DeviceSettingsError, ResetCause, setpoint_bytes,
+    ActiveImage, Ask, Denial, DeviceSetting, DeviceSettings, DeviceSettingsError, ResetCause, setpoint_bytes,
 };
 use truepath_core::rewrite::{Mode, Setting, SettingsError};
 use truepath_core::units::Offset;
+use truepath_fw::flash::LEDGER_SECTORS;
+use truepath_fw::ledger::Remembered;
 use wire_support::part::straight;
 use wire_support::*;
 
@@ -119,6 +123,87 @@ fn an_image_that_does_not_go_with_the_settings_is_not_activated_and_the_one_befo
     assert_eq!(rig.status().active.unwrap().crc, name(&good));
     rig.reset(ResetCause::PowerOn);
     assert_eq!(rig.status().active.unwrap().crc, name(&good));
+}
+
+/// Neither checked nor armed until configured, setpoints pass on meanwhile.
+fn is_armed_only_once_configured(rig: &mut Rig, settings: DeviceSettings) {
+    rig.enable();
+    let request = rig.request(1);
+    for _ in 0..2 {
+        assert_eq!(rig.done(Ask::Check(request)), Err(Denial::NotConfigured));
+        assert_eq!(rig.arm(1), Err(Denial::NotConfigured));
+        let out = rig.stay().unwrap();
+        assert!(out.forward && out.mode == Mode::Bypass && out.axes == rig.setpoint.axes);
+        // A reset alone, and settings that are refused, do not help.
+        rig.reset(ResetCause::PowerOn);
+        let wrong = DeviceSettings { axes: 0, ..settings };
+        assert!(matches!(rig.done(Ask::Configure(wrong)), Err(Denial::Settings(_))));
+        rig.enable();
+    }
+    rig.reset(ResetCause::PowerOn);
+    rig.done(Ask::Configure(settings)).unwrap();
+    for _ in 0..2 {
+        rig.enable();
+        rig.done(Ask::Check(request)).unwrap();
+        rig.reset(ResetCause::PowerOn);
+        assert_eq!(rig.settings(), settings);
+    }
+    rig.enable();
+    rig.arm(1).unwrap();
+    assert_eq!(rig.mode(), Mode::Armed);
+}
+
+#[test]
+fn a_device_that_was_never_configured_arms_nothing() {
+    let image = image_of(straight());
+    let mut rig = Rig::from_factory();
+    rig.upload(&image).unwrap();
+    rig.activate(0, name(&image)).unwrap();
+    assert_eq!(rig.settings(), DeviceSettings::at_1_khz(), "what it would use");
+    is_armed_only_once_configured(&mut rig, DeviceSettings::at_1_khz());
+}
+
+#[test]
+fn a_device_that_has_lost_its_joint_limits_arms_nothing() {
+    let mut limited = DeviceSettings::at_1_khz();
+    limited.rewriter.joint_limits_nm = [(-part::MM, part::MM); 6];
+    for cut in [false, true] {
+        let image = image_of(straight());
+        let mut rig = Rig::from_factory();
+        rig.upload(&image).unwrap();
+        rig.done(Ask::Configure(limited)).unwrap();
+        // The record of a firmware to come: other settings, or settings of another length.
+        let wrong = DeviceSettings { axes: 77, ..limited };
+        let active = Some(ActiveImage { slot: 0, crc: name(&image) });
+        let record = Remembered { boots: 9, active, settings: Some(wrong), ..Remembered::default() };
+        let mut bytes = postcard::to_slice(&record, &mut [0; 992]).unwrap().to_vec();
+        if cut {
+            bytes.truncate(bytes.len() - 3);
+        }
+        append(rig.flash(), &bytes);
+        rig.reset(ResetCause::PowerOn);
+        assert_eq!(rig.settings(), DeviceSettings::at_1_khz());
+        if cut {
+            rig.activate(0, name(&image)).unwrap();
+        }
+        is_armed_only_once_configured(&mut rig, limited);
+    }
+}
+
+/// A record behind all others, as the layout of the journal says.
+fn append(flash: &mut Bank, payload: &[u8]) {
+    let at = LEDGER_SECTORS.start() + 100 * 1_024;
+    let mut padded = payload.to_vec();
+    padded.resize(payload.len().next_multiple_of(32), 0);
+    flash.write(at + 32, &padded).unwrap();
+    let mut head = [0; 32];
+    head[..4].copy_from_slice(b"TPL2");
+    head[4..8].copy_from_slice(&1_000u32.to_le_bytes());
+    head[8..12].copy_from_slice(&(payload.len() as u32).to_le_bytes());
+    head[12..16].copy_from_slice(&crc32(payload).to_le_bytes());
+    let sum = crc32(&head[..28]);
+    head[28..].copy_from_slice(&sum.to_le_bytes());
+    flash.write(at, &head).unwrap();
 }
 
 #[test]

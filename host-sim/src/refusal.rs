@@ -43,6 +43,8 @@ impl Inputs<'_> {
             JobError::Corrected => at_job(of_job(error), "program"),
             JobError::WallsDiffer | JobError::NoWall => at_job(of_job(error), "wall"),
             JobError::NoSpeed | JobError::FeedPerTooth => at_job(of_job(error), "cut"),
+            JobError::ToolsDiffer { .. } => at_job(of_job(error), "tool.number"),
+            JobError::NoTool => at_job(of_job(error), "tool"),
             JobError::Flutes => at_job(of_job(error), "cut.axial_depth_mm"),
             JobError::Unfit { .. } => at_job(of_correction(error), "probe.ball_diameter_mm"),
             JobError::BeyondClamp { .. } | JobError::NoFeedWindow { .. } => {
@@ -80,6 +82,14 @@ fn of_job(error: &JobError) -> InputError {
         JobError::NoSpeed => {
             ("an S word before the contour, or spindle_rpm in [cut]", "add spindle_rpm to [cut] of the job")
         }
+        JobError::ToolsDiffer { .. } => (
+            "the same tool in both",
+            "correct number in [tool] of the job, or remove it: the T word before M6 of the program is used then",
+        ),
+        JobError::NoTool => (
+            "the number that the controller sends when it arms",
+            "add number to [tool] of the job, or T and M6 to the program; route = \"program\" needs neither",
+        ),
         JobError::Flutes => {
             ("at most 64 flutes in the stock at once", "check axial_depth_mm, diameter_mm, teeth and helix_deg")
         }

@@ -9,7 +9,7 @@ use truepath::measurement::Measurement;
 use truepath::pass::Pass;
 use truepath::plant::Machine;
 use truepath::workshop;
-use truepath_core::image::{DEVICE_NODES, image_bytes};
+use truepath_core::image::{DEVICE_NODES, Image, image_bytes};
 use truepath_core::job::{self, Buffers, COMPACT_BYTES, JobError};
 use truepath_core::units::{Offset, Real};
 
@@ -29,13 +29,22 @@ fn shown<T>(result: Result<T, Failure>) -> T {
 }
 
 fn probed(name: &str, change: &[(&str, &str)], places_mm: &[f64], levels: &[f64]) -> Part {
+    let pass = shown(changed(name, change, source(name, "program.nc")));
+    milled(name, pass, places_mm, levels)
+}
+
+/// A part of the demonstration with changes in its job, and its program.
+fn changed(name: &str, change: &[(&str, &str)], program: Source) -> Result<Pass, Failure> {
     let mut text = String::from_utf8(source(name, "job.toml").bytes().to_vec()).unwrap();
     for (from, to) in change {
         assert!(text.contains(from), "the job has no `{from}`");
         text = text.replace(from, to);
     }
     let job = Job::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).unwrap();
-    let pass = shown(Pass::new(job, source(name, "program.nc")));
+    Pass::new(job, program)
+}
+
+fn milled(name: &str, pass: Pass, places_mm: &[f64], levels: &[f64]) -> Part {
     let machine: Machine = toml::from_str(str::from_utf8(source(name, "plant.toml").bytes()).unwrap()).unwrap();
     let milled = shown(workshop::mill(&pass, &machine, None));
     let ball_mm = pass.job.require_probe().unwrap().ball_diameter.nm() as f64 / 1e6;
@@ -101,8 +110,51 @@ fn host_and_device_refuse_the_same_parts_with_the_same_code() {
     }
 }
 
+/// The program of the corner with another tool change.
+fn corner_with(tool_change: &str) -> Source {
+    let text = String::from_utf8(source("corner", "program.nc").bytes().to_vec()).unwrap();
+    assert!(text.contains("T01 M06"));
+    Source::new("program.nc", text.replace("T01 M06", tool_change).into_bytes())
+}
+
+#[test]
+fn an_image_needs_the_number_of_its_tool_from_job_or_program() {
+    let teeth = |more: &str| format!("teeth = 6\n{more}");
+    let binding = |more: &str, tool_change: &str| {
+        let change = teeth(more);
+        let pass = shown(changed("corner", &[("teeth = 6", &change)], corner_with(tool_change)));
+        let part = milled("corner", pass, &[30.0, 75.0], &[0.5]);
+        let (host, device) = (on_the_host(&part), on_the_device(&part));
+        match (host, device) {
+            (Ok(host), Ok(device)) => {
+                assert_eq!(host, device);
+                Ok(Image::new_checked(&host).unwrap().settings().binding)
+            }
+            (Err(failure), Err(error)) => Err((failure.render(Form::Plain), error)),
+            (host, device) => panic!("{} {}", host.is_ok(), device.is_ok()),
+        }
+    };
+    assert_eq!(binding("", "T01 M06").unwrap().tool, 1);
+    assert_eq!(binding("number = 7\noffset_number = 8", "").map(|b| (b.tool, b.tool_offset)), Ok((7, 8)));
+    let (shown, error) = binding("", "").unwrap_err();
+    assert_eq!(error, JobError::NoTool);
+    assert!(shown.contains("J023") && shown.contains("add number to [tool] of the job"), "{shown}");
+    // The program needs no such number to be corrected itself.
+    let part = milled("corner", changed("corner", &[], corner_with("")).unwrap(), &[30.0, 75.0], &[0.5]);
+    let measurement = Measurement::read(&part.pass, &part.probe).unwrap();
+    assert!(correct(&part.pass, &measurement, &[], &[Route::Program], &mut |_| ()).is_ok());
+}
+
+#[test]
+fn a_job_that_names_another_tool_than_the_program_is_refused_at_its_number() {
+    let change = [("teeth = 6", "teeth = 6\nnumber = 7")];
+    assert!(changed("corner", &change, corner_with("T07 M06")).is_ok());
+    let shown = changed("corner", &change, corner_with("T01 M06")).unwrap_err().render(Form::Plain);
+    assert!(shown.contains("J022") && shown.contains("number = 7") && shown.contains("tool 1"), "{shown}");
+}
+
 /// A number at the end of its range, as a job file states it, with the next one beyond.
-const ENDS: [(&str, &str, &str); 24] = [
+const ENDS: [(&str, &str, &str); 29] = [
     ("allowance_mm = 0.8", "allowance_mm = 0.000001", "allowance_mm = 0"),
     ("allowance_mm = 0.8", "allowance_mm = 9.999999", "allowance_mm = 10"),
     ("diameter_mm = 10.0", "diameter_mm = 100", "diameter_mm = 100.000001"),
@@ -118,6 +170,11 @@ const ENDS: [(&str, &str, &str); 24] = [
     ),
     ("teeth = 4", "teeth = 12", "teeth = 13"),
     ("teeth = 4", "teeth = 1", "teeth = 0"),
+    ("teeth = 4", "teeth = 4\nnumber = 1", "teeth = 4\nnumber = 0"),
+    ("teeth = 4", "teeth = 4\nnumber = 99999", "teeth = 4\nnumber = 100000"),
+    ("teeth = 4", "teeth = 4\noffset_number = 99999", "teeth = 4\noffset_number = 100000"),
+    ("[probe]", "[correct]\nsetup = 1\n[probe]", "[correct]\nsetup = 0\n[probe]"),
+    ("[probe]", "[correct]\nsetup = 99999\n[probe]", "[correct]\nsetup = 100000\n[probe]"),
     ("helix_deg = 38.0", "helix_deg = 60", "helix_deg = 60.000001"),
     ("helix_deg = 38.0", "helix_deg = 0", "helix_deg = -0.000001"),
     ("axial_depth_mm = 12.0", "axial_depth_mm = 200", "axial_depth_mm = 200.000001"),
@@ -165,7 +222,7 @@ fn the_ranges_of_the_job_file_are_those_of_the_compact_form() {
     }
     // And what the file would refuse, the compact form refuses as well.
     let within = parse(&text).unwrap().numbers;
-    let beyond: [fn(&mut job::Job); 12] = [
+    let beyond: [fn(&mut job::Job); 16] = [
         |j| j.allowance = Offset::ZERO,
         |j| j.allowance = j.tool.diameter,
         |j| j.tool.diameter = Offset::from_nm(100_000_001),
@@ -178,6 +235,10 @@ fn the_ranges_of_the_job_file_are_those_of_the_compact_form() {
         |j| j.machine.stiffness_y = Real::from_bits((10 << 32) - 1),
         |j| j.correct.clamp = Offset::from_nm(4_000_001),
         |j| j.correct.band[1] = j.cut.axial_depth + Offset::from_nm(1),
+        |j| j.tool.number = Some(0),
+        |j| j.tool.number = Some(100_000),
+        |j| j.tool.offset_number = 100_000,
+        |j| j.correct.setup = 0,
     ];
     for change in beyond {
         let mut job = within;

@@ -14,8 +14,8 @@ use truepath::bench::{
 use truepath::command::hil::{Kind, Options, Source, open, run};
 use truepath_core::checksum::crc32;
 use truepath_core::image::Image;
-use truepath_core::link::{Ask, Denial, Item, Reply, ResetCause, Slot};
-use truepath_core::rewrite::{ArmRequest, Frame};
+use truepath_core::link::{Ask, Denial, DeviceSettings, Item, Reply, ResetCause, SetpointFrame, Slot};
+use truepath_core::rewrite::{ArmRequest, Frame, Setpoint};
 
 /// A wire to a device in process that loses and damages what goes either way.
 struct BadWire {
@@ -127,12 +127,16 @@ fn an_arming_whose_answer_was_lost_is_not_carried_out_twice() {
         let mut client = BadWire::new(seed, 0.0, 0.0).client();
         let committed = client.upload(Item::Image, &bytes, |_| ()).unwrap();
         client.done(Ask::Activate { slot: committed.slot, crc: committed.crc }).unwrap();
-        // Setpoints with the drives disabled, so that these can be acknowledged.
-        let frame = truepath_core::link::SetpointFrame { axes: 3, setpoint: Default::default() };
-        let mut packet = [0; 80];
-        let used = frame.encode_packet(&mut packet).unwrap();
+        client.done(Ask::Configure(DeviceSettings::at_1_khz())).unwrap();
+        // Setpoints with the drives disabled at 1 kHz, so that these can be acknowledged and their rate is known.
         let mut batch = vec![];
-        records::write(Channel::Setpoint, &packet[..used], &mut batch);
+        for sequence in 0..40 {
+            let setpoint = Setpoint { sequence, ..Setpoint::default() };
+            let mut packet = [0; 80];
+            let used = SetpointFrame { axes: 3, setpoint }.encode_packet(&mut packet).unwrap();
+            records::write(Channel::Time, &1_000u32.to_le_bytes(), &mut batch);
+            records::write(Channel::Setpoint, &packet[..used], &mut batch);
+        }
         client.wire().device.run(&batch).unwrap();
         client.done(Ask::AcknowledgeDrivesDisabled).unwrap();
         client.wire().loss = probability(0.5);

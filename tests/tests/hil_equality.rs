@@ -19,6 +19,8 @@ fn whole_parts_are_milled_with_the_same_bits_on_both_sides() {
         // Nothing but feed holds and overrides happens, so the correction is on almost all the time.
         assert!(report.answers_in(Mode::Active) > count * 9 / 10 && report.answers_in(Mode::Fault) == 0);
         assert!(report.armed >= 2 && report.max_correction_mm > 0.1, "{report:?}");
+        // Enough setpoints before the arming for the device to know their rate, each of them answered.
+        assert!(report.answers_in(Mode::Off) >= 40, "{report:?}");
     }
 }
 

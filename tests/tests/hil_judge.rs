@@ -110,6 +110,14 @@ fn an_answer_needs_a_frame_that_arrived_whole_and_only_one() {
 }
 
 #[test]
+fn setpoints_at_their_rate_are_not_too_fast() {
+    let mut too_fast = output(2, Mode::Fault, 0);
+    too_fast.reason = Reason::FrameRate;
+    let judged = last(&[output(1, Mode::Active, 0), too_fast]);
+    assert_eq!(judged, Err(Violation::Reason { reason: Reason::FrameRate }));
+}
+
+#[test]
 fn modes_change_as_the_contract_says_and_a_fault_ends() {
     let illegal = |outputs: &[Output]| matches!(last(outputs), Err(Violation::Transition { .. }));
     assert!(illegal(&[output(1, Mode::Bypass, 0), output(2, Mode::Active, 0)]));

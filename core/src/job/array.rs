@@ -5,8 +5,8 @@ use crate::correct::Node;
 use crate::cut::{Path, Sample};
 use crate::geometry::Block;
 use crate::image::{
-    Binding, CorrectionLimits, DEVICE_NODES, FeedLaw, FineOffset, ImageError, ImageNode, ImageSettings, PathWindow,
-    build, image_bytes, peak,
+    CorrectionLimits, DEVICE_NODES, FeedLaw, FineOffset, ImageError, ImageNode, ImageSettings, PathWindow, build,
+    image_bytes, peak,
 };
 use crate::units::{Offset, Real};
 
@@ -74,7 +74,7 @@ pub fn to_nominal_feed(
 /// inside the clamp, up to 150 %.
 ///
 /// # Errors
-/// A correction beyond the clamp at 110 % of the feed, more nodes than the coprocessor holds, or a buffer too short.
+/// No tool number, a correction beyond the clamp at 110 % of the feed, more nodes than the coprocessor holds, or a buffer too short.
 pub fn write_image(
     pass: &Pass,
     identified: &Identified,
@@ -162,14 +162,7 @@ fn settings(
     let clamp = pass.job.correct.clamp;
     let z = pass.contour.z;
     Ok(ImageSettings {
-        binding: Binding {
-            program_crc: pass.program_crc,
-            feature: 1,
-            pass: 1,
-            tool: pass.contour.tool.unwrap_or(0),
-            tool_offset: 0,
-            setup: 1,
-        },
+        binding: pass.binding()?,
         closed: pass.contour.closed,
         feed: FeedLaw::new(
             per_tooth,

@@ -1,6 +1,6 @@
 //! The ranges of a job. It may come over a wire: what is outside them is refused before anything is computed.
 
-use super::{Correct, Cut, Force, Job, JobError, Machine, Probe, Tool};
+use super::{Correct, Cut, Force, Job, JobError, LARGEST_NUMBER, Machine, Probe, Tool};
 use crate::units::{Offset, Real};
 
 /// Refuses unless a condition holds; the sentence names quantity and range.
@@ -56,7 +56,10 @@ impl Tool {
             )?;
         }
         require(within(self.teeth, 1, 12), "the number of teeth is not 1 to 12")?;
-        require(whole(self.helix_deg, 0, 60), "the helix angle is not 0 to 60 degrees")
+        require(whole(self.helix_deg, 0, 60), "the helix angle is not 0 to 60 degrees")?;
+        let number = self.number.is_none_or(|n| within(n, 1, LARGEST_NUMBER));
+        require(number, "the tool number is not 1 to 99,999")?;
+        require(self.offset_number <= LARGEST_NUMBER, "the number of the tool offset is not 0 to 99,999")
     }
 }
 
@@ -110,6 +113,7 @@ impl Correct {
             "the band of heights does not rise within the axial depth",
         )?;
         let gouge = self.max_gouge.is_none_or(|v| within(v, Offset::ZERO, um(1_000)));
-        require(gouge, "the largest gouge is not 0 to 1 mm")
+        require(gouge, "the largest gouge is not 0 to 1 mm")?;
+        require(within(self.setup, 1, LARGEST_NUMBER), "the number of the setup is not 1 to 99,999")
     }
 }

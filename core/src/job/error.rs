@@ -57,6 +57,15 @@ pub enum JobError {
     NoWall,
     /// Neither job nor program gives a spindle speed.
     NoSpeed,
+    /// Job and program name different tools.
+    ToolsDiffer {
+        /// Number in the job.
+        job: u32,
+        /// Number in the program.
+        program: u32,
+    },
+    /// Neither job nor program gives the number of the tool, which an image needs.
+    NoTool,
     /// More flutes are in the stock at once than the force is summed over.
     Flutes,
     /// An outside arc is so tight that it leaves no wall.
@@ -167,6 +176,8 @@ impl JobError {
             Self::Flutes => "J019",
             Self::FeedPerTooth => "J020",
             Self::TooManyNodes { .. } => "J021",
+            Self::ToolsDiffer { .. } => "J022",
+            Self::NoTool => "J023",
             Self::Measurement(error) => error.kind.code(),
             Self::OffTheWall { suspicion, .. } => match suspicion {
                 Suspicion::Inches => "M011",
@@ -236,6 +247,10 @@ impl fmt::Display for JobError {
             }
             Self::NoWall => f.write_str("neither job nor program says on which side the wall lies"),
             Self::NoSpeed => f.write_str("neither job nor program gives a spindle speed"),
+            Self::ToolsDiffer { job, program } => {
+                write!(f, "the job names tool {job} and the program changes to tool {program}")
+            }
+            Self::NoTool => f.write_str("neither job nor program gives the number of the tool"),
             Self::Flutes => f.write_str("a helix of this angle winds round the cutter too often over the axial depth"),
             Self::Undercut { line } => {
                 write!(

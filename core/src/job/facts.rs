@@ -34,6 +34,9 @@ pub struct Job {
     pub correct: Correct,
 }
 
+/// The largest number of a tool, a tool offset or a setup: that of the tool tables of common controls.
+pub const LARGEST_NUMBER: u32 = 99_999;
+
 /// The cutter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tool {
@@ -48,6 +51,10 @@ pub struct Tool {
     pub helix_deg: Real,
     /// What makes the cutter a cantilever; `None` when its own bending is not modelled.
     pub cantilever: Option<Stickout>,
+    /// Its number at the machine, 1…[`LARGEST_NUMBER`]; `None` leaves it to T of the program.
+    pub number: Option<u32>,
+    /// Number of the tool offset in force, up to [`LARGEST_NUMBER`], 0 for none.
+    pub offset_number: u32,
 }
 
 /// What the cutter's own compliance follows from.
@@ -151,6 +158,8 @@ pub struct Correct {
     pub band: [Offset; 2],
     /// The deepest gouge allowed at any height, 0…1 mm; wins over the target.
     pub max_gouge: Option<Offset>,
+    /// Number of the setup (clamping) of the part, 1…[`LARGEST_NUMBER`].
+    pub setup: u32,
 }
 
 /// The law of correction, before what it needs of the measurement is known.

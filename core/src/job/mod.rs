@@ -31,7 +31,9 @@ pub use array::{Written, to_nominal_feed, write_image};
 pub use compact::COMPACT_BYTES;
 pub use correction::{check_clamp, largest, law};
 pub use error::{Buffer, Failed, JobError};
-pub use facts::{Correct, Cut, Force, ForceModel, Job, LawName, Machine, Probe, Stickout, Tool, ZReference};
+pub use facts::{
+    Correct, Cut, Force, ForceModel, Job, LARGEST_NUMBER, LawName, Machine, Probe, Stickout, Tool, ZReference,
+};
 pub use identification::{Identified, identified};
 pub use measure::{REACH, contacts, observations, same_place};
 pub use pass::Pass;

@@ -8,6 +8,7 @@ use crate::gcode::{
 };
 use crate::geometry::{Block, Contour};
 use crate::identify::Prior;
+use crate::image::Binding;
 use crate::probe::{Format, LengthUnit};
 use crate::units::{Offset, Real};
 
@@ -39,6 +40,10 @@ impl Pass {
             return Err(JobError::Corrected);
         }
         let contour = read_contour(program, blocks, &ContourOptions::default()).map_err(JobError::Program)?;
+        match (job.tool.number, named_tool(&contour)) {
+            (Some(job), Some(program)) if job != program => return Err(JobError::ToolsDiffer { job, program }),
+            _ => {}
+        }
         let setup = setup(job, &contour)?;
         for block in blocks.iter_mut().take(contour.blocks) {
             block.feed = job.cut.feed_mm_per_min.unwrap_or(block.feed);
@@ -47,6 +52,17 @@ impl Pass {
             }
         }
         Ok(Self { job: *job, contour, program_crc: program_crc(program), setup })
+    }
+
+    /// What an image of this pass belongs to. `feature` and `pass` are 1: a program holds one contour, milled to size in one
+    /// pass.
+    ///
+    /// # Errors
+    /// Neither job nor program gives the number of the tool.
+    pub fn binding(&self) -> Result<Binding, JobError> {
+        let tool = self.job.tool.number.or(named_tool(&self.contour)).ok_or(JobError::NoTool)?;
+        let (tool_offset, setup) = (self.job.tool.offset_number, self.job.correct.setup);
+        Ok(Binding { program_crc: self.program_crc, feature: 1, pass: 1, tool, tool_offset, setup })
     }
 
     /// Distance between the samples of the path: 0.1 mm, or a fiftieth of a small cutter's diameter.
@@ -108,6 +124,11 @@ impl Pass {
             (Format::Linuxcnc, Units::Millimetres) | (Format::Columns, _) => LengthUnit::Millimetre,
         }
     }
+}
+
+/// The tool that the program has changed to before the contour. T0 empties the spindle and names none.
+fn named_tool(contour: &ContourProgram) -> Option<u32> {
+    contour.tool.filter(|&number| number > 0)
 }
 
 /// The cut, from job and program together.

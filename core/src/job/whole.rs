@@ -66,6 +66,8 @@ pub fn image(
     let mut gauge = Gauge::new(progress);
     gauge.tell(Stage::Reading, 0);
     let pass = Pass::read(job, program, workspace.blocks)?;
+    // Refused now and not after minutes of work.
+    pass.binding()?;
     let blocks = workspace.blocks.get(..pass.contour.blocks).unwrap_or_default();
     let contour = Pass::path_contour(blocks)?;
 

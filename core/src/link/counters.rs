@@ -4,9 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::rewrite::Reason;
 
-/// Reasons that are faults have the numbers 16 … 31.
-const FIRST_FAULT: u16 = 16;
-
 /// Counts since the reset or `ClearCounters`; each stands still at its end instead of wrapping.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
@@ -28,8 +25,8 @@ pub struct Counters {
     pub late: u32,
     /// Times at which no frame came for too long.
     pub silences: u32,
-    /// Faults by their reason: the number of a reason less 16 is the index.
-    pub faults: [u32; 16],
+    /// Faults by their reason: the number of a reason less [`Reason::FIRST_FAULT`] is the index.
+    pub faults: [u32; Reason::FAULTS],
     /// Requests of the configuration link that arrived undamaged.
     pub messages: u32,
     /// Messages of the configuration link that were damaged.
@@ -45,13 +42,13 @@ impl Counters {
     /// Counts a fault by its reason; regular ends are not counted.
     #[inline]
     pub(super) fn fault(&mut self, reason: Reason) {
-        let index = usize::from(reason.code().wrapping_sub(FIRST_FAULT));
+        let index = usize::from(reason.code().wrapping_sub(Reason::FIRST_FAULT));
         if let Some(counter) = self.faults.get_mut(index) {
             Self::one_more(counter);
         }
     }
     /// How often a fault happened; 0 for a regular end.
     pub fn faults_of(&self, reason: Reason) -> u32 {
-        self.faults.get(usize::from(reason.code().wrapping_sub(FIRST_FAULT))).copied().unwrap_or(0)
+        self.faults.get(usize::from(reason.code().wrapping_sub(Reason::FIRST_FAULT))).copied().unwrap_or(0)
     }
 }

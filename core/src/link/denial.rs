@@ -84,6 +84,9 @@ pub enum Denial {
         /// Where, bytes from the start of the store.
         address: u32,
     },
+    /// The device has no settings of its own: it was never configured, or what it had stored is damaged. Check and arm
+    /// are refused until `Configure`, because joint limits that nobody has set protect nothing.
+    NotConfigured,
 }
 
 impl fmt::Display for Denial {
@@ -111,6 +114,7 @@ impl fmt::Display for Denial {
             Self::Missing(item) => write!(f, "{item} has not been uploaded"),
             Self::NoRecording { total } => write!(f, "no such frame, or the recorder still runs ({total} frames)"),
             Self::Flash { address } => write!(f, "the flash failed at 0x{address:x}"),
+            Self::NotConfigured => f.write_str("the device has no settings of its own: it is to be configured first"),
         }
     }
 }

@@ -9,20 +9,27 @@
 //! A tick whose answer is withheld has been made: the correction of the next answer has moved by what two ticks
 //! permit, in the time of two ticks. Ticks without an answer count like lost ones, and more of them in a row than
 //! `max_lost_frames` end the correction, because the drives then stood still on old positions.
+//!
+//! All limits are kept per tick; they hold per second only while frames come at the rate of the settings. The pace of
+//! accepted frames is therefore measured: nothing is armed before it is known, and too fast a pace ends the correction.
 
-use super::answer::{write, write_packet};
 use super::counters::Counters;
 use super::error::LinkError;
 use super::setpoint::SetpointFrame;
 use super::settings::DeviceSettings;
 use super::stuffing::unstuff;
-use crate::rewrite::{AXES, Mode, Output, Place, Reason, Rewriter, SPENT_CAPACITY, Setpoint, Spent, State, Status};
+use crate::rewrite::{AXES, Mode, Output, Place, Reason, Rewriter, Setpoint, SpentList, State, Status};
 
 mod command;
+mod pace;
+mod reply;
+
+use pace::Pace;
 
 /// Sequences before the last accepted one that are taken for late frames and not for another count.
 pub const BEHIND: u32 = 63;
-/// So many refused frames in a row that follow each other are the controller counting anew, not late ones.
+/// So many refused frames in a row that follow each other are the controller counting anew, not late ones, provided
+/// they came at a pace at which a controller sends and none was accepted in their time.
 pub const RESTART_AFTER: u32 = 4;
 
 /// Before the first tick.
@@ -61,6 +68,17 @@ impl Verdict {
     }
 }
 
+/// Refused frames that follow each other.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stray {
+    /// Sequence of the last one.
+    sequence: u32,
+    /// How many there are.
+    run: u32,
+    /// When the first one arrived, µs.
+    since_us: u64,
+}
+
 /// State of the rewriter, sequence, counters.
 #[derive(Clone, Debug)]
 pub struct Endpoint {
@@ -76,17 +94,19 @@ pub struct Endpoint {
     due_us: Option<u64>,
     /// Ticks since the last answer, lost ones included.
     unanswered: u32,
-    /// Sequence of the last refused frame, and how many such followed each other.
-    stray: (u32, u32),
+    /// What they were before the last answer, until that is withdrawn.
+    given: Option<u32>,
+    stray: Stray,
+    pace: Pace,
     /// A fault that has not been asked for.
     fault: Option<Reason>,
 }
 
 impl Endpoint {
-    /// After power-up or reset: `Off`, with the armed passes of parts from before, newest first.
+    /// After power-up or reset: `Off`, with the armed passes of parts from before.
     ///
     /// The settings must have passed [`DeviceSettings::check`].
-    pub fn new(settings: DeviceSettings, spent: [Option<Spent>; SPENT_CAPACITY]) -> Self {
+    pub fn new(settings: DeviceSettings, spent: SpentList) -> Self {
         Self {
             state: State::remembering(spent),
             settings,
@@ -96,7 +116,9 @@ impl Endpoint {
             output: NOTHING,
             due_us: None,
             unanswered: 0,
-            stray: (0, 0),
+            given: None,
+            stray: Stray::default(),
+            pace: Pace::new(settings.rewriter.tick_hz),
             fault: None,
         }
     }
@@ -129,7 +151,7 @@ impl Endpoint {
     #[inline]
     fn setpoint(&mut self, rewriter: &Rewriter<'_>, setpoint: &Setpoint, arrived_us: u64) -> Verdict {
         let most = rewriter.settings().max_lost_frames;
-        let verdict = self.judge(setpoint.sequence, most);
+        let verdict = self.judge(setpoint.sequence, most, arrived_us);
         let missing = match verdict {
             Verdict::Repeated => {
                 Counters::one_more(&mut self.counters.repeated);
@@ -150,7 +172,7 @@ impl Endpoint {
             Verdict::Accepted | Verdict::Damaged(_) => 0,
         };
         Counters::one_more(&mut self.counters.accepted);
-        self.stray = (0, 0);
+        self.stray = Stray::default();
         self.last = Some(setpoint.sequence);
         self.heard_us = arrived_us;
         if self.due_us.is_some() {
@@ -160,6 +182,11 @@ impl Endpoint {
         let before = self.state.reason();
         if self.unanswered > most {
             rewriter.break_off(&mut self.state, Reason::SequenceBroken);
+        }
+        if verdict == Verdict::Jump {
+            self.pace.begin(arrived_us);
+        } else if self.pace.is_too_fast(arrived_us) {
+            rewriter.break_off(&mut self.state, Reason::FrameRate);
         }
         self.output = rewriter.tick(&mut self.state, setpoint);
         self.due_us = Some(arrived_us);
@@ -172,7 +199,7 @@ impl Endpoint {
 
     /// The verdict on a sequence.
     #[inline]
-    fn judge(&mut self, sequence: u32, most: u32) -> Verdict {
+    fn judge(&mut self, sequence: u32, most: u32, arrived_us: u64) -> Verdict {
         let Some(last) = self.last else {
             return Verdict::Accepted;
         };
@@ -187,10 +214,16 @@ impl Endpoint {
         if ahead.wrapping_neg() > BEHIND {
             return Verdict::Jump;
         }
-        let (before, run) = self.stray;
-        let run = if run > 0 && sequence.wrapping_sub(before) == 1 { run.wrapping_add(1) } else { 1 };
-        self.stray = (sequence, run);
-        if run >= RESTART_AFTER {
+        if self.stray.run > 0 && sequence.wrapping_sub(self.stray.sequence) == 1 {
+            self.stray.run = self.stray.run.wrapping_add(1);
+        } else {
+            self.stray = Stray { sequence, run: 1, since_us: arrived_us };
+        }
+        self.stray.sequence = sequence;
+        // Old frames in a burst follow each other as well, but at no controller's pace, or between good ones.
+        let silent_us = arrived_us.saturating_sub(self.heard_us);
+        let taken_us = arrived_us.saturating_sub(self.stray.since_us);
+        if self.stray.run >= RESTART_AFTER && self.pace.is_restart(silent_us, taken_us) {
             Verdict::Jump
         } else if ahead == 0 {
             Verdict::Repeated
@@ -199,69 +232,33 @@ impl Endpoint {
         }
     }
 
-    /// The answer to the last accepted frame as it travels on SPI; gives its bytes. `None` when there is none to
-    /// give, when it is later than the deadline (counted), or when `raw` is too short.
-    #[inline]
-    pub fn answer(&mut self, now_us: u64, raw: &mut [u8]) -> Option<usize> {
-        self.in_time(now_us)?;
-        let bytes = write(&self.output, self.settings.axes, raw);
-        self.sent(bytes)
-    }
-
-    /// The same as it travels on a byte stream, with COBS and the 0x00 at its end.
-    #[inline]
-    pub fn answer_packet(&mut self, now_us: u64, packet: &mut [u8]) -> Option<usize> {
-        self.in_time(now_us)?;
-        let bytes = write_packet(&self.output, self.settings.axes, packet);
-        self.sent(bytes)
-    }
-
-    #[inline]
-    fn in_time(&mut self, now_us: u64) -> Option<()> {
-        let arrived_us = self.due_us.take()?;
-        if now_us.saturating_sub(arrived_us) > u64::from(self.settings.deadline_us) {
-            self.withhold();
-            return None;
-        }
-        Some(())
-    }
-
-    #[inline]
-    fn sent(&mut self, bytes: Result<usize, LinkError>) -> Option<usize> {
-        match bytes {
-            Ok(bytes) => {
-                Counters::one_more(&mut self.counters.answered);
-                self.unanswered = 0;
-                Some(bytes)
-            }
-            Err(_) => {
-                self.withhold();
-                None
-            }
-        }
-    }
-
-    /// An answer that does not leave in time.
-    #[inline]
-    fn withhold(&mut self) {
-        Counters::one_more(&mut self.counters.late);
-        self.unanswered = self.unanswered.saturating_add(1);
-    }
-
-    /// Drops the drives when no frame was accepted for too long; says whether it did so now.
+    /// Drops the drives when no frame was accepted for too long; says whether it did so now. In `Off` too the link begins
+    /// anew then.
     #[inline]
     pub fn watch(&mut self, rewriter: &Rewriter<'_>, now_us: u64) -> bool {
-        if self.state.mode() == Mode::Off || !self.is_silent(now_us) {
+        if !self.is_silent(now_us) {
+            return false;
+        }
+        // What comes next is a beginning, with any sequence; an answer that was due belongs to the time before.
+        self.forget();
+        if self.state.mode() == Mode::Off {
             return false;
         }
         rewriter.power_off(&mut self.state, Reason::Silence);
         Counters::one_more(&mut self.counters.silences);
         self.note(Reason::Silence);
-        // What comes next is a beginning, with any sequence; an answer that was due belongs to the time before.
+        true
+    }
+
+    /// The link begins anew.
+    #[inline]
+    fn forget(&mut self) {
         self.last = None;
         self.due_us = None;
         self.unanswered = 0;
-        true
+        self.given = None;
+        self.stray = Stray::default();
+        self.pace.forget();
     }
 
     #[inline]

@@ -1,5 +1,7 @@
 //! The last raw setpoint frames, kept when a fault happens.
 
+use crate::rewrite::Reason;
+
 /// A ring of frames of one length in a lent buffer. After a fault it takes a stated number of frames more and then
 /// stands, until it is released.
 #[derive(Debug)]
@@ -47,10 +49,13 @@ impl<'a> Recorder<'a> {
         self.count = self.count.wrapping_add(1).min(self.capacity);
     }
 
-    /// A fault happened: a few more frames, then it stands. Further faults change nothing.
+    /// A fault happened: a few more frames, then it stands. Further faults change nothing, but at a silence it stands
+    /// at once: no frames follow.
     #[inline]
-    pub fn fault(&mut self) {
-        if self.left.is_none() {
+    pub fn fault(&mut self, reason: Reason) {
+        if reason == Reason::Silence {
+            self.left = Some(0);
+        } else if self.left.is_none() {
             self.left = Some(self.after);
         }
     }

@@ -4,7 +4,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::refusal::{Identity, Refusal};
-use super::state::{Mode, Spent, State};
+use super::spent::Spent;
+use super::state::{Mode, State};
 use super::{Frame, Phase, Reason, Rewriter};
 use crate::image::Binding;
 
@@ -13,7 +14,7 @@ use crate::image::Binding;
 pub struct ArmRequest {
     /// Program, feature, pass, tool, tool offset, setup; every number must be that of the image.
     pub binding: Binding,
-    /// Serial number of the part; the same pass of the same part cannot be armed twice.
+    /// Serial number of the part; serials are to count up. The same pass of the same part cannot be armed twice.
     pub part_serial: u32,
     /// Program coordinates to machine axes.
     pub frame: Frame,
@@ -41,7 +42,8 @@ impl Rewriter<'_> {
     ///
     /// # Errors
     /// Not in `Bypass`; no image; a number differs; the frame is damaged or no rigid motion; the pass of this part
-    /// was armed before. The state then stays as it is.
+    /// was armed before, or a part of the same or a higher serial was, more than 16 armings ago. The state then stays
+    /// as it is.
     pub fn arm(&self, state: &mut State, request: &ArmRequest) -> Result<(), Refusal> {
         if state.mode != Mode::Bypass {
             return Err(Refusal::State(state.mode));

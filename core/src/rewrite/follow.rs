@@ -152,7 +152,8 @@ impl Rewriter<'_> {
     /// 2⁻¹⁶.
     ///
     /// The feed is judged only while the setpoint moves: a standing cutter makes no chips, and its correction stays
-    /// what it was. When the conditions are met again, the correction comes back at the same rate.
+    /// what it was. So is a missing load, and only in the pass. When the conditions are met again, the correction comes
+    /// back at the same rate.
     #[inline(never)]
     fn feed(&self, plan: &Plan<'_>, state: &mut State, setpoint: &Setpoint, way: Option<i32>) -> u32 {
         let spindle = self.live_spindle(setpoint);
@@ -166,8 +167,13 @@ impl Rewriter<'_> {
             state.feed_in_window = judged == ratio;
         }
         let loaded = !self.settings.require_spindle_load || setpoint.flags.has(Flags::SPINDLE_LOADED);
-        let change =
-            if state.feed_in_window && loaded && spindle > 0 { self.fade_step } else { self.fade_step.wrapping_neg() };
+        // Only a cutter that moves in the pass can be expected to be loaded.
+        let cuts = state.still == 0 && state.phase == Phase::Path && state.mode != Mode::Hold;
+        let change = match state.feed_in_window && spindle > 0 {
+            true if loaded => self.fade_step,
+            true if !cuts => 0,
+            _ => self.fade_step.wrapping_neg(),
+        };
         state.fade = state.fade.wrapping_add(change).clamp(0, FADE_ONE);
         judged
     }

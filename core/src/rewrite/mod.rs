@@ -14,7 +14,7 @@
 //! | `Hold` | corrected, held | motion → `Active`; as `Active` |
 //! | `Fault` | correction ramps to zero | at zero, within [`Limits::ramp_ticks`] → `Bypass` |
 //!
-//! Arming is one-shot: after any end the next part needs a new arming with another serial number, so a repeated
+//! Arming is one-shot: after any end the next part needs a new arming with another serial number (serials count up, [`SpentList`]), so a repeated
 //! program, a spring pass or a restart in the middle runs uncorrected.
 //!
 //! The correction is looked up in program coordinates, turned to the machine axes, and limited there, axis by axis.
@@ -31,6 +31,7 @@ mod reason;
 mod refusal;
 mod setpoint;
 mod settings;
+mod spent;
 mod state;
 mod telemetry;
 mod tick;
@@ -44,7 +45,8 @@ pub use reason::{Reason, UnknownReason};
 pub use refusal::{Identity, Refusal};
 pub use setpoint::{Flags, Output, Setpoint, Status};
 pub use settings::{Setting, Settings, SettingsError};
-pub use state::{Mode, SPENT_CAPACITY, Spent, State};
+pub use spent::{SPENT_CAPACITY, SPENT_FLOORS, Spent, SpentList};
+pub use state::{Mode, State};
 
 use crate::image::Image;
 use feed::FeedScale;

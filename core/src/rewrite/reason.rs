@@ -50,11 +50,13 @@ pub enum Reason {
     JointLimit = 30,
     /// No setpoint came for too long.
     Silence = 31,
+    /// Setpoints came faster than the settings say.
+    FrameRate = 32,
 }
 
 impl Reason {
     /// All of them in the order of their numbers.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::None,
         Self::Completed,
         Self::Disarmed,
@@ -75,14 +77,19 @@ impl Reason {
         Self::SequenceBroken,
         Self::JointLimit,
         Self::Silence,
+        Self::FrameRate,
     ];
+    /// Number of the first fault; those of the others follow.
+    pub const FIRST_FAULT: u16 = 16;
+    /// How many faults there are.
+    pub const FAULTS: usize = (Self::FrameRate as u16).wrapping_sub(Self::FIRST_FAULT).wrapping_add(1) as usize;
     /// Its number.
     pub const fn code(self) -> u16 {
         self as u16
     }
     /// Whether it is a fault and not a regular end.
     pub const fn is_fault(self) -> bool {
-        self as u16 >= 16
+        self as u16 >= Self::FIRST_FAULT
     }
 }
 
@@ -109,6 +116,7 @@ impl fmt::Display for Reason {
             Self::SequenceBroken => "setpoints were repeated, or more were lost than permitted",
             Self::JointLimit => "the corrected position would pass a joint limit",
             Self::Silence => "no setpoint came for too long",
+            Self::FrameRate => "setpoints came faster than the settings say",
         })
     }
 }

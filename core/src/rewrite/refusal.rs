@@ -45,7 +45,7 @@ pub enum Refusal {
         /// Sine.
         sine: i32,
     },
-    /// X, Y and Z are not on three different axes 0…5.
+    /// X, Y and Z are not on three different axes of those that are sent.
     FrameAxes {
         /// Axis of X.
         x: u8,
@@ -53,6 +53,13 @@ pub enum Refusal {
         y: u8,
         /// Axis of Z.
         z: u8,
+    },
+    /// Setpoints come faster than the settings say, or too few have come to know.
+    FrameRate {
+        /// Setpoints per second by the settings.
+        tick_hz: u32,
+        /// Mean interval of the last 32 setpoints, ns; 0 before there were as many.
+        interval_ns: u32,
     },
 }
 
@@ -85,6 +92,7 @@ impl Refusal {
             Self::FrameNotRigid { .. } => 6,
             Self::FrameAxes { .. } => 7,
             Self::NoSetpoints => 8,
+            Self::FrameRate { .. } => 9,
             Self::Identity { what: Identity::Program, .. } => 16,
             Self::Identity { what: Identity::Feature, .. } => 17,
             Self::Identity { what: Identity::Pass, .. } => 18,
@@ -111,7 +119,15 @@ impl fmt::Display for Refusal {
             Self::FrameNotRigid { cosine, sine } => {
                 write!(f, "cosine {cosine} and sine {sine} (2^-30) are not those of one angle")
             }
-            Self::FrameAxes { x, y, z } => write!(f, "axes {x}, {y}, {z} are not three different ones of 0 to 5"),
+            Self::FrameAxes { x, y, z } => {
+                write!(f, "axes {x}, {y}, {z} are not three different ones of those that are sent")
+            }
+            Self::FrameRate { tick_hz, interval_ns: 0 } => {
+                write!(f, "too few setpoints have come to tell whether they come at {tick_hz} Hz")
+            }
+            Self::FrameRate { tick_hz, interval_ns } => {
+                write!(f, "a setpoint comes every {interval_ns} ns, faster than the {tick_hz} Hz of the settings")
+            }
             Self::Identity { what: Identity::Program, image, request } => {
                 write!(f, "the image is for program {image:08x}, the controller runs {request:08x}")
             }

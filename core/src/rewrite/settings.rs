@@ -10,7 +10,8 @@ use crate::units::Offset;
 /// Times and limits of the machine the rewriter sits in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Settings {
-    /// Setpoints per second, 10 … 100 000.
+    /// Setpoints per second, 10 … 100 000. Limits per second become limits per tick by it; the link refuses setpoints
+    /// that come more than half as fast again.
     pub tick_hz: u32,
     /// Greatest change of a setpoint in X or Y per tick while a correction is on; rapids are faster. 1 nm … 8 mm.
     pub max_step: Offset,
@@ -24,7 +25,8 @@ pub struct Settings {
     pub fade_ticks: u32,
     /// The live feed is smoothed over 2ᵏ ticks, k = 0 … 12.
     pub feed_smoothing: u32,
-    /// Whether the correction fades out unless the setpoint says that the spindle is loaded.
+    /// Whether the correction fades out when the cutter moves in the pass and the setpoint does not say that the spindle
+    /// is loaded.
     pub require_spindle_load: bool,
     /// Least and greatest position of each axis, nm. A correction that would carry an axis over one is a fault, and
     /// until it has ramped out the position is held at the limit, which goes before the limits of speed.

@@ -8,14 +8,13 @@ use super::feed::FeedRatio;
 use super::frame::{Local, Mapping};
 use super::limit::AxisState;
 use super::locate::Place;
+use super::spent::{Spent, SpentList};
 use super::{Reason, Setpoint};
 
 /// Fraction bits of the fade factor.
 pub(super) const FADE_BITS: u32 = 16;
 /// Fade factor 1.
 pub(super) const FADE_ONE: i32 = 1 << FADE_BITS;
-/// Arming is remembered for this many passes of parts; the oldest is forgotten first.
-pub const SPENT_CAPACITY: usize = 16;
 
 /// The states of the safety contract.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -61,19 +60,6 @@ pub(super) enum Phase {
     Leaving,
 }
 
-/// A pass of a part that has been armed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct Spent {
-    /// Serial number of the part.
-    pub part_serial: u32,
-    /// CRC-32 of the program.
-    pub program_crc: u32,
-    /// Feature.
-    pub feature: u32,
-    /// Pass.
-    pub pass: u32,
-}
-
 /// Everything that changes from tick to tick. A copy is a complete record: the same state, image, settings and
 /// setpoints give the same outputs to the last bit. The default is the state after power-up, [`Mode::Off`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -106,12 +92,12 @@ pub struct State {
     pub(super) fade: i32,
     /// Machine axes of X and Y.
     pub(super) axes: [AxisState; 2],
-    pub(super) spent: [Option<Spent>; SPENT_CAPACITY],
+    pub(super) spent: SpentList,
 }
 
 impl State {
-    /// State after power-up that remembers armings from before, newest first.
-    pub fn remembering(spent: [Option<Spent>; SPENT_CAPACITY]) -> Self {
+    /// State after power-up that remembers armings from before.
+    pub fn remembering(spent: SpentList) -> Self {
         Self { spent, ..Self::default() }
     }
     /// The mode.
@@ -126,19 +112,16 @@ impl State {
     pub const fn axes(&self) -> &[AxisState; 2] {
         &self.axes
     }
-    /// Armed passes of parts, newest first, to be kept over a power-down.
-    pub const fn spent(&self) -> &[Option<Spent>; SPENT_CAPACITY] {
+    /// Armed passes of parts, to be kept over a power-down.
+    pub const fn spent(&self) -> &SpentList {
         &self.spent
     }
 
     pub(super) fn is_spent(&self, pass: &Spent) -> bool {
-        self.spent.iter().flatten().any(|s| s == pass)
+        self.spent.contains(pass)
     }
     pub(super) fn spend(&mut self, pass: Spent) {
-        self.spent.rotate_right(1);
-        if let Some(newest) = self.spent.first_mut() {
-            *newest = Some(pass);
-        }
+        self.spent.spend(pass);
     }
     /// The end of a correction: ramp out when one is on, bypass at once when only armed.
     #[inline]

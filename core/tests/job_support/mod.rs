@@ -36,6 +36,8 @@ pub fn corner() -> Part {
             teeth: 6,
             helix_deg: Real::from_int(30),
             cantilever: None,
+            number: None,
+            offset_number: 0,
         },
         cut: Cut { axial_depth: um(10_000), spindle_rpm: None, feed_mm_per_min: Some(Real::from_int(400)) },
         force: Force {
@@ -58,6 +60,7 @@ pub fn corner() -> Part {
             target: Target::Mean,
             band: [Offset::ZERO, um(10_000)],
             max_gouge: None,
+            setup: 1,
         },
     };
     let program = include_bytes!("../../../host-sim/demo/corner/program.nc");

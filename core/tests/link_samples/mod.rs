@@ -93,7 +93,7 @@ pub fn hello() -> Hello<'static> {
 }
 
 pub fn counters() -> Counters {
-    let mut faults = [0; 16];
+    let mut faults = [0; Reason::FAULTS];
     faults[15] = 300;
     Counters {
         accepted: 1_000_000,
@@ -189,6 +189,7 @@ pub fn denials() -> Vec<(&'static str, Denial)> {
         Denial::Missing(Item::Probe),
         Denial::NoRecording { total: 0 },
         Denial::Flash { address: 0x4_0000 },
+        Denial::NotConfigured,
     ];
     all.into_iter().map(|denial| (denial_name(&denial), denial)).collect()
 }
@@ -211,5 +212,6 @@ fn denial_name(denial: &Denial) -> &'static str {
         Denial::Missing(_) => "Missing",
         Denial::NoRecording { .. } => "NoRecording",
         Denial::Flash { .. } => "Flash",
+        Denial::NotConfigured => "NotConfigured",
     }
 }

@@ -11,7 +11,7 @@ use truepath_core::link::{
     AnswerFrame, Deframer, DeviceSettings, Endpoint, Framed, LinkError, MAX_STUFFED, SetpointFrame, Verdict, unstuff,
 };
 use truepath_core::rewrite::{
-    ArmRequest, Flags, Frame, Mode, Output, Reason, Refusal, Rewriter, Setpoint, Settings, Status,
+    ArmRequest, Flags, Frame, Mode, Output, Reason, Refusal, Rewriter, Setpoint, Settings, SpentList, Status,
 };
 
 /// All modes.
@@ -43,6 +43,8 @@ pub struct Wire {
     pub next: Setpoint,
     pub request: ArmRequest,
     pub now_us: u64,
+    /// Time from setpoint to setpoint.
+    pub tick_us: u64,
     /// Time from arrival to answer.
     pub delay_us: u64,
 }
@@ -55,10 +57,11 @@ impl Wire {
         Self {
             request: ArmRequest { binding: image.settings().binding, part_serial: 1, frame },
             rewriter: Rewriter::new(settings, Some(image)).unwrap(),
-            endpoint: Endpoint::new(device, [None; 16]),
+            endpoint: Endpoint::new(device, SpentList::EMPTY),
             deframer: Deframer::new(),
             next: Setpoint { spindle_millirpm: SPINDLE, frame_crc: frame.crc, ..Setpoint::default() },
             now_us: 0,
+            tick_us: TICK_US,
             delay_us: 50,
         }
     }
@@ -71,8 +74,14 @@ impl Wire {
         wire.send(0, 0, CLEAR);
         wire.endpoint.acknowledge(&wire.rewriter, wire.now_us).unwrap();
         wire.next.flags = Flags::DRIVES_ENABLED;
-        wire.send(0, 0, CLEAR);
+        wire.measured();
         wire
+    }
+    /// Standing until the pace of the setpoints is known.
+    pub fn measured(&mut self) {
+        for _ in 0..33 {
+            self.stay();
+        }
     }
     pub fn armed() -> Self {
         let mut wire = Self::bypass();
@@ -125,7 +134,7 @@ impl Wire {
     /// The bytes of the next setpoint: one tick later, one sequence on.
     pub fn packet(&mut self, axes: [i64; 3]) -> Vec<u8> {
         let [x, y, z] = axes;
-        self.now_us += TICK_US;
+        self.now_us += self.tick_us;
         self.next.sequence = self.next.sequence.wrapping_add(1);
         self.next.axes = [x, y, z, 0, 0, 0];
         packet_of(&self.next)

@@ -1,6 +1,6 @@
 //! Rows of the table: what controller and cutter may do while a correction is on.
 
-use super::{DROPPED, END, FADE, FAULT, LONGEST, OFF, RAMP, Row, new};
+use super::{DROPPED, END, FADE, FAULT, LONGEST, OFF, RAMP, Row, SAME, new};
 
 pub const CUT: &[Row] = &[
     new("emergency stop", RAMP, FAULT, Some(1), LONGEST, tests!("core/tests/safety_path" an_emergency_stop)),
@@ -106,6 +106,14 @@ pub const CUT: &[Row] = &[
         Some(1),
         Some(250),
         tests!("core/tests/safety_path" a_spindle_without_load),
+    ),
+    new(
+        "no load on the spindle while the axes stand, or above the pass",
+        "corrected, held",
+        SAME,
+        None,
+        None,
+        tests!("core/tests/safety_path" a_spindle_without_load_while_the_axes_stand_or_above_the_pass),
     ),
     new(
         "end of the program (M2, M30)",

@@ -61,6 +61,14 @@ pub const LINK: &[Row] = &[
         tests!("core/tests/safety_link" a_count_that_begins_anew, "core/tests/link_sequence" a_controller_that_counts_anew_is_heard_again_within_a_few_frames),
     ),
     new(
+        "old frames in a burst, up to 63 before the last one",
+        NOTHING,
+        SAME,
+        None,
+        None,
+        tests!("core/tests/safety_link" old_frames_in_a_burst, "core/tests/link_sequence" old_frames_in_a_burst_never_pass_for_a_restart),
+    ),
+    new(
         "up to 2 deadlines missed in a row",
         NOTHING,
         SAME,
@@ -75,6 +83,22 @@ pub const LINK: &[Row] = &[
         Some(4),
         LONGEST,
         tests!("core/tests/safety_link" too_many_missed_deadlines, "firmware/tests/wire_setpoints" an_answer_that_would_be_late_is_withheld_and_too_many_of_them_end_the_correction),
+    ),
+    new(
+        "more than 2 answers in a row not fetched (SPI)",
+        RAMP,
+        FAULT,
+        Some(4),
+        LONGEST,
+        tests!("core/tests/safety_link" too_many_answers_not_fetched, "core/tests/link_withdraw" more_answers_in_a_row_that_nobody_fetched_than_may_be_lost_end_the_correction),
+    ),
+    new(
+        "setpoints faster than the settings by more than half",
+        "corrected until noticed; then the correction ramps to zero, both within the limits per tick",
+        FAULT,
+        Some(63),
+        LONGEST,
+        tests!("core/tests/safety_link" setpoints_that_are_too_fast, "core/tests/link_pace" too_fast_a_pace_disarms_and_is_counted),
     ),
     new(
         "silence",

@@ -38,6 +38,22 @@ pub const PART: &[Row] = &[
         tests!("core/tests/safety_part" an_image_for_something_else, "firmware/tests/wire_modes" an_image_of_another_program_feature_pass_tool_offset_or_setup_is_not_armed),
     ),
     new(
+        "frame onto an axis that is not sent",
+        "the setpoint, unchanged; arming is refused",
+        "Bypass",
+        None,
+        None,
+        tests!("core/tests/safety_part" a_frame_onto_an_axis_that_is_not_sent),
+    ),
+    new(
+        "arming before 33 setpoints have come at the pace of the settings",
+        "the setpoint, unchanged; arming is refused",
+        "Bypass",
+        None,
+        None,
+        tests!("core/tests/safety_part" arming_before_the_pace_is_known, "core/tests/link_pace" nothing_is_armed_before_a_window_of_32_frames_at_a_permitted_pace),
+    ),
+    new(
         "wrong image: damaged, of another version, under another name",
         "the setpoint, unchanged; it is not activated",
         "Bypass",

@@ -41,14 +41,15 @@ pub async fn serve<F: NorFlash>(
     let mut chunk = [0; CHUNK];
     let mut answer: Vec<u8, PACKET_BYTES> = Vec::new();
     loop {
-        let taken = match select(receiver.read(&mut chunk), tick.wait()).await {
-            Either::First(Ok(taken)) => taken,
-            // Noise on the line: the packet it fell into is damaged, the next one is not.
-            Either::First(Err(_)) => continue,
-            Either::Second(()) => {
+        // The tick first: bytes that never end must not keep the task from reporting.
+        let taken = match select(tick.wait(), receiver.read(&mut chunk)).await {
+            Either::First(()) => {
                 keeper.config_task_lives();
                 continue;
             }
+            Either::Second(Ok(taken)) => taken,
+            // Noise on the line: the packet it fell into is damaged, the next one is not.
+            Either::Second(Err(_)) => continue,
         };
         // One packet at a time, so that there is one answer at a time.
         for piece in chunk.get(..taken).unwrap_or(&[]).split_inclusive(|&byte| byte == 0) {
@@ -75,9 +76,9 @@ async fn lock<F: NorFlash>(
     keeper: &impl Keeper,
 ) -> MutexGuard<'static, CriticalSectionRawMutex, Desk<'static, F>> {
     loop {
-        match select(desk.lock(), tick.wait()).await {
-            Either::First(guard) => return guard,
-            Either::Second(()) => keeper.config_task_lives(),
+        match select(tick.wait(), desk.lock()).await {
+            Either::First(()) => keeper.config_task_lives(),
+            Either::Second(guard) => return guard,
         }
     }
 }

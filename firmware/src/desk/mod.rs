@@ -5,8 +5,10 @@
 //! the short closures of [`ServoAccess`].
 //!
 //! A request that changed something is answered again, not carried out again, when it comes once more with the same
-//! `id` and the same content. Requests that only read, and those that were denied, are simply carried out again. A
-//! reset forgets this: what was on the way then has to be asked for (`Status`, `List`, `Check`).
+//! `id` and the same content, as long as what it changed is still so: once an arming has ended or the drives were
+//! dropped, the request is carried out again, which for the arming of a part means that it is refused. Requests that
+//! only read, and those that were denied, are simply carried out again. A reset forgets this: what was on the way then
+//! has to be asked for (`Status`, `List`, `Check`).
 
 mod activate;
 mod compute;
@@ -21,6 +23,7 @@ use heapless::Vec;
 use truepath_core::link::{
     Ask, CHUNK_BYTES, Deframer, Denial, Framed, LinkError, PACKET_BYTES, Request, Response, decode, encode,
 };
+use truepath_core::rewrite::Mode;
 
 use crate::servo::ServoAccess;
 use crate::shelf::Shelf;
@@ -95,7 +98,9 @@ impl<'a, F: NorFlash> Desk<'a, F> {
             if damaged {
                 continue;
             }
-            if let Some(bytes) = answered.filter(|_| again) {
+            let still_so = |ask: &Ask<'_>| holds(ask, servo.with(|servo| servo.mode()));
+            let remembered = answered.filter(|_| again && request.as_ref().is_ok_and(|r| still_so(&r.ask)));
+            if let Some(bytes) = remembered {
                 send(answer.get(..bytes).unwrap_or(&[]));
                 continue;
             }
@@ -122,6 +127,17 @@ impl<'a, F: NorFlash> Desk<'a, F> {
             }
         }
         None
+    }
+}
+
+/// Whether what the answer to a request said of the mode is still so. Only such an answer is given again: an arming
+/// that an emergency stop has ended meanwhile must not be called done. Of the other requests nothing but a further
+/// request, or a reset, undoes what was done.
+const fn holds(ask: &Ask<'_>, mode: Mode) -> bool {
+    match ask {
+        Ask::AcknowledgeDrivesDisabled => matches!(mode, Mode::Bypass),
+        Ask::Arm(_) => matches!(mode, Mode::Armed),
+        _ => true,
     }
 }
 

@@ -47,7 +47,7 @@ impl<'a, F: NorFlash> Desk<'a, F> {
         let _ = ledger.change(&mut flash, |now| now.boots = now.boots.saturating_add(1));
         let Memory { image, recording, program, job, probe, meter } = memory;
         let slots = [0, 1].map(|slot| slots::survey(&mut flash, slot, image));
-        let settings = ledger.now().settings;
+        let settings = ledger.now().settings_in_use();
         let bare = Rewriter::new(settings.rewriter, None).expect("the ledger has checked the settings");
         let servo = Servo::new(settings, bare, ledger.now().spent, recording);
         let shelves = Shelves {
@@ -103,7 +103,7 @@ impl<'a, F: NorFlash> Office<'a, F> {
             Ask::List => Ok(Reply::Slots(self.list())),
             Ask::Activate { slot, crc } => self.activate(ActiveImage { slot, crc }, servo),
             Ask::Deactivate => self.deactivate(servo),
-            Ask::Settings => Ok(Reply::Settings(*self.settings())),
+            Ask::Settings => Ok(Reply::Settings(self.settings())),
             Ask::Configure(settings) => self.configure(settings, servo),
             Ask::ClearCounters => {
                 idle(servo)?;
@@ -126,8 +126,8 @@ impl<'a, F: NorFlash> Office<'a, F> {
     }
 
     /// The settings in force.
-    pub fn settings(&self) -> &DeviceSettings {
-        &self.ledger.now().settings
+    pub fn settings(&self) -> DeviceSettings {
+        self.ledger.now().settings_in_use()
     }
     /// Refused while a computation has the buffers.
     pub fn not_computing(&self) -> Result<(), Denial> {

@@ -30,6 +30,9 @@ impl<'a, F: NorFlash> Office<'a, F> {
     /// armings that failed after they were written.
     fn would_spend(&self, request: &ArmRequest, servo: &impl ServoAccess<'a>) -> Result<Spent, Denial> {
         self.not_computing()?;
+        if self.ledger.now().settings.is_none() {
+            return Err(Denial::NotConfigured);
+        }
         let pass = servo.with(|servo| servo.check(request)).map_err(Denial::Refused)?;
         if self.ledger.now().is_spent(&pass) {
             return Err(Denial::Refused(Refusal::PartRepeated { part_serial: pass.part_serial }));
@@ -63,13 +66,13 @@ impl<'a, F: NorFlash> Office<'a, F> {
         settings.check().map_err(Denial::Settings)?;
         let wrong = |error| Denial::Settings(DeviceSettingsError::Rewriter(error));
         let bare = Rewriter::new(settings.rewriter, None).map_err(wrong)?;
-        let before = *self.settings();
+        let before = self.settings();
         // The image must go with the new settings before they are kept.
         self.reload(&settings.rewriter, servo).or_else(|denial| {
             self.reload(&before.rewriter, servo)?;
             Err(denial)
         })?;
-        if let Err(failed) = self.ledger.change(&mut self.flash, |now| now.settings = settings) {
+        if let Err(failed) = self.ledger.change(&mut self.flash, |now| now.settings = Some(settings)) {
             self.reload(&before.rewriter, servo)?;
             return Err(failed.into());
         }

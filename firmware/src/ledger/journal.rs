@@ -12,7 +12,7 @@
 //! what an interrupted erase left between them would be read as its newest items; and it gives up on a word that
 //! fails its ECC instead of passing it over.
 //!
-//! Head word, little endian: 0 magic `TPL1`, 4 sequence, 8 bytes of payload, 12 CRC-32 of the payload, 16 zeros,
+//! Head word, little endian: 0 magic `TPL2`, 4 sequence, 8 bytes of payload, 12 CRC-32 of the payload, 16 zeros,
 //! 28 CRC-32 of the 28 bytes before.
 
 use embedded_storage::nor_flash::NorFlash;
@@ -28,7 +28,8 @@ pub const PAYLOAD_BYTES: usize = PLACE_BYTES - WORD_BYTES;
 pub const PLACES: usize = SECTOR_BYTES / PLACE_BYTES;
 /// Places that are tried when programming fails, before the journal gives up.
 const ATTEMPTS: usize = 3;
-const MAGIC: [u8; 4] = *b"TPL1";
+/// Its digit is the version of the record: one of another version is no record.
+const MAGIC: [u8; 4] = *b"TPL2";
 
 /// Where a record lies: sector of the journal (0 or 1) and place in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,21 +8,22 @@ mod journal;
 use embedded_storage::nor_flash::NorFlash;
 use serde::{Deserialize, Serialize};
 use truepath_core::link::{ActiveImage, DeviceSettings};
-use truepath_core::rewrite::{SPENT_CAPACITY, Spent};
+use truepath_core::rewrite::{Spent, SpentList};
 
 use journal::{Journal, PAYLOAD_BYTES};
 pub use journal::{JournalFailed, PLACES};
 
 /// The record. The order is that of importance: of a record that another firmware has written, as much is taken as
 /// can be read from the front.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// The default is a device as it leaves the factory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Remembered {
-    /// Armed passes of parts, newest first.
-    pub spent: [Option<Spent>; SPENT_CAPACITY],
+    /// Armed passes of parts.
+    pub spent: SpentList,
     /// The image in use.
     pub active: Option<ActiveImage>,
-    /// Settings.
-    pub settings: DeviceSettings,
+    /// Settings; none before the first `Configure`, or when they cannot be used any more. Nothing is armed then.
+    pub settings: Option<DeviceSettings>,
     /// Resets; it stands still at its end.
     pub boots: u32,
 }
@@ -30,19 +31,16 @@ pub struct Remembered {
 impl Remembered {
     /// A pass of a part was armed.
     pub fn spend(&mut self, pass: Spent) {
-        self.spent.rotate_right(1);
-        self.spent[0] = Some(pass);
+        self.spent.spend(pass);
     }
     /// Whether a pass of a part was armed.
     pub fn is_spent(&self, pass: &Spent) -> bool {
-        self.spent.iter().flatten().any(|spent| spent == pass)
+        self.spent.contains(pass)
     }
-}
-
-impl Default for Remembered {
-    /// A device as it leaves the factory.
-    fn default() -> Self {
-        Self { active: None, spent: [None; SPENT_CAPACITY], settings: DeviceSettings::at_1_khz(), boots: 0 }
+    /// The settings in use: those of a 1 kHz controller without joint limits while there are none, which is enough to
+    /// pass setpoints on unchanged.
+    pub fn settings_in_use(&self) -> DeviceSettings {
+        self.settings.unwrap_or(DeviceSettings::at_1_khz())
     }
 }
 
@@ -60,16 +58,14 @@ impl Ledger {
         let mut payload = [0; PAYLOAD_BYTES];
         let (journal, length) = Journal::open(flash, &mut payload);
         let mut now = length.map(|length| read(&payload[..length])).unwrap_or_default();
-        if now.settings.check().is_err() {
-            now.settings = DeviceSettings::at_1_khz();
-        }
+        now.settings = now.settings.filter(|settings| settings.check().is_ok());
         Self { journal, now }
     }
     /// What is remembered.
     pub const fn now(&self) -> &Remembered {
         &self.now
     }
-    /// Remembers something else. Takes about 20 programmed words; once in [`PLACES`] changes a sector is erased first.
+    /// Remembers something else. Takes up to 32 programmed words; once in [`PLACES`] changes a sector is erased first.
     ///
     /// # Errors
     /// The flash did not take it: what was remembered before is still remembered.

@@ -74,11 +74,16 @@ pub struct Campaign<'a> {
     pub(super) judge: Judge,
     id: u16,
     tick_us: u32,
-    pub(super) stepped: bool,
+    stepped: bool,
     pub(super) log: VecDeque<Happened>,
     pub(super) host: FnvHasher,
     pub(super) board: FnvHasher,
     pub(super) outcome: Outcome,
+}
+
+/// The tick of a device, µs, rounded up: frames at this distance never come faster than its setpoint rate.
+pub(super) fn tick_us(settings: &DeviceSettings) -> u32 {
+    1_000_000u32.div_ceil(settings.rewriter.tick_hz.max(1))
 }
 
 /// What a batch has to give.
@@ -107,7 +112,7 @@ impl<'a> Campaign<'a> {
             cable: FaultInjector::new(plan.faults, plan.seed),
             judge: Judge::new(limits, plan.settings.axes),
             id: 0,
-            tick_us: (1_000_000 / plan.settings.rewriter.tick_hz.max(1)).max(1),
+            tick_us: tick_us(&plan.settings),
             stepped,
             log: VecDeque::new(),
             host: FnvHasher::default(),
@@ -196,16 +201,20 @@ impl<'a> Campaign<'a> {
         out.into_iter().for_each(|delivery| self.deliver(delivery, batch));
     }
 
+    /// What passes in the host's model when `us` pass on the cable. A board with a clock of its own is told of no pause, and
+    /// its frames come no faster than its tick: that is all that matters of the time between them.
+    pub(super) fn passed(&self, us: u32) -> u32 {
+        if self.stepped { us } else { self.tick_us }
+    }
+
     /// What came out of the cable: to the host's model, and into the batch.
     fn deliver(&mut self, delivery: Delivery<Setpoint>, batch: &mut Batch<'a>) {
         let us = delivery.delay_us.saturating_add(self.tick_us);
         batch.events.push(Event::Time(us));
-        if self.stepped {
-            let before = self.expectation.mode();
-            self.expectation.time(us);
-            if before != Mode::Off && self.expectation.mode() == Mode::Off {
-                self.log.push_back(Happened::Silent);
-            }
+        let before = self.expectation.mode();
+        self.expectation.time(self.passed(us));
+        if before != Mode::Off && self.expectation.mode() == Mode::Off {
+            self.log.push_back(Happened::Silent);
         }
         if delivery.whole {
             self.log.push_back(Happened::Delivered(delivery.content));

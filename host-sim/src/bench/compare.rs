@@ -73,8 +73,7 @@ impl<'a> Campaign<'a> {
         let mut answers = 0;
         for event in &batch.events {
             match event {
-                Event::Time(us) if self.stepped => model.time(*us),
-                Event::Time(_) => {}
+                Event::Time(us) => model.time(self.passed(*us)),
                 Event::Setpoint { bytes, .. } => answers += model.bytes(bytes, &mut vec![]) as usize,
                 Event::Request(_) => {
                     // The refusal was compared before.

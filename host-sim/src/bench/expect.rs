@@ -5,7 +5,7 @@
 
 use truepath_core::image::Image;
 use truepath_core::link::{Deframer, DeviceSettings, Endpoint, Framed, LinkError, MAX_SETPOINT_BYTES, MAX_STUFFED};
-use truepath_core::rewrite::{Mode, Refusal, Rewriter, SPENT_CAPACITY, SettingsError, State};
+use truepath_core::rewrite::{Mode, Refusal, Rewriter, SettingsError, SpentList, State};
 
 use super::traffic::Command;
 
@@ -25,7 +25,7 @@ impl<'a> Expectation<'a> {
     /// The settings do not go with the image.
     pub fn new(settings: DeviceSettings, image: Image<'a>) -> Result<Self, SettingsError> {
         let rewriter = Rewriter::new(settings.rewriter, Some(image))?;
-        let endpoint = Endpoint::new(settings, [None; SPENT_CAPACITY]);
+        let endpoint = Endpoint::new(settings, SpentList::EMPTY);
         Ok(Self { endpoint, rewriter, deframer: Deframer::new(), now_us: 0 })
     }
 

@@ -5,10 +5,11 @@
 //! * |correction| ≤ clamp; its change and the change of that within the limits per tick, axis by axis.
 //! * `forward` is set in every state but `Off`.
 //! * Modes follow each other as the safety contract says; `Fault` ends within the stated number of ticks.
+//! * No reason is `FrameRate`: on the bench no frame follows another sooner than a tick.
 
 use std::collections::VecDeque;
 
-use truepath_core::rewrite::{AXES, Limits, Mode, Output, Setpoint, Status};
+use truepath_core::rewrite::{AXES, Limits, Mode, Output, Reason, Setpoint, Status};
 
 use super::traffic::Command;
 
@@ -74,6 +75,12 @@ pub enum Violation {
         from: Mode,
         /// Mode after.
         to: Mode,
+    },
+    /// A fault that cannot have happened.
+    #[error("the reason is \"{reason}\", but no frame followed another sooner than a tick")]
+    Reason {
+        /// Of the answer.
+        reason: Reason,
     },
     /// A fault that does not end.
     #[error("in Fault for {ticks} ticks, {most} permitted")]
@@ -188,6 +195,9 @@ impl Judge {
             Hold => &[Hold, Active, Fault, Bypass],
             Fault => &[Fault, Bypass],
         };
+        if output.reason == Reason::FrameRate {
+            return Err(Violation::Reason { reason: output.reason });
+        }
         let on = self.correction != [0; AXES];
         if !permitted.contains(&to) || (to == Bypass && on) {
             return Err(Violation::Transition { from, to });

@@ -5,6 +5,7 @@ use truepath_core::link::{DeviceSettings, MAX_SETPOINT_BYTES, SetpointFrame};
 use truepath_core::rewrite::{Setpoint, SettingsError};
 
 use super::board::{Board, Event};
+use super::campaign::tick_us;
 use super::error::BenchError;
 use super::expect::Expectation;
 
@@ -23,7 +24,7 @@ impl<'a> Load<'a> {
     /// # Errors
     /// The settings do not go with the image.
     pub fn new(settings: DeviceSettings, image: Image<'a>) -> Result<Self, SettingsError> {
-        let tick_us = 1_000_000 / settings.rewriter.tick_hz.max(1);
+        let tick_us = tick_us(&settings);
         let expectation = Expectation::new(settings, image)?;
         Ok(Self { expectation, axes: settings.axes, tick_us, sequence: 0, round_trips_ns: vec![] })
     }
@@ -41,6 +42,7 @@ impl<'a> Load<'a> {
             let mut packet = [0; MAX_SETPOINT_BYTES + 2];
             let frame = SetpointFrame { axes: self.axes, setpoint };
             let used = frame.encode_packet(&mut packet).unwrap_or(0);
+            self.expectation.time(self.tick_us);
             let answers = self.expectation.bytes(&packet[..used], &mut expected);
             events.push(Event::Time(self.tick_us));
             events.push(Event::Setpoint { bytes: packet[..used].to_vec(), answers });

@@ -76,9 +76,8 @@ pub fn configure(board: &mut dyn Board, settings: &DeviceSettings) -> Result<Dev
     if status.reason != Reason::None || status.counters.accepted > 0 {
         restart(board)?;
     }
-    if before != *settings {
-        board.client().done(Ask::Configure(*settings))?;
-    }
+    // Also when they are the same: a device that was never configured shows those it would use, and arms nothing.
+    board.client().done(Ask::Configure(*settings))?;
     Ok(before)
 }
 

@@ -128,7 +128,8 @@ impl Board for UartBoard {
         for event in events {
             match event {
                 Event::Time(us) => {
-                    due = (due + Duration::from_micros((*us).into())).max(Instant::now() - LATE);
+                    let step = Duration::from_micros((*us).into());
+                    due = (due + step).max(Instant::now() - LATE.min(step * LATE_STEPS));
                 }
                 Event::Setpoint { bytes, answers } => {
                     running.collect(window - 1, paced.then_some(due))?;
@@ -148,5 +149,7 @@ impl Board for UartBoard {
     }
 }
 
-/// A late sender catches up on so much; what is more is lost time.
+/// A late sender catches up on so much, and on no more than so many frames: a longer burst would be faster than the device
+/// permits on average. What is more is lost time.
 const LATE: Duration = Duration::from_millis(5);
+const LATE_STEPS: u32 = 4;

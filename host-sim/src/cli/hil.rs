@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 
 use super::{Terminal, image, print};
 use crate::bench::{BenchError, Faults, Probability, RoundTrip};
-use crate::command::hil::{Kind, Options, Report, Source, on_board, open, recorded, run as hil, settings};
+use crate::command::hil::{Kind, Options, Report, STREAM_HZ, Source, on_board, open, recorded, run as hil, settings};
 use crate::diagnostics::{Failure, InputError};
 use crate::report::json;
 
@@ -37,7 +37,8 @@ pub(super) struct Arguments {
     /// How a board is reached: frame by frame, or in batches through shared memory. [default: bulk; uart for serial]
     #[arg(long, value_enum)]
     link: Option<LinkArgument>,
-    /// Setpoints per second of the controller. Over uart they also go out at this rate, when it is given.
+    /// Setpoints per second of the controller. Over uart they also go out at this rate, when it or a file is given.
+    /// [default: that of the file, or 1000; over uart 20000, which no uart reaches]
     #[arg(long, value_name = "HZ")]
     rate: Option<u32>,
     /// Answers that may be outstanding over uart.
@@ -122,7 +123,9 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         Ok::<_, InputError>(bytes)
     });
     let given = given.transpose()?;
-    let mut board = open(&kind(arguments)?, arguments.window, arguments.rate.is_some())?;
+    // Setpoints at a rate of their own keep to it; the others go out as fast as the answers come.
+    let paced = arguments.rate.is_some() || arguments.setpoints.is_some();
+    let mut board = open(&kind(arguments)?, arguments.window, paced)?;
     let made = match (&arguments.job, &arguments.probe) {
         (Some(job), Some(probe)) => {
             let settings = settings(&options, board.is_stepped())?;
@@ -163,7 +166,8 @@ fn options(arguments: &Arguments) -> Result<Options, Failure> {
         pause_us: f.pause_us,
         jitter_us: f.jitter,
     };
-    let rate_hz = arguments.rate.or(file_hz).unwrap_or(1_000);
+    let nominal_hz = if kind(arguments)?.is_stepped() { 1_000 } else { STREAM_HZ };
+    let rate_hz = arguments.rate.or(file_hz).unwrap_or(nominal_hz);
     Ok(Options { source, count, axes: arguments.axes, rate_hz, faults, seed: arguments.seed })
 }
 

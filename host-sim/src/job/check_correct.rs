@@ -31,6 +31,7 @@ pub(super) fn correct(
         target: Target::Mean,
         band: [Offset::ZERO, depth],
         max_gouge: None,
+        setup: 1,
     };
     let Some(section) = section else { return Ok((correct, DEFAULT_TOLERANCE, Route::Program)) };
     correct.law = section.choice("law", &LAWS)?.unwrap_or(correct.law);
@@ -41,6 +42,8 @@ pub(super) fn correct(
     correct.target = section.choice("target", &TARGETS)?.unwrap_or(correct.target);
     correct.band = band(source, section, depth)?.unwrap_or(correct.band);
     correct.max_gouge = section.number("max_gouge_mm", Limits::within("0", "1", "mm"))?.map(Decimal::as_mm);
+    let clamping = "number the clampings of a part from 1";
+    correct.setup = section.whole("setup", Limits::within("1", "99999", ""), clamping)?.unwrap_or(correct.setup);
     let route = section.choice("route", &ROUTES)?.unwrap_or(Route::Program);
     section.close()?;
     Ok((correct, tolerance, route))

@@ -9,6 +9,10 @@ use super::document::Section;
 use super::limits::Limits;
 use crate::diagnostics::{InputError, Source};
 
+/// Where numbers of tools and their offsets come from.
+const TABLE: &str = "take the number from the tool table of the control";
+
+/// What the table says.
 pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, InputError> {
     let diameter = section.required_number("diameter_mm", Limits::within("0.1", "100", "mm"))?.as_mm();
     let measured = section.value("measured_diameter_mm");
@@ -24,13 +28,11 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, Input
         }
     };
     let limits = Limits::within("1", "12", "");
-    let Some(value) = section.value("teeth") else {
+    let Some(teeth) = section.whole("teeth", limits, "count the cutter's teeth")? else {
         return Err(section.missing("teeth", "a whole number, 1 to 12"));
     };
-    let whole = section.number_in(&value, limits)?.as_whole().and_then(|n| u8::try_from(n).ok());
-    let Some(teeth) = whole else {
-        return Err(section.out_of_range(&value, "a whole number, 1 to 12", "count the cutter's teeth"));
-    };
+    let number = section.whole("number", Limits::within("1", "99999", ""), TABLE)?;
+    let offset_number = section.whole("offset_number", Limits::within("0", "99999", ""), TABLE)?.unwrap_or(0);
     let helix_deg = section.required_number("helix_deg", Limits::within("0", "60", "degrees"))?.as_real();
     let stickout = section.number("stickout_mm", Limits::above("0", "500", "mm"))?.map(Decimal::as_mm);
     let materials = [("HSS", ToolMaterial::HighSpeedSteel), ("carbide", ToolMaterial::Carbide)];
@@ -54,7 +56,7 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, Input
         }
     };
     section.close()?;
-    Ok(Tool { diameter, measured_diameter, teeth, helix_deg, cantilever })
+    Ok(Tool { diameter, measured_diameter, teeth, helix_deg, cantilever, number, offset_number })
 }
 
 /// The cutter must stick out at least as far as it cuts deep.

@@ -118,6 +118,19 @@ impl<'d> Section<'d> {
         }
     }
 
+    /// A whole number within limits, if the key is there.
+    pub(super) fn whole<T: TryFrom<i64>>(
+        &self,
+        key: &'static str,
+        limits: Limits,
+        help: &str,
+    ) -> Result<Option<T>, InputError> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        let whole = self.number_in(&value, limits)?.as_whole().and_then(|n| T::try_from(n).ok());
+        let expected = || format!("a whole number, {}", limits.phrase());
+        whole.map(Some).ok_or_else(|| self.out_of_range(&value, &expected(), help))
+    }
+
     /// A text, if the key is there.
     pub(super) fn text(&self, key: &'static str) -> Result<Option<(&'d str, Value<'d>)>, InputError> {
         let Some(value) = self.value(key) else { return Ok(None) };

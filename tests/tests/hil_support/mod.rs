@@ -51,7 +51,8 @@ pub fn on(board: &mut dyn Board, part: usize, options: &Options) -> Report {
     run(board, &image(part), options, &mut |_| ()).unwrap()
 }
 
-/// A device in process behind two Unix sockets in a folder: `setpoint.sock`, `config.sock`. Its clock stands still.
+/// A device in process behind two Unix sockets in a folder: `setpoint.sock`, `config.sock`. Its clock goes on by 1 ms with
+/// every frame.
 pub fn serve(folder: &Path) {
     let device = Arc::new(Mutex::new(InProcess::start().unwrap()));
     for (name, channel) in [("setpoint.sock", Channel::Setpoint), ("config.sock", Channel::Config)] {
@@ -63,7 +64,12 @@ pub fn serve(folder: &Path) {
                 let mut buffer = [0; 1024];
                 while let Ok(count @ 1..) = stream.read(&mut buffer) {
                     let mut batch = vec![];
-                    records::write(channel, &buffer[..count], &mut batch);
+                    for piece in buffer[..count].split_inclusive(|&b| b == 0) {
+                        if channel == Channel::Setpoint {
+                            records::write(Channel::Time, &1_000u32.to_le_bytes(), &mut batch);
+                        }
+                        records::write(channel, piece, &mut batch);
+                    }
                     let back = device.lock().unwrap().run(&batch).unwrap();
                     Records::new(&back).for_each(|record| stream.write_all(record.bytes).unwrap_or_default());
                 }

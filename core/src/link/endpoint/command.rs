@@ -1,8 +1,9 @@
 //! Commands and questions between ticks, from the configuration link.
 
 use super::Endpoint;
+use super::pace::Pace;
 use crate::link::{Counters, DeviceSettings};
-use crate::rewrite::{ArmRequest, Mode, Output, Reason, Refusal, Rewriter, Spent, State};
+use crate::rewrite::{ArmRequest, Mode, Reason, Refusal, Rewriter, Spent, State};
 
 impl Endpoint {
     /// The controller acknowledges that the drives are disabled: `Off` → `Bypass`.
@@ -19,20 +20,32 @@ impl Endpoint {
     /// What [`arm`](Self::arm) would say, without arming; gives the pass of the part that it would spend.
     ///
     /// # Errors
-    /// As [`Rewriter::arm`].
+    /// As [`arm`](Self::arm).
     pub fn check(&self, rewriter: &Rewriter<'_>, request: &ArmRequest) -> Result<Spent, Refusal> {
-        let mut tried = self.state;
-        rewriter.arm(&mut tried, request)?;
         // The newest is the one just spent; without any, arming would have failed.
-        tried.spent().first().copied().flatten().ok_or(Refusal::NoImage)
+        self.armed(rewriter, request)?.spent().last().ok_or(Refusal::NoImage)
     }
 
     /// Arms the image for one pass of one part. The pass must have been written to the ledger before.
     ///
     /// # Errors
-    /// As [`Rewriter::arm`].
+    /// As [`Rewriter::arm`]; the frame is on an axis that is not sent; setpoints come too fast, or it is not known yet
+    /// how fast they come. The state then stays as it is.
     pub fn arm(&mut self, rewriter: &Rewriter<'_>, request: &ArmRequest) -> Result<(), Refusal> {
-        rewriter.arm(&mut self.state, request)
+        self.state = self.armed(rewriter, request)?;
+        Ok(())
+    }
+
+    fn armed(&self, rewriter: &Rewriter<'_>, request: &ArmRequest) -> Result<State, Refusal> {
+        let mut state = self.state;
+        rewriter.arm(&mut state, request)?;
+        let [x, y, z] = request.frame.axes.map(|map| map.axis);
+        // An axis that is not sent reads 0: the height of the cutter, say, would be unknown.
+        if x.max(y).max(z) >= self.settings.axes {
+            return Err(Refusal::FrameAxes { x, y, z });
+        }
+        self.pace.check()?;
+        Ok(state)
     }
 
     /// Ends an arming; an active correction ramps out.
@@ -52,7 +65,9 @@ impl Endpoint {
             return Err(Refusal::State(self.state.mode()));
         }
         self.settings = settings;
+        self.pace = Pace::new(settings.rewriter.tick_hz);
         self.due_us = None;
+        self.given = None;
         Ok(())
     }
 
@@ -71,10 +86,6 @@ impl Endpoint {
     /// Whether the drive enable may be passed on.
     pub fn drive_enable(&self) -> bool {
         self.state.mode() != Mode::Off
-    }
-    /// The answer that is due.
-    pub fn due(&self) -> Option<&Output> {
-        self.due_us.map(|_| &self.output)
     }
     /// The last fault since this was asked before: the recorder is to be stopped.
     pub fn take_fault(&mut self) -> Option<Reason> {

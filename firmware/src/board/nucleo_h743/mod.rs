@@ -27,6 +27,7 @@ mod fatal;
 mod flash;
 mod interrupts;
 mod memory;
+mod select_edge;
 mod setpoint_spi;
 mod setpoint_uart;
 mod start;

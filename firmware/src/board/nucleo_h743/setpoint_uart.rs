@@ -1,5 +1,9 @@
 //! The setpoint link on a UART: received by DMA into a ring, read when the line falls idle.
 
+use core::pin::pin;
+use core::task::Poll;
+
+use embassy_futures::poll_once;
 use embassy_futures::select::{Either, select};
 use embassy_stm32::mode::Async;
 use embassy_stm32::usart::{RingBufferedUartRx, UartTx};
@@ -28,30 +32,49 @@ pub async fn setpoint_uart(
     mut outputs: BoardOutputs,
     tick: &'static Tick,
 ) {
+    // Up to when the ring was known to be empty.
+    let mut empty_us = Instant::now().as_micros();
     loop {
-        match select(receiver.read(&mut buffers.received), tick.wait()).await {
-            Either::First(Ok(taken)) => {
-                let arrived_us = Instant::now().as_micros();
-                let mut answers: Vec<u8, ANSWERS> = Vec::new();
-                let bytes = buffers.received.get(..taken).unwrap_or(&[]);
-                side.servo().receive(bytes, arrived_us, &Clockwork, &mut |answer: &[u8]| {
-                    // It has room for as many answers as there are frames in a chunk.
-                    let _ = answers.extend_from_slice(answer);
-                });
-                // The DMA does not reach the memory of the stack.
-                if let Some(place) = buffers.sent.get_mut(..answers.len()) {
-                    place.copy_from_slice(&answers);
-                    // What cannot be sent is an answer that does not come: the controller's time-out.
-                    let _ = sender.write(place).await;
-                }
-            }
-            // Noise, or an overrun: reception begins anew, and the frame it fell into is damaged.
-            Either::First(Err(_)) => receiver.start_uart(),
-            Either::Second(()) => {
-                watchdog::setpoint_task_lives();
-                side.servo().watch(Instant::now().as_micros());
-            }
+        // The tick first: bytes that never end must not keep the task from reporting.
+        if tick.try_take().is_some() {
+            watchdog::setpoint_task_lives();
+            side.servo().watch(Instant::now().as_micros());
+            outputs.follow(side.servo());
         }
+        let (result, arrived_us) = {
+            let mut reading = pin!(receiver.read(&mut buffers.received));
+            match poll_once(reading.as_mut()) {
+                // They arrived while the task did something else, at the earliest when the ring was last empty.
+                Poll::Ready(result) => (result, empty_us),
+                Poll::Pending => match select(tick.wait(), reading).await {
+                    Either::First(()) => {
+                        tick.signal(());
+                        continue;
+                    }
+                    Either::Second(result) => (result, Instant::now().as_micros()),
+                },
+            }
+        };
+        let Ok(taken) = result else {
+            // Noise, or an overrun: reception begins anew, and the frame it fell into is damaged.
+            receiver.start_uart();
+            continue;
+        };
+        if taken < buffers.received.len() {
+            empty_us = Instant::now().as_micros();
+        }
+        let mut answers: Vec<u8, ANSWERS> = Vec::new();
+        let bytes = buffers.received.get(..taken).unwrap_or(&[]);
+        side.servo().receive(bytes, arrived_us, &Clockwork, &mut |answer: &[u8]| {
+            // It has room for as many answers as there are frames in a chunk.
+            let _ = answers.extend_from_slice(answer);
+        });
         outputs.follow(side.servo());
+        // The DMA does not reach the memory of the stack.
+        if let Some(place) = buffers.sent.get_mut(..answers.len()) {
+            place.copy_from_slice(&answers);
+            // What cannot be sent is an answer that does not come: the controller's time-out.
+            let _ = sender.write(place).await;
+        }
     }
 }

@@ -2,7 +2,8 @@
 
 use embassy_executor::SpawnToken;
 use embassy_stm32::gpio::{Input, Level, Output, Pull, Speed};
-use embassy_stm32::pac::RCC;
+use embassy_stm32::pac::gpio::vals::Ospeedr;
+use embassy_stm32::pac::{GPIOA, RCC};
 use embassy_stm32::spi::{self, SlaveSelectPolarity, Spi};
 use embassy_stm32::usart::{self, BufferedUart, Uart};
 use embassy_time::{Duration, Ticker};
@@ -72,6 +73,8 @@ pub fn run() -> ! {
         let mut config = spi::Config::default();
         config.nss_polarity = SlaveSelectPolarity::ActiveLow;
         let spi = Spi::new_slave(p.SPI1, p.PA5, p.PB5, p.PA6, p.PA4, p.DMA1_CH2, p.DMA1_CH3, Lines, config);
+        // The HAL leaves this output at the lowest speed, which ends at some 12 Mbit/s (DS12110, table 59).
+        GPIOA.ospeedr().modify(|w| w.set_ospeedr(6, Ospeedr::VERY_HIGH_SPEED));
         let ready = Output::new(p.PF14, Level::Low, Speed::VeryHigh);
         let buffers = memory::setpoint_buffers();
         setpoint.spawn(token(setpoint_spi(spi, ready, buffers, side, outputs, &SETPOINT_TICK)));

@@ -28,8 +28,16 @@ pub async fn setpoint_task(
 ) {
     let mut chunk = [0; CHUNK];
     loop {
-        match select(receiver.read(&mut chunk), TICK.wait()).await {
-            Either::First(Ok(taken)) => {
+        // The tick first: bytes that never end must not keep the task from reporting.
+        match select(TICK.wait(), receiver.read(&mut chunk)).await {
+            Either::First(()) => {
+                watchdog::setpoint_task_lives();
+                // While batches have the clock they look at the silence themselves.
+                if !clock::batches_have_it() {
+                    side.servo().watch(clock::now_us());
+                }
+            }
+            Either::Second(Ok(taken)) => {
                 let mut answers: Vec<u8, ANSWERS> = Vec::new();
                 let arrived_us = receiver.arrived_us();
                 let servo = side.servo();
@@ -38,13 +46,6 @@ pub async fn setpoint_task(
                     let _ = answers.extend_from_slice(answer);
                 });
                 let Ok(()) = sender.write_all(&answers).await;
-            }
-            Either::Second(()) => {
-                watchdog::setpoint_task_lives();
-                // While batches have the clock they look at the silence themselves.
-                if !clock::batches_have_it() {
-                    side.servo().watch(clock::now_us());
-                }
             }
         }
         outputs.follow(side.servo());

@@ -9,7 +9,7 @@ use truepath_core::rewrite::{AXES, ArmRequest, AxisMap, Flags, Frame, Mode, Setp
 
 use super::cursor::Cursor;
 use super::mischief::{Mood, Spindle, disturb, operate};
-use super::{Command, Traffic};
+use super::{Command, LEAD, Traffic};
 use crate::bench::chance::{Chance, Probability};
 
 /// How the controller behaves.
@@ -83,7 +83,7 @@ impl Controller {
             feed_nm: (per_tooth * teeth_per_s as i64 / i64::from(manner.tick_hz.max(1))).max(1),
             pass_nm: (window.z_low.nm() + window.z_high.nm()) / 2,
             gate_nm: window.z_high.nm() + window.gate_height.nm(),
-            scene: Scene::Waiting(3),
+            scene: Scene::Waiting(LEAD),
             mood: Mood::calm(),
             sequence: first_sequence(seed),
             sent: 0,
@@ -174,12 +174,12 @@ impl Traffic for Controller {
         }
         match (mode, self.scene) {
             (Mode::Off, Scene::Waiting(0)) => {
-                self.scene = Scene::Waiting(3);
+                self.scene = Scene::Waiting(LEAD);
                 return Some(Command::Acknowledge);
             }
             (Mode::Off, Scene::Waiting(left)) => self.scene = Scene::Waiting(left - 1),
             (Mode::Off, _) => {
-                self.scene = Scene::Waiting(3);
+                self.scene = Scene::Waiting(LEAD);
                 self.armed = false;
             }
             (Mode::Bypass, Scene::Waiting(_) | Scene::Afterwards(0)) => return Some(Command::Arm(self.next_part())),

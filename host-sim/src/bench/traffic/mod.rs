@@ -15,6 +15,10 @@ use truepath_core::rewrite::{ArmRequest, Mode, Setpoint};
 pub use controller::{Controller, Manner};
 pub use recorded::Recorded;
 
+/// Setpoints with the drives disabled before that is acknowledged. Before it has seen 32 frames at its setpoint rate the
+/// device refuses to arm; a good share of them may be lost.
+const LEAD: u32 = 48;
+
 /// What the controller does in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {

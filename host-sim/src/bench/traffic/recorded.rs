@@ -3,7 +3,7 @@
 use truepath_core::rewrite::{ArmRequest, Flags, Mode, Setpoint};
 use truepath_core::units::Real;
 
-use super::{Command, Traffic};
+use super::{Command, LEAD, Traffic};
 use crate::setpoints::Setpoints;
 
 /// A file of setpoints being played.
@@ -22,9 +22,6 @@ pub struct Recorded {
     /// How often the file is still to be played.
     rounds: u32,
 }
-
-/// Setpoints with the drives disabled before that is acknowledged.
-const LEAD: u32 = 3;
 
 impl Recorded {
     /// Plays a file `rounds` times, each time as another part. Without a column of its own the spindle runs at the

@@ -92,6 +92,9 @@ pub fn settings(options: &Options, stepped: bool) -> Result<DeviceSettings, Inpu
     Ok(settings)
 }
 
+/// Setpoint rate of a device over streams when setpoints go out as fast as the answers come, Hz. No stream reaches it, so
+/// that no burst is faster than the device permits.
+pub const STREAM_HZ: u32 = 20_000;
 /// Silence of a board whose clock is ours, µs.
 pub const SILENCE_US: u32 = 20_000;
 

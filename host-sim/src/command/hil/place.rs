@@ -28,6 +28,13 @@ pub enum Kind {
     },
 }
 
+impl Kind {
+    /// Whether the clock of the board is ours.
+    pub const fn is_stepped(&self) -> bool {
+        matches!(self, Self::Host | Self::VirtualBulk { .. })
+    }
+}
+
 /// Opens a board. Over streams up to `window` answers may be outstanding, and with `paced` setpoints keep to the rate.
 ///
 /// # Errors

@@ -85,9 +85,10 @@ pub(super) fn report(board: &dyn Board, device: Identity, outcome: &Outcome, cou
     if difference.is_none() && (found != expected || counters.faults != outcome.counters.faults) {
         difference = Some(format!("the counters differ: host {expected:?}, board {found:?}"));
     }
-    let faults = (0..16u16)
-        .filter_map(|index| {
-            let reason = Reason::try_from(16 + index).ok()?;
+    let faults = (Reason::FIRST_FAULT..)
+        .take(Reason::FAULTS)
+        .filter_map(|code| {
+            let reason = Reason::try_from(code).ok()?;
             let count = counters.faults_of(reason);
             (count > 0).then(|| (reason.to_string(), count))
         })
