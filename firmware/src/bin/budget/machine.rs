@@ -92,8 +92,10 @@ impl Machine {
         let next = Setpoint { spindle_millirpm: SPINDLE, frame_crc: frame.crc, ..Setpoint::default() };
         let mut machine =
             Self { rewriter, state: State::default(), stream, spi, axes, frame, next, part: 0, now_us: 0 };
-        // The device wants to hear the controller before the drives are acknowledged.
-        machine.send(0, 0, 0, None);
+        // The device wants to hear the controller before the drives are acknowledged, and to know its pace before it arms.
+        for _ in 0..40 {
+            machine.send(0, 0, 0, None);
+        }
         machine.acknowledge();
         machine
     }
