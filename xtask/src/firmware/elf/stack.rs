@@ -1,8 +1,8 @@
 //! Worst-case stack: frames added along the call graph, from the thread and from each interrupt priority.
 //!
 //! All priorities share one stack, and each can interrupt the one below it once, so their worst cases add up. Calls
-//! through a register do not show where they lead; [`INDIRECT`] says it for every function that has one and is
-//! reached, and a function that is missing there is a finding. Recursion is a finding unless [`RECURSION`] bounds it.
+//! through a register do not show where they lead; `priorities` says it for every function that has one and is
+//! reached, and a function that is missing there is a finding. Recursion is a finding unless `priorities` bounds it.
 
 use std::collections::BTreeMap;
 
