@@ -1,14 +1,16 @@
 //! Tables of docs/firmware.md that commands write and check.
 //!
 //! Sizes and instruction counts follow from source and compiler. The version of the compiler stands in the line above a
-//! table; with the same version the numbers have to agree exactly, with another one a difference is reported and no
-//! more, because compilers come and go with the machine.
+//! table; with the same version the numbers have to agree to half a percent (paths of the build are in an image), with
+//! another one a difference is reported and no more, because compilers come and go with the machine.
 
 use crate::bench::table;
 use crate::repository::root;
 use crate::step::Failure;
 
 const DOCUMENT: &str = "docs/firmware.md";
+/// Part of a number by which it may differ.
+const TOLERANCE: u64 = 200;
 
 /// Writes a table with a head and rows under its name, or compares it with what stands there. Rows that the document
 /// has and `rows` has not are left out of the comparison: one board may be built alone.
@@ -22,7 +24,8 @@ pub fn settle(name: &str, head: &[&str], rows: &[Vec<String>], compiler: &str, w
     if write {
         return table::replace(&document, name, &written(head, rows, compiler, old));
     }
-    let changed: Vec<String> = rows.iter().map(|row| line(row)).filter(|row| !old.contains(row.as_str())).collect();
+    let changed: Vec<String> =
+        rows.iter().map(|row| line(row)).filter(|row| !old.lines().any(|old| agree(old, row))).collect();
     if changed.is_empty() {
         return Ok(());
     }
@@ -60,6 +63,24 @@ fn written(head: &[&str], rows: &[Vec<String>], compiler: &str, old: &str) -> St
     format!("{}\n\n{}{rule}\n{}", said_compiler(compiler), line(&head), lines.concat())
 }
 
+/// Whether two rows have the same first cell and, behind it, the same numbers within the tolerance.
+fn agree(old: &str, new: &str) -> bool {
+    let cells = |row: &str| row.trim().split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+    let (old, new) = (cells(old), cells(new));
+    old.len() == new.len()
+        && old.get(1) == new.get(1)
+        && old.iter().zip(&new).skip(2).all(|(a, b)| {
+            let (a, b) = (numbers(a), numbers(b));
+            a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| a.abs_diff(*b) <= *a.max(b) / TOLERANCE)
+        })
+}
+
+/// The whole numbers of a cell, thousands separated by commas.
+fn numbers(cell: &str) -> Vec<u64> {
+    let digits = cell.replace(',', "");
+    digits.split(|c: char| !c.is_ascii_digit()).filter_map(|n| n.parse().ok()).collect()
+}
+
 fn said_compiler(compiler: &str) -> String {
     format!("Compiler: rustc {compiler}.")
 }
@@ -88,6 +109,14 @@ mod tests {
         assert!(new.contains("| a | 1 |\n| b | 3 |\n"), "{new}");
         let other = written(&["board", "flash"], &[row(["b", "3"])], "1.97.0", &old);
         assert!(!other.contains("| a |") && other.contains("rustc 1.97.0"), "{other}");
+    }
+
+    #[test]
+    fn a_row_agrees_when_its_numbers_do_to_half_a_percent() {
+        assert!(agree("| a | 1,000 | 5 … 7 |", "| a | 1,005 | 5 … 7 |\n"));
+        assert!(!agree("| a | 1,000 | 5 … 7 |", "| a | 1,006 | 5 … 7 |\n"));
+        assert!(!agree("| a | 1,000 | 5 … 7 |", "| a | 1,000 | 5 … 8 |\n"));
+        assert!(!agree("| a | 1,000 | 5 … 7 |", "| b | 1,000 | 5 … 7 |\n"));
     }
 
     #[test]
