@@ -8,24 +8,6 @@ use truepath_core::rewrite::{Flags, Mode, Output, Setpoint};
 
 const FRAMES: u32 = 300_000;
 
-/// Marsaglia's xorshift, 64 bits.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-    fn below(&mut self, n: u64) -> u64 {
-        (self.next() >> 16) % n
-    }
-    fn once_in(&mut self, n: u64) -> bool {
-        self.below(n) == 0
-    }
-}
-
 /// The line between controller and device with what it holds back.
 struct Chaos {
     wire: Wire,

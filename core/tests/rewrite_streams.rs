@@ -9,24 +9,6 @@ use truepath_core::units::{Offset, Real, shift_rounded_i64};
 
 const STREAMS: u64 = 1_000_000;
 
-/// Marsaglia's xorshift, 64 bits.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-    fn below(&mut self, n: u64) -> u64 {
-        (self.next() >> 16) % n
-    }
-    fn around(&mut self, magnitude: i64) -> i64 {
-        self.below(2 * magnitude as u64 + 1) as i64 - magnitude
-    }
-}
-
 /// One tick judged against the one before.
 fn judge(limits: &Limits, before: &State, after: &State, setpoint: &Setpoint, out: &Output) {
     let (clamp, v, a) = (limits.clamp().bits(), limits.velocity().bits(), limits.acceleration().bits());

@@ -3,8 +3,8 @@
 
 mod hil_support;
 
-use hil_support::{host_board, image, options, probability};
-use truepath::bench::{BenchError, Board, BulkBoard, Client, Event, Exchange, Faults, InProcess, Wire};
+use hil_support::{everything, host_board, image, options};
+use truepath::bench::{BenchError, Board, BulkBoard, Client, Event, Exchange, InProcess, Wire};
 use truepath::command::hil::{Options, Source, run};
 
 /// A board that looks at the time before every frame.
@@ -51,19 +51,10 @@ impl Board for Watched {
 
 #[test]
 fn a_tick_passes_before_every_frame_at_any_rate_and_under_faults() {
-    let faults = Faults {
-        drop: probability(0.05),
-        corrupt: probability(0.05),
-        reorder: probability(0.05),
-        repeat: probability(0.05),
-        pause: probability(0.001),
-        pause_us: 30_000,
-        jitter_us: 500,
-    };
     // 3 kHz is 333⅓ us: rounded down, frames would come faster than they may.
     for (rate_hz, tick_us) in [(1_000, 1_000), (3_000, 334), (20_000, 50)] {
         let mut board = Watched { board: host_board(), tick_us, since_frame_us: 0, frames: 0 };
-        let options = Options { rate_hz, ..options(Source::Random, 4_000, faults, 5) };
+        let options = Options { rate_hz, ..options(Source::Random, 4_000, everything(), 5) };
         let report = run(&mut board, &image(0), &options, &mut |_| ()).unwrap();
         assert!(report.identical && board.frames > 3_500, "{:?}", report.difference);
         assert!(report.armed > 0, "{report:?}");

@@ -3,7 +3,7 @@
 
 mod hil_support;
 
-use hil_support::{on_host, options, probability};
+use hil_support::{everything, on_host, options, probability};
 use truepath::bench::Faults;
 use truepath::command::hil::{Report, Source};
 
@@ -71,17 +71,8 @@ fn jitter_alone_changes_no_answer() {
 
 #[test]
 fn everything_at_once_is_survived() {
-    let faults = Faults {
-        drop: probability(0.05),
-        corrupt: probability(0.05),
-        reorder: probability(0.05),
-        repeat: probability(0.05),
-        pause: probability(0.001),
-        pause_us: 30_000,
-        jitter_us: 500,
-    };
     for seed in 7..12 {
-        let report = under(faults, seed);
+        let report = under(everything(), seed);
         assert!(report.armed > 3 && report.modes[3] > 1_000, "{report:?}");
     }
 }

@@ -8,6 +8,27 @@ use truepath_core::image::{
 use truepath_core::rewrite::{ArmRequest, Flags, Frame, Mode, Output, Rewriter, Setpoint, Settings, State};
 use truepath_core::units::{Offset, Position, Real};
 
+/// Marsaglia's xorshift, 64 bits.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+    pub fn below(&mut self, n: u64) -> u64 {
+        (self.next() >> 16) % n
+    }
+    pub fn around(&mut self, magnitude: i64) -> i64 {
+        self.below(2 * magnitude as u64 + 1) as i64 - magnitude
+    }
+    pub fn once_in(&mut self, n: u64) -> bool {
+        self.below(n) == 0
+    }
+}
+
 pub const MM: i64 = 1_000_000;
 /// Z of the pass.
 pub const PASS: i64 = -10 * MM;

@@ -38,6 +38,19 @@ pub fn probability(share: f64) -> Probability {
     Probability::new(share).unwrap()
 }
 
+/// Every kind of fault at once.
+pub fn everything() -> Faults {
+    Faults {
+        drop: probability(0.05),
+        corrupt: probability(0.05),
+        reorder: probability(0.05),
+        repeat: probability(0.05),
+        pause: probability(0.001),
+        pause_us: 30_000,
+        jitter_us: 500,
+    }
+}
+
 pub fn options(source: Source, count: u64, faults: Faults, seed: u64) -> Options {
     Options { source, count, axes: 3, rate_hz: 1_000, faults, seed }
 }
