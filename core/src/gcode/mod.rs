@@ -39,7 +39,6 @@ mod mcode;
 mod message;
 mod modal;
 mod motion;
-mod run;
 mod text;
 mod warning;
 mod word;

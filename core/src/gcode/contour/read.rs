@@ -1,10 +1,12 @@
-//! The finishing contour of a program.
+//! The contour of a program, read into a slice lent by the caller, whose length is the only limit.
 //!
 //! A program given without further ado must hold exactly one run of cutting moves; with more, the caller names the
-//! lines. The blocks go into a slice lent by the caller, whose length is the only limit.
+//! lines.
 
 use super::run::{Run, RunReader};
-use super::{GcodeError, GcodeErrorKind, Interpreter, LineRange, Options, PathControl, ProgramSummary, Spindle, Units};
+use crate::gcode::{
+    GcodeError, GcodeErrorKind, Interpreter, LineRange, Options, PathControl, ProgramSummary, Spindle, Units,
+};
 use crate::geometry::{Block, Side};
 use crate::units::{Offset, Position, Real};
 
@@ -15,25 +17,6 @@ pub struct ContourOptions {
     pub program: Options,
     /// Only moves on these lines belong to the contour; the whole program is executed all the same.
     pub within: Option<LineRange>,
-}
-
-/// A contour that a program holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Candidate {
-    /// Lines of its first and last block.
-    pub lines: LineRange,
-    /// Number of lines and arcs.
-    pub blocks: usize,
-    /// Its length.
-    pub length: Offset,
-    /// Its height; `None` when the program never gives it.
-    pub z: Option<Position>,
-    /// The tool in the spindle; `None` without M6.
-    pub tool: Option<u32>,
-    /// The side of the wall by G41 or G42.
-    pub wall: Option<Side>,
-    /// Whether it ends where it starts.
-    pub closed: bool,
 }
 
 /// The contour that was read, and what the program says about its cut.
@@ -136,45 +119,4 @@ pub fn read_contour(
         path: run.path,
         summary,
     })
-}
-
-/// Gives every contour of a program to `visit`, in order, for a list from which to choose.
-///
-/// # Errors
-/// Whatever is not understood, or a cutting move from an unknown place.
-pub fn find_contours(
-    program: &[u8],
-    options: &ContourOptions,
-    mut visit: impl FnMut(&Candidate),
-) -> Result<ProgramSummary, GcodeError> {
-    let mut reader = RunReader::new(options.within);
-    let summary = Interpreter::new(options.program).run(program, &mut |event| {
-        if let Some(run) = reader.step(event)?.ended {
-            visit(&run.candidate());
-        }
-        Ok(())
-    })?;
-    if let Some(run) = reader.finish() {
-        visit(&run.candidate());
-    }
-    Ok(summary)
-}
-
-impl Run {
-    fn candidate(&self) -> Candidate {
-        Candidate {
-            lines: self.lines,
-            blocks: self.blocks,
-            length: self.length,
-            z: self.z,
-            tool: self.setup.tool,
-            wall: self.wall,
-            closed: self.start == self.end,
-        }
-    }
-
-    /// An error about the run, at its first block.
-    const fn error(&self, kind: GcodeErrorKind) -> GcodeError {
-        GcodeError { kind, line: self.lines.first, column: 1, start: self.first.start, len: self.first.len }
-    }
 }

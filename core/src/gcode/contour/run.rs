@@ -3,7 +3,7 @@
 //! A run is consecutive cutting moves (G1, G2, G3) in X and Y at constant Z. A rapid, a move in Z, G28, G53, a tool
 //! change, and a change of spindle or offset end it. Moves without length are dropped.
 
-use super::{Axes, Canon, Event, GcodeErrorKind, LineRange, PathControl, Span, Spindle, Units};
+use crate::gcode::{Axes, Canon, Event, GcodeError, GcodeErrorKind, LineRange, PathControl, Span, Spindle, Units};
 use crate::geometry::{Block, Curve, Point, Side};
 use crate::units::{Offset, Position, Real};
 
@@ -129,6 +129,13 @@ impl RunReader {
         run.both_sides |= run.wall.is_some() && modal.wall.is_some() && run.wall != modal.wall;
         run.wall = run.wall.or(modal.wall);
         Progress { ended, block: Some(block) }
+    }
+}
+
+impl Run {
+    /// An error about the run, at its first block.
+    pub(super) const fn error(&self, kind: GcodeErrorKind) -> GcodeError {
+        GcodeError { kind, line: self.lines.first, column: 1, start: self.first.start, len: self.first.len }
     }
 }
 
