@@ -5,6 +5,7 @@
 
 mod bench;
 mod checks;
+mod conformance;
 mod device;
 mod firmware;
 mod hil;
@@ -91,6 +92,12 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
+    /// Our reading of programs against LinuxCNC's `rs274`, over every program its package ships and our own.
+    Conformance {
+        /// Renew docs/conformance.md instead of comparing its counts.
+        #[arg(long)]
+        write: bool,
+    },
     /// Corrects the parts of an independent machine program and has it score them.
     Judge {
         /// The program that makes and scores parts, relative to the repository; its scenarios lie in `scenarios`
@@ -128,6 +135,7 @@ fn main() -> ExitCode {
         Task::Bench { no_run, write, arguments, .. } => {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))
         }
+        Task::Conformance { write } => report.run(Step::new("conformance", || conformance::check(write))),
         Task::Judge { judge } => report.run(Step::new("judge", || judge::run_all(judge.as_deref()))),
     }
     report.finish()
