@@ -1,7 +1,7 @@
 //! Programs → canonical moves: order of execution, what is known of a position, and the bytes each step comes from.
 
 use truepath_core::gcode::{
-    Axes, Canon, Coolant, GcodeErrorKind, Interpreter, Lines, Options, PathControl, Spindle, Token, ToolLength, Units,
+    Axes, Canon, Coolant, GcodeErrorKind, Interpreter, Lines, Options, PathControl, Plane, Spindle, Token, ToolLength, Units,
     Words,
 };
 use truepath_core::units::{Offset, Position, Real};
@@ -29,7 +29,7 @@ fn the_paper_s_program_becomes_these_steps() {
     let expected = [
         (2, Canon::ProgramNumber(1)),
         (3, Canon::Units(Units::Millimetres)),
-        (3, Canon::PlaneXy),
+        (3, Canon::Plane(Plane::Xy)),
         (3, Canon::Compensation { wall: None, offset_number: None }),
         (3, Canon::ToolLength(ToolLength::Off)),
         (4, Canon::Reference { second: false, axes: [false, false, true], via: Axes::UNKNOWN }),

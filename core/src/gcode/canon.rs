@@ -4,32 +4,9 @@
 //! block it comes from, so that a writer can change the words of one move and keep every other byte. The vocabulary
 //! follows the canonical machining functions of RS274/NGC (NIST 6556, chapter 4).
 
-use super::{Decimal, Modal, Span};
+use super::{Axes, Coolant, Decimal, FeedMode, Modal, PathControl, Plane, Span, Spindle, ToolLength, Units};
 use crate::geometry::{Curve, Point, Side};
-use crate::units::{Offset, Position, Real};
-
-/// Positions of the axes in program coordinates; `None` where the program has not said it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Axes {
-    /// X.
-    pub x: Option<Position>,
-    /// Y.
-    pub y: Option<Position>,
-    /// Z.
-    pub z: Option<Position>,
-}
-
-impl Axes {
-    /// All at the origin.
-    pub const ORIGIN: Self = Self { x: Some(Position::ZERO), y: Some(Position::ZERO), z: Some(Position::ZERO) };
-    /// None known.
-    pub const UNKNOWN: Self = Self { x: None, y: None, z: None };
-
-    /// The place in the plane, when both coordinates are known.
-    pub fn point(self) -> Option<Point> {
-        Some(Point { x: self.x?, y: self.y? })
-    }
-}
+use crate::units::Real;
 
 /// What one block, or part of one, does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +17,10 @@ pub enum Canon {
     ProgramNumber(u32),
     /// G20 or G21.
     Units(Units),
-    /// G17.
-    PlaneXy,
+    /// G17, G18, G19.
+    Plane(Plane),
+    /// G93, G94, G95.
+    FeedMode(FeedMode),
     /// F, mm/min.
     FeedRate(Real),
     /// S, revolutions per minute.
@@ -63,8 +42,15 @@ pub enum Canon {
         /// D.
         offset_number: Option<u32>,
     },
-    /// G54 (1) … G59.3 (9).
-    WorkOffset(u8),
+    /// G54 (1) … G59.3 (9), or 9 + P of G54.1 and G154; its origin is in [`Modal::shifts`].
+    WorkOffset(u16),
+    /// The origin of the program's coordinates changes by G92, G52 or G10; the new one is in [`Modal::shifts`].
+    Shift(ShiftKind),
+    /// G10 L1, L10, L11: a row of the tool table changes.
+    ToolEntry {
+        /// Its number.
+        tool: u32,
+    },
     /// G61, G61.1, G64.
     PathControl(PathControl),
     /// G4; the number as written, because its unit (s or ms) is the machine's.
@@ -89,12 +75,59 @@ pub enum Canon {
         from: Axes,
         /// After.
         to: Axes,
-        /// The arc in the plane.
+        /// The arc in the plane, without the extra turns.
         curve: Curve,
         /// Its centre.
         centre: Point,
         /// G3.
         counter_clockwise: bool,
+        /// Full turns before the arc itself (P − 1).
+        turns: u32,
+    },
+    /// G2, G3 in G18 or G19; the third axis may change evenly along it.
+    PlaneArc {
+        /// The plane, never XY.
+        plane: Plane,
+        /// Before.
+        from: Axes,
+        /// After.
+        to: Axes,
+        /// The arc in the plane: x is the plane's first axis, y its second.
+        curve: Curve,
+        /// Its centre, likewise.
+        centre: Point,
+        /// G3, seen against the plane's third axis.
+        counter_clockwise: bool,
+        /// Full turns before the arc itself (P − 1).
+        turns: u32,
+    },
+    /// A spline (G5, G5.1, G5.2) as a whole, when the options ask for it; otherwise
+    /// it comes as lines.
+    Spline {
+        /// Before.
+        from: Axes,
+        /// After.
+        to: Axes,
+        /// How many control points it has.
+        points: u32,
+    },
+    /// G38.2 … G38.5: towards `to` until the probe answers. Where it stops is not in the program.
+    Probe {
+        /// Before.
+        from: Axes,
+        /// The end of the search.
+        to: Axes,
+        /// G38.4, G38.5: until contact is lost.
+        away: bool,
+        /// G38.2, G38.4: no contact is an error.
+        must: bool,
+    },
+    /// G33.1: down to `to` and back, in step with the spindle.
+    Tap {
+        /// Before, and after.
+        from: Axes,
+        /// The deepest place.
+        to: Axes,
     },
     /// G53: a move in machine coordinates. The axes named have no known program position afterwards.
     MachineMove {
@@ -117,78 +150,19 @@ pub enum Canon {
         /// M1.
         optional: bool,
     },
-    /// An M code kept without being understood.
+    /// An M code that does not move an axis and is passed on: outputs, inputs, overrides, pallets, or one not known.
     OtherM(u32),
     /// M2 or M30.
     End(u32),
 }
 
-/// The unit of length of the words.
+/// What moves the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Units {
-    /// G20.
-    Inches,
-    /// G21.
-    Millimetres,
-}
-
-impl Units {
-    /// Nanometres in one of it.
-    pub const fn nanometres(self) -> i64 {
-        match self {
-            Self::Inches => 25_400_000,
-            Self::Millimetres => 1_000_000,
-        }
-    }
-}
-
-/// The spindle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Spindle {
-    /// M5, and before any M3 or M4.
-    Stopped,
-    /// M3.
-    Clockwise,
-    /// M4.
-    CounterClockwise,
-}
-
-/// The coolant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coolant {
-    /// M7.
-    Mist,
-    /// M8.
-    Flood,
-    /// M9.
-    Off,
-}
-
-/// Where the tool length comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ToolLength {
-    /// G49.
-    Off,
-    /// G43; the table row, or that of the tool in the spindle.
-    Table(Option<u32>),
-    /// G43.1: values in the program.
-    InProgram,
-}
-
-/// How closely the machine keeps to the path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PathControl {
-    /// G61.
-    Exact,
-    /// G61.1.
-    ExactStop,
-    /// G64.
-    Blend {
-        /// P, when given.
-        tolerance: Option<Offset>,
-        /// Q, the tolerance below which short lines are merged, when given.
-        merge: Option<Offset>,
-    },
+pub enum ShiftKind {
+    /// G10 L2, L20 to the work offset in force.
+    Work,
+    /// G92, G92.1, G92.2, G92.3, G52.
+    Local,
 }
 
 /// The block an event comes from.

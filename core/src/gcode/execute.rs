@@ -5,8 +5,8 @@ use super::code::Group;
 use super::interpreter::Execution;
 use super::mcode::MCodes;
 use super::{
-    Canon, Coolant, Event, GcodeError, GcodeErrorKind, Motion, PathControl, Spindle, ToolLength, Units, WarningKind,
-    Word,
+    Canon, Coolant, Event, GcodeError, GcodeErrorKind, Motion, PathControl, Plane, Spindle, ToolLength, Units,
+    WarningKind, Word,
 };
 use crate::geometry::Side;
 use crate::units::{Offset, Real};
@@ -40,7 +40,7 @@ where
         }
         self.dwell(block)?;
         if let Some((_, span)) = block.code(Group::Plane) {
-            self.emit(Canon::PlaneXy, span)?;
+            self.emit(Canon::Plane(Plane::Xy), span)?;
         }
         self.compensation(block)?;
         self.tool_length(block)?;
@@ -223,7 +223,6 @@ where
             tenths @ 540..=590 => (tenths / 10).saturating_sub(53),
             tenths => tenths.saturating_sub(584),
         };
-        let system = u8::try_from(system).unwrap_or(u8::MAX);
         if system != self.modal.work_offset {
             self.forget_all();
         }

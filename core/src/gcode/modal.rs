@@ -1,6 +1,6 @@
 //! The modes of the machine that stay from block to block.
 
-use super::{PathControl, Spindle, Units};
+use super::{FeedMode, PathControl, Plane, RetractLevel, Shifts, Spindle, Units};
 use crate::geometry::Side;
 use crate::units::Real;
 
@@ -35,11 +35,21 @@ pub struct Modal {
     pub radius_offset: Option<u32>,
     /// Whether G43 or G43.1 is in force.
     pub length_offset: bool,
-    /// G54 (1) … G59.3 (9).
-    pub work_offset: u8,
+    /// G17, G18, G19.
+    pub plane: Plane,
+    /// G93, G94, G95: what `feed` means.
+    pub feed_mode: FeedMode,
+    /// G98, G99.
+    pub retract: RetractLevel,
+    /// G54 (1) … G59.3 (9), 9 + P of G54.1 and G154.
+    pub work_offset: u16,
+    /// Where the origin of the program lies, as far as it is known.
+    pub shifts: Shifts,
+    /// Where A, B, C (millionths of a degree) and U, V, W (nanometres) stand, counted from their place at the start.
+    pub auxiliary: [i64; 6],
     /// G61, G61.1, G64; `None` when the program has not said it.
     pub path: Option<PathControl>,
-    /// F, mm/min; `None` before the first.
+    /// F, mm/min (G94), one a minute (G93) or mm a revolution (G95); `None` before the first.
     pub feed: Option<Real>,
     /// S, revolutions per minute; `None` before the first.
     pub speed: Option<Real>,
@@ -62,7 +72,12 @@ impl Modal {
             wall: None,
             radius_offset: None,
             length_offset: false,
+            plane: Plane::Xy,
+            feed_mode: FeedMode::PerMinute,
+            retract: RetractLevel::Before,
             work_offset: 1,
+            shifts: Shifts::NONE,
+            auxiliary: [0; 6],
             path: None,
             feed: None,
             speed: None,

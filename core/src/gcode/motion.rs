@@ -176,7 +176,7 @@ where
         let centre = self.centre(block, start, end, counter_clockwise)?;
         let curve = Curve::arc(start, end, centre, counter_clockwise).map_err(|e| self.error(e.into(), span))?;
         self.check_feed();
-        self.emit(Canon::Arc { from, to, curve, centre, counter_clockwise }, span)
+        self.emit(Canon::Arc { from, to, curve, centre, counter_clockwise, turns: 0 }, span)
     }
 
     fn centre(&mut self, block: &mut BlockWords, start: Point, end: Point, ccw: bool) -> Result<Point, GcodeError> {

@@ -65,7 +65,7 @@ impl<W: Write> Printer<'_, W> {
                 let name = if units == Units::Inches { "INCHES" } else { "MM" };
                 self.call(&format!("USE_LENGTH_UNITS(CANON_UNITS_{name})"))
             }
-            Canon::PlaneXy => self.call("SELECT_PLANE(CANON_PLANE_XY)"),
+            Canon::Plane(_) => self.call("SELECT_PLANE(CANON_PLANE_XY)"),
             Canon::FeedRate(feed) => {
                 let per_unit = step.units.nanometres() as f64 / 1e6;
                 self.call(&format!("SET_FEED_RATE({})", decimal(real(feed) / per_unit)))
@@ -133,6 +133,7 @@ impl<W: Write> Printer<'_, W> {
             Canon::Stop { optional } => self.call(if optional { "OPTIONAL_PROGRAM_STOP()" } else { "PROGRAM_STOP()" }),
             Canon::OtherM(number) => self.call(&format!("COMMENT(\"truepath: M{number} is not executed\")")),
             Canon::End(number) => self.end(number == 30),
+            _ => self.call("COMMENT(\"truepath: not shown\")"),
         }
     }
 
@@ -189,7 +190,7 @@ impl<W: Write> Printer<'_, W> {
         self.call(&format!("USE_TOOL_LENGTH_OFFSET({x} {y} {z}, {OFF}, {OFF})"))
     }
 
-    fn work_offset(&mut self, system: u8) -> io::Result<()> {
+    fn work_offset(&mut self, system: u16) -> io::Result<()> {
         if system == std::mem::replace(&mut self.work_offset, system) {
             return self.call("COMMENT(\"interpreter: continuing to use same coordinate system\")");
         }

@@ -77,7 +77,7 @@ impl Step {
             Canon::Spindle(_) => 6,
             Canon::Coolant(_) => 7,
             Canon::Dwell(_) => 8,
-            Canon::PlaneXy => 9,
+            Canon::Plane(_) => 9,
             Canon::Units(_) => 10,
             Canon::Compensation { .. } => 11,
             Canon::ToolLength(_) => 12,
@@ -89,7 +89,7 @@ impl Step {
             | Canon::Arc { .. }
             | Canon::MachineMove { .. }
             | Canon::Reference { .. } => 16,
-            Canon::Stop { .. } | Canon::End(_) => 17,
+            _ => 17,
         }
     }
 }
@@ -112,7 +112,7 @@ struct Printer<'a, W> {
     absolute_centres: bool,
     motion: Option<Motion>,
     coolant: [bool; 2],
-    work_offset: u8,
+    work_offset: u16,
 }
 
 impl<'a, W: Write> Printer<'a, W> {

@@ -33,7 +33,7 @@ pub(super) struct Setup {
     pub(super) spindle: Spindle,
     pub(super) speed: Option<Real>,
     pub(super) tool: Option<u32>,
-    work_offset: u8,
+    work_offset: u16,
     radius_offset: Option<u32>,
 }
 
