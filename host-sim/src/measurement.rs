@@ -1,5 +1,6 @@
 //! A probe file → contacts on the wall, and what was set aside.
 
+use truepath_core::checksum::crc32;
 use truepath_core::geometry::Direction;
 use truepath_core::identify::Observation;
 use truepath_core::job;
@@ -22,6 +23,8 @@ pub struct Measurement {
     pub rejected: Vec<(u32, Rejected)>,
     /// Standard deviation of one reading.
     pub noise: Offset,
+    /// CRC-32 of the file.
+    pub crc: u32,
 }
 
 impl Measurement {
@@ -41,7 +44,7 @@ impl Measurement {
         let used = job::contacts(&pass.core, contour, file.bytes(), &mut readings, &mut contacts, set_aside)
             .map_err(|error| pass.refused_of(file, &error))?;
         contacts.truncate(used);
-        Ok(Self { contacts, rejected, noise: probe.noise })
+        Ok(Self { contacts, rejected, noise: probe.noise, crc: crc32(file.bytes()) })
     }
 
     /// The contacts as observations for the fit.

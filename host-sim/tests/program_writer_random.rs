@@ -161,7 +161,7 @@ proptest! {
         let options = RewriteOptions { tolerance: Offset::from_um(1), ..RewriteOptions::default() };
         let rewritten = rewrite_program(&source, &edits, &options).expect("a corrected program");
         let text = String::from_utf8_lossy(&rewritten.text);
-        prop_assert!(rewritten.max_deviation_nm <= 1_000.0, "{} nm\n{}", rewritten.max_deviation_nm, text);
+        prop_assert!(rewritten.difference.largest_deviation_mm <= 0.001, "{} mm\n{}", rewritten.difference.largest_deviation_mm, text);
 
         let after = read(&rewritten.text);
         prop_assert!(Contour::new(&after).is_some());
@@ -177,13 +177,13 @@ proptest! {
         for block in &after {
             if let truepath_core::geometry::Shape::Arc { centre, .. } = block.curve.shape() {
                 let ends = block.curve.start().distance(centre) - block.curve.end().distance(centre);
-                prop_assert!(ends.nm().abs() <= 20_000, "{} nm\n{text}", ends.nm());
+                prop_assert!(ends.nm().abs() <= 20_000, "{} mm\n{text}", ends.nm());
             }
         }
         let home = last_place(&rewritten.text).distance(last_place(&original)).nm();
         prop_assert!(home <= 100, "the program ends {home} nm off\n{text}");
         let kept = text.lines().filter(|l| !l.starts_with('(')).count();
         let lines = std::str::from_utf8(&original).expect("ASCII").lines().count();
-        prop_assert_eq!(kept, lines - blocks.len() + rewritten.unchanged + rewritten.lines + rewritten.arcs);
+        prop_assert_eq!(kept, lines - blocks.len() + rewritten.difference.straight_moves + rewritten.difference.arcs);
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path as FilePath;
 
+use truepath_core::checksum::crc32;
 use truepath_core::correct::Law;
 use truepath_core::cut::{Loop, Path};
 use truepath_core::identify::Parameter;
@@ -14,7 +15,7 @@ use crate::job::{Job, Route};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
-use crate::program::{RewriteOptions, rewrite_program};
+use crate::program::{Difference, Origin, RewriteOptions, Rewritten, rewrite_program};
 use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, mm, points_csv};
 
 use crate::report::json;
@@ -22,6 +23,7 @@ use crate::report::json;
 /// Files this command may write.
 const FILES: &[&str] = &[
     "corrected.nc",
+    "difference.txt",
     "correction.tpi",
     "correction.csv",
     "points.csv",
@@ -87,11 +89,16 @@ pub fn correct(
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.iter().cloned());
     warnings.extend(doubts(pass, &identified, &correction, &machine));
-    let summary = correct_summary(pass, &identified, &correction, measurement.rejected.len(), warnings);
+    let mut summary = correct_summary(pass, &identified, &correction, measurement.rejected.len(), warnings);
     let (mut program, mut image) = (None, None);
     for route in routes {
         match route {
-            Route::Program => program = Some(corrected_program(pass, &path, &correction)?),
+            Route::Program => {
+                let written = corrected_program(pass, measurement, &path, &correction)?;
+                summary.warnings.extend(kinked(&written.difference));
+                summary.program = Some(written.difference);
+                program = Some(written.text);
+            }
             Route::Coprocessor => image = Some(crate::image::build(pass, &identified, &path, &correction)?),
         }
     }
@@ -116,6 +123,8 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     let done = correct(&pass, &measurement, &measurement.remarks(&file), &[route], progress)?;
     if let Some(text) = &done.program {
         folder.write("corrected.nc", text)?;
+        let difference = done.summary.program.as_ref().map(|d| d.text(pass.program.name()));
+        folder.write("difference.txt", difference.unwrap_or_default().as_bytes())?;
     }
     if let Some(bytes) = &done.image {
         folder.write("correction.tpi", bytes)?;
@@ -129,9 +138,21 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     Ok(done.summary)
 }
 
-fn corrected_program(pass: &Pass, path: &Path, correction: &Correction) -> Result<Vec<u8>, Failure> {
-    let options = RewriteOptions { tolerance: pass.job.tolerance, ..RewriteOptions::default() };
-    Ok(rewrite_program(&pass.program, &block_edits(pass, path, &correction.nodes), &options)?.text)
+fn corrected_program(
+    pass: &Pass,
+    measurement: &Measurement,
+    path: &Path,
+    correction: &Correction,
+) -> Result<Rewritten, Failure> {
+    let origin = Origin { job: Some(crc32(pass.job.source().bytes())), probe: Some(measurement.crc) };
+    let options = RewriteOptions {
+        tolerance: pass.job.tolerance,
+        max_arc_radius: pass.job.max_arc_radius,
+        max_kink_deg: pass.job.max_kink_deg,
+        origin,
+        ..RewriteOptions::default()
+    };
+    rewrite_program(&pass.program, &block_edits(pass, path, &correction.nodes), &options)
 }
 
 /// What the user should doubt.
@@ -194,6 +215,16 @@ fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine
         out.push(reversal);
     }
     out
+}
+
+/// A kink of the written path beyond the one asked for.
+fn kinked(difference: &Difference) -> Option<String> {
+    (difference.largest_kink_deg > difference.max_kink_deg).then(|| {
+        format!(
+            "corrected.nc:{}: the corrected path turns by {:.2} degrees on the spot (correct.max_kink_deg = {}): the correction itself changes that fast there",
+            difference.largest_kink_line, difference.largest_kink_deg, difference.max_kink_deg
+        )
+    })
 }
 
 /// Where the correction reverses an axis that the program does not reverse, backlash acts.

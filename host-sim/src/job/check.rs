@@ -61,7 +61,7 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     let (machine, backlash) =
         machine(&root.required_section("machine", "stiffness_x_n_per_mm and stiffness_y_n_per_mm")?)?;
     let probe = root.section("probe")?.map(|section| probe(&section)).transpose()?;
-    let (correct, tolerance, route) = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
+    let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
     root.close()?;
     let program = folder.join(program.0);
     drop(root);
@@ -69,8 +69,10 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         program,
         numbers: truepath_core::job::Job { wall, allowance, tool, cut, force, machine, probe, correct },
         backlash,
-        tolerance,
-        route,
+        tolerance: writing.tolerance,
+        max_arc_radius: writing.max_arc_radius,
+        max_kink_deg: writing.max_kink_deg,
+        route: writing.route,
         spans: spans.into_inner(),
         source: source.clone(),
     })

@@ -50,6 +50,10 @@ pub struct Job {
     pub backlash: [Offset; 2],
     /// How far the written path may leave the computed one, 0.0001…0.1 mm.
     pub tolerance: Offset,
+    /// Arcs of a larger radius are written as lines, 10…100,000 mm.
+    pub max_arc_radius: Offset,
+    /// Kinks of the written path where the program is smooth are kept below this, 0.1…10 degrees.
+    pub max_kink_deg: f64,
     /// Where the correction is applied.
     pub route: Route,
     source: Source,

@@ -9,7 +9,8 @@ pub(super) fn deviation(samples: &[[i64; 2]], curve: &Curve) -> f64 {
     samples.iter().map(|&sample| distance(sample, curve)).fold(0.0, f64::max)
 }
 
-fn distance(sample: [i64; 2], curve: &Curve) -> f64 {
+/// The distance of a sample from a curve, nanometres.
+pub(super) fn distance(sample: [i64; 2], curve: &Curve) -> f64 {
     // Relative to the start, so that large coordinates cost no digits.
     let origin = [curve.start().x.nm(), curve.start().y.nm()];
     let local = |x: i64, y: i64| [(x - origin[0]) as f64, (y - origin[1]) as f64];

@@ -15,7 +15,7 @@
 //! Only sums, products, quotients and square roots are used: the result is the same on every host, and turned by 90°
 //! or mirrored with its input.
 //!
-//! Limits: arcs of at most 160°, radii up to 10 m.
+//! Limits: arcs of at most 160°; radii up to a stated one, above which a piece is a line.
 
 use super::vector::{cross, dot, minus};
 
@@ -44,8 +44,6 @@ pub struct Piece {
 
 /// tan(80°): half the largest angle of an arc.
 const MAX_HALF_TANGENT: f64 = 5.67;
-/// 1/2h at a centre 10 m from the chord, 1/nm.
-const MIN_G: f64 = 0.5e-10;
 
 /// The samples of a path and the points the ends of pieces are rounded to.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +52,8 @@ pub struct Samples<'a> {
     pub path: &'a [[f64; 2]],
     /// The same points as they will be written.
     pub written: &'a [[f64; 2]],
+    /// The farthest centre from the chord of an arc, nanometres.
+    pub max_radius: f64,
 }
 
 /// Pieces through all samples within `tolerance` nanometres. A piece between neighbouring samples is always accepted.
@@ -155,8 +155,10 @@ fn shape(samples: Samples<'_>, start: usize, end: usize, tolerance: f64) -> Opti
         return Some(Shape::Line);
     }
     let middle = 0.5 * (low + high);
-    let g = if middle < 0.0 { middle.min(-MIN_G).max(low) } else { middle.max(MIN_G).min(high) };
-    if g.abs() < MIN_G || (g * chord).abs() > MAX_HALF_TANGENT || !passes(g) {
+    // 1/2h of the farthest centre.
+    let least = 0.5 / samples.max_radius;
+    let g = if middle < 0.0 { middle.min(-least).max(low) } else { middle.max(least).min(high) };
+    if g.abs() < least || (g * chord).abs() > MAX_HALF_TANGENT || !passes(g) {
         return None;
     }
     let h = 0.5 / g;
@@ -196,7 +198,7 @@ mod tests {
     }
 
     fn same(path: &[[f64; 2]]) -> Samples<'_> {
-        Samples { path, written: path }
+        Samples { path, written: path, max_radius: 1e10 }
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! The comment that marks a corrected program, and its place.
 
 use truepath_core::gcode::{CORRECTED_MARK, Lines, Token, Words};
-use truepath_core::units::Offset;
+
+use super::RewriteOptions;
 
 /// How many lines stand before the mark: `%` and the program's name stay first, because controls look for them there.
 pub(super) fn place(program: &[u8]) -> u32 {
@@ -20,13 +21,26 @@ pub(super) fn place(program: &[u8]) -> u32 {
     after
 }
 
+/// What a corrected program was made from, as its head names it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Origin {
+    /// CRC-32 of the job file.
+    pub job: Option<u32>,
+    /// CRC-32 of the probe file.
+    pub probe: Option<u32>,
+}
+
 /// The lines of the mark.
-pub(super) fn text(crc: u32, tolerance: Offset, notes: &[String], line_end: &[u8]) -> Vec<u8> {
-    let facts = format!("(ORIGINAL CRC32 {crc:08X}, TOLERANCE {} MM)", tolerance.nm() as f64 / 1e6);
+pub(super) fn text(crc: u32, options: &RewriteOptions, line_end: &[u8]) -> Vec<u8> {
+    let facts = format!("(ORIGINAL CRC32 {crc:08X}, TOLERANCE {} MM)", options.tolerance.nm() as f64 / 1e6);
+    let named = |name: &str, crc: Option<u32>| crc.map(|crc| format!("({name} CRC32 {crc:08X})"));
+    let origin = [named("JOB", options.origin.job), named("PROBE FILE", options.origin.probe)];
+    let tool = format!("(WRITTEN BY TRUEPATH {})", env!("CARGO_PKG_VERSION"));
     let warning = "(DO NOT CORRECT AGAIN, DO NOT ARM A COPROCESSOR WITH THIS PROGRAM)".to_owned();
-    let notes = notes.iter().map(|note| format!("({})", plain(note)));
+    let notes = options.notes.iter().map(|note| format!("({})", plain(note)));
     let mut text = Vec::new();
-    for line in [CORRECTED_MARK.to_owned(), facts, warning].into_iter().chain(notes) {
+    let lines = [CORRECTED_MARK.to_owned(), facts].into_iter().chain(origin.into_iter().flatten());
+    for line in lines.chain([tool, warning]).chain(notes) {
         text.extend_from_slice(line.as_bytes());
         text.extend_from_slice(line_end);
     }

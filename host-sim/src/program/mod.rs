@@ -7,18 +7,20 @@
 //! * a move that relied on the modal code of the last contour line gets that code written out, and
 //! * a comment marks the program, and a marked program is refused: a correction must never be applied twice.
 //!
-//! The written text is read back with the same interpreter and compared with the samples; the result says how far it
-//! is off.
+//! The written text is then read back and [proved](proof) to differ from the original in the contour and in nothing
+//! else; what fails the proof is not written. [`Difference`] reports what was counted on the way.
 //!
 //! Limits: G17, one contour; coordinates are written with four decimals of a millimetre or six of an inch.
 
 mod assemble;
 mod deviation;
+mod difference;
 mod fit;
 mod grid;
 mod header;
 mod line;
 mod pen;
+mod proof;
 mod survey;
 mod vector;
 mod writer;
@@ -30,8 +32,10 @@ use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
 
+pub use difference::{Difference, Shift};
 pub use fit::{Piece, Samples, Shape, fit};
 pub use grid::Grid;
+pub use header::Origin;
 
 /// The corrected path of one line of the contour.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,15 +48,35 @@ pub struct BlockEdit {
 }
 
 /// How the corrected program is written.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct RewriteOptions {
     /// How far the written path may leave the samples, 0.1 µm…0.1 mm. The rounding of the coordinates (50 nm) is
     /// taken from it.
     pub tolerance: Offset,
     /// What the program does not say.
     pub program: Options,
+    /// Arcs of a larger radius are written as lines, 1 mm…100 m: controls refuse or distort arcs whose centre is far.
+    pub max_arc_radius: Offset,
+    /// Kinks larger than this, in places where the original is smooth, are avoided; 0.01…10 degrees.
+    pub max_kink_deg: f64,
+    /// What the head of the program names beside the original.
+    pub origin: Origin,
     /// Remarks for the head of the program, one comment each.
     pub notes: Vec<String>,
+}
+
+impl Default for RewriteOptions {
+    /// 1 µm, arcs up to 1 m, kinks up to 1 degree.
+    fn default() -> Self {
+        Self {
+            tolerance: Offset::from_um(1),
+            program: Options::default(),
+            max_arc_radius: Offset::from_um(1_000_000),
+            max_kink_deg: 1.0,
+            origin: Origin::default(),
+            notes: Vec::new(),
+        }
+    }
 }
 
 /// The corrected program and what it took.
@@ -60,14 +84,8 @@ pub struct RewriteOptions {
 pub struct Rewritten {
     /// The bytes of the file.
     pub text: Vec<u8>,
-    /// Lines (G1) written for the contour.
-    pub lines: usize,
-    /// Arcs (G2, G3) written for the contour.
-    pub arcs: usize,
-    /// Contour lines kept as they were, because they did not move.
-    pub unchanged: usize,
-    /// The largest distance of a sample from the written path, as read back, nm.
-    pub max_deviation_nm: f64,
+    /// What is different.
+    pub difference: Difference,
 }
 
 /// Writes a corrected program. `edits` are in the order of the program, one for every line of the contour.
@@ -91,27 +109,22 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
     }
     let moves = survey::survey(original, options.program).map_err(|e| InputError::of_program(source, &e))?;
     let written = writer::write(source, &moves, edits, options)?;
-    let after = survey::survey(&written.text, options.program)
-        .map_err(|e| Failure::Internal(format!("the written program cannot be read back: {e}")))?;
-    let mut max_deviation_nm = 0.0f64;
-    for ((edit, lines), ends) in edits.iter().zip(&written.ranges).zip(&written.piece_ends) {
-        let curves: Vec<_> = after.iter().filter(|m| lines.contains(&m.line)).filter_map(survey::Move::curve).collect();
-        if curves.len() != ends.len() {
-            return Err(Failure::Internal(format!("line {} is read back as another path", edit.line)));
-        }
-        let mut start = 0;
-        for (curve, &end) in curves.iter().zip(ends) {
-            max_deviation_nm = max_deviation_nm.max(deviation::deviation(&edit.samples[start..=end], curve));
-            start = end;
-        }
-    }
-    Ok(Rewritten {
-        text: written.text,
-        lines: written.lines,
-        arcs: written.arcs,
-        unchanged: written.unchanged,
-        max_deviation_nm,
-    })
+    let units = moves.iter().map(|m| Grid::of(m.modal.units).step_nm()).fold(0.0, f64::max);
+    let claim = proof::Claim {
+        original,
+        written: &written.text,
+        touched: &written.touched,
+        head: (written.head.0, &written.head.1),
+        edits,
+        program: options.program,
+        tolerance: options.tolerance.nm() as f64,
+        step: units,
+    };
+    let proof = proof::prove(&claim)
+        .map_err(|what| Failure::Internal(format!("the corrected program is not what it should be: {what}")))?;
+    let changed = (written.touched.keys().copied(), written.unchanged);
+    let difference = Difference::new(original, &moves, edits, changed, &proof, options);
+    Ok(Rewritten { text: written.text, difference })
 }
 
 /// Where the mark stands.

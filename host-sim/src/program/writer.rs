@@ -3,9 +3,10 @@
 //! Before the contour: the moves that lead to its start. On it: one edit a line. After it: whatever depended on the
 //! end that has moved. A move inside the contour that stands still (programs repeat points) follows the pen.
 
-use std::ops::RangeInclusive;
+use std::collections::BTreeMap;
 
 use truepath_core::gcode::{Line, Lines, Motion};
+use truepath_core::units::Offset;
 
 use super::assemble::{Replaced, assemble};
 use super::deviation::deviation;
@@ -16,15 +17,14 @@ use super::survey::{Kind, Move};
 use super::{BlockEdit, RewriteOptions};
 use crate::diagnostics::{Failure, InputError, Source};
 
-/// The written text and where each edit ended up in it.
+/// The written text and which lines of the original it changes.
 pub(super) struct Written {
     pub(super) text: Vec<u8>,
-    /// Lines of the text that came from each edit.
-    pub(super) ranges: Vec<RangeInclusive<u32>>,
-    /// For each edit, the sample at which each of its lines and arcs ends; none for a block that vanished.
-    pub(super) piece_ends: Vec<Vec<usize>>,
-    pub(super) lines: usize,
-    pub(super) arcs: usize,
+    /// The line of the original after which the mark stands, and the mark.
+    pub(super) head: (u32, Vec<u8>),
+    /// How many lines each changed line has become.
+    pub(super) touched: BTreeMap<u32, usize>,
+    /// Lines of the contour that stay.
     pub(super) unchanged: usize,
 }
 
@@ -35,8 +35,7 @@ struct Writer<'a> {
     replaced: Replaced,
     two_digits: bool,
     motion: Option<Motion>,
-    count: [usize; 3],
-    piece_ends: Vec<Vec<usize>>,
+    unchanged: usize,
 }
 
 /// Writes the program.
@@ -48,16 +47,8 @@ pub(super) fn write(
 ) -> Result<Written, Failure> {
     let lines: Vec<Line<'_>> = Lines::new(source.bytes()).collect();
     let two_digits = lines.iter().map(|&l| Block::new(l, false)).any(|b| b.motion_word().is_some() && b.two_digits());
-    let mut writer = Writer {
-        source,
-        lines,
-        options,
-        replaced: Replaced::new(),
-        two_digits,
-        motion: None,
-        count: [0; 3],
-        piece_ends: Vec::new(),
-    };
+    let mut writer =
+        Writer { source, lines, options, replaced: Replaced::new(), two_digits, motion: None, unchanged: 0 };
     let (Some(first_edit), Some(last_edit)) = (edits.first(), edits.last()) else {
         return Err(Failure::Internal("there is no line to correct".to_owned()));
     };
@@ -82,9 +73,9 @@ pub(super) fn write(
         return Err(Failure::Internal(format!("line {} is out of order or not part of the contour", edit.line)));
     }
     writer.leave(pen, &moves[last + 1..])?;
-    let [lines, arcs, unchanged] = writer.count;
-    let (text, ranges) = assemble(source.bytes(), &writer.lines, &writer.replaced, edits, options);
-    Ok(Written { text, ranges, piece_ends: writer.piece_ends, lines, arcs, unchanged })
+    let (text, head) = assemble(source.bytes(), &writer.lines, &writer.replaced, options);
+    let touched = writer.replaced.iter().map(|(&line, parts)| (line, parts.len())).collect();
+    Ok(Written { text, head, touched, unchanged: writer.unchanged })
 }
 
 impl<'a> Writer<'a> {
@@ -165,15 +156,12 @@ impl<'a> Writer<'a> {
             }
             self.motion = motion;
             pen.at = to.map(|v| v as f64);
-            self.count[2] += 1;
-            self.piece_ends.push(vec![edit.samples.len() - 1]);
+            self.unchanged += 1;
             return Ok(());
         }
         let step_nm = pen.grid().step_nm();
-        let (pieces, points) = pieces(pen, &edit.samples, (tolerance - step_nm).max(0.5 * tolerance));
-        let places = std::iter::once(pen.at).chain(points.iter().copied());
-        let moving = pieces.iter().zip(places.zip(&points)).filter(|(_, (from, to))| from != *to);
-        self.piece_ends.push(moving.map(|(piece, _)| piece.end).collect());
+        let (pieces, points) =
+            pieces(pen, &edit.samples, (tolerance - step_nm).max(0.5 * tolerance), self.options.max_arc_radius);
         let block = Block::new(self.line(step.line), self.two_digits);
         let mut text = Vec::new();
         for (index, (piece, target)) in pieces.iter().zip(&points).enumerate() {
@@ -181,7 +169,6 @@ impl<'a> Writer<'a> {
                 Shape::Line => Motion::Feed,
                 Shape::Arc { counter_clockwise, .. } => Motion::Arc { counter_clockwise },
             };
-            self.count[usize::from(motion != Motion::Feed)] += 1;
             let words = pen.draw(*target, &piece.shape);
             let more = index + 1 < pieces.len();
             text.push(if index == 0 {
@@ -263,13 +250,14 @@ impl<'a> Writer<'a> {
 }
 
 /// Pieces through the samples from where the pen is, in program coordinates, and the places they end at.
-fn pieces(pen: &Pen, samples: &[[i64; 2]], tolerance: f64) -> (Vec<Piece>, Vec<[f64; 2]>) {
+fn pieces(pen: &Pen, samples: &[[i64; 2]], tolerance: f64, max_radius: Offset) -> (Vec<Piece>, Vec<[f64; 2]>) {
     let origin = samples[0];
     let shift = origin.map(|v| v as f64);
     let path: Vec<_> = samples.iter().map(|s| [(s[0] - origin[0]) as f64, (s[1] - origin[1]) as f64]).collect();
     let places: Vec<_> = std::iter::once(pen.at).chain(samples.iter().skip(1).map(|&s| pen.nearest(s))).collect();
     let written: Vec<_> = places.iter().map(|p| [p[0] - shift[0], p[1] - shift[1]]).collect();
-    let mut pieces = fit(Samples { path: &path, written: &written }, tolerance);
+    let max_radius = max_radius.nm() as f64;
+    let mut pieces = fit(Samples { path: &path, written: &written, max_radius }, tolerance);
     if pieces.is_empty() {
         pieces.push(Piece { end: samples.len() - 1, shape: Shape::Line });
     }

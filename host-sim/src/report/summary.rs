@@ -11,6 +11,7 @@ use super::tables::TraceRow;
 use super::{float, mm};
 use crate::correction::{Correction, Identified};
 use crate::pass::Pass;
+use crate::program::Difference;
 
 /// An identified quantity.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -64,6 +65,9 @@ pub struct CorrectSummary {
     pub fit_residual_mm: f64,
     /// CRC-32 of the original program.
     pub program_crc32: String,
+    /// The corrected program against its original, when one was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub program: Option<Difference>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -101,6 +105,7 @@ pub fn correct_summary(
         points_rejected: rejected,
         fit_residual_mm: (squares / observations.len().max(1) as f64).sqrt(),
         program_crc32: format!("{:08x}", pass.core.program_crc),
+        program: None,
         warnings,
     }
 }

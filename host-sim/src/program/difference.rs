@@ -1,0 +1,165 @@
+//! What a corrected program differs in from its original, for people and for machines.
+//!
+//! The numbers are counted from the written text by [`super::proof`], not taken from the writer.
+
+use std::fmt::Write as _;
+
+use truepath_core::gcode::Lines;
+
+use super::deviation::distance;
+use super::proof::Proof;
+use super::survey::Move;
+use super::vector::length;
+use super::{BlockEdit, RewriteOptions};
+
+/// The largest displacement of the contour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Shift {
+    /// How far the corrected path is from the programmed one, mm.
+    pub mm: f64,
+    /// The line of the original program.
+    pub line: u32,
+    /// The place on the corrected path, program coordinates, mm.
+    pub x_mm: f64,
+    /// The place on the corrected path, program coordinates, mm.
+    pub y_mm: f64,
+}
+
+/// The difference between a program and its corrected text.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Difference {
+    /// Lines of the original program.
+    pub program_lines: usize,
+    /// Lines of the contour that were written anew.
+    pub contour_lines_changed: usize,
+    /// Lines of the contour kept as they were, because they did not move.
+    pub contour_lines_kept: usize,
+    /// Lines beside the contour that were changed, because they hang on its ends.
+    pub other_lines_changed: Vec<u32>,
+    /// G1 moves along the written contour.
+    pub straight_moves: usize,
+    /// G2 and G3 moves along it.
+    pub arcs: usize,
+    /// The largest displacement.
+    pub largest_shift: Shift,
+    /// The largest distance between the written path and the wanted one, mm, as read back.
+    pub largest_deviation_mm: f64,
+    /// What it may be, mm.
+    pub tolerance_mm: f64,
+    /// The largest kink where the original is smooth, degrees.
+    pub largest_kink_deg: f64,
+    /// The line of the corrected program that begins with it; 0 without any.
+    pub largest_kink_line: u32,
+    /// What it should not exceed, degrees.
+    pub max_kink_deg: f64,
+    /// Steps (moves, feeds, speeds, tools, functions, comments) outside the contour, all compared and the same.
+    pub steps_outside_compared: usize,
+    /// Moves among them.
+    pub moves_outside_compared: usize,
+    /// F words along the contour, all the same.
+    pub feeds_along_compared: usize,
+}
+
+impl Difference {
+    pub(super) fn new(
+        program: &[u8],
+        moves: &[Move],
+        edits: &[BlockEdit],
+        (touched, kept): (impl Iterator<Item = u32>, usize),
+        proof: &Proof,
+        options: &RewriteOptions,
+    ) -> Self {
+        let others = touched.filter(|line| edits.iter().all(|e| e.line != *line)).collect();
+        Self {
+            program_lines: Lines::new(program).count(),
+            contour_lines_changed: edits.len() - kept,
+            contour_lines_kept: kept,
+            other_lines_changed: others,
+            straight_moves: proof.lines,
+            arcs: proof.arcs,
+            largest_shift: largest_shift(moves, edits),
+            largest_deviation_mm: proof.deviation_nm / 1e6,
+            tolerance_mm: options.tolerance.nm() as f64 / 1e6,
+            largest_kink_deg: proof.kink.0,
+            largest_kink_line: proof.kink.1,
+            max_kink_deg: options.max_kink_deg,
+            steps_outside_compared: proof.steps_outside,
+            moves_outside_compared: proof.moves_outside,
+            feeds_along_compared: proof.feeds,
+        }
+    }
+
+    /// `difference.txt`.
+    pub fn text(&self, original: &str) -> String {
+        let mut text = String::new();
+        let others: Vec<String> = self.other_lines_changed.iter().map(u32::to_string).collect();
+        let kink = match self.largest_kink_line {
+            0 => "none".to_owned(),
+            line => format!("{:.3} deg at line {line} of corrected.nc", self.largest_kink_deg),
+        };
+        let shift = self.largest_shift;
+        // Writing to a String cannot fail.
+        let _ = write!(
+            text,
+            "corrected.nc against {original} ({} lines)\n\
+             \n\
+             contour lines written anew        {}\n\
+             contour lines kept                {}\n\
+             other lines changed               {}\n\
+             written for the contour           {} G1, {} G2/G3\n\
+             largest shift                     {:.4} mm, line {} near X{:.3} Y{:.3} mm\n\
+             largest deviation from the path   {:.5} mm (tolerance {} mm)\n\
+             largest kink where it was smooth  {kink} (aim {} deg)\n\
+             \n\
+             Both programs were then read and compared step by step:\n\
+             {} steps outside the contour, {} of them moves: the same, but for the ends at the contour.\n\
+             Along the contour: feeds ({} F words), speeds, heights, modes, comments, functions and block numbers are the same.\n\
+             All lines not named above have kept their bytes. Nothing else changed.\n",
+            self.program_lines,
+            self.contour_lines_changed,
+            self.contour_lines_kept,
+            if others.is_empty() {
+                "none".to_owned()
+            } else {
+                format!("{} (to and from the contour's ends)", others.join(", "))
+            },
+            self.straight_moves,
+            self.arcs,
+            shift.mm,
+            shift.line,
+            shift.x_mm,
+            shift.y_mm,
+            self.largest_deviation_mm,
+            self.tolerance_mm,
+            self.max_kink_deg,
+            self.steps_outside_compared,
+            self.moves_outside_compared,
+            self.feeds_along_compared,
+        );
+        text
+    }
+}
+
+fn largest_shift(moves: &[Move], edits: &[BlockEdit]) -> Shift {
+    let mut largest = Shift::default();
+    for edit in edits {
+        let curves: Vec<_> = moves.iter().filter(|m| m.line == edit.line).filter_map(Move::curve).collect();
+        let (Some(first), Some(last)) = (curves.first(), curves.last()) else { continue };
+        let ends = [(edit.samples.first(), first.start()), (edit.samples.last(), last.end())];
+        let displaced = ends.into_iter().filter_map(|(sample, nominal)| {
+            let s = *sample?;
+            Some((length([(s[0] - nominal.x.nm()) as f64, (s[1] - nominal.y.nm()) as f64]), s))
+        });
+        let beside = edit.samples.iter().map(|&s| {
+            let off = curves.iter().map(|c| distance(s, c)).fold(f64::INFINITY, f64::min);
+            (off, s)
+        });
+        for (nm, at) in displaced.chain(beside) {
+            if nm / 1e6 > largest.mm {
+                let [x_mm, y_mm] = at.map(|v| v as f64 / 1e6);
+                largest = Shift { mm: nm / 1e6, line: edit.line, x_mm, y_mm };
+            }
+        }
+    }
+    largest
+}

@@ -1,0 +1,94 @@
+//! What a program does, step by step, as the proof compares it.
+
+use truepath_core::gcode::{Axes, Canon, Decimal, GcodeError, Interpreter, Modal, Motion, Options};
+use truepath_core::geometry::Curve;
+
+/// One step of a program.
+#[derive(Clone, Debug)]
+pub(super) struct Fact {
+    /// Line, counted from 1.
+    pub(super) line: u32,
+    /// N.
+    pub(super) number: Option<Decimal>,
+    /// `/`.
+    pub(super) block_delete: bool,
+    pub(super) what: What,
+    /// The modes in force, the motion left out: it may be written on another line.
+    pub(super) modal: Modal,
+}
+
+/// What the step is.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum What {
+    /// A comment, with its bytes.
+    Comment(Vec<u8>),
+    /// G0 or G1.
+    Straight { rapid: bool, from: Axes, to: Axes },
+    /// G2 or G3.
+    Arc { from: Axes, to: Axes, curve: Curve },
+    /// Anything else.
+    Other(Canon),
+}
+
+impl Fact {
+    /// Start and end, of a move in program coordinates.
+    pub(super) const fn ends(&self) -> Option<(Axes, Axes)> {
+        match self.what {
+            What::Straight { from, to, .. } | What::Arc { from, to, .. } => Some((from, to)),
+            What::Comment(_) | What::Other(_) => None,
+        }
+    }
+    /// Whether it is a straight move between two known points of the plane that are the same.
+    pub(super) fn stands_still(&self) -> bool {
+        match self.what {
+            What::Straight { from, to, .. } => from.point().is_some() && from.point() == to.point(),
+            _ => false,
+        }
+    }
+    /// The line or arc it cuts along in the plane.
+    pub(super) fn curve(&self) -> Option<Curve> {
+        match self.what {
+            What::Arc { curve, .. } => Some(curve),
+            What::Straight { rapid: false, from, to } => Curve::line(from.point()?, to.point()?),
+            _ => None,
+        }
+    }
+    /// Whether it moves in the plane, to wherever.
+    pub(super) fn travels(&self) -> bool {
+        match self.what {
+            What::Straight { .. } => !self.stands_still(),
+            What::Arc { .. } => true,
+            What::Comment(_) => false,
+            What::Other(canon) => match canon {
+                Canon::MachineMove { to, .. } => to.x.is_some() || to.y.is_some(),
+                Canon::Reference { axes, .. } => axes[0] || axes[1],
+                _ => false,
+            },
+        }
+    }
+}
+
+/// All steps of a program.
+pub(super) fn facts(program: &[u8], options: Options) -> Result<Vec<Fact>, GcodeError> {
+    let mut facts = Vec::new();
+    Interpreter::new(options).run(program, &mut |event| {
+        let what = match event.canon {
+            // `;` at the end of a line says nothing.
+            Canon::Comment(span) if span.len == 0 => return Ok(()),
+            Canon::Comment(span) => What::Comment(span.of(program).to_vec()),
+            Canon::Traverse { from, to } => What::Straight { rapid: true, from, to },
+            Canon::Feed { from, to } => What::Straight { rapid: false, from, to },
+            Canon::Arc { from, to, curve, .. } => What::Arc { from, to, curve },
+            other => What::Other(other),
+        };
+        facts.push(Fact {
+            line: event.source.line,
+            number: event.source.number,
+            block_delete: event.source.block_delete,
+            what,
+            modal: Modal { motion: None::<Motion>, ..*event.modal },
+        });
+        Ok(())
+    })?;
+    Ok(facts)
+}

@@ -1,0 +1,193 @@
+//! On the contour the written path follows the wanted one, at the feeds, modes and heights of the original.
+//!
+//! One line of the original stands for one stretch of the wanted path and becomes one or more lines and arcs. What
+//! else the line does (comment, feed, coolant, stop) must be there once, before its path is over.
+
+use truepath_core::gcode::Canon;
+use truepath_core::geometry::Curve;
+
+use super::super::BlockEdit;
+use super::along::{Follower, difference};
+use super::facts::{Fact, What};
+use super::kink::{Kink, Turns};
+use super::outside::Shift;
+
+/// What was found along the contour.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Along {
+    pub(super) lines: usize,
+    pub(super) arcs: usize,
+    pub(super) kink: Option<Kink>,
+    pub(super) deviation_nm: f64,
+    pub(super) feeds: usize,
+}
+
+/// What everything is compared under.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Terms {
+    pub(super) tolerance: f64,
+    pub(super) slack: f64,
+}
+
+/// Compares one stretch of contour. `original` ends with its last cutting step; gives how many of the `written` steps
+/// belong to it.
+pub(super) fn compare(
+    original: &[Fact],
+    written: &[Fact],
+    edits: &[BlockEdit],
+    terms: Terms,
+    along: &mut Along,
+) -> Result<usize, String> {
+    let (mut old, mut new) = (0, 0);
+    let mut turns = Turns::default();
+    let mut place = edits.first().and_then(|e| e.samples.first().copied()).unwrap_or_default();
+    for edit in edits {
+        let fail = |what: &str, fact: Option<&Fact>| {
+            let at = fact.map_or(String::new(), |f| format!(" (line {} as written)", f.line));
+            format!("{what} of line {} has changed{at}", edit.line)
+        };
+        let (from, mut cuts) = (old, Vec::new());
+        while let Some(fact) = original.get(old) {
+            let is_cut = fact.curve().is_some();
+            if is_cut && fact.line != edit.line {
+                break;
+            }
+            if is_cut {
+                cuts.push(fact);
+            }
+            old += 1;
+            let more = original[old..].iter().find(|f| f.curve().is_some());
+            if is_cut && more.is_none_or(|f| f.line != edit.line) {
+                break;
+            }
+        }
+        let (Some(first), Some(last)) = (cuts.first(), cuts.last()) else {
+            return Err(fail("the path", None));
+        };
+        turns.original(&first.curve(), &last.curve(), cuts.len());
+        let begin = new;
+        let mut follower = Follower::new(&edit.samples, terms.tolerance, terms.slack);
+        let mut pieces = 0;
+        while !follower.is_done(place) {
+            let Some(fact) = written.get(new) else { return Err(fail("the end of the path", None)) };
+            new += 1;
+            let Some(curve) = fact.curve() else { continue };
+            if length(place, [curve.start().x.nm(), curve.start().y.nm()]) > terms.slack || !follower.take(&curve) {
+                return Err(fail("the path", Some(fact)));
+            }
+            same_modes(first, fact, pieces == 0).map_err(|what| fail(what, Some(fact)))?;
+            place = [curve.end().x.nm(), curve.end().y.nm()];
+            pieces += 1;
+            match fact.what {
+                What::Arc { .. } => along.arcs += 1,
+                _ => along.lines += 1,
+            }
+            if let Some(kink) = turns.written(&curve, fact.line, pieces == 1) {
+                along.kink = along.kink.filter(|k| k.degrees >= kink.degrees).or(Some(kink));
+            }
+        }
+        if pieces == 0 {
+            // A path shorter than the grid has become a move that stands still.
+            let here = || written[new..].iter().take_while(|f| f.curve().is_none());
+            new += here().position(|f| f.stands_still() && level(f)).map_or(0, |at| at + 1);
+        }
+        // What else the original does before its cut is over may stand behind a path that has vanished.
+        let others = others(&original[from..old]);
+        let count = others.len();
+        while self::others(&written[begin..new]).len() < count && written.get(new).is_some_and(|f| f.curve().is_none())
+        {
+            new += 1;
+        }
+        if others != self::others(&written[begin..new]) {
+            return Err(fail("a comment, feed or function", written.get(begin)));
+        }
+        along.feeds += others.iter().filter(|o| o.starts_with("FeedRate")).count();
+        along.deviation_nm = along.deviation_nm.max(follower.deviation);
+    }
+    Ok(new)
+}
+
+/// How far a stretch is displaced at its start and at its end.
+pub(super) fn shifts(original: &[Fact], edits: &[BlockEdit]) -> Option<[Shift; 2]> {
+    let first = original.iter().find_map(Fact::curve)?;
+    let last = original.iter().rev().find_map(Fact::curve)?;
+    let start = [first.start().x.nm(), first.start().y.nm()];
+    let end = [last.end().x.nm(), last.end().y.nm()];
+    Some([difference(*edits.first()?.samples.first()?, start), difference(*edits.last()?.samples.last()?, end)])
+}
+
+fn length(a: [i64; 2], b: [i64; 2]) -> f64 {
+    super::super::vector::length(difference(a, b))
+}
+
+/// The steps that are no moves in the plane, as text to compare: the order within one line is the control's affair.
+fn others(facts: &[Fact]) -> Vec<String> {
+    let text = |fact: &Fact| match &fact.what {
+        What::Comment(bytes) => Some(format!("Comment {bytes:?}")),
+        What::Other(canon) => Some(format!("{canon:?}")),
+        What::Straight { rapid, from, to } if fact.stands_still() && from.z != to.z => {
+            Some(format!("Still {rapid} {:?} {:?}", from.z, to.z))
+        }
+        What::Straight { .. } | What::Arc { .. } => None,
+    };
+    let mut texts: Vec<_> = facts.iter().filter_map(text).collect();
+    texts.sort();
+    texts
+}
+
+/// Whether a move keeps its height.
+fn level(fact: &Fact) -> bool {
+    fact.ends().is_some_and(|(from, to)| from.z == to.z)
+}
+
+/// Height, feed, speed, tool and the other modes of a written piece are those of the original line, and so is its block
+/// number if it is the first.
+fn same_modes(old: &Fact, new: &Fact, first: bool) -> Result<(), &'static str> {
+    let z = |fact: &Fact| fact.ends().map(|(from, to)| (from.z, to.z));
+    if z(old) != z(new) {
+        return Err("the height");
+    }
+    if old.modal.feed != new.modal.feed {
+        return Err("the feed");
+    }
+    let mut modal = new.modal;
+    // M5 on a line of the contour stops the spindle when the path of the whole line is over.
+    modal.spindle = old.modal.spindle;
+    if old.modal != modal {
+        return Err("a mode");
+    }
+    if old.block_delete != new.block_delete {
+        return Err("the /");
+    }
+    if (first && old.number != new.number) || (!first && new.number.is_some()) {
+        return Err("the block number");
+    }
+    Ok(())
+}
+
+/// Whether a step cuts along the contour.
+pub(super) fn is_cut(fact: &Fact, edits: &[BlockEdit]) -> bool {
+    fact.curve().is_some() && edits.iter().any(|edit| edit.line == fact.line)
+}
+
+/// Whether a step ends a stretch: a move in the plane that is not part of the contour.
+pub(super) fn ends_stretch(fact: &Fact, edits: &[BlockEdit]) -> bool {
+    (fact.travels() && !is_cut(fact, edits)) || matches!(fact.what, What::Other(Canon::End(_)))
+}
+
+/// Headings of a curve at its start and end, from its geometry.
+pub(super) fn headings(curve: &Curve) -> [[f64; 2]; 2] {
+    use truepath_core::geometry::Shape;
+    let [start, end] = [curve.start(), curve.end()].map(|p| [p.x.nm(), p.y.nm()]);
+    match curve.shape() {
+        Shape::Line => [difference(end, start); 2],
+        Shape::Arc { centre, sweep } => {
+            let centre = [centre.x.nm(), centre.y.nm()];
+            let sense = if sweep.bits() < 0 { -1.0 } else { 1.0 };
+            [start, end].map(|p| {
+                let spoke = difference(p, centre);
+                [-sense * spoke[1], sense * spoke[0]]
+            })
+        }
+    }
+}
