@@ -4,7 +4,7 @@
 //! `G5…` arcs, `G7…` the contour) and carries both sides of a mismatch. The sentences shown to the user are in
 //! `message.rs`.
 
-use super::{GCode, Line, LineRange, Span};
+use super::{GCode, Line, LineRange, RunPart, Span};
 use crate::units::Offset;
 
 /// What is wrong.
@@ -183,6 +183,8 @@ pub enum GcodeErrorKind {
         /// Lines of the second.
         second: LineRange,
     },
+    /// The program has no such blocks of a run.
+    PartMissing(RunPart),
     /// More blocks than the buffer holds.
     ContourTooLong {
         /// What it holds.
@@ -263,6 +265,7 @@ impl GcodeErrorKind {
             Self::StartUnknown { .. } => "G073",
             Self::HeightUnknown => "G074",
             Self::BothSides => "G075",
+            Self::PartMissing(_) => "G076",
         }
     }
 }
@@ -294,5 +297,3 @@ impl GcodeError {
         Span { start: self.start, len: self.len }
     }
 }
-
-impl core::error::Error for GcodeError {}

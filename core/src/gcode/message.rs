@@ -262,6 +262,13 @@ impl GcodeErrorKind {
             Self::BothSides => {
                 f.write_str("the contour is cut with G41 in one part and G42 in another; a wall has one side")
             }
+            Self::PartMissing(part) => write!(
+                f,
+                "the program has no run {} of cutting moves with {} blocks from its block {}; the job was made for another program",
+                part.run,
+                part.blocks,
+                part.first.saturating_add(1)
+            ),
             _ => Ok(()),
         }
     }
@@ -272,3 +279,5 @@ impl fmt::Display for GcodeError {
         write!(f, "line {}, column {}: {}: {}", self.line, self.column, self.kind.code(), self.kind)
     }
 }
+
+impl core::error::Error for GcodeError {}

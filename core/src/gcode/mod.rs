@@ -48,7 +48,9 @@ mod word;
 
 pub use canon::{Canon, Event, ShiftKind, Source};
 pub use code::GCode;
-pub use contour::{Candidate, ContourOptions, ContourProgram, find_contours, read_contour};
+pub use contour::{
+    Candidate, ContourOptions, ContourProgram, Criteria, Found, Role, RunPart, find_contours, read_contour, search, visit_runs,
+};
 pub use decimal::Decimal;
 pub use error::{Dialect, GcodeError, GcodeErrorKind};
 pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};

@@ -1,6 +1,6 @@
 //! The ranges of a job. It may come over a wire: what is outside them is refused before anything is computed.
 
-use super::{Correct, Cut, Force, Job, JobError, LARGEST_NUMBER, Machine, Probe, Tool};
+use super::{Correct, Cut, Force, Job, JobError, LARGEST_NUMBER, Machine, Part, Probe, Tool};
 use crate::units::{Offset, Real};
 
 /// Refuses unless a condition holds; the sentence names quantity and range.
@@ -41,7 +41,18 @@ impl Job {
         self.force.check()?;
         self.machine.check()?;
         self.probe.as_ref().map_or(Ok(()), Probe::check)?;
-        self.correct.check(self.cut.axial_depth)
+        self.correct.check(self.cut.axial_depth)?;
+        self.part.as_ref().map_or(Ok(()), Part::check)
+    }
+}
+
+impl Part {
+    fn check(&self) -> Result<(), JobError> {
+        require(
+            within(self.feature, 1, LARGEST_NUMBER) && within(self.pass, 1, LARGEST_NUMBER),
+            "the number of the feature or the pass is not 1 to 99,999",
+        )?;
+        require(self.run > 0 && self.blocks > 0, "the part of the program names no run or no block")
     }
 }
 

@@ -32,6 +32,23 @@ pub struct Job {
     pub probe: Option<Probe>,
     /// How to correct.
     pub correct: Correct,
+    /// Which cut of the program it is about; `None` when the program holds one contour only.
+    pub part: Option<Part>,
+}
+
+/// One finishing pass of a program with several cuts. Found on the host, so that the device need not search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Part {
+    /// Number of the feature: its place in the job or among the markers of the program, 1…[`LARGEST_NUMBER`].
+    pub feature: u32,
+    /// Number of the pass: the level of the feature in the order of execution, 1…[`LARGEST_NUMBER`].
+    pub pass: u32,
+    /// The run of cutting moves, counted from 1 in the order of execution.
+    pub run: u32,
+    /// The first of its blocks that belongs to the contour, from 0.
+    pub first_block: u32,
+    /// How many blocks belong to it, at least 1.
+    pub blocks: u32,
 }
 
 /// The largest number of a tool, a tool offset or a setup: that of the tool tables of common controls.

@@ -3,8 +3,8 @@
 use super::{Buffer, ForceModel, Job, JobError};
 use crate::cut::{Cantilever, Coefficients, Compliance, CutSetup, Milling, Path, PathError, Sample, WallLaw};
 use crate::gcode::{
-    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Spindle, Units, is_marked_corrected, program_crc,
-    read_contour,
+    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, RunPart, Spindle, Units, is_marked_corrected,
+    program_crc, read_contour,
 };
 use crate::geometry::{Block, Contour};
 use crate::identify::Prior;
@@ -39,7 +39,7 @@ impl Pass {
         if is_marked_corrected(program) {
             return Err(JobError::Corrected);
         }
-        let contour = read_contour(program, blocks, &ContourOptions::default()).map_err(JobError::Program)?;
+        let contour = read_contour(program, blocks, &options(job)).map_err(JobError::Program)?;
         match (job.tool.number, named_tool(&contour)) {
             (Some(job), Some(program)) if job != program => return Err(JobError::ToolsDiffer { job, program }),
             _ => {}
@@ -54,15 +54,16 @@ impl Pass {
         Ok(Self { job: *job, contour, program_crc: program_crc(program), setup })
     }
 
-    /// What an image of this pass belongs to. `feature` and `pass` are 1: a program holds one contour, milled to size in one
-    /// pass.
+    /// What an image of this pass belongs to. `feature` and `pass` are those of the job's part of the program; both are 1 in
+    /// a program with one contour, milled to size in one pass.
     ///
     /// # Errors
     /// Neither job nor program gives the number of the tool.
     pub fn binding(&self) -> Result<Binding, JobError> {
         let tool = self.job.tool.number.or(named_tool(&self.contour)).ok_or(JobError::NoTool)?;
         let (tool_offset, setup) = (self.job.tool.offset_number, self.job.correct.setup);
-        Ok(Binding { program_crc: self.program_crc, feature: 1, pass: 1, tool, tool_offset, setup })
+        let (feature, pass) = self.job.part.map_or((1, 1), |part| (part.feature, part.pass));
+        Ok(Binding { program_crc: self.program_crc, feature, pass, tool, tool_offset, setup })
     }
 
     /// Distance between the samples of the path: 0.1 mm, or a fiftieth of a small cutter's diameter.
@@ -124,6 +125,12 @@ impl Pass {
             (Format::Linuxcnc, Units::Millimetres) | (Format::Columns, _) => LengthUnit::Millimetre,
         }
     }
+}
+
+/// Where a job's contour is in its program.
+fn options(job: &Job) -> ContourOptions {
+    let part = job.part.map(|part| RunPart { run: part.run, first: part.first_block, blocks: part.blocks });
+    ContourOptions { part, ..ContourOptions::default() }
 }
 
 /// The tool that the program has changed to before the contour. T0 empties the spindle and names none.

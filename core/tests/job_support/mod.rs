@@ -62,6 +62,7 @@ pub fn corner() -> Part {
             max_gouge: None,
             setup: 1,
         },
+        part: None,
     };
     let program = include_bytes!("../../../host-sim/demo/corner/program.nc");
     Part { job, program, probe: include_bytes!("../data/corner-probe.txt") }

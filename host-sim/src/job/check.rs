@@ -67,7 +67,7 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     drop(root);
     Ok(Job {
         program,
-        numbers: truepath_core::job::Job { wall, allowance, tool, cut, force, machine, probe, correct },
+        numbers: truepath_core::job::Job { wall, allowance, tool, cut, force, machine, probe, correct, part: None },
         backlash,
         tolerance: writing.tolerance,
         max_arc_radius: writing.max_arc_radius,

@@ -1,14 +1,16 @@
-//! What is told of a run that may be a finishing contour.
+//! What is told of a run that may be a finishing contour, and the list of all of them.
 
 use super::ContourOptions;
 use super::run::{Run, RunReader};
 use crate::gcode::{GcodeError, Interpreter, LineRange, ProgramSummary};
-use crate::geometry::Side;
-use crate::units::{Offset, Position};
+use crate::geometry::{Block, Side};
+use crate::units::{Offset, Position, Real};
 
 /// A contour that a program holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Candidate {
+    /// Its place among the runs looked at, in the order of execution, counted from 1.
+    pub number: u32,
     /// Lines of its first and last block.
     pub lines: LineRange,
     /// Number of lines and arcs.
@@ -23,26 +25,50 @@ pub struct Candidate {
     pub wall: Option<Side>,
     /// Whether it ends where it starts.
     pub closed: bool,
+    /// Blocks at its start up to the one along which G41 or G42 takes its offset, that one included.
+    pub entry: usize,
+    /// Blocks at its end from the one along which G40 gives the offset up.
+    pub exit: usize,
+    /// S, revolutions per minute; `None` when the program has none.
+    pub speed: Option<Real>,
 }
 
-/// Gives every contour of a program to `visit`, in order, for a list from which to choose.
+/// Gives every run of cutting moves of a program to `visit`, in order, for a list from which to choose.
 ///
 /// # Errors
 /// Whatever is not understood, or a cutting move from an unknown place.
 pub fn find_contours(
     program: &[u8],
     options: &ContourOptions,
-    mut visit: impl FnMut(&Candidate),
+    visit: impl FnMut(&Candidate),
+) -> Result<ProgramSummary, GcodeError> {
+    visit_runs(program, options, |_| {}, visit)
+}
+
+/// The same with the geometry: every block of a run is given to `on_block` before the run itself to `on_run`. Arc
+/// length counts from the start of the run.
+///
+/// # Errors
+/// Whatever is not understood, or a cutting move from an unknown place.
+pub fn visit_runs(
+    program: &[u8],
+    options: &ContourOptions,
+    mut on_block: impl FnMut(&Block),
+    mut on_run: impl FnMut(&Candidate),
 ) -> Result<ProgramSummary, GcodeError> {
     let mut reader = RunReader::new(options.within);
     let summary = Interpreter::new(options.program).run(program, &mut |event| {
-        if let Some(run) = reader.step(event)?.ended {
-            visit(&run.candidate());
+        let progress = reader.step(event)?;
+        if let Some(run) = progress.ended {
+            on_run(&run.candidate());
+        }
+        if let Some(block) = progress.block {
+            on_block(&block);
         }
         Ok(())
     })?;
     if let Some(run) = reader.finish() {
-        visit(&run.candidate());
+        on_run(&run.candidate());
     }
     Ok(summary)
 }
@@ -51,6 +77,7 @@ impl Run {
     /// What is told of it.
     pub(super) fn candidate(&self) -> Candidate {
         Candidate {
+            number: self.number,
             lines: self.lines,
             blocks: self.blocks,
             length: self.length,
@@ -58,6 +85,9 @@ impl Run {
             tool: self.setup.tool,
             wall: self.wall,
             closed: self.start == self.end,
+            entry: self.entry,
+            exit: self.exit,
+            speed: self.setup.speed,
         }
     }
 }

@@ -4,11 +4,16 @@
 //! |---|---|
 //! | moves → runs of cutting moves | `run` |
 //! | the one contour of a program, or of some of its lines | [`read_contour`] |
-//! | a list from which to choose | [`find_contours`] |
+//! | a list from which to choose | [`find_contours`], [`visit_runs`] |
+//! | what each of them is for: roughing, finishing, spring pass | [`search`] |
 
 mod candidate;
 mod read;
+mod relation;
 mod run;
+mod search;
+mod split;
 
-pub use candidate::{Candidate, find_contours};
-pub use read::{ContourOptions, ContourProgram, read_contour};
+pub use candidate::{Candidate, find_contours, visit_runs};
+pub use read::{ContourOptions, ContourProgram, RunPart, read_contour};
+pub use search::{Criteria, Found, Role, search};

@@ -1,7 +1,8 @@
 //! The contour of a program, read into a slice lent by the caller, whose length is the only limit.
 //!
 //! A program given without further ado must hold exactly one run of cutting moves; with more, the caller names the
-//! lines.
+//! lines, or the run and its blocks. Runs count in the order of execution, so that a contour milled in a loop or by a
+//! subprogram called several times is a run each time.
 
 use super::run::{Run, RunReader};
 use crate::gcode::{
@@ -17,6 +18,19 @@ pub struct ContourOptions {
     pub program: Options,
     /// Only moves on these lines belong to the contour; the whole program is executed all the same.
     pub within: Option<LineRange>,
+    /// Only these blocks of this run are the contour.
+    pub part: Option<RunPart>,
+}
+
+/// Some blocks of one run of cutting moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunPart {
+    /// The run, counted from 1 in the order of execution.
+    pub run: u32,
+    /// The first of its blocks that counts, from 0.
+    pub first: u32,
+    /// How many count, at least 1.
+    pub blocks: u32,
 }
 
 /// The contour that was read, and what the program says about its cut.
@@ -55,68 +69,111 @@ pub struct ContourProgram {
 /// Reads the one contour of a program into `buffer`.
 ///
 /// # Errors
-/// Whatever is not understood; no contour, several of them, one that does not fit into the buffer, of unknown height,
-/// from an unknown place, or with the wall on both sides.
+/// Whatever is not understood; no contour, several of them, no such part, one that does not fit into the buffer, of
+/// unknown height, from an unknown place, or with the wall on both sides.
 pub fn read_contour(
     program: &[u8],
     buffer: &mut [Block],
     options: &ContourOptions,
 ) -> Result<ContourProgram, GcodeError> {
     let mut reader = RunReader::new(options.within);
-    let (mut first, mut second): (Option<Run>, Option<Run>) = (None, None);
-    let mut count = 0u32;
-    let limit = buffer.len();
-    let mut keep = |run: Run| {
-        count = count.saturating_add(1);
-        match (first, second) {
-            (None, _) => first = Some(run),
-            (_, None) => second = Some(run),
-            _ => {}
-        }
-        count
-    };
-    let mut ended_before = 0;
-    let mut filled = 0usize;
+    let mut kept = Kept { options, buffer, filled: 0, found: None, second: None, count: 0 };
+    let mut index = 0u32;
     let summary = Interpreter::new(options.program).run(program, &mut |event| {
         let progress = reader.step(event)?;
         if let Some(run) = progress.ended {
-            ended_before = keep(run);
+            kept.ended(run);
+            index = 0;
         }
-        // Only the first run is stored: with a second one there is no contour to return.
-        if let Some(block) = progress.block.filter(|_| ended_before == 0) {
-            *buffer.get_mut(filled).ok_or(GcodeErrorKind::ContourTooLong { limit })? = block;
-            filled = filled.saturating_add(1);
+        if let Some(block) = progress.block {
+            kept.block(block, reader.number(), index)?;
+            index = index.saturating_add(1);
         }
         Ok(())
     })?;
     if let Some(run) = reader.finish() {
-        keep(run);
+        kept.ended(run);
     }
-    let Some(run) = first else {
-        return Err(GcodeError { kind: GcodeErrorKind::NoContour, line: 1, column: 1, start: 0, len: 0 });
-    };
-    if let Some(second) = second {
-        let kind = GcodeErrorKind::SeveralContours { count, first: run.lines, second: second.lines };
-        return Err(second.error(kind));
+    kept.contour(summary)
+}
+
+/// What is kept of a program while it is read.
+struct Kept<'a> {
+    options: &'a ContourOptions,
+    buffer: &'a mut [Block],
+    filled: usize,
+    found: Option<Run>,
+    second: Option<Run>,
+    count: u32,
+}
+
+impl Kept<'_> {
+    /// Stores a block of the run wanted. Without a part that is the first one: with a second there is no contour.
+    fn block(&mut self, block: Block, run: u32, index: u32) -> Result<(), GcodeErrorKind> {
+        let (first, wanted) = match self.options.part {
+            Some(part) => (0, part.run == run && index >= part.first && index < part.first.saturating_add(part.blocks)),
+            None => (self.count, true),
+        };
+        if first > 0 || !wanted {
+            return Ok(());
+        }
+        let limit = self.buffer.len();
+        let before = self.filled.checked_sub(1).and_then(|last| self.buffer.get(last));
+        let s = before.map_or(Offset::ZERO, |b| b.s + b.curve.length());
+        *self.buffer.get_mut(self.filled).ok_or(GcodeErrorKind::ContourTooLong { limit })? = Block { s, ..block };
+        self.filled = self.filled.saturating_add(1);
+        Ok(())
     }
-    if run.both_sides {
-        return Err(run.error(GcodeErrorKind::BothSides));
+
+    fn ended(&mut self, run: Run) {
+        self.count = self.count.saturating_add(1);
+        match (self.options.part, self.found) {
+            (Some(part), _) if part.run != run.number => {}
+            (Some(_), _) | (None, None) => self.found = Some(run),
+            (None, Some(_)) => self.second = self.second.or(Some(run)),
+        }
     }
-    let z = run.z.ok_or_else(|| run.error(GcodeErrorKind::HeightUnknown))?;
-    Ok(ContourProgram {
-        blocks: run.blocks,
-        length: run.length,
-        z,
-        lines: run.lines,
-        closed: run.start == run.end,
-        wall: run.wall,
-        lowest_feed: run.lowest_feed,
-        highest_feed: run.highest_feed,
-        speed: run.setup.speed,
-        spindle: run.setup.spindle,
-        tool: run.setup.tool,
-        units: run.units,
-        path: run.path,
-        summary,
-    })
+
+    fn contour(self, summary: ProgramSummary) -> Result<ContourProgram, GcodeError> {
+        let nowhere = |kind| GcodeError { kind, line: 1, column: 1, start: 0, len: 0 };
+        let Some(run) = self.found else {
+            let kind = self.options.part.map_or(GcodeErrorKind::NoContour, GcodeErrorKind::PartMissing);
+            return Err(nowhere(kind));
+        };
+        if let Some(second) = self.second {
+            let kind = GcodeErrorKind::SeveralContours { count: self.count, first: run.lines, second: second.lines };
+            return Err(second.error(kind));
+        }
+        let blocks = self.buffer.get(..self.filled).unwrap_or_default();
+        let (Some(first), Some(last)) = (blocks.first(), blocks.last()) else {
+            return Err(run.error(GcodeErrorKind::NoContour));
+        };
+        if let Some(part) = self.options.part
+            && u32::try_from(blocks.len()) != Ok(part.blocks)
+        {
+            return Err(run.error(GcodeErrorKind::PartMissing(part)));
+        }
+        if run.both_sides {
+            return Err(run.error(GcodeErrorKind::BothSides));
+        }
+        let z = run.z.ok_or_else(|| run.error(GcodeErrorKind::HeightUnknown))?;
+        let lines = || blocks.iter().map(|b| b.line);
+        let feeds = || blocks.iter().map(|b| b.feed);
+        Ok(ContourProgram {
+            blocks: blocks.len(),
+            length: last.s + last.curve.length(),
+            z,
+            lines: LineRange { first: lines().min().unwrap_or(0), last: lines().max().unwrap_or(0) },
+            closed: first.curve.start() == last.curve.end(),
+            wall: run.wall,
+            lowest_feed: feeds().min().unwrap_or_default(),
+            highest_feed: feeds().max().unwrap_or_default(),
+            speed: run.setup.speed,
+            spindle: run.setup.spindle,
+            tool: run.setup.tool,
+            units: run.units,
+            path: run.path,
+            summary,
+        })
+    }
 }

@@ -10,6 +10,9 @@ use crate::units::{Offset, Position, Real};
 /// A run of cutting moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Run {
+    /// Its place among the runs in the order of execution, counted from 1.
+    pub(super) number: u32,
+    /// The first and the last line any of its blocks is written on.
     pub(super) lines: LineRange,
     /// The block it begins with.
     pub(super) first: Span,
@@ -20,8 +23,10 @@ pub(super) struct Run {
     pub(super) z: Option<Position>,
     pub(super) wall: Option<Side>,
     pub(super) both_sides: bool,
-    pub(super) lowest_feed: Real,
-    pub(super) highest_feed: Real,
+    /// Blocks up to and including the one along which G41 or G42 takes its offset.
+    pub(super) entry: usize,
+    /// Blocks from the one along which G40 gives it up.
+    pub(super) exit: usize,
     pub(super) setup: Setup,
     pub(super) units: Units,
     pub(super) path: Option<PathControl>,
@@ -61,18 +66,31 @@ pub(super) struct Progress {
 pub(super) struct RunReader {
     within: Option<LineRange>,
     run: Option<Run>,
+    count: u32,
+    /// G41, G42 (`true`) or G40 (`false`) that no move has acted on yet.
+    offset: Option<bool>,
 }
 
 impl RunReader {
     /// Of the lines named, or of all.
     pub(super) const fn new(within: Option<LineRange>) -> Self {
-        Self { within, run: None }
+        Self { within, run: None, count: 0, offset: None }
+    }
+
+    /// Number of the run in progress, or of the last one.
+    pub(super) const fn number(&self) -> u32 {
+        self.count
     }
 
     /// Takes the next step.
     pub(super) fn step(&mut self, event: &Event<'_>) -> Result<Progress, GcodeErrorKind> {
         if self.within.is_some_and(|lines| !lines.contains(event.source.line)) {
             return Ok(Progress { ended: self.run.take(), block: None });
+        }
+        match event.canon {
+            Canon::Compensation { wall, .. } => self.offset = Some(wall.is_some()),
+            Canon::Traverse { from, to } if from.point() != to.point() => self.offset = None,
+            _ => {}
         }
         match step(event.canon)? {
             Step::Pass => Ok(Progress::default()),
@@ -103,7 +121,12 @@ impl RunReader {
         let line = event.source.line;
         let goes_on = |run: &Run| run.z == z && run.end == curve.start() && run.setup.continues(&setup);
         let ended = if self.run.as_ref().is_some_and(goes_on) { None } else { self.run.take() };
+        if self.run.is_none() {
+            self.count = self.count.saturating_add(1);
+        }
+        let offset = self.offset.take();
         let run = self.run.get_or_insert(Run {
+            number: self.count,
             lines: LineRange { first: line, last: line },
             first: event.source.block,
             blocks: 0,
@@ -113,19 +136,24 @@ impl RunReader {
             z,
             wall: None,
             both_sides: false,
-            lowest_feed: feed,
-            highest_feed: feed,
+            entry: 0,
+            exit: 0,
             setup,
             units: modal.units,
             path: modal.path,
         });
         let block = Block { curve, s: run.length, feed, line };
-        run.lines.last = line;
+        run.lines.first = run.lines.first.min(line);
+        run.lines.last = run.lines.last.max(line);
         run.blocks = run.blocks.saturating_add(1);
+        match offset {
+            Some(true) => run.entry = run.blocks,
+            Some(false) => run.exit = 1,
+            None if run.exit > 0 => run.exit = run.exit.saturating_add(1),
+            None => {}
+        }
         run.length += curve.length();
         run.end = curve.end();
-        run.lowest_feed = run.lowest_feed.min(feed);
-        run.highest_feed = run.highest_feed.max(feed);
         run.both_sides |= run.wall.is_some() && modal.wall.is_some() && run.wall != modal.wall;
         run.wall = run.wall.or(modal.wall);
         Progress { ended, block: Some(block) }
