@@ -18,4 +18,5 @@ pub mod refusal;
 pub mod replay;
 pub mod report;
 pub mod setpoints;
+pub mod surface;
 pub mod workshop;

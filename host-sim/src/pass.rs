@@ -5,12 +5,15 @@
 
 use truepath_core::cut::{Milling, Path, Sample};
 use truepath_core::gcode::{ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Spindle, read_contour};
-use truepath_core::geometry::{Block, Contour};
+use truepath_core::geometry::{Block, Contour, Point};
 use truepath_core::job::{self, JobError};
+use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::job::Job;
 use crate::refusal::Inputs;
+use crate::report::mm;
+use crate::surface::{Surface, stock_point};
 
 /// Blocks a program may hold before the buffer is enlarged.
 const FIRST_BUFFER: usize = 1 << 12;
@@ -28,6 +31,8 @@ pub struct Pass {
     pub core: job::Pass,
     /// The contour, with the feed of the job where it gives one.
     pub blocks: Vec<Block>,
+    /// The actual surface of the stock; without one the stock is the parallel curve at the allowance.
+    pub surface: Option<Surface>,
     /// Things the user should know, in the order in which they were noticed.
     pub warnings: Vec<String>,
 }
@@ -64,7 +69,59 @@ impl Pass {
                 program.name()
             ));
         }
-        Ok(Self { job, program, core, blocks, warnings })
+        let surface = job.read_surface()?;
+        let pass = Self { job, program, core, blocks, surface: None, warnings };
+        match surface {
+            Some(surface) => pass.over(surface),
+            None => Ok(pass),
+        }
+    }
+
+    /// The same pass over an actual surface: its allowance becomes the median distance of the surface from the finished
+    /// wall.
+    ///
+    /// # Errors
+    /// `M011` when the surface is not beside the contour, or not between the finished wall and the cutter's far side.
+    pub fn over(mut self, surface: Surface) -> Result<Self, Failure> {
+        let mut buffer = PathBuffer::default();
+        let mut allowances: Vec<f64> = {
+            let path = self.sample(&mut buffer)?;
+            let radius = mm(self.core.setup.radius);
+            let contour = &path.samples()[path.first()..path.first() + path.count()];
+            let beside = surface
+                .beside(contour, radius)
+                .ok_or_else(|| self.no_stock("lies nowhere beside the contour".to_owned()))?;
+            let worst = beside
+                .iter()
+                .zip(contour)
+                .map(|(d, sample)| (radius - d, sample))
+                .find(|(a, _)| *a <= 0.0 || *a >= 2.0 * radius);
+            if let Some((allowance, sample)) = worst {
+                let [x, y] = [sample.point.x, sample.point.y].map(|p| p.nm() as f64 / 1e6);
+                return Err(
+                    self.no_stock(format!("leaves {allowance:.3} mm on the finished wall beside X{x:.3} Y{y:.3}"))
+                );
+            }
+            beside.iter().map(|d| radius - d).collect()
+        };
+        allowances.sort_by(f64::total_cmp);
+        let median = allowances.get(allowances.len() / 2).copied().unwrap_or_default();
+        let allowance = Offset::from_nm((median * 1e6).round() as i64);
+        self.job.numbers.allowance = allowance;
+        self.core.job.allowance = allowance;
+        self.core.setup.allowance = allowance;
+        self.surface = Some(surface);
+        Ok(self)
+    }
+
+    fn no_stock(&self, found: String) -> Failure {
+        let expected = "a surface along the whole contour, between the finished wall and the far side of the cutter";
+        let help = "check frame and unit of the surface, and that it belongs to this program";
+        let error = InputError::new("M011", format!("the surface of the stock {found}"), expected, help);
+        match &self.job.surface {
+            Some(path) => error.in_file(path).into(),
+            None => error.into(),
+        }
     }
 
     /// The failure for an error of the core, pointing into job or program.
@@ -92,8 +149,24 @@ impl Pass {
     /// When an outside arc is so tight that it leaves no wall.
     pub fn sample<'a>(&self, buffer: &'a mut PathBuffer) -> Result<Path<'a>, Failure> {
         let contour = self.path_contour();
-        buffer.0 = vec![Sample::BLANK; Path::samples_needed(&contour, &self.core.setup, self.core.step())];
-        self.core.sample(&contour, &mut buffer.0).map_err(|error| self.refused(&error))
+        let needed = Path::samples_needed(&contour, &self.core.setup, self.core.step());
+        let Some(surface) = &self.surface else {
+            buffer.0 = vec![Sample::BLANK; needed];
+            return self.core.sample(&contour, &mut buffer.0).map_err(|error| self.refused(&error));
+        };
+        let mut even = vec![Sample::BLANK; needed];
+        let stock: Vec<Point> = {
+            let path = self.core.sample(&contour, &mut even).map_err(|error| self.refused(&error))?;
+            let samples = path.samples();
+            let beside = surface.beside(samples, mm(self.core.setup.radius));
+            let beside = beside.ok_or_else(|| self.no_stock("lies nowhere beside the contour".to_owned()))?;
+            samples.iter().zip(beside).map(|(sample, d)| stock_point(sample, d)).collect()
+        };
+        buffer.0 = even;
+        // The walk gives the samples in the same order again.
+        let mut next = stock.into_iter();
+        let surface = |sample: &Sample| next.next().unwrap_or(sample.stock);
+        self.core.sample_over(&contour, &mut buffer.0, surface).map_err(|error| self.refused(&error))
     }
 }
 

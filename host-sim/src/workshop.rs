@@ -65,7 +65,7 @@ fn cut(pass: &Pass) -> plant::Cut {
             Spindle::CounterClockwise => plant::Spindle::CounterClockwise,
             Spindle::Clockwise | Spindle::Stopped => plant::Spindle::Clockwise,
         },
-        surface: None,
+        surface: pass.surface.as_ref().map(|surface| surface.points().to_vec()),
         memory_mm: Some(3.0),
     }
 }

@@ -1,7 +1,7 @@
 //! The nominal path of the cutter centre as even samples, with the raw stock that lies beside it.
 //!
 //! The raw stock is the surface an earlier pass left: the parallel curve of the path, radius − allowance towards the
-//! wall. It is held sample by sample beside the path (P23 keeps machined wall, cutting arc and raw stock as three
+//! wall, or that surface as it was measured. It is held sample by sample beside the path (P23 keeps machined wall, cutting arc and raw stock as three
 //! runs of such arrays), so the walk over it costs the same however long the contour is. A closed contour
 //! runs on into itself; before the first and behind the last block of any other, path and stock are continued straight: a
 //! contour that starts by plunging starts fully engaged.
@@ -101,6 +101,21 @@ impl<'a> Path<'a> {
         step: Offset,
         buffer: &'a mut [Sample],
     ) -> Result<Self, PathError> {
+        Self::sample_over(contour, setup, step, buffer, |sample| sample.stock)
+    }
+
+    /// Samples a contour beside an uneven stock, such as the wall a first pass left: `surface` gives, for a sample that
+    /// still holds the parallel curve at the allowance, the point of the raw stock on its normal.
+    ///
+    /// # Errors
+    /// As [`Path::sample`].
+    pub fn sample_over(
+        contour: &Contour,
+        setup: &CutSetup,
+        step: Offset,
+        buffer: &'a mut [Sample],
+        mut surface: impl FnMut(&Sample) -> Point,
+    ) -> Result<Self, PathError> {
         for block in contour.blocks() {
             // The wall lies inside an arc that turns towards it: the arc must be as wide as the cutter (and is
             // exactly that where a control rolls round a sharp corner).
@@ -119,7 +134,7 @@ impl<'a> Path<'a> {
         let mut slots = buffer.iter_mut();
         walk(contour, setup, step, |sample| {
             if let Some(slot) = slots.next() {
-                *slot = sample;
+                *slot = Sample { stock: surface(&sample), ..sample };
             }
         });
         let used = buffer.get_mut(..needed).unwrap_or_default();

@@ -6,7 +6,7 @@ use crate::gcode::{
     ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, RunPart, Spindle, Units, is_marked_corrected,
     program_crc, read_contour,
 };
-use crate::geometry::{Block, Contour};
+use crate::geometry::{Block, Contour, Point};
 use crate::identify::Prior;
 use crate::image::Binding;
 use crate::probe::{Format, LengthUnit};
@@ -85,6 +85,19 @@ impl Pass {
     /// # Errors
     /// When the buffer is too short, or an outside arc is so tight that it leaves no wall.
     pub fn sample<'a>(&self, contour: &Contour, buffer: &'a mut [Sample]) -> Result<Path<'a>, JobError> {
+        self.sample_over(contour, buffer, |sample| sample.stock)
+    }
+
+    /// The same beside the stock that `surface` gives for each sample, see [`Path::sample_over`].
+    ///
+    /// # Errors
+    /// As [`Pass::sample`].
+    pub fn sample_over<'a>(
+        &self,
+        contour: &Contour,
+        buffer: &'a mut [Sample],
+        surface: impl FnMut(&Sample) -> Point,
+    ) -> Result<Path<'a>, JobError> {
         let lent = buffer.len();
         // Every block but the first may save one sample.
         let steps = contour.length().nm().checked_div(self.step().nm()).unwrap_or(0).unsigned_abs() as usize;
@@ -92,7 +105,7 @@ impl Pass {
         if least > lent {
             return Err(JobError::full(Buffer::Samples, least, lent));
         }
-        Path::sample(contour, &self.setup, self.step(), buffer).map_err(|error| match error {
+        Path::sample_over(contour, &self.setup, self.step(), buffer, surface).map_err(|error| match error {
             PathError::NoWall { line } => JobError::Undercut { line },
             PathError::BufferTooShort { needed, lent } => JobError::full(Buffer::Samples, needed, lent),
         })

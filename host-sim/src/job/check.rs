@@ -10,6 +10,7 @@ use truepath_core::probe::Format;
 use truepath_core::units::{Offset, Real};
 
 use super::check_correct::correct;
+use super::check_stock::{Stock, stock};
 use super::check_tool::{reach, tool};
 use super::document::{Section, Spans};
 use super::limits::Limits;
@@ -54,7 +55,7 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     }
     let tool_section = root.required_section("tool", "diameter_mm, teeth and helix_deg")?;
     let tool = tool(&source, &tool_section)?;
-    let allowance = stock(&source, &root.required_section("stock", "allowance_mm")?, tool.diameter)?;
+    let stock = stock(&root.required_section("stock", "allowance_mm")?, tool.diameter)?;
     let cut = cut(&root.required_section("cut", "axial_depth_mm")?)?;
     reach(&source, &tool_section, &tool, &cut)?;
     let force = force(&source, &root.required_section("force", "the four coefficients, or material = \"steel-40\"")?)?;
@@ -64,6 +65,8 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
     root.close()?;
     let program = folder.join(program.0);
+    let Stock { allowance, surface } = stock;
+    let surface = surface.map(|name| folder.join(name));
     drop(root);
     Ok(Job {
         program,
@@ -73,6 +76,7 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         max_arc_radius: writing.max_arc_radius,
         max_kink_deg: writing.max_kink_deg,
         route: writing.route,
+        surface,
         spans: spans.into_inner(),
         source: source.clone(),
     })
@@ -110,29 +114,6 @@ fn version(source: &Source, root: &Section<'_>) -> Result<(), InputError> {
         "write version = 1, or use the program the file was made for",
     )
     .at(source, value.span))
-}
-
-fn stock(source: &Source, section: &Section<'_>, diameter: Offset) -> Result<Offset, InputError> {
-    if let Some(surface) = section.value("surface") {
-        let help = "give allowance_mm, the stock along the normal";
-        return Err(InputError::new("J009", "stock.surface is not supported yet", "an even allowance", help)
-            .at(source, surface.span));
-    }
-    let limits = Limits::above("0", "100", "mm");
-    let Some(value) = section.value("allowance_mm") else {
-        return Err(section.missing("allowance_mm", &format!("a number, {}", limits.phrase())));
-    };
-    let allowance = section.number_in(&value, limits)?.as_mm();
-    if allowance >= diameter {
-        let expected = format!("less than the cutter's diameter, {} mm", text_of(diameter));
-        return Err(section.out_of_range(
-            &value,
-            &expected,
-            "take the stock off in more passes, or correct tool.diameter_mm",
-        ));
-    }
-    section.close()?;
-    Ok(allowance)
 }
 
 fn cut(section: &Section<'_>) -> Result<Cut, InputError> {

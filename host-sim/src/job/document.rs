@@ -163,6 +163,11 @@ impl<'d> Section<'d> {
         InputError::new("J006", found, expected, help).at(self.source, value.span.clone())
     }
 
+    /// An error at a value that another one excludes.
+    pub(super) fn contradiction(&self, value: &Value<'_>, found: &str, expected: &str, help: &str) -> InputError {
+        InputError::new("J008", found, expected, help).at(self.source, value.span.clone())
+    }
+
     /// An error at a value of the wrong type.
     pub(super) fn wrong_type(&self, value: &Value<'_>, expected: &str, help: &str) -> InputError {
         let article = match value.raw.type_str() {

@@ -18,10 +18,11 @@
 //! | J009 | recognised, not supported |
 //! | J010 | version of the format |
 //!
-//! Limits: one contour a job; the stock is a parallel curve of the finished wall.
+//! Limits: one contour a job.
 
 mod check;
 mod check_correct;
+mod check_stock;
 mod check_tool;
 mod decimal;
 mod document;
@@ -35,6 +36,7 @@ use truepath_core::job::Probe;
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{InputError, Source};
+use crate::surface::Surface;
 
 pub use decimal::Decimal;
 pub use material::{MATERIALS, Material};
@@ -56,6 +58,8 @@ pub struct Job {
     pub max_kink_deg: f64,
     /// Where the correction is applied.
     pub route: Route,
+    /// The actual surface of the stock, as a path that can be opened; its allowance follows from it.
+    pub surface: Option<PathBuf>,
     source: Source,
     spans: document::Spans,
 }
@@ -103,6 +107,21 @@ impl Job {
             .at(&self.source, self.span("program"))
         })?;
         Ok(Source::new(self.program.display().to_string(), bytes))
+    }
+
+    /// Reads the surface of the stock, when the job names one.
+    ///
+    /// # Errors
+    /// `J001`, pointing at the key `stock.surface`, and whatever is wrong with the file.
+    pub fn read_surface(&self) -> Result<Option<Surface>, InputError> {
+        let Some(path) = &self.surface else { return Ok(None) };
+        let bytes = std::fs::read(path).map_err(|error| {
+            let reason = InputError::unreadable(path, &error);
+            let help = "correct the name: it is taken relative to the job file's folder";
+            InputError::new("J001", reason.found(), "a readable surface", help)
+                .at(&self.source, self.span("stock.surface"))
+        })?;
+        Surface::read(&Source::new(path.display().to_string(), bytes)).map(Some)
     }
 
     /// The `[probe]` table.
