@@ -81,7 +81,7 @@ impl Pass {
     /// wall.
     ///
     /// # Errors
-    /// `M011` when the surface is not beside the contour, or not between the finished wall and the cutter's far side.
+    /// `K002` when the surface is not beside the contour, or not between the finished wall and the cutter's far side.
     pub fn over(mut self, surface: Surface) -> Result<Self, Failure> {
         let mut buffer = PathBuffer::default();
         let mut allowances: Vec<f64> = {
@@ -117,7 +117,7 @@ impl Pass {
     fn no_stock(&self, found: String) -> Failure {
         let expected = "a surface along the whole contour, between the finished wall and the far side of the cutter";
         let help = "check frame and unit of the surface, and that it belongs to this program";
-        let error = InputError::new("M011", format!("the surface of the stock {found}"), expected, help);
+        let error = InputError::new("K002", format!("the surface of the stock {found}"), expected, help);
         match &self.job.surface {
             Some(path) => error.in_file(path).into(),
             None => error.into(),

@@ -32,10 +32,16 @@ impl Surface {
         &self.points
     }
 
+    /// The file that holds it.
+    pub fn table(&self) -> Vec<u8> {
+        let rows = self.points.iter().map(|[x, y]| format!("{x:.6},{y:.6}\n"));
+        std::iter::once("x_mm,y_mm\n".to_owned()).chain(rows).collect::<String>().into_bytes()
+    }
+
     /// Reads a file.
     ///
     /// # Errors
-    /// `M010` when it is not such a table, with the place.
+    /// `K001` when it is not such a table, with the place.
     pub fn read(source: &Source) -> Result<Self, InputError> {
         const HELP: &str = "write a first line x_mm,y_mm and then one point of the surface a line, decimal points, in the order of travel";
         let wrong = |found: String, line: u64| {
@@ -43,7 +49,7 @@ impl Surface {
             let length =
                 source.bytes().split(|b| *b == b'\n').nth(line.saturating_sub(1) as usize).map_or(0, <[u8]>::len);
             let span = source.span_at(line, 1, u32::try_from(length).unwrap_or(u32::MAX));
-            InputError::new("M010", found, "columns x_mm and y_mm with numbers", HELP).at(source, span)
+            InputError::new("K001", found, "columns x_mm and y_mm with numbers", HELP).at(source, span)
         };
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(source.bytes());
         let names = reader.headers().map_err(|e| wrong(format!("the surface cannot be read: {e}"), 1))?.clone();

@@ -24,6 +24,9 @@ pub(super) struct Arguments {
     /// Correct in the program text or in the coprocessor; the job says it otherwise.
     #[arg(long, value_enum)]
     route: Option<RouteArgument>,
+    /// The probe file is of the first of two passes, with this job (written by truepath split).
+    #[arg(long, value_name = "FIRST-PASS.toml")]
+    first_pass: Option<PathBuf>,
     /// Replace the files of an earlier run.
     #[arg(long)]
     force: bool,
@@ -40,8 +43,14 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         RouteArgument::Program => Route::Program,
         RouteArgument::Coprocessor => Route::Coprocessor,
     });
-    let options =
-        Options { job: &arguments.job, probe: &arguments.probe, out: &arguments.output, force: arguments.force, route };
+    let options = Options {
+        job: &arguments.job,
+        probe: &arguments.probe,
+        out: &arguments.output,
+        force: arguments.force,
+        route,
+        first_pass: arguments.first_pass.as_deref(),
+    };
     let mut bar = terminal.progress("correcting", 100);
     let summary = correct(&options, &mut |share| bar.reached((share * 100.0) as u64))?;
     drop(bar);

@@ -110,9 +110,8 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
             let job = Job::read(job)?;
             let program = job.read_program()?;
             let probe = Source::read(probe)?;
-            let mut compact = [0; truepath_core::job::COMPACT_BYTES];
-            let compact = job.numbers.to_compact(&mut compact).map_err(|e| Failure::Internal(e.to_string()))?;
-            let ingredients = Ingredients { program: program.bytes(), job: compact, probe: probe.bytes() };
+            let compact = job.compact()?;
+            let ingredients = Ingredients { program: program.bytes(), job: &compact, probe: probe.bytes() };
             let mut bar = terminal.progress("computing on the device", truepath_core::link::Stage::Ended as u64 * 1000);
             let patience = Duration::from_secs(60 * minutes);
             let (made, time) = compute(&mut client, &ingredients, patience, |now| {

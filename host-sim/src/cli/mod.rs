@@ -12,6 +12,7 @@ mod image;
 mod inspect;
 mod replay;
 mod simulate;
+mod split;
 mod terminal;
 
 use std::ffi::OsString;
@@ -53,6 +54,8 @@ enum Command {
     Inspect(inspect::Arguments),
     /// From a probe file to the corrected program or the image for the coprocessor.
     Correct(correct::Arguments),
+    /// For a single part: a program that cuts half of the allowance, to be probed before the second half.
+    Split(split::Arguments),
     /// Recorded setpoints through the device's own code.
     Replay(replay::Arguments),
     /// A correction image as text.
@@ -91,6 +94,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Simulate(arguments) => simulate::run(&arguments, terminal),
         Command::Inspect(arguments) => inspect::run(&arguments, terminal),
         Command::Correct(arguments) => correct::run(&arguments, terminal),
+        Command::Split(arguments) => split::run(&arguments, terminal),
         Command::Replay(arguments) => replay::run(&arguments, terminal),
         Command::Image(arguments) => image::run(&arguments, terminal),
         Command::Hil(arguments) => hil::run(&arguments, terminal),

@@ -7,8 +7,10 @@ use truepath_core::correct::Law;
 use truepath_core::cut::{Loop, Path};
 use truepath_core::identify::Parameter;
 use truepath_core::job;
+use truepath_core::probe::Contact;
 use truepath_core::units::Offset;
 
+use super::second_pass;
 use crate::correction::{Correction, Identified, corrected, identified};
 use crate::diagnostics::{Failure, Source};
 use crate::job::{Job, Route};
@@ -30,6 +32,7 @@ const FILES: &[&str] = &[
     "summary.json",
     "correction.svg",
     "probe-raw.txt",
+    "first-pass-surface.csv",
 ];
 
 /// What is corrected.
@@ -45,6 +48,8 @@ pub struct Options<'a> {
     pub force: bool,
     /// `--route`, over that of the job.
     pub route: Option<Route>,
+    /// The job of the first of two passes: the probe file is of its wall.
+    pub first_pass: Option<&'a FilePath>,
 }
 
 /// A correction in memory: everything the command writes follows from it.
@@ -80,21 +85,57 @@ pub fn correct(
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
     let identified = identified(pass, &sampled, measurement, |share| progress(0.2 * share))?;
+    let remarks = Remarks::of(measurement, remarks);
+    design(pass, &sampled, identified, &measurement.contacts, remarks, routes, progress)
+}
+
+/// What a measurement leaves to be said.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Remarks<'a> {
+    /// Readings set aside.
+    pub(super) set_aside: usize,
+    /// Sentences for the summary.
+    pub(super) texts: &'a [String],
+    /// CRC-32 of the probe file.
+    pub(super) probe: u32,
+}
+
+impl<'a> Remarks<'a> {
+    /// Of a measurement, with sentences about it.
+    pub(super) const fn of(measurement: &Measurement, texts: &'a [String]) -> Self {
+        Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc }
+    }
+}
+
+/// Designs the correction of a pass for an identified machine. `contacts` are those of this pass, empty when it has not
+/// been measured.
+///
+/// # Errors
+/// A correction beyond the clamp, a contour that cannot be written.
+pub(super) fn design(
+    pass: &Pass,
+    sampled: &Path,
+    identified: Identified,
+    contacts: &[Contact],
+    remarks: Remarks<'_>,
+    routes: &[Route],
+    progress: &mut dyn FnMut(f64),
+) -> Result<Corrected, Failure> {
     progress(0.2);
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let machine = identified.machine(&path, &table);
-    let law = job::law(&pass.core, &machine, &measurement.contacts);
+    let law = job::law(&pass.core, &machine, contacts);
     let correction = corrected(pass, &machine, &identified, law, |share| progress(0.2 + 0.7 * share))?;
     let mut warnings = pass.warnings.clone();
-    warnings.extend(remarks.iter().cloned());
+    warnings.extend(remarks.texts.iter().cloned());
     warnings.extend(doubts(pass, &identified, &correction, &machine));
-    let mut summary = correct_summary(pass, &identified, &correction, measurement.rejected.len(), warnings);
+    let mut summary = correct_summary(pass, &identified, &correction, remarks.set_aside, warnings);
     let (mut program, mut image) = (None, None);
     for route in routes {
         match route {
             Route::Program => {
-                let written = corrected_program(pass, measurement, &path, &correction)?;
+                let written = corrected_program(pass, remarks.probe, &path, &correction)?;
                 summary.warnings.extend(kinked(&written.difference));
                 summary.program = Some(written.difference);
                 program = Some(written.text);
@@ -117,10 +158,19 @@ pub fn correct(
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSummary, Failure> {
     let pass = Pass::read(Job::read(options.job)?)?;
     let file = Source::read(options.probe)?;
-    let measurement = Measurement::read(&pass, &file)?;
+    let first = options.first_pass.map(|job| Pass::read(Job::read(job)?)).transpose()?;
+    let measurement = Measurement::read(first.as_ref().unwrap_or(&pass), &file)?;
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
     let route = options.route.unwrap_or(pass.job.route);
-    let done = correct(&pass, &measurement, &measurement.remarks(&file), &[route], progress)?;
+    let remarks = measurement.remarks(&file);
+    let done = match &first {
+        None => correct(&pass, &measurement, &remarks, &[route], progress)?,
+        Some(first) => {
+            let (done, surface) = second_pass::correct(&pass, first, &measurement, &remarks, &[route], progress)?;
+            folder.write("first-pass-surface.csv", &surface.table())?;
+            done
+        }
+    };
     if let Some(text) = &done.program {
         folder.write("corrected.nc", text)?;
         let difference = done.summary.program.as_ref().map(|d| d.text(pass.program.name()));
@@ -138,13 +188,8 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     Ok(done.summary)
 }
 
-fn corrected_program(
-    pass: &Pass,
-    measurement: &Measurement,
-    path: &Path,
-    correction: &Correction,
-) -> Result<Rewritten, Failure> {
-    let origin = Origin { job: Some(crc32(pass.job.source().bytes())), probe: Some(measurement.crc) };
+fn corrected_program(pass: &Pass, probe: u32, path: &Path, correction: &Correction) -> Result<Rewritten, Failure> {
+    let origin = Origin { job: Some(crc32(pass.job.source().bytes())), probe: Some(probe) };
     let options = RewriteOptions {
         tolerance: pass.job.tolerance,
         max_arc_radius: pass.job.max_arc_radius,

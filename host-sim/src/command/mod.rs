@@ -5,4 +5,6 @@ pub mod demo;
 pub mod device;
 pub mod hil;
 pub mod inspect;
+pub mod second_pass;
 pub mod simulate;
+pub mod split;

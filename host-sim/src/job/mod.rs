@@ -35,7 +35,7 @@ use std::path::{Path, PathBuf};
 use truepath_core::job::Probe;
 use truepath_core::units::Offset;
 
-use crate::diagnostics::{InputError, Source};
+use crate::diagnostics::{Failure, InputError, Source};
 use crate::surface::Surface;
 
 pub use decimal::Decimal;
@@ -122,6 +122,22 @@ impl Job {
                 .at(&self.source, self.span("stock.surface"))
         })?;
         Surface::read(&Source::new(path.display().to_string(), bytes)).map(Some)
+    }
+
+    /// The compact form for a device that makes its own image.
+    ///
+    /// # Errors
+    /// `J009` when the stock is an actual surface, which stays on the host.
+    pub fn compact(&self) -> Result<Vec<u8>, Failure> {
+        if self.surface.is_some() {
+            let found = "stock.surface is given: a device takes an even allowance only";
+            let help = "make the image here, with truepath correct --route coprocessor, and upload it";
+            let error = InputError::new("J009", found, "stock.allowance_mm", help);
+            return Err(error.at(&self.source, self.span("stock.surface")).into());
+        }
+        let mut compact = [0; truepath_core::job::COMPACT_BYTES];
+        let compact = self.numbers.to_compact(&mut compact).map_err(|e| Failure::Internal(e.to_string()))?;
+        Ok(compact.to_vec())
     }
 
     /// The `[probe]` table.

@@ -2,7 +2,7 @@
 
 use truepath_core::gcode::{CORRECTED_MARK, Lines, Token, Words};
 
-use super::RewriteOptions;
+use super::{Purpose, RewriteOptions};
 
 /// How many lines stand before the mark: `%` and the program's name stay first, because controls look for them there.
 pub(super) fn place(program: &[u8]) -> u32 {
@@ -36,10 +36,18 @@ pub(super) fn text(crc: u32, options: &RewriteOptions, line_end: &[u8]) -> Vec<u
     let named = |name: &str, crc: Option<u32>| crc.map(|crc| format!("({name} CRC32 {crc:08X})"));
     let origin = [named("JOB", options.origin.job), named("PROBE FILE", options.origin.probe)];
     let tool = format!("(WRITTEN BY TRUEPATH {})", env!("CARGO_PKG_VERSION"));
-    let warning = "(DO NOT CORRECT AGAIN, DO NOT ARM A COPROCESSOR WITH THIS PROGRAM)".to_owned();
+    let (mark, warning) = match options.purpose {
+        Purpose::Correction => {
+            (CORRECTED_MARK.to_owned(), "(DO NOT CORRECT AGAIN, DO NOT ARM A COPROCESSOR WITH THIS PROGRAM)".to_owned())
+        }
+        Purpose::FirstPass { left } => (
+            format!("(TRUEPATH FIRST PASS, LEAVES {} MM)", left.nm() as f64 / 1e6),
+            "(PROBE THE WALL BEFORE THE SECOND PASS)".to_owned(),
+        ),
+    };
     let notes = options.notes.iter().map(|note| format!("({})", plain(note)));
     let mut text = Vec::new();
-    let lines = [CORRECTED_MARK.to_owned(), facts].into_iter().chain(origin.into_iter().flatten());
+    let lines = [mark, facts].into_iter().chain(origin.into_iter().flatten());
     for line in lines.chain([tool, warning]).chain(notes) {
         text.extend_from_slice(line.as_bytes());
         text.extend_from_slice(line_end);

@@ -47,6 +47,19 @@ pub struct BlockEdit {
     pub samples: Vec<[i64; 2]>,
 }
 
+/// What a program is rewritten for; it decides the comment at its head.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Purpose {
+    /// It is corrected, and must never be corrected again.
+    #[default]
+    Correction,
+    /// It leaves stock on the wall for a second pass.
+    FirstPass {
+        /// Stock it leaves.
+        left: Offset,
+    },
+}
+
 /// How the corrected program is written.
 #[derive(Clone, Debug)]
 pub struct RewriteOptions {
@@ -63,6 +76,8 @@ pub struct RewriteOptions {
     pub origin: Origin,
     /// Remarks for the head of the program, one comment each.
     pub notes: Vec<String>,
+    /// What it is written for.
+    pub purpose: Purpose,
 }
 
 impl Default for RewriteOptions {
@@ -75,6 +90,7 @@ impl Default for RewriteOptions {
             max_kink_deg: 1.0,
             origin: Origin::default(),
             notes: Vec::new(),
+            purpose: Purpose::default(),
         }
     }
 }

@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use truepath_core::image::Image;
-use truepath_core::job::COMPACT_BYTES;
 use truepath_core::link::{Computed, DeviceSettings};
 use truepath_core::rewrite::SettingsError;
 
@@ -91,8 +90,7 @@ pub fn on_board(
 ) -> Result<OnBoard, Failure> {
     let job = Job::read(job)?;
     let program = job.read_program()?;
-    let mut compact = [0; COMPACT_BYTES];
-    let compact = job.numbers.to_compact(&mut compact).map_err(|e| Failure::Internal(e.to_string()))?.to_vec();
+    let compact = job.compact()?;
     let probe = Source::read(probe)?;
     let pass = Pass::new(job, program.clone())?;
     let measurement = Measurement::read(&pass, &probe)?;

@@ -1,0 +1,44 @@
+//! `truepath split`: for a single part, a program that cuts half of the allowance.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Terminal, print};
+use crate::command::split::{Options, run as split};
+use crate::diagnostics::Failure;
+use crate::report::json;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The job of the whole allowance.
+    job: PathBuf,
+    /// Folder for first-pass.nc and first-pass.toml.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Replace the files of an earlier run.
+    #[arg(long)]
+    force: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let options = Options { job: &arguments.job, out: &arguments.output, force: arguments.force };
+    let split = split(&options)?;
+    for warning in &split.warnings {
+        terminal.warn(warning);
+    }
+    if terminal.json() {
+        return print(&json(&split)?);
+    }
+    let (program, first, job) = (split.program.display(), split.job.display(), arguments.job.display());
+    let text = format!(
+        "{program}: the contour {:.3} mm away from the wall in {} moves; the second pass takes the other {:.3} mm\n\
+         next:\n\
+         1. mill {program} and leave the part clamped\n\
+         2. probe its wall: truepath probe {first} ..., or your own probing routine\n\
+         3. truepath correct {job} --first-pass {first} --probe FILE -o DIR\n\
+         4. mill the corrected program\n",
+        split.allowance_mm, split.moves, split.allowance_mm
+    );
+    print(text.as_bytes())
+}
