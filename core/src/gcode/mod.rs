@@ -28,6 +28,7 @@ mod arc;
 mod block;
 mod canon;
 mod code;
+pub mod compensation;
 mod contour;
 mod decimal;
 mod error;
