@@ -5,7 +5,7 @@ use truepath_core::geometry::Direction;
 use truepath_core::identify::Observation;
 use truepath_core::job;
 use truepath_core::probe::{Contact, Reading, Rejected};
-use truepath_core::units::{Offset, Real};
+use truepath_core::units::{Offset, Position, Real};
 
 use crate::diagnostics::{Failure, Source};
 use crate::pass::Pass;
@@ -14,13 +14,24 @@ use crate::refusal::why;
 /// Readings kept at most.
 const LARGEST_FILE: usize = 1 << 20;
 
+/// A reading set aside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Aside {
+    /// Its line.
+    pub line: u32,
+    /// Where the probe was, work coordinates.
+    pub position: [Position; 3],
+    /// Why it is not used.
+    pub reason: Rejected,
+}
+
 /// What a probe file says about a pass.
 #[derive(Clone, Debug)]
 pub struct Measurement {
     /// Contacts in the order of the contour, then of height.
     pub contacts: Vec<Contact>,
-    /// Readings set aside: line and reason.
-    pub rejected: Vec<(u32, Rejected)>,
+    /// Readings set aside, in the order of the file.
+    pub rejected: Vec<Aside>,
     /// Standard deviation of one reading.
     pub noise: Offset,
     /// CRC-32 of the file.
@@ -40,10 +51,13 @@ impl Measurement {
         let mut contacts = vec![Contact::BLANK; most];
         let mut rejected = Vec::new();
         let contour = pass.path_contour();
-        let set_aside = |line, reason| rejected.push((line, reason));
+        let set_aside = |reading: &Reading, reason| {
+            rejected.push(Aside { line: reading.line, position: reading.position, reason });
+        };
         let used = job::contacts(&pass.core, contour, file.bytes(), &mut readings, &mut contacts, set_aside)
             .map_err(|error| pass.refused_of(file, &error))?;
         contacts.truncate(used);
+        rejected.sort_by_key(|aside| aside.line);
         Ok(Self { contacts, rejected, noise: probe.noise, crc: crc32(file.bytes()) })
     }
 
@@ -63,7 +77,7 @@ impl Measurement {
     pub fn remarks(&self, file: &Source) -> Vec<String> {
         self.rejected
             .iter()
-            .map(|(line, reason)| format!("{}:{line}: set aside: {}", file.name(), why(reason)))
+            .map(|aside| format!("{}:{}: set aside: {}", file.name(), aside.line, why(&aside.reason)))
             .collect()
     }
 }

@@ -1,6 +1,7 @@
 //! The ranges of a job. It may come over a wire: what is outside them is refused before anything is computed.
 
 use super::{Correct, Cut, Force, Job, JobError, LARGEST_NUMBER, Machine, Part, Probe, Tool};
+use crate::probe::{DecimalSign, Format, Frame, Separator};
 use crate::units::{Offset, Real};
 
 /// Refuses unless a condition holds; the sentence names quantity and range.
@@ -111,7 +112,20 @@ impl Machine {
 impl Probe {
     fn check(&self) -> Result<(), JobError> {
         require(within(self.ball_diameter, um(100), um(50_000)), "the ball's diameter is not 0.1 to 50 mm")?;
-        require(within(self.noise, Offset::from_nm(1), um(100)), "the noise of a reading is not above 0, up to 0.1 mm")
+        require(
+            within(self.noise, Offset::from_nm(1), um(100)),
+            "the noise of a reading is not above 0, up to 0.1 mm",
+        )?;
+        let far = um(10_000_000);
+        let near = |offset: [Offset; 3]| offset.into_iter().all(|o| within(o, -far, far));
+        require(self.work_offset.is_none_or(near), "the work offset is not within 10 m")?;
+        let Some(layout) = self.layout else { return Ok(()) };
+        require(self.format == Format::Columns, "a layout is given for a file that is not of columns")?;
+        require(
+            (layout.separator, layout.decimal) != (Separator::Comma, DecimalSign::Comma),
+            "commas cannot both separate columns and stand before decimals",
+        )?;
+        require(layout.frame == Frame::Work || self.work_offset.is_some(), "machine coordinates need the work offset")
     }
 }
 

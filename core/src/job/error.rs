@@ -182,9 +182,13 @@ impl JobError {
             Self::OffTheWall { suspicion, .. } => match suspicion {
                 Suspicion::Inches => "M011",
                 Suspicion::Millimetres => "M012",
-                Suspicion::BallRadius => "M013",
-                Suspicion::Frame => "M014",
+                Suspicion::BallTwice | Suspicion::BallHalf | Suspicion::Surface => "M013",
+                Suspicion::Frame | Suspicion::Shifted { .. } => "M014",
                 Suspicion::OtherSide => "M016",
+                Suspicion::Centre => "M017",
+                Suspicion::Swapped => "M018",
+                Suspicion::MirroredX | Suspicion::MirroredY => "M019",
+                Suspicion::Normals => "M021",
             },
             Self::NoContact { .. } => "M015",
             Self::Unfit { .. } => "M020",
@@ -259,15 +263,11 @@ impl fmt::Display for JobError {
                 )
             }
             Self::Measurement(error) => write!(f, "{error}"),
+            Self::OffTheWall { suspicion: Suspicion::Normals, line } => {
+                write!(f, "line {line}: {}", Suspicion::Normals.words())
+            }
             Self::OffTheWall { suspicion, line } => {
-                let guess = match suspicion {
-                    Suspicion::Inches => "they fit when read as inches",
-                    Suspicion::Millimetres => "they fit when read as millimetres",
-                    Suspicion::BallRadius => "they fit with another ball",
-                    Suspicion::OtherSide => "they fit a wall on the other side of travel",
-                    Suspicion::Frame => "probably they are in another frame",
-                };
-                write!(f, "line {line}: most readings are off the nominal wall; {guess}")
+                write!(f, "line {line}: most readings are off the nominal wall; {}", suspicion.words())
             }
             Self::NoContact { line, .. } => write!(f, "line {line}: no reading can be used, this one is the first"),
             Self::Unfit { outliers, points, .. } => {

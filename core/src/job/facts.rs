@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::correct::Target;
 use crate::cut::ToolMaterial;
 use crate::geometry::Side;
-use crate::probe::Format;
+use crate::probe::{Format, Layout};
 use crate::units::{Offset, Real};
 
 /// The job.
@@ -143,9 +143,13 @@ pub struct Machine {
 pub struct Probe {
     /// Diameter of the ball, 0.1…50 mm.
     pub ball_diameter: Offset,
-    /// Format of the measurement file. LinuxCNC writes the program's unit, columns are millimetres.
+    /// Format of the measurement file.
     #[serde(with = "super::wire")]
     pub format: Format,
+    /// Layout of a file of columns; `None` for the default one, and for other formats.
+    pub layout: Option<Layout>,
+    /// Machine coordinates of the work zero, ±10 m, for a file in machine coordinates that does not say it.
+    pub work_offset: Option<[Offset; 3]>,
     /// What the Z in the file is.
     pub z_reference: ZReference,
     /// Standard deviation of one reading, above 0, up to 0.1 mm.

@@ -13,7 +13,7 @@ pub const REACH: Offset = Offset::from_um(1_000);
 const ONE_PLACE: Offset = Offset::from_um(5);
 
 /// Reads a probe file into `readings` and its contacts into `contacts`, in the order of the contour, then of height;
-/// returns how many there are. `set_aside` is given the line and the reason of each reading that is not used.
+/// returns how many there are. `set_aside` is given each reading that is not used and the reason.
 ///
 /// # Errors
 /// A job without probe, what is wrong with the file, a buffer too short, and a wrong unit, frame, side or ball, named,
@@ -24,10 +24,10 @@ pub fn contacts(
     file: &[u8],
     readings: &mut [Reading],
     contacts: &mut [Contact],
-    mut set_aside: impl FnMut(u32, Rejected),
+    mut set_aside: impl FnMut(&Reading, Rejected),
 ) -> Result<usize, JobError> {
     let probe = pass.job.probe.ok_or(JobError::NoProbe)?;
-    let count = read(file, probe.format, pass.probe_unit(probe.format), readings).map_err(JobError::Measurement)?;
+    let count = read(file, &pass.probe_given(&probe), readings).map_err(JobError::Measurement)?;
     let readings = readings.get(..count).unwrap_or_default();
     let on_wall = Contacts::new(
         contour,
@@ -57,15 +57,37 @@ pub fn contacts(
             Err(reason) => {
                 first_rejected =
                     first_rejected.or(Some(JobError::NoContact { line: reading.line, reason, tip: pass.contour.z }));
-                set_aside(reading.line, reason);
+                set_aside(reading, reason);
             }
         }
     }
-    match (used, first_rejected) {
-        (0, Some(error)) => return Err(error),
-        _ => contacts.get_mut(..used).unwrap_or_default().sort_unstable_by_key(|c| (c.s, c.height, c.line)),
+    if let (0, Some(error)) = (used, first_rejected) {
+        return Err(error);
     }
-    Ok(used)
+    let contacts = contacts.get_mut(..used).unwrap_or_default();
+    contacts.sort_unstable_by_key(|c| (c.s, c.height, c.error, c.line));
+    Ok(once(contacts, |repeat, of| {
+        if let Some(reading) = readings.binary_search_by_key(&repeat, |r| r.line).ok().and_then(|at| readings.get(at)) {
+            set_aside(reading, Rejected::Repeat { of });
+        }
+    }))
+}
+
+/// Moves contacts that repeat one before to the end; returns how many are left. `repeated` is given the lines of both.
+fn once(contacts: &mut [Contact], mut repeated: impl FnMut(u32, u32)) -> usize {
+    let mut kept = 0usize;
+    for at in 0..contacts.len() {
+        let before = kept.checked_sub(1).and_then(|k| contacts.get(k)).copied();
+        let Some(contact) = contacts.get(at).copied() else { break };
+        match before.filter(|b| Contact { line: contact.line, ..*b } == contact) {
+            Some(before) => repeated(contact.line, before.line),
+            None => {
+                contacts.swap(kept, at);
+                kept = kept.saturating_add(1);
+            }
+        }
+    }
+    kept
 }
 
 /// The contacts as observations for the fit. Those of one place are taken at their common foot, where the elastic loop

@@ -1,6 +1,6 @@
 //! One pass of the cutter as job and program describe it: the contour, the cut, the sampled path.
 
-use super::{Buffer, ForceModel, Job, JobError};
+use super::{Buffer, ForceModel, Job, JobError, Probe};
 use crate::cut::{Cantilever, Coefficients, Compliance, CutSetup, Milling, Path, PathError, Sample, WallLaw};
 use crate::gcode::{
     ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, RunPart, Spindle, Units, is_marked_corrected,
@@ -9,7 +9,7 @@ use crate::gcode::{
 use crate::geometry::{Block, Contour, Point};
 use crate::identify::Prior;
 use crate::image::Binding;
-use crate::probe::{Format, LengthUnit};
+use crate::probe::{Given, LengthUnit};
 use crate::units::{Offset, Real};
 
 /// Largest distance between the samples of a path.
@@ -131,11 +131,18 @@ impl Pass {
             .mounted_in(machine)
     }
 
-    /// The unit of a measurement file in a format: a control writes in that of the program.
-    pub const fn probe_unit(&self, format: Format) -> LengthUnit {
-        match (format, self.contour.units) {
-            (Format::Linuxcnc, Units::Inches) => LengthUnit::Inch,
-            (Format::Linuxcnc, Units::Millimetres) | (Format::Columns, _) => LengthUnit::Millimetre,
+    /// What is known about a measurement file of this pass before it is read.
+    pub fn probe_given(&self, probe: &Probe) -> Given {
+        Given {
+            format: probe.format,
+            layout: probe.layout.unwrap_or_default(),
+            work_offset: probe.work_offset,
+            program_unit: match self.contour.units {
+                Units::Inches => LengthUnit::Inch,
+                Units::Millimetres => LengthUnit::Millimetre,
+            },
+            program_crc: self.program_crc,
+            ball_diameter: probe.ball_diameter,
         }
     }
 }

@@ -74,6 +74,9 @@ macro_rules! choice {
 
 choice!(Side: 0 = Side::Left, 1 = Side::Right);
 choice!(ToolMaterial: 0 = ToolMaterial::HighSpeedSteel, 1 = ToolMaterial::Carbide);
-choice!(Format: 0 = Format::Linuxcnc, 1 = Format::Columns);
+choice!(
+    Format: 0 = Format::Linuxcnc, 1 = Format::Columns, 2 = Format::LinuxcncLog, 3 = Format::Grbl, 4 = Format::Inspection,
+    5 = Format::Dprnt
+);
 choice!(Target: 0 = Target::Mean, 1 = Target::Tip, 2 = Target::Minimax);
 choice!(WallLaw: 0 = WallLaw::Mean, 1 = WallLaw::Helical);

@@ -1,17 +1,18 @@
 //! From the ball's centre to the error of the wall it touched.
 //!
-//! Ball radius R, centre S, n̂ the outward normal of the wall into the pocket: contact = S − R·n̂, both coordinates.
+//! Ball radius R, centre S, n̂ the outward normal of the wall into the pocket: contact = S − R·n̂, both coordinates. For a
+//! surface point R is zero: it is the contact itself.
 //! The normal is that of the nominal contour at the foot of S; a point belongs to the place of the contour it lies
-//! at, not to its number in the file.
+//! at, not to its number in the file. A normal in the file is only compared with it.
 
-use super::read::Reading;
+use super::reading::{Outcome, Reading};
 use crate::geometry::{Contour, Direction, Nearest, Point, Side};
 use crate::units::{Offset, Position, Real};
 
 /// How the readings were taken and what they touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// Radius of the probe's ball; zero when the file holds the surface itself.
+    /// Radius of the probe's ball.
     pub ball_radius: Offset,
     /// Cutter radius: the wall lies this far from the path.
     pub cutter_radius: Offset,
@@ -69,29 +70,31 @@ pub enum Rejected {
         /// Height above the tip.
         height: Offset,
     },
-}
-
-/// What explains that most readings are off the wall.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Suspicion {
-    /// They fit when read as inches.
-    Inches,
-    /// They fit when inches are read as millimetres.
-    Millimetres,
-    /// They fit when taken as surface points, or the ball's diameter was given as its radius or the other way.
-    BallRadius,
-    /// They fit a wall on the other side of travel.
-    OtherSide,
-    /// Nothing simple: probably another frame (machine instead of work coordinates).
-    Frame,
+    /// The probe did not touch.
+    Missed,
+    /// An approach: the next reading is of the same place.
+    Superseded,
+    /// The same point as in another line.
+    Repeat {
+        /// That line.
+        of: u32,
+    },
+    /// The normal in the file is more than 30° off that of the wall.
+    Normal {
+        /// More than 90°: it points into the material.
+        opposite: bool,
+    },
 }
 
 /// Turns readings into contacts.
 #[derive(Clone, Copy, Debug)]
 pub struct Contacts<'a> {
-    contour: Contour<'a>,
-    setting: Setting,
+    pub(super) contour: Contour<'a>,
+    pub(super) setting: Setting,
 }
+
+/// Cosine of 30°: a normal farther off belongs to another wall.
+const NORMAL_LIMIT: Real = Real::ratio(866_025_404, 1_000_000_000);
 
 impl<'a> Contacts<'a> {
     /// For a contour and a setting.
@@ -102,12 +105,18 @@ impl<'a> Contacts<'a> {
     /// The contact of a reading.
     ///
     /// # Errors
-    /// [`Rejected`] when the reading is off the wall or off the engaged depth.
+    /// [`Rejected`] when the reading is a miss or an approach, off the wall or off the engaged depth, or has the normal
+    /// of another wall.
     pub fn contact(&self, reading: &Reading) -> Result<Contact, Rejected> {
+        match reading.outcome {
+            Outcome::Touched => {}
+            Outcome::Missed => return Err(Rejected::Missed),
+            Outcome::Superseded => return Err(Rejected::Superseded),
+        }
         let [x, y, z] = reading.position;
         let setting = &self.setting;
         let centre = Point { x, y };
-        let (nearest, error) = self.foot(centre);
+        let (nearest, error) = self.foot(centre, reading.radius);
         let Some(nearest) = nearest.filter(|_| error.abs() <= setting.reach) else {
             return Err(Rejected::OffTheWall { distance: error });
         };
@@ -118,9 +127,12 @@ impl<'a> Contacts<'a> {
         }
         let place = self.contour.at(nearest.s, nearest.block).ok_or(Rejected::OffTheWall { distance: error })?;
         let normal = setting.wall.normal(place.heading);
+        if let Some(cosine) = reading.normal.map(|free| -free.dot(normal)).filter(|c| *c < NORMAL_LIMIT) {
+            return Err(Rejected::Normal { opposite: cosine < Real::ZERO });
+        }
         Ok(Contact {
             line: reading.line,
-            point: centre + normal.times(setting.ball_radius),
+            point: centre + normal.times(reading.radius),
             s: nearest.s,
             normal,
             height: above_tip.over(setting.axial_depth),
@@ -129,8 +141,8 @@ impl<'a> Contacts<'a> {
     }
 
     /// The place of the contour a ball centre belongs to, and the wall error it shows there.
-    fn foot(&self, centre: Point) -> (Option<Nearest>, Offset) {
-        let expected = self.setting.cutter_radius - self.setting.ball_radius;
+    pub(super) fn foot(&self, centre: Point, radius: Offset) -> (Option<Nearest>, Offset) {
+        let expected = self.setting.cutter_radius - radius;
         let mut best: Option<(Nearest, Offset)> = None;
         self.contour.feet(centre, |foot| {
             let towards_wall = match self.setting.wall {
@@ -146,45 +158,4 @@ impl<'a> Contacts<'a> {
         let distance = best.map_or(Offset::MAX, |(_, e)| e);
         (best.map(|(b, _)| b).filter(|b| b.beside), distance)
     }
-
-    /// How many of the readings lie on the wall after a change of their coordinates.
-    fn fitting(&self, readings: &[Reading], change: impl Fn(Position) -> Position) -> usize {
-        readings
-            .iter()
-            .filter(|r| {
-                let [x, y, _] = r.position;
-                let (foot, error) = self.foot(Point { x: change(x), y: change(y) });
-                foot.is_some() && error.abs() <= self.setting.reach
-            })
-            .count()
-    }
-}
-
-/// Names what is wrong when more than half of the readings are off the wall; `None` when they are on it.
-pub fn suspect(contacts: &Contacts, readings: &[Reading]) -> Option<Suspicion> {
-    let enough = |n: usize| n.saturating_mul(2) > readings.len();
-    if enough(contacts.fitting(readings, |p| p)) {
-        return None;
-    }
-    let times = |numerator: i64, denominator: i64| {
-        move |p: Position| Position::from_nm((p - Position::ZERO).scaled(Real::ratio(numerator, denominator)).nm())
-    };
-    if enough(contacts.fitting(readings, times(254, 10))) {
-        return Some(Suspicion::Inches);
-    }
-    if enough(contacts.fitting(readings, times(10, 254))) {
-        return Some(Suspicion::Millimetres);
-    }
-    let other = Contacts::new(contacts.contour, Setting { wall: contacts.setting.wall.other(), ..contacts.setting });
-    if enough(other.fitting(readings, |p| p)) {
-        return Some(Suspicion::OtherSide);
-    }
-    let ball = contacts.setting.ball_radius;
-    for radius in [Offset::ZERO, ball + ball, Offset::from_nm(ball.nm() / 2)] {
-        let other = Contacts::new(contacts.contour, Setting { ball_radius: radius, ..contacts.setting });
-        if radius != ball && enough(other.fitting(readings, |p| p)) {
-            return Some(Suspicion::BallRadius);
-        }
-    }
-    Some(Suspicion::Frame)
 }

@@ -51,6 +51,8 @@ pub fn corner() -> Part {
         probe: Some(Probe {
             ball_diameter: um(6_000),
             format: Format::Linuxcnc,
+            layout: None,
+            work_offset: None,
             z_reference: ZReference::Centre,
             noise: um(2),
         }),

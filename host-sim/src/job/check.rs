@@ -5,11 +5,11 @@ use std::path::Path;
 
 use toml::de::DeTable;
 use truepath_core::geometry::Side;
-use truepath_core::job::{Cut, Force, ForceModel, Machine, Probe, ZReference};
-use truepath_core::probe::Format;
+use truepath_core::job::{Cut, Force, ForceModel, Machine};
 use truepath_core::units::{Offset, Real};
 
 use super::check_correct::correct;
+use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
 use super::check_tool::{reach, tool};
 use super::document::{Section, Spans};
@@ -17,9 +17,6 @@ use super::limits::Limits;
 use super::material::MATERIALS;
 use super::{Decimal, Job};
 use crate::diagnostics::{InputError, Source};
-
-/// Standard deviation of a reading when the job does not say: 2 µm.
-const DEFAULT_NOISE: Offset = Offset::from_um(2);
 
 /// Reads the whole job.
 pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
@@ -61,7 +58,7 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     let force = force(&source, &root.required_section("force", "the four coefficients, or material = \"steel-40\"")?)?;
     let (machine, backlash) =
         machine(&root.required_section("machine", "stiffness_x_n_per_mm and stiffness_y_n_per_mm")?)?;
-    let probe = root.section("probe")?.map(|section| probe(&section)).transpose()?;
+    let probe = root.section("probe")?.map(|section| probe(&source, &section)).transpose()?;
     let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
     root.close()?;
     let program = folder.join(program.0);
@@ -167,20 +164,6 @@ fn machine(section: &Section<'_>) -> Result<(Machine, [Offset; 2]), InputError> 
     let backlash = [backlash("backlash_x_mm")?, backlash("backlash_y_mm")?];
     section.close()?;
     Ok((machine, backlash))
-}
-
-fn probe(section: &Section<'_>) -> Result<Probe, InputError> {
-    const FORMATS: [(&str, Format); 2] = [("linuxcnc", Format::Linuxcnc), ("columns", Format::Columns)];
-    const REFERENCES: [(&str, ZReference); 2] = [("centre", ZReference::Centre), ("tip", ZReference::Tip)];
-    let ball_diameter = section.required_number("ball_diameter_mm", Limits::within("0.1", "50", "mm"))?.as_mm();
-    let format =
-        section.choice("format", &FORMATS)?.ok_or_else(|| section.missing("format", "\"linuxcnc\" or \"columns\""))?;
-    let z_reference = section
-        .choice("z_reference", &REFERENCES)?
-        .ok_or_else(|| section.missing("z_reference", "\"centre\" or \"tip\""))?;
-    let noise = section.number("noise_mm", Limits::above("0", "0.1", "mm"))?.map_or(DEFAULT_NOISE, Decimal::as_mm);
-    section.close()?;
-    Ok(Probe { ball_diameter, format, z_reference, noise })
 }
 
 /// Millimetres as a person writes them.

@@ -22,6 +22,7 @@
 
 mod check;
 mod check_correct;
+mod check_probe;
 mod check_stock;
 mod check_tool;
 mod decimal;
@@ -38,6 +39,7 @@ use truepath_core::units::Offset;
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::surface::Surface;
 
+pub use check_probe::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
 pub use decimal::Decimal;
 pub use material::{MATERIALS, Material};
 
@@ -155,6 +157,17 @@ impl Job {
             )
             .at(&self.source, end..end)
         })
+    }
+
+    /// Puts what the command line says of the probe file in place of what the job says.
+    ///
+    /// # Errors
+    /// `J004` when the job has no `[probe]`, `C001` for flags that contradict each other or the job.
+    pub fn override_probe(&mut self, flags: &ProbeFlags) -> Result<(), InputError> {
+        if *flags != ProbeFlags::default() {
+            self.numbers.probe = Some(flags.over(self.require_probe()?)?);
+        }
+        Ok(())
     }
 
     /// Where the value of a key stands, `tool.diameter_mm`; the start of the file for a key that is not given.

@@ -2,13 +2,17 @@
 //! expected and what to do.
 
 use truepath_core::image::MAX_CLAMP_NM;
-use truepath_core::job::{JobError, REACH};
-use truepath_core::probe::{ProbeError, Rejected, Suspicion};
+use truepath_core::job::JobError;
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::job::Job;
 use crate::report::mm;
+
+mod readings;
+
+pub use readings::why;
+use readings::{line_span, of_contacts, of_probe};
 
 /// The files an error may point into.
 #[derive(Clone, Copy, Debug)]
@@ -101,76 +105,6 @@ fn of_job(error: &JobError) -> InputError {
     InputError::new(error.code(), found, expected, help)
 }
 
-/// What is wrong with a probe file.
-fn of_probe(file: &Source, error: &ProbeError) -> InputError {
-    let found = match error.len {
-        0 => error.kind.to_string(),
-        _ => format!("`{}`: {}", file.excerpt(error.start..error.start + error.len), error.kind),
-    };
-    let (found, expected) = found.split_once("; ").map_or((found.as_str(), ""), |(a, b)| (a, b));
-    let expected = expected.trim_end_matches(" was expected").trim_start_matches("expected ");
-    InputError::new(error.kind.code(), found, expected, error.kind.help())
-        .at(file, error.start..error.start + error.len)
-}
-
-/// Readings that do not belong to the wall of the job.
-fn of_contacts(error: &JobError, job: &Job) -> InputError {
-    match error {
-        JobError::OffTheWall { suspicion, .. } => {
-            let (guess, help) = suspected(*suspicion);
-            let found = format!("most readings are farther than {} mm from the nominal wall; {guess}", mm(REACH));
-            InputError::new(error.code(), found, "readings on the wall of this contour", help)
-        }
-        JobError::NoContact { reason, tip, .. } => {
-            let tip = tip.nm() as f64 / 1e6;
-            let top = tip + mm(job.numbers.cut.axial_depth);
-            InputError::new(
-                error.code(),
-                format!("no reading can be used; the first one is {}", why(reason)),
-                format!("ball centres between Z {tip} and Z {top} beside the wall"),
-                "probe within the engaged depth; check axial_depth_mm and z_reference in the job",
-            )
-        }
-        _ => InputError::new(error.code(), error.to_string(), "", "check the probe file"),
-    }
-}
-
-const fn suspected(why: Suspicion) -> (&'static str, &'static str) {
-    match why {
-        Suspicion::Inches => (
-            "they fit when read as inches",
-            "the file is in inches and the program in millimetres: convert it, or probe with the program's unit active",
-        ),
-        Suspicion::Millimetres => (
-            "they fit when read as millimetres",
-            "the file is in millimetres and the program in inches: convert it, or probe with the program's unit active",
-        ),
-        Suspicion::BallRadius => (
-            "they fit with another ball",
-            "check ball_diameter_mm: it is a diameter, and the file must hold ball centres, not surface points",
-        ),
-        Suspicion::OtherSide => (
-            "they fit a wall on the other side of travel",
-            "change wall in the job (or G41/G42 in the program): it is the side of the finished wall as seen in the direction of travel",
-        ),
-        Suspicion::Frame => (
-            "probably they are in another frame",
-            "the file must be in the work coordinates of the program (G54), not in machine coordinates; check also the program named in the job and the side of the wall",
-        ),
-    }
-}
-
-/// Why a reading is set aside.
-pub fn why(reason: &Rejected) -> String {
-    match reason {
-        Rejected::OffTheWall { distance } if *distance == Offset::MAX => "beyond the ends of the contour".to_owned(),
-        Rejected::OffTheWall { distance } => format!("{:.3} mm from the nominal wall", mm(*distance)),
-        Rejected::OffHeight { height } => {
-            format!("{:.3} mm above the cutter's tip, outside the engaged depth", mm(*height))
-        }
-    }
-}
-
 /// A correction that must not be made.
 fn of_correction(error: &JobError) -> InputError {
     let code = error.code();
@@ -229,11 +163,4 @@ fn clamp_help(peak: Offset) -> String {
     format!(
         "if a correction that large is meant, set clamp_mm = {proposal} in [correct]; otherwise check the probe file and the cut"
     )
-}
-
-/// The whole line of a reading.
-fn line_span(file: &Source, line: u32) -> std::ops::Range<usize> {
-    let start = file.span_at(line, 1, 0).start;
-    let len = file.bytes()[start..].iter().take_while(|b| !matches!(b, b'\n' | b'\r')).count();
-    start..start + len
 }
