@@ -5,7 +5,8 @@
 //! `g = 1/2h` (h: distance of the centre from the chord, left positive; g = 0 is the chord itself). A sample at
 //! (u, v) along and left of a chord of length c lies on the circle `g = −v/w`, `w = u(c − u) − v²`, and its distance
 //! from any other circle of the pencil is `|g − gₖ|·w/√(1 + g²c²)`, so a tolerance is an interval of g and a piece
-//! fits when the intervals of its samples meet. A line is taken whenever 0 lies in all of them.
+//! fits when the intervals of its samples meet. A line is taken whenever 0 lies in all of them. Between the samples
+//! the path may bulge over their chord as far as [`Samples::bulges`] says, so no arc cuts a corner.
 //!
 //! Free arcs need no more pieces than biarcs with matched tangents, because the whole tolerance goes into their
 //! number; the heading steps that remain between pieces are of the order of 4·tolerance/length. In the end the
@@ -52,6 +53,8 @@ pub struct Samples<'a> {
     pub path: &'a [[f64; 2]],
     /// The same points as they will be written.
     pub written: &'a [[f64; 2]],
+    /// How far the path may leave the chord between each two samples, nanometres.
+    pub bulges: &'a [f64],
     /// The farthest centre from the chord of an arc, nanometres.
     pub max_radius: f64,
 }
@@ -122,20 +125,24 @@ fn shape(samples: Samples<'_>, start: usize, end: usize, tolerance: f64) -> Opti
     if chord == 0.0 {
         return None;
     }
-    let place = |k: usize| {
-        let p = minus(samples.path[k], a);
-        (dot(p, b) / chord, cross(b, p) / chord)
+    let local = |p: [f64; 2]| (dot(p, b) / chord, cross(b, p) / chord);
+    let place = |k: usize| local(minus(samples.path[k], a));
+    // The samples between the ends, and places on every chord, where the path is less certain.
+    let between = |k: usize| {
+        let [p, q] = [minus(samples.path[k], a), minus(samples.path[k + 1], a)];
+        let at = move |u: f64| [(1.0 - u) * p[0] + u * q[0], (1.0 - u) * p[1] + u * q[1]];
+        [0.25, 0.5, 0.75].map(|u| (local(at(u)), tolerance + 4.0 * u * (1.0 - u) * samples.bulges[k]))
     };
+    let points = || (start + 1..end).map(|k| (place(k), tolerance)).chain((start..end).flat_map(between));
     let middle = place(start + (end - start) / 2);
     let estimate = parameter(middle, chord).map_or(0.0, |(g, _)| g);
-    let slack = tolerance * (1.0 + (estimate * chord) * (estimate * chord)).sqrt();
+    let widening = (1.0 + (estimate * chord) * (estimate * chord)).sqrt();
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-    for k in start + 1..end {
-        let (u, v) = place(k);
+    for ((u, v), tolerance) in points() {
         match parameter((u, v), chord) {
             Some((g, w)) => {
-                low = low.max(g - slack / w);
-                high = high.min(g + slack / w);
+                low = low.max(g - tolerance * widening / w);
+                high = high.min(g + tolerance * widening / w);
             }
             // On or outside the circle over the chord: only the ends themselves may lie there.
             None if u * u + v * v <= tolerance * tolerance => {}
@@ -148,8 +155,8 @@ fn shape(samples: Samples<'_>, start: usize, end: usize, tolerance: f64) -> Opti
     }
     // The slack was an estimate; what counts is the distance from the circle that is taken.
     let passes = |g: f64| {
-        let slack = tolerance * (1.0 + (g * chord) * (g * chord)).sqrt();
-        (start + 1..end).all(|k| parameter(place(k), chord).is_none_or(|(gk, w)| (gk - g).abs() * w <= slack))
+        let widening = (1.0 + (g * chord) * (g * chord)).sqrt();
+        points().all(|(p, t)| parameter(p, chord).is_none_or(|(gk, w)| (gk - g).abs() * w <= t * widening))
     };
     if low <= 0.0 && high >= 0.0 && passes(0.0) {
         return Some(Shape::Line);
@@ -197,21 +204,22 @@ mod tests {
         path
     }
 
-    fn same(path: &[[f64; 2]]) -> Samples<'_> {
-        Samples { path, written: path, max_radius: 1e10 }
+    fn fit(path: &[[f64; 2]], tolerance: f64) -> Vec<Piece> {
+        let bulges = crate::program::spacing::bulges(path, 0.0);
+        super::fit(Samples { path, written: path, bulges: &bulges, max_radius: 1e10 }, tolerance)
     }
 
     #[test]
     fn a_straight_is_one_line_and_a_circle_a_few_arcs() {
         let line: Vec<_> = (0..500).map(|i| [f64::from(i) * 60_000.0, f64::from(i) * 80_000.0]).collect();
-        assert_eq!(fit(same(&line), 100.0), [Piece { end: 499, shape: Shape::Line }]);
+        assert_eq!(fit(&line, 100.0), [Piece { end: 499, shape: Shape::Line }]);
         let circle: Vec<_> =
-            (0..=360).map(|i| f64::from(i).to_radians()).map(|a| [8e6 * a.cos() - 8e6, 8e6 * a.sin()]).collect();
-        let pieces = fit(same(&circle), 100.0);
+            (0..=1440).map(|i| f64::from(i).to_radians() / 4.0).map(|a| [8e6 * a.cos() - 8e6, 8e6 * a.sin()]).collect();
+        let pieces = fit(&circle, 100.0);
         assert_eq!(pieces.len(), 3);
         for piece in pieces {
             let Shape::Arc { centre, counter_clockwise } = piece.shape else { panic!("a circle needs arcs") };
-            assert!((centre[0] + 8e6).hypot(centre[1]) < 1.0 && counter_clockwise, "centre {centre:?}");
+            assert!((centre[0] + 8e6).hypot(centre[1]) < 100.0 && counter_clockwise, "centre {centre:?}");
         }
     }
 
@@ -220,7 +228,7 @@ mod tests {
         let path = bend();
         let mut last = 0;
         for tolerance in [5_000.0, 1_000.0, 300.0] {
-            let count = fit(same(&path), tolerance).len();
+            let count = fit(&path, tolerance).len();
             assert!(count >= last && count <= 40, "{count} pieces at {tolerance} nm");
             last = count;
         }
@@ -229,7 +237,7 @@ mod tests {
     #[test]
     fn the_fit_turns_and_mirrors_with_the_path_to_the_last_bit() {
         let path = bend();
-        let upright = fit(same(&path), 1_000.0);
+        let upright = fit(&path, 1_000.0);
         let maps: [fn([f64; 2]) -> [f64; 2]; 3] = [|p| [-p[1], p[0]], |p| [-p[0], -p[1]], |p| [p[0], -p[1]]];
         for (index, map) in maps.into_iter().enumerate() {
             let turned: Vec<_> = path.iter().copied().map(map).collect();
@@ -244,7 +252,7 @@ mod tests {
                     }
                 })
                 .collect();
-            assert_eq!(fit(same(&turned), 1_000.0), expected, "map {index}");
+            assert_eq!(fit(&turned, 1_000.0), expected, "map {index}");
         }
     }
 
@@ -252,7 +260,7 @@ mod tests {
     fn a_short_chord_of_a_large_circle_stays_a_line() {
         let on_circle = |i: i32| [f64::from(i) * 13_000.0, -(f64::from(i) * 13_000.0).powi(2) / 2e8];
         let path: Vec<_> = (0..4).map(on_circle).collect();
-        assert_eq!(fit(same(&path), 1_000.0), [Piece { end: 3, shape: Shape::Line }]);
+        assert_eq!(fit(&path, 1_000.0), [Piece { end: 3, shape: Shape::Line }]);
     }
 
     #[test]
@@ -260,7 +268,7 @@ mod tests {
         let mut path: Vec<_> = (0..40).map(|i| [f64::from(i) * 1e5, 0.0]).collect();
         path.push([4.0e6 - 7_000.0, 23_000.0]);
         path.push([4.0e6, 0.0]);
-        let ends: Vec<_> = fit(same(&path), 1_000.0).iter().map(|p| p.end).collect();
+        let ends: Vec<_> = fit(&path, 1_000.0).iter().map(|p| p.end).collect();
         assert_eq!(ends, [39, 40, 41]);
     }
 
@@ -268,7 +276,7 @@ mod tests {
     fn a_corner_is_kept_as_a_corner() {
         let mut path: Vec<_> = (0..=100).map(|i| [f64::from(i) * 1e5, 0.0]).collect();
         path.extend((1..=100).map(|i| [1e7, f64::from(i) * 1e5]));
-        let ends: Vec<_> = fit(same(&path), 1_000.0).iter().map(|p| (p.end, p.shape)).collect();
+        let ends: Vec<_> = fit(&path, 1_000.0).iter().map(|p| (p.end, p.shape)).collect();
         assert_eq!(ends, [(100, Shape::Line), (200, Shape::Line)]);
     }
 }

@@ -21,6 +21,7 @@ mod header;
 mod line;
 mod pen;
 mod proof;
+mod spacing;
 mod survey;
 mod vector;
 mod writer;

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use truepath_core::gcode::{Line, Lines, Motion};
+use truepath_core::geometry::Curve;
 use truepath_core::units::Offset;
 
 use super::assemble::{Replaced, assemble};
@@ -13,6 +14,7 @@ use super::deviation::deviation;
 use super::fit::{Piece, Samples, Shape, fit};
 use super::line::Block;
 use super::pen::{Pen, place};
+use super::spacing::bulges;
 use super::survey::{Kind, Move};
 use super::{BlockEdit, RewriteOptions};
 use crate::diagnostics::{Failure, InputError, Source};
@@ -161,7 +163,7 @@ impl<'a> Writer<'a> {
         }
         let step_nm = pen.grid().step_nm();
         let (pieces, points) =
-            pieces(pen, &edit.samples, (tolerance - step_nm).max(0.5 * tolerance), self.options.max_arc_radius);
+            pieces(pen, &edit.samples, &curve, (tolerance - step_nm).max(0.5 * tolerance), self.options.max_arc_radius);
         let block = Block::new(self.line(step.line), self.two_digits);
         let mut text = Vec::new();
         for (index, (piece, target)) in pieces.iter().zip(&points).enumerate() {
@@ -250,14 +252,22 @@ impl<'a> Writer<'a> {
 }
 
 /// Pieces through the samples from where the pen is, in program coordinates, and the places they end at.
-fn pieces(pen: &Pen, samples: &[[i64; 2]], tolerance: f64, max_radius: Offset) -> (Vec<Piece>, Vec<[f64; 2]>) {
+fn pieces(
+    pen: &Pen,
+    samples: &[[i64; 2]],
+    curve: &Curve,
+    tolerance: f64,
+    max_radius: Offset,
+) -> (Vec<Piece>, Vec<[f64; 2]>) {
     let origin = samples[0];
     let shift = origin.map(|v| v as f64);
     let path: Vec<_> = samples.iter().map(|s| [(s[0] - origin[0]) as f64, (s[1] - origin[1]) as f64]).collect();
     let places: Vec<_> = std::iter::once(pen.at).chain(samples.iter().skip(1).map(|&s| pen.nearest(s))).collect();
     let written: Vec<_> = places.iter().map(|p| [p[0] - shift[0], p[1] - shift[1]]).collect();
     let max_radius = max_radius.nm() as f64;
-    let mut pieces = fit(Samples { path: &path, written: &written, max_radius }, tolerance);
+    let curvature = curve.signed_radius().map_or(0.0, |r| 1.0 / (r.nm().abs() as f64).max(1.0));
+    let bulges = bulges(&path, curvature);
+    let mut pieces = fit(Samples { path: &path, written: &written, bulges: &bulges, max_radius }, tolerance);
     if pieces.is_empty() {
         pieces.push(Piece { end: samples.len() - 1, shape: Shape::Line });
     }

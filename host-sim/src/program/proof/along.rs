@@ -1,9 +1,10 @@
 //! Along the contour: the written lines and arcs against the points they stand for.
 
-use truepath_core::geometry::{Curve, Shape};
+use truepath_core::geometry::Curve;
 use truepath_core::units::Real;
 
 use super::super::deviation::distance;
+use super::super::spacing::bulges;
 use super::super::vector::{dot, length, minus};
 
 /// Spacing at which a written curve is looked at between the samples, nm.
@@ -13,6 +14,8 @@ const SPACING: f64 = 50_000.0;
 #[derive(Debug)]
 pub(super) struct Follower<'a> {
     samples: &'a [[i64; 2]],
+    /// How far the path may leave the chord between each two of them, nm.
+    bulges: Vec<f64>,
     at: usize,
     tolerance: f64,
     /// What rounding may do to a place, nm.
@@ -22,8 +25,11 @@ pub(super) struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    pub(super) const fn new(samples: &'a [[i64; 2]], tolerance: f64, slack: f64) -> Self {
-        Self { samples, at: 0, tolerance, slack, deviation: 0.0 }
+    /// For the samples of one line, whose programmed curvature is given in 1/nm.
+    pub(super) fn new(samples: &'a [[i64; 2]], curvature: f64, tolerance: f64, slack: f64) -> Self {
+        let origin = samples.first().copied().unwrap_or_default();
+        let path: Vec<_> = samples.iter().map(|s| difference(*s, origin)).collect();
+        Self { samples, bulges: bulges(&path, curvature), at: 0, tolerance, slack, deviation: 0.0 }
     }
 
     /// Whether all samples are passed when the written path has come to `place`.
@@ -48,14 +54,14 @@ impl<'a> Follower<'a> {
         let Some((_, reached)) = nearest else { return false };
         let passed = &self.samples[self.at..=reached];
         let here = passed.iter().map(|s| distance(*s, curve)).fold(0.0, f64::max);
-        self.deviation = self.deviation.max(here).max(bulge(curve, passed));
+        self.deviation = self.deviation.max(here).max(bulge(curve, passed, &self.bulges[self.at..]));
         self.at = reached;
         self.deviation <= self.tolerance
     }
 }
 
 /// How far the curve leaves the samples between them, nm: beyond what the samples' own spacing leaves open.
-fn bulge(curve: &Curve, samples: &[[i64; 2]]) -> f64 {
+fn bulge(curve: &Curve, samples: &[[i64; 2]], bulges: &[f64]) -> f64 {
     let count = ((curve.length().nm() as f64 / SPACING) as i64).clamp(2, 100_000);
     let mut from = 0;
     (1..count)
@@ -71,7 +77,7 @@ fn bulge(curve: &Curve, samples: &[[i64; 2]]) -> f64 {
                     break;
                 }
                 last = ahead;
-                let off = to_chord(place, samples[i], samples[i + 1]) - sagitta(curve, samples[i], samples[i + 1]);
+                let off = to_chord(place, samples[i], samples[i + 1]) - bulges[i];
                 if off < best {
                     (best, from) = (off, i);
                 }
@@ -79,18 +85,6 @@ fn bulge(curve: &Curve, samples: &[[i64; 2]]) -> f64 {
             if best.is_finite() { best.max(0.0) } else { 0.0 }
         })
         .fold(0.0, f64::max)
-}
-
-/// How far an arc bulges over a chord of neighbouring samples.
-fn sagitta(curve: &Curve, a: [i64; 2], b: [i64; 2]) -> f64 {
-    let chord = length(difference(a, b));
-    match curve.shape() {
-        Shape::Line => 0.0,
-        Shape::Arc { .. } => {
-            let radius = curve.signed_radius().map_or(f64::INFINITY, |r| r.nm().abs() as f64).max(0.5 * chord);
-            chord * chord / (8.0 * radius)
-        }
-    }
 }
 
 fn to_chord(p: [i64; 2], a: [i64; 2], b: [i64; 2]) -> f64 {

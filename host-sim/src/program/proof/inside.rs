@@ -66,7 +66,7 @@ pub(super) fn compare(
         };
         turns.original(&first.curve(), &last.curve(), cuts.len());
         let begin = new;
-        let mut follower = Follower::new(&edit.samples, terms.tolerance, terms.slack);
+        let mut follower = Follower::new(&edit.samples, curvature(&cuts), terms.tolerance, terms.slack);
         let mut pieces = 0;
         while !follower.is_done(place) {
             let Some(fact) = written.get(new) else { return Err(fail("the end of the path", None)) };
@@ -133,6 +133,12 @@ fn others(facts: &[Fact]) -> Vec<String> {
     let mut texts: Vec<_> = facts.iter().filter_map(text).collect();
     texts.sort();
     texts
+}
+
+/// The largest curvature of the programmed curves, 1/nm.
+fn curvature(cuts: &[&Fact]) -> f64 {
+    let radii = cuts.iter().filter_map(|f| f.curve()?.signed_radius());
+    radii.map(|r| 1.0 / (r.nm().abs() as f64).max(1.0)).fold(0.0, f64::max)
 }
 
 /// Whether a move keeps its height.
