@@ -1,8 +1,8 @@
 //! Programs → canonical moves: order of execution, what is known of a position, and the bytes each step comes from.
 
 use truepath_core::gcode::{
-    Axes, Canon, Coolant, GcodeErrorKind, Interpreter, Lines, Options, PathControl, Plane, Spindle, Token, ToolLength, Units,
-    Words,
+    Axes, Canon, Coolant, DeviceMemory, GcodeErrorKind, Interpreter, Lines, Options, PathControl, Plane, Spindle,
+    Token, ToolLength, Units, Words,
 };
 use truepath_core::units::{Offset, Position, Real};
 
@@ -10,7 +10,7 @@ const P18: &[u8] = include_bytes!("data/p18-corner.nc");
 
 fn steps(program: &[u8]) -> Vec<(u32, Canon)> {
     let mut steps = Vec::new();
-    let run = Interpreter::new(Options::default()).run(program, &mut |event| {
+    let run = Interpreter::new(Options::default()).run(program, &mut DeviceMemory::new().lend(), &mut |event| {
         steps.push((event.source.line, event.canon));
         Ok(())
     });
@@ -120,7 +120,7 @@ fn machine_coordinates_and_path_modes_are_passed_on() {
     );
     let to = Axes { z: Some(Position::from_nm(-2_540_000)), ..Axes::UNKNOWN };
     assert_eq!(found[4].1, Canon::MachineMove { to, rapid: true });
-    assert!(matches!(found[5].1, Canon::Dwell(time) if time.times(1000) == 2500));
+    assert!(matches!(found[5].1, Canon::Dwell(time) if time.exactly_times(1000) == Some(2500)));
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn a_writer_can_change_one_word_and_keep_every_other_byte() {
     let mut written = Vec::new();
     let mut kept = 0;
     Interpreter::new(Options::default())
-        .run(P18, &mut |event| {
+        .run(P18, &mut DeviceMemory::new().lend(), &mut |event| {
             let Canon::Feed { from, to } = event.canon else { return Ok(()) };
             let line = Lines::new(P18).nth(event.source.line as usize - 1).ok_or(GcodeErrorKind::NoMotion)?;
             assert_eq!(line.span(), event.source.block);
@@ -155,10 +155,13 @@ fn a_writer_can_change_one_word_and_keep_every_other_byte() {
 #[test]
 fn what_the_receiver_refuses_is_an_error_at_its_block() {
     let program = b"G21 G90\n  G0 X1 (one)\nM2";
-    let refused = Interpreter::new(Options::default()).run(program, &mut |event| match event.canon {
-        Canon::Traverse { .. } => Err(GcodeErrorKind::NoContour),
-        _ => Ok(()),
-    });
+    let refused =
+        Interpreter::new(Options::default()).run(program, &mut DeviceMemory::new().lend(), &mut |event| match event
+            .canon
+        {
+            Canon::Traverse { .. } => Err(GcodeErrorKind::NoContour),
+            _ => Ok(()),
+        });
     let error = refused.expect_err("refused");
     assert_eq!((error.kind, error.line, error.column), (GcodeErrorKind::NoContour, 2, 3));
     assert_eq!(error.span().of(program), b"G0 X1 (one)");

@@ -1,8 +1,8 @@
 //! Programs → contours: the paper's program, its variants, and what a real program surrounds a contour with.
 
 use truepath_core::gcode::{
-    Candidate, ContourOptions, ContourProgram, GcodeError, LineRange, Spindle, Units, WarningKind, find_contours,
-    read_contour,
+    Candidate, ContourOptions, ContourProgram, DeviceMemory, GcodeError, LineRange, Program, Spindle, Units,
+    WarningKind, find_contours, read_contour,
 };
 use truepath_core::geometry::Side;
 use truepath_core::geometry::{Block, Contour, Curve, Point, Shape};
@@ -18,7 +18,7 @@ fn empty_block() -> Block {
 
 fn read_with(program: &[u8], options: &ContourOptions) -> Result<(ContourProgram, Vec<Block>), GcodeError> {
     let mut buffer = vec![empty_block(); 512];
-    let contour = read_contour(program, &mut buffer, options)?;
+    let contour = read_contour(&Program::new(program), &mut DeviceMemory::new().lend(), &mut buffer, options)?;
     buffer.truncate(contour.blocks);
     Ok((contour, buffer))
 }
@@ -134,7 +134,10 @@ const TWO: &str = "G21 G0 X0 Y0 Z5\nT2 M6\nG0 Z5\nG1 Z-1 F50\nX10\nY10\nG0 Z5\nG
 #[test]
 fn several_contours_are_listed_and_one_is_chosen_by_its_lines() {
     let mut found: Vec<Candidate> = Vec::new();
-    find_contours(TWO.as_bytes(), &ContourOptions::default(), |c| found.push(*c)).expect("readable");
+    find_contours(&Program::new(TWO.as_bytes()), &mut DeviceMemory::new().lend(), &ContourOptions::default(), |c| {
+        found.push(*c)
+    })
+    .expect("readable");
     let lines: Vec<_> = found.iter().map(|c| (c.lines.first, c.lines.last, c.blocks)).collect();
     assert_eq!(lines, [(5, 6, 2), (10, 11, 2)]);
     assert_eq!((found[1].z, found[1].length.nm()), (Some(Position::from_nm(-2 * MM)), 60 * MM));
@@ -153,7 +156,13 @@ fn rapids_machine_moves_tools_and_spindle_changes_end_a_contour() {
     {
         let program = format!("G21 S500 M3 G0 X0 Y0 Z0\nG1 X1 F100\n{interruption}\nG1 X2\nM2");
         let mut count = 0;
-        find_contours(program.as_bytes(), &ContourOptions::default(), |_| count += 1).expect("readable");
+        find_contours(
+            &Program::new(program.as_bytes()),
+            &mut DeviceMemory::new().lend(),
+            &ContourOptions::default(),
+            |_| count += 1,
+        )
+        .expect("readable");
         assert_eq!(count, 2, "{interruption}");
     }
 }
@@ -208,8 +217,12 @@ fn the_mark_of_a_corrected_program_is_reported_with_the_check_sum() {
 #[test]
 fn the_contour_may_fill_the_buffer_but_not_exceed_it() {
     let mut buffer = [empty_block(); 3];
-    assert!(read_contour(P18, &mut buffer, &ContourOptions::default()).is_ok());
+    assert!(
+        read_contour(&Program::new(P18), &mut DeviceMemory::new().lend(), &mut buffer, &ContourOptions::default())
+            .is_ok()
+    );
     let error =
-        read_contour(P18, &mut buffer[..2], &ContourOptions::default()).expect_err("three blocks in two places");
+        read_contour(&Program::new(P18), &mut DeviceMemory::new().lend(), &mut buffer[..2], &ContourOptions::default())
+            .expect_err("three blocks in two places");
     assert_eq!((error.kind.code(), error.line), ("G072", 13));
 }

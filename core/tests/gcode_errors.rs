@@ -2,14 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use truepath_core::gcode::{ContourOptions, read_contour};
+use truepath_core::gcode::{ContourOptions, DeviceMemory, Program, read_contour};
 use truepath_core::geometry::{Block, Curve, Point};
 use truepath_core::units::{Offset, Real};
 
 fn message(program: &[u8]) -> String {
     let curve = Curve::line(Point::from_nm(0, 0), Point::from_nm(1, 0)).expect("a line of 1 nm");
     let mut buffer = [Block { curve, s: Offset::ZERO, feed: Real::ZERO, line: 0 }; 4];
-    match read_contour(program, &mut buffer, &ContourOptions::default()) {
+    match read_contour(&Program::new(program), &mut DeviceMemory::new().lend(), &mut buffer, &ContourOptions::default())
+    {
         Ok(_) => panic!("accepted: {}", String::from_utf8_lossy(program)),
         Err(error) => error.to_string(),
     }

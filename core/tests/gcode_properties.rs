@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use proptest::prelude::*;
-use truepath_core::gcode::{ContourOptions, Lines, Token, Word, Words, find_contours, read_contour};
+use truepath_core::gcode::{
+    ContourOptions, DeviceMemory, Lines, Program, Token, Words, WrittenWord, find_contours, read_contour,
+};
 use truepath_core::geometry::{Block, Contour, Curve, Point, Shape, Vector};
 use truepath_core::units::{Offset, Real};
 
@@ -128,7 +130,12 @@ fn program(moves: &[Move], placed: Placement, incremental: bool) -> String {
 fn blocks(program: &str) -> Result<Vec<Block>, String> {
     let curve = Curve::line(Point::from_nm(0, 0), Point::from_nm(1, 0)).expect("a line of 1 nm");
     let mut buffer = vec![Block { curve, s: Offset::ZERO, feed: Real::ZERO, line: 0 }; 64];
-    let contour = read_contour(program.as_bytes(), &mut buffer, &ContourOptions::default());
+    let contour = read_contour(
+        &Program::new(program.as_bytes()),
+        &mut DeviceMemory::new().lend(),
+        &mut buffer,
+        &ContourOptions::default(),
+    );
     let contour = contour.map_err(|e| format!("{e}\n{program}"))?;
     buffer.truncate(contour.blocks);
     Ok(buffer)
@@ -156,7 +163,8 @@ proptest! {
 fn survives(program: &[u8]) -> Result<(), TestCaseError> {
     let curve = Curve::line(Point::from_nm(0, 0), Point::from_nm(1, 0)).expect("a line of 1 nm");
     let mut buffer = [Block { curve, s: Offset::ZERO, feed: Real::ZERO, line: 0 }; 8];
-    match read_contour(program, &mut buffer, &ContourOptions::default()) {
+    match read_contour(&Program::new(program), &mut DeviceMemory::new().lend(), &mut buffer, &ContourOptions::default())
+    {
         Ok(contour) => prop_assert!(Contour::new(&buffer[..contour.blocks]).is_some()),
         Err(error) => {
             prop_assert!(error.span().end() <= program.len() + 1);
@@ -164,7 +172,9 @@ fn survives(program: &[u8]) -> Result<(), TestCaseError> {
             prop_assert!(!sentence.is_empty() && error.to_string().contains(error.kind.code()));
         }
     }
-    let _ = find_contours(program, &ContourOptions::default(), |c| assert!(c.blocks > 0));
+    let _ = find_contours(&Program::new(program), &mut DeviceMemory::new().lend(), &ContourOptions::default(), |c| {
+        assert!(c.blocks > 0)
+    });
     Ok(())
 }
 
@@ -189,7 +199,7 @@ proptest! {
     fn a_word_reads_back_from_its_own_span(number in "[+-]?[0-9]{1,9}(\\.[0-9]{0,9})?", lead in "[ \t]{0,3}") {
         let text = format!("{lead}X{number}");
         let line = Lines::new(text.as_bytes()).next().expect("one line");
-        let Some(Ok(Token::Word(Word { letter: b'X', value, span }))) = Words::new(line).next() else {
+        let Some(Ok(Token::Word(WrittenWord { letter: b'X', value: Some(value), span }))) = Words::new(line).next() else {
             return Err(TestCaseError::fail("no word"));
         };
         prop_assert_eq!(span.of(text.as_bytes()), text.trim().as_bytes());

@@ -1,7 +1,7 @@
 //! Which runs of a program make a wall: roughing, levels, spring passes, islands, other tools, leads.
 
 use truepath_core::gcode::{
-    ContourOptions, Criteria, Found, LineRange, Role, RunPart, read_contour, search, visit_runs,
+    ContourOptions, Criteria, DeviceMemory, Found, LineRange, Program, Role, RunPart, read_contour, search, visit_runs,
 };
 use truepath_core::geometry::{Block, Side};
 use truepath_core::units::Offset;
@@ -18,7 +18,8 @@ fn searched(program: &str, criteria: &Criteria) -> (u32, Vec<Found>, Vec<Block>)
     let (mut runs, mut blocks) = (Vec::new(), Vec::new());
     let mut first = 0;
     visit_runs(
-        program.as_bytes(),
+        &Program::new(program.as_bytes()),
+        &mut DeviceMemory::new().lend(),
         &ContourOptions::default(),
         |b| blocks.push(*b),
         |run| {
@@ -70,14 +71,18 @@ fn a_part_of_a_run_is_read_by_number_and_blocks() {
     let part = RunPart { run: found.run.number, first: found.lead_in as u32, blocks: found.run.blocks as u32 };
     let options = ContourOptions { part: Some(part), ..ContourOptions::default() };
     let mut buffer = vec![Block::BLANK; 64];
-    let contour = read_contour(POCKET.as_bytes(), &mut buffer, &options).expect("the second depth");
+    let contour =
+        read_contour(&Program::new(POCKET.as_bytes()), &mut DeviceMemory::new().lend(), &mut buffer, &options)
+            .expect("the second depth");
     assert_eq!((contour.z.nm(), contour.lines, contour.closed), (-12_000_000, found.run.lines, true));
     assert_eq!((contour.length, buffer[0].s), (found.run.length, Offset::ZERO));
     let curves = |b: &[Block]| b.iter().map(|b| b.curve).collect::<Vec<_>>();
     assert_eq!(curves(&buffer[..contour.blocks]), curves(found.blocks(&blocks)));
     for wrong in [RunPart { run: 40, ..part }, RunPart { blocks: 12, ..part }, RunPart { first: 30, ..part }] {
         let options = ContourOptions { part: Some(wrong), ..ContourOptions::default() };
-        let error = read_contour(POCKET.as_bytes(), &mut buffer, &options).expect_err("no such part");
+        let error =
+            read_contour(&Program::new(POCKET.as_bytes()), &mut DeviceMemory::new().lend(), &mut buffer, &options)
+                .expect_err("no such part");
         assert!(["G076", "G070"].contains(&error.kind.code()), "{error}");
     }
 }

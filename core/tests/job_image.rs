@@ -74,8 +74,8 @@ fn what_the_buffers_held_before_does_not_matter() {
 /// What a part needs.
 fn needed(part: &Part) -> Counts {
     let mut room: Box<Room> = Box::default();
-    let workspace = room.workspace();
-    let pass = Pass::read(&part.job, part.program, workspace.blocks).unwrap();
+    let mut workspace = room.workspace();
+    let pass = Pass::read(&part.job, part.program, &mut workspace.parameters, workspace.blocks).unwrap();
     let contour = Pass::path_contour(&workspace.blocks[..pass.contour.blocks]).unwrap();
     let path = pass.sample(&contour, workspace.samples).unwrap();
     Counts::needed(&contour, &path, part.probe.iter().filter(|b| **b == b'\n').count())
@@ -86,6 +86,7 @@ fn within(part: &Part, counts: &Counts, bytes: usize) -> Result<u32, JobError> {
     let mut room: Box<Room> = Box::default();
     let all = room.workspace();
     let mut workspace = Workspace {
+        parameters: all.parameters,
         blocks: &mut all.blocks[..counts.blocks],
         samples: &mut all.samples[..counts.samples],
         readings: &mut all.readings[..counts.points],
@@ -273,6 +274,7 @@ fn without_a_tool_number_there_is_no_image_but_everything_else() {
         let refused = image(&part.job, part.program, part.probe, &mut room.workspace(), &mut out, tell);
         // At once, and not after the work is done.
         assert_eq!((refused, stages.as_slice()), (Err(JobError::NoTool), &[Stage::Reading][..]));
-        assert!(Pass::read(&part.job, part.program, room.workspace().blocks).is_ok());
+        let mut lent = room.workspace();
+        assert!(Pass::read(&part.job, part.program, &mut lent.parameters, lent.blocks).is_ok());
     }
 }

@@ -4,7 +4,9 @@
 //! refuses becomes a diagnostic.
 
 use truepath_core::cut::{Milling, Path, Sample};
-use truepath_core::gcode::{ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Spindle, read_contour};
+use truepath_core::gcode::{
+    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, HostMemory, Program, Spindle, read_contour,
+};
 use truepath_core::geometry::{Block, Contour, Point};
 use truepath_core::job::{self, JobError};
 use truepath_core::units::Offset;
@@ -56,7 +58,10 @@ impl Pass {
     /// # Errors
     /// As [`Pass::read`].
     pub fn new(job: Job, program: Source) -> Result<Self, Failure> {
-        let read = |blocks: &mut [Block]| job::Pass::read(&job.numbers, program.bytes(), blocks);
+        let read = |blocks: &mut [Block]| {
+            let mut memory = Box::new(HostMemory::new());
+            job::Pass::read(&job.numbers, program.bytes(), &mut memory.lend(), blocks)
+        };
         let too_long = |e: &JobError| matches!(e, JobError::Program(e) if is_too_long(e));
         let (mut blocks, core) = with_enough_blocks(read, too_long)
             .map_err(|error| Inputs { job: &job, program: &program, probe: None }.refused(&error))?;
@@ -175,7 +180,10 @@ impl Pass {
 /// # Errors
 /// Whatever is wrong with the program.
 pub fn read_blocks(program: &Source) -> Result<(Vec<Block>, ContourProgram), Failure> {
-    let read = |blocks: &mut [Block]| read_contour(program.bytes(), blocks, &ContourOptions::default());
+    let read = |blocks: &mut [Block]| {
+        let mut memory = Box::new(HostMemory::new());
+        read_contour(&Program::new(program.bytes()), &mut memory.lend(), blocks, &ContourOptions::default())
+    };
     let (mut blocks, contour) =
         with_enough_blocks(read, is_too_long).map_err(|error| InputError::of_program(program, &error))?;
     blocks.truncate(contour.blocks);

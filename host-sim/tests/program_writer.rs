@@ -2,7 +2,7 @@
 
 use truepath::diagnostics::{Failure, Source};
 use truepath::program::{BlockEdit, RewriteOptions, Rewritten, rewrite_program};
-use truepath_core::gcode::{ContourOptions, read_contour};
+use truepath_core::gcode::{ContourOptions, HostMemory, Program, read_contour};
 use truepath_core::geometry::{Block, Contour, Curve, Point};
 use truepath_core::units::{Offset, Real};
 
@@ -13,7 +13,13 @@ const CORNER: &str = "%\nO0001\nG00 G90 G49 G40 G17 G21\nG54\nT01 M06 (D20)\nS15
 fn blocks(program: &str) -> Vec<Block> {
     let filler = Block { curve: unit_line(), s: Offset::ZERO, feed: Real::ZERO, line: 0 };
     let mut buffer = vec![filler; 4096];
-    let contour = read_contour(program.as_bytes(), &mut buffer, &ContourOptions::default()).expect("one contour");
+    let contour = read_contour(
+        &Program::new(program.as_bytes()),
+        &mut HostMemory::new().lend(),
+        &mut buffer,
+        &ContourOptions::default(),
+    )
+    .expect("one contour");
     buffer.truncate(contour.blocks);
     buffer
 }
@@ -207,7 +213,7 @@ fn an_incremental_program_returns_to_its_own_places_after_the_contour() {
     let end = |program: &str| {
         let mut at = None;
         truepath_core::gcode::Interpreter::new(Default::default())
-            .run(program.as_bytes(), &mut |event| {
+            .run(program.as_bytes(), &mut HostMemory::new().lend(), &mut |event| {
                 if let truepath_core::gcode::Canon::Traverse { to, .. } = event.canon {
                     at = to.point();
                 }
@@ -278,7 +284,7 @@ fn repeated_points_follow_the_corrected_path() {
 fn start(program: &str) -> Point {
     let mut at = None;
     truepath_core::gcode::Interpreter::new(Default::default())
-        .run(program.as_bytes(), &mut |event| {
+        .run(program.as_bytes(), &mut HostMemory::new().lend(), &mut |event| {
             if let truepath_core::gcode::Canon::Traverse { to, .. } = event.canon {
                 at = at.or(to.point());
             }

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use truepath::diagnostics::Source;
 use truepath::program::{BlockEdit, RewriteOptions, rewrite_program};
-use truepath_core::gcode::{Canon, ContourOptions, Interpreter, read_contour};
+use truepath_core::gcode::{Canon, ContourOptions, HostMemory, Interpreter, Program, read_contour};
 use truepath_core::geometry::{Block, Contour, Curve, Point};
 use truepath_core::units::{Offset, Real};
 
@@ -102,7 +102,9 @@ fn program(stretches: &[Stretch], s: Spelling) -> String {
 fn read(program: &[u8]) -> Vec<Block> {
     let line = Curve::line(Point::from_nm(0, 0), Point::from_nm(1, 0)).expect("a line");
     let mut buffer = vec![Block { curve: line, s: Offset::ZERO, feed: Real::ZERO, line: 0 }; 1024];
-    let contour = read_contour(program, &mut buffer, &ContourOptions::default()).expect("one contour");
+    let contour =
+        read_contour(&Program::new(program), &mut HostMemory::new().lend(), &mut buffer, &ContourOptions::default())
+            .expect("one contour");
     buffer.truncate(contour.blocks);
     buffer
 }
@@ -136,7 +138,7 @@ fn edits(blocks: &[Block], wave: [f64; 4]) -> Vec<BlockEdit> {
 
 fn last_place(program: &[u8]) -> Point {
     let mut at = None;
-    let read = Interpreter::new(Default::default()).run(program, &mut |event| {
+    let read = Interpreter::new(Default::default()).run(program, &mut HostMemory::new().lend(), &mut |event| {
         if let Canon::Traverse { to, .. } = event.canon {
             at = to.point();
         }

@@ -1,8 +1,9 @@
 //! The words of one block, gathered and checked for what may stand together.
 
 use super::code::Group;
+use super::flow::Sentence;
 use super::mcode::{M_LIMIT, MCode};
-use super::{Decimal, Dialect, GCode, GcodeError, GcodeErrorKind, Line, Span, Token, Word, Words};
+use super::{Foreign, GCode, GcodeError, GcodeErrorKind, Span, Word};
 
 /// The words of one block.
 #[derive(Debug)]
@@ -13,37 +14,22 @@ pub(super) struct BlockWords {
     used: u32,
     codes: [Option<(GCode, Span)>; Group::COUNT],
     pub(super) m: heapless::Vec<MCode, M_LIMIT>,
-    pub(super) number: Option<Decimal>,
     pub(super) program: Option<(u32, Span)>,
-    pub(super) block_delete: Option<Span>,
-    pub(super) has_comments: bool,
 }
 
 impl BlockWords {
-    /// Reads a line.
-    pub(super) fn gather(line: &Line<'_>) -> Result<Self, GcodeError> {
+    /// Takes the words of a block.
+    pub(super) fn gather(sentence: &Sentence<'_>) -> Result<Self, GcodeError> {
         let mut block = Self {
             words: heapless::Vec::new(),
             used: 0,
             codes: [None; Group::COUNT],
             m: heapless::Vec::new(),
-            number: None,
             program: None,
-            block_delete: None,
-            has_comments: false,
         };
-        for token in Words::new(*line) {
-            match token? {
-                Token::Comment { .. } => block.has_comments = true,
-                Token::Percent(_) => {}
-                Token::BlockDelete { span, .. } => {
-                    if block.block_delete.is_some() || block.has_words() {
-                        return Err(GcodeError::new(GcodeErrorKind::OutOfPlace { letter: b'/' }, line, span));
-                    }
-                    block.block_delete = Some(span);
-                }
-                Token::Word(word) => block.take(word).map_err(|kind| GcodeError::new(kind, line, word.span))?,
-            }
+        for &word in &sentence.words {
+            let refused = |kind| GcodeError::new(kind, &sentence.line, word.span).in_file(sentence.source.file);
+            block.take(word).map_err(refused)?;
         }
         Ok(block)
     }
@@ -63,17 +49,13 @@ impl BlockWords {
                 let code = MCode { number: whole(word)?, span: word.span };
                 self.m.push(code).map_err(|_| GcodeErrorKind::TooManyM { limit: M_LIMIT as u8 })
             }
-            b'N' | b'O' if self.has_words() => Err(GcodeErrorKind::OutOfPlace { letter }),
-            b'N' if self.number.is_some() => Err(GcodeErrorKind::DuplicateWord { letter }),
-            b'N' => {
-                self.number = Some(word.value);
-                Ok(())
-            }
+            b'O' if self.has_words() => Err(GcodeErrorKind::OutOfPlace { letter }),
             b'O' => {
                 self.program = Some((whole(word)?, word.span));
                 Ok(())
             }
-            b'E' => Err(GcodeErrorKind::ForeignDialect(Dialect::Printer)),
+            b'r' | b'c' => Err(GcodeErrorKind::CornerRounding),
+            b'E' => Err(GcodeErrorKind::ForeignDialect(Foreign::Printer)),
             b'A' | b'B' | b'C' | b'U' | b'V' | b'W' => Err(GcodeErrorKind::UnsupportedAxis { letter }),
             _ if self.word(letter).is_some() => Err(GcodeErrorKind::DuplicateWord { letter }),
             _ => self.words.push(word).map_err(|_| GcodeErrorKind::DuplicateWord { letter }),

@@ -4,12 +4,15 @@
 //! block it comes from, so that a writer can change the words of one move and keep every other byte. The vocabulary
 //! follows the canonical machining functions of RS274/NGC (NIST 6556, chapter 4).
 
-use super::{Axes, Coolant, Decimal, FeedMode, Modal, PathControl, Plane, Span, Spindle, ToolLength, Units};
+use super::{
+    Axes, Coolant, Decimal, FeedMode, MachineParameters, Modal, Number, PathControl, Plane, Span, Spindle, ToolLength,
+    Units,
+};
 use crate::geometry::{Curve, Point, Side};
 use crate::units::Real;
 
 /// What one block, or part of one, does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Canon {
     /// A comment; what is inside it.
     Comment(Span),
@@ -54,7 +57,7 @@ pub enum Canon {
     /// G61, G61.1, G64.
     PathControl(PathControl),
     /// G4; the number as written, because its unit (s or ms) is the machine's.
-    Dwell(Decimal),
+    Dwell(Number),
     /// G0.
     Traverse {
         /// Before.
@@ -168,7 +171,9 @@ pub enum ShiftKind {
 /// The block an event comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Source {
-    /// Line, counted from 1.
+    /// The file: 0 for the program, otherwise the number its library gives it.
+    pub file: u16,
+    /// Line of the file, counted from 1.
     pub line: u32,
     /// The whole line without its end; its words are found with [`Words`](super::Words).
     pub block: Span,
@@ -176,10 +181,28 @@ pub struct Source {
     pub number: Option<Decimal>,
     /// Whether it carries `/`.
     pub block_delete: bool,
+    /// How many calls deep it stands, 0 in the main program.
+    pub depth: u8,
+    /// How many calls, returns and jumps the program took before it. A line that comes again with another number is
+    /// executed more than once.
+    pub jumps: u32,
+}
+
+impl Source {
+    /// No block yet.
+    pub(super) const NONE: Self = Self {
+        file: 0,
+        line: 1,
+        block: Span { start: 0, len: 0 },
+        number: None,
+        block_delete: false,
+        depth: 0,
+        jumps: 0,
+    };
 }
 
 /// One step of the program.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Event<'a> {
     /// What happens.
     pub canon: Canon,
@@ -187,4 +210,8 @@ pub struct Event<'a> {
     pub source: Source,
     /// The modes in force when it happens, this step's own change included.
     pub modal: &'a Modal,
+    /// The bytes of the file it is written in, in which all its spans lie.
+    pub text: &'a [u8],
+    /// The parameters at this moment.
+    pub parameters: &'a dyn MachineParameters,
 }

@@ -6,7 +6,7 @@
 
 use core::fmt;
 
-use super::{Decimal, GcodeErrorKind};
+use super::{GcodeErrorKind, Number};
 
 /// The number of a G code in tenths: G1 is 10, G59.3 is 593.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -55,7 +55,7 @@ impl Group {
 
 impl GCode {
     /// From a written number; `None` when it is negative, above 999.9 or has more than one decimal.
-    pub const fn new(value: Decimal) -> Option<Self> {
+    pub fn new(value: Number) -> Option<Self> {
         match value.exactly_times(10) {
             Some(tenths) if tenths >= 0 && tenths < 10_000 => Some(Self(tenths as u16)),
             _ => None,
@@ -118,19 +118,20 @@ impl fmt::Display for GCode {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
+    use super::super::Decimal;
     use super::*;
     use std::string::ToString;
 
     #[test]
     fn codes_print_as_they_are_spoken() {
         assert_eq!(GCode::from_tenths(10).to_string(), "G1");
-        assert_eq!(GCode::new(Decimal::new(5930, 2).unwrap()).unwrap().to_string(), "G59.3");
+        assert_eq!(GCode::new(Number::Exact(Decimal::new(5930, 2).unwrap())).unwrap().to_string(), "G59.3");
     }
 
     #[test]
     fn a_number_that_is_no_code_is_none() {
         for (mantissa, decimals) in [(-1, 0), (1000, 0), (125, 2)] {
-            assert_eq!(GCode::new(Decimal::new(mantissa, decimals).unwrap()), None);
+            assert_eq!(GCode::new(Number::Exact(Decimal::new(mantissa, decimals).unwrap())), None);
         }
     }
 

@@ -1,6 +1,6 @@
 //! What a program is recognised by: its check sum, and the mark of a corrected program.
 
-use super::decimal::is_blank;
+use super::lexical::is_blank;
 use crate::checksum::crc32;
 
 /// The mark that a corrected program carries as a comment.

@@ -11,11 +11,11 @@
 //! Limits: three axes, the XY plane, feed per minute; no cutter radius compensation (G41 and G42 tell the side of the
 //! wall), no parameters, subprograms or cycles. Those are refused by name.
 
-use super::block::BlockWords;
-use super::frame::Frame;
+use super::execute::Execution;
+use super::flow::{Next, Reader, Sentence};
 use super::{
-    Axes, Canon, Event, GcodeError, GcodeErrorKind, Line, Lines, Modal, Source, Span, Token, Units, WarningKind,
-    Warnings, Words, is_marked_corrected, program_crc,
+    Axes, Event, GcodeError, GcodeErrorKind, Memory, Program, Units, WarningKind, Warnings, is_marked_corrected,
+    program_crc,
 };
 
 /// What the program does not say.
@@ -65,118 +65,46 @@ impl Interpreter {
         Self { options }
     }
 
-    /// Executes a program from its first block to M2, M30 or the last line, and gives each step to `sink`.
+    /// Executes a program from its first block to M2, M30 or the last line, and gives each step to `sink`. The
+    /// parameters begin as `memory` holds them, and stay there.
     ///
     /// # Errors
     /// The first thing that is not understood, or what `sink` answers, with the place of the block.
-    pub fn run<S>(&self, program: &[u8], sink: &mut S) -> Result<ProgramSummary, GcodeError>
+    pub fn run<'p, S>(
+        &self,
+        program: impl Into<Program<'p>>,
+        memory: &mut Memory<'_>,
+        sink: &mut S,
+    ) -> Result<ProgramSummary, GcodeError>
     where
         S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
     {
-        let frame = Frame::of(program);
+        let program = program.into();
+        memory.start();
+        let mut reader = Reader::new(program);
         let mut warnings = Warnings::default();
-        frame.warn(&mut warnings);
-        let mut execution = Execution {
-            options: self.options,
-            modal: Modal::initial(self.options.units),
-            at: self.options.start,
-            units_given: false,
-            program_number: None,
-            end: None,
-            warnings,
-            line: Line { number: 1, start: 0, text: &[] },
-            source: Source { line: 1, block: Span::default(), number: None, block_delete: false },
-            sink,
-        };
-        for line in Lines::new(program).filter(|l| frame.holds(l.number)) {
-            execution.line = line;
-            if execution.end.is_none() {
-                execution.line()?;
-            } else if frame.is_text(&line) {
-                execution.warn(WarningKind::TextAfterEnd, line.span());
+        reader.frame().warn(&mut warnings);
+        let mut sentence = Sentence::new(program.text);
+        let mut execution = Execution::new(self.options, memory, warnings, sink);
+        while reader.next(&mut execution, &mut sentence)? {
+            let next = execution.sentence(&sentence)?;
+            if next == Next::End {
                 break;
             }
+            reader.follow(next);
         }
         if execution.end.is_none() {
-            execution.warn(WarningKind::EndMissing, execution.line.span());
+            execution.warn(WarningKind::EndMissing, sentence.line.span());
+        } else if let Some(line) = reader.text_after_end() {
+            execution.warn_at(WarningKind::TextAfterEnd, &line, line.span());
         }
         Ok(ProgramSummary {
             number: execution.program_number,
             end: execution.end,
-            lines: execution.source.line,
-            crc: program_crc(program),
-            already_corrected: is_marked_corrected(program),
+            lines: sentence.source.line,
+            crc: program_crc(program.text),
+            already_corrected: is_marked_corrected(program.text),
             warnings: execution.warnings,
         })
-    }
-}
-
-/// The machine while it executes a program. Its parts: `execute.rs` (modes), `motion.rs` (moves).
-pub(super) struct Execution<'p, 's, S> {
-    pub(super) options: Options,
-    pub(super) modal: Modal,
-    pub(super) at: Axes,
-    pub(super) units_given: bool,
-    pub(super) program_number: Option<u32>,
-    pub(super) end: Option<u32>,
-    warnings: Warnings,
-    line: Line<'p>,
-    source: Source,
-    sink: &'s mut S,
-}
-
-impl<S> Execution<'_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
-    fn line(&mut self) -> Result<(), GcodeError> {
-        let mut block = BlockWords::gather(&self.line)?;
-        self.source = Source {
-            line: self.line.number,
-            block: self.line.span(),
-            number: block.number,
-            block_delete: block.block_delete.is_some(),
-        };
-        if block.has_comments {
-            self.comments()?;
-        }
-        if let Some(span) = block.block_delete {
-            if self.options.skip_block_delete {
-                self.warn(WarningKind::BlockDeleteSkipped, span);
-                return Ok(());
-            }
-            self.warn(WarningKind::BlockDeleteExecuted, span);
-        }
-        self.execute(&mut block)
-    }
-
-    fn comments(&mut self) -> Result<(), GcodeError> {
-        for token in Words::new(self.line) {
-            if let Token::Comment { span, body } = token? {
-                self.emit(Canon::Comment(body), span)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Gives one step to the sink; what it answers is an error at `span`.
-    pub(super) fn emit(&mut self, canon: Canon, span: Span) -> Result<(), GcodeError> {
-        let event = Event { canon, source: self.source, modal: &self.modal };
-        (self.sink)(&event).map_err(|kind| self.error(kind, span))
-    }
-
-    pub(super) fn error(&self, kind: GcodeErrorKind, span: Span) -> GcodeError {
-        GcodeError::new(kind, &self.line, span)
-    }
-
-    pub(super) fn warn(&mut self, kind: WarningKind, span: Span) {
-        self.warnings.note(kind, &self.line, span);
-    }
-
-    /// The bytes of the block without the blanks around them.
-    pub(super) fn block_span(&self) -> Span {
-        let text = self.line.text;
-        let lead = text.len().saturating_sub(text.trim_ascii_start().len());
-        Span { start: self.line.start.saturating_add(lead), len: text.trim_ascii().len() }
     }
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{Dialect, GcodeError, GcodeErrorKind, LineRange};
+use super::{Foreign, GcodeError, GcodeErrorKind, LineRange};
 use crate::units::Offset;
 
 /// A length in millimetres with as many decimals as it needs, at most six.
@@ -77,16 +77,17 @@ impl fmt::Display for GcodeErrorKind {
                 f.write_str("named or controlled subprograms (O words) are not executed; post the program without subprograms")
             }
             Self::Text => f.write_str("text outside a comment; put it in ( ) if it is a remark, or post the program in plain G-code"),
-            Self::ForeignDialect(Dialect::Heidenhain) => {
+            Self::ForeignDialect(Foreign::Heidenhain) => {
                 f.write_str("this is a Heidenhain conversational program (BEGIN PGM), not G-code; post it for an ISO control")
             }
-            Self::ForeignDialect(Dialect::Printer) => f.write_str(
+            Self::ForeignDialect(Foreign::Printer) => f.write_str(
                 "an E word: this is a 3D printer's program, or a number with an exponent; post it for a milling machine, with plain numbers",
             ),
             Self::TextAfterPercent => f.write_str("text after `%`; only a comment may follow it on its line"),
             Self::CornerRounding => {
                 f.write_str("`,R` and `,C` corners are not computed; post the program with the corner as a move of its own")
             }
+            Self::Parameter(error) => error.fmt(f),
             _ => self.fmt_block(f),
         }
     }
@@ -126,6 +127,9 @@ impl GcodeErrorKind {
             }
             Self::TooManyM { limit } => {
                 write!(f, "more than {limit} M codes in one block; write them in several blocks")
+            }
+            Self::TooManyWords { limit } => {
+                write!(f, "more than {limit} words in one block; write them in several blocks")
             }
             Self::NotWhole { letter } => {
                 write!(f, "the number of {} must be whole; remove its decimals", Letter(letter))

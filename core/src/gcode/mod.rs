@@ -12,11 +12,12 @@
 //! understood is a [`GcodeError`] with line, column and a code; it is never skipped.
 //!
 //! ```
-//! use truepath_core::gcode::{Canon, Interpreter, Options};
+//! use truepath_core::gcode::{Canon, DeviceMemory, Interpreter, Options};
 //!
 //! let program = b"%\nG21 G90 G17\nG0 X0 Y0\nG3 X10 Y10 R10 F200\nM30\n%\n";
 //! let mut arcs = 0;
-//! let summary = Interpreter::new(Options::default()).run(program, &mut |event| {
+//! let mut memory = DeviceMemory::new();
+//! let summary = Interpreter::new(Options::default()).run(program, &mut memory.lend(), &mut |event| {
 //!     arcs += i32::from(matches!(event.canon, Canon::Arc { .. }));
 //!     Ok(())
 //! })?;
@@ -24,42 +25,41 @@
 //! # Ok::<(), truepath_core::gcode::GcodeError>(())
 //! ```
 
-mod arc;
 mod block;
 mod canon;
 mod code;
 pub mod compensation;
 mod contour;
-mod decimal;
 mod error;
 mod execute;
-mod frame;
+mod flow;
 mod identity;
 mod interpreter;
+mod lexical;
 mod mcode;
 mod message;
-mod modal;
 mod mode;
-mod motion;
+mod parameter;
 mod place;
 mod shifts;
 mod text;
 mod warning;
-mod word;
 
 pub use canon::{Canon, Event, ShiftKind, Source};
 pub use code::GCode;
 pub use contour::{
-    Candidate, ContourOptions, ContourProgram, Criteria, Found, Role, RunPart, find_contours, read_contour, search, visit_runs,
+    Candidate, ContourOptions, ContourProgram, Criteria, Found, Role, RunPart, find_contours, read_contour, search,
+    visit_runs,
 };
-pub use decimal::Decimal;
-pub use error::{Dialect, GcodeError, GcodeErrorKind};
+pub use error::{Foreign, GcodeError, GcodeErrorKind, ParameterError};
+pub use execute::{Modal, Motion};
+pub use flow::{Library, LibraryFile, Program, Word};
 pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};
 pub use interpreter::{Interpreter, Options, ProgramSummary};
-pub use modal::{Modal, Motion};
+pub use lexical::{Decimal, Number, Token, Words, WrittenWord};
 pub use mode::{Coolant, FeedMode, PathControl, Plane, RetractLevel, Spindle, ToolLength, Units};
+pub use parameter::{DeviceMemory, HostMemory, MachineParameters, Memory, MemoryBuffers, NamedSlot};
 pub use place::Axes;
 pub use shifts::{AXIS_LETTERS, NineAxes, Shifts};
 pub use text::{Line, LineRange, Lines, Span};
 pub use warning::{Warning, WarningKind, Warnings};
-pub use word::{Token, Word, Words};

@@ -68,6 +68,8 @@ impl WarningKind {
 pub struct Warning {
     /// What was noticed.
     pub kind: WarningKind,
+    /// The file: 0 for the program, otherwise the number its library gives it.
+    pub file: u16,
     /// Line, counted from 1.
     pub line: u32,
     /// Column in bytes, counted from 1.
@@ -95,15 +97,19 @@ impl Warnings {
     pub const fn dropped(&self) -> u32 {
         self.dropped
     }
-    /// Notes one.
+    /// Notes one in the program.
     pub(super) fn note(&mut self, kind: WarningKind, line: &Line<'_>, span: Span) {
+        self.note_in(0, kind, line, span);
+    }
+    /// Notes one in a file.
+    pub(super) fn note_in(&mut self, file: u16, kind: WarningKind, line: &Line<'_>, span: Span) {
         if let Some(known) = self.list.iter_mut().find(|w| w.kind == kind) {
             known.times = known.times.saturating_add(1);
             return;
         }
         let column = span.start.saturating_sub(line.start).saturating_add(1);
         let column = u32::try_from(column).unwrap_or(u32::MAX);
-        if self.list.push(Warning { kind, line: line.number, column, times: 1 }).is_err() {
+        if self.list.push(Warning { kind, file, line: line.number, column, times: 1 }).is_err() {
             self.dropped = self.dropped.saturating_add(1);
         }
     }

@@ -3,8 +3,8 @@
 use super::{Buffer, ForceModel, Job, JobError, Probe};
 use crate::cut::{Cantilever, Coefficients, Compliance, CutSetup, Milling, Path, PathError, Sample, WallLaw};
 use crate::gcode::{
-    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, RunPart, Spindle, Units, is_marked_corrected,
-    program_crc, read_contour,
+    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Memory, Program, RunPart, Spindle, Units,
+    is_marked_corrected, program_crc, read_contour,
 };
 use crate::geometry::{Block, Contour, Point};
 use crate::identify::Prior;
@@ -34,12 +34,13 @@ impl Pass {
     ///
     /// # Errors
     /// A job out of range, whatever is wrong with the program, and what the two contradict each other in.
-    pub fn read(job: &Job, program: &[u8], blocks: &mut [Block]) -> Result<Self, JobError> {
+    pub fn read(job: &Job, program: &[u8], memory: &mut Memory<'_>, blocks: &mut [Block]) -> Result<Self, JobError> {
         job.check()?;
         if is_marked_corrected(program) {
             return Err(JobError::Corrected);
         }
-        let contour = read_contour(program, blocks, &options(job)).map_err(JobError::Program)?;
+        memory.clear();
+        let contour = read_contour(&Program::new(program), memory, blocks, &options(job)).map_err(JobError::Program)?;
         match (job.tool.number, named_tool(&contour)) {
             (Some(job), Some(program)) if job != program => return Err(JobError::ToolsDiffer { job, program }),
             _ => {}
@@ -76,7 +77,7 @@ impl Pass {
     /// # Errors
     /// When they are not those of a contour.
     pub fn path_contour(blocks: &[Block]) -> Result<Contour<'_>, JobError> {
-        let none = GcodeError { kind: GcodeErrorKind::NoContour, line: 1, column: 1, start: 0, len: 0 };
+        let none = GcodeError { kind: GcodeErrorKind::NoContour, file: 0, line: 1, column: 1, start: 0, len: 0 };
         Contour::new(blocks).ok_or(JobError::Program(none))
     }
 

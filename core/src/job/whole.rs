@@ -65,7 +65,7 @@ pub fn image(
 ) -> Result<Made, JobError> {
     let mut gauge = Gauge::new(progress);
     gauge.tell(Stage::Reading, 0);
-    let pass = Pass::read(job, program, workspace.blocks)?;
+    let pass = Pass::read(job, program, &mut workspace.parameters, workspace.blocks)?;
     // Refused now and not after minutes of work.
     pass.binding()?;
     let blocks = workspace.blocks.get(..pass.contour.blocks).unwrap_or_default();

@@ -9,13 +9,14 @@
 //! | probe point | [`POINT_BYTES`] | reading, contact, observation |
 //!
 //! Samples are 0.1 mm apart, with cutters below 5 mm a fiftieth of the diameter; a sharp inside corner takes up to 314
-//! more. Besides, program, measurement and image lie in memory, and 48 KiB are taken from the stack of a Cortex-M7.
+//! more. Besides, the parameters of the program take 12 KiB, program, measurement and image lie in memory, and 48 KiB are taken from the stack of a Cortex-M7.
 
 use heapless::Vec;
 
 use super::{Buffer, JobError};
 use crate::correct::{Node, Profile, Update};
 use crate::cut::{Path, Sample, State};
+use crate::gcode::{DeviceMemory, Memory};
 use crate::geometry::{Block, Contour, Direction, Vector};
 use crate::identify::Observation;
 use crate::probe::{Contact, Reading};
@@ -71,6 +72,8 @@ impl Counts {
 /// The buffers, lent by the caller. What they hold before does not matter.
 #[derive(Debug)]
 pub struct Workspace<'a> {
+    /// The parameters of the program.
+    pub parameters: Memory<'a>,
     /// The contour.
     pub blocks: &'a mut [Block],
     /// The path.
@@ -110,6 +113,7 @@ pub struct Buffers<
     const NODES: usize,
     const POINTS: usize,
 > {
+    parameters: DeviceMemory,
     blocks: Vec<Block, BLOCKS>,
     samples: Vec<Sample, SAMPLES>,
     readings: Vec<Reading, POINTS>,
@@ -133,6 +137,7 @@ impl<const BLOCKS: usize, const SAMPLES: usize, const STATES: usize, const NODES
     /// Empty buffers.
     pub const fn new() -> Self {
         Self {
+            parameters: DeviceMemory::new(),
             blocks: Vec::new(),
             samples: Vec::new(),
             readings: Vec::new(),
@@ -151,6 +156,7 @@ impl<const BLOCKS: usize, const SAMPLES: usize, const STATES: usize, const NODES
     pub fn workspace(&mut self) -> Workspace<'_> {
         let unseen = Observation::new(Offset::ZERO, Real::ZERO, Offset::ZERO, Offset::ZERO, Direction::X);
         Workspace {
+            parameters: self.parameters.lend(),
             blocks: filled(&mut self.blocks, Block::BLANK),
             samples: filled(&mut self.samples, Sample::BLANK),
             readings: filled(&mut self.readings, Reading::default()),

@@ -5,6 +5,7 @@
 
 use truepath_core::correct::{Node, Profile, Update};
 use truepath_core::cut::{Sample, State};
+use truepath_core::gcode::DeviceMemory;
 use truepath_core::geometry::{Block, Direction, Vector};
 use truepath_core::identify::Observation;
 use truepath_core::job::Workspace;
@@ -83,6 +84,7 @@ impl InProcess {
 fn workspace() -> Workspace<'static> {
     let unseen = Observation::new(Offset::ZERO, Real::ZERO, Offset::ZERO, Offset::ZERO, Direction::X);
     Workspace {
+        parameters: Box::leak(Box::new(DeviceMemory::new())).lend(),
         blocks: lasting(Block::BLANK, BLOCKS),
         samples: lasting(Sample::BLANK, SAMPLES),
         readings: lasting(Reading::default(), POINTS),

@@ -27,7 +27,7 @@ impl Codes {
             match token {
                 Token::BlockDelete { .. } => codes.block_delete = true,
                 Token::Word(word) if word.letter == b'N' => codes.number = Some(label(word.span, program)),
-                Token::Word(word) if word.letter == b'G' => match word.value.exactly_times(10) {
+                Token::Word(word) if word.letter == b'G' => match word.value.and_then(|v| v.exactly_times(10)) {
                     Some(0) => codes.motion = Some(Motion::Traverse),
                     Some(10) => codes.motion = Some(Motion::Feed),
                     Some(20) => codes.motion = Some(Motion::Arc { counter_clockwise: false }),

@@ -14,7 +14,7 @@ mod tool_table;
 use std::io::{self, Write};
 
 use truepath_core::gcode::{
-    Axes, Canon, Event, Interpreter, Line, Lines, Modal, Motion, Options, ProgramSummary, Units,
+    Axes, Canon, Event, HostMemory, Interpreter, Line, Lines, Modal, Motion, Options, ProgramSummary, Units,
 };
 
 use crate::diagnostics::{InputError, Source};
@@ -41,9 +41,10 @@ pub fn write_canon(
 ) -> Result<io::Result<ProgramSummary>, InputError> {
     let program = source.bytes();
     let start = Options { start: Axes::ORIGIN, skip_block_delete: options.skip_block_delete, ..Options::default() };
+    let mut memory = Box::new(HostMemory::new());
     let mut events: Vec<Step> = Vec::new();
     let summary = Interpreter::new(start)
-        .run(program, &mut |event| {
+        .run(program, &mut memory.lend(), &mut |event| {
             events.push(Step::of(event));
             Ok(())
         })

@@ -37,12 +37,12 @@ impl ToolTable {
             let mut any = false;
             for token in Words::new(line) {
                 let Token::Word(word) = token.map_err(|_| refused("this line cannot be read"))? else { continue };
+                let value = word.value.ok_or_else(|| refused("this row has an expression"))?;
                 any = true;
-                let nm = || {
-                    i64::try_from(word.value.times(units.nanometres())).map_err(|_| refused("this number is too large"))
-                };
+                let nm =
+                    || i64::try_from(value.times(units.nanometres())).map_err(|_| refused("this number is too large"));
                 match word.letter {
-                    b'T' => tool = word.value.exactly_times(1).and_then(|n| u32::try_from(n).ok()),
+                    b'T' => tool = value.exactly_times(1).and_then(|n| u32::try_from(n).ok()),
                     b'X' => offset[0] = nm()?,
                     b'Y' => offset[1] = nm()?,
                     b'Z' => offset[2] = nm()?,

@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use truepath_core::gcode::{Line, Motion, Token, Word, Words};
+use truepath_core::gcode::{Line, Motion, Token, Words, WrittenWord};
 
 /// A line with its tokens.
 pub(super) struct Block<'a> {
@@ -28,7 +28,7 @@ struct Style {
 /// Words that say where a move goes.
 const GEOMETRY: &[u8] = b"XYIJR";
 /// M codes that act when the move is over: stops, end, spindle and coolant off.
-const AFTER_MOVE: [i128; 7] = [0, 1, 2, 5, 9, 30, 60];
+const AFTER_MOVE: [i64; 7] = [0, 1, 2, 5, 9, 30, 60];
 
 impl<'a> Block<'a> {
     /// Takes a line apart; `two_digits` is how its G words are written when it has none.
@@ -58,25 +58,22 @@ impl<'a> Block<'a> {
     }
 
     fn range(&self, token: &Token) -> Range<usize> {
-        let (Token::Word(Word { span, .. })
-        | Token::Comment { span, .. }
-        | Token::BlockDelete { span, .. }
-        | Token::Percent(span)) = token;
+        let span = token.span();
         span.start - self.line.start..span.end() - self.line.start
     }
-    fn word_range(&self, word: &Word) -> Range<usize> {
+    fn word_range(&self, word: &WrittenWord) -> Range<usize> {
         word.span.start - self.line.start..word.span.end() - self.line.start
     }
-    fn words(&self) -> impl Iterator<Item = &Word> {
+    fn words(&self) -> impl Iterator<Item = &WrittenWord> {
         self.tokens.iter().filter_map(|t| if let Token::Word(w) = t { Some(w) } else { None })
     }
     /// The word of a letter, if the line has it.
-    pub(super) fn word(&self, letter: u8) -> Option<&Word> {
+    pub(super) fn word(&self, letter: u8) -> Option<&WrittenWord> {
         self.words().find(|w| w.letter == letter)
     }
     /// G0, G1, G2 or G3, if the line has it.
-    pub(super) fn motion_word(&self) -> Option<&Word> {
-        self.words().find(|w| w.letter == b'G' && w.value.exactly_times(1).is_some_and(|n| (0..=3).contains(&n)))
+    pub(super) fn motion_word(&self) -> Option<&WrittenWord> {
+        self.words().find(|w| w.letter == b'G' && whole(w).is_some_and(|n| (0..=3).contains(&n)))
     }
     /// Whether its G words are written with two digits.
     pub(super) const fn two_digits(&self) -> bool {
@@ -90,7 +87,7 @@ impl<'a> Block<'a> {
         let mut edits: Vec<(Range<usize>, String)> = Vec::new();
         let named = self.motion_word();
         if let Some(word) = named
-            && word.value.exactly_times(1) != Some(number(motion))
+            && whole(word) != Some(number(motion))
         {
             edits.push((self.word_range(word), self.spelt(&self.motion_text(motion))));
         }
@@ -194,8 +191,13 @@ impl<'a> Block<'a> {
     }
 }
 
-fn acts_after_move(word: &Word) -> bool {
-    word.letter == b'M' && AFTER_MOVE.contains(&word.value.times(1))
+fn acts_after_move(word: &WrittenWord) -> bool {
+    word.letter == b'M' && whole(word).is_some_and(|m| AFTER_MOVE.contains(&m))
+}
+
+/// The number of a word, when it is written and whole.
+fn whole(word: &WrittenWord) -> Option<i64> {
+    word.value?.exactly_times(1)
 }
 
 const fn number(motion: Motion) -> i64 {

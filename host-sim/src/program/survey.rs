@@ -1,6 +1,6 @@
 //! The moves of a program, each with the line it is written on and the modes around it.
 
-use truepath_core::gcode::{Axes, Canon, GcodeError, Interpreter, Modal, Motion, Options};
+use truepath_core::gcode::{Axes, Canon, GcodeError, HostMemory, Interpreter, Modal, Motion, Options};
 use truepath_core::geometry::Curve;
 
 /// One move.
@@ -55,7 +55,8 @@ pub(super) fn survey(program: &[u8], options: Options) -> Result<Vec<Move>, Gcod
     let mut moves = Vec::new();
     let mut motion_before = None;
     let mut line = (0, None);
-    Interpreter::new(options).run(program, &mut |event| {
+    let mut memory = Box::new(HostMemory::new());
+    Interpreter::new(options).run(program, &mut memory.lend(), &mut |event| {
         if event.source.line != line.0 {
             line = (event.source.line, motion_before);
         }

@@ -2,7 +2,7 @@
 
 use super::ContourOptions;
 use super::run::{Run, RunReader};
-use crate::gcode::{GcodeError, Interpreter, LineRange, ProgramSummary};
+use crate::gcode::{GcodeError, Interpreter, LineRange, Memory, Program, ProgramSummary};
 use crate::geometry::{Block, Side};
 use crate::units::{Offset, Position, Real};
 
@@ -38,11 +38,12 @@ pub struct Candidate {
 /// # Errors
 /// Whatever is not understood, or a cutting move from an unknown place.
 pub fn find_contours(
-    program: &[u8],
+    program: &Program<'_>,
+    memory: &mut Memory<'_>,
     options: &ContourOptions,
     visit: impl FnMut(&Candidate),
 ) -> Result<ProgramSummary, GcodeError> {
-    visit_runs(program, options, |_| {}, visit)
+    visit_runs(program, memory, options, |_| {}, visit)
 }
 
 /// The same with the geometry: every block of a run is given to `on_block` before the run itself to `on_run`. Arc
@@ -51,13 +52,14 @@ pub fn find_contours(
 /// # Errors
 /// Whatever is not understood, or a cutting move from an unknown place.
 pub fn visit_runs(
-    program: &[u8],
+    program: &Program<'_>,
+    memory: &mut Memory<'_>,
     options: &ContourOptions,
     mut on_block: impl FnMut(&Block),
     mut on_run: impl FnMut(&Candidate),
 ) -> Result<ProgramSummary, GcodeError> {
     let mut reader = RunReader::new(options.within);
-    let summary = Interpreter::new(options.program).run(program, &mut |event| {
+    let summary = Interpreter::new(options.program).run(*program, memory, &mut |event| {
         let progress = reader.step(event)?;
         if let Some(run) = progress.ended {
             on_run(&run.candidate());

@@ -6,7 +6,8 @@
 
 use super::run::{Run, RunReader};
 use crate::gcode::{
-    GcodeError, GcodeErrorKind, Interpreter, LineRange, Options, PathControl, ProgramSummary, Spindle, Units,
+    GcodeError, GcodeErrorKind, Interpreter, LineRange, Memory, Options, PathControl, Program, ProgramSummary, Spindle,
+    Units,
 };
 use crate::geometry::{Block, Side};
 use crate::units::{Offset, Position, Real};
@@ -72,14 +73,15 @@ pub struct ContourProgram {
 /// Whatever is not understood; no contour, several of them, no such part, one that does not fit into the buffer, of
 /// unknown height, from an unknown place, or with the wall on both sides.
 pub fn read_contour(
-    program: &[u8],
+    program: &Program<'_>,
+    memory: &mut Memory<'_>,
     buffer: &mut [Block],
     options: &ContourOptions,
 ) -> Result<ContourProgram, GcodeError> {
     let mut reader = RunReader::new(options.within);
     let mut kept = Kept { options, buffer, filled: 0, found: None, second: None, count: 0 };
     let mut index = 0u32;
-    let summary = Interpreter::new(options.program).run(program, &mut |event| {
+    let summary = Interpreter::new(options.program).run(*program, memory, &mut |event| {
         let progress = reader.step(event)?;
         if let Some(run) = progress.ended {
             kept.ended(run);
@@ -135,7 +137,7 @@ impl Kept<'_> {
     }
 
     fn contour(self, summary: ProgramSummary) -> Result<ContourProgram, GcodeError> {
-        let nowhere = |kind| GcodeError { kind, line: 1, column: 1, start: 0, len: 0 };
+        let nowhere = |kind| GcodeError { kind, file: 0, line: 1, column: 1, start: 0, len: 0 };
         let Some(run) = self.found else {
             let kind = self.options.part.map_or(GcodeErrorKind::NoContour, GcodeErrorKind::PartMissing);
             return Err(nowhere(kind));

@@ -163,7 +163,7 @@ impl RunReader {
 impl Run {
     /// An error about the run, at its first block.
     pub(super) const fn error(&self, kind: GcodeErrorKind) -> GcodeError {
-        GcodeError { kind, line: self.lines.first, column: 1, start: self.first.start, len: self.first.len }
+        GcodeError { kind, file: 0, line: self.lines.first, column: 1, start: self.first.start, len: self.first.len }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a program does, step by step, as the proof compares it.
 
-use truepath_core::gcode::{Axes, Canon, Decimal, GcodeError, Interpreter, Modal, Motion, Options};
+use truepath_core::gcode::{Axes, Canon, Decimal, GcodeError, HostMemory, Interpreter, Modal, Motion, Options};
 use truepath_core::geometry::Curve;
 
 /// One step of a program.
@@ -71,7 +71,8 @@ impl Fact {
 /// All steps of a program.
 pub(super) fn facts(program: &[u8], options: Options) -> Result<Vec<Fact>, GcodeError> {
     let mut facts = Vec::new();
-    Interpreter::new(options).run(program, &mut |event| {
+    let mut memory = Box::new(HostMemory::new());
+    Interpreter::new(options).run(program, &mut memory.lend(), &mut |event| {
         let what = match event.canon {
             // `;` at the end of a line says nothing.
             Canon::Comment(span) if span.len == 0 => return Ok(()),

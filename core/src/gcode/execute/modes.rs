@@ -1,20 +1,20 @@
 //! The codes of one block that set modes, in their order of execution.
 
-use super::block::{BlockWords, whole};
-use super::code::Group;
-use super::interpreter::Execution;
-use super::mcode::MCodes;
-use super::{
+use super::super::block::{BlockWords, whole};
+use super::super::code::Group;
+use super::super::mcode::MCodes;
+use super::super::{
     Canon, Coolant, Event, GcodeError, GcodeErrorKind, Motion, PathControl, Plane, Spindle, ToolLength, Units,
     WarningKind, Word,
 };
+use super::Execution;
 use crate::geometry::Side;
 use crate::units::{Offset, Real};
 
 /// The largest F (mm/min) and S (rpm).
 const LARGEST_RATE: i32 = 1_000_000;
 
-impl<S> Execution<'_, '_, S>
+impl<S> Execution<'_, '_, '_, S>
 where
     S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
 {

@@ -1,6 +1,6 @@
 //! The modes of the machine that stay from block to block.
 
-use super::{FeedMode, PathControl, Plane, RetractLevel, Shifts, Spindle, Units};
+use super::super::{FeedMode, PathControl, Plane, RetractLevel, Shifts, Spindle, Units};
 use crate::geometry::Side;
 use crate::units::Real;
 

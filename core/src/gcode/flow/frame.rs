@@ -3,12 +3,12 @@
 //! `%` as the first character of a line begins and ends a program (ISO 6983); text outside is a leader or a trailer.
 //! Either may be missing, which is noted because a file that was cut off looks the same.
 
-use super::decimal::is_blank;
-use super::{Line, Lines, Span, WarningKind, Warnings};
+use super::super::lexical::is_blank;
+use super::super::{Line, Lines, Span, WarningKind, Warnings};
 
 /// The lines of the program in its file.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame<'a> {
+pub(in super::super) struct Frame<'a> {
     /// Line of the opening `%`, 0 when there is none.
     open: u32,
     /// Line of the closing `%`, the largest number when there is none.
@@ -21,7 +21,7 @@ pub(super) struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     /// Of a file.
-    pub(super) fn of(program: &'a [u8]) -> Self {
+    pub(in super::super) fn of(program: &'a [u8]) -> Self {
         let percents = || Lines::new(program).filter(|l| first_byte(l) == Some(b'%'));
         let text = || Lines::new(program).filter(|l| first_byte(l).is_some());
         let none = Line { number: 1, start: 0, text: &[] };
@@ -40,17 +40,17 @@ impl<'a> Frame<'a> {
     }
 
     /// Whether a line belongs to the program, its `%` included.
-    pub(super) const fn holds(&self, line: u32) -> bool {
+    pub(in super::super) const fn holds(&self, line: u32) -> bool {
         self.open <= line && line <= self.close
     }
 
     /// Whether a line of the program has anything but a `%`.
-    pub(super) fn is_text(&self, line: &Line<'_>) -> bool {
+    pub(in super::super) fn is_text(&self, line: &Line<'_>) -> bool {
         first_byte(line).is_some_and(|b| b != b'%')
     }
 
     /// Notes what is missing and what is outside.
-    pub(super) fn warn(&self, warnings: &mut Warnings) {
+    pub(in super::super) fn warn(&self, warnings: &mut Warnings) {
         if self.open == 0 || self.close == u32::MAX {
             warnings.note(WarningKind::PercentMissing, &self.last, self.last.span());
         }

@@ -24,6 +24,10 @@ pub struct Decimal {
 /// Significant digits kept; the mantissa then fits 64 bits.
 const DIGITS: u8 = 18;
 
+/// Powers of ten, all exact.
+const POWERS: [f64; 19] =
+    [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18];
+
 impl Decimal {
     /// From digits and the number of them behind the point, at most 18.
     ///
@@ -65,6 +69,11 @@ impl Decimal {
         let top = ((self.mantissa as i128) << Real::FRACTION_BITS).saturating_mul(numerator as i128);
         Real::narrow(div_rounded(top, self.power().saturating_mul(denominator as i128)))
     }
+    /// The nearest 64-bit floating point number: both the digits and the power of ten are exact up to 2⁵³ and 10²².
+    #[expect(clippy::float_arithmetic, reason = "what expressions compute with")]
+    pub fn value(self) -> f64 {
+        self.mantissa as f64 / POWERS.get(usize::from(self.decimals)).copied().unwrap_or(1e18)
+    }
     const fn power(self) -> i128 {
         10i128.saturating_pow(self.decimals as u32)
     }
@@ -80,7 +89,7 @@ pub(super) enum NumberError {
 }
 
 /// A blank between the parts of a block: space, tab, and what punched-tape and DOS files carry (NUL, VT, FF, ^Z).
-pub(super) const fn is_blank(byte: u8) -> bool {
+pub(in super::super) const fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | 0 | 0x0B | 0x0C | 0x1A)
 }
 

@@ -10,17 +10,18 @@
 use nom::bytes::complete::{tag_no_case, take_while};
 use nom::{IResult, Parser};
 
+use super::super::{Foreign, GcodeError, GcodeErrorKind, Line, Span};
+use super::Decimal;
 use super::decimal::{NumberError, blanks, number};
-use super::{Decimal, Dialect, GcodeError, GcodeErrorKind, Line, Span};
 
-/// A letter with its number.
+/// A letter with what stands behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Word {
+pub struct WrittenWord {
     /// The letter, upper case.
     pub letter: u8,
-    /// Its number.
-    pub value: Decimal,
-    /// From the letter to the last digit.
+    /// Its number; `None` when it is a parameter or an expression, whose value is not known without running the program.
+    pub value: Option<Decimal>,
+    /// From the letter to the last byte of the number.
     pub span: Span,
 }
 
@@ -28,7 +29,13 @@ pub struct Word {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Token {
     /// A letter with its number.
-    Word(Word),
+    Word(WrittenWord),
+    /// `,R` or `,C`: how the corner to the next move is cut.
+    Corner(WrittenWord),
+    /// `#… = …`: a parameter is set.
+    Assignment(Span),
+    /// The rest of a line that steers the program: `O100 sub`, `O<name> call`, `IF [..] GOTO 10`.
+    Control(Span),
     /// A comment: everything including its parentheses or semicolon, and what is inside.
     Comment {
         /// With the parentheses or the semicolon.
@@ -45,6 +52,21 @@ pub enum Token {
     },
     /// `%` as the first character of a line, with nothing but comments after it.
     Percent(Span),
+}
+
+impl Token {
+    /// Its bytes.
+    pub const fn span(&self) -> Span {
+        match *self {
+            Self::Word(WrittenWord { span, .. })
+            | Self::Corner(WrittenWord { span, .. })
+            | Self::Comment { span, .. }
+            | Self::BlockDelete { span, .. }
+            | Self::Assignment(span)
+            | Self::Control(span)
+            | Self::Percent(span) => span,
+        }
+    }
 }
 
 /// The tokens of one line in the order of the text.
@@ -88,7 +110,7 @@ impl<'a> Words<'a> {
         let first = core::mem::replace(&mut self.first, false);
         if first && is_heidenhain(from) {
             self.rest = &[];
-            return Err(self.error(from, GcodeErrorKind::ForeignDialect(Dialect::Heidenhain)));
+            return Err(self.error(from, GcodeErrorKind::ForeignDialect(Foreign::Heidenhain)));
         }
         self.advance(1);
         if self.percent && !matches!(byte, b'(' | b';') {
@@ -141,7 +163,7 @@ impl<'a> Words<'a> {
         match value {
             Ok(value) => {
                 self.rest = rest;
-                let word = Word { letter, value, span: self.span_from(from) };
+                let word = WrittenWord { letter, value: Some(value), span: self.span_from(from) };
                 let after = blanks(rest).map_or(rest, |(after, _)| after);
                 if letter == b'O' && letters(after) > 1 {
                     return Err(self.error(from, GcodeErrorKind::NamedProgram));
@@ -207,7 +229,7 @@ fn is_heidenhain(text: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, clippy::indexing_slicing, clippy::arithmetic_side_effects)]
-    use super::super::Lines;
+    use super::super::super::Lines;
     use super::*;
     use proptest::prelude::*;
     use std::vec::Vec;
@@ -224,7 +246,7 @@ mod tests {
 
     fn words(text: &[u8]) -> Vec<(u8, i128)> {
         let word = |t: Result<Token, GcodeError>| match t.unwrap() {
-            Token::Word(w) => Some((w.letter, w.value.times(1_000_000))),
+            Token::Word(w) => Some((w.letter, w.value.unwrap().times(1_000_000))),
             _ => None,
         };
         tokens(text).into_iter().filter_map(word).collect()
@@ -233,15 +255,7 @@ mod tests {
     #[test]
     fn spans_point_at_the_bytes_of_the_word() {
         let program = b"%\r\n/2 N10.5 X -1 . 5  Y2 (a)";
-        let spans: Vec<_> = tokens(program)
-            .into_iter()
-            .map(|t| match t.unwrap() {
-                Token::Word(Word { span, .. })
-                | Token::Comment { span, .. }
-                | Token::BlockDelete { span, .. }
-                | Token::Percent(span) => span.of(program),
-            })
-            .collect();
+        let spans: Vec<_> = tokens(program).into_iter().map(|t| t.unwrap().span().of(program)).collect();
         assert_eq!(spans, [&b"%"[..], b"/2", b"N10.5", b"X -1 . 5", b"Y2", b"(a)"]);
     }
 
@@ -265,8 +279,7 @@ mod tests {
             let mut owner = std::vec![0u8; bytes.len()];
             for token in tokens(bytes) {
                 let Ok(token) = token else { return Ok(()) };
-                let (Token::Word(Word { span, .. }) | Token::Comment { span, .. } | Token::BlockDelete { span, .. }
-                | Token::Percent(span)) = token;
+                let span = token.span();
                 for o in &mut owner[span.start..span.end()] {
                     *o += 1;
                 }

@@ -1,10 +1,7 @@
-//! What can be wrong with a program, and where.
-//!
-//! Every kind has a code that never changes its meaning (`G0…` lexical, `G2…` one block, `G3…` a code, `G4…` motion,
-//! `G5…` arcs, `G7…` the contour) and carries both sides of a mismatch. The sentences shown to the user are in
-//! `message.rs`.
+//! The kinds of errors and their codes.
 
-use super::{GCode, Line, LineRange, RunPart, Span};
+use super::super::{GCode, LineRange, RunPart};
+use super::{Foreign, ParameterError};
 use crate::units::Offset;
 
 /// What is wrong.
@@ -33,7 +30,7 @@ pub enum GcodeErrorKind {
     /// Three or more letters in a row outside a comment.
     Text,
     /// The program is in another language.
-    ForeignDialect(Dialect),
+    ForeignDialect(Foreign),
     /// Something else than a comment after `%`.
     TextAfterPercent,
     /// `,R` or `,C`.
@@ -67,6 +64,11 @@ pub enum GcodeErrorKind {
         first: u32,
         /// The other.
         second: u32,
+    },
+    /// More words in a block than are kept.
+    TooManyWords {
+        /// How many are kept.
+        limit: u8,
     },
     /// More M codes in a block than are kept.
     TooManyM {
@@ -172,6 +174,9 @@ pub enum GcodeErrorKind {
     /// More than one turn.
     ArcTurns,
 
+    /// A parameter, or the memory for them.
+    Parameter(ParameterError),
+
     /// No cutting move in X or Y at constant Z.
     NoContour,
     /// More than one candidate.
@@ -201,15 +206,6 @@ pub enum GcodeErrorKind {
     BothSides,
 }
 
-/// A language that is not G-code as read here.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dialect {
-    /// `BEGIN PGM … MM`: Heidenhain's conversational language.
-    Heidenhain,
-    /// `E` words: a program of a 3D printer.
-    Printer,
-}
-
 impl GcodeErrorKind {
     /// The stable code of this kind.
     pub const fn code(self) -> &'static str {
@@ -231,6 +227,8 @@ impl GcodeErrorKind {
             Self::Conflict { .. } => "G024",
             Self::ConflictM { .. } => "G025",
             Self::TooManyM { .. } => "G026",
+            Self::TooManyWords { .. } => "G047",
+            Self::Parameter(error) => error.code(),
             Self::NotWhole { .. } => "G027",
             Self::Negative { .. } => "G028",
             Self::UnusedWord { .. } => "G029",
@@ -267,33 +265,5 @@ impl GcodeErrorKind {
             Self::BothSides => "G075",
             Self::PartMissing(_) => "G076",
         }
-    }
-}
-
-/// What is wrong, and where.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GcodeError {
-    /// What is wrong.
-    pub kind: GcodeErrorKind,
-    /// Line, counted from 1.
-    pub line: u32,
-    /// Column of the first offending byte, in bytes, counted from 1.
-    pub column: u32,
-    /// Offset of that byte from the start of the program.
-    pub start: usize,
-    /// Number of offending bytes.
-    pub len: usize,
-}
-
-impl GcodeError {
-    /// At a span of a line.
-    pub(super) fn new(kind: GcodeErrorKind, line: &Line<'_>, span: Span) -> Self {
-        let column = span.start.saturating_sub(line.start).saturating_add(1);
-        let column = u32::try_from(column).unwrap_or(u32::MAX);
-        Self { kind, line: line.number, column, start: span.start, len: span.len }
-    }
-    /// The offending bytes.
-    pub const fn span(&self) -> Span {
-        Span { start: self.start, len: self.len }
     }
 }

@@ -1,10 +1,10 @@
 //! The moves of one block: where each axis goes, and along what.
 
+use super::super::block::BlockWords;
+use super::super::code::Group;
+use super::super::{Axes, Canon, Event, GcodeError, GcodeErrorKind, Motion, Span, WarningKind, Word};
+use super::Execution;
 use super::arc::{absolute_centre, centre_from_offsets, centre_from_radius};
-use super::block::BlockWords;
-use super::code::Group;
-use super::interpreter::Execution;
-use super::{Axes, Canon, Event, GcodeError, GcodeErrorKind, Motion, Span, WarningKind, Word};
 use crate::geometry::{Curve, Point};
 use crate::units::{Offset, Position};
 
@@ -14,7 +14,7 @@ const FARTHEST_NM: u64 = 100_000_000_000;
 /// The axis words.
 const AXES: [u8; 3] = [b'X', b'Y', b'Z'];
 
-impl<S> Execution<'_, '_, S>
+impl<S> Execution<'_, '_, '_, S>
 where
     S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
 {
@@ -57,9 +57,8 @@ where
     /// A length word in nanometres.
     pub(super) fn length(&mut self, word: Word) -> Result<Offset, GcodeError> {
         self.note_unit(word);
-        let nm = word.value.times(self.modal.units.nanometres());
-        match i64::try_from(nm) {
-            Ok(nm) if nm.unsigned_abs() <= FARTHEST_NM => Ok(Offset::from_nm(nm)),
+        match word.value.nanometres(self.modal.units) {
+            Some(nm) if nm.unsigned_abs() <= FARTHEST_NM => Ok(Offset::from_nm(nm)),
             _ => Err(self.error(GcodeErrorKind::OutOfRange { letter: word.letter }, word.span)),
         }
     }

@@ -7,7 +7,7 @@
 //! The radius format is computed in whole numbers, relative to the start: shifted, turned by 90° or mirrored
 //! programs give shifted, turned or mirrored centres to the last bit. The centre is within 1 nm of the exact one.
 
-use super::GcodeErrorKind;
+use super::super::GcodeErrorKind;
 use crate::geometry::{ArcError, Point, Vector};
 use crate::units::{Offset, Position, div_rounded, isqrt_rounded};
 

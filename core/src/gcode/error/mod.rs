@@ -1,0 +1,57 @@
+//! What can be wrong with a program, and where.
+//!
+//! Every kind has a code that never changes its meaning (`G00…` lexical, `G02…` one block, `G03…` a code, `G04…` motion,
+//! `G05…` arcs, `G07…` the contour, `G08…` parameters) and carries both sides of a mismatch. The sentences shown to the
+//! user are in `message.rs`, those of a theme with its kinds.
+
+mod kind;
+mod parameter;
+
+use super::{Line, Span};
+
+pub use kind::GcodeErrorKind;
+pub use parameter::ParameterError;
+
+/// A language that is not G-code as read here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Foreign {
+    /// `BEGIN PGM … MM`: Heidenhain's conversational language.
+    Heidenhain,
+    /// `E` words: a program of a 3D printer.
+    Printer,
+}
+
+/// What is wrong, and where.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GcodeError {
+    /// What is wrong.
+    pub kind: GcodeErrorKind,
+    /// The file: 0 for the program, otherwise the number its library gives it.
+    pub file: u16,
+    /// Line, counted from 1.
+    pub line: u32,
+    /// Column of the first offending byte, in bytes, counted from 1.
+    pub column: u32,
+    /// Offset of that byte from the start of the program.
+    pub start: usize,
+    /// Number of offending bytes.
+    pub len: usize,
+}
+
+impl GcodeError {
+    /// At a span of a line.
+    pub(super) fn new(kind: GcodeErrorKind, line: &Line<'_>, span: Span) -> Self {
+        let column = span.start.saturating_sub(line.start).saturating_add(1);
+        let column = u32::try_from(column).unwrap_or(u32::MAX);
+        Self { kind, file: 0, line: line.number, column, start: span.start, len: span.len }
+    }
+    /// The same in another file.
+    pub(super) const fn in_file(self, file: u16) -> Self {
+        Self { file, ..self }
+    }
+    /// The offending bytes.
+    pub const fn span(&self) -> Span {
+        Span { start: self.start, len: self.len }
+    }
+}
+

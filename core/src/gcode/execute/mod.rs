@@ -1,0 +1,142 @@
+//! The machine while it executes a program: modes and positions, and the blocks that change them.
+//!
+//! | file | what |
+//! |---|---|
+//! | `modes.rs` | codes that set modes, in their order of execution |
+//! | `motion.rs` | moves |
+//! | `arc.rs` | centres of arcs |
+//! | `modal.rs` | the modes |
+
+mod arc;
+mod modal;
+mod modes;
+mod motion;
+
+use super::block::BlockWords;
+use super::flow::{Next, Sentence};
+use super::parameter::{MachineParameters, Surroundings};
+use super::{
+    Axes, Canon, Event, GcodeError, GcodeErrorKind, Line, Memory, Options, Source, Span, Token, WarningKind, Warnings,
+    Words,
+};
+
+pub use modal::{Modal, Motion};
+
+/// The machine.
+pub(super) struct Execution<'p, 's, 'm, S> {
+    pub(super) options: Options,
+    pub(super) modal: Modal,
+    pub(super) at: Axes,
+    pub(super) units_given: bool,
+    pub(super) program_number: Option<u32>,
+    pub(super) end: Option<u32>,
+    pub(super) warnings: Warnings,
+    memory: &'s mut Memory<'m>,
+    text: &'p [u8],
+    line: Line<'p>,
+    source: Source,
+    /// Away only while an event is given to it.
+    sink: Option<&'s mut S>,
+}
+
+impl<S> MachineParameters for Execution<'_, '_, '_, S> {
+    fn number(&self, _number: u32) -> Option<f64> {
+        None
+    }
+    fn named(&self, _name: &[u8]) -> Option<f64> {
+        None
+    }
+    fn memory(&self) -> &Memory<'_> {
+        self.memory
+    }
+}
+
+impl<'m, S> Surroundings<'m> for Execution<'_, '_, 'm, S> {
+    fn memory_mut(&mut self) -> &mut Memory<'m> {
+        self.memory
+    }
+}
+
+impl<'p, 's, 'm, S> Execution<'p, 's, 'm, S>
+where
+    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
+{
+    /// At the start of a program.
+    pub(super) fn new(options: Options, memory: &'s mut Memory<'m>, warnings: Warnings, sink: &'s mut S) -> Self {
+        Self {
+            options,
+            modal: Modal::initial(options.units),
+            at: options.start,
+            units_given: false,
+            program_number: None,
+            end: None,
+            warnings,
+            memory,
+            text: &[],
+            line: Line { number: 1, start: 0, text: &[] },
+            source: Source::NONE,
+            sink: Some(sink),
+        }
+    }
+
+    /// Executes a block; tells where the program goes on.
+    pub(super) fn sentence(&mut self, sentence: &Sentence<'p>) -> Result<Next, GcodeError> {
+        self.text = sentence.text;
+        self.line = sentence.line;
+        self.source = sentence.source;
+        let mut block = BlockWords::gather(sentence)?;
+        if sentence.has_comments {
+            self.comments()?;
+        }
+        if let Some(span) = sentence.block_delete {
+            if self.options.skip_block_delete {
+                self.warn(WarningKind::BlockDeleteSkipped, span);
+                return Ok(Next::Continue);
+            }
+            self.warn(WarningKind::BlockDeleteExecuted, span);
+        }
+        self.execute(&mut block)?;
+        Ok(if self.end.is_some() { Next::End } else { Next::Continue })
+    }
+
+    fn comments(&mut self) -> Result<(), GcodeError> {
+        for token in Words::new(self.line) {
+            if let Token::Comment { span, body } = token? {
+                self.emit(Canon::Comment(body), span)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives one step to the sink; what it answers is an error at `span`.
+    pub(super) fn emit(&mut self, canon: Canon, span: Span) -> Result<(), GcodeError> {
+        let Some(sink) = self.sink.take() else {
+            return Ok(());
+        };
+        let event = Event { canon, source: self.source, modal: &self.modal, text: self.text, parameters: self };
+        let answer = sink(&event);
+        self.sink = Some(sink);
+        answer.map_err(|kind| self.error(kind, span))
+    }
+
+    pub(super) fn error(&self, kind: GcodeErrorKind, span: Span) -> GcodeError {
+        GcodeError::new(kind, &self.line, span).in_file(self.source.file)
+    }
+
+    pub(super) fn warn(&mut self, kind: WarningKind, span: Span) {
+        let line = self.line;
+        self.warn_at(kind, &line, span);
+    }
+
+    /// Notes something about another line than the present one.
+    pub(super) fn warn_at(&mut self, kind: WarningKind, line: &Line<'_>, span: Span) {
+        self.warnings.note_in(self.source.file, kind, line, span);
+    }
+
+    /// The bytes of the block without the blanks around them.
+    pub(super) fn block_span(&self) -> Span {
+        let text = self.line.text;
+        let lead = text.len().saturating_sub(text.trim_ascii_start().len());
+        Span { start: self.line.start.saturating_add(lead), len: text.trim_ascii().len() }
+    }
+}

@@ -1,0 +1,52 @@
+//! One block with the values of its words, as it is executed.
+
+use super::super::{GcodeErrorKind, Line, Number, Source, Span};
+
+/// A letter with its value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Word {
+    /// The letter, upper case; `r` and `c` are the corner words `,R` and `,C`.
+    pub letter: u8,
+    /// Its value.
+    pub value: Number,
+    /// From the letter to the last byte of the number.
+    pub span: Span,
+}
+
+/// Words of a block; one more is an error.
+pub(in super::super) const WORDS: usize = 64;
+
+/// A block whose words have values. It is filled in place, block after block.
+#[derive(Debug)]
+pub(in super::super) struct Sentence<'p> {
+    /// The file it stands in.
+    pub(in super::super) text: &'p [u8],
+    /// Its line.
+    pub(in super::super) line: Line<'p>,
+    /// What events say about it.
+    pub(in super::super) source: Source,
+    /// Its words but for the N word, in the order of the text.
+    pub(in super::super) words: heapless::Vec<Word, WORDS>,
+    /// `/` in front of it.
+    pub(in super::super) block_delete: Option<Span>,
+    /// Whether it has comments.
+    pub(in super::super) has_comments: bool,
+}
+
+impl<'p> Sentence<'p> {
+    /// Before the first block.
+    pub(in super::super) const fn new(text: &'p [u8]) -> Self {
+        Self {
+            text,
+            line: Line { number: 1, start: 0, text: &[] },
+            source: Source::NONE,
+            words: heapless::Vec::new(),
+            block_delete: None,
+            has_comments: false,
+        }
+    }
+
+    pub(super) fn push(&mut self, word: Word) -> Result<(), GcodeErrorKind> {
+        self.words.push(word).map_err(|_| GcodeErrorKind::TooManyWords { limit: WORDS as u8 })
+    }
+}
