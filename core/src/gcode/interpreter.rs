@@ -14,8 +14,8 @@
 use super::execute::Execution;
 use super::flow::{Next, Reader, Sentence};
 use super::{
-    Axes, Event, GcodeError, GcodeErrorKind, Memory, Program, Units, WarningKind, Warnings, is_marked_corrected,
-    program_crc,
+    Axes, Dialect, Event, GcodeError, GcodeErrorKind, Memory, Program, Units, WarningKind, Warnings,
+    is_marked_corrected, program_crc,
 };
 
 /// What the program does not say.
@@ -27,12 +27,22 @@ pub struct Options {
     pub start: Axes,
     /// Whether blocks with `/` are skipped.
     pub skip_block_delete: bool,
+    /// The control the program is written for.
+    pub dialect: Dialect,
+    /// How many blocks may be executed beyond as many as the program has lines; loops that run longer are an error.
+    pub block_limit: u32,
 }
 
 impl Default for Options {
-    /// Millimetres, positions unknown, `/` blocks executed.
+    /// Millimetres, positions unknown, `/` blocks executed, LinuxCNC, a million blocks more than lines.
     fn default() -> Self {
-        Self { units: Units::Millimetres, start: Axes::UNKNOWN, skip_block_delete: false }
+        Self {
+            units: Units::Millimetres,
+            start: Axes::UNKNOWN,
+            skip_block_delete: false,
+            dialect: Dialect::Linuxcnc,
+            block_limit: 1_000_000,
+        }
     }
 }
 

@@ -30,6 +30,7 @@ mod canon;
 mod code;
 pub mod compensation;
 mod contour;
+mod dialect;
 mod error;
 mod execute;
 mod flow;
@@ -51,6 +52,7 @@ pub use contour::{
     Candidate, ContourOptions, ContourProgram, Criteria, Found, Role, RunPart, find_contours, read_contour, search,
     visit_runs,
 };
+pub use dialect::Dialect;
 pub use error::{Foreign, GcodeError, GcodeErrorKind, ParameterError};
 pub use execute::{Modal, Motion};
 pub use flow::{Library, LibraryFile, Program, Word};

@@ -54,4 +54,3 @@ impl GcodeError {
         Span { start: self.start, len: self.len }
     }
 }
-
