@@ -19,4 +19,5 @@ pub mod replay;
 pub mod report;
 pub mod setpoints;
 pub mod surface;
+pub mod verification;
 pub mod workshop;

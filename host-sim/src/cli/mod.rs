@@ -10,6 +10,7 @@ mod device;
 mod hil;
 mod image;
 mod inspect;
+mod probe;
 mod replay;
 mod simulate;
 mod split;
@@ -50,6 +51,8 @@ enum Command {
     Demo(demo::Arguments),
     /// One pass as the model predicts it, or as a virtual machine cuts it.
     Simulate(simulate::Arguments),
+    /// The program with which a control touches a milled wall where that tells most.
+    Probe(probe::Arguments),
     /// How accurate a milled wall is, from probe points alone.
     Inspect(inspect::Arguments),
     /// From a probe file to the corrected program or the image for the coprocessor.
@@ -92,6 +95,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
     match command {
         Command::Demo(arguments) => demo::run(&arguments, terminal),
         Command::Simulate(arguments) => simulate::run(&arguments, terminal),
+        Command::Probe(arguments) => probe::run(&arguments, terminal),
         Command::Inspect(arguments) => inspect::run(&arguments, terminal),
         Command::Correct(arguments) => correct::run(&arguments, terminal),
         Command::Split(arguments) => split::run(&arguments, terminal),

@@ -5,6 +5,7 @@ pub mod demo;
 pub mod device;
 pub mod hil;
 pub mod inspect;
+pub mod probe;
 pub mod second_pass;
 pub mod simulate;
 pub mod split;

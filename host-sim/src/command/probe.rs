@@ -1,0 +1,146 @@
+//! `probe`: the verification program of a job.
+
+use std::path::Path as FilePath;
+
+use crate::diagnostics::{Failure, InputError};
+use crate::job::Job;
+use crate::output::OutputFile;
+use crate::pass::Pass;
+use crate::verification::{Dialect, KeptOff, Plan, Settings, Unknown, plan, write};
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct Options<'a> {
+    /// The job.
+    pub job: &'a FilePath,
+    /// The control.
+    pub dialect: Dialect,
+    /// The program to write.
+    pub out: &'a FilePath,
+    /// Replace an existing file.
+    pub force: bool,
+    /// Choices.
+    pub settings: Settings,
+}
+
+/// A point of the program, for the list that is printed.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Point {
+    /// Its number in program and results.
+    pub id: usize,
+    /// Place along the contour, mm.
+    pub s_mm: f64,
+    /// Line of the part's program.
+    pub line: u32,
+    /// Nominal contact, mm.
+    pub x_mm: f64,
+    /// Nominal contact, mm.
+    pub y_mm: f64,
+    /// Programmed Z, mm.
+    pub z_mm: f64,
+    /// Unit normal from the wall to the free side.
+    pub normal: [f64; 2],
+    /// Height above the cutter's tip, mm.
+    pub height_mm: f64,
+    /// What is there.
+    pub what: String,
+    /// Why this place: what its touches tell.
+    pub why: String,
+    /// Why this height.
+    pub why_height: &'static str,
+    /// How many places were chosen before this one.
+    pub rank: usize,
+}
+
+/// Places looked at and kept off.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Kept {
+    /// The reason.
+    pub reason: KeptOff,
+    /// In words.
+    pub words: &'static str,
+    /// How many.
+    pub places: usize,
+}
+
+/// What was planned.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Report {
+    /// The control.
+    pub dialect: Dialect,
+    /// `[probe] format` for the file of results.
+    pub probe_format: &'static str,
+    /// Every touch, in the order of the program.
+    pub points: Vec<Point>,
+    /// Height between places, mm.
+    pub safe_z_mm: f64,
+    /// Distance of the ball's surface from the wall at the stand-off, mm.
+    pub clearance_mm: f64,
+    /// What the touches leave of every unknown.
+    pub unknowns: Vec<Unknown>,
+    /// Standard deviation of the predicted wall before the touches, root mean square, mm.
+    pub wall_sigma_before_mm: f64,
+    /// The same after them.
+    pub wall_sigma_after_mm: f64,
+    /// Where the plan keeps off.
+    pub kept_off: Vec<Kept>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Plans and writes. `progress` is told the share done, 0…1.
+///
+/// # Errors
+/// Whatever is wrong with job, program or choices, and an output that cannot be written.
+pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failure> {
+    // A target that may not be written is refused before the work.
+    let mut file = OutputFile::create(options.out, options.force)?;
+    let pass = Pass::read(Job::read(options.job)?)?;
+    let plan = plan(&pass, &options.settings, progress)?;
+    let text = write(&plan, options.dialect, &log_name(options.out))?;
+    std::io::Write::write_all(&mut file, text.as_bytes()).map_err(|e| InputError::unwritable(options.out, &e))?;
+    file.commit()?;
+    Ok(report(&plan, options.dialect))
+}
+
+/// The report of a plan.
+pub fn report(plan: &Plan, dialect: Dialect) -> Report {
+    let points = plan.touches().map(|touch| Point {
+        id: touch.id,
+        s_mm: touch.place.s_mm,
+        line: touch.place.line,
+        x_mm: touch.place.wall[0],
+        y_mm: touch.place.wall[1],
+        z_mm: touch.height.z_mm,
+        normal: touch.place.normal,
+        height_mm: touch.height.above_tip_mm,
+        what: touch.place.what.clone(),
+        why: touch.place.why.clone(),
+        why_height: touch.height.why,
+        rank: touch.place.rank,
+    });
+    Report {
+        dialect,
+        probe_format: dialect.probe_format(),
+        points: points.collect(),
+        safe_z_mm: plan.safe_z_mm,
+        clearance_mm: plan.settings.clearance,
+        unknowns: plan.unknowns.clone(),
+        wall_sigma_before_mm: plan.wall_sigma_mm[0],
+        wall_sigma_after_mm: plan.wall_sigma_mm[1],
+        kept_off: plan
+            .kept_off
+            .iter()
+            .map(|(reason, places)| Kept { reason: *reason, words: reason.words(), places: *places })
+            .collect(),
+        warnings: plan.warnings.clone(),
+    }
+}
+
+/// Name of the file of results beside the program, in letters that no control stumbles over.
+fn log_name(out: &FilePath) -> String {
+    let stem = out.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem: String = stem.chars().filter(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')).collect();
+    let stem = if stem.is_empty() { "verification" } else { &stem };
+    format!("{stem}-log.txt")
+}

@@ -1,0 +1,43 @@
+//! Verification programs: where to touch a milled wall, and the program with which a control does it.
+//!
+//! | step | where |
+//! |---|---|
+//! | what the user may choose, checked | `settings` |
+//! | what the part's program says besides its contour | `shop` |
+//! | heights at which the ball meets the wall | `heights` |
+//! | places that may be touched at all, the others with the reason | `candidates`, `approach` |
+//! | what a touch there would tell, by the model of the job | `sensitivity`, `knowledge` |
+//! | the choice of places, each with its reason | `choice`, `reason` |
+//! | the plan: touches in order, every coordinate | `plan` |
+//! | the program of a control | `dialect`, `text`, `linuxcnc`, `grbl`, `fanuc`, `haas` |
+//!
+//! A verification program never changes an offset, a parameter of the control or the part: it moves, touches and
+//! writes. The ball comes down on the free side, at the stand-off (clearance and ball radius before the wall), and
+//! moves towards the wall along its normal; a place is chosen only where this way is proved free.
+//!
+//! Limits: walls of the contour in the job are known, nothing else: clamps and islands are the operator's to look for.
+
+mod approach;
+mod candidates;
+mod choice;
+mod dialect;
+mod fanuc;
+mod grbl;
+mod haas;
+mod heights;
+mod knowledge;
+mod linuxcnc;
+mod plan;
+mod reason;
+mod sensitivity;
+mod settings;
+mod shop;
+mod text;
+
+pub use candidates::KeptOff;
+pub use dialect::{Dialect, write};
+pub use heights::Height;
+pub use plan::{Place, Plan, Touch, plan};
+pub use reason::Unknown;
+pub use settings::Settings;
+pub use shop::Shop;

@@ -1,0 +1,49 @@
+//! What the part's program says besides its contour: work offset, unit, and how high it moves.
+//!
+//! The verification program runs in the same work offset and unit, and between places at least as high as the part's
+//! program ever was, so that clamps which the part's program passes over are passed over as well.
+
+use truepath_core::gcode::{Canon, Interpreter, Options, Units};
+
+use crate::diagnostics::InputError;
+use crate::pass::Pass;
+
+/// What the part's program says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shop {
+    /// Name of the program, without its folder.
+    pub program: String,
+    /// CRC-32 of its bytes.
+    pub crc: u32,
+    /// Unit of its words.
+    pub units: Units,
+    /// Work offset in force on the contour: G54 is 1.
+    pub work_offset: u8,
+    /// Highest Z it moves to in program coordinates, nm; `None` when it names none.
+    pub highest_nm: Option<i64>,
+}
+
+impl Shop {
+    /// Reads it off the program.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the program.
+    pub fn read(pass: &Pass) -> Result<Self, InputError> {
+        let first = pass.core.contour.lines.first;
+        let (mut work_offset, mut highest_nm) = (1, None);
+        Interpreter::new(Options::default())
+            .run(pass.program.bytes(), &mut |event| {
+                if event.source.line == first {
+                    work_offset = event.modal.work_offset;
+                }
+                if let Canon::Traverse { to, .. } | Canon::Feed { to, .. } = event.canon {
+                    highest_nm = highest_nm.max(to.z.map(|z| z.nm()));
+                }
+                Ok(())
+            })
+            .map_err(|error| InputError::of_program(&pass.program, &error))?;
+        let name = pass.program.name();
+        let program = name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned();
+        Ok(Self { program, crc: pass.core.program_crc, units: pass.core.contour.units, work_offset, highest_nm })
+    }
+}
