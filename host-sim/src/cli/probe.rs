@@ -101,7 +101,11 @@ fn words(report: &Report) -> String {
             let _ = writeln!(text, "       {} (line {}): {}", p.what, p.line, p.why);
             last = p.rank;
         }
-        let _ = writeln!(text, "{:>6} {:>9.2} {:>10.4} {:>10.4} {:>10.4}  {}", p.id, p.s_mm, p.x_mm, p.y_mm, p.z_mm, p.why_height);
+        let _ = writeln!(
+            text,
+            "{:>6} {:>9.2} {:>10.4} {:>10.4} {:>10.4}  {}",
+            p.id, p.s_mm, p.x_mm, p.y_mm, p.z_mm, p.why_height
+        );
     }
     text += "\nuncertainty left of what the job states:";
     for u in &report.unknowns {

@@ -82,7 +82,8 @@ mod tests {
 
     #[test]
     fn a_ball_larger_than_the_bay_is_refused() {
-        let bay: Vec<Xy> = (0..=180).map(|k| f64::from(k).to_radians()).map(|a| [4.0 * a.cos(), 4.0 * a.sin()]).collect();
+        let bay: Vec<Xy> =
+            (0..=180).map(|k| f64::from(k).to_radians()).map(|a| [4.0 * a.cos(), 4.0 * a.sin()]).collect();
         let fits = |radius| Ball { radius, clearance: 1.0 }.is_free([0.0, 4.0], [0.0, 1.0], &bay);
         assert!(fits(2.0));
         assert!(!fits(4.5));

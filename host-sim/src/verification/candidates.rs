@@ -1,7 +1,7 @@
 //! Places of the contour that may be touched, and why the others may not.
 //!
-//! A place is kept off when its wall is not final (the rest of the path cuts it away: leads, outside corners), near
-//! the ends of the contour (plunge and lift leave marks there), near a sharp inside corner, where engagement or
+//! A place is kept off when its wall is not final (the rest of the path cuts it away, as at outside
+//! corners), near the ends of the contour and on its leads (plunge and lift leave marks there), near a sharp inside corner, where engagement or
 //! deflection changes abruptly (there a shift of a tenth of a millimetre along the wall would look like an error of the
 //! machine), and where the ball's way is not proved free.
 
@@ -16,12 +16,13 @@ use crate::pass::Pass;
 use crate::report::{float, mm};
 
 use super::approach::{Ball, Xy, along, distance};
+use super::leads::milled_once;
 
 /// Why a place is not touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum KeptOff {
-    /// Near an end of the contour.
+    /// Near an end of the contour, on a lead, or milled twice.
     End,
     /// No final wall there.
     NoWall,
@@ -37,8 +38,8 @@ impl KeptOff {
     /// In words.
     pub const fn words(self) -> &'static str {
         match self {
-            Self::End => "near an end of the contour, where the cutter plunges or lifts",
-            Self::NoWall => "without a final wall: a lead, or an outside corner that is cut away",
+            Self::End => "near an end of the contour or on its leads, where the cutter plunges, lifts or passes twice",
+            Self::NoWall => "without a final wall: the rest of the path cuts it away",
             Self::SharpCorner => "near a sharp inside corner",
             Self::Unsteady => "where the engagement changes abruptly",
             Self::Unproved => "where the way of the ball is not proved free",
@@ -96,6 +97,8 @@ pub(super) fn candidates(pass: &Pass, path: &Path, prior: &Prior, ball: Ball, no
     let abrupt = (ABRUPT_SHARE * largest).max(4.0 * noise);
     let length = mm(path.length());
     let from_ends = radius + ball.radius;
+    let (once_from, once_to) = milled_once(samples, Offset::from_nm(4 * path.setup().radius.nm()));
+    let (first, last) = (mm(once_from) + from_ends, mm(once_to) - from_ends);
 
     let step = (length * SPACING.0).max(SPACING.1);
     let count = (length / step).floor() as u32;
@@ -108,7 +111,7 @@ pub(super) fn candidates(pass: &Pass, path: &Path, prior: &Prior, ball: Ball, no
         let turn = float(state(after).engaged - state(before).engaged).abs().to_degrees();
         let normal = [float(sample.normal.x), float(sample.normal.y)];
         let verdict = match walls[index - path.first()] {
-            _ if mm(sample.s) < from_ends || mm(sample.s) > length - from_ends => Err(KeptOff::End),
+            _ if mm(sample.s) < first || mm(sample.s) > last => Err(KeptOff::End),
             None => Err(KeptOff::NoWall),
             Some(_) if sample.near_corner => Err(KeptOff::SharpCorner),
             Some(_) if turn > ABRUPT_DEG || (deflection(after) - deflection(before)).abs() > abrupt => {

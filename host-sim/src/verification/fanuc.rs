@@ -8,7 +8,7 @@
 use crate::diagnostics::InputError;
 
 use super::plan::Plan;
-use super::text::{Notation, Page, fixed, work_offset};
+use super::text::{MoreOffsets, Notation, Page, fixed, work_offset};
 
 /// A reading nearer than this to the stand-off was no search, mm.
 const NO_SEARCH: f64 = 0.1;
@@ -27,7 +27,7 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     page.line("O7100 (TRUEPATH VERIFICATION)");
     page.header(plan, "Fanuc G31", "results go out by DPRNT, format dprnt");
     page.line(format!("{} G17 G40 G80 G90 G94", n.unit_code()));
-    page.line(work_offset(plan, false)?);
+    page.line(work_offset(plan, MoreOffsets::Code("G54.1"))?);
     page.line("M5");
     page.line("M9");
     match s.probe_tool {
@@ -41,7 +41,7 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
             page.line(format!("G0 Z{}", n.number(plan.safe_z_mm)));
         }
     }
-    open(&mut page, plan);
+    open(&mut page, plan, n);
     let mut id = 0;
     for place in &plan.places {
         let (from, to) = (plan.stand_off(place), plan.search_end(place));
@@ -76,16 +76,19 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     Ok(page.finish())
 }
 
-/// Opens the output and names the part.
-pub(super) fn open(page: &mut Page, plan: &Plan) {
+/// Opens the output and says which part, unit and ball the results are of.
+pub(super) fn open(page: &mut Page, plan: &Plan, n: Notation) {
     page.line("POPEN");
     page.line("DPRNT[START]");
-    page.line(format!("DPRNT[RESULTSFILE*TRUEPATH-{:08X}]", plan.shop.crc));
+    page.line(format!("DPRNT[PROGRAM*{:08X}]", plan.shop.crc));
+    page.line(format!("DPRNT[UNIT*{}]", n.unit_name().to_uppercase()));
+    page.line(format!("DPRNT[BALL*{}]", n.number(plan.ball_mm)));
+    page.line(format!("DPRNT[POINTS*{}]", plan.places.len() * plan.heights.len()));
 }
 
 /// Closes the output; a text without END was cut off.
 pub(super) fn close(page: &mut Page, count: usize) {
-    page.line("DPRNT[END]");
+    page.line(format!("DPRNT[END*{count}]"));
     page.line("PCLOS");
     page.comment(&format!("end, {count} points"));
 }

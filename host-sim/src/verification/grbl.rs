@@ -7,7 +7,7 @@
 use crate::diagnostics::InputError;
 
 use super::plan::Plan;
-use super::text::{Notation, Page, fixed, work_offset};
+use super::text::{MoreOffsets, Notation, Page, fixed, work_offset};
 
 pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     let n = Notation::of(plan, 3);
@@ -23,9 +23,13 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
         ));
     }
     let mut page = Page::default();
-    page.header(plan, "grbl", "results are the PRB lines of the console log: save it, and send $ and the number sign after the end");
+    page.header(
+        plan,
+        "grbl",
+        "results are the PRB lines of the console log: save it, and send $ and the number sign after the end",
+    );
     page.line(format!("{} G17 G40 G90 G94", n.unit_code()));
-    page.line(work_offset(plan, false)?);
+    page.line(work_offset(plan, MoreOffsets::Nothing)?);
     page.line("M5");
     page.line("M9");
     page.line("M0");

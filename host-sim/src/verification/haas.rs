@@ -10,7 +10,7 @@ use crate::diagnostics::InputError;
 
 use super::fanuc::{close, digits, nominal, open};
 use super::plan::{Place, Plan};
-use super::text::{Notation, Page, fixed, work_offset};
+use super::text::{MoreOffsets, Notation, Page, fixed, work_offset};
 
 /// The larger component of a normal from which the touch is along an axis.
 const AXIAL: f64 = 0.999_999_9;
@@ -29,7 +29,7 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
         page.comment("needs the vector calibration of the probe, O9804");
     }
     page.line(format!("{} G17 G40 G80 G90 G94", n.unit_code()));
-    page.line(work_offset(plan, false)?);
+    page.line(work_offset(plan, MoreOffsets::Code("G154"))?);
     page.line("M5");
     page.line("M9");
     match s.probe_tool {
@@ -45,7 +45,7 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     page.line("M19");
     page.line("G103 P1");
     page.line("G65 P9832 (PROBE ON)");
-    open(&mut page, plan);
+    open(&mut page, plan, n);
     let mut id = 0;
     for place in &plan.places {
         page.place(place, id + 1, id + plan.heights.len());

@@ -7,7 +7,7 @@
 use crate::diagnostics::InputError;
 
 use super::plan::Plan;
-use super::text::{Notation, Page, fixed, work_offset};
+use super::text::{MoreOffsets, Notation, Page, fixed, work_offset};
 
 pub(super) fn write(plan: &Plan, log: &str) -> Result<String, InputError> {
     let n = Notation::of(plan, 4);
@@ -17,7 +17,7 @@ pub(super) fn write(plan: &Plan, log: &str) -> Result<String, InputError> {
     let mut page = Page::default();
     page.header(plan, "LinuxCNC", "results go into a log file, format linuxcnc-log");
     page.line(format!("{} G17 G40 G80 G90 G94 G61", n.unit_code()));
-    page.line(work_offset(plan, true)?);
+    page.line(work_offset(plan, MoreOffsets::Points)?);
     page.line("M5 M9");
     match s.probe_tool {
         Some(tool) => {

@@ -5,7 +5,7 @@
 //! | what the user may choose, checked | `settings` |
 //! | what the part's program says besides its contour | `shop` |
 //! | heights at which the ball meets the wall | `heights` |
-//! | places that may be touched at all, the others with the reason | `candidates`, `approach` |
+//! | places that may be touched at all, the others with the reason | `candidates`, `leads`, `approach` |
 //! | what a touch there would tell, by the model of the job | `sensitivity`, `knowledge` |
 //! | the choice of places, each with its reason | `choice`, `reason` |
 //! | the plan: touches in order, every coordinate | `plan` |
@@ -26,6 +26,7 @@ mod grbl;
 mod haas;
 mod heights;
 mod knowledge;
+mod leads;
 mod linuxcnc;
 mod plan;
 mod reason;

@@ -208,10 +208,16 @@ fn doubts(plan: &Plan, law: WallLaw) -> Vec<String> {
     let mut out = Vec::new();
     let (found, wanted) = (plan.places.len(), plan.settings.places as usize);
     if found < wanted {
-        out.push(format!("{found} places instead of {wanted}: no more of them may be touched without being too close together"));
+        out.push(format!(
+            "{found} places instead of {wanted}: no more of them may be touched without being too close together"
+        ));
     }
     if plan.heights.len() < plan.settings.heights as usize {
-        out.push(format!("{} heights instead of {}: the ball has no room for more", plan.heights.len(), plan.settings.heights));
+        out.push(format!(
+            "{} heights instead of {}: the ball has no room for more",
+            plan.heights.len(),
+            plan.settings.heights
+        ));
     }
     let [before, after] = plan.wall_sigma_mm;
     if after > TELLING.0 && after > TELLING.1 * before {
@@ -221,9 +227,12 @@ fn doubts(plan: &Plan, law: WallLaw) -> Vec<String> {
             hidden.join(", ")
         ));
     }
-    let spread = plan.heights.first().map_or(0.0, |h| h.above_tip_mm) - plan.heights.last().map_or(0.0, |h| h.above_tip_mm);
+    let spread =
+        plan.heights.first().map_or(0.0, |h| h.above_tip_mm) - plan.heights.last().map_or(0.0, |h| h.above_tip_mm);
     if law == WallLaw::Helical && plan.heights.len() > 1 && spread < 1.0 {
-        out.push(format!("the heights lie within {spread:.2} mm: bending is hardly seen; a smaller ball reaches lower"));
+        out.push(format!(
+            "the heights lie within {spread:.2} mm: bending is hardly seen; a smaller ball reaches lower"
+        ));
     }
     if plan.settings.free_width.is_some() {
         out.push("--free-width is taken on trust: nothing else than the contour's wall is known".to_owned());

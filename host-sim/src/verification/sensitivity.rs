@@ -6,9 +6,7 @@
 
 use truepath_core::cut::{ForceTable, Path, State};
 use truepath_core::geometry::{Direction, Vector};
-use truepath_core::identify::{
-    Observation, Parameter, PredictionWorkspace, Prior, identify_observed, predict,
-};
+use truepath_core::identify::{Observation, Parameter, PredictionWorkspace, Prior, identify_observed, predict};
 use truepath_core::units::{Offset, Real};
 
 use crate::report::{float, mm};

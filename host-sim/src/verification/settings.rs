@@ -86,7 +86,12 @@ fn within(option: &str, value: f64, range: RangeInclusive<f64>, unit: &str) -> R
         return Ok(());
     }
     let expected = format!("{} to {}{unit}", range.start(), range.end());
-    Err(InputError::new("V001", format!("{option} is {value}"), expected, format!("give {option} a value in this range")))
+    Err(InputError::new(
+        "V001",
+        format!("{option} is {value}"),
+        expected,
+        format!("give {option} a value in this range"),
+    ))
 }
 
 #[cfg(test)]

@@ -17,8 +17,8 @@ pub struct Shop {
     pub crc: u32,
     /// Unit of its words.
     pub units: Units,
-    /// Work offset in force on the contour: G54 is 1.
-    pub work_offset: u8,
+    /// Work offset in force on the contour: G54 … G59.3 are 1 … 9, 9 + P of G54.1 and G154.
+    pub work_offset: u16,
     /// Highest Z it moves to in program coordinates, nm; `None` when it names none.
     pub highest_nm: Option<i64>,
 }
@@ -27,14 +27,17 @@ impl Shop {
     /// Reads it off the program.
     ///
     /// # Errors
-    /// Whatever is wrong with the program.
+    /// Whatever is wrong with the program; `V006` when G52 or G92 shifts its origin, because the verification program
+    /// would have to shift it again.
     pub fn read(pass: &Pass) -> Result<Self, InputError> {
         let first = pass.core.contour.lines.first;
-        let (mut work_offset, mut highest_nm) = (1, None);
+        let (mut work_offset, mut highest_nm, mut local) = (1, None, [0; 3]);
         Interpreter::new(Options::default())
             .run(pass.program.bytes(), &mut |event| {
                 if event.source.line == first {
                     work_offset = event.modal.work_offset;
+                    let [x, y, z, ..] = event.modal.shifts.local;
+                    local = [x, y, z];
                 }
                 if let Canon::Traverse { to, .. } | Canon::Feed { to, .. } = event.canon {
                     highest_nm = highest_nm.max(to.z.map(|z| z.nm()));
@@ -42,6 +45,15 @@ impl Shop {
                 Ok(())
             })
             .map_err(|error| InputError::of_program(&pass.program, &error))?;
+        if local != [0; 3] {
+            let [x, y, z] = local.map(|nm| nm as f64 / 1e6);
+            return Err(InputError::new(
+                "V006",
+                format!("G52 or G92 has shifted the origin by X{x} Y{y} Z{z} mm when line {first} is cut"),
+                "a contour cut in a work offset alone: a verification program changes no origin",
+                "put the shift into the work offset",
+            ));
+        }
         let name = pass.program.name();
         let program = name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned();
         Ok(Self { program, crc: pass.core.program_crc, units: pass.core.contour.units, work_offset, highest_nm })

@@ -87,12 +87,18 @@ impl Page {
             unit.number(plan.ball_mm),
             unit.unit_name()
         ));
-        self.comment(if plan.z_is_tip { "Z is that of the lowest point of the ball" } else { "Z is that of the centre of the ball" });
+        self.comment(if plan.z_is_tip {
+            "Z is that of the lowest point of the ball"
+        } else {
+            "Z is that of the centre of the ball"
+        });
         self.comment(results);
         self.comment("changes no offset. spindle stopped. same work offset as the part program");
         self.comment(&format!("moves between places at Z{}: it must clear every clamp", unit.number(plan.safe_z_mm)));
         if plan.settings.probe_tool.is_none() {
-            self.comment("before starting: probe in the spindle, its length offset in force, probe switched on and tried");
+            self.comment(
+                "before starting: probe in the spindle, its length offset in force, probe switched on and tried",
+            );
         }
     }
     /// What a place is and why it is touched, before its touches.
@@ -110,18 +116,36 @@ fn plain(text: &str) -> String {
     text.chars().map(|c| if allowed(c) { c } else { ' ' }).collect()
 }
 
-/// G54 … G59, and where `extended` G59.1 … G59.3.
+/// What a control calls work offsets beyond G59.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum MoreOffsets {
+    /// None.
+    Nothing,
+    /// G59.1 … G59.3.
+    Points,
+    /// A code with P, `G154` or `G54.1`.
+    Code(&'static str),
+}
+
+/// The code of the work offset in which the part was cut.
 ///
 /// # Errors
 /// `V005` for one that the control does not have.
-pub(super) fn work_offset(plan: &Plan, extended: bool) -> Result<String, InputError> {
-    match plan.shop.work_offset {
-        n @ 1..=6 => Ok(format!("G{}", 53 + n)),
-        n @ 7..=9 if extended => Ok(format!("G59.{}", n - 6)),
-        n => Err(InputError::new(
+pub(super) fn work_offset(plan: &Plan, more: MoreOffsets) -> Result<String, InputError> {
+    match (plan.shop.work_offset, more) {
+        (n @ 1..=6, _) => Ok(format!("G{}", 53 + n)),
+        (n @ 7..=9, MoreOffsets::Points) => Ok(format!("G59.{}", n - 6)),
+        (n @ 10.., MoreOffsets::Code(code)) => Ok(format!("{code} P{}", n - 9)),
+        (n, _) => Err(InputError::new(
             "V005",
-            format!("the part's program cuts in work offset number {n}"),
-            "one of G54 to G59, which this control has",
+            format!(
+                "the part's program cuts in {}",
+                match n {
+                    7..=9 => format!("G59.{}", n - 6),
+                    _ => format!("additional work offset P{}", n.saturating_sub(9)),
+                }
+            ),
+            "a work offset that this control has",
             "use another --dialect, or cut and probe in one of G54 to G59",
         )),
     }

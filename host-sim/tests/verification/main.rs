@@ -1,0 +1,9 @@
+//! Verification programs: planned by the rules, executed line by line on a simulated control, their results read back.
+
+mod control;
+mod linuxcnc_interpreter;
+mod parts;
+mod plans;
+mod programs;
+mod round_trip;
+mod wall;
