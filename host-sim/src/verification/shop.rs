@@ -3,7 +3,7 @@
 //! The verification program runs in the same work offset and unit, and between places at least as high as the part's
 //! program ever was, so that clamps which the part's program passes over are passed over as well.
 
-use truepath_core::gcode::{Canon, Interpreter, Options, Units};
+use truepath_core::gcode::{Canon, HostMemory, Interpreter, Options, Units};
 
 use crate::diagnostics::InputError;
 use crate::pass::Pass;
@@ -32,8 +32,9 @@ impl Shop {
     pub fn read(pass: &Pass) -> Result<Self, InputError> {
         let first = pass.core.contour.lines.first;
         let (mut work_offset, mut highest_nm, mut local) = (1, None, [0; 3]);
+        let mut memory = Box::new(HostMemory::new());
         Interpreter::new(Options::default())
-            .run(pass.program.bytes(), &mut |event| {
+            .run(pass.program.bytes(), &mut memory.lend(), &mut |event| {
                 if event.source.line == first {
                     work_offset = event.modal.work_offset;
                     let [x, y, z, ..] = event.modal.shifts.local;

@@ -21,38 +21,70 @@ fn touched(pass: &Pass, dialect: Dialect, error: impl Fn(f64) -> f64) -> Result<
     Control::new(&Wall::of(pass, error), plan.ball_mm / 2.0).run(&program)
 }
 
-/// The readings of a LinuxCNC log as PROBEOPEN would have them.
-fn probeopen(log: &str) -> String {
-    let points = log.lines().filter(|l| !l.starts_with('#')).map(|l| l.split(',').collect::<Vec<_>>());
-    points.map(|p| format!("{} {} {} 0 0 0 0 0 0\n", p[5], p[6], p[7])).collect()
+/// The same pass, its job saying that the probe file is of this dialect.
+fn read_as(part: [&str; 2], dialect: Dialect) -> Pass {
+    pass(part, &[("format = \"linuxcnc\"", &format!("format = \"{}\"", dialect.probe_format()))])
 }
 
-#[test]
-fn what_a_linuxcnc_program_logs_gives_the_wall_error_back() {
-    for part in PARTS {
-        let pass = pass(part, &[]);
-        let printed = touched(&pass, Dialect::Linuxcnc, error).unwrap();
-        assert_eq!(printed.touches, 48, "two touches a point");
-        assert!(printed.text.ends_with("# end 24\n"));
-        recovered(&pass, &probeopen(&printed.text));
+/// The file that the user has after the program has run: grbl's console with the answers to `$#` and `$$`.
+fn file(dialect: Dialect, printed: &Printed) -> String {
+    match dialect {
+        Dialect::Grbl => {
+            let offset = "[G54:-310.000,-205.500,-99.250]\n[G92:0.000,0.000,0.000]\n[TLO:0.000]\n";
+            format!("$13=0\nok\n{}{offset}ok\n", printed.console)
+        }
+        _ => printed.text.clone(),
     }
 }
 
-fn recovered(pass: &Pass, text: &str) {
-    let measurement = Measurement::read(pass, &Source::new("probe.txt", text.as_bytes().to_vec())).unwrap();
-    assert_eq!((measurement.contacts.len(), measurement.rejected.len()), (24, 0));
+fn recovered(pass: &Pass, text: &str) -> Measurement {
+    let file = Source::new("probe.txt", text.as_bytes().to_vec());
+    let measurement = Measurement::read(pass, &file).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    assert_eq!(measurement.contacts.len(), 24, "{:?}", measurement.remarks(&file));
     for contact in &measurement.contacts {
         let s = contact.s.nm() as f64 / 1e6;
         let found = contact.error.nm() as f64 / 1e6;
         assert!((found - error(s)).abs() < 0.002, "s = {s}: {found} instead of {}", error(s));
+    }
+    measurement
+}
+
+#[test]
+fn what_every_program_prints_gives_the_wall_error_back() {
+    for part in PARTS {
+        for dialect in [Dialect::Linuxcnc, Dialect::Grbl, Dialect::Fanuc, Dialect::Haas] {
+            let printed = touched(&pass(part, &[]), dialect, error).unwrap();
+            let measurement = recovered(&read_as(part, dialect), &file(dialect, &printed));
+            // Of grbl's reports those of the way down and of the first touch are set aside: they were not the measurement.
+            let aside = if dialect == Dialect::Grbl { 48 } else { 0 };
+            assert_eq!(measurement.rejected.len(), aside, "{dialect:?}");
+        }
+    }
+}
+
+#[test]
+fn results_of_another_part_or_cut_off_are_refused() {
+    let printed = |dialect| file(dialect, &touched(&pass(POCKET, &[]), dialect, error).unwrap());
+    for (dialect, footer) in [(Dialect::Linuxcnc, "# end 24"), (Dialect::Haas, "END 24"), (Dialect::Fanuc, "END 24")] {
+        let text = printed(dialect);
+        let refused = |pass: &Pass, text: &str| {
+            Measurement::read(pass, &Source::new("probe.txt", text.as_bytes().to_vec())).unwrap_err().to_string()
+        };
+        let cut = text.split(footer).next().unwrap();
+        assert!(refused(&read_as(POCKET, dialect), cut).contains("cut off"), "{dialect:?}");
+        let other = [POCKET[0], &POCKET[1].replace("S3200", "S3201")];
+        assert!(refused(&read_as(other, dialect), &text).contains("program"), "{dialect:?}");
     }
 }
 
 #[test]
 fn inches_come_back_as_inches() {
     let inches = pocket_in_inches();
-    let pass = pass([&inches[0], &inches[1]], &[]);
-    recovered(&pass, &probeopen(&touched(&pass, Dialect::Linuxcnc, error).unwrap().text));
+    let inches = [inches[0].as_str(), inches[1].as_str()];
+    for dialect in [Dialect::Linuxcnc, Dialect::Haas, Dialect::Fanuc] {
+        let printed = touched(&pass(inches, &[]), dialect, error).unwrap();
+        recovered(&read_as(inches, dialect), &file(dialect, &printed));
+    }
 }
 
 #[test]
