@@ -8,6 +8,7 @@ mod checks;
 mod conformance;
 mod device;
 mod firmware;
+mod fuzz;
 mod hil;
 mod judge;
 mod repository;
@@ -98,6 +99,18 @@ enum Task {
         #[arg(long)]
         write: bool,
     },
+    /// Random bytes, guided by coverage, into everything that reads a file.
+    Fuzz {
+        /// Only this target: program, probe, job or image.
+        #[arg(long)]
+        target: Option<String>,
+        /// Inputs for each target, instead of a time.
+        #[arg(long, conflicts_with = "seconds")]
+        runs: Option<u64>,
+        /// Seconds for each target.
+        #[arg(long, default_value_t = 20)]
+        seconds: u64,
+    },
     /// Corrects the parts of an independent machine program and has it score them.
     Judge {
         /// The program that makes and scores parts, relative to the repository; its scenarios lie in `scenarios`
@@ -136,6 +149,10 @@ fn main() -> ExitCode {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))
         }
         Task::Conformance { write } => report.run(Step::new("conformance", || conformance::check(write))),
+        Task::Fuzz { target, runs, seconds } => {
+            let length = runs.map_or(fuzz::Length::Seconds(seconds), fuzz::Length::Runs);
+            report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
+        }
         Task::Judge { judge } => report.run(Step::new("judge", || judge::run_all(judge.as_deref()))),
     }
     report.finish()

@@ -1,0 +1,157 @@
+//! Fuzzing: random bytes, guided by coverage, into everything that reads a file.
+//!
+//! The targets are a workspace of their own (`fuzz/`), built with the counters of LLVM's sancov and linked to libFuzzer;
+//! that takes a stable compiler and a C++ compiler, no nightly. A corpus begins with the programs, probe files, jobs and
+//! images of the tests and grows under the target directory. What once failed lies in `fuzz/regressions/TARGET` and is
+//! run first.
+
+use std::path::{Path, PathBuf};
+
+use crate::repository::{cargo, may_install, program, read, root, run, succeeds, target};
+use crate::step::{Failure, Outcome, Passed};
+
+/// A target and the files its corpus begins with: folders below the root, endings of names.
+struct Target {
+    name: &'static str,
+    seeds: &'static [(&'static str, &'static [&'static str])],
+    /// Longest input, bytes.
+    longest: u32,
+}
+
+const TARGETS: [Target; 4] = [
+    Target {
+        name: "program",
+        seeds: &[
+            ("core/tests/data", &["nc", "ngc"]),
+            ("host-sim/demo", &["nc"]),
+            ("host-sim/tests", &["nc", "ngc"]),
+            ("tests/data", &["nc", "ngc"]),
+        ],
+        longest: 2_000,
+    },
+    Target {
+        name: "probe",
+        seeds: &[("core/tests/data", &["txt", "csv", "log"]), ("host-sim/tests/data", &["txt", "csv", "log"])],
+        longest: 2_000,
+    },
+    Target { name: "job", seeds: &[("host-sim/demo", &["toml"]), ("host-sim/tests", &["toml"])], longest: 3_000 },
+    Target { name: "image", seeds: &[("fuzz/seeds/image", &["tpi"])], longest: 1_000 },
+];
+
+/// Counters for every edge and comparison.
+const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+    -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
+    -Cllvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing -Ccodegen-units=1";
+
+/// Seconds after which one input counts as a hang.
+const HANG: u32 = 10;
+
+/// How long to fuzz.
+#[derive(Clone, Copy, Debug)]
+pub enum Length {
+    /// So many inputs for each target.
+    Runs(u64),
+    /// So long for each target.
+    Seconds(u64),
+}
+
+/// Fuzzes one target, or all of them one after the other.
+pub fn check(only: Option<&str>, length: Length) -> Outcome {
+    let chosen: Vec<&Target> = TARGETS.iter().filter(|t| only.is_none_or(|name| name == t.name)).collect();
+    if chosen.is_empty() {
+        let names: Vec<&str> = TARGETS.iter().map(|t| t.name).collect();
+        return Err(Failure::found(format!("no such target; there are {}", names.join(", "))));
+    }
+    let binaries = build()?;
+    for target in chosen {
+        fuzz(target, &binaries, length)?;
+    }
+    Ok(Passed::Done)
+}
+
+/// Builds the targets; returns the folder of the programs.
+fn build() -> Result<PathBuf, Failure> {
+    cpp_compiler()?;
+    let said = read(program("rustc").arg("-vV"))?;
+    let host = said.lines().find_map(|line| line.strip_prefix("host: ")).unwrap_or("x86_64-unknown-linux-gnu");
+    let folder = target().join("fuzz");
+    let mut command = cargo();
+    command.args(["build", "--quiet", "--release", "--manifest-path", "fuzz/Cargo.toml", "--target", host]);
+    run(command.env("RUSTFLAGS", COVERAGE).env("CARGO_TARGET_DIR", &folder))?;
+    Ok(folder.join(host).join("release"))
+}
+
+/// libFuzzer is C++.
+fn cpp_compiler() -> Result<(), Failure> {
+    if succeeds(program("c++").arg("--version")) {
+        return Ok(());
+    }
+    let install = ["apt-get", "install", "--yes", "--quiet", "--no-install-recommends", "g++"];
+    if may_install() && succeeds(program(install[0]).args(&install[1..])) {
+        return Ok(());
+    }
+    Err(Failure::Missing("fuzzing needs a C++ compiler: apt-get install g++".into()))
+}
+
+fn fuzz(target: &Target, binaries: &Path, length: Length) -> Result<(), Failure> {
+    let place = binaries.ancestors().nth(2).unwrap_or(binaries);
+    let (corpus, artifacts) = (place.join("corpus").join(target.name), place.join("artifacts").join(target.name));
+    for folder in [&corpus, &artifacts] {
+        std::fs::create_dir_all(folder).map_err(|e| Failure::found(format!("{}: {e}", folder.display())))?;
+    }
+    let seeds = seeds(target);
+    if seeds.is_empty() {
+        return Err(Failure::found(format!("no seeds for {}: the folders have moved", target.name)));
+    }
+    for (k, seed) in seeds.iter().enumerate() {
+        let copied = std::fs::copy(seed, corpus.join(format!("seed-{k}")));
+        copied.map_err(|e| Failure::found(format!("{}: {e}", seed.display())))?;
+    }
+    let mut command = program(binaries.join(target.name));
+    command.arg(format!("-max_len={}", target.longest)).arg(format!("-timeout={HANG}"));
+    command.arg(format!("-artifact_prefix={}/", artifacts.display())).args(["-print_final_stats=1", "-verbosity=0"]);
+    command.arg(match length {
+        Length::Runs(runs) => format!("-runs={runs}"),
+        Length::Seconds(seconds) => format!("-max_total_time={seconds}"),
+    });
+    let regressions = root().join("fuzz/regressions").join(target.name);
+    command.arg(&corpus);
+    if regressions.is_dir() {
+        command.arg(&regressions);
+    }
+    run(&mut command)
+}
+
+/// The files a corpus begins with.
+fn seeds(target: &Target) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for (folder, endings) in target.seeds {
+        gather(&root().join(folder), endings, &mut found);
+    }
+    found.sort();
+    found
+}
+
+fn gather(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            gather(&path, endings, found);
+        } else if path.extension().is_some_and(|e| endings.iter().any(|ending| e == *ending)) {
+            found.push(path);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_target_has_seeds_and_a_source() {
+        for target in &TARGETS {
+            assert!(!seeds(target).is_empty(), "{}", target.name);
+            assert!(root().join(format!("fuzz/targets/{}.rs", target.name)).is_file(), "{}", target.name);
+        }
+    }
+}
