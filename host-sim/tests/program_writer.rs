@@ -305,13 +305,45 @@ fn block_delete_and_semicolon_ends_are_repeated_on_every_piece() {
 }
 
 #[test]
-fn an_arc_right_after_the_contour_is_refused_with_its_line() {
-    let program = "G21 G90 M3 S1500\nG0 X34 Y80\nG1 Z-15 F400\nG1 X34 Y35\nG3 X39 Y30 I5 J0\nG1 X90 Y30\nG1 Z-10\nG3 X100 Y40 I0 J10\nM2\n";
+fn a_lead_out_arc_is_displaced_as_a_whole_and_the_next_line_returns() {
+    for (centre, after) in [("I0 J10", "G1 X120 Y50"), ("R10", "G1 X120"), ("R10", "G0 Z5\nY50")] {
+        let program = format!(
+            "G21 G90 M3 S1500\nG0 X34 Y80\nG1 Z-15 F400\nG1 X34 Y35\nG3 X39 Y30 I5 J0\nG1 X90 Y30\nG1 Z-10\nG3 X100 Y40 {centre}\n{after}\nG0 X1 Y1\nM2\n"
+        );
+        let contour: Vec<_> =
+            edits(CORNER, bump).into_iter().zip([4, 5, 6]).map(|(e, line)| BlockEdit { line, ..e }).collect();
+        let [x, y] = *contour[2].samples.last().expect("a sample");
+        let text = text(&rewrite(&program, &contour));
+        let place = |nm: i64| (nm as f64 / 1e2).round() / 1e4;
+        let arc = format!("G3 X{} Y{} {centre}\n", place(x + 10_000_000), place(y + 10_000_000));
+        assert!(text.contains(&arc), "no {arc} in\n{text}");
+        let home = match after {
+            "G1 X120" => "G1 X120 Y40.\n",
+            "G0 Z5\nY50" => "G0 Z5\nX100. Y50\n",
+            both => both,
+        };
+        assert!(text.contains(home) || text.contains("Y50 X100."), "{text}");
+    }
+}
+
+#[test]
+fn a_lead_in_arc_is_displaced_with_the_start_and_the_move_before_it_too() {
+    let program = "G21 G90 M3 S1500\nG0 X24 Y90\nG1 Z-10 F400\nG2 X34 Y80 I0 J-10 Z-15\nG1 X34 Y35\nG3 X39 Y30 I5 J0\nG1 X90 Y30\nG0 Z9\nM2\n";
     let contour: Vec<_> =
-        edits(CORNER, bump).into_iter().zip([4, 5, 6]).map(|(e, line)| BlockEdit { line, ..e }).collect();
-    let source = Source::new("corner.nc", program.as_bytes().to_vec());
-    let Err(Failure::Input(error)) = rewrite_program(&source, &contour, &options()) else { panic!("an input error") };
-    assert_eq!((error.code(), error.line_column()), ("P003", Some((8, 1))));
+        edits(CORNER, bump).into_iter().zip([5, 6, 7]).map(|(e, line)| BlockEdit { line, ..e }).collect();
+    let rewritten = rewrite(program, &contour);
+    let text = text(&rewritten);
+    let [x, y] = contour[0].samples[0].map(|nm| (nm as f64 / 1e2).round() / 1e4);
+    assert!(text.contains(&format!("G2 X{x} Y{y} I0 J-10 Z-15\n")), "{text}");
+    assert!(text.contains(&format!("G0 X{:.4} Y{:.3}\n", x - 10.0, y + 10.0)), "{text}");
+    assert_eq!(rewritten.difference.other_lines_changed, [2, 4]);
+}
+
+#[test]
+fn an_axis_that_the_line_after_the_contour_does_not_name_returns_to_its_place() {
+    let program = CORNER.replace("G00 Z100.\n", "G00 Z100.\nG00 X0\nG00 Y0\n");
+    let text = text(&rewrite(&program, &edits(CORNER, bump)));
+    assert!(text.contains("\nG00 X0 Y30.\nG00 Y0\n"), "{text}");
 }
 
 #[test]
@@ -322,14 +354,18 @@ fn a_contour_whose_start_no_move_sets_is_refused() {
     let second = BlockEdit { line: 7, samples: vec![at(80_000_000), [0, 80_000_000]] };
     let source = Source::new("corner.nc", program.as_bytes().to_vec());
     // The start is set by a plain G1 here, which may move.
-    assert!(rewrite_program(&source, &[edit.clone(), second.clone()], &options()).is_ok());
-    let program = program.replace("G1 X34 Y35 F400", "G0 X30 Y35\nG2 X34 Y35 I2 J0 F400");
-    let source = Source::new("corner.nc", program.into_bytes());
-    let shifted = |e: BlockEdit| BlockEdit { line: e.line + 1, ..e };
-    let Err(Failure::Input(error)) = rewrite_program(&source, &[shifted(edit), shifted(second)], &options()) else {
-        panic!("an input error")
-    };
-    assert_eq!((error.code(), error.line_column()), ("P002", Some((5, 1))));
+    assert!(rewrite_program(&source, &[edit, second], &options()).is_ok());
+    // Here the contour begins where the machine happens to stand.
+    let program = "G21 G90 M3 S1500\nG1 Z-15 F400\nG1 X34\nG1 Y80\nM2\n";
+    let edits = [
+        BlockEdit { line: 3, samples: vec![[0, 100_000], [34_000_000, 100_000]] },
+        BlockEdit { line: 4, samples: vec![[34_000_000, 100_000], at(80_000_000)] },
+    ];
+    let source = Source::new("corner.nc", program.as_bytes().to_vec());
+    let mut options = options();
+    options.program.start = truepath_core::gcode::Axes::ORIGIN;
+    let Err(Failure::Input(error)) = rewrite_program(&source, &edits, &options) else { panic!("an input error") };
+    assert_eq!((error.code(), error.line_column()), ("P002", Some((3, 1))));
 }
 
 #[test]

@@ -4,11 +4,6 @@ use truepath_core::geometry::{Curve, Shape};
 
 use super::vector::{cross, dot, length, minus};
 
-/// The largest distance of a sample from a curve, nanometres.
-pub(super) fn deviation(samples: &[[i64; 2]], curve: &Curve) -> f64 {
-    samples.iter().map(|&sample| distance(sample, curve)).fold(0.0, f64::max)
-}
-
 /// The distance of a sample from a curve, nanometres.
 pub(super) fn distance(sample: [i64; 2], curve: &Curve) -> f64 {
     // Relative to the start, so that large coordinates cost no digits.
@@ -45,6 +40,10 @@ pub(super) fn distance(sample: [i64; 2], curve: &Curve) -> f64 {
 mod tests {
     use super::*;
     use truepath_core::geometry::Point;
+
+    fn deviation(samples: &[[i64; 2]], curve: &Curve) -> f64 {
+        samples.iter().map(|&sample| distance(sample, curve)).fold(0.0, f64::max)
+    }
 
     const MM: i64 = 1_000_000;
 

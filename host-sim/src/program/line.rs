@@ -151,6 +151,20 @@ impl<'a> Block<'a> {
         self.edited(edits)
     }
 
+    /// The line with the values of some of its words replaced; words it does not have are not added.
+    pub(super) fn with_values<const N: usize>(&self, values: [(u8, String); N]) -> Vec<u8> {
+        let edit = |(letter, value): (u8, String)| {
+            let range = self.word_range(self.word(letter)?);
+            Some((range, self.spelt(&format!("{}{value}", char::from(letter)))))
+        };
+        self.edited(values.into_iter().filter_map(edit).collect())
+    }
+
+    /// Its bytes.
+    pub(super) const fn text(&self) -> &'a [u8] {
+        self.line.text
+    }
+
     /// The line with a motion code before its first axis or centre word.
     pub(super) fn with_motion(&self, motion: Motion) -> Vec<u8> {
         let first = self.words().find(|w| b"XYZIJR".contains(&w.letter));

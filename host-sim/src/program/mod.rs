@@ -3,16 +3,22 @@
 //! Each line of the contour becomes one or more lines and arcs fitted to the corrected centre path ([`fit`]). Block
 //! numbers, comments, feeds, spelling and line ends stay; every other line keeps its bytes, except that
 //! * the moves that lead to the contour's start end at the corrected start,
-//! * in incremental programs the first XY move after the contour makes up for the displaced end,
+//! * lead-in and lead-out arcs outside the contour are displaced as a whole, so that they stay tangent,
+//! * the first straight XY move after the contour returns to its own place, an axis it does not name being added,
 //! * a move that relied on the modal code of the last contour line gets that code written out, and
 //! * a comment marks the program, and a marked program is refused: a correction must never be applied twice.
 //!
 //! The written text is then read back and [proved](proof) to differ from the original in the contour and in nothing
 //! else; what fails the proof is not written. [`Difference`] reports what was counted on the way.
 //!
-//! Limits: G17, one contour; coordinates are written with four decimals of a millimetre or six of an inch.
+//! The contour may come in several stretches (passes), each written once: a line that is executed several times is
+//! refused.
+//!
+//! Limits: G17; coordinates are written with four decimals of a millimetre or six of an inch.
 
+mod approach;
 mod assemble;
+mod departure;
 mod deviation;
 mod difference;
 mod fit;
@@ -22,6 +28,7 @@ mod line;
 mod pen;
 mod proof;
 mod spacing;
+mod stretch;
 mod survey;
 mod vector;
 mod writer;
@@ -108,9 +115,11 @@ pub struct Rewritten {
 /// Writes a corrected program. `edits` are in the order of the program, one for every line of the contour.
 ///
 /// # Errors
-/// `P001` for a program that is corrected already, `P002` when no XY move of the program leads to the start of the
-/// contour, `P003` when an arc begins where the contour ends, the interpreter's own errors; internal when the edits do
-/// not belong to the program.
+/// `P001` for a program that is corrected already, `P002` when no move that can be displaced leads to the start of the
+/// contour, `P003` when one that cannot be displaced (a G18 arc, a probing move) begins at its end, `P004` when a line
+/// of the contour is executed several times, `P005` when the origin is set at the displaced end, `P006` for lines that
+/// cannot be divided (G93, arcs of several turns), the interpreter's own errors; internal when the edits do not belong
+/// to the program or the text fails the proof.
 pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOptions) -> Result<Rewritten, Failure> {
     let original = source.bytes();
     if is_marked_corrected(original) {
@@ -125,7 +134,7 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
         .into());
     }
     let moves = survey::survey(original, options.program).map_err(|e| InputError::of_program(source, &e))?;
-    let written = writer::write(source, &moves, edits, options)?;
+    let written = writer::write(source, &moves, edits, &vec![options.tolerance.nm() as f64; edits.len()], options)?;
     let units = moves.iter().map(|m| Grid::of(m.modal.units).step_nm()).fold(0.0, f64::max);
     let claim = proof::Claim {
         original,

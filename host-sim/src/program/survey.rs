@@ -3,7 +3,7 @@
 use truepath_core::gcode::{Axes, Canon, GcodeError, HostMemory, Interpreter, Modal, Motion, Options};
 use truepath_core::geometry::Curve;
 
-/// One move.
+/// One move, or something else that decides where the next one begins.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Move {
     /// Line, counted from 1.
@@ -22,30 +22,35 @@ pub(super) struct Move {
 pub(super) enum Kind {
     Traverse,
     Feed,
-    Arc(Curve),
-    /// To a place in machine coordinates (G53).
-    Machine,
-    /// To a reference point (G28, G30).
-    Reference,
+    /// In the XY plane, and its full turns beside the arc itself.
+    Arc(Curve, u32),
+    /// Any other move along a path of its own: arcs in other planes, splines, probing, tapping.
+    Special,
+    /// To a place that the program does not know (G28, G30, G53): whether X and Y move.
+    Away([bool; 2]),
+    /// No move: the origin is set (G92, G52, G10).
+    Origin,
 }
 
 impl Move {
+    /// Whether it goes straight to a place of the program.
+    pub(super) const fn is_straight(&self) -> bool {
+        matches!(self.kind, Kind::Traverse | Kind::Feed)
+    }
     /// Whether its start and end are one point of the plane, both known.
     pub(super) fn stands_still(&self) -> bool {
-        self.from.point().is_some()
-            && self.from.point() == self.to.point()
-            && matches!(self.kind, Kind::Traverse | Kind::Feed)
+        self.is_straight() && self.from.point().is_some() && self.from.point() == self.to.point()
     }
     /// Whether it cuts in the plane.
     pub(super) fn cuts(&self) -> bool {
-        matches!(self.kind, Kind::Feed | Kind::Arc(_)) && !self.stands_still()
+        matches!(self.kind, Kind::Feed | Kind::Arc(..)) && !self.stands_still()
     }
     /// The line or arc it cuts along; `None` when it does not cut, or from an unknown place.
     pub(super) fn curve(&self) -> Option<Curve> {
         match self.kind {
-            Kind::Arc(curve) => Some(curve),
+            Kind::Arc(curve, _) => Some(curve),
             Kind::Feed => Curve::line(self.from.point()?, self.to.point()?),
-            Kind::Traverse | Kind::Machine | Kind::Reference => None,
+            _ => None,
         }
     }
 }
@@ -65,9 +70,14 @@ pub(super) fn survey(program: &[u8], options: Options) -> Result<Vec<Move>, Gcod
         let (kind, from, to) = match event.canon {
             Canon::Traverse { from, to } => (Kind::Traverse, from, to),
             Canon::Feed { from, to } => (Kind::Feed, from, to),
-            Canon::Arc { from, to, curve, .. } => (Kind::Arc(curve), from, to),
-            Canon::MachineMove { .. } => (Kind::Machine, unknown, unknown),
-            Canon::Reference { .. } => (Kind::Reference, unknown, unknown),
+            Canon::Arc { from, to, curve, turns, .. } => (Kind::Arc(curve, turns), from, to),
+            Canon::PlaneArc { from, to, .. }
+            | Canon::Spline { from, to, .. }
+            | Canon::Probe { from, to, .. }
+            | Canon::Tap { from, to } => (Kind::Special, from, to),
+            Canon::MachineMove { to, .. } => (Kind::Away([to.x.is_some(), to.y.is_some()]), unknown, unknown),
+            Canon::Reference { axes: [x, y, _], .. } => (Kind::Away([x, y]), unknown, unknown),
+            Canon::Shift(_) => (Kind::Origin, unknown, unknown),
             _ => return Ok(()),
         };
         moves.push(Move { line: event.source.line, kind, from, to, modal: *event.modal, motion_before: line.1 });
