@@ -15,6 +15,7 @@ mod error;
 mod leg;
 mod path;
 mod remains;
+mod stage;
 #[cfg(test)]
 mod tests;
 mod unit;
@@ -22,4 +23,6 @@ mod unit;
 pub use error::CompensationError;
 pub use leg::{Cutter, Piece, Shape};
 pub use path::{CutterPath, Step};
+pub use stage::WAITING;
+pub(in crate::gcode) use stage::{CompensationStage, Waiting};
 use unit::FINE_BITS;
