@@ -8,19 +8,32 @@
 //! place that the program does not name (G28, G53, a new offset, a tool change), they are unknown and stay so until
 //! given in G90.
 //!
-//! Limits: three axes, the XY plane, feed per minute; no cutter radius compensation (G41 and G42 tell the side of the
-//! wall), no parameters, subprograms or cycles. Those are refused by name.
+//! Limits: three axes, the XY plane, feed per minute; no parameters, subprograms or cycles. Those are refused by name.
 
-use super::execute::Execution;
+use super::execute::{Execution, Tool};
 use super::flow::{Next, Reader, Sentence};
 use super::{
     Axes, Dialect, Event, GcodeError, GcodeErrorKind, Memory, Program, Units, WarningKind, Warnings,
     is_marked_corrected, program_crc,
 };
+use crate::units::Offset;
+
+/// By what G41 and G42 move the path aside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CompensationBy {
+    /// By nothing: the program is the path of the cutter's centre, as it is where D holds wear only, and G41 or G42
+    /// tell the side of the wall. G41.1 and G42.1 still count, as they name their diameter.
+    #[default]
+    Nothing,
+    /// By this radius, whatever D says.
+    Radius(Offset),
+    /// By half of the diameter that the tool table has for D, or for the tool in the spindle.
+    Table,
+}
 
 /// What the program does not say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
+pub struct Options<'t> {
     /// The unit until G20 or G21.
     pub units: Units,
     /// Where the axes stand at the start.
@@ -31,10 +44,14 @@ pub struct Options {
     pub dialect: Dialect,
     /// How many blocks may be executed beyond as many as the program has lines; loops that run longer are an error.
     pub block_limit: u32,
+    /// By what G41 and G42 move the path aside.
+    pub compensation: CompensationBy,
+    /// The tool table.
+    pub tools: &'t [Tool],
 }
 
-impl Default for Options {
-    /// Millimetres, positions unknown, `/` blocks executed, LinuxCNC, a million blocks more than lines.
+impl Default for Options<'_> {
+    /// Millimetres, positions unknown, `/` blocks executed, LinuxCNC, a million blocks more than lines, no tools.
     fn default() -> Self {
         Self {
             units: Units::Millimetres,
@@ -42,6 +59,8 @@ impl Default for Options {
             skip_block_delete: false,
             dialect: Dialect::Linuxcnc,
             block_limit: 1_000_000,
+            compensation: CompensationBy::Nothing,
+            tools: &[],
         }
     }
 }
@@ -65,13 +84,13 @@ pub struct ProgramSummary {
 
 /// Reads programs as a machine would.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Interpreter {
-    options: Options,
+pub struct Interpreter<'t> {
+    options: Options<'t>,
 }
 
-impl Interpreter {
+impl<'t> Interpreter<'t> {
     /// With what the program does not say.
-    pub const fn new(options: Options) -> Self {
+    pub const fn new(options: Options<'t>) -> Self {
         Self { options }
     }
 
@@ -87,6 +106,7 @@ impl Interpreter {
         sink: &mut S,
     ) -> Result<ProgramSummary, GcodeError>
     where
+        't: 'p,
         S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
     {
         let program = program.into();
@@ -104,6 +124,7 @@ impl Interpreter {
             reader.follow(next);
         }
         if execution.end.is_none() {
+            execution.stop_compensation(sentence.line.span())?;
             execution.warn(WarningKind::EndMissing, sentence.line.span());
         } else if let Some(line) = reader.text_after_end() {
             execution.warn_at(WarningKind::TextAfterEnd, &line, line.span());

@@ -88,6 +88,7 @@ impl fmt::Display for GcodeErrorKind {
                 f.write_str("`,R` and `,C` corners are not computed; post the program with the corner as a move of its own")
             }
             Self::Parameter(error) => error.fmt(f),
+            Self::Compensation(error) => error.fmt(f),
             _ => self.fmt_block(f),
         }
     }

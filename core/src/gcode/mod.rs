@@ -54,10 +54,10 @@ pub use contour::{
 };
 pub use dialect::Dialect;
 pub use error::{Foreign, GcodeError, GcodeErrorKind, ParameterError};
-pub use execute::{Modal, Motion};
+pub use execute::{Modal, Motion, Tool};
 pub use flow::{Library, LibraryFile, Program, Word};
 pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};
-pub use interpreter::{Interpreter, Options, ProgramSummary};
+pub use interpreter::{CompensationBy, Interpreter, Options, ProgramSummary};
 pub use lexical::{Decimal, Number, Token, Words, WrittenWord};
 pub use mode::{Coolant, FeedMode, PathControl, Plane, RetractLevel, Spindle, ToolLength, Units};
 pub use parameter::{DeviceMemory, HostMemory, MachineParameters, Memory, MemoryBuffers, NamedSlot};

@@ -75,7 +75,7 @@ pub struct RewriteOptions {
     /// taken from it.
     pub tolerance: Offset,
     /// What the program does not say.
-    pub program: Options,
+    pub program: Options<'static>,
     /// Arcs of a larger radius are written as lines, 1 mm…100 m: controls refuse or distort arcs whose centre is far.
     pub max_arc_radius: Offset,
     /// Kinks larger than this, in places where the original is smooth, are avoided; 0.01…10 degrees.

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use crate::gcode::GcodeErrorKind;
 use crate::units::Offset;
 
 /// What the cutter cannot do, or the program must not ask.
@@ -165,6 +166,12 @@ impl fmt::Display for CompensationError {
             }
             Self::RadiusTooLarge => f.write_str("a cutter radius beyond 100 m; correct D"),
         }
+    }
+}
+
+impl From<CompensationError> for GcodeErrorKind {
+    fn from(error: CompensationError) -> Self {
+        Self::Compensation(error)
     }
 }
 

@@ -49,11 +49,6 @@ impl<'p> CompensationStage<'p> {
         self.path.is_none() && self.beside.is_none()
     }
 
-    /// Whether the cutter is kept beside the path.
-    pub(in crate::gcode) const fn is_on(&self) -> bool {
-        self.path.is_some()
-    }
-
     /// G41 or G42 in a plane.
     pub(in crate::gcode) fn start(&mut self, cutter: Cutter, plane: Plane) {
         self.path = Some(CutterPath::new(cutter));
@@ -153,8 +148,15 @@ impl<'p> CompensationStage<'p> {
             Canon::PlaneArc { plane, from, to, centre, counter_clockwise, turns, .. } if plane == self.plane => {
                 (from, to, Shape::Arc { centre, counter_clockwise, turns })
             }
+            Canon::Plane(plane) if plane == self.plane => return Ok(None),
             Canon::Arc { .. }
             | Canon::PlaneArc { .. }
+            | Canon::Plane(_)
+            | Canon::WorkOffset(_)
+            | Canon::Shift(_)
+            | Canon::ToolLength(_)
+            | Canon::ChangeTool(_)
+            | Canon::PathControl(_)
             | Canon::Probe { .. }
             | Canon::Tap { .. }
             | Canon::Spline { .. }

@@ -16,7 +16,7 @@ use crate::units::{Offset, Position, Real};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContourOptions {
     /// What the program does not say.
-    pub program: Options,
+    pub program: Options<'static>,
     /// Only moves on these lines belong to the contour; the whole program is executed all the same.
     pub within: Option<LineRange>,
     /// Only these blocks of this run are the contour.

@@ -1,5 +1,6 @@
 //! The kinds of errors and their codes.
 
+use super::super::compensation::CompensationError;
 use super::super::{GCode, LineRange, RunPart};
 use super::{Foreign, ParameterError};
 use crate::units::Offset;
@@ -176,6 +177,8 @@ pub enum GcodeErrorKind {
 
     /// A parameter, or the memory for them.
     Parameter(ParameterError),
+    /// Cutter radius compensation.
+    Compensation(CompensationError),
 
     /// No cutting move in X or Y at constant Z.
     NoContour,
@@ -229,6 +232,7 @@ impl GcodeErrorKind {
             Self::TooManyM { .. } => "G026",
             Self::TooManyWords { .. } => "G047",
             Self::Parameter(error) => error.code(),
+            Self::Compensation(error) => error.code(),
             Self::NotWhole { .. } => "G027",
             Self::Negative { .. } => "G028",
             Self::UnusedWord { .. } => "G029",

@@ -1,7 +1,8 @@
 //! What can be wrong with a program, and where.
 //!
 //! Every kind has a code that never changes its meaning (`G00…` lexical, `G02…` one block, `G03…` a code, `G04…` motion,
-//! `G05…` arcs, `G07…` the contour, `G08…` parameters) and carries both sides of a mismatch. The sentences shown to the
+//! `G05…` arcs, `G07…` the contour, `G08…` parameters, `G12…` and `G13…` cutter
+//! compensation) and carries both sides of a mismatch. The sentences shown to the
 //! user are in `message.rs`, those of a theme with its kinds.
 
 mod kind;

@@ -5,14 +5,19 @@
 //! | `modes.rs` | codes that set modes, in their order of execution |
 //! | `motion.rs` | moves |
 //! | `arc.rs` | centres of arcs |
+//! | `compensate.rs` | G40 … G42 |
+//! | `machine.rs` | the tool table |
 //! | `modal.rs` | the modes |
 
 mod arc;
+mod compensate;
+mod machine;
 mod modal;
 mod modes;
 mod motion;
 
 use super::block::BlockWords;
+use super::compensation::CompensationStage;
 use super::flow::{Next, Sentence};
 use super::parameter::{MachineParameters, Surroundings};
 use super::{
@@ -20,17 +25,21 @@ use super::{
     Words,
 };
 
+pub use machine::Tool;
 pub use modal::{Modal, Motion};
 
 /// The machine.
 pub(super) struct Execution<'p, 's, 'm, S> {
-    pub(super) options: Options,
+    pub(super) options: Options<'p>,
     pub(super) modal: Modal,
     pub(super) at: Axes,
     pub(super) units_given: bool,
     pub(super) program_number: Option<u32>,
     pub(super) end: Option<u32>,
     pub(super) warnings: Warnings,
+    /// Whether the path is compensated, be it by nothing.
+    compensated: bool,
+    compensation: CompensationStage<'p>,
     memory: &'s mut Memory<'m>,
     text: &'p [u8],
     line: Line<'p>,
@@ -62,7 +71,7 @@ where
     S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
 {
     /// At the start of a program.
-    pub(super) fn new(options: Options, memory: &'s mut Memory<'m>, warnings: Warnings, sink: &'s mut S) -> Self {
+    pub(super) fn new(options: Options<'p>, memory: &'s mut Memory<'m>, warnings: Warnings, sink: &'s mut S) -> Self {
         Self {
             options,
             modal: Modal::initial(options.units),
@@ -71,6 +80,8 @@ where
             program_number: None,
             end: None,
             warnings,
+            compensated: false,
+            compensation: CompensationStage::default(),
             memory,
             text: &[],
             line: Line { number: 1, start: 0, text: &[] },
@@ -110,6 +121,9 @@ where
 
     /// Gives one step to the sink; what it answers is an error at `span`.
     pub(super) fn emit(&mut self, canon: Canon, span: Span) -> Result<(), GcodeError> {
+        if !self.compensation.is_idle() {
+            return self.compensate(canon, span);
+        }
         let Some(sink) = self.sink.take() else {
             return Ok(());
         };

@@ -8,7 +8,6 @@ use super::super::{
     WarningKind, Word,
 };
 use super::Execution;
-use crate::geometry::Side;
 use crate::units::{Offset, Real};
 
 /// The largest F (mm/min) and S (rpm).
@@ -157,32 +156,6 @@ where
             return Err(self.error(GcodeErrorKind::Negative { letter: word.letter }, word.span));
         }
         self.emit(Canon::Dwell(word.value), span)
-    }
-
-    fn compensation(&mut self, block: &mut BlockWords) -> Result<(), GcodeError> {
-        let code = block.code(Group::Compensation);
-        if code.is_none() && self.modal.wall.is_none() {
-            return Ok(());
-        }
-        let off = code.is_some_and(|(c, _)| c.tenths() == 400);
-        let number = if off { None } else { block.use_word(b'D') };
-        if let Some(word) = number {
-            self.modal.radius_offset = Some(self.whole(word)?);
-        }
-        let Some((code, span)) = code else {
-            return Ok(());
-        };
-        self.modal.wall = match code.tenths() {
-            410 => Some(Side::Right),
-            420 => Some(Side::Left),
-            _ => None,
-        };
-        if self.modal.wall.is_some() {
-            self.warn(WarningKind::CompensationNotApplied, span);
-        } else {
-            self.modal.radius_offset = None;
-        }
-        self.emit(Canon::Compensation { wall: self.modal.wall, offset_number: self.modal.radius_offset }, span)
     }
 
     /// A new tool length gives the same place another Z.

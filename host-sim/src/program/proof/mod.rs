@@ -33,7 +33,7 @@ pub(super) struct Claim<'a> {
     /// The lines of the mark, and the line of the original after which they stand.
     pub(super) head: (u32, &'a [u8]),
     pub(super) edits: &'a [BlockEdit],
-    pub(super) program: Options,
+    pub(super) program: Options<'static>,
     /// How far the path may leave the wanted points, nm.
     pub(super) tolerance: f64,
     /// One step of the program's coordinates, nm.
