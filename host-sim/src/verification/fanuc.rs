@@ -90,7 +90,7 @@ pub(super) fn open(page: &mut Page, plan: &Plan, n: Notation) {
 pub(super) fn close(page: &mut Page, count: usize) {
     page.line(format!("DPRNT[END*{count}]"));
     page.line("PCLOS");
-    page.comment(&format!("end, {count} points"));
+    page.comment(&format!("end of {count}"));
 }
 
 /// The line of a point's nominal place: X Y Z on the wall, I J K from the wall to the free side.

@@ -26,7 +26,7 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     page.header(
         plan,
         "grbl",
-        "results are the PRB lines of the console log: save it, and send $ and the number sign after the end",
+        "results are the PRB lines of the console log; ask for the offsets after the end, as the document says",
     );
     page.line(format!("{} G17 G40 G90 G94", n.unit_code()));
     page.line(work_offset(plan, MoreOffsets::Nothing)?);

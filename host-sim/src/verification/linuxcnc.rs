@@ -70,7 +70,7 @@ pub(super) fn write(plan: &Plan, log: &str) -> Result<String, InputError> {
     }
     page.line(format!("(LOG,# end {count})"));
     page.line("(LOGCLOSE)");
-    page.comment(&format!("end, {count} points"));
+    page.comment(&format!("end of {count}"));
     page.line("M2");
     Ok(page.finish())
 }

@@ -81,7 +81,7 @@ impl Page {
         self.comment(&format!("truepath verification program, {control}"));
         self.comment(&format!("part program {}, CRC32 {:08X}", shop.program, shop.crc));
         self.comment(&format!(
-            "{touches} points: {} places, {} heights. ball {} {}",
+            "points {touches}, places {}, heights {}, ball {} {}",
             plan.places.len(),
             plan.heights.len(),
             unit.number(plan.ball_mm),

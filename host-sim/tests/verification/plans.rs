@@ -110,7 +110,7 @@ fn in_a_bay_narrower_than_ball_and_stand_off_no_place_is_chosen() {
 }
 
 #[test]
-fn the_chosen_places_tell_more_than_the_same_number_spread_evenly() {
+fn the_touches_leave_less_than_a_tenth_of_the_uncertainty_and_every_place_has_a_reason() {
     for part in [HELIX, POCKET] {
         let plan = planned(&pass(part, &[]), &Settings::default());
         let [before, after] = plan.wall_sigma_mm;

@@ -41,9 +41,9 @@ fn header_and_footer_name_part_unit_ball_and_count() {
     for dialect in ALL {
         let program = write(&plan, dialect, "log.txt").unwrap();
         assert!(program.contains(&format!("(PART PROGRAM PROGRAM.NC, CRC32 {crc})")), "{program}");
-        assert!(program.contains("(24 POINTS: 8 PLACES, 3 HEIGHTS. BALL 4.000 MM)"));
+        assert!(program.contains("(POINTS 24, PLACES 8, HEIGHTS 3, BALL 4.000 MM)"));
         assert!(program.lines().any(|l| l.starts_with("G21 G17 G40")) && program.lines().any(|l| l == "G54"));
-        let footer = ["(END, 24 POINTS)", ";VERIFY END 24"];
+        let footer = ["(END OF 24)", ";VERIFY END 24"];
         assert!(program.lines().rev().take(9).any(|l| footer.contains(&l)), "{program}");
         assert!(program.is_ascii());
         assert!(program.lines().all(|l| l.len() < 120 && l.matches('(').count() <= 1));
@@ -65,6 +65,28 @@ fn a_probe_in_the_tool_table_is_called_and_else_the_operator_is_asked() {
         assert_eq!(first.split(' ').next_back().unwrap().parse_z(), 100.0);
     }
     assert_eq!(write(&with, Dialect::Grbl, "log.txt").unwrap_err().code(), "V005");
+}
+
+/// The page of the documentation shows a program of each control as it is written: one place, one height.
+/// `BLESS=1 cargo test` renews them.
+#[test]
+fn the_documentation_shows_the_programs_as_they_are() {
+    let page = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/verification.md");
+    let mut text = std::fs::read_to_string(&page).unwrap();
+    let plan = planned(&pass(POCKET, &[]), &Settings { places: 1, heights: 1, ..Settings::default() });
+    for dialect in ALL {
+        let name = format!("{dialect:?}").to_lowercase();
+        let (begin, end) = (format!("<!-- {name} begin -->\n"), format!("<!-- {name} end -->"));
+        let from = text.find(&begin).unwrap_or_else(|| panic!("no {begin}")) + begin.len();
+        let to = text.find(&end).unwrap_or_else(|| panic!("no {end}"));
+        let shown = format!("```text\n{}```\n", write(&plan, dialect, "verify-log.txt").unwrap());
+        if std::env::var_os("BLESS").is_some() {
+            text.replace_range(from..to, &shown);
+            std::fs::write(&page, &text).unwrap();
+        } else {
+            assert_eq!(&text[from..to], shown, "{name}: BLESS=1 renews it");
+        }
+    }
 }
 
 trait ParseZ {

@@ -1,0 +1,58 @@
+//! `truepath probe` as a user calls it.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use super::parts::POCKET;
+
+fn truepath(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_truepath")).args(arguments).current_dir(folder).output().expect("the program runs")
+}
+
+fn part() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("job.toml"), POCKET[0]).unwrap();
+    std::fs::write(folder.path().join("program.nc"), POCKET[1]).unwrap();
+    folder
+}
+
+#[test]
+fn the_points_are_listed_with_their_reasons() {
+    let folder = part();
+    let call = ["probe", "job.toml", "--dialect", "haas", "-o", "verify.nc", "--points", "4", "--heights", "2"];
+    let json = truepath(folder.path(), &[&call[..], &["--json"]].concat());
+    assert!(json.status.success(), "{}", String::from_utf8_lossy(&json.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let points = report["points"].as_array().unwrap();
+    assert_eq!((points.len(), report["probe_format"].as_str()), (8, Some("dprnt")));
+    for point in points {
+        assert!(!point["why"].as_str().unwrap().is_empty() && !point["why_height"].as_str().unwrap().is_empty());
+    }
+    assert!(report["wall_sigma_after_mm"].as_f64() < report["wall_sigma_before_mm"].as_f64());
+    let program = std::fs::read_to_string(folder.path().join("verify.nc")).unwrap();
+    assert_eq!(program.matches("DPRNT[G801").count(), 8);
+
+    // For people the same, and nothing is overwritten.
+    let again = truepath(folder.path(), &call);
+    assert_eq!(again.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("F003"));
+    let words = truepath(folder.path(), &[&call[..], &["--force"]].concat());
+    let words = String::from_utf8_lossy(&words.stdout).into_owned();
+    assert!(words.contains("tells stiffness") && words.contains("kept off") && words.contains("Z100.000"), "{words}");
+}
+
+#[test]
+fn a_wrong_choice_is_named_and_nothing_is_written() {
+    let folder = part();
+    let call = |more: &[&str]| {
+        let said = truepath(folder.path(), &[&["probe", "job.toml", "-o", "verify.nc"], more].concat());
+        assert_eq!(said.status.code(), Some(1));
+        String::from_utf8_lossy(&said.stderr).into_owned()
+    };
+    let unknown = call(&["--dialect", "heidenhain"]);
+    assert!(unknown.contains("heidenhain") && unknown.contains("haas, fanuc, linuxcnc, grbl"), "{unknown}");
+    assert!(call(&["--dialect", "grbl", "--clearance", "0.2"]).contains("--clearance is 0.2; expected 1 to 50 mm"));
+    assert!(call(&["--dialect", "grbl", "--safe-z", "-3"]).contains("--safe-z -3 is not above the wall"));
+    assert!(call(&["--dialect", "grbl", "--probe-tool", "9"]).contains("grbl changes no tools"));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "job and program");
+}
