@@ -15,6 +15,8 @@ fn interpreted(program: &str) -> Option<(String, String)> {
     std::fs::write(folder.path().join("verify.ngc"), program).unwrap();
     std::fs::write(folder.path().join("tool.tbl"), "T20 P20 Z55 D6\n").unwrap();
     let mut command = Command::new("rs274");
+    // The interpreter keeps its tool table in a file in the home folder, which others may be using.
+    command.env("HOME", folder.path());
     command.args(["-t", "tool.tbl", "-g", "verify.ngc"]).current_dir(folder.path()).stdin(Stdio::null());
     match command.output() {
         Ok(output) => {
