@@ -5,7 +5,7 @@ use std::path::Path;
 
 use truepath::command::{correct, second_pass, split};
 use truepath::diagnostics::{Failure, Source};
-use truepath::job::{Job, Route};
+use truepath::job::{Job, ProbeFlags, Route};
 use truepath::measurement::Measurement;
 use truepath::pass::Pass;
 use truepath::plant::{self, Milled};
@@ -54,6 +54,7 @@ fn single_part(name: &str, places: &[f64], levels: &[f64]) -> (f64, f64) {
         force: false,
         route: Some(Route::Program),
         first_pass: Some(&written.job),
+        probe_flags: ProbeFlags::default(),
     };
     correct::run(&options, &mut |_| ()).unwrap();
     assert!(fs::read_to_string(result.join("first-pass-surface.csv")).unwrap().starts_with("x_mm,y_mm\n"));

@@ -42,7 +42,9 @@ pub fn contacts(
         },
     );
     if let Some(suspicion) = suspect(&on_wall, readings) {
-        let off = readings.iter().find(|r| matches!(on_wall.contact(r), Err(Rejected::OffTheWall { .. })));
+        let off = readings
+            .iter()
+            .find(|r| matches!(on_wall.contact(r), Err(Rejected::OffTheWall { .. } | Rejected::Normal { .. })));
         return Err(JobError::OffTheWall { suspicion, line: off.map_or(1, |r| r.line) });
     }
     let lent = contacts.len();

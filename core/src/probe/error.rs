@@ -172,7 +172,7 @@ impl ProbeErrorKind {
                 "give the file measured on the part cut with this program, or make the verification program anew"
             }
             Self::BallDiffers { .. } => {
-                "correct ball_diameter_mm in [probe]: it is a diameter; R of G801 is a radius, half of it"
+                "correct ball_diameter_mm in [probe]: it is a diameter; R of G801 is a radius, half of it; 25.4 times off is a file in the other unit"
             }
             Self::NoWorkOffset { .. } => {
                 "type $# (and $G) in the console before or after probing and keep its answer in the log, or say work_offset_mm = [x, y, z] in [probe]: the machine position of the work zero, tool length included"

@@ -69,6 +69,9 @@ const SHIFT_SAMPLE: usize = 24;
 /// Steps of the search for a shift.
 const SHIFT_STEPS: u32 = 12;
 
+/// Distances in mm below this weigh the same; larger ones weigh less, so that a stray point does not bend the shift.
+const NEAR_MM: Real = Real::ratio(1, 20);
+
 impl Contacts<'_> {
     /// How many of the touches lie on the wall after a change of their coordinates and of their distance from it.
     fn fitting(
@@ -114,7 +117,7 @@ impl Contacts<'_> {
                 let Some(place) = self.contour.at(nearest.s, nearest.block) else { continue };
                 let normal = self.setting.wall.normal(place.heading);
                 let error = error.mm();
-                let weight = Real::ONE.over(error.abs().max(Real::ONE));
+                let weight = Real::ONE.over(error.abs().max(NEAR_MM));
                 (xx, xy) = (xx + weight * normal.x * normal.x, xy + weight * normal.x * normal.y);
                 yy += weight * normal.y * normal.y;
                 (bx, by) = (bx + weight * normal.x * error, by + weight * normal.y * error);

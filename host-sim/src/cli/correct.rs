@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{Terminal, print};
+use super::{Terminal, print, probe_flags};
 use crate::command::correct::{Options, run as correct};
 use crate::diagnostics::Failure;
 use crate::job::Route;
@@ -30,6 +30,8 @@ pub(super) struct Arguments {
     /// Replace the files of an earlier run.
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    probe_flags: probe_flags::Arguments,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -50,6 +52,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         force: arguments.force,
         route,
         first_pass: arguments.first_pass.as_deref(),
+        probe_flags: arguments.probe_flags.flags(),
     };
     let mut bar = terminal.progress("correcting", 100);
     let summary = correct(&options, &mut |share| bar.reached((share * 100.0) as u64))?;

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Terminal, print};
-use crate::command::inspect::{Inspection, run as inspect};
+use super::{Terminal, print, probe_flags};
+use crate::command::inspect::{Inspection, Options, run as inspect};
 use crate::diagnostics::Failure;
 use crate::report::json;
 
@@ -16,10 +16,24 @@ pub(super) struct Arguments {
     /// The probe file.
     #[arg(long, value_name = "FILE")]
     probe: PathBuf,
+    /// Folder for the points as a table, the summary and the probe file as it is.
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Replace the files of an earlier run.
+    #[arg(long, requires = "output")]
+    force: bool,
+    #[command(flatten)]
+    probe_flags: probe_flags::Arguments,
 }
 
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
-    let inspection = inspect(&arguments.job, &arguments.probe)?;
+    let inspection = inspect(&Options {
+        job: &arguments.job,
+        probe: &arguments.probe,
+        out: arguments.output.as_deref(),
+        force: arguments.force,
+        probe_flags: arguments.probe_flags.flags(),
+    })?;
     for warning in &inspection.summary.warnings {
         terminal.warn(warning);
     }

@@ -11,6 +11,7 @@ mod hil;
 mod image;
 mod inspect;
 mod probe;
+mod probe_flags;
 mod replay;
 mod simulate;
 mod split;

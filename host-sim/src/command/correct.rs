@@ -3,21 +3,19 @@
 use std::path::Path as FilePath;
 
 use truepath_core::checksum::crc32;
-use truepath_core::correct::Law;
-use truepath_core::cut::{Loop, Path};
-use truepath_core::identify::Parameter;
+use truepath_core::cut::Path;
 use truepath_core::job;
 use truepath_core::probe::Contact;
-use truepath_core::units::Offset;
 
+use super::doubts::{doubts, kinked};
 use super::second_pass;
 use crate::correction::{Correction, Identified, corrected, identified};
 use crate::diagnostics::{Failure, Source};
-use crate::job::{Job, Route};
+use crate::job::{Job, ProbeFlags, Route};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
-use crate::program::{Difference, Origin, RewriteOptions, Rewritten, rewrite_program};
+use crate::program::{Origin, RewriteOptions, Rewritten, rewrite_program};
 use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, mm, points_csv};
 
 use crate::report::json;
@@ -50,6 +48,8 @@ pub struct Options<'a> {
     pub route: Option<Route>,
     /// The job of the first of two passes: the probe file is of its wall.
     pub first_pass: Option<&'a FilePath>,
+    /// What the command line says of the probe file.
+    pub probe_flags: ProbeFlags,
 }
 
 /// A correction in memory: everything the command writes follows from it.
@@ -156,9 +156,14 @@ pub(super) fn design(
 /// # Errors
 /// As [`correct`], and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSummary, Failure> {
-    let pass = Pass::read(Job::read(options.job)?)?;
+    let read = |job: &FilePath| {
+        let mut job = Job::read(job)?;
+        job.override_probe(&options.probe_flags)?;
+        Pass::read(job)
+    };
+    let pass = read(options.job)?;
     let file = Source::read(options.probe)?;
-    let first = options.first_pass.map(|job| Pass::read(Job::read(job)?)).transpose()?;
+    let first = options.first_pass.map(read).transpose()?;
     let measurement = Measurement::read(first.as_ref().unwrap_or(&pass), &file)?;
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
     let route = options.route.unwrap_or(pass.job.route);
@@ -180,7 +185,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
         folder.write("correction.tpi", bytes)?;
     }
     folder.write("correction.csv", &done.table)?;
-    folder.write("points.csv", &points_csv(&measurement.contacts)?)?;
+    folder.write("points.csv", &points_csv(&measurement, &done.identified.observations)?)?;
     folder.write("summary.json", &json(&done.summary)?)?;
     folder.write("correction.svg", &done.picture)?;
     folder.write("probe-raw.txt", file.bytes())?;
@@ -198,102 +203,4 @@ fn corrected_program(pass: &Pass, probe: u32, path: &Path, correction: &Correcti
         ..RewriteOptions::default()
     };
     rewrite_program(&pass.program, &block_edits(pass, path, &correction.nodes), &options)
-}
-
-/// What the user should doubt.
-fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
-    let mut out = Vec::new();
-    if identified.fit().outliers > 0 {
-        let lines: Vec<String> = identified
-            .observations
-            .iter()
-            .filter(|o| crate::report::float(o.weight) < 0.3)
-            .map(|o| format!("s = {:.2} mm (measured {:.4}, model {:.4} mm)", mm(o.s), mm(o.error), mm(o.predicted)))
-            .collect();
-        out.push(format!("{} points do not fit and were given little weight: {}", lines.len(), lines.join("; ")));
-    }
-    if correction.passage.unsettled > 0 {
-        out.push(format!(
-            "the elastic loop did not settle at {} places (worst residual {:.4} mm): the machine is too soft for this cut",
-            correction.passage.unsettled,
-            mm(correction.passage.worst_residual)
-        ));
-    }
-    let held = machine.path.samples().iter().filter(|s| s.near_corner).count();
-    if held > 0 {
-        let line =
-            machine.path.samples().iter().find(|s| s.near_corner).and_then(|s| pass.blocks.get(s.block as usize));
-        out.push(format!(
-            "a sharp inside corner near line {}: the load changes there the moment the direction does, so the correction of the straight wall is held and up to {:.3} mm stay; give the path an arc there",
-            line.map_or(0, |b| b.line),
-            correction.predicted.iter().map(|p| mm(p.after.mean.abs())).fold(0.0, f64::max)
-        ));
-    }
-    if let Some(limit) = correction.wanted.max_gouge {
-        let deepest = correction.predicted.iter().map(|p| -p.after.lowest).max().unwrap_or_default();
-        if deepest > limit + Offset::from_um(1) {
-            out.push(format!(
-                "max_gouge_mm = {} is not kept: {:.4} mm are predicted{}",
-                mm(limit),
-                mm(deepest),
-                if correction.wanted.law == Law::Model { "" } else { " (only law = \"model\" heeds it)" }
-            ));
-        }
-    }
-    let far = identified.fit().theta.iter().zip(Parameter::ALL).filter(|(t, _)| crate::report::float(t.abs()) > 2.5);
-    for (theta, parameter) in far {
-        out.push(format!(
-            "{} came out {:.1} standard deviations from what the job says: check the job, or probe more places",
-            parameter.name(),
-            crate::report::float(theta.abs())
-        ));
-    }
-    let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
-    let sigma = correction.sigma.iter().copied().max().unwrap_or_default();
-    if sigma.nm() * 8 > peak.nm() {
-        out.push(format!(
-            "the points leave the corrected wall uncertain by {:.4} mm (one sigma); probe more places, best in the corners",
-            mm(sigma)
-        ));
-    }
-    if let Some(reversal) = reversal(pass, machine, correction) {
-        out.push(reversal);
-    }
-    out
-}
-
-/// A kink of the written path beyond the one asked for.
-fn kinked(difference: &Difference) -> Option<String> {
-    (difference.largest_kink_deg > difference.max_kink_deg).then(|| {
-        format!(
-            "corrected.nc:{}: the corrected path turns by {:.2} degrees on the spot (correct.max_kink_deg = {}): the correction itself changes that fast there",
-            difference.largest_kink_line, difference.largest_kink_deg, difference.max_kink_deg
-        )
-    })
-}
-
-/// Where the correction reverses an axis that the program does not reverse, backlash acts.
-fn reversal(pass: &Pass, machine: &Loop, correction: &Correction) -> Option<String> {
-    let path = machine.path;
-    let samples = &path.samples()[path.first()..path.first() + path.count()];
-    for axis in 0..2 {
-        let backlash = pass.job.backlash[axis];
-        if backlash.nm() == 0 {
-            continue;
-        }
-        for (i, pair) in samples.windows(2).enumerate() {
-            let nominal = pair[1].point.from(pair[0].point);
-            let change = correction.nodes[i + 1].total() - correction.nodes[i].total();
-            let (n, c) = if axis == 0 { (nominal.x.nm(), change.x.nm()) } else { (nominal.y.nm(), change.y.nm()) };
-            if n.abs() > 1_000 && (n + c).signum() == -n.signum() {
-                return Some(format!(
-                    "near s = {:.2} mm the correction reverses {} against the program: its backlash of {} mm acts there",
-                    mm(pair[0].s),
-                    ["X", "Y"][axis],
-                    mm(backlash)
-                ));
-            }
-        }
-    }
-    None
 }

@@ -3,10 +3,11 @@
 use std::path::Path as FilePath;
 
 use crate::diagnostics::{Failure, Source};
-use crate::job::Job;
+use crate::job::{Job, ProbeFlags};
 use crate::measurement::Measurement;
+use crate::output::OutputFolder;
 use crate::pass::Pass;
-use crate::report::{InspectSummary, inspect_summary, mm};
+use crate::report::{InspectSummary, inspect_summary, json, mm, points_csv};
 
 /// One contact, for the list that is printed.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -34,13 +35,33 @@ pub struct Inspection {
     pub contacts: Vec<Point>,
 }
 
+/// Files this command may write.
+const FILES: &[&str] = &["points.csv", "summary.json", "probe-raw.txt"];
+
+/// What is inspected.
+#[derive(Clone, Copy, Debug)]
+pub struct Options<'a> {
+    /// The job.
+    pub job: &'a FilePath,
+    /// The probe file.
+    pub probe: &'a FilePath,
+    /// Output folder, if anything is to be written.
+    pub out: Option<&'a FilePath>,
+    /// Replace existing files.
+    pub force: bool,
+    /// What the command line says of the probe file.
+    pub probe_flags: ProbeFlags,
+}
+
 /// Compares a probe file with the wall of the job.
 ///
 /// # Errors
-/// Whatever is wrong with job, program or probe file.
-pub fn run(job: &FilePath, probe: &FilePath) -> Result<Inspection, Failure> {
-    let pass = Pass::read(Job::read(job)?)?;
-    let file = Source::read(probe)?;
+/// Whatever is wrong with job, program or probe file, and outputs that cannot be written.
+pub fn run(options: &Options) -> Result<Inspection, Failure> {
+    let mut job = Job::read(options.job)?;
+    job.override_probe(&options.probe_flags)?;
+    let pass = Pass::read(job)?;
+    let file = Source::read(options.probe)?;
     let measurement = Measurement::read(&pass, &file)?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(measurement.remarks(&file));
@@ -53,8 +74,16 @@ pub fn run(job: &FilePath, probe: &FilePath) -> Result<Inspection, Failure> {
         height_mm: crate::report::float(c.height) * depth,
         error_mm: mm(c.error),
     });
-    Ok(Inspection {
+    let inspection = Inspection {
         contacts: contacts.collect(),
         summary: inspect_summary(&measurement.contacts, measurement.rejected.len(), warnings),
-    })
+    };
+    if let Some(out) = options.out {
+        let folder = OutputFolder::create(out, options.force, FILES)?;
+        folder.write("points.csv", &points_csv(&measurement, &[])?)?;
+        folder.write("summary.json", &json(&inspection.summary)?)?;
+        folder.write("probe-raw.txt", file.bytes())?;
+        folder.commit()?;
+    }
+    Ok(inspection)
 }

@@ -3,6 +3,7 @@
 pub mod correct;
 pub mod demo;
 pub mod device;
+mod doubts;
 pub mod hil;
 pub mod inspect;
 pub mod probe;

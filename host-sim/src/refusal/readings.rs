@@ -83,7 +83,7 @@ fn suspected(suspicion: Suspicion) -> (String, &'static str) {
     };
     let words = match suspicion {
         Suspicion::Shifted { by: [x, y] } => format!(
-            "they fit when X {:.1} and Y {:.1} mm are taken off all of them: they are in another frame",
+            "they fit when about X {:.1} and Y {:.1} mm are taken off all of them: they are in another frame",
             mm(x) + 0.0,
             mm(y) + 0.0
         ),

@@ -1,14 +1,16 @@
 //! What the commands write: tables (CSV), the summary (JSON), the corrected path for the program and for the image.
 
 mod path;
+mod points;
 mod summary;
 mod tables;
 
 pub use path::block_edits;
+pub use points::points_csv;
 pub use summary::{
     CorrectSummary, InspectSummary, Parameter, SimulateSummary, correct_summary, inspect_summary, simulate_summary,
 };
-pub use tables::{Trace, TraceRow, correction_csv, points_csv, trace, trace_csv};
+pub use tables::{Trace, TraceRow, correction_csv, trace, trace_csv};
 
 use truepath_core::units::{Offset, Real};
 

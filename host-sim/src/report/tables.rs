@@ -2,7 +2,6 @@
 
 use truepath_core::correct::Target;
 use truepath_core::cut::{Loop, State, chip_area};
-use truepath_core::probe::Contact;
 
 use super::{float, mm};
 use crate::correction::Correction;
@@ -69,7 +68,7 @@ pub fn trace(machine: &Loop, states: &[State], errors_mm: &[f64]) -> Trace {
     .collect()
 }
 
-fn table<T: serde::Serialize>(rows: impl IntoIterator<Item = T>) -> Result<Vec<u8>, Failure> {
+pub(super) fn table<T: serde::Serialize>(rows: impl IntoIterator<Item = T>) -> Result<Vec<u8>, Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.serialize(row).map_err(|e| Failure::Internal(format!("a table cannot be written: {e}")))?;
@@ -78,7 +77,7 @@ fn table<T: serde::Serialize>(rows: impl IntoIterator<Item = T>) -> Result<Vec<u
 }
 
 /// Nanometres and nanoradians are enough for any reader.
-fn rounded(v: f64, digits: i32) -> f64 {
+pub(super) fn rounded(v: f64, digits: i32) -> f64 {
     let scale = 10f64.powi(digits);
     (v * scale).round() / scale
 }
@@ -138,34 +137,5 @@ pub fn correction_csv(machine: &Loop, correction: &Correction) -> Result<Vec<u8>
             predicted_error_after_mm: aim(&predicted.after, correction.wanted.target),
             sigma_mm: predicted.after.on_wall.then(|| mm(correction.sigma[i])),
         }
-    }))
-}
-
-#[derive(serde::Serialize)]
-struct PointRow {
-    line: u32,
-    s_mm: f64,
-    x_mm: f64,
-    y_mm: f64,
-    nx: f64,
-    ny: f64,
-    height: f64,
-    error_mm: f64,
-}
-
-/// `points.csv`: every contact with its place on the contour and its wall error.
-///
-/// # Errors
-/// Internal, when memory cannot be written.
-pub fn points_csv(contacts: &[Contact]) -> Result<Vec<u8>, Failure> {
-    table(contacts.iter().map(|c| PointRow {
-        line: c.line,
-        s_mm: mm(c.s),
-        x_mm: c.point.x.nm() as f64 / 1e6,
-        y_mm: c.point.y.nm() as f64 / 1e6,
-        nx: rounded(float(c.normal.x), 9),
-        ny: rounded(float(c.normal.y), 9),
-        height: rounded(float(c.height), 6),
-        error_mm: mm(c.error),
     }))
 }
