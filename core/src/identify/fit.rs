@@ -16,7 +16,7 @@ pub struct Fit {
     pub theta: [Real; COUNT],
     /// Covariance in units of the prior's standard deviations; its diagonal is 1 where the points say nothing.
     pub covariance: Matrix,
-    /// Robust sum of squared residuals plus that of the prior.
+    /// Robust sum of squared residuals plus that of the prior, of all points.
     pub cost: Real,
     /// Gauss–Newton steps taken.
     pub steps: u32,
@@ -30,6 +30,9 @@ pub struct Fit {
 const MAX_STEPS: u32 = 12;
 /// Residual, in standard deviations, from which a point loses weight (Huber's constant).
 const HUBER: Real = Real::ratio(25, 10);
+/// Residual, in standard deviations, from which a point is of something else: where at most a quarter of the points are,
+/// the fit goes on without them.
+const WILD: Real = Real::from_int(25);
 /// Step of the difference quotients, in prior standard deviations.
 const DIFFERENCE: Real = Real::ratio(1, 32);
 
@@ -65,53 +68,24 @@ pub fn identify_observed(
     observe: &mut dyn FnMut(u16),
 ) -> Fit {
     let task = Task { path, prior, commanded };
-    let mut theta = [Real::ZERO; COUNT];
     let mut table = ForceTable::BLANK;
     table.tabulate(prior.mean.coefficients.size_exponent);
-    let mut cost = task.evaluate(&mut table, &theta, observations, workspace);
-    let mut steps = 0;
-    let mut information = task.linearise(&table, &theta, observations, workspace, &mut |k| observe(permille(0, k)));
-    while steps < MAX_STEPS {
-        steps = steps.saturating_add(1);
-        let step = information.step();
-        let largest = step.iter().map(|v| v.abs()).max().unwrap_or_default();
-        // Backtracking: halve until the cost falls.
-        let mut share = Real::ONE;
-        let (taken, new_cost) = loop {
-            let mut trial = theta;
-            for (t, s) in trial.iter_mut().zip(&step) {
-                *t += *s * share;
-            }
-            let trial_cost = task.evaluate(&mut table, &trial, observations, workspace);
-            if trial_cost <= cost {
-                break (Some(trial), trial_cost);
-            }
-            share = share * Real::HALF;
-            if share < Real::ratio(1, 40) {
-                break (None, cost);
-            }
-        };
-        let Some(accepted) = taken else { break };
-        theta = accepted;
-        let settled = largest < Real::ratio(1, 2000) || cost - new_cost < Real::ratio(1, 100_000);
-        cost = new_cost;
-        information = task.linearise(&table, &theta, observations, workspace, &mut |k| observe(permille(steps, k)));
-        if settled {
-            break;
-        }
-    }
-    cost = task.evaluate(&mut table, &theta, observations, workspace);
-    let outliers = observations.iter().filter(|o| o.weight < Real::ratio(3, 10)).count();
+    let mut theta = [Real::ZERO; COUNT];
+    let (information, cost, mut steps) =
+        task.settle(&mut table, &mut theta, Real::MAX, observations, workspace, observe);
     let ln_determinant = information.log2_determinant() * Real::ratio(693_147_181, 1_000_000_000);
-    Fit {
-        parameters: prior.at(&theta),
-        theta,
-        covariance: information.covariance(),
-        cost,
-        steps,
-        outliers,
-        evidence: -((cost + ln_determinant) * Real::HALF),
+    let evidence = -((cost + ln_determinant) * Real::HALF);
+    let mut covariance = information.covariance();
+    // A few points far off are of something else than this wall: they pull no more.
+    let wild = observations.iter().filter(|o| o.residual().abs() > WILD).count();
+    if wild > 0 && wild.saturating_mul(4) <= observations.len() {
+        let quiet = &mut |_| ();
+        let (information, _, more) = task.settle(&mut table, &mut theta, WILD, observations, workspace, quiet);
+        covariance = information.covariance();
+        steps = steps.saturating_add(more);
     }
+    let outliers = observations.iter().filter(|o| o.weight < Real::ratio(3, 10)).count();
+    Fit { parameters: prior.at(&theta), theta, covariance, cost, steps, outliers, evidence }
 }
 
 /// By how much the evidence for the mean law must exceed that for the helical one before it is believed (20 : 1).
@@ -166,11 +140,60 @@ struct Task<'t, C> {
 }
 
 impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
+    /// Goes downhill from `theta` until the cost settles. Returns information, cost and steps taken; points beyond
+    /// `gate` have no weight.
+    fn settle(
+        &self,
+        table: &mut ForceTable,
+        theta: &mut [Real; COUNT],
+        gate: Real,
+        observations: &mut [Observation],
+        workspace: &mut PredictionWorkspace,
+        observe: &mut dyn FnMut(u16),
+    ) -> (Information, Real, u32) {
+        let mut cost = self.evaluate(table, theta, gate, observations, workspace);
+        let mut steps = 0;
+        let mut information = self.linearise(table, theta, observations, workspace, &mut |k| observe(permille(0, k)));
+        while steps < MAX_STEPS {
+            steps = steps.saturating_add(1);
+            let step = information.step();
+            let largest = step.iter().map(|v| v.abs()).max().unwrap_or_default();
+            // Backtracking: halve until the cost falls.
+            let mut share = Real::ONE;
+            let (taken, new_cost) = loop {
+                let mut trial = *theta;
+                for (t, s) in trial.iter_mut().zip(&step) {
+                    *t += *s * share;
+                }
+                let trial_cost = self.evaluate(table, &trial, gate, observations, workspace);
+                if trial_cost <= cost {
+                    break (Some(trial), trial_cost);
+                }
+                share = share * Real::HALF;
+                if share < Real::ratio(1, 40) {
+                    break (None, cost);
+                }
+            };
+            let Some(accepted) = taken else { break };
+            *theta = accepted;
+            let settled = largest < Real::ratio(1, 2000) || cost - new_cost < Real::ratio(1, 100_000);
+            cost = new_cost;
+            let tell = &mut |k| observe(permille(steps, k));
+            information = self.linearise(table, theta, observations, workspace, tell);
+            if settled {
+                break;
+            }
+        }
+        cost = self.evaluate(table, theta, gate, observations, workspace);
+        (information, cost, steps)
+    }
+
     /// Predicts all points and returns the robust cost; sets their weights.
     fn evaluate(
         &self,
         table: &mut ForceTable,
         theta: &[Real; COUNT],
+        gate: Real,
         observations: &mut [Observation],
         workspace: &mut PredictionWorkspace,
     ) -> Real {
@@ -180,9 +203,11 @@ impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
         let mut cost = theta.iter().fold(Real::ZERO, |sum, t| sum + *t * *t);
         for o in observations.iter_mut() {
             let residual = o.residual().abs();
-            // Huber: quadratic near zero, linear in the tails.
+            // Huber: quadratic near zero, linear in the tails, level beyond the gate.
             (o.weight, cost) = if residual <= HUBER {
                 (Real::ONE, cost + residual * residual)
+            } else if residual > gate {
+                (Real::ZERO, cost + HUBER * (gate + gate - HUBER))
             } else {
                 (HUBER / residual, cost + HUBER * (residual + residual - HUBER))
             };
