@@ -57,7 +57,7 @@ impl GCode {
     /// From a written number; `None` when it is negative, above 999.9 or has more than one decimal.
     pub fn new(value: Number) -> Option<Self> {
         match value.exactly_times(10) {
-            Some(tenths) if tenths >= 0 && tenths < 10_000 => Some(Self(tenths as u16)),
+            Some(tenths) if (0..10_000).contains(&tenths) => Some(Self(tenths as u16)),
             _ => None,
         }
     }
