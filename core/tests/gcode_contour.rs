@@ -1,8 +1,8 @@
 //! Programs → contours: the paper's program, its variants, and what a real program surrounds a contour with.
 
 use truepath_core::gcode::{
-    Candidate, ContourOptions, ContourProgram, DeviceMemory, GcodeError, LineRange, Program, Spindle, Units,
-    WarningKind, find_contours, read_contour,
+    Candidate, CompensationBy, ContourOptions, ContourProgram, DeviceMemory, GcodeError, LineRange, Options, Program,
+    Spindle, Units, WarningKind, find_contours, read_contour,
 };
 use truepath_core::geometry::Side;
 use truepath_core::geometry::{Block, Contour, Curve, Point, Shape};
@@ -225,4 +225,22 @@ fn the_contour_may_fill_the_buffer_but_not_exceed_it() {
         read_contour(&Program::new(P18), &mut DeviceMemory::new().lend(), &mut buffer[..2], &ContourOptions::default())
             .expect_err("three blocks in two places");
     assert_eq!((error.kind.code(), error.line), ("G072", 13));
+}
+
+/// A wall as drawn, cut by a cutter of 10 mm on its left.
+const DRAWN: &str = "G0 X-20 Y-30\nG1 Z-5 F200\nG41 D1 X0 Y-20\nY40\nX50\nG40 X80 Y60\nM30\n";
+
+#[test]
+fn under_compensation_the_contour_is_the_path_of_the_centre_and_the_wall_is_known() {
+    let program = Options { compensation: CompensationBy::Radius(Offset::from_um(5_000)), ..Options::default() };
+    let (contour, blocks) =
+        read_with(DRAWN.as_bytes(), &ContourOptions { program, ..Default::default() }).expect("one contour");
+    assert_eq!(contour.wall, Some(Side::Right));
+    let ends: Vec<_> = blocks.iter().map(|b| (b.curve.end().x.nm(), b.curve.end().y.nm())).collect();
+    // The entry ends beside its end; then the wall, with an arc round its corner, and the way out.
+    let entry = (-5_000_000, -16_909_830);
+    assert_eq!(ends, [entry, (-5 * MM, 40 * MM), (0, 45 * MM), (50 * MM, 45 * MM), (80 * MM, 60 * MM)]);
+    // Without a radius the same program is read as the path of the centre, with the warning that says so.
+    let (contour, blocks) = read_with(DRAWN.as_bytes(), &ContourOptions::default()).expect("one contour");
+    assert_eq!((contour.wall, blocks.len()), (Some(Side::Right), 4));
 }

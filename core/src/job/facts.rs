@@ -72,6 +72,19 @@ pub struct Tool {
     pub number: Option<u32>,
     /// Number of the tool offset in force, up to [`LARGEST_NUMBER`], 0 for none.
     pub offset_number: u32,
+    /// What the control adds to the program under G41 and G42.
+    #[serde(with = "super::wire")]
+    pub compensation: Compensation,
+}
+
+/// What G41 and G42 of the program do at the control.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Compensation {
+    /// D holds wear or nothing: the program is the path of the cutter's centre, and they tell the side of the wall.
+    #[default]
+    Centre,
+    /// D holds the cutter's radius: the program is the wall, and the centre keeps half of the nominal diameter away.
+    Radius,
 }
 
 /// What the cutter's own compliance follows from.

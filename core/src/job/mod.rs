@@ -32,7 +32,8 @@ pub use compact::COMPACT_BYTES;
 pub use correction::{check_clamp, largest, law};
 pub use error::{Buffer, Failed, JobError};
 pub use facts::{
-    Correct, Cut, Force, ForceModel, Job, LARGEST_NUMBER, LawName, Machine, Part, Probe, Stickout, Tool, ZReference,
+    Compensation, Correct, Cut, Force, ForceModel, Job, LARGEST_NUMBER, LawName, Machine, Part, Probe, Stickout, Tool,
+    ZReference,
 };
 pub use identification::{Identified, identified};
 pub use measure::{REACH, contacts, observations, same_place};

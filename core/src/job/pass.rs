@@ -1,10 +1,10 @@
 //! One pass of the cutter as job and program describe it: the contour, the cut, the sampled path.
 
-use super::{Buffer, ForceModel, Job, JobError, Probe};
+use super::{Buffer, Compensation, ForceModel, Job, JobError, Probe};
 use crate::cut::{Cantilever, Coefficients, Compliance, CutSetup, Milling, Path, PathError, Sample, WallLaw};
 use crate::gcode::{
-    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Memory, Program, RunPart, Spindle, Units,
-    is_marked_corrected, program_crc, read_contour,
+    CompensationBy, ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Memory, Options, Program, RunPart,
+    Spindle, Units, is_marked_corrected, program_crc, read_contour,
 };
 use crate::geometry::{Block, Contour, Point};
 use crate::identify::Prior;
@@ -148,10 +148,21 @@ impl Pass {
     }
 }
 
+impl Job {
+    /// How the program of the job is read.
+    pub fn program_options(&self) -> Options<'static> {
+        let compensation = match self.tool.compensation {
+            Compensation::Centre => CompensationBy::Nothing,
+            Compensation::Radius => CompensationBy::Radius(Offset::from_nm(self.tool.diameter.nm() / 2)),
+        };
+        Options { compensation, ..Options::default() }
+    }
+}
+
 /// Where a job's contour is in its program.
 fn options(job: &Job) -> ContourOptions {
     let part = job.part.map(|part| RunPart { run: part.run, first: part.first_block, blocks: part.blocks });
-    ContourOptions { part, ..ContourOptions::default() }
+    ContourOptions { part, program: job.program_options(), ..ContourOptions::default() }
 }
 
 /// The tool that the program has changed to before the contour. T0 empties the spindle and names none.

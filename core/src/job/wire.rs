@@ -5,6 +5,7 @@
 use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 
+use super::facts::Compensation;
 use crate::correct::Target;
 use crate::cut::{ToolMaterial, WallLaw};
 use crate::geometry::Side;
@@ -78,5 +79,6 @@ choice!(
     Format: 0 = Format::Linuxcnc, 1 = Format::Columns, 2 = Format::LinuxcncLog, 3 = Format::Grbl, 4 = Format::Inspection,
     5 = Format::Dprnt
 );
+choice!(Compensation: 0 = Compensation::Centre, 1 = Compensation::Radius);
 choice!(Target: 0 = Target::Mean, 1 = Target::Tip, 2 = Target::Minimax);
 choice!(WallLaw: 0 = WallLaw::Mean, 1 = WallLaw::Helical);

@@ -5,7 +5,8 @@ use truepath_core::correct::Target;
 use truepath_core::geometry::Side;
 use truepath_core::image::{DEVICE_NODES, image_bytes};
 use truepath_core::job::{
-    Buffers, Correct, Cut, Force, ForceModel, Job, JobError, LawName, Machine, Made, Probe, Tool, ZReference, image,
+    Buffers, Compensation, Correct, Cut, Force, ForceModel, Job, JobError, LawName, Machine, Made, Probe, Tool,
+    ZReference, image,
 };
 use truepath_core::probe::Format;
 use truepath_core::units::{Offset, Real};
@@ -38,6 +39,7 @@ pub fn corner() -> Part {
             cantilever: None,
             number: None,
             offset_number: 0,
+            compensation: Compensation::Centre,
         },
         cut: Cut { axial_depth: um(10_000), spindle_rpm: None, feed_mm_per_min: Some(Real::from_int(400)) },
         force: Force {

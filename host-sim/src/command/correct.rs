@@ -199,6 +199,7 @@ fn corrected_program(pass: &Pass, probe: u32, path: &Path, correction: &Correcti
         tolerance: pass.job.tolerance,
         max_arc_radius: pass.job.max_arc_radius,
         max_kink_deg: pass.job.max_kink_deg,
+        program: pass.job.numbers.program_options(),
         origin,
         ..RewriteOptions::default()
     };

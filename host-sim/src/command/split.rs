@@ -73,6 +73,7 @@ pub fn run(options: &Options) -> Result<Split, Failure> {
         tolerance: pass.job.tolerance,
         max_arc_radius: pass.job.max_arc_radius,
         max_kink_deg: pass.job.max_kink_deg,
+        program: pass.job.numbers.program_options(),
         purpose: Purpose::FirstPass { left: half },
         ..RewriteOptions::default()
     };

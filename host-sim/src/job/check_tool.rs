@@ -1,7 +1,7 @@
 //! The `[tool]` table.
 
 use truepath_core::cut::ToolMaterial;
-use truepath_core::job::{Cut, Stickout, Tool};
+use truepath_core::job::{Compensation, Cut, Stickout, Tool};
 
 use super::Decimal;
 use super::check::text_of;
@@ -55,8 +55,10 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, Input
             .at(source, place));
         }
     };
+    let choices = [("centre", Compensation::Centre), ("radius", Compensation::Radius)];
+    let compensation = section.choice("compensation", &choices)?.unwrap_or_default();
     section.close()?;
-    Ok(Tool { diameter, measured_diameter, teeth, helix_deg, cantilever, number, offset_number })
+    Ok(Tool { diameter, measured_diameter, teeth, helix_deg, cantilever, number, offset_number, compensation })
 }
 
 /// The cutter must stick out at least as far as it cuts deep.

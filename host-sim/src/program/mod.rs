@@ -35,7 +35,7 @@ mod writer;
 
 use std::ops::Range;
 
-use truepath_core::gcode::{Options, is_marked_corrected};
+use truepath_core::gcode::{Lines, Options, is_marked_corrected};
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
@@ -118,7 +118,7 @@ pub struct Rewritten {
 /// `P001` for a program that is corrected already, `P002` when no move that can be displaced leads to the start of the
 /// contour, `P003` when one that cannot be displaced (a G18 arc, a probing move) begins at its end, `P004` when a line
 /// of the contour is executed several times, `P005` when the origin is set at the displaced end, `P006` for lines that
-/// cannot be divided (G93, arcs of several turns), the interpreter's own errors; internal when the edits do not belong
+/// cannot be divided (G93, arcs of several turns), `P007` for a program that the control compensates, the interpreter's own errors; internal when the edits do not belong
 /// to the program or the text fails the proof.
 pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOptions) -> Result<Rewritten, Failure> {
     let original = source.bytes();
@@ -134,6 +134,13 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
         .into());
     }
     let moves = survey::survey(original, options.program).map_err(|e| InputError::of_program(source, &e))?;
+    if let Some(compensated) = moves.iter().find(|m| m.modal.compensated) {
+        let help = "correct on the coprocessor (--route coprocessor), or post the path of the cutter's centre";
+        let found = "G41 or G42 moves the path aside by the cutter's radius";
+        let error = InputError::new("P007", found, "a program of the cutter's centre", help);
+        let start = Lines::new(original).find(|line| line.number == compensated.line).map_or(0, |line| line.start);
+        return Err(error.at(source, start..start).into());
+    }
     let written = writer::write(source, &moves, edits, &vec![options.tolerance.nm() as f64; edits.len()], options)?;
     let units = moves.iter().map(|m| Grid::of(m.modal.units).step_nm()).fold(0.0, f64::max);
     let claim = proof::Claim {

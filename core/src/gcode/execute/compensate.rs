@@ -22,7 +22,7 @@ where
                 && let Some(word) = block.use_word(b'D')
             {
                 // Where the path is compensated, the radius stays until G40.
-                if self.compensated {
+                if self.modal.compensated {
                     return Err(self.error(GcodeErrorKind::UnusedWord { letter: b'D' }, word.span));
                 }
                 self.modal.radius_offset = Some(self.whole(word)?);
@@ -33,11 +33,11 @@ where
             self.stop_compensation(span)?;
             self.modal.wall = None;
             self.modal.radius_offset = None;
-            self.compensated = false;
+            self.modal.compensated = false;
             return self.emit(Canon::Compensation { wall: None, offset_number: None }, span);
         }
         let left = matches!(code.tenths(), 410 | 411);
-        if self.compensated {
+        if self.modal.compensated {
             return Err(self.error(CompensationError::AlreadyOn.into(), span));
         }
         let diameter = match code.tenths() {
@@ -45,6 +45,7 @@ where
             _ => self.diameter_of_table(block, span)?,
         };
         self.modal.wall = Some(if left { Side::Right } else { Side::Left });
+        self.modal.compensated = diameter.is_some();
         self.emit(Canon::Compensation { wall: self.modal.wall, offset_number: self.modal.radius_offset }, span)?;
         let Some(diameter) = diameter else {
             self.warn(WarningKind::CompensationNotApplied, span);
@@ -53,7 +54,6 @@ where
         if self.modal.plane == Plane::Yz {
             return Err(self.error(CompensationError::Plane.into(), span));
         }
-        self.compensated = true;
         if diameter == Offset::ZERO {
             return Ok(());
         }
@@ -99,7 +99,7 @@ where
 
     /// Canned cycles, threads and G5 have no path beside them.
     fn refuse_cycles(&self, block: &BlockWords) -> Result<(), GcodeError> {
-        let Some((code, span)) = block.code(Group::Motion).filter(|_| self.compensated) else {
+        let Some((code, span)) = block.code(Group::Motion).filter(|_| self.modal.compensated) else {
             return Ok(());
         };
         match code.tenths() {

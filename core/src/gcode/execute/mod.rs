@@ -37,8 +37,6 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     pub(super) program_number: Option<u32>,
     pub(super) end: Option<u32>,
     pub(super) warnings: Warnings,
-    /// Whether the path is compensated, be it by nothing.
-    compensated: bool,
     compensation: CompensationStage<'p>,
     memory: &'s mut Memory<'m>,
     text: &'p [u8],
@@ -80,7 +78,6 @@ where
             program_number: None,
             end: None,
             warnings,
-            compensated: false,
             compensation: CompensationStage::default(),
             memory,
             text: &[],

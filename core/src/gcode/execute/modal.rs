@@ -33,6 +33,8 @@ pub struct Modal {
     pub wall: Option<Side>,
     /// D of the last G41 or G42.
     pub radius_offset: Option<u32>,
+    /// Whether the moves are those of the cutter's centre beside the programmed path: G41 or G42, and a radius is known.
+    pub compensated: bool,
     /// Whether G43 or G43.1 is in force.
     pub length_offset: bool,
     /// G17, G18, G19.
@@ -71,6 +73,7 @@ impl Modal {
             absolute_centres: false,
             wall: None,
             radius_offset: None,
+            compensated: false,
             length_offset: false,
             plane: Plane::Xy,
             feed_mode: FeedMode::PerMinute,

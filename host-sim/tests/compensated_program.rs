@@ -1,0 +1,54 @@
+//! A job whose program the control compensates by the cutter's radius: it is read as the path of the cutter's centre.
+
+use std::path::Path;
+
+use truepath::diagnostics::{Failure, Form, Source};
+use truepath::job::Job;
+use truepath::pass::Pass;
+use truepath::program::{RewriteOptions, rewrite_program};
+
+const JOB: &str = include_str!("../demo/corner/job.toml");
+
+/// The wall of the drawing, the cutter of 20 mm on its left, and the path of the cutter's centre beside it.
+const DRAWN: &str = "%\nG21 G90 G17 G40\nT1 M6\nS1000 M3\nG0 X24 Y100 Z50\nG0 Z-10\nG1 G41 D1 X24 Y80 F400\nY35\nG3 X39 Y20 I15\nG1 X90\nG40 X110\nG0 Z50\nM30\n%\n";
+const CENTRE: &str = "%\nG21 G90 G17 G40\nT1 M6\nS1000 M3\nG0 X24 Y100 Z50\nG0 Z-10\nG1 G41 D0 X34 Y80 F400\nY35\nG3 X39 Y30 I5\nG1 X90\nG40 X110 Y20\nG0 Z50\nM30\n%\n";
+
+fn pass(program: &str, compensation: &str) -> Result<Pass, Failure> {
+    let text = JOB.replace("teeth = 6", &format!("teeth = 6\n{compensation}"));
+    let job = Job::parse(Source::new("job.toml", text.into_bytes()), Path::new(""))?;
+    Pass::new(job, Source::new("part.nc", program.as_bytes().to_vec()))
+}
+
+fn shown<T>(result: Result<T, Failure>) -> T {
+    result.unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)))
+}
+
+#[test]
+fn a_compensated_program_is_the_same_contour_as_the_path_of_the_centre() {
+    let drawn = shown(pass(DRAWN, "compensation = \"radius\""));
+    for compensation in ["", "compensation = \"centre\""] {
+        let centre = shown(pass(CENTRE, compensation));
+        assert_eq!(drawn.blocks, centre.blocks);
+        assert_eq!(drawn.core.setup.wall, centre.core.setup.wall);
+        assert!(centre.warnings.iter().any(|w| w.contains("W013")), "{:?}", centre.warnings);
+    }
+    assert!(!drawn.warnings.iter().any(|w| w.contains("W013")), "{:?}", drawn.warnings);
+}
+
+#[test]
+fn a_compensated_program_is_not_corrected_in_its_own_text() {
+    let drawn = shown(pass(DRAWN, "compensation = \"radius\""));
+    let options = RewriteOptions { program: drawn.job.numbers.program_options(), ..RewriteOptions::default() };
+    let Err(error) = rewrite_program(&drawn.program, &[], &options) else { panic!("it was written") };
+    let shown = error.render(Form::Plain);
+    assert!(shown.contains("P007") && shown.contains("part.nc:7") && shown.contains("--route coprocessor"), "{shown}");
+}
+
+#[test]
+fn a_wall_that_the_cutter_cannot_follow_is_refused_at_its_line() {
+    let tight = DRAWN.replace("I15", "I8").replace("X39 Y20", "X32 Y27").replace("X90\n", "X90 Y27\n");
+    let shown = pass(&tight, "compensation = \"radius\"").expect_err("it does not fit").render(Form::Plain);
+    assert!(shown.contains("G122") && shown.contains("part.nc:9") && shown.contains("8.000 mm"), "{shown}");
+    let shown = pass(DRAWN, "compensation = \"diameter\"").expect_err("no such choice").render(Form::Plain);
+    assert!(shown.contains("J007") && shown.contains("radius"), "{shown}");
+}
