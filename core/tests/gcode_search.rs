@@ -58,7 +58,7 @@ fn a_pocket_with_roughing_two_depths_and_a_spring_pass_has_one_finishing_contour
     assert_eq!(last, [finish(1), finish(2), Role::Spring { contour: 1, level: 2 }]);
     for (found, first) in runs[6..].iter().zip([71, 86, 101]) {
         let lines = LineRange { first, last: first + 8 };
-        assert_eq!((found.run.lines, found.run.closed, found.lead_in, found.run.blocks), (lines, true, 1, 9));
+        assert_eq!((found.run.lines, found.run.closed, found.skipped, found.run.blocks), (lines, true, 1, 9));
         let path = found.blocks(&blocks);
         assert_eq!(path[0].curve.start(), path[8].curve.end());
     }
@@ -68,7 +68,7 @@ fn a_pocket_with_roughing_two_depths_and_a_spring_pass_has_one_finishing_contour
 fn a_part_of_a_run_is_read_by_number_and_blocks() {
     let (_, runs, blocks) = searched(POCKET, &criteria(Some(1)));
     let found = &runs[7];
-    let part = RunPart { run: found.run.number, first: found.lead_in as u32, blocks: found.run.blocks as u32 };
+    let part = RunPart { run: found.run.number, first: found.skipped as u32, blocks: found.run.blocks as u32 };
     let options = ContourOptions { part: Some(part), ..ContourOptions::default() };
     let mut buffer = vec![Block::BLANK; 64];
     let contour =

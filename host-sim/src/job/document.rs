@@ -69,6 +69,21 @@ impl<'d> Section<'d> {
         }))
     }
 
+    /// The tables of a list written as `[[key]]`, in order.
+    pub(super) fn sections(&self, key: &'static str) -> Result<Vec<Section<'d>>, InputError> {
+        let Some(value) = self.value(key) else { return Ok(Vec::new()) };
+        let help = format!("write every one of them as [[{key}]] with one key a line");
+        let Some(list) = value.raw.as_array() else { return Err(self.wrong_type(&value, "a list of tables", &help)) };
+        let table = |entry: &'d Spanned<DeValue<'d>>| {
+            let Some(table) = entry.get_ref().as_table() else {
+                return Err(self.wrong_type(&value, "a list of tables", &help));
+            };
+            let (source, spans) = (self.source, self.spans);
+            Ok(Section { source, name: key, span: entry.span(), table, asked: RefCell::default(), spans })
+        };
+        list.iter().map(table).collect()
+    }
+
     /// A sub-table that must be there; `needs` lists what belongs in it.
     pub(super) fn required_section(&self, key: &'static str, needs: &str) -> Result<Section<'d>, InputError> {
         match self.section(key)? {
@@ -232,6 +247,11 @@ impl<'d> Section<'d> {
         known.dedup();
         Err(InputError::new("J003", format!("{name} is no key of {place}"), one_of(&known), help)
             .at(self.source, key.span()))
+    }
+
+    /// Where the table stands.
+    pub(super) fn span(&self) -> Range<usize> {
+        self.span.clone()
     }
 
     fn end(&self) -> Range<usize> {

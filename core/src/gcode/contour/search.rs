@@ -13,6 +13,8 @@
 //! Exactly one is needed; the caller decides what to do about none or several. Cost: every pair of different paths is
 //! looked at from up to 320 places. Without a known side of the wall rule 4 does not apply.
 
+use core::ops::Range;
+
 use super::Candidate;
 use super::relation::{coincide, farther, same};
 use super::split::{closed, length, without_leads};
@@ -57,8 +59,8 @@ pub struct Found {
     pub run: Candidate,
     /// Index of its first block among the blocks of all runs.
     pub first: usize,
-    /// Blocks of leads that were split off before it.
-    pub lead_in: usize,
+    /// Blocks of the run before the first one that is left: leads, or what the caller did not name.
+    pub skipped: usize,
     /// What it is for.
     pub role: Role,
     /// Index of the first run along the same path.
@@ -68,7 +70,25 @@ pub struct Found {
 impl Found {
     /// A run that was read, whose first block is at `first` among the blocks of all runs.
     pub const fn new(run: Candidate, first: usize) -> Self {
-        Self { run, first, lead_in: 0, role: Role::OtherTool, like: 0 }
+        Self { run, first, skipped: 0, role: Role::OtherTool, like: 0 }
+    }
+    /// The same run with only some of its blocks, counted within it; `None` when there is none of them.
+    pub fn narrowed(&self, kept: Range<usize>, blocks: &[Block]) -> Option<Self> {
+        let contour = self.blocks(blocks).get(kept.clone())?;
+        let lines = || contour.iter().map(|b| b.line);
+        let (first, last) = (lines().min()?, lines().max()?);
+        let behind = self.run.blocks.saturating_sub(kept.end);
+        let run = Candidate {
+            blocks: contour.len(),
+            length: length(contour),
+            lines: LineRange { first, last },
+            closed: closed(contour),
+            entry: self.run.entry.saturating_sub(kept.start),
+            exit: self.run.exit.saturating_sub(behind),
+            ..self.run
+        };
+        let skipped = self.skipped.saturating_add(kept.start);
+        Some(Self { run, first: self.first.saturating_add(kept.start), skipped, ..*self })
     }
     /// Its blocks.
     pub fn blocks<'b>(&self, all: &'b [Block]) -> &'b [Block] {
@@ -131,17 +151,10 @@ fn counts(found: &Found, criteria: &Criteria) -> bool {
 
 /// Takes the leads off a run.
 fn split(found: &mut Found, blocks: &[Block]) {
-    let all = found.blocks(blocks);
-    let kept = without_leads(all, &found.run);
-    let contour = all.get(kept.clone()).unwrap_or_default();
-    let lines = || contour.iter().map(|b| b.line);
-    let (Some(first), Some(last)) = (lines().min(), lines().max()) else { return };
-    found.first = found.first.saturating_add(kept.start);
-    found.lead_in = kept.start;
-    found.run.blocks = contour.len();
-    found.run.length = length(contour);
-    found.run.lines = LineRange { first, last };
-    found.run.closed = closed(contour);
+    let kept = without_leads(found.blocks(blocks), &found.run);
+    if let Some(narrowed) = found.narrowed(kept, blocks) {
+        *found = narrowed;
+    }
 }
 
 /// The first run along the same path, which may be the run itself.
