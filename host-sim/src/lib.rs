@@ -6,6 +6,7 @@ pub mod cli;
 pub mod command;
 pub mod correction;
 pub mod diagnostics;
+pub mod feature;
 pub mod image;
 pub mod job;
 pub mod measurement;

@@ -8,6 +8,7 @@ use truepath_core::probe::{Contact, Reading, Rejected};
 use truepath_core::units::{Offset, Position, Real};
 
 use crate::diagnostics::{Failure, Source};
+use crate::feature::Plan;
 use crate::pass::Pass;
 use crate::refusal::why;
 
@@ -59,6 +60,33 @@ impl Measurement {
         contacts.truncate(used);
         rejected.sort_by_key(|aside| aside.line);
         Ok(Self { contacts, rejected, noise: probe.noise, crc: crc32(file.bytes()) })
+    }
+
+    /// Reads a probe file that may be of any depth of the pass's feature: the one with most readings on its wall is
+    /// given with them. A depth that the user names is kept.
+    ///
+    /// # Errors
+    /// As [`Self::read`], when it cannot be used with any of them.
+    pub fn of_any_depth(pass: Pass, file: &Source) -> Result<(Pass, Self), Failure> {
+        let levels = pass.plan.as_ref().map(Plan::levels).unwrap_or_default();
+        if pass.job.which.pass.is_some() || levels.len() < 2 {
+            let measurement = Self::read(&pass, file)?;
+            return Ok((pass, measurement));
+        }
+        let mut best: Option<(Pass, Self)> = None;
+        let mut refused = None;
+        for level in levels {
+            let pass = pass.at_level(level)?;
+            match Self::read(&pass, file) {
+                Ok(found) if best.as_ref().is_none_or(|(_, b)| b.contacts.len() < found.contacts.len()) => {
+                    best = Some((pass, found));
+                }
+                Ok(_) => {}
+                Err(failure) => refused = refused.or(Some(failure)),
+            }
+        }
+        let none = || Failure::Internal("a feature without a finishing pass".to_owned());
+        best.ok_or_else(|| refused.unwrap_or_else(none))
     }
 
     /// The contacts as observations for the fit.

@@ -12,6 +12,7 @@ use truepath_core::job::{self, JobError};
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
+use crate::feature::{self, FeatureSummary, Plan};
 use crate::job::Job;
 use crate::refusal::Inputs;
 use crate::report::mm;
@@ -35,6 +36,8 @@ pub struct Pass {
     pub blocks: Vec<Block>,
     /// The actual surface of the stock; without one the stock is the parallel curve at the allowance.
     pub surface: Option<Surface>,
+    /// The feature it belongs to; `None` in a program with one cut and no names.
+    pub plan: Option<Plan>,
     /// Things the user should know, in the order in which they were noticed.
     pub warnings: Vec<String>,
 }
@@ -57,7 +60,15 @@ impl Pass {
     ///
     /// # Errors
     /// As [`Pass::read`].
-    pub fn new(job: Job, program: Source) -> Result<Self, Failure> {
+    pub fn new(mut job: Job, program: Source) -> Result<Self, Failure> {
+        let plan = feature::plan(&job, &program)?;
+        if let Some(plan) = &plan {
+            let numbers = &mut job.numbers;
+            numbers.part = Some(plan.level(job.which.pass.unwrap_or(1))?.part);
+            numbers.wall = plan.wall.or(numbers.wall);
+            numbers.allowance = plan.allowance.unwrap_or(numbers.allowance);
+            numbers.tool.number = plan.tool.or(numbers.tool.number);
+        }
         let read = |blocks: &mut [Block]| {
             let mut memory = Box::new(HostMemory::new());
             job::Pass::read(&job.numbers, program.bytes(), &mut memory.lend(), blocks)
@@ -74,8 +85,9 @@ impl Pass {
                 program.name()
             ));
         }
+        warnings.extend(plan.iter().flat_map(|p| p.warnings.iter().cloned()));
         let surface = job.read_surface()?;
-        let pass = Self { job, program, core, blocks, surface: None, warnings };
+        let pass = Self { job, program, core, blocks, surface: None, plan, warnings };
         match surface {
             Some(surface) => pass.over(surface),
             None => Ok(pass),
@@ -127,6 +139,32 @@ impl Pass {
             Some(path) => error.in_file(path).into(),
             None => error.into(),
         }
+    }
+
+    /// The level of the feature, from 1.
+    pub fn level(&self) -> u32 {
+        self.job.numbers.part.map_or(1, |part| part.pass)
+    }
+
+    /// What is told of the feature; `corrected` are the levels whose correction was written.
+    pub fn feature(&self, corrected: &[u32]) -> Option<FeatureSummary> {
+        self.plan.as_ref().map(|plan| plan.summary(self.level(), corrected))
+    }
+
+    /// The moves that lead to the contour and away from it, where they are known.
+    pub fn leads(&self) -> [&[Block]; 2] {
+        let pass = self.plan.as_ref().and_then(|plan| plan.level(self.level()).ok());
+        pass.map_or([&[], &[]], |pass| [&pass.leads[0], &pass.leads[1]])
+    }
+
+    /// The same feature at another level.
+    ///
+    /// # Errors
+    /// As [`Pass::read`], and when there is no such level.
+    pub fn at_level(&self, number: u32) -> Result<Self, Failure> {
+        let mut job = self.job.clone();
+        job.which.pass = Some(number);
+        Self::new(job, self.program.clone())
     }
 
     /// The failure for an error of the core, pointing into job or program.

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use truepath::command::correct::{self, Options};
 use truepath::command::demo;
 use truepath::diagnostics::Failure;
-use truepath::job::{ProbeFlags, Route};
+use truepath::job::{ProbeFlags, Route, Which};
 use truepath_core::image::Image;
 
 fn told(folder: &Path) -> Vec<demo::Outcome> {
@@ -76,7 +76,19 @@ fn correct_reads_what_the_demonstration_wrote_and_refuses_a_second_correction() 
     let (_kept, part) = part(0);
     let options = |job: &Path, out: &Path, route| -> Result<_, Failure> {
         let probe = part.join("probe.txt");
-        correct::run(&Options { job, probe: &probe, out, force: false, route: Some(route), first_pass: None, probe_flags: ProbeFlags::default() }, &mut |_| ())
+        correct::run(
+            &Options {
+                job,
+                probe: &probe,
+                out,
+                force: false,
+                route: Some(route),
+                first_pass: None,
+                probe_flags: ProbeFlags::default(),
+                which: Which::default(),
+            },
+            &mut |_| (),
+        )
     };
     let job = part.join("job.toml");
     let out = part.join("again");
@@ -120,7 +132,16 @@ fn a_correction_beyond_the_clamp_is_an_error_that_proposes_one_and_writes_nothin
     let job = fs::read_to_string(part.join("job.toml")).unwrap().replace("clamp_mm = 1.0", "clamp_mm = 0.2");
     fs::write(part.join("tight.toml"), job).unwrap();
     let (job, probe, out) = (part.join("tight.toml"), part.join("probe.txt"), part.join("out"));
-    let options = Options { job: &job, probe: &probe, out: &out, force: false, route: None, first_pass: None, probe_flags: ProbeFlags::default() };
+    let options = Options {
+        job: &job,
+        probe: &probe,
+        out: &out,
+        force: false,
+        route: None,
+        first_pass: None,
+        probe_flags: ProbeFlags::default(),
+        which: Which::default(),
+    };
     let Err(Failure::Input(error)) = correct::run(&options, &mut |_| ()) else { panic!("clamped in silence") };
     assert_eq!(error.code(), "J017");
     let shown = Failure::Input(error).render(truepath::diagnostics::Form::Plain);

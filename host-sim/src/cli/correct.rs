@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{Terminal, print, probe_flags};
+use super::{Terminal, print, probe_flags, which};
 use crate::command::correct::{Options, run as correct};
 use crate::diagnostics::Failure;
+use crate::feature::listing;
 use crate::job::Route;
 use crate::report::CorrectSummary;
 use crate::report::json;
@@ -32,6 +33,8 @@ pub(super) struct Arguments {
     force: bool,
     #[command(flatten)]
     probe_flags: probe_flags::Arguments,
+    #[command(flatten)]
+    which: which::WhichArguments,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -53,6 +56,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         route,
         first_pass: arguments.first_pass.as_deref(),
         probe_flags: arguments.probe_flags.flags(),
+        which: arguments.which.which(),
     };
     let mut bar = terminal.progress("correcting", 100);
     let summary = correct(&options, &mut |share| bar.reached((share * 100.0) as u64))?;
@@ -65,7 +69,8 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
 
 fn words(s: &CorrectSummary, arguments: &Arguments) -> String {
     let factor = s.max_error_before_mm / s.max_error_after_mm.max(1e-6);
-    let mut text = format!(
+    let mut text = s.feature.as_ref().map(listing).unwrap_or_default();
+    text += &format!(
         "{} points used, {} set aside; wall follows the {} force, {} milling\n\
          \n\
          largest wall error without correction  {:>8.4} mm\n\

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Terminal, print, probe_flags};
+use super::{Terminal, print, probe_flags, which};
 use crate::command::inspect::{Inspection, Options, run as inspect};
 use crate::diagnostics::Failure;
+use crate::feature::listing;
 use crate::report::json;
 
 #[derive(Debug, Args)]
@@ -24,6 +25,8 @@ pub(super) struct Arguments {
     force: bool,
     #[command(flatten)]
     probe_flags: probe_flags::Arguments,
+    #[command(flatten)]
+    which: which::WhichArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
@@ -33,6 +36,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         out: arguments.output.as_deref(),
         force: arguments.force,
         probe_flags: arguments.probe_flags.flags(),
+        which: arguments.which.which(),
     })?;
     for warning in &inspection.summary.warnings {
         terminal.warn(warning);
@@ -41,7 +45,8 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
 }
 
 fn words(inspection: &Inspection) -> String {
-    let mut text = String::from("  line     s mm       X mm       Y mm   height mm   error mm\n");
+    let mut text = inspection.summary.feature.as_ref().map(listing).unwrap_or_default();
+    text.push_str("  line     s mm       X mm       Y mm   height mm   error mm\n");
     for p in &inspection.contacts {
         text += &format!(
             "{:>6} {:>8.2} {:>10.4} {:>10.4} {:>11.3} {:>10.4}\n",

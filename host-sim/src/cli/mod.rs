@@ -16,6 +16,7 @@ mod replay;
 mod simulate;
 mod split;
 mod terminal;
+mod which;
 
 use std::ffi::OsString;
 use std::io::{BufWriter, Write};

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Terminal, print};
+use super::{Terminal, print, which};
 use crate::command::simulate::{Options, run as simulate};
 use crate::diagnostics::Failure;
+use crate::feature::listing;
 use crate::report::json;
 
 #[derive(Debug, Args)]
@@ -22,6 +23,8 @@ pub(super) struct Arguments {
     /// Replace the files of an earlier run.
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    which: which::WhichArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
@@ -30,6 +33,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         plant: arguments.plant.as_deref(),
         out: &arguments.output,
         force: arguments.force,
+        which: arguments.which.which(),
     };
     let summary = simulate(&options)?;
     for warning in &summary.warnings {
@@ -39,9 +43,10 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         return print(&json(&summary)?);
     }
     let text = format!(
-        "{:.1} mm of contour, {} milling, by the {}\n\
+        "{}{:.1} mm of contour, {} milling, by the {}\n\
          largest wall error {:.4} mm (rms {:.4}), largest engagement {:.2} degrees, largest mean force {:.0} N\n\
          written to {}\n",
+        summary.feature.as_ref().map(listing).unwrap_or_default(),
         summary.length_mm,
         summary.milling,
         summary.by,

@@ -8,14 +8,15 @@ use truepath_core::job;
 use truepath_core::probe::Contact;
 
 use super::doubts::{doubts, kinked};
+use super::levels::{self, Levels};
 use super::second_pass;
 use crate::correction::{Correction, Identified, corrected, identified};
 use crate::diagnostics::{Failure, Source};
-use crate::job::{Job, ProbeFlags, Route};
+use crate::job::{Job, ProbeFlags, Route, Which};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
-use crate::program::{Origin, RewriteOptions, Rewritten, rewrite_program};
+use crate::program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
 use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, mm, points_csv};
 
 use crate::report::json;
@@ -31,6 +32,14 @@ const FILES: &[&str] = &[
     "correction.svg",
     "probe-raw.txt",
     "first-pass-surface.csv",
+    "correction-pass-1.tpi",
+    "correction-pass-2.tpi",
+    "correction-pass-3.tpi",
+    "correction-pass-4.tpi",
+    "correction-pass-5.tpi",
+    "correction-pass-6.tpi",
+    "correction-pass-7.tpi",
+    "correction-pass-8.tpi",
 ];
 
 /// What is corrected.
@@ -50,6 +59,8 @@ pub struct Options<'a> {
     pub first_pass: Option<&'a FilePath>,
     /// What the command line says of the probe file.
     pub probe_flags: ProbeFlags,
+    /// Which cut of the program.
+    pub which: Which,
 }
 
 /// A correction in memory: everything the command writes follows from it.
@@ -63,8 +74,10 @@ pub struct Corrected {
     pub summary: CorrectSummary,
     /// The corrected program, when that is a route.
     pub program: Option<Vec<u8>>,
-    /// The image, when that is a route.
+    /// The image of the probed depth, when that is a route.
     pub image: Option<Vec<u8>>,
+    /// Images of the other depths with their numbers.
+    pub other_images: Vec<(u32, Vec<u8>)>,
     /// `correction.csv`.
     pub table: Vec<u8>,
     /// `correction.svg`.
@@ -131,24 +144,42 @@ pub(super) fn design(
     warnings.extend(remarks.texts.iter().cloned());
     warnings.extend(doubts(pass, &identified, &correction, &machine));
     let mut summary = correct_summary(pass, &identified, &correction, remarks.set_aside, warnings);
-    let (mut program, mut image) = (None, None);
+    let (mut program, mut image, mut other_images) = (None, None, Vec::new());
+    let mut levels = Levels::default();
     for route in routes {
         match route {
             Route::Program => {
-                let written = corrected_program(pass, remarks.probe, &path, &correction)?;
+                let mut edits = Vec::new();
+                levels = levels::each(pass, &path, |_, pass, path| {
+                    edits.extend(block_edits(pass, path, &correction.nodes));
+                    Ok(())
+                })?;
+                let written = corrected_program(pass, remarks.probe, &edits)?;
                 summary.warnings.extend(kinked(&written.difference));
                 summary.program = Some(written.difference);
                 program = Some(written.text);
             }
-            Route::Coprocessor => image = Some(crate::image::build(pass, &identified, &path, &correction)?),
+            Route::Coprocessor => {
+                levels = levels::each(pass, &path, |number, other, path| {
+                    let bytes = crate::image::build(other, &identified, path, &correction)?;
+                    if number == pass.level() {
+                        image = Some(bytes);
+                    } else {
+                        other_images.push((number, bytes));
+                    }
+                    Ok(())
+                })?;
+            }
         }
     }
+    summary.warnings.append(&mut levels.left);
+    summary.feature = pass.feature(&levels.written);
     let table = correction_csv(&machine, &correction)?;
     let s_mm: Vec<f64> =
         path.samples()[path.first()..path.first() + path.count()].iter().map(|sample| mm(sample.s)).collect();
     let picture = crate::plot::correction(pass, &s_mm, &correction)?;
     progress(1.0);
-    Ok(Corrected { identified, correction, summary, program, image, table, picture })
+    Ok(Corrected { identified, correction, summary, program, image, other_images, table, picture })
 }
 
 /// Corrects and writes the outputs.
@@ -159,12 +190,16 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     let read = |job: &FilePath| {
         let mut job = Job::read(job)?;
         job.override_probe(&options.probe_flags)?;
+        job.which = options.which.clone();
         Pass::read(job)
     };
     let pass = read(options.job)?;
     let file = Source::read(options.probe)?;
     let first = options.first_pass.map(read).transpose()?;
-    let measurement = Measurement::read(first.as_ref().unwrap_or(&pass), &file)?;
+    let (pass, measurement) = match &first {
+        None => Measurement::of_any_depth(pass, &file)?,
+        Some(first) => (pass, Measurement::read(first, &file)?),
+    };
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
     let route = options.route.unwrap_or(pass.job.route);
     let remarks = measurement.remarks(&file);
@@ -184,6 +219,9 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     if let Some(bytes) = &done.image {
         folder.write("correction.tpi", bytes)?;
     }
+    for (number, bytes) in &done.other_images {
+        folder.write(&format!("correction-pass-{number}.tpi"), bytes)?;
+    }
     folder.write("correction.csv", &done.table)?;
     folder.write("points.csv", &points_csv(&measurement, &done.identified.observations)?)?;
     folder.write("summary.json", &json(&done.summary)?)?;
@@ -193,7 +231,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     Ok(done.summary)
 }
 
-fn corrected_program(pass: &Pass, probe: u32, path: &Path, correction: &Correction) -> Result<Rewritten, Failure> {
+fn corrected_program(pass: &Pass, probe: u32, edits: &[BlockEdit]) -> Result<Rewritten, Failure> {
     let origin = Origin { job: Some(crc32(pass.job.source().bytes())), probe: Some(probe) };
     let options = RewriteOptions {
         tolerance: pass.job.tolerance,
@@ -203,5 +241,5 @@ fn corrected_program(pass: &Pass, probe: u32, path: &Path, correction: &Correcti
         origin,
         ..RewriteOptions::default()
     };
-    rewrite_program(&pass.program, &block_edits(pass, path, &correction.nodes), &options)
+    rewrite_program(&pass.program, edits, &options)
 }

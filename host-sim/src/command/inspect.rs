@@ -3,7 +3,7 @@
 use std::path::Path as FilePath;
 
 use crate::diagnostics::{Failure, Source};
-use crate::job::{Job, ProbeFlags};
+use crate::job::{Job, ProbeFlags, Which};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::Pass;
@@ -39,7 +39,7 @@ pub struct Inspection {
 const FILES: &[&str] = &["points.csv", "summary.json", "probe-raw.txt"];
 
 /// What is inspected.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Options<'a> {
     /// The job.
     pub job: &'a FilePath,
@@ -51,6 +51,8 @@ pub struct Options<'a> {
     pub force: bool,
     /// What the command line says of the probe file.
     pub probe_flags: ProbeFlags,
+    /// Which cut of the program.
+    pub which: Which,
 }
 
 /// Compares a probe file with the wall of the job.
@@ -60,9 +62,10 @@ pub struct Options<'a> {
 pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let mut job = Job::read(options.job)?;
     job.override_probe(&options.probe_flags)?;
+    job.which = options.which.clone();
     let pass = Pass::read(job)?;
     let file = Source::read(options.probe)?;
-    let measurement = Measurement::read(&pass, &file)?;
+    let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(measurement.remarks(&file));
     let depth = mm(pass.job.numbers.cut.axial_depth);
@@ -74,10 +77,9 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
         height_mm: crate::report::float(c.height) * depth,
         error_mm: mm(c.error),
     });
-    let inspection = Inspection {
-        contacts: contacts.collect(),
-        summary: inspect_summary(&measurement.contacts, measurement.rejected.len(), warnings),
-    };
+    let mut summary = inspect_summary(&measurement.contacts, measurement.rejected.len(), warnings);
+    summary.feature = pass.feature(&[]);
+    let inspection = Inspection { contacts: contacts.collect(), summary };
     if let Some(out) = options.out {
         let folder = OutputFolder::create(out, options.force, FILES)?;
         folder.write("points.csv", &points_csv(&measurement, &[])?)?;

@@ -6,6 +6,7 @@ pub mod device;
 mod doubts;
 pub mod hil;
 pub mod inspect;
+mod levels;
 pub mod probe;
 pub mod second_pass;
 pub mod simulate;

@@ -7,7 +7,7 @@ use truepath_core::cut::{ForceTable, Loop, State};
 use truepath_core::geometry::Vector;
 
 use crate::diagnostics::{Failure, InputError, Source};
-use crate::job::Job;
+use crate::job::{Job, Which};
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
 use crate::plant;
@@ -28,6 +28,8 @@ pub struct Options<'a> {
     pub out: &'a FilePath,
     /// Replace existing files.
     pub force: bool,
+    /// Which cut of the program.
+    pub which: Which,
 }
 
 /// Simulates and writes trace and summary.
@@ -35,7 +37,9 @@ pub struct Options<'a> {
 /// # Errors
 /// Whatever is wrong with job, program or plant, and outputs that cannot be written.
 pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
-    let pass = Pass::read(Job::read(options.job)?)?;
+    let mut job = Job::read(options.job)?;
+    job.which = options.which.clone();
+    let pass = Pass::read(job)?;
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
     let mut warnings = pass.warnings.clone();
     let (by, trace) = match options.plant {

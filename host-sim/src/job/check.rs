@@ -9,13 +9,14 @@ use truepath_core::job::{Cut, Force, ForceModel, Machine};
 use truepath_core::units::{Offset, Real};
 
 use super::check_correct::correct;
+use super::check_feature::features;
 use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
 use super::check_tool::{reach, tool};
 use super::document::{Section, Spans};
 use super::limits::Limits;
 use super::material::MATERIALS;
-use super::{Decimal, Job};
+use super::{Decimal, Job, Which};
 use crate::diagnostics::{InputError, Source};
 
 /// Reads the whole job.
@@ -43,15 +44,9 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         ));
     }
     let wall = root.choice("wall", &[("left", Side::Left), ("right", Side::Right)])?;
-    if let Some(feature) = root.value("feature") {
-        let expected = "a program that holds exactly one finishing contour";
-        let help = "remove [[feature]] and give the contour a program of its own";
-        return Err(
-            InputError::new("J009", "[[feature]] is not supported yet", expected, help).at(&source, feature.span)
-        );
-    }
     let tool_section = root.required_section("tool", "diameter_mm, teeth and helix_deg")?;
     let tool = tool(&source, &tool_section)?;
+    let features = features(&source, &root, tool.diameter)?;
     let stock = stock(&root.required_section("stock", "allowance_mm")?, tool.diameter)?;
     let cut = cut(&root.required_section("cut", "axial_depth_mm")?)?;
     reach(&source, &tool_section, &tool, &cut)?;
@@ -74,6 +69,8 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         max_kink_deg: writing.max_kink_deg,
         route: writing.route,
         surface,
+        features,
+        which: Which::default(),
         spans: spans.into_inner(),
         source: source.clone(),
     })

@@ -249,9 +249,9 @@ impl<'d> Section<'d> {
             .at(self.source, key.span()))
     }
 
-    /// Where the table stands.
-    pub(super) fn span(&self) -> Range<usize> {
-        self.span.clone()
+    /// The text of the file at a span.
+    pub(super) fn text_at(&self, span: Range<usize>) -> String {
+        self.source.excerpt(span)
     }
 
     fn end(&self) -> Range<usize> {

@@ -18,10 +18,11 @@
 //! | J009 | recognised, not supported |
 //! | J010 | version of the format |
 //!
-//! Limits: one contour a job.
+//! Limits: one cutter and one correction a job; of several features one is corrected at a time.
 
 mod check;
 mod check_correct;
+mod check_feature;
 mod check_probe;
 mod check_stock;
 mod check_tool;
@@ -39,6 +40,8 @@ use truepath_core::units::Offset;
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::surface::Surface;
 
+pub(crate) use check_feature::is_id;
+pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
 pub use check_probe::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
 pub use decimal::Decimal;
 pub use material::{MATERIALS, Material};
@@ -62,8 +65,21 @@ pub struct Job {
     pub route: Route,
     /// The actual surface of the stock, as a path that can be opened; its allowance follows from it.
     pub surface: Option<PathBuf>,
+    /// The `[[feature]]` tables.
+    pub features: Vec<FeatureTable>,
+    /// Which feature and pass the command is about.
+    pub which: Which,
     source: Source,
     spans: document::Spans,
+}
+
+/// Which cut of a program with several a command is about.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Which {
+    /// The name of a feature; needed when the job has several finishing features.
+    pub feature: Option<String>,
+    /// The level of the feature, from 1; otherwise that of the probe points, or the first.
+    pub pass: Option<u32>,
 }
 
 /// Where the correction is applied; a job is corrected in one place only.

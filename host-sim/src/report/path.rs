@@ -2,11 +2,14 @@
 
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
-use truepath_core::geometry::{Point, Vector};
+use truepath_core::geometry::{Block, Point, Vector};
 use truepath_core::units::{Offset, Real};
 
 use crate::pass::Pass;
 use crate::program::BlockEdit;
+
+/// Distance of points along a lead.
+const STEP_NM: i64 = 100_000;
 
 /// The correction at an arc length: between the two samples that enclose it, or, where several stand on the spot of a
 /// sharp corner, that of the first of them (the end of the block before) or of the last (the start of the next).
@@ -26,11 +29,55 @@ fn correction_at(path: &Path, nodes: &[Node], s: Offset, ends_block: bool) -> Ve
     from + (to - from).scaled(u)
 }
 
-/// The corrected path, one list of points per line of the program, from the end of the block before to its own end.
+/// The corrected path, one list of points per line of the program, from the end of the block before to its own end. Where
+/// the moves that lead to the contour and away from it are known, the correction comes and goes along them.
 pub fn block_edits(pass: &Pass, path: &Path, nodes: &[Node]) -> Vec<BlockEdit> {
-    let samples = &path.samples()[path.first()..path.first() + path.count()];
-    let raw = |p: Point| [p.x.nm(), p.y.nm()];
+    let [lead_in, lead_out] = pass.leads();
     let mut edits: Vec<BlockEdit> = Vec::new();
+    if let Some(first) = pass.blocks.first() {
+        lead(lead_in, correction_at(path, nodes, first.s, false), true, &mut edits);
+    }
+    contour(pass, path, nodes, &mut edits);
+    if let Some(last) = pass.blocks.last() {
+        lead(lead_out, correction_at(path, nodes, last.s + last.curve.length(), true), false, &mut edits);
+    }
+    edits
+}
+
+const fn raw(p: Point) -> [i64; 2] {
+    [p.x.nm(), p.y.nm()]
+}
+
+/// Adds a line's points to those there are; a line with several moves is one edit.
+fn add(edits: &mut Vec<BlockEdit>, line: u32, points: Vec<[i64; 2]>) {
+    match edits.last_mut() {
+        Some(last) if last.line == line => last.samples.extend_from_slice(&points[1..]),
+        _ => edits.push(BlockEdit { line, samples: points }),
+    }
+}
+
+/// Moves along which the correction grows from nothing to `full`, or fades: smoothly, so that neither end has a kink.
+fn lead(blocks: &[Block], full: Vector, grows: bool, edits: &mut Vec<BlockEdit>) {
+    let whole = blocks.iter().fold(Offset::ZERO, |sum, b| sum + b.curve.length());
+    let mut before = Offset::ZERO;
+    for block in blocks {
+        let length = block.curve.length();
+        let pieces = (length.nm() / STEP_NM).max(1) + 1;
+        let point = |k: i64| {
+            let fraction = Real::ratio(k, pieces);
+            let u = (before + length.scaled(fraction)).over(whole).max(Real::ZERO).min(Real::ONE);
+            let u = if grows { u } else { Real::ONE - u };
+            let share = u * u * (Real::from_int(3) - u - u);
+            raw(block.curve.point(fraction) + full.scaled(share))
+        };
+        let points = (0..=pieces).map(point).collect();
+        add(edits, block.line, points);
+        before += length;
+    }
+}
+
+fn contour(pass: &Pass, path: &Path, nodes: &[Node], edits: &mut Vec<BlockEdit>) {
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
     let mut at = 0usize;
     for block in &pass.blocks {
         let end = block.s + block.curve.length();
@@ -46,10 +93,6 @@ pub fn block_edits(pass: &Pass, path: &Path, nodes: &[Node]) -> Vec<BlockEdit> {
             at += 1;
         }
         points.push(raw(block.curve.end() + correction_at(path, nodes, end, true)));
-        match edits.last_mut() {
-            Some(last) if last.line == block.line => last.samples.extend_from_slice(&points[1..]),
-            _ => edits.push(BlockEdit { line: block.line, samples: points }),
-        }
+        add(edits, block.line, points);
     }
-    edits
 }

@@ -10,6 +10,7 @@ use truepath_core::units::{Offset, Real};
 use super::tables::TraceRow;
 use super::{float, mm};
 use crate::correction::{Correction, Identified};
+use crate::feature::FeatureSummary;
 use crate::pass::Pass;
 use crate::program::Difference;
 
@@ -68,6 +69,9 @@ pub struct CorrectSummary {
     /// The corrected program against its original, when one was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub program: Option<Difference>,
+    /// The feature it is about; absent in a program with one cut and no names.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub feature: Option<FeatureSummary>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -105,6 +109,7 @@ pub fn correct_summary(
         points_rejected: rejected,
         fit_residual_mm: (squares / observations.len().max(1) as f64).sqrt(),
         program_crc32: format!("{:08x}", pass.core.program_crc),
+        feature: pass.feature(&[]),
         program: None,
         warnings,
     }
@@ -168,6 +173,9 @@ pub struct SimulateSummary {
     pub max_chip_volume_mm3: f64,
     /// Climb or conventional.
     pub milling: &'static str,
+    /// The feature it is about; absent in a program with one cut and no names.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub feature: Option<FeatureSummary>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -187,6 +195,7 @@ pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warni
         max_chip_area_mm2: most(|r| r.chip_area_mm2),
         max_chip_volume_mm3: most(|r| r.chip_area_mm2) * mm(pass.core.setup.radius),
         milling: crate::pass::milling_name(pass.core.setup.milling),
+        feature: pass.feature(&[]),
         warnings,
     }
 }
@@ -210,6 +219,9 @@ pub struct InspectSummary {
     pub rms_error_mm: f64,
     /// Largest spread over the heights of one place, mm.
     pub spread_over_height_mm: f64,
+    /// The feature it is about; absent in a program with one cut and no names.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub feature: Option<FeatureSummary>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -235,6 +247,7 @@ pub fn inspect_summary(contacts: &[Contact], rejected: usize, warnings: Vec<Stri
         min_error_mm: errors.iter().copied().fold(f64::MAX, f64::min),
         rms_error_mm: (errors.iter().map(|e| e * e).sum::<f64>() / n).sqrt(),
         spread_over_height_mm: mm(spread.unwrap_or_default()),
+        feature: None,
         warnings,
     }
 }
