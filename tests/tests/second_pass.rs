@@ -55,6 +55,7 @@ fn single_part(name: &str, places: &[f64], levels: &[f64]) -> (f64, f64) {
         route: Some(Route::Program),
         first_pass: Some(&written.job),
         probe_flags: ProbeFlags::default(),
+        which: Default::default(),
     };
     correct::run(&options, &mut |_| ()).unwrap();
     assert!(fs::read_to_string(result.join("first-pass-surface.csv")).unwrap().starts_with("x_mm,y_mm\n"));
