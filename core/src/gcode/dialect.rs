@@ -30,6 +30,10 @@ impl Dialect {
     pub const fn has_metric_g71(self) -> bool {
         matches!(self, Self::Siemens | Self::Mach)
     }
+    /// The largest number of a parameter.
+    pub const fn largest_parameter(self) -> u16 {
+        if matches!(self, Self::Linuxcnc) { 5_601 } else { u16::MAX }
+    }
     /// How many numbered parameters, from `#1`, belong to a call.
     pub const fn locals(self) -> u8 {
         if self.has_macro_b() { 33 } else { 30 }

@@ -110,22 +110,21 @@ impl<'t> Interpreter<'t> {
         S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
     {
         let program = program.into();
-        memory.start();
-        let mut reader = Reader::new(program);
+        memory.start(self.options.dialect);
+        let mut reader = Reader::new(program, &self.options);
         let mut warnings = Warnings::default();
         reader.frame().warn(&mut warnings);
         let mut sentence = Sentence::new(program.text);
         let mut execution = Execution::new(self.options, memory, warnings, sink);
         while reader.next(&mut execution, &mut sentence)? {
             let next = execution.sentence(&sentence)?;
-            if next == Next::End {
-                break;
+            if next != Next::Continue {
+                reader.follow(next, &sentence, &mut execution)?;
             }
-            reader.follow(next);
         }
         if execution.end.is_none() {
             execution.stop_compensation(sentence.line.span())?;
-            execution.warn(WarningKind::EndMissing, sentence.line.span());
+            execution.warn_at(WarningKind::EndMissing, &sentence.line, sentence.line.span());
         } else if let Some(line) = reader.text_after_end() {
             execution.warn_at(WarningKind::TextAfterEnd, &line, line.span());
         }

@@ -68,13 +68,8 @@ impl fmt::Display for GcodeErrorKind {
             Self::StrayParenthesis => {
                 f.write_str("`)` without `(`: comments do not nest, so the comment ended at the first `)`; remove the inner parentheses")
             }
-            Self::Expression(b) => write!(
-                f,
-                "{} belongs to a parameter or an expression, which are not evaluated; post the program with plain numbers",
-                Byte(b)
-            ),
-            Self::NamedProgram => {
-                f.write_str("named or controlled subprograms (O words) are not executed; post the program without subprograms")
+            Self::Stray(b) => {
+                write!(f, "{} does not belong here; a parameter is set with `#1=…`, and an expression stands in [ ] behind a letter", Byte(b))
             }
             Self::Text => f.write_str("text outside a comment; put it in ( ) if it is a remark, or post the program in plain G-code"),
             Self::ForeignDialect(Foreign::Heidenhain) => {
@@ -89,6 +84,8 @@ impl fmt::Display for GcodeErrorKind {
             }
             Self::Parameter(error) => error.fmt(f),
             Self::Compensation(error) => error.fmt(f),
+            Self::Expression(error) => error.fmt(f),
+            Self::Flow(error) => error.fmt(f),
             _ => self.fmt_block(f),
         }
     }

@@ -28,11 +28,13 @@
 mod block;
 mod canon;
 mod code;
+mod comment;
 pub mod compensation;
 mod contour;
 mod dialect;
 mod error;
 mod execute;
+mod expression;
 mod flow;
 mod identity;
 mod interpreter;
@@ -48,12 +50,13 @@ mod warning;
 
 pub use canon::{Canon, Event, ShiftKind, Source};
 pub use code::GCode;
+pub use comment::{Comment, CommentKind};
 pub use contour::{
     Candidate, ContourOptions, ContourProgram, Criteria, Found, Role, RunPart, find_contours, read_contour, search,
     visit_runs,
 };
 pub use dialect::Dialect;
-pub use error::{Foreign, GcodeError, GcodeErrorKind, ParameterError};
+pub use error::{ExpressionError, FlowError, Foreign, GcodeError, GcodeErrorKind, ParameterError};
 pub use execute::{Modal, Motion, Tool};
 pub use flow::{Library, LibraryFile, Program, Word};
 pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};

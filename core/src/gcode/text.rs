@@ -71,6 +71,10 @@ impl<'a> Lines<'a> {
         let at = if program.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
         Self { program, at, number: 0 }
     }
+    /// From a line of them on.
+    pub(super) const fn again(&self, line: &Line<'a>) -> Self {
+        Self { program: self.program, at: line.start, number: line.number.saturating_sub(1) }
+    }
 }
 
 impl<'a> Iterator for Lines<'a> {

@@ -2,7 +2,7 @@
 
 use super::super::compensation::CompensationError;
 use super::super::{GCode, LineRange, RunPart};
-use super::{Foreign, ParameterError};
+use super::{ExpressionError, FlowError, Foreign, ParameterError};
 use crate::units::Offset;
 
 /// What is wrong.
@@ -24,10 +24,8 @@ pub enum GcodeErrorKind {
     UnclosedComment,
     /// `)` without `(`.
     StrayParenthesis,
-    /// `#`, `[`, `]`, `=` or `*`: a parameter or an expression.
-    Expression(u8),
-    /// `O<name>` or `O100 sub`: a named or controlled subprogram.
-    NamedProgram,
+    /// `#`, `[`, `]`, `=` or `*` where none belongs.
+    Stray(u8),
     /// Three or more letters in a row outside a comment.
     Text,
     /// The program is in another language.
@@ -179,6 +177,10 @@ pub enum GcodeErrorKind {
     Parameter(ParameterError),
     /// Cutter radius compensation.
     Compensation(CompensationError),
+    /// An expression.
+    Expression(ExpressionError),
+    /// The order in which blocks are executed.
+    Flow(FlowError),
 
     /// No cutting move in X or Y at constant Z.
     NoContour,
@@ -218,8 +220,7 @@ impl GcodeErrorKind {
             Self::NumberTooLarge { .. } => "G003",
             Self::UnclosedComment => "G004",
             Self::StrayParenthesis => "G005",
-            Self::Expression(_) => "G006",
-            Self::NamedProgram => "G007",
+            Self::Stray(_) => "G006",
             Self::Text => "G008",
             Self::ForeignDialect(_) => "G009",
             Self::TextAfterPercent => "G010",
@@ -233,6 +234,8 @@ impl GcodeErrorKind {
             Self::TooManyWords { .. } => "G047",
             Self::Parameter(error) => error.code(),
             Self::Compensation(error) => error.code(),
+            Self::Expression(error) => error.code(),
+            Self::Flow(error) => error.code(),
             Self::NotWhole { .. } => "G027",
             Self::Negative { .. } => "G028",
             Self::UnusedWord { .. } => "G029",

@@ -19,8 +19,17 @@ pub enum ParameterError {
         /// How many bytes of names.
         bytes: u16,
     },
-    /// A parameter number that does not exist or cannot be set.
-    Number,
+    /// A parameter number that does not exist.
+    Number {
+        /// The largest that does.
+        largest: u16,
+    },
+    /// A parameter number with decimals.
+    NotWhole,
+    /// A named parameter that was never set.
+    NotDefined,
+    /// A parameter that follows the machine is set.
+    ReadOnly,
 }
 
 impl ParameterError {
@@ -29,7 +38,10 @@ impl ParameterError {
         match self {
             Self::TooMany { .. } => "G080",
             Self::TooManyNames { .. } => "G081",
-            Self::Number => "G082",
+            Self::Number { .. } => "G082",
+            Self::NotWhole => "G083",
+            Self::NotDefined => "G084",
+            Self::ReadOnly => "G085",
         }
     }
 }
@@ -52,7 +64,12 @@ impl fmt::Display for ParameterError {
                     "more named parameters than the memory holds, {limit} names of {bytes} bytes together; use fewer or shorter names"
                 )
             }
-            Self::Number => f.write_str("a parameter number lies between 1 and 65535; correct the number"),
+            Self::Number { largest } => {
+                write!(f, "a parameter number lies between 1 and {largest}; correct the number")
+            }
+            Self::NotWhole => f.write_str("a parameter number has no decimals; round it"),
+            Self::NotDefined => f.write_str("this parameter has no value yet; set it before it is used"),
+            Self::ReadOnly => f.write_str("this parameter follows the machine and cannot be set; use another one"),
         }
     }
 }

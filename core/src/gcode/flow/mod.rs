@@ -1,12 +1,19 @@
 //! The order in which the blocks of a program are executed: its reader, and the programs it calls.
 
+mod call;
+mod control;
 mod frame;
+mod keyword;
 mod next;
+mod open;
+mod place;
 mod program;
 mod reader;
 mod sentence;
+mod statement;
 
-pub(super) use next::Next;
+#[expect(unused_imports, reason = "calls are answered as their codes are executed")]
+pub(super) use next::{Next, Target};
 pub use program::{Library, LibraryFile, Program};
 pub(super) use reader::Reader;
 pub(super) use sentence::Sentence;

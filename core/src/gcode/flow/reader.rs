@@ -1,27 +1,76 @@
 //! Walks a program: block after block, each with the values of its words.
 
-use super::super::lexical::{Token, Words};
+use super::super::expression::{Evaluator, Fault, name, parameter_number};
+use super::super::lexical::{Token, Words, trimmed};
 use super::super::parameter::Surroundings;
-use super::super::{GcodeError, GcodeErrorKind, Line, Lines, Number, Source};
+use super::super::{
+    Dialect, FlowError, GcodeError, GcodeErrorKind, Line, Number, Options, ParameterError, Source, Span,
+};
 use super::Program;
+use super::call::Call;
 use super::frame::Frame;
-use super::next::Next;
+use super::open::OpenList;
+use super::place::Place;
 use super::sentence::{Sentence, Word};
 
-/// The place in a program.
+/// Calls inside each other.
+pub(super) const CALLS: usize = 10;
+/// Parameters set in one block.
+const ASSIGNMENTS: usize = 32;
+
+/// The place in a program, and what has led there.
 #[derive(Debug)]
 pub(in super::super) struct Reader<'p> {
-    program: Program<'p>,
+    pub(super) program: Program<'p>,
+    pub(super) dialect: Dialect,
+    pub(super) place: Place<'p>,
+    pub(super) calls: heapless::Vec<Call<'p>, CALLS>,
+    pub(super) open: OpenList<'p>,
+    pub(super) jumps: u32,
+    pub(super) ended: bool,
+    /// The line being read.
+    pub(super) line: Line<'p>,
     frame: Frame<'p>,
-    lines: Lines<'p>,
-    ended: bool,
+    skip_block_delete: bool,
+    block_limit: u32,
+    blocks: u32,
 }
+
+/// What a line turned out to be.
+enum Read {
+    Empty,
+    Block,
+    /// A statement that steers the program.
+    Control(Span),
+}
+
+/// What an assignment sets.
+#[derive(Clone, Copy)]
+enum Destination {
+    Number(u16),
+    /// A name, by its bytes from `<` to the end of the line.
+    Name(usize),
+}
+
+type Assignments = heapless::Vec<(Destination, f64), ASSIGNMENTS>;
 
 impl<'p> Reader<'p> {
     /// Before the first block.
-    pub(in super::super) fn new(program: Program<'p>) -> Self {
-        let frame = Frame::of(program.text);
-        Self { program, frame, lines: Lines::new(program.text), ended: false }
+    pub(in super::super) fn new(program: Program<'p>, options: &Options) -> Self {
+        Self {
+            program,
+            dialect: options.dialect,
+            place: Place::start_of(program.text, 0),
+            calls: heapless::Vec::new(),
+            open: OpenList::default(),
+            jumps: 0,
+            ended: false,
+            line: Line { number: 1, start: 0, text: &[] },
+            frame: Frame::of(program.text),
+            skip_block_delete: options.skip_block_delete,
+            block_limit: options.block_limit,
+            blocks: 0,
+        }
     }
 
     /// Which part of the file is the program.
@@ -30,83 +79,224 @@ impl<'p> Reader<'p> {
     }
 
     /// Reads the next block to be executed; `false` when there is none.
-    pub(in super::super) fn next<'m>(
+    pub(in super::super) fn next(
         &mut self,
-        _machine: &mut dyn Surroundings<'m>,
+        machine: &mut dyn Surroundings<'_>,
         sentence: &mut Sentence<'p>,
     ) -> Result<bool, GcodeError> {
-        if self.ended {
-            return Ok(false);
-        }
-        loop {
-            let Some(line) = self.lines.next() else {
-                return Ok(false);
+        while !self.ended {
+            let Some(line) = self.place.lines.next() else {
+                self.end_of_text(machine)?;
+                continue;
             };
-            if self.frame.holds(line.number) {
-                self.read(line, sentence)?;
-                return Ok(true);
+            if self.place.file == 0 && !self.frame.holds(line.number) {
+                continue;
+            }
+            self.line = line;
+            self.count()?;
+            match self.read(machine, sentence)? {
+                Read::Empty => {}
+                Read::Block => return Ok(true),
+                Read::Control(span) => self.steer(span, machine)?,
             }
         }
+        Ok(false)
     }
 
-    /// Goes where a block leads.
-    pub(in super::super) fn follow(&mut self, next: Next) {
-        self.ended = next == Next::End;
-    }
-
-    /// The first line with text behind the end of the program.
+    /// The first line with text behind the end of the program, unless that is a subprogram.
     pub(in super::super) fn text_after_end(&mut self) -> Option<Line<'p>> {
-        let (lines, frame) = (&mut self.lines, &self.frame);
-        lines.find(|line| frame.holds(line.number) && frame.is_text(line))
+        if !self.calls.is_empty() {
+            return None;
+        }
+        let (lines, frame) = (&mut self.place.lines, &self.frame);
+        let text = |line: &Line<'_>| frame.holds(line.number) && frame.is_text(line);
+        let is_program = |line: &Line<'_>| matches!(trimmed(line.text).first(), Some(b'O' | b'o' | b':'));
+        lines.find(text).filter(|line| !is_program(line))
     }
 
-    fn read(&mut self, line: Line<'p>, sentence: &mut Sentence<'p>) -> Result<(), GcodeError> {
-        sentence.text = self.program.text;
+    /// Counts blocks from the first jump on: without one, a program ends.
+    fn count(&mut self) -> Result<(), GcodeError> {
+        if self.jumps > 0 {
+            self.blocks = self.blocks.saturating_add(1);
+            if self.blocks > self.block_limit {
+                return Err(self.error(FlowError::TooLong { limit: self.block_limit }, self.line.span()));
+            }
+        }
+        Ok(())
+    }
+
+    fn read(&self, machine: &mut dyn Surroundings<'_>, sentence: &mut Sentence<'p>) -> Result<Read, GcodeError> {
+        let line = self.line;
+        sentence.text = self.place.text;
         sentence.line = line;
-        sentence.source = Source { line: line.number, block: line.span(), ..Source::NONE };
+        sentence.source = Source {
+            file: self.place.file,
+            line: line.number,
+            block: line.span(),
+            number: None,
+            block_delete: false,
+            depth: self.calls.len() as u8,
+            jumps: self.jumps,
+        };
         sentence.words.clear();
         sentence.block_delete = None;
         sentence.has_comments = false;
-        let error = |kind, span| GcodeError::new(kind, &line, span);
+        let mut assignments = Assignments::new();
         let mut begun = false;
         for token in Words::new(line) {
-            match token? {
+            match token.map_err(|e| e.in_file(self.place.file))? {
+                Token::Word(word) if word.letter != b'N' => {
+                    begun = true;
+                    let value = match word.value {
+                        Some(value) => Number::Exact(value),
+                        None => match self.value(machine, word.span, 1)? {
+                            Some(value) => Number::Computed(value),
+                            None => continue,
+                        },
+                    };
+                    let word = Word { letter: word.letter, value, span: word.span };
+                    sentence.push(word).map_err(|kind| self.error(kind, word.span))?;
+                }
+                Token::Word(word) => {
+                    if begun {
+                        return Err(self.error(GcodeErrorKind::OutOfPlace { letter: b'N' }, word.span));
+                    }
+                    let before = core::mem::replace(&mut sentence.source.number, word.value);
+                    if before.is_some() {
+                        return Err(self.error(GcodeErrorKind::DuplicateWord { letter: b'N' }, word.span));
+                    }
+                }
                 Token::Comment { .. } => sentence.has_comments = true,
                 Token::Percent(_) => {}
                 Token::BlockDelete { span, .. } => {
                     if begun || sentence.block_delete.is_some() {
-                        return Err(error(GcodeErrorKind::OutOfPlace { letter: b'/' }, span));
+                        return Err(self.error(GcodeErrorKind::OutOfPlace { letter: b'/' }, span));
                     }
                     sentence.block_delete = Some(span);
                     sentence.source.block_delete = true;
-                }
-                Token::Word(word) => {
-                    let unknown = || error(GcodeErrorKind::Expression(b'['), word.span);
-                    let value = word.value.ok_or_else(unknown)?;
-                    if word.letter == b'N' {
-                        if begun {
-                            return Err(error(GcodeErrorKind::OutOfPlace { letter: b'N' }, word.span));
-                        }
-                        if sentence.source.number.replace(value).is_some() {
-                            return Err(error(GcodeErrorKind::DuplicateWord { letter: b'N' }, word.span));
-                        }
-                        continue;
+                    if self.skip_block_delete {
+                        return Ok(Read::Block);
                     }
-                    begun = true;
-                    let value = Number::Exact(value);
-                    let word = Word { letter: word.letter, value, span: word.span };
-                    sentence.push(word).map_err(|kind| error(kind, word.span))?;
                 }
                 Token::Corner(word) => {
-                    let unknown = || error(GcodeErrorKind::Expression(b'['), word.span);
-                    let value = Number::Exact(word.value.ok_or_else(unknown)?);
-                    let word = Word { letter: word.letter.to_ascii_lowercase(), value, span: word.span };
-                    sentence.push(word).map_err(|kind| error(kind, word.span))?;
+                    begun = true;
+                    let letter = word.letter.to_ascii_lowercase();
+                    let skipped = word.span.len.saturating_sub(self.behind_letter(word.span));
+                    let value = match word.value {
+                        Some(value) => Number::Exact(value),
+                        None => match self.value(machine, word.span, skipped)? {
+                            Some(value) => Number::Computed(value),
+                            None => continue,
+                        },
+                    };
+                    let word = Word { letter, value, span: word.span };
+                    sentence.push(word).map_err(|kind| self.error(kind, word.span))?;
                 }
-                Token::Assignment(span) => return Err(error(GcodeErrorKind::Expression(b'='), span)),
-                Token::Control(span) => return Err(error(GcodeErrorKind::NamedProgram, span)),
+                Token::Assignment(span) => {
+                    begun = true;
+                    let assignment = self.assignment(machine, span)?;
+                    let limit = ASSIGNMENTS as u8;
+                    let full = |_| self.error(FlowError::TooManyAssignments { limit }, span);
+                    assignments.push(assignment).map_err(full)?;
+                }
+                Token::Control(span) => return Ok(Read::Control(span)),
             }
         }
+        self.assign(machine, &assignments)?;
+        let empty = sentence.words.is_empty() && !sentence.has_comments && sentence.block_delete.is_none();
+        Ok(if empty { Read::Empty } else { Read::Block })
+    }
+
+    /// Bytes of a corner word behind its letter.
+    fn behind_letter(&self, span: Span) -> usize {
+        let text = self.rest(span.start).get(..span.len).unwrap_or(&[]);
+        text.iter().position(u8::is_ascii_alphabetic).map_or(0, |n| span.len.saturating_sub(n).saturating_sub(1))
+    }
+
+    /// The line from an offset of the file on.
+    pub(super) fn rest(&self, start: usize) -> &'p [u8] {
+        self.line.text.get(start.saturating_sub(self.line.start)..).unwrap_or(&[])
+    }
+
+    /// The value of a word behind its first `skipped` bytes; `None` for a vacant parameter.
+    fn value(&self, machine: &dyn Surroundings<'_>, span: Span, skipped: usize) -> Result<Option<f64>, GcodeError> {
+        let (value, rest) = self.evaluate(machine, self.rest(span.start.saturating_add(skipped)), false)?;
+        self.ends_at(rest, span.end())?;
+        Ok(if value.is_nan() { None } else { Some(value) })
+    }
+
+    /// The value at the start of a rest of the line, and what follows it.
+    pub(super) fn evaluate(
+        &self,
+        machine: &dyn Surroundings<'_>,
+        text: &'p [u8],
+        open: bool,
+    ) -> Result<(f64, &'p [u8]), GcodeError> {
+        Evaluator::new(machine, self.dialect).value(text, open).map_err(|fault| self.fault(fault))
+    }
+
+    /// What the lexer measured must be what was computed.
+    fn ends_at(&self, rest: &[u8], end: usize) -> Result<(), GcodeError> {
+        let at = self.line.span().end().saturating_sub(rest.len());
+        if at == end {
+            return Ok(());
+        }
+        let byte = trimmed(rest).first().copied().unwrap_or(b' ');
+        Err(self.error(GcodeErrorKind::UnexpectedByte(byte), Span { start: at, len: 1 }))
+    }
+
+    fn assignment(&self, machine: &dyn Surroundings<'_>, span: Span) -> Result<(Destination, f64), GcodeError> {
+        let text = trimmed(self.rest(span.start.saturating_add(1)));
+        let (destination, rest) = if text.first() == Some(&b'<') {
+            let (_, len) = name(text).map_err(|kind| self.error(kind, span))?;
+            (Destination::Name(text.len()), text.get(len..).unwrap_or(&[]))
+        } else {
+            let (number, rest) = self.evaluate(machine, text, false)?;
+            let number = parameter_number(number, self.dialect).map_err(|kind| self.error(kind, span))?;
+            if number == 0 {
+                let largest = self.dialect.largest_parameter();
+                return Err(self.error(ParameterError::Number { largest }, span));
+            }
+            if machine.number(u32::from(number)).is_some() {
+                return Err(self.error(ParameterError::ReadOnly, span));
+            }
+            (Destination::Number(number), rest)
+        };
+        let right = trimmed(rest).strip_prefix(b"=").unwrap_or(&[]);
+        let (value, rest) = self.evaluate(machine, right, self.dialect.has_macro_b())?;
+        self.ends_at(rest, span.end())?;
+        Ok((destination, value))
+    }
+
+    /// Makes the assignments of a block, after all of it was read.
+    fn assign(&self, machine: &mut dyn Surroundings<'_>, assignments: &Assignments) -> Result<(), GcodeError> {
+        for &(destination, value) in assignments {
+            let done = match destination {
+                Destination::Number(number) => machine.memory_mut().set(number, value),
+                Destination::Name(left) => {
+                    let start = self.line.text.len().saturating_sub(left);
+                    let (name, _) = name(self.line.text.get(start..).unwrap_or(&[]))
+                        .map_err(|kind| self.error(kind, self.line.span()))?;
+                    if machine.named(&name).is_some() {
+                        Err(ParameterError::ReadOnly)
+                    } else {
+                        machine.memory_mut().set_named(&name, value)
+                    }
+                }
+            };
+            done.map_err(|kind| self.error(kind, self.line.span()))?;
+        }
         Ok(())
+    }
+
+    /// An error at bytes of the present line.
+    pub(super) fn error(&self, kind: impl Into<GcodeErrorKind>, span: Span) -> GcodeError {
+        GcodeError::new(kind.into(), &self.line, span).in_file(self.place.file)
+    }
+
+    fn fault(&self, fault: Fault) -> GcodeError {
+        let end = self.line.span().end();
+        let span = Span { start: end.saturating_sub(fault.from), len: fault.from.saturating_sub(fault.to).max(1) };
+        self.error(fault.kind, span)
     }
 }

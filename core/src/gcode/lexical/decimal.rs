@@ -5,13 +5,6 @@
 //! (RS274/NGC §3.3.2.1). Digits beyond the 18th significant one are dropped: less than 10⁻⁸ nm on any length a
 //! machine can travel.
 
-use nom::branch::alt;
-use nom::bytes::complete::take_while;
-use nom::character::complete::{one_of, satisfy};
-use nom::combinator::opt;
-use nom::sequence::preceded;
-use nom::{IResult, Parser};
-
 use crate::units::{Real, div_rounded};
 
 /// A decimal number, `mantissa / 10^decimals`, as it stands in the program.
@@ -81,7 +74,7 @@ impl Decimal {
 
 /// Why the text after a letter is no number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum NumberError {
+pub(in super::super) enum NumberError {
     /// No digit.
     Missing,
     /// More than 18 digits before the point.
@@ -93,73 +86,46 @@ pub(in super::super) const fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | 0 | 0x0B | 0x0C | 0x1A)
 }
 
-/// Skips blanks; never fails.
-pub(super) fn blanks(input: &[u8]) -> IResult<&[u8], &[u8]> {
-    take_while(is_blank).parse(input)
-}
-
-/// The digits read so far.
-#[derive(Clone, Copy, Default)]
-struct Digits {
-    mantissa: i64,
-    significant: u8,
-    decimals: u8,
-    point: bool,
-    any: bool,
-    too_large: bool,
-}
-
-impl Digits {
-    fn push(mut self, character: char) -> Self {
-        let Some(digit) = character.to_digit(10) else {
-            self.point = true;
-            return self;
-        };
-        self.any = true;
-        if self.point && self.decimals == DIGITS {
-            return self;
-        }
-        if self.significant == DIGITS {
-            self.too_large |= !self.point;
-            return self;
-        }
-        self.mantissa = self.mantissa.saturating_mul(10).saturating_add(i64::from(digit));
-        self.significant = self.significant.saturating_add(u8::from(self.mantissa != 0));
-        self.decimals = self.decimals.saturating_add(u8::from(self.point));
-        self
-    }
+/// The bytes behind the blanks in front.
+pub(in super::super) fn trimmed(text: &[u8]) -> &[u8] {
+    let blanks = text.iter().take_while(|&&b| is_blank(b)).count();
+    text.get(blanks..).unwrap_or(&[])
 }
 
 /// A number, with the blanks before and inside it; what follows it is the rest.
-pub(super) fn number(input: &[u8]) -> (&[u8], Result<Decimal, NumberError>) {
-    let (mut rest, sign) = optional(input, &mut one_of("+-"));
-    let mut digits = Digits::default();
-    loop {
-        let digit = satisfy(|c| c.is_ascii_digit());
-        let next =
-            if digits.point { optional(rest, &mut { digit }) } else { optional(rest, &mut alt((digit, one_of(".")))) };
-        let (after, Some(character)) = next else {
+pub(in super::super) fn number(input: &[u8]) -> (&[u8], Result<Decimal, NumberError>) {
+    let (mut mantissa, mut significant, mut decimals) = (0i64, 0u8, 0u8);
+    let (mut negative, mut signed, mut point, mut any, mut too_large) = (false, false, false, false, false);
+    let mut end = 0usize;
+    for (index, &byte) in input.iter().enumerate() {
+        let digit = byte.wrapping_sub(b'0');
+        if digit < 10 {
+            any = true;
+            if significant < DIGITS && decimals < DIGITS {
+                mantissa = mantissa.wrapping_mul(10).wrapping_add(i64::from(digit));
+                significant = significant.wrapping_add(u8::from(mantissa != 0));
+                decimals = decimals.wrapping_add(u8::from(point));
+            } else {
+                too_large |= !point;
+            }
+        } else if byte == b'.' && !point {
+            point = true;
+        } else if is_blank(byte) {
+            continue;
+        } else if matches!(byte, b'+' | b'-') && !signed && !point && !any {
+            signed = true;
+            negative = byte == b'-';
+        } else {
             break;
-        };
-        digits = digits.push(character);
-        rest = after;
+        }
+        end = index.saturating_add(1);
     }
-    let mantissa = if sign == Some('-') { digits.mantissa.saturating_neg() } else { digits.mantissa };
-    let value = match (digits.any, digits.too_large) {
+    let value = match (any, too_large) {
         (false, _) => Err(NumberError::Missing),
         (true, true) => Err(NumberError::TooLarge),
-        (true, false) => Ok(Decimal { mantissa, decimals: digits.decimals }),
+        (true, false) => Ok(Decimal { mantissa: if negative { mantissa.wrapping_neg() } else { mantissa }, decimals }),
     };
-    (rest, value)
-}
-
-/// One character after any blanks, if it is there; otherwise nothing is taken, the blanks included.
-fn optional<'a>(
-    input: &'a [u8],
-    parser: &mut impl Parser<&'a [u8], Output = char, Error = nom::error::Error<&'a [u8]>>,
-) -> (&'a [u8], Option<char>) {
-    let by_reference = |i| parser.parse(i);
-    opt(preceded(blanks, by_reference)).parse(input).unwrap_or((input, None))
+    (input.get(end..).unwrap_or(&[]), value)
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! Bytes → words: numbers, letters, comments and statements of one line, without knowing what they mean.
 
 mod decimal;
+mod extent;
 mod number;
 mod word;
 
 pub use decimal::Decimal;
-pub(super) use decimal::is_blank;
+pub(super) use decimal::{NumberError, is_blank, number, trimmed};
 pub use number::Number;
 pub use word::{Token, Words, WrittenWord};

@@ -1,18 +1,15 @@
 //! Bytes → words: the lexical layer, one line at a time.
 //!
-//! A line is an optional `/`, words of one letter and one number in any case and with blanks anywhere, comments in
-//! `( )` (they do not nest) and a comment after `;`. `:1234` is the program name `O1234`. Sources: RS274/NGC
-//! interpreter version 3 (Kramer, Proctor, Messina, NIST 6556) §3.3, and the Fanuc and Haas spellings of the same.
-//! Nothing is skipped: a byte that belongs to none of these is an error with its place.
-//!
-//! Limits: plain numbers only; expressions, parameters, named subprograms and `,R` corners are recognised and refused.
-
-use nom::bytes::complete::{tag_no_case, take_while};
-use nom::{IResult, Parser};
+//! A line is an optional `/`, words of one letter and one number in any case and with blanks anywhere, assignments of
+//! parameters, comments in `( )` (they do not nest) and a comment after `;`; or a statement that steers the program.
+//! `:1234` is the program name `O1234`. Sources: RS274/NGC interpreter version 3 (Kramer, Proctor, Messina, NIST 6556)
+//! §3.3, and the Fanuc and Haas spellings of the same. Nothing is skipped: a byte that belongs to none of these is an
+//! error with its place. Expressions are measured here, not computed.
 
 use super::super::{Foreign, GcodeError, GcodeErrorKind, Line, Span};
 use super::Decimal;
-use super::decimal::{NumberError, blanks, number};
+use super::decimal::{NumberError, number, trimmed};
+use super::extent;
 
 /// A letter with what stands behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,13 +75,15 @@ pub struct Words<'a> {
     rest: &'a [u8],
     first: bool,
     percent: bool,
+    /// Whether a word or an assignment has been read: statements stand before all others.
+    begun: bool,
     failed: bool,
 }
 
 impl<'a> Words<'a> {
     /// Of this line.
     pub const fn new(line: Line<'a>) -> Self {
-        Self { line, rest: line.text, first: true, percent: false, failed: false }
+        Self { line, rest: line.text, first: true, percent: false, begun: false, failed: false }
     }
 
     fn offset(&self, rest: &[u8]) -> usize {
@@ -131,10 +130,29 @@ impl<'a> Words<'a> {
                 Ok(Token::Percent(self.span_from(from)))
             }
             b':' => self.word(from, b'O'),
-            _ if byte.is_ascii_alphabetic() => self.word(from, byte.to_ascii_uppercase()),
+            b'A'..=b'Z' | b'a'..=b'z' => {
+                let letter = byte.to_ascii_uppercase();
+                if !self.begun {
+                    let next_is_letter = self.rest.first().is_some_and(u8::is_ascii_alphabetic);
+                    if (next_is_letter && extent::is_statement(from)) || (letter == b'O' && is_control(self.rest)) {
+                        self.rest = from.get(extent::statement(from)..).unwrap_or(&[]);
+                        return Ok(Token::Control(self.span_from(from)));
+                    }
+                    self.begun = letter != b'N';
+                }
+                self.word(from, letter)
+            }
+            b'#' => {
+                let Some(len) = extent::assignment(from) else {
+                    return Err(self.error(from, GcodeErrorKind::Stray(byte)));
+                };
+                self.begun = true;
+                self.rest = from.get(len..).unwrap_or(&[]);
+                Ok(Token::Assignment(self.span_from(from)))
+            }
             b')' => Err(self.error(from, GcodeErrorKind::StrayParenthesis)),
-            b',' => Err(self.error(from, GcodeErrorKind::CornerRounding)),
-            b'[' | b']' | b'#' | b'=' | b'*' => Err(self.error(from, GcodeErrorKind::Expression(byte))),
+            b',' => self.corner(from),
+            b'[' | b']' | b'=' | b'*' => Err(self.error(from, GcodeErrorKind::Stray(byte))),
             _ => Err(self.error(from, GcodeErrorKind::UnexpectedByte(byte))),
         }
     }
@@ -159,32 +177,49 @@ impl<'a> Words<'a> {
     }
 
     fn word(&mut self, from: &'a [u8], letter: u8) -> Result<Token, GcodeError> {
+        self.value(from, letter).map(Token::Word)
+    }
+
+    /// `,R` or `,C` behind its comma.
+    fn corner(&mut self, from: &'a [u8]) -> Result<Token, GcodeError> {
+        let rest = trimmed(self.rest);
+        match rest.first().map(u8::to_ascii_uppercase) {
+            Some(letter @ (b'R' | b'C')) => {
+                self.rest = rest.get(1..).unwrap_or(&[]);
+                self.value(from, letter).map(Token::Corner)
+            }
+            _ => Err(self.error(from, GcodeErrorKind::UnexpectedByte(b','))),
+        }
+    }
+
+    /// The number or expression of a letter that has just been read.
+    fn value(&mut self, from: &'a [u8], letter: u8) -> Result<WrittenWord, GcodeError> {
         let (rest, value) = number(self.rest);
         match value {
             Ok(value) => {
                 self.rest = rest;
-                let word = WrittenWord { letter, value: Some(value), span: self.span_from(from) };
-                let after = blanks(rest).map_or(rest, |(after, _)| after);
-                if letter == b'O' && letters(after) > 1 {
-                    return Err(self.error(from, GcodeErrorKind::NamedProgram));
-                }
-                Ok(Token::Word(word))
+                Ok(WrittenWord { letter, value: Some(value), span: self.span_from(from) })
             }
             Err(NumberError::TooLarge) => {
                 self.rest = rest;
                 Err(self.error(from, GcodeErrorKind::NumberTooLarge { letter }))
             }
-            Err(NumberError::Missing) => Err(self.missing(from, letter)),
+            Err(NumberError::Missing) => match extent::value(self.rest).filter(|_| letter != b'N') {
+                Some(len) if !is_signs_only(self.rest) => {
+                    self.advance(len);
+                    Ok(WrittenWord { letter, value: None, span: self.span_from(from) })
+                }
+                _ => Err(self.missing(from, letter)),
+            },
         }
     }
 
     /// Tells what stands where a number should.
     fn missing(&mut self, from: &'a [u8], letter: u8) -> GcodeError {
-        let next = blanks(self.rest).ok().and_then(|(rest, _)| rest.first().copied());
+        let next = trimmed(self.rest).first().copied();
         let run = letters(from);
         let kind = match next {
-            Some(b'<') if letter == b'O' => GcodeErrorKind::NamedProgram,
-            Some(byte @ (b'[' | b'#' | b'=')) => GcodeErrorKind::Expression(byte),
+            Some(byte @ (b'[' | b'#' | b'=')) => GcodeErrorKind::Stray(byte),
             // Three letters in a row are a word of a language; two are more likely a forgotten number.
             _ if run > 2 => {
                 self.advance(run.saturating_sub(1));
@@ -203,9 +238,7 @@ impl Iterator for Words<'_> {
         if self.failed {
             return None;
         }
-        if let Ok((rest, _)) = blanks(self.rest) {
-            self.rest = rest;
-        }
+        self.rest = trimmed(self.rest);
         let byte = *self.rest.first()?;
         let token = self.token(byte);
         self.failed = token.is_err();
@@ -218,12 +251,30 @@ fn letters(text: &[u8]) -> usize {
     text.iter().take_while(|b| b.is_ascii_alphabetic()).count()
 }
 
+/// Whether what stands behind an O steers the program: a name, an expression, or a number with a word of letters.
+fn is_control(text: &[u8]) -> bool {
+    match trimmed(text).first() {
+        Some(b'<' | b'[' | b'#') => true,
+        Some(b'0'..=b'9') => letters(trimmed(number(text).0)) > 1,
+        _ => false,
+    }
+}
+
+/// Whether two signs stand here, which no number has.
+fn is_signs_only(text: &[u8]) -> bool {
+    let sign = |t: &[u8]| matches!(t.first(), Some(b'+' | b'-'));
+    sign(trimmed(text)) && trimmed(text).get(1..).map(trimmed).is_some_and(sign)
+}
+
 /// `BEGIN PGM`, with or without Heidenhain's line number before it.
 fn is_heidenhain(text: &[u8]) -> bool {
-    let digits = take_while(|b: u8| b.is_ascii_digit());
-    let mut begin = (blanks, digits, blanks, tag_no_case(&b"BEGIN"[..]), blanks, tag_no_case(&b"PGM"[..]));
-    let read: IResult<&[u8], _> = begin.parse(text);
-    read.is_ok()
+    if !matches!(text.first(), Some(b'0'..=b'9' | b'B' | b'b')) {
+        return false;
+    }
+    let digits = text.iter().take_while(|b| b.is_ascii_digit()).count();
+    let word = |text: &[u8], word: &[u8]| text.get(..word.len()).is_some_and(|t| t.eq_ignore_ascii_case(word));
+    let begin = trimmed(text.get(digits..).unwrap_or(&[]));
+    word(begin, b"BEGIN") && word(trimmed(begin.get(5..).unwrap_or(&[])), b"PGM")
 }
 
 #[cfg(test)]

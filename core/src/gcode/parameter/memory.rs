@@ -9,7 +9,7 @@
 //!
 //! What does not fit is refused with the limit. The values a program finds are those the memory holds when it starts.
 
-use super::super::ParameterError;
+use super::super::{Dialect, ParameterError};
 use super::named::{NamedSlot, Names};
 use super::numbered::{LEVELS, Levels, LocalValues, Table};
 
@@ -17,14 +17,14 @@ use super::numbered::{LEVELS, Levels, LocalValues, Table};
 #[derive(Debug)]
 pub struct Memory<'a> {
     table: Table<'a>,
-    pub(in super::super) names: Names<'a>,
-    pub(in super::super) levels: Levels<'a>,
+    names: Names<'a>,
+    levels: Levels<'a>,
 }
 
 impl Memory<'_> {
-    /// The value of a numbered parameter; 0 when it was never set.
+    /// The value of a numbered parameter; 0 when it was never set, or no number in the dialects in which it is vacant then.
     pub fn get(&self, number: u16) -> f64 {
-        self.levels.get(number).or_else(|| self.table.get(number)).unwrap_or(0.0)
+        self.levels.get(number).or_else(|| self.table.get(number)).unwrap_or(self.levels.vacant())
     }
 
     /// Sets a numbered parameter.
@@ -37,7 +37,11 @@ impl Memory<'_> {
 
     /// The value of a named parameter, by its name in lower case without blanks.
     pub fn named(&self, name: &[u8]) -> Option<f64> {
-        self.names.get(name, self.levels.depth())
+        self.names.get(name, self.levels.depth()).or(match name {
+            b"_call_level" => Some(f64::from(self.levels.depth())),
+            b"_value" | b"_value_returned" => Some(0.0),
+            _ => None,
+        })
     }
 
     /// Sets a named parameter: one whose name begins with `_` for the whole program, any other for the present call.
@@ -56,9 +60,20 @@ impl Memory<'_> {
     }
 
     /// Ends all calls and forgets what belongs to them.
-    pub(in super::super) fn start(&mut self) {
-        self.levels.reset();
+    pub(in super::super) fn start(&mut self, dialect: Dialect) {
+        self.levels.start(dialect);
         self.names.leave(0);
+    }
+
+    /// Begins a call with local parameters of its own.
+    pub(in super::super) fn enter(&mut self) {
+        self.levels.enter();
+    }
+
+    /// Ends it.
+    pub(in super::super) fn leave(&mut self) {
+        self.levels.leave();
+        self.names.leave(self.levels.depth());
     }
 }
 

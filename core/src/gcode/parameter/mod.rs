@@ -28,6 +28,5 @@ pub trait MachineParameters {
 /// The same with a memory that can be written to.
 pub(super) trait Surroundings<'m>: MachineParameters {
     /// The memory.
-    #[expect(dead_code, reason = "assignments and calls write to it")]
     fn memory_mut(&mut self) -> &mut Memory<'m>;
 }

@@ -3,7 +3,7 @@
 //! The table is one of open addressing: only numbers that were set take room. Number 0 is Fanuc's "vacant", stands in no
 //! table and marks a free place.
 
-use super::super::ParameterError;
+use super::super::{Dialect, ParameterError};
 
 /// Local parameters a level has room for: Fanuc's `#1` … `#33`.
 pub(super) const LOCALS: usize = 33;
@@ -48,7 +48,7 @@ impl<'a> Table<'a> {
 
     pub(super) fn set(&mut self, number: u16, value: f64) -> Result<(), ParameterError> {
         if number == 0 {
-            return Err(ParameterError::Number);
+            return Err(ParameterError::Number { largest: u16::MAX });
         }
         let full = ParameterError::TooMany { limit: u16::try_from(self.numbers.len()).unwrap_or(u16::MAX) };
         let place = self.place(number).ok_or(full)?;
@@ -68,11 +68,13 @@ pub(in super::super) struct Levels<'a> {
     depth: u8,
     /// How many numbers are local: 30 in LinuxCNC, 33 in Fanuc.
     locals: u8,
+    /// The value of what was never set: 0 in LinuxCNC, no number in Fanuc.
+    vacant: f64,
 }
 
 impl<'a> Levels<'a> {
     pub(super) const fn new(values: &'a mut [LocalValues; LEVELS]) -> Self {
-        Self { values, depth: 0, locals: 30 }
+        Self { values, depth: 0, locals: 30, vacant: 0.0 }
     }
 
     /// The present level, 0 for the main program.
@@ -100,15 +102,42 @@ impl<'a> Levels<'a> {
         }
     }
 
-    pub(super) fn reset(&mut self) {
+    /// The value of what was never set.
+    pub(super) const fn vacant(&self) -> f64 {
+        self.vacant
+    }
+
+    /// At the start of a program; what the local parameters of the main program hold stays.
+    pub(super) fn start(&mut self, dialect: Dialect) {
         self.depth = 0;
+        self.locals = dialect.locals();
+        self.vacant = if dialect.has_macro_b() { f64::NAN } else { 0.0 };
+        if dialect.has_macro_b() {
+            self.fill();
+        }
+    }
+
+    /// One level deeper, where nothing is set. The reader bounds the calls, so there is room.
+    pub(super) fn enter(&mut self) {
+        self.depth = self.depth.saturating_add(1);
+        self.fill();
+    }
+
+    /// One level up.
+    pub(super) fn leave(&mut self) {
+        self.depth = self.depth.saturating_sub(1);
+    }
+
+    fn fill(&mut self) {
+        if let Some(level) = self.values.get_mut(usize::from(self.depth)) {
+            level.fill(self.vacant);
+        }
     }
 
     /// Back to the main program, whose local parameters are 0.
     pub(super) fn clear(&mut self) {
         self.depth = 0;
-        if let Some(level) = self.values.get_mut(usize::from(self.depth)) {
-            level.fill(0.0);
-        }
+        self.vacant = 0.0;
+        self.fill();
     }
 }
