@@ -31,10 +31,9 @@ pub(super) struct Arguments {
 }
 
 /// One of a list of names, as its place in the list.
-fn names<T: Copy, const N: usize>(choices: &'static [(&'static str, T); N]) -> impl TypedValueParser<Value = usize>
-where
-    T: Send + Sync,
-{
+fn names<T: Copy + Send + Sync, const N: usize>(
+    choices: &'static [(&'static str, T); N],
+) -> impl TypedValueParser<Value = usize> {
     PossibleValuesParser::new(choices.iter().map(|(name, _)| *name))
         .map(|text| choices.iter().position(|(name, _)| *name == text).unwrap_or(0))
 }
