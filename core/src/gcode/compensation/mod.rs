@@ -6,6 +6,10 @@
 //! Which joints count as corners, how the first move enters, and what is refused, follow what LinuxCNC 2.9 was
 //! observed to do; the geometry is derived here.
 //!
+//! Where LinuxCNC cuts into a wall without a word this is stricter: a line used up between its corners is refused also
+//! before an outside corner with an arc, and a full circle met at a small angle stays a full circle (one turn and a
+//! little) where LinuxCNC's numbers leave the little alone.
+//!
 //! Everything is computed in whole numbers: places are within 1 nm of the exact ones for corners of more than
 //! 0.05 rad, and a program that is shifted, turned by 90° or mirrored gives the shifted, turned or mirrored path to
 //! the last bit.
