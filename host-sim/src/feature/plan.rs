@@ -66,7 +66,7 @@ pub fn plan(job: &Job, program: &Source) -> Result<Option<Plan>, Failure> {
         return Ok(None);
     }
     let marked = marked(program)?;
-    let survey = Survey::read(program)?;
+    let survey = Survey::read(job, program)?;
     let regions = regions(job, program, &marked)?;
     let simple = regions.iter().all(|r| r.origin == Origin::Search) && job.which == Which::default();
     if simple && survey.runs.len() <= 1 {

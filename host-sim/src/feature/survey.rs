@@ -7,6 +7,7 @@ use truepath_core::geometry::Block;
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{InputError, Source};
+use crate::job::Job;
 
 /// Different runs that are compared with each other at most; the time grows with the square of their number.
 pub(super) const LARGEST_SEARCH: usize = 2_000;
@@ -22,12 +23,15 @@ pub(super) struct Survey {
 }
 
 impl Survey {
-    /// Reads a program.
-    pub(super) fn read(program: &Source) -> Result<Self, InputError> {
+    /// Reads a program as the job says that its control does.
+    pub(super) fn read(job: &Job, program: &Source) -> Result<Self, InputError> {
         let mut blocks: Vec<Block> = Vec::new();
         let mut read: Vec<Candidate> = Vec::new();
         let mut memory = Box::new(HostMemory::new());
-        let (text, options) = (Program::new(program.bytes()), ContourOptions::default());
+        let (text, options) = (
+            Program::new(program.bytes()),
+            ContourOptions { program: job.numbers.program_options(), ..ContourOptions::default() },
+        );
         let (on_block, on_run) = (|block: &Block| blocks.push(*block), |run: &Candidate| read.push(*run));
         visit_runs(&text, &mut memory.lend(), &options, on_block, on_run)
             .map_err(|error| InputError::of_program(program, &error))?;
