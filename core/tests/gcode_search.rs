@@ -158,3 +158,18 @@ fn a_loop_gives_a_run_each_time_only_when_it_is_left_in_between() {
     let (_, runs, _) = searched(&program, &criteria(None));
     assert_eq!(runs.iter().map(|f| f.run.blocks).collect::<Vec<_>>(), [8, 4]);
 }
+
+#[test]
+fn moves_before_the_offset_is_taken_and_after_it_is_given_up_are_leads() {
+    // An open wall: nothing but G41 and G40 tells its leads.
+    let wall = |y: i32| {
+        format!("G0 X0 Y20\nG1 Z-4 F100\nG1 X2\nG41 D1 G1 X5 Y{y}\nG1 X40\nG1 X60 Y{}\nG40 G1 X70 Y30\nG0 Z5\n", y - 9)
+    };
+    let program = format!("G21 G90\nG0 Z5\n{}{}M2\n", wall(1), wall(0));
+    let (count, runs, _) = searched(&program, &criteria(None));
+    assert_eq!(count, 1);
+    for (found, first) in runs.iter().zip([7, 15]) {
+        assert_eq!((found.skipped, found.run.blocks), (2, 2));
+        assert_eq!(found.run.lines, LineRange { first, last: first + 1 });
+    }
+}

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
-use truepath::command::correct::{Corrected, correct};
+use truepath::command::correct::{Corrected, correct as corrected_in_memory};
+use truepath::command::{correct, inspect, simulate};
 use truepath::diagnostics::{Failure, Form, InputError, Source};
-use truepath::job::{Job, Route};
+use truepath::job::{Job, ProbeFlags, Route, Which};
 use truepath::measurement::Measurement;
 use truepath::pass::Pass;
 use truepath::plant::Machine;
@@ -46,7 +47,7 @@ fn corrected(pass: &Pass, ball: f64) -> (Pass, Corrected) {
     let mut asked = pass.job.clone();
     asked.which.pass = None;
     let (pass, measurement) = Measurement::of_any_depth(Pass::read(asked).unwrap(), &file).unwrap();
-    let done = correct(&pass, &measurement, &[], &[Route::Coprocessor, Route::Program], &mut |_| ())
+    let done = corrected_in_memory(&pass, &measurement, &[], &[Route::Coprocessor, Route::Program], &mut |_| ())
         .unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)));
     (pass, done)
 }
@@ -237,4 +238,67 @@ fn wrong_markers_are_told_with_their_place() {
             refused(Job::read(&folder.path().join("job.toml")).map_err(Failure::from).and_then(Pass::read));
         assert_eq!((error.code(), error.line_column().map(|p| p.0)), (code, Some(line)), "{shown}");
     }
+}
+
+#[test]
+fn every_command_takes_the_feature_and_writes_what_it_chose() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    for name in ["markers.nc", "markers.toml", "pocket.nc", "pocket.toml"] {
+        std::fs::copy(data(name), at(name)).unwrap();
+    }
+    let which = Which { feature: Some("pocket".to_owned()), pass: None };
+    let (job, out) = (at("markers.toml"), at("simulated"));
+    let options = simulate::Options { job: &job, plant: None, out: &out, force: false, which };
+    let feature = simulate::run(&options).unwrap().feature.unwrap();
+    assert_eq!((feature.id.as_deref(), feature.chosen_by), (Some("pocket"), "markers"));
+    let without = simulate::Options { which: Which::default(), out: &at("never"), ..options };
+    assert!(matches!(simulate::run(&without), Err(Failure::Input(error)) if error.code() == "N001"));
+    assert!(!at("never").exists());
+
+    let pass = job_of("pocket.toml", Some(2));
+    let milled = workshop::mill(&pass, &toml::from_str(PLANT).unwrap(), None).unwrap();
+    let probe = workshop::probe(&pass, &milled, &[15.0, 60.0, 95.0, 140.0], &[0.3, 0.8], 4.0).unwrap();
+    std::fs::write(at("probe.txt"), probe).unwrap();
+    let (job, probe, which) = (at("pocket.toml"), at("probe.txt"), Which::default());
+    let flags = ProbeFlags::default();
+    let out = at("inspected");
+    let options = inspect::Options {
+        job: &job,
+        probe: &probe,
+        out: Some(&out),
+        force: false,
+        probe_flags: flags,
+        which: which.clone(),
+    };
+    let summary = inspect::run(&options).unwrap().summary;
+    assert_eq!((summary.feature.unwrap().pass, summary.points), (2, 8));
+    for (route, files) in [
+        (Route::Program, &["corrected.nc", "difference.txt"][..]),
+        (Route::Coprocessor, &["correction.tpi", "correction-pass-1.tpi"][..]),
+    ] {
+        let out = at(files[0]);
+        let which = which.clone();
+        let options = correct::Options {
+            job: &job,
+            probe: &probe,
+            out: &out,
+            force: false,
+            route: Some(route),
+            first_pass: None,
+            probe_flags: flags,
+            which,
+        };
+        correct::run(&options, &mut |_| ()).unwrap();
+        assert!(files.iter().all(|name| out.join(name).exists()), "{route:?}");
+        let summary: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(out.join("summary.json")).unwrap()).unwrap();
+        assert_eq!(summary["feature"]["pass"], 2);
+        assert_eq!(summary["feature"]["passes_corrected"], serde_json::json!([1, 2]));
+        assert_eq!(summary["feature"]["candidates"].as_array().unwrap().len(), 9);
+    }
+}
+
+fn job_of(name: &str, pass: Option<u32>) -> Pass {
+    job(name, "", None, pass).unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)))
 }
