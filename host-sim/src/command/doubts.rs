@@ -74,9 +74,14 @@ pub(super) fn doubts(pass: &Pass, identified: &Identified, correction: &Correcti
 
 /// A kink of the written path beyond the one asked for.
 pub(super) fn kinked(difference: &Difference) -> Option<String> {
+    let reason = if difference.largest_kink_beyond_path_deg > difference.max_kink_deg {
+        "correct.tolerance_mm allows no smoother path"
+    } else {
+        "the correction itself changes that fast there"
+    };
     (difference.largest_kink_deg > difference.max_kink_deg).then(|| {
         format!(
-            "corrected.nc:{}: the corrected path turns by {:.2} degrees on the spot (correct.max_kink_deg = {}): the correction itself changes that fast there",
+            "corrected.nc:{}: the path turns by {:.2} degrees on the spot (correct.max_kink_deg = {}): {reason}",
             difference.largest_kink_line, difference.largest_kink_deg, difference.max_kink_deg
         )
     })

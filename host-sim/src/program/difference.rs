@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use truepath_core::gcode::Lines;
 
 use super::deviation::distance;
-use super::proof::Proof;
+use super::proof::{Kink, Proof};
 use super::survey::Move;
 use super::vector::length;
 use super::{BlockEdit, RewriteOptions};
@@ -50,7 +50,9 @@ pub struct Difference {
     pub largest_kink_deg: f64,
     /// The line of the corrected program that begins with it; 0 without any.
     pub largest_kink_line: u32,
-    /// What it should not exceed, degrees.
+    /// The largest part of a kink that the wanted path does not have itself, degrees.
+    pub largest_kink_beyond_path_deg: f64,
+    /// What that should not exceed, degrees.
     pub max_kink_deg: f64,
     /// Steps (moves, feeds, speeds, tools, functions, comments) outside the contour, all compared and the same.
     pub steps_outside_compared: usize,
@@ -69,6 +71,7 @@ impl Difference {
         proof: &Proof,
         options: &RewriteOptions,
     ) -> Self {
+        let kink = proof.kinks.iter().copied().fold(Kink::default(), |a, b| if b.degrees > a.degrees { b } else { a });
         let others = touched.filter(|line| edits.iter().all(|e| e.line != *line)).collect();
         Self {
             program_lines: Lines::new(program).count(),
@@ -80,8 +83,9 @@ impl Difference {
             largest_shift: largest_shift(moves, edits),
             largest_deviation_mm: proof.deviation_nm / 1e6,
             tolerance_mm: options.tolerance.nm() as f64 / 1e6,
-            largest_kink_deg: proof.kink.0,
-            largest_kink_line: proof.kink.1,
+            largest_kink_deg: kink.degrees,
+            largest_kink_line: kink.line,
+            largest_kink_beyond_path_deg: proof.kinks.iter().map(|k| k.beyond).fold(0.0, f64::max),
             max_kink_deg: options.max_kink_deg,
             steps_outside_compared: proof.steps_outside,
             moves_outside_compared: proof.moves_outside,
@@ -109,7 +113,8 @@ impl Difference {
              written for the contour           {} G1, {} G2/G3\n\
              largest shift                     {:.4} mm, line {} near X{:.3} Y{:.3} mm\n\
              largest deviation from the path   {:.5} mm (tolerance {} mm)\n\
-             largest kink where it was smooth  {kink} (aim {} deg)\n\
+             largest kink where it was smooth  {kink}\n\
+             beyond the wanted path's own turn {:.3} deg (limit {} deg)\n\
              \n\
              Both programs were then read and compared step by step:\n\
              {} steps outside the contour, {} of them moves: the same, but for the ends at the contour.\n\
@@ -131,6 +136,7 @@ impl Difference {
             shift.y_mm,
             self.largest_deviation_mm,
             self.tolerance_mm,
+            self.largest_kink_beyond_path_deg,
             self.max_kink_deg,
             self.steps_outside_compared,
             self.moves_outside_compared,

@@ -134,30 +134,58 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
         .into());
     }
     let moves = survey::survey(original, options.program).map_err(|e| InputError::of_program(source, &e))?;
-    if let Some(compensated) = moves.iter().find(|m| m.modal.compensated) {
-        let help = "correct on the coprocessor (--route coprocessor), or post the path of the cutter's centre";
-        let found = "G41 or G42 moves the path aside by the cutter's radius";
-        let error = InputError::new("P007", found, "a program of the cutter's centre", help);
-        let start = Lines::new(original).find(|line| line.number == compensated.line).map_or(0, |line| line.start);
-        return Err(error.at(source, start..start).into());
-    }
-    let written = writer::write(source, &moves, edits, &vec![options.tolerance.nm() as f64; edits.len()], options)?;
-    let units = moves.iter().map(|m| Grid::of(m.modal.units).step_nm()).fold(0.0, f64::max);
-    let claim = proof::Claim {
-        original,
-        written: &written.text,
-        touched: &written.touched,
-        head: (written.head.0, &written.head.1),
-        edits,
-        program: options.program,
-        tolerance: options.tolerance.nm() as f64,
-        step: units,
-    };
-    let proof = proof::prove(&claim)
-        .map_err(|what| Failure::Internal(format!("the corrected program is not what it should be: {what}")))?;
+    let (written, proof) = within_kinks(source, &moves, edits, options)?;
     let changed = (written.touched.keys().copied(), written.unchanged);
     let difference = Difference::new(original, &moves, edits, changed, &proof, options);
     Ok(Rewritten { text: written.text, difference })
+}
+
+/// Attempts to keep kinks below the limit.
+const ATTEMPTS: usize = 6;
+
+/// Writes, and again with a smaller tolerance for the lines whose kinks are too large: the heading steps between fitted
+/// pieces shrink with it. The text within the limit is taken, else the first one: shorter pieces that turn as much are worth nothing.
+fn within_kinks(
+    source: &Source,
+    moves: &[survey::Move],
+    edits: &[BlockEdit],
+    options: &RewriteOptions,
+) -> Result<(writer::Written, proof::Proof), Failure> {
+    let step = moves.iter().map(|m| Grid::of(m.modal.units).step_nm()).fold(0.0, f64::max);
+    let mut tolerances = vec![options.tolerance.nm() as f64; edits.len()];
+    let mut first = None;
+    for _ in 0..ATTEMPTS {
+        let written = writer::write(source, moves, edits, &tolerances, options)?;
+        let claim = proof::Claim {
+            original: source.bytes(),
+            written: &written.text,
+            touched: &written.touched,
+            head: (written.head.0, &written.head.1),
+            edits,
+            program: options.program,
+            tolerance: options.tolerance.nm() as f64,
+            step,
+        };
+        let proof = proof::prove(&claim)
+            .map_err(|what| Failure::Internal(format!("the corrected program is not what it should be: {what}")))?;
+        let mut largest = 0.0f64;
+        let before = tolerances.clone();
+        for kink in proof.kinks.iter().filter(|k| k.beyond > options.max_kink_deg) {
+            largest = largest.max(kink.beyond);
+            let from = if kink.at_start { kink.edit.saturating_sub(1) } else { kink.edit };
+            for edit in from..=kink.edit {
+                tolerances[edit] = (0.5 * before[edit]).max(2.0 * step);
+            }
+        }
+        if largest == 0.0 {
+            return Ok((written, proof));
+        }
+        first.get_or_insert((written, proof));
+        if tolerances == before {
+            break;
+        }
+    }
+    first.ok_or_else(|| Failure::Internal("no attempt to write the program was made".to_owned()))
 }
 
 /// Where the mark stands.

@@ -134,7 +134,7 @@ impl<'a> Writer<'a> {
 
     /// Keeps a move that stands still in the plane where the pen is.
     pub(super) fn follow(&mut self, pen: Pen, step: &Move) {
-        if !step.modal.absolute || !step.from.point().is_some_and(|p| !pen.is_at([p.x.nm(), p.y.nm()])) {
+        if !step.modal.absolute || step.from.point().is_none_or(|p| pen.is_at([p.x.nm(), p.y.nm()])) {
             return;
         }
         let block = self.block(step.line);

@@ -38,6 +38,14 @@ impl<'a> Follower<'a> {
         rest.iter().all(|s| length(difference(*s, place)) <= self.slack)
     }
 
+    /// The chords before and after the sample reached.
+    pub(super) fn chords(&self) -> [Option<[f64; 2]>; 2] {
+        let sample = |k: usize| self.samples.get(k).copied();
+        let chord = |a: Option<[i64; 2]>, b: Option<[i64; 2]>| Some(difference(b?, a?)).filter(|c| *c != [0.0; 2]);
+        let here = sample(self.at);
+        [chord(self.at.checked_sub(1).and_then(sample), here), chord(here, sample(self.at + 1))]
+    }
+
     /// Takes the next written curve; `false` when it leaves the samples.
     pub(super) fn take(&mut self, curve: &Curve) -> bool {
         let end = [curve.end().x.nm(), curve.end().y.nm()];

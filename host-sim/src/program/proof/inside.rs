@@ -4,12 +4,11 @@
 //! else the line does (comment, feed, coolant, stop) must be there once, before its path is over.
 
 use truepath_core::gcode::Canon;
-use truepath_core::geometry::Curve;
 
 use super::super::BlockEdit;
 use super::along::{Follower, difference};
 use super::facts::{Fact, What};
-use super::kink::{Kink, Turns};
+use super::kink::{Kink, Turns, Wanted};
 use super::outside::Shift;
 
 /// What was found along the contour.
@@ -17,9 +16,11 @@ use super::outside::Shift;
 pub(super) struct Along {
     pub(super) lines: usize,
     pub(super) arcs: usize,
-    pub(super) kink: Option<Kink>,
+    pub(super) kinks: Vec<Kink>,
     pub(super) deviation_nm: f64,
     pub(super) feeds: usize,
+    /// Edits of earlier stretches.
+    pub(super) first_edit: usize,
 }
 
 /// What everything is compared under.
@@ -41,7 +42,7 @@ pub(super) fn compare(
     let (mut old, mut new) = (0, 0);
     let mut turns = Turns::default();
     let mut place = edits.first().and_then(|e| e.samples.first().copied()).unwrap_or_default();
-    for edit in edits {
+    for (index, edit) in edits.iter().enumerate() {
         let fail = |what: &str, fact: Option<&Fact>| {
             let at = fact.map_or(String::new(), |f| format!(" (line {} as written)", f.line));
             format!("{what} of line {} has changed{at}", edit.line)
@@ -64,14 +65,17 @@ pub(super) fn compare(
         let (Some(first), Some(last)) = (cuts.first(), cuts.last()) else {
             return Err(fail("the path", None));
         };
-        turns.original(&first.curve(), &last.curve(), cuts.len());
+        turns.original(&first.curve(), &last.curve());
+        let bend = curvature(&cuts);
         let begin = new;
-        let mut follower = Follower::new(&edit.samples, curvature(&cuts), terms.tolerance, terms.slack);
+        let mut follower = Follower::new(&edit.samples, bend.abs(), terms.tolerance, terms.slack);
         let mut pieces = 0;
         while !follower.is_done(place) {
             let Some(fact) = written.get(new) else { return Err(fail("the end of the path", None)) };
             new += 1;
             let Some(curve) = fact.curve() else { continue };
+            let [before, after] = follower.chords();
+            let wanted = Wanted { chords: [before.or(turns.wanted_end), after], curvature: bend };
             if length(place, [curve.start().x.nm(), curve.start().y.nm()]) > terms.slack || !follower.take(&curve) {
                 return Err(fail("the path", Some(fact)));
             }
@@ -82,8 +86,9 @@ pub(super) fn compare(
                 What::Arc { .. } => along.arcs += 1,
                 _ => along.lines += 1,
             }
-            if let Some(kink) = turns.written(&curve, fact.line, pieces == 1) {
-                along.kink = along.kink.filter(|k| k.degrees >= kink.degrees).or(Some(kink));
+            if let Some([degrees, beyond]) = turns.written(&curve, pieces == 1, &wanted) {
+                let (edit, at_start) = (along.first_edit + index, pieces == 1);
+                along.kinks.push(Kink { degrees, beyond, line: fact.line, edit, at_start });
             }
         }
         if pieces == 0 {
@@ -91,6 +96,7 @@ pub(super) fn compare(
             let here = || written[new..].iter().take_while(|f| f.curve().is_none());
             new += here().position(|f| f.stands_still() && level(f)).map_or(0, |at| at + 1);
         }
+        turns.wanted_end = follower.chords()[0].or(turns.wanted_end);
         // What else the original does before its cut is over may stand behind a path that has vanished.
         let others = others(&original[from..old]);
         let count = others.len();
@@ -104,6 +110,7 @@ pub(super) fn compare(
         along.feeds += others.iter().filter(|o| o.starts_with("FeedRate")).count();
         along.deviation_nm = along.deviation_nm.max(follower.deviation);
     }
+    along.first_edit += edits.len();
     Ok(new)
 }
 
@@ -135,10 +142,10 @@ fn others(facts: &[Fact]) -> Vec<String> {
     texts
 }
 
-/// The largest curvature of the programmed curves, 1/nm.
+/// The curvature of the programmed curves, 1/nm, positive to the left: the largest in size.
 fn curvature(cuts: &[&Fact]) -> f64 {
-    let radii = cuts.iter().filter_map(|f| f.curve()?.signed_radius());
-    radii.map(|r| 1.0 / (r.nm().abs() as f64).max(1.0)).fold(0.0, f64::max)
+    let radii = cuts.iter().filter_map(|f| f.curve()?.signed_radius()).map(|r| r.nm() as f64);
+    radii.filter(|r| r.abs() >= 1.0).map(|r| 1.0 / r).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a })
 }
 
 /// Whether a move keeps its height.
@@ -179,21 +186,4 @@ pub(super) fn is_cut(fact: &Fact, edits: &[BlockEdit]) -> bool {
 /// Whether a step ends a stretch: a move in the plane that is not part of the contour.
 pub(super) fn ends_stretch(fact: &Fact, edits: &[BlockEdit]) -> bool {
     (fact.travels() && !is_cut(fact, edits)) || matches!(fact.what, What::Other(Canon::End(_)))
-}
-
-/// Headings of a curve at its start and end, from its geometry.
-pub(super) fn headings(curve: &Curve) -> [[f64; 2]; 2] {
-    use truepath_core::geometry::Shape;
-    let [start, end] = [curve.start(), curve.end()].map(|p| [p.x.nm(), p.y.nm()]);
-    match curve.shape() {
-        Shape::Line => [difference(end, start); 2],
-        Shape::Arc { centre, sweep } => {
-            let centre = [centre.x.nm(), centre.y.nm()];
-            let sense = if sweep.bits() < 0 { -1.0 } else { 1.0 };
-            [start, end].map(|p| {
-                let spoke = difference(p, centre);
-                [-sense * spoke[1], sense * spoke[0]]
-            })
-        }
-    }
 }

@@ -22,6 +22,7 @@ use truepath_core::gcode::{Lines, Options};
 use super::BlockEdit;
 use facts::{Fact, facts};
 use inside::{Along, Terms};
+pub(super) use kink::Kink;
 use outside::Bounds;
 
 /// What is compared.
@@ -48,8 +49,8 @@ pub(super) struct Proof {
     pub(super) arcs: usize,
     /// The largest distance between written path and wanted points, nm.
     pub(super) deviation_nm: f64,
-    /// The largest kink in a smooth place, degrees, and the line of the written program.
-    pub(super) kink: (f64, u32),
+    /// Kinks in places where the original is smooth.
+    pub(super) kinks: Vec<Kink>,
     /// Moves outside the contour that were compared.
     pub(super) moves_outside: usize,
     /// Steps outside the contour that were compared, moves included.
@@ -105,7 +106,7 @@ pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
     proof.lines = along.lines;
     proof.arcs = along.arcs;
     proof.deviation_nm = along.deviation_nm;
-    proof.kink = along.kink.map_or((0.0, 0), |k| (k.degrees, k.line));
+    proof.kinks = along.kinks;
     proof.feeds = along.feeds;
     Ok(proof)
 }
@@ -128,3 +129,6 @@ fn stretch_end(facts: &[Fact], begin: usize, edits: &[BlockEdit]) -> usize {
 fn edits_in(stretch: &[Fact], edits: &[BlockEdit]) -> usize {
     edits.iter().take_while(|e| stretch.iter().any(|f| f.curve().is_some() && f.line == e.line)).count()
 }
+
+#[cfg(test)]
+mod tests;
