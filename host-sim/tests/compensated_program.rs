@@ -5,7 +5,7 @@ use std::path::Path;
 use truepath::diagnostics::{Failure, Form, Source};
 use truepath::job::Job;
 use truepath::pass::Pass;
-use truepath::program::{RewriteOptions, rewrite_program};
+use truepath::program::{BlockEdit, RewriteOptions, rewrite_program};
 
 const JOB: &str = include_str!("../demo/corner/job.toml");
 
@@ -39,7 +39,8 @@ fn a_compensated_program_is_the_same_contour_as_the_path_of_the_centre() {
 fn a_compensated_program_is_not_corrected_in_its_own_text() {
     let drawn = shown(pass(DRAWN, "compensation = \"radius\""));
     let options = RewriteOptions { program: drawn.job.numbers.program_options(), ..RewriteOptions::default() };
-    let Err(error) = rewrite_program(&drawn.program, &[], &options) else { panic!("it was written") };
+    let edit = BlockEdit { line: 7, samples: Vec::new() };
+    let Err(error) = rewrite_program(&drawn.program, &[edit], &options) else { panic!("it was written") };
     let shown = error.render(Form::Plain);
     assert!(shown.contains("P007") && shown.contains("part.nc:7") && shown.contains("--route coprocessor"), "{shown}");
 }

@@ -107,6 +107,12 @@ impl<'a> Block<'a> {
                 edits.push((self.with_blanks_before(range), String::new()));
             }
         }
+        // A corner that the control was to round is part of the path now.
+        for token in &self.tokens {
+            if let Token::Corner(_) = token {
+                edits.push((self.with_blanks_before(self.range(token)), String::new()));
+            }
+        }
         self.edited(edits)
     }
 

@@ -118,8 +118,8 @@ pub struct Rewritten {
 /// `P001` for a program that is corrected already, `P002` when no move that can be displaced leads to the start of the
 /// contour, `P003` when one that cannot be displaced (a G18 arc, a probing move) begins at its end, `P004` when a line
 /// of the contour is executed several times, `P005` when the origin is set at the displaced end, `P006` for lines that
-/// cannot be divided (G93, arcs of several turns), `P007` for a program that the control compensates, the interpreter's own errors; internal when the edits do not belong
-/// to the program or the text fails the proof.
+/// cannot be divided (G93, arcs of several turns), `P007` when the control applies cutter compensation to it,
+/// the interpreter's own errors; internal when the edits do not belong to the program or the text fails the proof.
 pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOptions) -> Result<Rewritten, Failure> {
     let original = source.bytes();
     if is_marked_corrected(original) {

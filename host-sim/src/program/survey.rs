@@ -6,8 +6,10 @@ use truepath_core::geometry::Curve;
 /// One move, or something else that decides where the next one begins.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Move {
-    /// Line, counted from 1.
+    /// Line, counted from 1; 0 for a line of another file.
     pub(super) line: u32,
+    /// Calls, returns and jumps before it: a line that comes again with another number is executed again.
+    pub(super) jumps: u32,
     pub(super) kind: Kind,
     pub(super) from: Axes,
     pub(super) to: Axes,
@@ -80,7 +82,17 @@ pub(super) fn survey(program: &[u8], options: Options) -> Result<Vec<Move>, Gcod
             Canon::Shift(_) => (Kind::Origin, unknown, unknown),
             _ => return Ok(()),
         };
-        moves.push(Move { line: event.source.line, kind, from, to, modal: *event.modal, motion_before: line.1 });
+        let source = event.source;
+        let own_line = if source.file == 0 { source.line } else { 0 };
+        moves.push(Move {
+            line: own_line,
+            jumps: source.jumps,
+            kind,
+            from,
+            to,
+            modal: *event.modal,
+            motion_before: line.1,
+        });
         Ok(())
     })?;
     Ok(moves)

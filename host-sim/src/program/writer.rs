@@ -54,12 +54,14 @@ pub(super) fn write(
     if edits.is_empty() {
         return Err(Failure::Internal("there is no line to correct".to_owned()));
     }
-    writer.refuse_repetition(moves, edits)?;
+    writer.refuse_repetition(moves, edits.iter().map(|edit| edit.line))?;
+    writer.refuse_compensation(moves, edits)?;
     let mut edits: Vec<_> = edits.iter().zip(tolerances.iter().copied()).collect();
     edits.reverse();
     let (mut at, mut end) = (0, None);
     while let Some(&(edit, _)) = edits.last() {
         let Some(first) = moves[at..].iter().position(|m| m.line == edit.line && m.cuts()).map(|i| at + i) else {
+            writer.refuse_repetition(moves, moves.iter().map(|m| m.line).filter(|line| *line == 0))?;
             let text = format!("line {} is out of order or does not cut in the plane", edit.line);
             return Err(Failure::Internal(text));
         };
@@ -74,6 +76,7 @@ pub(super) fn write(
     if let Some(pen) = end {
         writer.depart(pen, &moves[at - 1], &moves[at..])?;
     }
+    writer.refuse_repetition(moves, writer.replaced.keys().copied())?;
     let (text, head) = assemble(source.bytes(), &writer.lines, &writer.replaced, options);
     let touched = writer.replaced.iter().map(|(&line, parts)| (line, parts.len())).collect();
     Ok(Written { text, head, touched, unchanged: writer.unchanged })
@@ -82,43 +85,59 @@ pub(super) fn write(
 impl<'a> Writer<'a> {
     /// A line as it was.
     pub(super) fn original(&self, number: u32) -> Block<'a> {
-        Block::new(self.lines[number as usize - 1], self.two_digits)
+        Block::new(self.line(number), self.two_digits)
+    }
+    /// Its text; nothing for a line of another file.
+    fn line(&self, number: u32) -> Line<'a> {
+        let index = (number as usize).checked_sub(1);
+        index.and_then(|i| self.lines.get(i)).copied().unwrap_or(Line { number, start: 0, text: &[] })
     }
     /// A line as it stands now.
     pub(super) fn block(&self, number: u32) -> Block<'_> {
         let line = match self.replaced.get(&number).and_then(|lines| lines.first()) {
             Some(text) => Line { number, start: 0, text },
-            None => self.lines[number as usize - 1],
+            None => self.line(number),
         };
         Block::new(line, self.two_digits)
     }
     pub(super) fn refusal(&self, code: &str, line: u32, texts: [&str; 3]) -> Failure {
-        let span = self.lines[line as usize - 1].span();
+        let span = self.line(line).span();
         let [found, expected, help] = texts;
         InputError::new(code, found, expected, help).at(self.source, span.start..span.end()).into()
     }
 
-    /// A line that the program executes several times cannot be edited in place.
-    fn refuse_repetition(&self, moves: &[Move], edits: &[BlockEdit]) -> Result<(), Failure> {
-        let cuts =
-            |line: u32| moves.iter().enumerate().filter(move |(_, m)| m.line == line && m.cuts()).map(|(i, _)| i);
-        for edit in edits {
-            let again = cuts(edit.line).zip(cuts(edit.line).skip(1)).any(|(a, b)| {
-                b > a + 1 && moves[a + 1..b].iter().any(|m| m.line != edit.line && (m.is_straight() || m.cuts()))
-            });
-            if again {
-                return Err(self.refusal(
-                    "P004",
-                    edit.line,
-                    [
-                        "this line of the contour is executed several times (a loop or a subprogram)",
-                        "a contour whose lines are executed once",
-                        "use --route coprocessor, or post the program without subprograms and loops",
-                    ],
-                ));
+    /// A line that the program executes several times, or that stands in another file, cannot be edited in place.
+    fn refuse_repetition(&self, moves: &[Move], lines: impl Iterator<Item = u32>) -> Result<(), Failure> {
+        const HELP: &str = "use --route coprocessor, or post the program without subprograms and loops";
+        for line in lines {
+            let mut times = moves.iter().filter(|m| m.line == line).map(|m| m.jumps);
+            let first = times.next();
+            if line == 0 || times.any(|jumps| Some(jumps) != first) {
+                let found = if line == 0 {
+                    "a line of the contour, or one that leads to or from it, stands in another file"
+                } else {
+                    "this line is executed several times (a loop or a subprogram), with one correction for each"
+                };
+                return Err(self.refusal("P004", line, [found, "lines of this file that are executed once", HELP]));
             }
         }
         Ok(())
+    }
+
+    /// A path that the control itself moves aside cannot be written: the correction is to the cutter's centre.
+    fn refuse_compensation(&self, moves: &[Move], edits: &[BlockEdit]) -> Result<(), Failure> {
+        let step = moves.iter().find(|m| m.modal.compensated && edits.iter().any(|e| e.line == m.line));
+        step.map_or(Ok(()), |step| {
+            Err(self.refusal(
+                "P007",
+                step.line,
+                [
+                    "the control moves this path aside by the cutter's radius (G41 or G42)",
+                    "the path of the cutter's centre",
+                    "post the program with the centre path (wear compensation), or use --route coprocessor",
+                ],
+            ))
+        })
     }
 
     /// Writes out the motion of a move that relied on the code of an earlier line, where that is another one now.
@@ -175,5 +194,30 @@ impl<'a> Writer<'a> {
             self.replaced.insert(step.line, vec![text]);
         }
         Some(Pen::new(target, &step.modal))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::survey::survey;
+    use super::*;
+
+    #[test]
+    fn a_line_of_the_contour_that_comes_again_is_refused_and_so_is_one_of_another_file() {
+        let source = Source::new("loop.nc", b"G21 G90 G0 X0 Y0\nG1 X10 F100\nG0 X0\nM2\n".to_vec());
+        let options = RewriteOptions::default();
+        let edits = [BlockEdit { line: 2, samples: vec![[0, 100_000], [10_000_000, 100_000]] }];
+        let once = survey(source.bytes(), options.program).expect("a readable program");
+        let written = |moves: &[Move]| write(&source, moves, &edits, &[1_000.0], &options);
+        assert!(written(&once).is_ok());
+
+        let again: Vec<Move> =
+            once.iter().chain(&once).enumerate().map(|(i, m)| Move { jumps: i as u32 / 3, ..*m }).collect();
+        let elsewhere: Vec<Move> =
+            once.iter().map(|m| Move { line: if m.line == 1 { 0 } else { m.line }, ..*m }).collect();
+        for (moves, line) in [(again, 2), (elsewhere, 1)] {
+            let Err(Failure::Input(error)) = written(&moves) else { panic!("an input error") };
+            assert_eq!((error.code(), error.line_column()), ("P004", Some((line, 1))), "{error}");
+        }
     }
 }

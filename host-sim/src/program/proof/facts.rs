@@ -6,7 +6,7 @@ use truepath_core::geometry::Curve;
 /// One step of a program.
 #[derive(Clone, Debug)]
 pub(super) struct Fact {
-    /// Line, counted from 1.
+    /// Line, counted from 1; 0 for a line of another file.
     pub(super) line: u32,
     /// N.
     pub(super) number: Option<Decimal>,
@@ -76,14 +76,14 @@ pub(super) fn facts(program: &[u8], options: Options) -> Result<Vec<Fact>, Gcode
         let what = match event.canon {
             // `;` at the end of a line says nothing.
             Canon::Comment(span) if span.len == 0 => return Ok(()),
-            Canon::Comment(span) => What::Comment(span.of(program).to_vec()),
+            Canon::Comment(span) => What::Comment(span.of(event.text).to_vec()),
             Canon::Traverse { from, to } => What::Straight { rapid: true, from, to },
             Canon::Feed { from, to } => What::Straight { rapid: false, from, to },
             Canon::Arc { from, to, curve, .. } => What::Arc { from, to, curve },
             other => What::Other(other),
         };
         facts.push(Fact {
-            line: event.source.line,
+            line: if event.source.file == 0 { event.source.line } else { 0 },
             number: event.source.number,
             block_delete: event.source.block_delete,
             what,

@@ -2,8 +2,8 @@
 
 use super::*;
 
-const ORIGINAL: &str = "%\nG21 G90\nM3 S1500\nG0 X0 Y0 Z10\nG1 Z-5 F300\nN10 G1 X10 Y0 (wall)\nN20 X20 F250\nG0 Z10\nG0 X50 Y50\nG81 X1 Y1 Z-2 R2\nG80\nM30\n%\n";
-const WRITTEN: &str = "%\nG21 G90\nM3 S1500\nG0 X0.1 Y0.2 Z10\nG1 Z-5 F300\nN10 G1 X5. Y0.2 (wall)\nG1 X10. Y0.3\nN20 X20. Y0.3 F250\nG0 Z10\nG0 X50 Y50\nG81 X1 Y1 Z-2 R2\nG80\nM30\n%\n";
+const ORIGINAL: &str = "%\nG21 G90\nM3 S1500\nG0 X0 Y0 Z10\nG1 Z-5 F300\nN10 G1 X10 Y0 (wall)\nN20 X20 F250\nG0 Z10\nG0 X50 Y50\nG4 P2\nM9\nM30\n%\n";
+const WRITTEN: &str = "%\nG21 G90\nM3 S1500\nG0 X0.1 Y0.2 Z10\nG1 Z-5 F300\nN10 G1 X5. Y0.2 (wall)\nG1 X10. Y0.3\nN20 X20. Y0.3 F250\nG0 Z10\nG0 X50 Y50\nG4 P2\nM9\nM30\n%\n";
 
 fn edits() -> Vec<BlockEdit> {
     let wall = |x: i64| [x * 100_000, 200_000 + (x - 50).max(0) * 2_000];
@@ -58,9 +58,9 @@ fn every_other_change_is_found() {
         ("G0 X50 Y50", "G0 X50.01 Y50"),
         ("G0 X50 Y50", "G1 X50 Y50"),
         ("Y0.3 F250\nG0 Z10", "Y0.3 F250\nG0 Z11"),
-        ("R2", "R3"),
+        ("P2", "P3"),
         ("M30", "M2"),
-        ("G80\n", "M8\nG80\n"),
+        ("M9\n", "M8\nM9\n"),
         ("G21 G90\n", "G21 G90\nG64\n"),
     ] {
         let tampered = WRITTEN.replacen(what, with, 1);
