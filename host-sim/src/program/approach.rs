@@ -34,6 +34,7 @@ impl Writer<'_> {
         let grid = start.grid();
         by = by.map(|v| grid.nm(grid.steps_of(v)));
         for (index, step) in before.iter().enumerate().rev() {
+            self.refuse_other_file(step)?;
             let block = self.block(step.line);
             let named = [b'X', b'Y'].map(|letter| block.word(letter).is_some());
             match step.kind {

@@ -23,6 +23,7 @@ impl Writer<'_> {
             if by == [0.0; 2] {
                 return Ok(None);
             }
+            self.refuse_other_file(step)?;
             if let Kind::Away(axes) = step.kind {
                 by = [0, 1].map(|axis| if axes[axis] { 0.0 } else { by[axis] });
                 continue;

@@ -61,7 +61,7 @@ pub(super) fn write(
     let (mut at, mut end) = (0, None);
     while let Some(&(edit, _)) = edits.last() {
         let Some(first) = moves[at..].iter().position(|m| m.line == edit.line && m.cuts()).map(|i| at + i) else {
-            writer.refuse_repetition(moves, moves.iter().map(|m| m.line).filter(|line| *line == 0))?;
+            moves.iter().try_for_each(|m| writer.refuse_other_file(m))?;
             let text = format!("line {} is out of order or does not cut in the plane", edit.line);
             return Err(Failure::Internal(text));
         };
@@ -122,6 +122,11 @@ impl<'a> Writer<'a> {
             }
         }
         Ok(())
+    }
+
+    /// A move written in another file cannot be displaced.
+    pub(super) fn refuse_other_file(&self, step: &Move) -> Result<(), Failure> {
+        self.refuse_repetition(&[], std::iter::once(step.line).filter(|line| *line == 0))
     }
 
     /// A path that the control itself moves aside cannot be written: the correction is to the cutter's centre.
