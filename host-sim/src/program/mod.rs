@@ -35,7 +35,7 @@ mod writer;
 
 use std::ops::Range;
 
-use truepath_core::gcode::{Lines, Options, is_marked_corrected};
+use truepath_core::gcode::{Options, is_marked_corrected};
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
