@@ -1,5 +1,6 @@
 //! The order in which the blocks of a program are executed: its reader, and the programs it calls.
 
+mod assignment;
 mod call;
 mod control;
 mod frame;

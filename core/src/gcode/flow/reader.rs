@@ -1,12 +1,11 @@
 //! Walks a program: block after block, each with the values of its words.
 
-use super::super::expression::{Evaluator, Fault, name, parameter_number};
+use super::super::expression::{Evaluator, Fault};
 use super::super::lexical::{Token, Words, trimmed};
 use super::super::parameter::Surroundings;
-use super::super::{
-    Dialect, FlowError, GcodeError, GcodeErrorKind, Line, Number, Options, ParameterError, Source, Span,
-};
+use super::super::{Dialect, FlowError, GcodeError, GcodeErrorKind, Line, Number, Options, Source, Span};
 use super::Program;
+use super::assignment::{ASSIGNMENTS, Assignments};
 use super::call::Call;
 use super::frame::Frame;
 use super::open::OpenList;
@@ -15,8 +14,6 @@ use super::sentence::{Sentence, Word};
 
 /// Calls inside each other.
 pub(super) const CALLS: usize = 10;
-/// Parameters set in one block.
-const ASSIGNMENTS: usize = 32;
 
 /// The place in a program, and what has led there.
 #[derive(Debug)]
@@ -43,16 +40,6 @@ enum Read {
     /// A statement that steers the program.
     Control(Span),
 }
-
-/// What an assignment sets.
-#[derive(Clone, Copy)]
-enum Destination {
-    Number(u16),
-    /// A name, by its bytes from `<` to the end of the line.
-    Name(usize),
-}
-
-type Assignments = heapless::Vec<(Destination, f64), ASSIGNMENTS>;
 
 impl<'p> Reader<'p> {
     /// Before the first block.
@@ -236,57 +223,13 @@ impl<'p> Reader<'p> {
     }
 
     /// What the lexer measured must be what was computed.
-    fn ends_at(&self, rest: &[u8], end: usize) -> Result<(), GcodeError> {
+    pub(super) fn ends_at(&self, rest: &[u8], end: usize) -> Result<(), GcodeError> {
         let at = self.line.span().end().saturating_sub(rest.len());
         if at == end {
             return Ok(());
         }
         let byte = trimmed(rest).first().copied().unwrap_or(b' ');
         Err(self.error(GcodeErrorKind::UnexpectedByte(byte), Span { start: at, len: 1 }))
-    }
-
-    fn assignment(&self, machine: &dyn Surroundings<'_>, span: Span) -> Result<(Destination, f64), GcodeError> {
-        let text = trimmed(self.rest(span.start.saturating_add(1)));
-        let (destination, rest) = if text.first() == Some(&b'<') {
-            let (_, len) = name(text).map_err(|kind| self.error(kind, span))?;
-            (Destination::Name(text.len()), text.get(len..).unwrap_or(&[]))
-        } else {
-            let (number, rest) = self.evaluate(machine, text, false)?;
-            let number = parameter_number(number, self.dialect).map_err(|kind| self.error(kind, span))?;
-            if number == 0 {
-                let largest = self.dialect.largest_parameter();
-                return Err(self.error(ParameterError::Number { largest }, span));
-            }
-            if machine.number(u32::from(number)).is_some() {
-                return Err(self.error(ParameterError::ReadOnly, span));
-            }
-            (Destination::Number(number), rest)
-        };
-        let right = trimmed(rest).strip_prefix(b"=").unwrap_or(&[]);
-        let (value, rest) = self.evaluate(machine, right, self.dialect.has_macro_b())?;
-        self.ends_at(rest, span.end())?;
-        Ok((destination, value))
-    }
-
-    /// Makes the assignments of a block, after all of it was read.
-    fn assign(&self, machine: &mut dyn Surroundings<'_>, assignments: &Assignments) -> Result<(), GcodeError> {
-        for &(destination, value) in assignments {
-            let done = match destination {
-                Destination::Number(number) => machine.memory_mut().set(number, value),
-                Destination::Name(left) => {
-                    let start = self.line.text.len().saturating_sub(left);
-                    let (name, _) = name(self.line.text.get(start..).unwrap_or(&[]))
-                        .map_err(|kind| self.error(kind, self.line.span()))?;
-                    if machine.named(&name).is_some() {
-                        Err(ParameterError::ReadOnly)
-                    } else {
-                        machine.memory_mut().set_named(&name, value)
-                    }
-                }
-            };
-            done.map_err(|kind| self.error(kind, self.line.span()))?;
-        }
-        Ok(())
     }
 
     /// An error at bytes of the present line.

@@ -3,9 +3,11 @@
 mod decimal;
 mod extent;
 mod number;
+mod token;
 mod word;
 
 pub use decimal::Decimal;
 pub(super) use decimal::{NumberError, is_blank, number, trimmed};
 pub use number::Number;
-pub use word::{Token, Words, WrittenWord};
+pub use token::{Token, WrittenWord};
+pub use word::Words;
