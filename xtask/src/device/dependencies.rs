@@ -20,6 +20,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("stable_deref_trait", "a marker trait, for heapless"),
     ("nom", "parsing of programs and probe files, without its allocator feature"),
     ("memchr", "byte search for nom"),
+    ("libm", "functions of expressions in programs, the same bits on every machine"),
     ("crc", "checksums of programs, images and frames"),
     ("crc-catalog", "polynomials for crc"),
     ("cobs", "frames on byte streams"),
