@@ -93,12 +93,12 @@ mod tests {
 
     #[test]
     fn a_float_library_an_allocator_and_std_are_named() {
-        let tree = "truepath-core v0.1.0 (/x)|\nnom v8.0.0|alloc,std\nlibm v0.2.1|\n";
+        let tree = "truepath-core v0.1.0 (/x)|\nnom v8.0.0|alloc,std\nmicromath v2.1.0|\n";
         let said = objections(tree);
         assert_eq!(
             said,
             [
-                "libm is not on the list of crates for the microcontroller",
+                "micromath is not on the list of crates for the microcontroller",
                 "nom is built with its feature `alloc`",
                 "nom is built with its feature `std`",
             ]
