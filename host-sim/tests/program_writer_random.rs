@@ -23,6 +23,8 @@ struct Spelling {
     absolute_centres: bool,
     radius_words: bool,
     tight: bool,
+    numbered: bool,
+    commented: bool,
 }
 
 fn stretch() -> impl Strategy<Value = Stretch> {
@@ -36,12 +38,8 @@ fn stretch() -> impl Strategy<Value = Stretch> {
 }
 
 fn spelling() -> impl Strategy<Value = Spelling> {
-    any::<[bool; 5]>().prop_map(|[inches, incremental, absolute_centres, radius_words, tight]| Spelling {
-        inches,
-        incremental,
-        absolute_centres,
-        radius_words,
-        tight,
+    any::<[bool; 7]>().prop_map(|[inches, incremental, absolute_centres, radius_words, tight, numbered, commented]| {
+        Spelling { inches, incremental, absolute_centres, radius_words, tight, numbered, commented }
     })
 }
 
@@ -67,7 +65,10 @@ fn program(stretches: &[Stretch], s: Spelling) -> String {
     }
     // Positions as the reader of the program sees them, in program units.
     let mut read = start;
-    for stretch in stretches {
+    for (index, stretch) in stretches.iter().enumerate() {
+        if s.numbered {
+            text += &format!("N{}{gap}", 10 * (index + 1));
+        }
         heading += stretch.corner_deg.to_radians();
         let (to, centre) = if stretch.radius_mm == 0.0 {
             ([at[0] + stretch.length_mm * heading.cos(), at[1] + stretch.length_mm * heading.sin()], None)
@@ -91,6 +92,9 @@ fn program(stretches: &[Stretch], s: Spelling) -> String {
                 let from = if s.absolute_centres { [0.0; 2] } else { [read[0] * unit, read[1] * unit] };
                 text += &format!("{gap}I{}{gap}J{}", round(c[0] - from[0]), round(c[1] - from[1]));
             }
+        }
+        if s.commented {
+            text += &format!("{gap}(WALL {index})");
         }
         text += "\n";
         read = [0, 1].map(|a| if s.incremental { read[a] + word[a] } else { word[a] });
@@ -184,6 +188,13 @@ proptest! {
         }
         let home = last_place(&rewritten.text).distance(last_place(&original)).nm();
         prop_assert!(home <= 100, "the program ends {home} nm off\n{text}");
+        for index in 0..stretches.len() {
+            if spelling.numbered {
+                prop_assert_eq!(text.lines().filter(|l| l.starts_with(&format!("N{}G", 10 * (index + 1))) || l.starts_with(&format!("N{} ", 10 * (index + 1)))).count(), 1);
+            }
+            prop_assert_eq!(text.matches(&format!("(WALL {index})")).count(), usize::from(spelling.commented));
+        }
+        prop_assert!(!text.lines().any(|l| l.contains("G1") && l.contains('R') && !l.starts_with('(') && !l.contains("(W")));
         let kept = text.lines().filter(|l| !l.starts_with('(')).count();
         let lines = std::str::from_utf8(&original).expect("ASCII").lines().count();
         prop_assert_eq!(kept, lines - blocks.len() + rewritten.difference.straight_moves + rewritten.difference.arcs);
