@@ -4,7 +4,7 @@
 //! |---|---:|---:|
 //! | numbered parameters that are set | 512 | 6,000 |
 //! | named parameters | 64 | 2,000 |
-//! | bytes of all names | 1,024 | 32,768 |
+//! | bytes of all names | 512 | 32,768 |
 //! | levels of calls, each with `#1` … `#33` of its own | 10 | 10 |
 //!
 //! What does not fit is refused with the limit. The values a program finds are those the memory holds when it starts.
@@ -89,7 +89,7 @@ pub struct MemoryBuffers<const PARAMETERS: usize, const NAMES: usize, const BYTE
 }
 
 /// What the device has.
-pub type DeviceMemory = MemoryBuffers<512, 64, 1_024>;
+pub type DeviceMemory = MemoryBuffers<512, 64, 512>;
 /// What the host has.
 pub type HostMemory = MemoryBuffers<6_000, 2_000, 32_768>;
 

@@ -18,9 +18,9 @@ const JOB_BYTES: usize = 512;
 /// Buffer for a probe log.
 const PROBE_BYTES: usize = 16 << 10;
 
-/// Workspace of the on-board correction: blocks of a contour, samples of a path, states, nodes, probe points: 277 KiB,
+/// Workspace of the on-board correction: blocks of a contour, samples of a path, states, nodes, probe points: 286 KiB,
 /// for a contour of 70 mm and a cutter of up to 20 mm. Longer ones are for the host.
-pub type Workshop = Buffers<64, 1_260, 820, 700, 48>;
+pub type Workshop = Buffers<64, 1_260, 804, 700, 48>;
 
 /// Bytes taken from the ring at once; on SPI the longest answer passes through it.
 const RECEIVED: usize = 96;
