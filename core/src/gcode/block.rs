@@ -1,109 +1,154 @@
 //! The words of one block, gathered and checked for what may stand together.
+//!
+//! The words stay where the reader has put them; what is kept here is which letters are present, which of them some
+//! code has used, and the codes of each group.
 
 use super::code::Group;
 use super::flow::Sentence;
 use super::mcode::{M_LIMIT, MCode};
-use super::{Foreign, GCode, GcodeError, GcodeErrorKind, Span, Word};
+use super::{GCode, GcodeError, GcodeErrorKind, Span, Word};
+
+/// G codes kept per block: one of each group.
+const G_LIMIT: usize = Group::COUNT;
 
 /// The words of one block.
 #[derive(Debug)]
-pub(super) struct BlockWords {
-    /// Words other than G, M, N and O; each letter once, so the capacity is never exceeded.
-    words: heapless::Vec<Word, 26>,
+pub(super) struct BlockWords<'s> {
+    words: &'s [Word],
+    /// Letters other than G, M and O that stand here.
+    present: u64,
     /// Letters that some code of the block has used.
-    used: u32,
-    codes: [Option<(GCode, Span)>; Group::COUNT],
+    used: u64,
+    /// Groups of which a code stands here.
+    groups: u32,
+    codes: heapless::Vec<(Group, GCode, Span), G_LIMIT>,
     pub(super) m: heapless::Vec<MCode, M_LIMIT>,
     pub(super) program: Option<(u32, Span)>,
 }
 
-impl BlockWords {
+impl<'s> BlockWords<'s> {
     /// Takes the words of a block.
-    pub(super) fn gather(sentence: &Sentence<'_>) -> Result<Self, GcodeError> {
+    pub(super) fn gather(sentence: &'s Sentence<'_>) -> Result<Self, GcodeError> {
         let mut block = Self {
-            words: heapless::Vec::new(),
+            words: &sentence.words,
+            present: 0,
             used: 0,
-            codes: [None; Group::COUNT],
+            groups: 0,
+            codes: heapless::Vec::new(),
             m: heapless::Vec::new(),
             program: None,
         };
-        for &word in &sentence.words {
-            let refused = |kind| GcodeError::new(kind, &sentence.line, word.span).in_file(sentence.source.file);
-            block.take(word).map_err(refused)?;
+        let refused = |kind, span| GcodeError::new(kind, &sentence.line, span).in_file(sentence.source.file);
+        let mut twice = None;
+        for word in &sentence.words {
+            let again = block.take(word).map_err(|kind| refused(kind, word.span))?;
+            twice = twice.or(again.then_some(word));
+        }
+        // The arguments of a macro may come in several sets of I J K.
+        if let Some(word) = twice.filter(|_| block.code(Group::OneShot).is_none_or(|(code, _)| code.tenths() != 650)) {
+            return Err(refused(GcodeErrorKind::DuplicateWord { letter: word.letter.to_ascii_uppercase() }, word.span));
         }
         Ok(block)
     }
 
-    fn has_words(&self) -> bool {
-        !self.words.is_empty() || !self.m.is_empty() || self.program.is_some() || self.codes.iter().any(Option::is_some)
+    const fn has_words(&self) -> bool {
+        self.present != 0 || self.groups != 0
     }
 
-    fn take(&mut self, word: Word) -> Result<(), GcodeErrorKind> {
+    /// Takes one; `true` when its letter has stood here before.
+    fn take(&mut self, word: &Word) -> Result<bool, GcodeErrorKind> {
         let letter = word.letter;
         if self.program.is_some() {
             return Err(GcodeErrorKind::OutOfPlace { letter: b'O' });
         }
         match letter {
-            b'G' => self.take_g(word),
+            b'G' => self.take_g(word)?,
             b'M' => {
-                let code = MCode { number: whole(word)?, span: word.span };
-                self.m.push(code).map_err(|_| GcodeErrorKind::TooManyM { limit: M_LIMIT as u8 })
+                let code = MCode { number: whole(*word)?, span: word.span };
+                self.m.push(code).map_err(|_| GcodeErrorKind::TooManyM { limit: M_LIMIT as u8 })?;
             }
-            b'O' if self.has_words() => Err(GcodeErrorKind::OutOfPlace { letter }),
-            b'O' => {
-                self.program = Some((whole(word)?, word.span));
-                Ok(())
+            b'O' if self.has_words() || !self.m.is_empty() => return Err(GcodeErrorKind::OutOfPlace { letter }),
+            b'O' => self.program = Some((whole(*word)?, word.span)),
+            _ => {
+                let again = self.present & bit(letter) != 0;
+                self.present |= bit(letter);
+                return Ok(again);
             }
-            b'r' | b'c' => Err(GcodeErrorKind::CornerRounding),
-            b'E' => Err(GcodeErrorKind::ForeignDialect(Foreign::Printer)),
-            b'A' | b'B' | b'C' | b'U' | b'V' | b'W' => Err(GcodeErrorKind::UnsupportedAxis { letter }),
-            _ if self.word(letter).is_some() => Err(GcodeErrorKind::DuplicateWord { letter }),
-            _ => self.words.push(word).map_err(|_| GcodeErrorKind::DuplicateWord { letter }),
         }
+        Ok(false)
     }
 
-    fn take_g(&mut self, word: Word) -> Result<(), GcodeErrorKind> {
+    fn take_g(&mut self, word: &Word) -> Result<(), GcodeErrorKind> {
         let second = GCode::new(word.value).ok_or(GcodeErrorKind::NotAGCode)?;
-        let Some(place) = self.codes.get_mut(second.group()?.index()) else {
+        let group = second.group()?;
+        if self.groups & group.bit() == 0 {
+            self.groups |= group.bit();
+            // There is room for one code of each group.
+            return self.codes.push((group, second, word.span)).map_err(|_| GcodeErrorKind::NotAGCode);
+        }
+        let Some(known) = self.codes.iter_mut().find(|(g, ..)| *g == group) else {
             return Ok(());
         };
-        if let Some((first, _)) = *place {
-            return Err(GcodeErrorKind::Conflict { first, second });
+        let first = known.1;
+        match (group, first.tenths(), second.tenths()) {
+            // G80 beside another motion only ends the one before.
+            (Group::Motion, a, 800) if a != 800 => {}
+            (Group::Motion, 800, b) if b != 800 => (known.1, known.2) = (second, word.span),
+            _ => return Err(GcodeErrorKind::Conflict { first, second }),
         }
-        *place = Some((second, word.span));
         Ok(())
     }
 
-    /// The code of a group, in tenths, with its place.
+    /// The code of a group with its place.
     pub(super) fn code(&self, group: Group) -> Option<(GCode, Span)> {
-        *self.codes.get(group.index())?
+        if self.groups & group.bit() == 0 {
+            return None;
+        }
+        self.codes.iter().find(|(g, ..)| *g == group).map(|(_, code, span)| (*code, *span))
+    }
+
+    /// Whether there is any code but of a motion.
+    pub(super) const fn has_modes(&self) -> bool {
+        self.groups & !Group::Motion.bit() != 0
     }
 
     /// A word, without using it.
     pub(super) fn word(&self, letter: u8) -> Option<Word> {
+        if self.present & bit(letter) == 0 {
+            return None;
+        }
         self.words.iter().find(|w| w.letter == letter).copied()
     }
 
     /// A word not used yet; it counts as used from now on.
     pub(super) fn use_word(&mut self, letter: u8) -> Option<Word> {
-        let word = self.word(letter).filter(|_| self.used & bit(letter) == 0)?;
+        if self.used & bit(letter) != 0 {
+            return None;
+        }
+        let word = self.word(letter)?;
         self.used |= bit(letter);
         Some(word)
     }
 
     /// Whether any of these letters stands here unused.
     pub(super) fn has_unused(&self, letters: &[u8]) -> bool {
-        letters.iter().any(|&l| self.used & bit(l) == 0 && self.word(l).is_some())
+        let mask = letters.iter().fold(0, |mask, &letter| mask | bit(letter));
+        self.present & !self.used & mask != 0
     }
 
     /// The first word that nothing has used.
     pub(super) fn first_unused(&self) -> Option<Word> {
-        self.words.iter().find(|w| self.used & bit(w.letter) == 0).copied()
+        if self.present & !self.used == 0 {
+            return None;
+        }
+        let open = |w: &&Word| !matches!(w.letter, b'G' | b'M' | b'O') && self.used & bit(w.letter) == 0;
+        self.words.iter().find(open).copied()
     }
 }
 
-const fn bit(letter: u8) -> u32 {
-    1u32.wrapping_shl(letter as u32)
+/// The place of a letter in a set: `@` and the capital letters, `^`, and `r` and `c` for the corner words.
+const fn bit(letter: u8) -> u64 {
+    1u64.wrapping_shl((letter as u32).wrapping_sub(64))
 }
 
 /// The number of a word that must be whole, 0…2³²−1.

@@ -1,12 +1,12 @@
 //! G codes: what they are called, which exclude each other, and which are refused.
 //!
-//! Modal groups: RS274/NGC (NIST 6556) table 4, with LinuxCNC's additions. Codes that would change where the cutter
-//! goes in a way not computed here are refused by name; only codes that cancel such a thing, which is then never on,
-//! are accepted without effect.
+//! Modal groups: RS274/NGC (NIST 6556) table 4, with the additions of LinuxCNC, Fanuc and Haas. Codes that would change
+//! where the cutter goes in a way not computed here are refused by name; of those only the codes that cancel such a
+//! thing, which is then never on, are accepted without effect.
 
 use core::fmt;
 
-use super::{GcodeErrorKind, Number};
+use super::{GcodeErrorKind, Number, SettingError};
 
 /// The number of a G code in tenths: G1 is 10, G59.3 is 593.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,41 +15,47 @@ pub struct GCode(u16);
 /// Codes of one group exclude each other in a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Group {
-    /// G4 G28 G30 G53: this block only.
+    /// G4 G10 G28 G30 G52 G53 G65 G92 and theirs: this block only.
     OneShot,
-    /// G0 G1 G2 G3 G80.
+    /// G0 G1 G2 G3, splines, probing, cycles, G80.
     Motion,
-    /// G17.
+    /// G17 G18 G19.
     Plane,
     /// G90 G91.
     Distance,
     /// G90.1 G91.1.
     ArcDistance,
-    /// G94.
+    /// G93 G94 G95.
     FeedMode,
-    /// G20 G21.
+    /// G20 G21, G70 G71.
     Units,
     /// G40 G41 G42.
     Compensation,
-    /// G43 G43.1 G49.
+    /// G43 G43.1 G43.2 G44 G49.
     ToolLength,
-    /// G98 G99: the height canned cycles return to; without cycles it has no effect.
+    /// G98 G99.
     ReturnLevel,
-    /// G54 … G59.3.
+    /// G54 … G59.3, G54.1, G154.
     WorkOffset,
     /// G61 G61.1 G64.
     PathControl,
+    /// G96 G97.
+    SpindleMode,
+    /// G187.
+    Smoothness,
+    /// G8: radius programming, which is what a mill does.
+    Diameter,
     /// G15 G50.1 G67 G69: cancel polar coordinates, mirroring, a modal macro, rotation, which are all refused.
     Cancel,
 }
 
 impl Group {
     /// Number of groups.
-    pub(super) const COUNT: usize = 13;
+    pub(super) const COUNT: usize = 16;
 
-    /// Its place in a table of [`Self::COUNT`].
-    pub(super) const fn index(self) -> usize {
-        self as usize
+    /// Its place in a set.
+    pub(super) const fn bit(self) -> u32 {
+        1u32.wrapping_shl(self as u32)
     }
 }
 
@@ -76,33 +82,28 @@ impl GCode {
     /// The reason for which it is refused, or [`GcodeErrorKind::UnknownG`].
     pub(super) const fn group(self) -> Result<Group, GcodeErrorKind> {
         Ok(match self.0 {
-            40 | 280 | 300 | 530 => Group::OneShot,
-            0 | 10 | 20 | 30 | 800 => Group::Motion,
-            170 => Group::Plane,
+            0 | 10 | 20 | 30 | 50..=53 | 331 | 382..=385 | 730 | 740 | 760 => Group::Motion,
+            800 | 810 | 820 | 830 | 840 | 850 | 860 | 870 | 880 | 890 => Group::Motion,
+            40 | 100 | 280 | 281 | 300 | 301 | 520 | 530 | 650 | 920..=923 => Group::OneShot,
+            170 | 180 | 190 => Group::Plane,
             900 | 910 => Group::Distance,
             901 | 911 => Group::ArcDistance,
-            940 => Group::FeedMode,
-            200 | 210 => Group::Units,
+            930 | 940 | 950 => Group::FeedMode,
+            200 | 210 | 700 | 710 => Group::Units,
             400 | 410 | 411 | 420 | 421 => Group::Compensation,
-            430 | 431 | 490 => Group::ToolLength,
+            430..=432 | 440 | 490 => Group::ToolLength,
             980 | 990 => Group::ReturnLevel,
-            540 | 550 | 560 | 570 | 580 | 590 | 591 | 592 | 593 => Group::WorkOffset,
+            540 | 541 | 550 | 560 | 570 | 580 | 590..=593 | 1540 => Group::WorkOffset,
             610 | 611 | 640 => Group::PathControl,
+            960 | 970 => Group::SpindleMode,
+            1870 => Group::Smoothness,
+            80 => Group::Diameter,
             150 | 501 | 670 | 690 => Group::Cancel,
-            180 | 190 | 171 | 181 | 191 => return Err(GcodeErrorKind::WrongPlane(self)),
-            930 | 950 => return Err(GcodeErrorKind::WrongFeedMode(self)),
-            100 | 281 | 301 | 520 | 920..=923 => {
-                return Err(GcodeErrorKind::ShiftsCoordinates(self));
-            }
-            730 | 740 | 760 | 810..=890 => return Err(GcodeErrorKind::CannedCycle(self)),
-            650 | 651 | 652 | 660 => return Err(GcodeErrorKind::Macro(self)),
-            50..=53 | 60 | 61 | 62 => return Err(GcodeErrorKind::Spline(self)),
-            432 | 434 | 541..=549 | 1540 => {
-                return Err(GcodeErrorKind::Unsupported(self));
-            }
-            160 | 310 | 330 | 331 | 380..=385 | 500 | 510 | 511 | 680..=683 | 700 | 710 | 960 | 970 | 1870 => {
-                return Err(GcodeErrorKind::Unsupported(self));
-            }
+            171 | 181 | 191 => return Err(GcodeErrorKind::WrongPlane(self)),
+            70 | 330 | 720 => return Err(GcodeErrorKind::Setting(SettingError::Lathe(self))),
+            651 | 652 | 660 => return Err(GcodeErrorKind::Macro(self)),
+            60..=62 | 434 | 542..=549 => return Err(GcodeErrorKind::Unsupported(self)),
+            160 | 310 | 380 | 500 | 510 | 511 | 680..=683 => return Err(GcodeErrorKind::Unsupported(self)),
             _ => return Err(GcodeErrorKind::UnknownG(self)),
         })
     }
@@ -138,7 +139,7 @@ mod tests {
     #[test]
     fn every_accepted_code_has_a_group_inside_the_table() {
         let accepted = (0..10_000).filter_map(|t| GCode::from_tenths(t).group().ok());
-        assert!(accepted.clone().all(|g| g.index() < Group::COUNT));
-        assert_eq!(accepted.count(), 43);
+        assert!(accepted.clone().all(|g| (g as usize) < Group::COUNT));
+        assert_eq!(accepted.count(), 87);
     }
 }

@@ -6,64 +6,17 @@
 //!
 //! Positions are what the program says, in its own coordinates: at the start, and after whatever moves an axis to a
 //! place that the program does not name (G28, G53, a new offset, a tool change), they are unknown and stay so until
-//! given in G90.
+//! given in G90. With a [`Machine`](super::Machine) in the options they are all known.
 //!
-//! Limits: three axes, the XY plane, feed per minute; no parameters, subprograms or cycles. Those are refused by name.
+//! Limits: lathe codes are refused by name, and so are scaling (G51), rotation by G68, polar coordinates of Fanuc (G16)
+//! and modal macros (G66).
 
-use super::execute::{Execution, Tool};
+use super::execute::Execution;
 use super::flow::{Next, Reader, Sentence};
 use super::{
-    Axes, Dialect, Event, GcodeError, GcodeErrorKind, Memory, Program, Units, WarningKind, Warnings,
-    is_marked_corrected, program_crc,
+    Event, GcodeError, GcodeErrorKind, Memory, Options, Program, WarningKind, Warnings, is_marked_corrected,
+    program_crc,
 };
-use crate::units::Offset;
-
-/// By what G41 and G42 move the path aside.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CompensationBy {
-    /// By nothing: the program is the path of the cutter's centre, as it is where D holds wear only, and G41 or G42
-    /// tell the side of the wall. G41.1 and G42.1 still count, as they name their diameter.
-    #[default]
-    Nothing,
-    /// By this radius, whatever D says.
-    Radius(Offset),
-    /// By half of the diameter that the tool table has for D, or for the tool in the spindle.
-    Table,
-}
-
-/// What the program does not say.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options<'t> {
-    /// The unit until G20 or G21.
-    pub units: Units,
-    /// Where the axes stand at the start.
-    pub start: Axes,
-    /// Whether blocks with `/` are skipped.
-    pub skip_block_delete: bool,
-    /// The control the program is written for.
-    pub dialect: Dialect,
-    /// How many blocks may be executed beyond as many as the program has lines; loops that run longer are an error.
-    pub block_limit: u32,
-    /// By what G41 and G42 move the path aside.
-    pub compensation: CompensationBy,
-    /// The tool table.
-    pub tools: &'t [Tool],
-}
-
-impl Default for Options<'_> {
-    /// Millimetres, positions unknown, `/` blocks executed, LinuxCNC, a million blocks more than lines, no tools.
-    fn default() -> Self {
-        Self {
-            units: Units::Millimetres,
-            start: Axes::UNKNOWN,
-            skip_block_delete: false,
-            dialect: Dialect::Linuxcnc,
-            block_limit: 1_000_000,
-            compensation: CompensationBy::Nothing,
-            tools: &[],
-        }
-    }
-}
 
 /// What is known of a program after it was read to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! The M codes of one block: which exclude each other, and what each kind does.
 //!
-//! LinuxCNC's modal groups 4 (stop), 6 (tool), 7 (spindle) and 8 (coolant). M97, M98 and M99 leave the sequence of blocks,
-//! M70 to M73 change modes out of sight: they are refused; any other code is kept and passed on.
+//! LinuxCNC's modal groups 4 (stop), 5 (inputs and outputs), 6 (tool), 7 (spindle), 8 (coolant), 9 (overrides), its
+//! saving of modes, and the calls of Fanuc and Haas. Any other code is kept and passed on.
 
 use super::block::BlockWords;
 use super::{GcodeErrorKind, Span};
@@ -20,24 +20,31 @@ pub(super) struct MCode {
 #[derive(Default)]
 pub(super) struct MCodes {
     pub(super) stop: Option<MCode>,
+    pub(super) io: Option<MCode>,
     pub(super) tool: Option<MCode>,
     pub(super) spindle: Option<MCode>,
+    pub(super) saved: Option<MCode>,
+    pub(super) overrides: Option<MCode>,
+    pub(super) call: Option<MCode>,
     pub(super) coolant: heapless::Vec<MCode, M_LIMIT>,
     pub(super) other: heapless::Vec<MCode, M_LIMIT>,
+    any: bool,
 }
 
 impl MCodes {
     /// Sorts them; two of one kind exclude each other, except M7 with M8 and codes that are not known.
-    pub(super) fn sorted(block: &BlockWords) -> Result<Self, (GcodeErrorKind, Span)> {
-        let mut sorted = Self::default();
+    pub(super) fn sorted(block: &BlockWords<'_>) -> Result<Self, (GcodeErrorKind, Span)> {
+        let mut sorted = Self { any: !block.m.is_empty(), ..Self::default() };
         for &code in &block.m {
             let before = match code.number {
-                0 | 1 | 2 | 30 => sorted.stop.replace(code),
-                6 => sorted.tool.replace(code),
-                3..=5 => sorted.spindle.replace(code),
+                0 | 1 | 2 | 30 | 60 => sorted.stop.replace(code),
+                62..=68 => sorted.io.replace(code),
+                6 | 61 => sorted.tool.replace(code),
+                3..=5 | 19 => sorted.spindle.replace(code),
                 7..=9 => add(&mut sorted.coolant, code, |c| c.number == code.number || c.number.max(code.number) == 9),
-                70..=73 => return Err((GcodeErrorKind::SavedModes { m: code.number }, code.span)),
-                97..=99 => return Err((GcodeErrorKind::Subprogram { m: code.number }, code.span)),
+                48..=53 => sorted.overrides.replace(code),
+                70..=73 => sorted.saved.replace(code),
+                97..=99 => sorted.call.replace(code),
                 _ => add(&mut sorted.other, code, |_| false),
             };
             if let Some(first) = before {
@@ -45,6 +52,11 @@ impl MCodes {
             }
         }
         Ok(sorted)
+    }
+
+    /// Whether the block has no M code.
+    pub(super) const fn is_empty(&self) -> bool {
+        !self.any
     }
 }
 

@@ -79,13 +79,12 @@ impl fmt::Display for GcodeErrorKind {
                 "an E word: this is a 3D printer's program, or a number with an exponent; post it for a milling machine, with plain numbers",
             ),
             Self::TextAfterPercent => f.write_str("text after `%`; only a comment may follow it on its line"),
-            Self::CornerRounding => {
-                f.write_str("`,R` and `,C` corners are not computed; post the program with the corner as a move of its own")
-            }
             Self::Parameter(error) => error.fmt(f),
             Self::Compensation(error) => error.fmt(f),
             Self::Expression(error) => error.fmt(f),
             Self::Flow(error) => error.fmt(f),
+            Self::Cycle(error) => error.fmt(f),
+            Self::Setting(error) => error.fmt(f),
             _ => self.fmt_block(f),
         }
     }
@@ -94,9 +93,6 @@ impl fmt::Display for GcodeErrorKind {
 impl GcodeErrorKind {
     fn fmt_block(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::UnsupportedAxis { letter } => {
-                write!(f, "axis {} is not computed, only X, Y and Z; post a three-axis program", Letter(letter))
-            }
             Self::DuplicateWord { letter } => write!(f, "{} is given twice in this block; keep one", Letter(letter)),
             Self::OutOfPlace { letter: b'O' } => {
                 f.write_str("a program number stands alone at the start of its line; move it there")
@@ -169,33 +165,11 @@ impl GcodeErrorKind {
                 "{g} is not known here, so what it does to the path cannot be told; remove it or post without it"
             ),
             Self::Unsupported(g) => write!(f, "{g} is not computed; post the program without it"),
-            Self::WrongPlane(g) => write!(f, "{g} selects another plane; contours are read in the XY plane (G17) only"),
-            Self::WrongFeedMode(g) => write!(f, "{g} is not computed; give the feed per minute (G94)"),
-            Self::ShiftsCoordinates(g) => {
-                write!(
-                    f,
-                    "{g} shifts or sets coordinates inside the program; set the offset at the machine and remove it"
-                )
-            }
-            Self::CannedCycle(g) => {
-                write!(f, "{g} is a canned cycle, which is not computed; put the contour in a program of its own")
-            }
+            Self::WrongPlane(g) => write!(
+                f,
+                "{g} selects a plane of the axes U, V, W, whose arcs are not computed; select G17, G18 or G19"
+            ),
             Self::Macro(g) => write!(f, "{g} calls a macro, which is not executed; post the program without macros"),
-            Self::Spline(g) => {
-                write!(f, "{g} is a spline, which is not computed; post the program with lines and arcs")
-            }
-            Self::SavedModes { m } => {
-                write!(
-                    f,
-                    "M{m} saves or restores modes, which is not followed; write the modes (G90, G21, F, S) out instead"
-                )
-            }
-            Self::Subprogram { m } => {
-                write!(
-                    f,
-                    "M{m} calls or ends a subprogram, which is not executed; post the program without subprograms"
-                )
-            }
             Self::NotAGCode => {
                 f.write_str("no G code has this number; G codes go from G0 to G999 with at most one decimal")
             }
@@ -240,9 +214,6 @@ impl GcodeErrorKind {
                 Millimetres(end)
             ),
             Self::ArcNoRadius => f.write_str("the centre of this arc coincides with its start or end; correct I and J"),
-            Self::ArcTurns => {
-                f.write_str("P on an arc asks for more than one turn, which is not computed; write one arc per turn")
-            }
             Self::NoContour => f.write_str(
                 "no cutting move (G1, G2, G3) in X or Y at constant Z found; there is no contour to correct",
             ),

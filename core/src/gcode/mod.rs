@@ -42,6 +42,7 @@ mod lexical;
 mod mcode;
 mod message;
 mod mode;
+mod options;
 mod parameter;
 mod place;
 mod shifts;
@@ -56,13 +57,16 @@ pub use contour::{
     visit_runs,
 };
 pub use dialect::Dialect;
-pub use error::{ExpressionError, FlowError, Foreign, GcodeError, GcodeErrorKind, ParameterError};
-pub use execute::{Modal, Motion, Tool};
+pub use error::{
+    CycleError, ExpressionError, FlowError, Foreign, GcodeError, GcodeErrorKind, ParameterError, SettingError,
+};
+pub use execute::{Machine, Modal, Motion, Tool};
 pub use flow::{Library, LibraryFile, Program, Word};
 pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};
-pub use interpreter::{CompensationBy, Interpreter, Options, ProgramSummary};
+pub use interpreter::{Interpreter, ProgramSummary};
 pub use lexical::{Decimal, Number, Token, Words, WrittenWord};
 pub use mode::{Coolant, FeedMode, PathControl, Plane, RetractLevel, Spindle, ToolLength, Units};
+pub use options::{CompensationBy, Options};
 pub use parameter::{DeviceMemory, HostMemory, MachineParameters, Memory, MemoryBuffers, NamedSlot};
 pub use place::Axes;
 pub use shifts::{AXIS_LETTERS, NineAxes, Shifts};

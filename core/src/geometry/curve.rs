@@ -67,6 +67,20 @@ impl Curve {
     /// # Errors
     /// [`ArcError`] when a radius vanishes or the radii of start and end disagree beyond LinuxCNC's rule.
     pub fn arc(start: Point, end: Point, centre: Point, counter_clockwise: bool) -> Result<Self, ArcError> {
+        Self::arc_within(start, end, centre, counter_clockwise, Offset::from_nm(ARC_TOLERANCE_NM))
+    }
+
+    /// An arc whose two radii may differ by a tolerance, or by 0.1 % up to 100 times the tolerance.
+    ///
+    /// # Errors
+    /// As [`Self::arc`].
+    pub fn arc_within(
+        start: Point,
+        end: Point,
+        centre: Point,
+        counter_clockwise: bool,
+        tolerance: Offset,
+    ) -> Result<Self, ArcError> {
         let (a, b) = (start.from(centre), end.from(centre));
         let (ra, rb) = (a.length(), b.length());
         let (Some(from), Some(to)) = (a.direction(), b.direction()) else {
@@ -74,9 +88,8 @@ impl Curve {
         };
         let difference = (ra - rb).abs().nm();
         let per_mille = ra.nm().min(rb.nm()) / 1000;
-        if difference > ARC_TOLERANCE_NM.saturating_mul(100)
-            || (difference > ARC_TOLERANCE_NM && difference > per_mille)
-        {
+        let tolerance = tolerance.nm();
+        if difference > tolerance.saturating_mul(100) || (difference > tolerance && difference > per_mille) {
             return Err(ArcError::RadiusMismatch { start: ra, end: rb });
         }
         let turn = from.angle_to(to);

@@ -87,7 +87,7 @@ impl<'a> Block<'a> {
         let mut edits: Vec<(Range<usize>, String)> = Vec::new();
         let named = self.motion_word();
         if let Some(word) = named
-            && whole(word) != Some(number(motion))
+            && word.value.and_then(|v| v.exactly_times(10)) != Some(i64::from(motion.code().tenths()))
         {
             edits.push((self.word_range(word), self.spelt(&self.motion_text(motion))));
         }
@@ -200,8 +200,9 @@ impl<'a> Block<'a> {
     }
 
     fn motion_text(&self, motion: Motion) -> String {
-        let zero = if self.style.two_digits { "0" } else { "" };
-        format!("G{zero}{}", number(motion))
+        let code = motion.code();
+        let zero = if self.style.two_digits && code.tenths() < 100 { "0" } else { "" };
+        code.to_string().replacen('G', &format!("G{zero}"), 1)
     }
 
     /// In the line's case and with its gaps.
@@ -218,13 +219,4 @@ fn acts_after_move(word: &WrittenWord) -> bool {
 /// The number of a word, when it is written and whole.
 fn whole(word: &WrittenWord) -> Option<i64> {
     word.value?.exactly_times(1)
-}
-
-const fn number(motion: Motion) -> i64 {
-    match motion {
-        Motion::Traverse => 0,
-        Motion::Feed => 1,
-        Motion::Arc { counter_clockwise: false } => 2,
-        Motion::Arc { counter_clockwise: true } => 3,
-    }
 }

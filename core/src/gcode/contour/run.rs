@@ -3,7 +3,9 @@
 //! A run is consecutive cutting moves (G1, G2, G3) in X and Y at constant Z. A rapid, a move in Z, G28, G53, a tool
 //! change, and a change of spindle or offset end it. Moves without length are dropped.
 
-use crate::gcode::{Axes, Canon, Event, GcodeError, GcodeErrorKind, LineRange, PathControl, Span, Spindle, Units};
+use crate::gcode::{
+    Axes, Canon, Event, FeedMode, GcodeError, GcodeErrorKind, LineRange, Modal, PathControl, Span, Spindle, Units,
+};
 use crate::geometry::{Block, Curve, Point, Side};
 use crate::units::{Offset, Position, Real};
 
@@ -69,12 +71,14 @@ pub(super) struct RunReader {
     count: u32,
     /// G41, G42 (`true`) or G40 (`false`) that no move has acted on yet.
     offset: Option<bool>,
+    /// Where A, B, C, U, V and W stand.
+    auxiliary: [i64; 6],
 }
 
 impl RunReader {
     /// Of the lines named, or of all.
     pub(super) const fn new(within: Option<LineRange>) -> Self {
-        Self { within, run: None, count: 0, offset: None }
+        Self { within, run: None, count: 0, offset: None, auxiliary: [0; 6] }
     }
 
     /// Number of the run in progress, or of the last one.
@@ -91,6 +95,10 @@ impl RunReader {
             Canon::Compensation { wall, .. } => self.offset = Some(wall.is_some()),
             Canon::Traverse { from, to } if from.point() != to.point() => self.offset = None,
             _ => {}
+        }
+        // A move that turns the part or moves a second slide is no cut along a contour of the plane.
+        if core::mem::replace(&mut self.auxiliary, event.modal.auxiliary) != event.modal.auxiliary {
+            return Ok(Progress { ended: self.run.take(), block: None });
         }
         match step(event.canon)? {
             Step::Pass => Ok(Progress::default()),
@@ -117,7 +125,7 @@ impl RunReader {
             work_offset: modal.work_offset,
             radius_offset: modal.radius_offset,
         };
-        let feed = modal.feed.unwrap_or_default();
+        let feed = feed_per_minute(modal, curve.length());
         let line = event.source.line;
         let goes_on = |run: &Run| run.z == z && run.end == curve.start() && run.setup.continues(&setup);
         let ended = if self.run.as_ref().is_some_and(goes_on) { None } else { self.run.take() };
@@ -176,6 +184,16 @@ impl Setup {
     }
 }
 
+/// The feed along a block, mm/min, whatever F means.
+fn feed_per_minute(modal: &Modal, length: Offset) -> Real {
+    let feed = modal.feed.unwrap_or_default();
+    match modal.feed_mode {
+        FeedMode::PerMinute => feed,
+        FeedMode::PerRevolution => feed.times(modal.speed.unwrap_or_default()),
+        FeedMode::InverseTime => feed.times(length.mm()),
+    }
+}
+
 fn step(canon: Canon) -> Result<Step, GcodeErrorKind> {
     Ok(match canon {
         Canon::Traverse { .. }
@@ -183,11 +201,16 @@ fn step(canon: Canon) -> Result<Step, GcodeErrorKind> {
         | Canon::Reference { .. }
         | Canon::ChangeTool(_)
         | Canon::ToolLength(_)
+        | Canon::Shift(_)
+        | Canon::PlaneArc { .. }
+        | Canon::Probe { .. }
+        | Canon::Tap { .. }
+        | Canon::Spline { .. }
         | Canon::End(_) => Step::Break,
         Canon::Feed { from, to } if from.z != to.z => Step::Break,
         Canon::Feed { from, to } => line(from, to)?,
-        Canon::Arc { from, to, curve, .. } => {
-            if from.z == to.z {
+        Canon::Arc { from, to, curve, turns, .. } => {
+            if from.z == to.z && turns == 0 {
                 Step::Cut(curve)
             } else {
                 Step::Break

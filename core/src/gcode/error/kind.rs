@@ -2,7 +2,7 @@
 
 use super::super::compensation::CompensationError;
 use super::super::{GCode, LineRange, RunPart};
-use super::{ExpressionError, FlowError, Foreign, ParameterError};
+use super::{CycleError, ExpressionError, FlowError, Foreign, ParameterError, SettingError};
 use crate::units::Offset;
 
 /// What is wrong.
@@ -32,14 +32,7 @@ pub enum GcodeErrorKind {
     ForeignDialect(Foreign),
     /// Something else than a comment after `%`.
     TextAfterPercent,
-    /// `,R` or `,C`.
-    CornerRounding,
 
-    /// A, B, C, U, V or W: an axis that is not computed.
-    UnsupportedAxis {
-        /// The axis.
-        letter: u8,
-    },
     /// A letter given twice in a block.
     DuplicateWord {
         /// The letter.
@@ -108,26 +101,8 @@ pub enum GcodeErrorKind {
     Unsupported(GCode),
     /// A plane other than XY.
     WrongPlane(GCode),
-    /// Inverse-time feed or feed per revolution.
-    WrongFeedMode(GCode),
-    /// A code that moves the origin inside the program.
-    ShiftsCoordinates(GCode),
-    /// A drilling or other canned cycle.
-    CannedCycle(GCode),
     /// A call of a macro.
     Macro(GCode),
-    /// A spline.
-    Spline(GCode),
-    /// M97, M98 or M99: a call of a subprogram, or a return.
-    Subprogram {
-        /// The M code.
-        m: u32,
-    },
-    /// M70…M73: LinuxCNC's saving and restoring of modes.
-    SavedModes {
-        /// The M code.
-        m: u32,
-    },
     /// A G that is no number of a G code.
     NotAGCode,
 
@@ -170,8 +145,6 @@ pub enum GcodeErrorKind {
     },
     /// The centre coincides with the start or the end.
     ArcNoRadius,
-    /// More than one turn.
-    ArcTurns,
 
     /// A parameter, or the memory for them.
     Parameter(ParameterError),
@@ -181,6 +154,10 @@ pub enum GcodeErrorKind {
     Expression(ExpressionError),
     /// The order in which blocks are executed.
     Flow(FlowError),
+    /// A canned cycle, a spline, a probing move.
+    Cycle(CycleError),
+    /// An offset, a tool, a mode.
+    Setting(SettingError),
 
     /// No cutting move in X or Y at constant Z.
     NoContour,
@@ -224,8 +201,6 @@ impl GcodeErrorKind {
             Self::Text => "G008",
             Self::ForeignDialect(_) => "G009",
             Self::TextAfterPercent => "G010",
-            Self::CornerRounding => "G011",
-            Self::UnsupportedAxis { .. } => "G020",
             Self::DuplicateWord { .. } => "G022",
             Self::OutOfPlace { .. } => "G023",
             Self::Conflict { .. } => "G024",
@@ -236,6 +211,8 @@ impl GcodeErrorKind {
             Self::Compensation(error) => error.code(),
             Self::Expression(error) => error.code(),
             Self::Flow(error) => error.code(),
+            Self::Cycle(error) => error.code(),
+            Self::Setting(error) => error.code(),
             Self::NotWhole { .. } => "G027",
             Self::Negative { .. } => "G028",
             Self::UnusedWord { .. } => "G029",
@@ -244,13 +221,7 @@ impl GcodeErrorKind {
             Self::UnknownG(_) => "G032",
             Self::Unsupported(_) => "G033",
             Self::WrongPlane(_) => "G034",
-            Self::WrongFeedMode(_) => "G035",
-            Self::ShiftsCoordinates(_) => "G036",
-            Self::CannedCycle(_) => "G037",
             Self::Macro(_) => "G038",
-            Self::Spline(_) => "G039",
-            Self::Subprogram { .. } => "G040",
-            Self::SavedModes { .. } => "G046",
             Self::NotAGCode => "G041",
             Self::NoMotion => "G042",
             Self::MachineMoveNeedsLine => "G043",
@@ -263,7 +234,6 @@ impl GcodeErrorKind {
             Self::ArcRadiusTooSmall { .. } => "G054",
             Self::ArcEndOffRadius { .. } => "G055",
             Self::ArcNoRadius => "G056",
-            Self::ArcTurns => "G057",
             Self::NoContour => "G070",
             Self::SeveralContours { .. } => "G071",
             Self::ContourTooLong { .. } => "G072",

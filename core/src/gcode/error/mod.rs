@@ -6,17 +6,21 @@
 //! `G17…` expressions) and carries both sides of a mismatch. The sentences shown to the
 //! user are in `message.rs`, those of a theme with its kinds.
 
+mod cycle;
 mod expression;
 mod flow;
 mod kind;
 mod parameter;
+mod setting;
 
 use super::{Line, Span};
 
+pub use cycle::CycleError;
 pub use expression::ExpressionError;
 pub use flow::FlowError;
 pub use kind::GcodeErrorKind;
 pub use parameter::ParameterError;
+pub use setting::SettingError;
 
 /// A language that is not G-code as read here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -109,9 +109,9 @@ pub(super) fn centre_from_offsets(start: Point, i: Option<Offset>, j: Option<Off
 ///
 /// # Errors
 /// One of the two is missing.
-pub(super) fn absolute_centre(i: Option<Offset>, j: Option<Offset>) -> Result<Point, GcodeErrorKind> {
+pub(super) fn absolute_centre(i: Option<Offset>, j: Option<Offset>, letters: [u8; 2]) -> Result<Point, GcodeErrorKind> {
     let (Some(i), Some(j)) = (i, j) else {
-        return Err(GcodeErrorKind::ArcCentreIncomplete { missing: if i.is_none() { b'I' } else { b'J' } });
+        return Err(GcodeErrorKind::ArcCentreIncomplete { missing: if i.is_none() { letters[0] } else { letters[1] } });
     };
     Ok(Point { x: Position::ZERO + i, y: Position::ZERO + j })
 }

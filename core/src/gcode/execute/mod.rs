@@ -2,30 +2,57 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `modes.rs` | codes that set modes, in their order of execution |
-//! | `motion.rs` | moves |
-//! | `arc.rs` | centres of arcs |
+//! | `modes.rs` | the codes of a block in their order of execution |
+//! | `rates.rs`, `switches.rs`, `tool.rs`, `saved.rs`, `call.rs` | F and S, M codes, tools, M70 … M73, calls |
+//! | `origin.rs`, `stored.rs` | work offsets, G92, G52, G10; the parameters that keep them |
+//! | `axes.rs` | axis words → places |
+//! | `motion.rs` | which code moves |
+//! | `circle.rs`, `arc.rs` | arcs in the three planes, and where their centres lie |
 //! | `compensate.rs` | G40 … G42 |
-//! | `machine.rs` | the tool table |
-//! | `modal.rs` | the modes |
+//! | `home.rs`, `probe.rs` | G28, G30, G53; probing and tapping |
+//! | `cycle.rs`, `cycle_words.rs` | canned cycles |
+//! | `curve.rs`, `spline.rs` | splines, and their flattening |
+//! | `modal.rs`, `machine.rs` | the modes; what a machine knows |
+//! | `readout.rs` | parameters that follow the machine |
 
 mod arc;
+mod axes;
+mod call;
+mod circle;
 mod compensate;
+mod curve;
+mod cycle;
+mod cycle_words;
+mod home;
 mod machine;
 mod modal;
 mod modes;
 mod motion;
+mod origin;
+mod probe;
+mod rates;
+mod readout;
+mod saved;
+mod spline;
+mod stored;
+mod switches;
+mod tool;
 
 use super::block::BlockWords;
 use super::compensation::CompensationStage;
 use super::flow::{Next, Sentence};
-use super::parameter::{MachineParameters, Surroundings};
+use super::parameter::Surroundings;
 use super::{
     Axes, Canon, Event, GcodeError, GcodeErrorKind, Line, Memory, Options, Source, Span, Token, WarningKind, Warnings,
     Words,
 };
 
-pub use machine::Tool;
+use curve::SplineMemory;
+use cycle_words::CycleMemory;
+use saved::{LEVELS, SavedModes};
+use tool::CHANGED_TOOLS;
+
+pub use machine::{Machine, Tool};
 pub use modal::{Modal, Motion};
 
 /// The machine.
@@ -44,18 +71,12 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     source: Source,
     /// Away only while an event is given to it.
     sink: Option<&'s mut S>,
-}
-
-impl<S> MachineParameters for Execution<'_, '_, '_, S> {
-    fn number(&self, _number: u32) -> Option<f64> {
-        None
-    }
-    fn named(&self, _name: &[u8]) -> Option<f64> {
-        None
-    }
-    fn memory(&self) -> &Memory<'_> {
-        self.memory
-    }
+    /// Whether the present block gives F.
+    feed_given: bool,
+    cycle: Option<CycleMemory>,
+    splines: SplineMemory,
+    changed_tools: heapless::Vec<Tool, CHANGED_TOOLS>,
+    saved: [Option<SavedModes>; LEVELS],
 }
 
 impl<'m, S> Surroundings<'m> for Execution<'_, '_, 'm, S> {
@@ -70,7 +91,7 @@ where
 {
     /// At the start of a program.
     pub(super) fn new(options: Options<'p>, memory: &'s mut Memory<'m>, warnings: Warnings, sink: &'s mut S) -> Self {
-        Self {
+        let mut execution = Self {
             options,
             modal: Modal::initial(options.units),
             at: options.start,
@@ -84,7 +105,14 @@ where
             line: Line { number: 1, start: 0, text: &[] },
             source: Source::NONE,
             sink: Some(sink),
-        }
+            feed_given: false,
+            cycle: None,
+            splines: SplineMemory::default(),
+            changed_tools: heapless::Vec::new(),
+            saved: [None; LEVELS],
+        };
+        execution.load_machine();
+        execution
     }
 
     /// Executes a block; tells where the program goes on.
@@ -103,8 +131,7 @@ where
             }
             self.warn(WarningKind::BlockDeleteExecuted, span);
         }
-        self.execute(&mut block)?;
-        Ok(if self.end.is_some() { Next::End } else { Next::Continue })
+        self.execute(&mut block)
     }
 
     fn comments(&mut self) -> Result<(), GcodeError> {

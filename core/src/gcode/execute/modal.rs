@@ -1,6 +1,6 @@
 //! The modes of the machine that stay from block to block.
 
-use super::super::{FeedMode, PathControl, Plane, RetractLevel, Shifts, Spindle, Units};
+use super::super::{FeedMode, GCode, PathControl, Plane, RetractLevel, Shifts, Spindle, Units};
 use crate::geometry::Side;
 use crate::units::Real;
 
@@ -16,6 +16,37 @@ pub enum Motion {
         /// G3.
         counter_clockwise: bool,
     },
+    /// G5, G5.1, G5.2.
+    Spline(GCode),
+    /// G33.1.
+    Tap,
+    /// G38.2 … G38.5.
+    Probe {
+        /// G38.4, G38.5: until contact is lost.
+        away: bool,
+        /// G38.2, G38.4: no contact is an error.
+        must: bool,
+    },
+    /// G73, G74, G76, G81 … G89.
+    Cycle(GCode),
+}
+
+impl Motion {
+    /// The code that selects it.
+    pub const fn code(self) -> GCode {
+        GCode::from_tenths(match self {
+            Self::Traverse => 0,
+            Self::Feed => 10,
+            Self::Arc { counter_clockwise: false } => 20,
+            Self::Arc { counter_clockwise: true } => 30,
+            Self::Spline(code) | Self::Cycle(code) => return code,
+            Self::Tap => 331,
+            Self::Probe { away: false, must: true } => 382,
+            Self::Probe { away: false, must: false } => 383,
+            Self::Probe { away: true, must: true } => 384,
+            Self::Probe { away: true, must: false } => 385,
+        })
+    }
 }
 
 /// The modes in force.
@@ -23,7 +54,7 @@ pub enum Motion {
 pub struct Modal {
     /// G20, G21.
     pub units: Units,
-    /// G0 … G3; `None` at the start and after G80.
+    /// The motion that axis words alone continue; `None` at the start and after G80.
     pub motion: Option<Motion>,
     /// G90 (true), G91.
     pub absolute: bool,

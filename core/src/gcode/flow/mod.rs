@@ -13,7 +13,6 @@ mod reader;
 mod sentence;
 mod statement;
 
-#[expect(unused_imports, reason = "calls are answered as their codes are executed")]
 pub(super) use next::{Next, Target};
 pub use program::{Library, LibraryFile, Program};
 pub(super) use reader::Reader;

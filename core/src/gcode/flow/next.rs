@@ -4,7 +4,7 @@ use super::super::Span;
 
 /// What follows a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(dead_code, reason = "calls and jumps are answered as their codes are executed")]
+#[expect(dead_code, reason = "jumps are answered as their codes are executed")]
 pub(in super::super) enum Next {
     /// The block behind it.
     Continue,
@@ -39,7 +39,6 @@ pub(in super::super) enum Next {
 
 /// What a call leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(dead_code, reason = "calls are answered as their codes are executed")]
 pub(in super::super) enum Target {
     /// Program `O…`, in this text or the library.
     Program(u32),

@@ -64,6 +64,19 @@ impl Number {
             Self::Computed(value) => value < 0.0,
         }
     }
+    /// Zero.
+    pub const ZERO: Self = Self::Computed(0.0);
+
+    /// A length in nanometres as a parameter holds it.
+    #[expect(clippy::float_arithmetic, reason = "a parameter takes its value here, rounded once")]
+    pub fn of_nanometres(length: i64, units: Units) -> f64 {
+        length as f64 / units.nanometres() as f64
+    }
+    /// A [`Real`] over `numerator / denominator` as a parameter holds it.
+    #[expect(clippy::float_arithmetic, reason = "a parameter takes its value here")]
+    pub fn of_real(value: Real, numerator: i16, denominator: i16) -> f64 {
+        value.bits() as f64 / 4_294_967_296.0 * f64::from(denominator) / f64::from(numerator)
+    }
     /// As the expressions see it.
     pub fn value(self) -> f64 {
         match self {
