@@ -86,7 +86,7 @@ where
                 let Some(number) = word.and(self.modal.radius_offset).or(self.modal.tool) else {
                     return Ok(Some(Offset::ZERO));
                 };
-                let tool = self.options.tools.iter().find(|tool| tool.number == number);
+                let tool = self.tool_row(number);
                 let unknown = CompensationError::ToolUnknown { number };
                 match tool {
                     Some(tool) => Ok(Some(tool.diameter)),
