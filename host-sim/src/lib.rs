@@ -9,6 +9,7 @@ pub mod diagnostics;
 pub mod feature;
 pub mod image;
 pub mod job;
+pub mod library;
 pub mod measurement;
 pub mod output;
 pub mod pass;

@@ -9,7 +9,8 @@
 //! | probe point | [`POINT_BYTES`] | reading, contact, observation |
 //!
 //! Samples are 0.1 mm apart, with cutters below 5 mm a fiftieth of the diameter; a sharp inside corner takes up to 314
-//! more. Besides, the parameters of the program take 10 KiB; program, measurement and image lie in memory, and 48 KiB are taken from the stack of a Cortex-M7.
+//! more. Besides, the parameters of the program take 10 KiB; program, measurement and image lie in memory, and 48 KiB
+//! are taken from the stack of a Cortex-M7.
 
 use heapless::Vec;
 
