@@ -77,11 +77,16 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     splines: SplineMemory,
     changed_tools: heapless::Vec<Tool, CHANGED_TOOLS>,
     saved: [Option<SavedModes>; LEVELS],
+    /// Modes that come back before the next block.
+    returning: Option<SavedModes>,
 }
 
 impl<'m, S> Surroundings<'m> for Execution<'_, '_, 'm, S> {
     fn memory_mut(&mut self) -> &mut Memory<'m> {
         self.memory
+    }
+    fn level_ended(&mut self, level: u8) {
+        self.modes_of_level(level);
     }
 }
 
@@ -110,6 +115,7 @@ where
             splines: SplineMemory::default(),
             changed_tools: heapless::Vec::new(),
             saved: [None; LEVELS],
+            returning: None,
         };
         execution.load_machine();
         execution
@@ -120,6 +126,7 @@ where
         self.text = sentence.text;
         self.line = sentence.line;
         self.source = sentence.source;
+        self.restore_returning()?;
         let mut block = BlockWords::gather(sentence)?;
         if sentence.has_comments {
             self.comments()?;

@@ -52,6 +52,14 @@ impl SavedModes {
     }
 }
 
+impl<S> Execution<'_, '_, '_, S> {
+    /// A call level has ended: what M73 saved in it waits to come back.
+    pub(super) fn modes_of_level(&mut self, level: u8) {
+        let saved = self.saved.get_mut(usize::from(level)).and_then(Option::take);
+        self.returning = saved.filter(|saved| saved.on_return).or(self.returning);
+    }
+}
+
 impl<S> Execution<'_, '_, '_, S>
 where
     S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
@@ -76,11 +84,9 @@ where
         Ok(())
     }
 
-    /// A call level has ended: what M73 saved in it comes back.
-    #[expect(dead_code, reason = "levels end as calls are followed")]
-    pub(in super::super) fn level_ended(&mut self, level: u8) -> Result<(), GcodeError> {
-        let saved = self.saved.get_mut(usize::from(level)).and_then(Option::take);
-        match saved.filter(|saved| saved.on_return) {
+    /// Brings back what a call that has ended had saved by M73, before the block behind the call.
+    pub(super) fn restore_returning(&mut self) -> Result<(), GcodeError> {
+        match self.returning.take() {
             Some(saved) => self.restore(&saved, self.block_span()),
             None => Ok(()),
         }

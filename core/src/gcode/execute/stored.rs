@@ -2,7 +2,7 @@
 //!
 //! The values are in the unit of the machine (LinuxCNC's `LINEAR_UNITS`), axes that turn in degrees.
 
-use super::super::{Event, GcodeError, GcodeErrorKind, NineAxes, Number, Shifts, Span, Units};
+use super::super::{Event, GcodeError, GcodeErrorKind, NineAxes, Number, RetractLevel, Shifts, Span, Units};
 use super::Execution;
 use super::axes::turns;
 use crate::units::Position;
@@ -57,6 +57,8 @@ impl<S> Execution<'_, '_, '_, S> {
         let system = Number::Computed(self.memory.get(WORK_NUMBER)).exactly_times(1);
         let system = system.and_then(|n| u16::try_from(n).ok()).filter(|n| (1..=9).contains(n)).unwrap_or(1);
         self.modal.work_offset = system;
+        // LinuxCNC starts with G99.
+        self.modal.retract = RetractLevel::Clearance;
         let applied = Number::Computed(self.memory.get(LOCAL_FLAG)).exactly_times(1) == Some(1);
         self.modal.shifts = Shifts {
             work: self.stored_axes(work_place(system)),

@@ -134,6 +134,7 @@ impl<'p> Reader<'p> {
         let Some(call) = self.calls.pop() else { return };
         self.jumps = self.jumps.saturating_add(1);
         self.open.leave(self.calls.len() as u8);
+        machine.level_ended(self.calls.len().saturating_add(1) as u8);
         if call.kind != CallKind::Program {
             machine.memory_mut().leave();
         }

@@ -87,6 +87,11 @@ impl<'a> Words<'a> {
                 }
                 self.word(from, letter)
             }
+            // LinuxCNC's polar words.
+            b'@' | b'^' => {
+                self.begun = true;
+                self.word(from, byte)
+            }
             b'#' => {
                 let Some(len) = extent::assignment(from) else {
                     return Err(self.error(from, GcodeErrorKind::Stray(byte)));

@@ -29,4 +29,6 @@ pub trait MachineParameters {
 pub(super) trait Surroundings<'m>: MachineParameters {
     /// The memory.
     fn memory_mut(&mut self) -> &mut Memory<'m>;
+    /// A call has ended; `level` is how deep it stood.
+    fn level_ended(&mut self, level: u8);
 }
