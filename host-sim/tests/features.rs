@@ -302,3 +302,14 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
 fn job_of(name: &str, pass: Option<u32>) -> Pass {
     job(name, "", None, pass).unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)))
 }
+
+#[test]
+fn more_runs_than_can_be_compared_are_refused() {
+    let line = |k: i32| format!("G0 X0 Y{k} Z2\nG1 Z-5 F100\nG1 X9\nG0 Z2\n");
+    let program = format!("G21 G90\nT1 M6\nS900 M3\n{}M30\n", (0..1001).map(line).collect::<String>());
+    let text = std::fs::read_to_string(data("pocket.toml")).unwrap();
+    let job = Job::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).unwrap();
+    let (error, shown) = refused(Pass::new(job, Source::new("many.nc", program.into_bytes())));
+    assert_eq!(error.code(), "N010");
+    assert!(shown.contains("1001 runs of cutting moves") && shown.contains("at most 1000"), "{shown}");
+}

@@ -10,7 +10,7 @@ use crate::diagnostics::{InputError, Source};
 use crate::job::Job;
 
 /// Different runs that are compared with each other at most; the time grows with the square of their number.
-pub(super) const LARGEST_SEARCH: usize = 2_000;
+pub(super) const LARGEST_SEARCH: usize = 1_000;
 
 /// The length along which a correction comes and goes.
 const LEAD: Offset = Offset::from_um(2_000);

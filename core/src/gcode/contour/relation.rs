@@ -40,13 +40,16 @@ fn same_curve(a: &Curve, b: &Curve) -> bool {
 
 /// Whether two paths run over the same places, from wherever and in whichever direction.
 pub(super) fn coincide(a: &[Block], b: &[Block]) -> bool {
-    let on = |a: &[Block], b: &[Block]| view(a, b).is_some_and(|v| v.lowest >= -SAME && v.highest <= SAME);
+    let on = |a: &[Block], b: &[Block]| look(a, b, &mut |left| (left.abs() <= SAME).then_some(left.abs())).is_some();
     on(a, b) && on(b, a)
 }
 
 /// How much farther from the wall of `other` a path lies: all of it on the free side of `other`, which in turn is not
 /// all on the free side of the path. Two paths that have each other on the free side are two walls.
 pub(super) fn farther(path: &[Block], other: &[Block], wall: Side, reach: Offset) -> Option<Gap> {
+    if far(path, other, reach) {
+        return None;
+    }
     let seen = view_free(path, other, wall)?;
     if seen.lowest > reach || seen.highest <= SAME || view_free(other, path, wall).is_some() {
         return None;
@@ -61,11 +64,6 @@ pub(super) fn farther(path: &[Block], other: &[Block], wall: Side, reach: Offset
 struct View {
     lowest: Offset,
     highest: Offset,
-}
-
-/// Distances of a path from another without their sign.
-fn view(path: &[Block], other: &[Block]) -> Option<View> {
-    look(path, other, &mut |left| Some(left.abs()))
 }
 
 /// Distances into the free side; `None` when a place lies on the wall's side.
@@ -106,6 +104,23 @@ fn count_even(path: &[Block], other: &[Block], holds: impl Fn(Offset) -> bool) -
         true
     });
     count
+}
+
+/// Whether a path is certainly farther from another one than `reach`, seen from eight places: no place of the path is
+/// farther from the nearest of them than an eighth of its length.
+fn far(path: &[Block], other: &[Block], reach: Offset) -> bool {
+    let (Some(path), Some(other)) = (Contour::new(path), Contour::new(other)) else { return true };
+    let limit = reach + Offset::from_nm(path.length().nm() / 8);
+    let mut hint = 0;
+    (0..8).all(|k| {
+        let s = Offset::from_nm((path.length().nm() / 8).saturating_mul(k));
+        path.at(s, hint).is_none_or(|place| {
+            hint = place.block;
+            let mut least = Offset::MAX;
+            other.feet(place.point, |foot| least = least.min(foot.left.abs()));
+            least > limit
+        })
+    })
 }
 
 /// Gives places evenly along a path, until `visit` says no.
