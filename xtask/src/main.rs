@@ -83,6 +83,9 @@ enum Task {
         /// Count instructions with valgrind instead of measuring time.
         #[arg(long)]
         count: bool,
+        /// Measure how fast programs are read instead, beside the crate gcode and LinuxCNC.
+        #[arg(long, conflicts_with = "count")]
+        reading: bool,
         /// Write the table into docs/measure.md.
         #[arg(long)]
         write: bool,
@@ -145,6 +148,9 @@ fn main() -> ExitCode {
         Task::Elf { write } => report.run(Step::new("elf", || firmware::elf::check(write))),
         Task::Budget { write } => report.run(Step::new("budget", || firmware::budget::check(write))),
         Task::Bench { count: true, write, .. } => report.run(Step::new("bench --count", || bench::count(write))),
+        Task::Bench { reading: true, write, .. } => {
+            report.run(Step::new("bench --reading", || bench::reading::measure(write)))
+        }
         Task::Bench { no_run, write, arguments, .. } => {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))
         }
