@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Terminal, print};
+use super::{Terminal, print, which};
 use crate::command::probe::{Options, Report, run as probe};
 use crate::diagnostics::Failure;
 use crate::report::json;
@@ -24,6 +24,8 @@ pub(super) struct Arguments {
     /// Replace the file if it exists.
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    which: which::WhichArguments,
     /// Places along the contour; each is touched at every height.
     #[arg(long, value_name = "N", default_value_t = Settings::default().places)]
     points: u32,
@@ -65,6 +67,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         dialect: arguments.dialect,
         out: &arguments.output,
         force: arguments.force,
+        which: arguments.which.which(),
         settings: Settings {
             places: arguments.points,
             heights: arguments.heights,

@@ -3,7 +3,7 @@
 use std::path::Path as FilePath;
 
 use crate::diagnostics::{Failure, InputError};
-use crate::job::Job;
+use crate::job::{Job, Which};
 use crate::output::OutputFile;
 use crate::pass::Pass;
 use crate::verification::{Dialect, KeptOff, Plan, Settings, Unknown, plan, write};
@@ -21,6 +21,8 @@ pub struct Options<'a> {
     pub force: bool,
     /// Choices.
     pub settings: Settings,
+    /// Feature and pass, when there are several.
+    pub which: Which,
 }
 
 /// A point of the program, for the list that is printed.
@@ -95,7 +97,9 @@ pub struct Report {
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failure> {
     // A target that may not be written is refused before the work.
     let mut file = OutputFile::create(options.out, options.force)?;
-    let pass = Pass::read(Job::read(options.job)?)?;
+    let mut job = Job::read(options.job)?;
+    job.which = options.which.clone();
+    let pass = Pass::read(job)?;
     let plan = plan(&pass, &options.settings, progress)?;
     let text = write(&plan, options.dialect, &log_name(options.out))?;
     std::io::Write::write_all(&mut file, text.as_bytes()).map_err(|e| InputError::unwritable(options.out, &e))?;
