@@ -3,13 +3,17 @@
 //! | step | where |
 //! |---|---|
 //! | lines, spans | [`Lines`], [`Span`] |
-//! | words with exact decimal numbers | [`Words`], [`Decimal`] |
-//! | modes and order of execution | [`Interpreter`] |
+//! | words with exact decimal numbers (`lexical`) | [`Words`], [`Decimal`] |
+//! | expressions and parameters (`expression`, `parameter`) | [`Number`], [`Memory`] |
+//! | subprograms, loops, jumps: which line comes next (`flow`) | [`Program`], [`Library`] |
+//! | modes and order of execution, moves, offsets, cycles (`execute`) | [`Interpreter`], [`Options`] |
+//! | the path of the cutter's centre under G41 and G42 | [`compensation`] |
 //! | canonical moves with the block each comes from | [`Event`], [`Canon`] |
-//! | the finishing contour | [`read_contour`], [`find_contours`] |
+//! | the finishing contour (`contour`) | [`read_contour`], [`find_contours`], [`search`] |
 //!
-//! Nothing is allocated and nothing is computed in floating point: 0.0001 in is 2540 nm on every machine. What is not
-//! understood is a [`GcodeError`] with line, column and a code; it is never skipped.
+//! Nothing is allocated. A number as it is written stays exact: 0.0001 in is 2540 nm on every machine; only expressions
+//! are computed in floating point, in software that gives the same bits everywhere. What is not understood is a
+//! [`GcodeError`] with line, column and a code; it is never skipped.
 //!
 //! ```
 //! use truepath_core::gcode::{Canon, DeviceMemory, Interpreter, Options};
