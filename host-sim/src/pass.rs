@@ -7,12 +7,12 @@ use truepath_core::cut::{Milling, Path, Sample};
 use truepath_core::gcode::{
     ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, HostMemory, Program, Spindle, read_contour,
 };
-use truepath_core::geometry::{Block, Contour, Point};
+use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::job::{self, JobError};
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
-use crate::feature::{self, FeatureSummary, Plan};
+use crate::feature::{self, FeaturePass, FeatureSummary, Plan};
 use crate::job::Job;
 use crate::refusal::Inputs;
 use crate::report::mm;
@@ -62,9 +62,15 @@ impl Pass {
     /// As [`Pass::read`].
     pub fn new(mut job: Job, program: Source) -> Result<Self, Failure> {
         let plan = feature::plan(&job, &program)?;
+        let level = job.which.pass.unwrap_or(1);
+        job.numbers.part = plan.as_ref().map(|plan| plan.level(level).map(|pass| pass.part)).transpose()?;
+        Self::of_part(job, program, plan)
+    }
+
+    /// Reads the part of the program that the job names by now.
+    fn of_part(mut job: Job, program: Source, plan: Option<Plan>) -> Result<Self, Failure> {
         if let Some(plan) = &plan {
             let numbers = &mut job.numbers;
-            numbers.part = Some(plan.level(job.which.pass.unwrap_or(1))?.part);
             numbers.wall = plan.wall.or(numbers.wall);
             numbers.allowance = plan.allowance.unwrap_or(numbers.allowance);
             numbers.tool.number = plan.tool.or(numbers.tool.number);
@@ -165,6 +171,19 @@ impl Pass {
         let mut job = self.job.clone();
         job.which.pass = Some(number);
         Self::new(job, self.program.clone())
+    }
+
+    /// One of the passes of the same feature, spring passes included. `wall` is the side of its own travel; `None` where
+    /// the program says it.
+    ///
+    /// # Errors
+    /// As [`Pass::read`].
+    pub fn along(&self, pass: &FeaturePass, wall: Option<Side>) -> Result<Self, Failure> {
+        let mut job = self.job.clone();
+        job.numbers.part = Some(pass.part);
+        job.numbers.wall = wall;
+        let plan = self.plan.clone().map(|plan| Plan { wall, ..plan });
+        Self::of_part(job, self.program.clone(), plan)
     }
 
     /// The failure for an error of the core, pointing into job or program.

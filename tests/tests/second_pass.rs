@@ -38,7 +38,8 @@ fn single_part(name: &str, places: &[f64], levels: &[f64]) -> (f64, f64) {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("split");
     let job = demo(name).join("job.toml");
-    let written = split::run(&split::Options { job: &job, out: &out, force: false }).unwrap();
+    let written =
+        split::run(&split::Options { job: &job, out: &out, force: false, which: Default::default() }).unwrap();
     let (whole, first) = (pass(&job), pass(&written.job));
     let machine = machine(name);
     let milled = workshop::mill(&first, &machine, None).unwrap();
@@ -77,7 +78,13 @@ fn the_second_pass_of_a_single_part_comes_out_right() {
 fn the_first_pass_leaves_half_of_the_allowance_and_is_no_corrected_program() {
     let folder = tempfile::tempdir().unwrap();
     let job = demo("corner").join("job.toml");
-    let written = split::run(&split::Options { job: &job, out: &folder.path().join("a"), force: false }).unwrap();
+    let written = split::run(&split::Options {
+        job: &job,
+        out: &folder.path().join("a"),
+        force: false,
+        which: Default::default(),
+    })
+    .unwrap();
     let text = fs::read_to_string(&written.program).unwrap();
     assert!(text.contains("(TRUEPATH FIRST PASS, LEAVES 1.5 MM)"), "{text}");
     assert!(text.contains("X35.5 Y35.") && text.contains("X39. Y31.5 I3.5 J0."), "{text}");
@@ -101,7 +108,9 @@ fn a_sharp_inside_corner_cannot_be_split_and_other_jobs_are_no_first_pass() {
     let job = folder.path().join("job.toml");
     fs::write(&job, &text).unwrap();
     let out = folder.path().join("out");
-    let Err(Failure::Input(error)) = split::run(&split::Options { job: &job, out: &out, force: false }) else {
+    let Err(Failure::Input(error)) =
+        split::run(&split::Options { job: &job, out: &out, force: false, which: Default::default() })
+    else {
         panic!("split across a sharp corner")
     };
     assert_eq!((error.code(), error.line_column().map(|(line, _)| line)), ("P020", Some(12)));

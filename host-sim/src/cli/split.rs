@@ -7,6 +7,7 @@ use clap::Args;
 use super::{Terminal, print};
 use crate::command::split::{Options, run as split};
 use crate::diagnostics::Failure;
+use crate::job::Which;
 use crate::report::json;
 
 #[derive(Debug, Args)]
@@ -16,13 +17,17 @@ pub(super) struct Arguments {
     /// Folder for first-pass.nc and first-pass.toml.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    /// The feature of the job, or of the markers in the program; needed when there are several to correct.
+    #[arg(long, value_name = "ID")]
+    feature: Option<String>,
     /// Replace the files of an earlier run.
     #[arg(long)]
     force: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
-    let options = Options { job: &arguments.job, out: &arguments.output, force: arguments.force };
+    let which = Which { feature: arguments.feature.clone(), pass: None };
+    let options = Options { job: &arguments.job, out: &arguments.output, force: arguments.force, which };
     let split = split(&options)?;
     for warning in &split.warnings {
         terminal.warn(warning);

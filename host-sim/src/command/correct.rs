@@ -7,7 +7,7 @@ use truepath_core::cut::Path;
 use truepath_core::job;
 use truepath_core::probe::Contact;
 
-use super::doubts::{doubts, kinked};
+use super::doubts::{doubts, kinked, misread};
 use super::levels::{self, Levels};
 use super::second_pass;
 use crate::correction::{Correction, Identified, corrected, identified};
@@ -196,13 +196,21 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     let pass = read(options.job)?;
     let file = Source::read(options.probe)?;
     let first = options.first_pass.map(read).transpose()?;
-    let (pass, measurement) = match &first {
-        None => Measurement::of_any_depth(pass, &file)?,
-        Some(first) => (pass, Measurement::read(first, &file)?),
+    let (pass, first, measurement) = match first {
+        None => {
+            let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
+            (pass, None, measurement)
+        }
+        Some(first) => {
+            let (first, measurement) = Measurement::of_any_depth(first, &file)?;
+            let pass = if pass.plan.is_some() { pass.at_level(first.level())? } else { pass };
+            (pass, Some(first), measurement)
+        }
     };
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
     let route = options.route.unwrap_or(pass.job.route);
-    let remarks = measurement.remarks(&file);
+    let mut remarks = measurement.remarks(&file);
+    remarks.extend(misread(first.as_ref().unwrap_or(&pass), first.is_some(), &measurement.contacts));
     let done = match &first {
         None => correct(&pass, &measurement, &remarks, &[route], progress)?,
         Some(first) => {

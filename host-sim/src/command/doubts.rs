@@ -3,6 +3,7 @@
 use truepath_core::correct::Law;
 use truepath_core::cut::Loop;
 use truepath_core::identify::Parameter;
+use truepath_core::probe::Contact;
 use truepath_core::units::Offset;
 
 use crate::correction::{Correction, Identified};
@@ -68,6 +69,36 @@ pub(super) fn doubts(pass: &Pass, identified: &Identified, correction: &Correcti
     }
     if let Some(reversal) = reversal(pass, machine, correction) {
         out.push(reversal);
+    }
+    out
+}
+
+/// What the points of a pass may be of instead: a wall milled twice, or the first of two passes.
+pub(super) fn misread(measured: &Pass, first_pass: bool, contacts: &[Contact]) -> Vec<String> {
+    let mut out = Vec::new();
+    let passes = || measured.plan.iter().flat_map(|plan| &plan.passes);
+    let height = passes().find(|p| !p.spring && p.number == measured.level()).and_then(|p| p.z);
+    if let Some(spring) = passes().find(|p| p.spring && p.z == height) {
+        out.push(format!(
+            "the spring pass of lines {}-{} goes over the probed wall: the points must have been touched before it. A wall milled twice shows too little of the force, and too little would be corrected",
+            spring.lines.first, spring.lines.last
+        ));
+    }
+    let allowance = measured.job.numbers.allowance;
+    let mut errors: Vec<Offset> = contacts.iter().map(|contact| contact.error).collect();
+    errors.sort_unstable();
+    // An allowance below 0.1 mm is of the size of ordinary errors.
+    if let Some(&median) = errors.get(errors.len() / 2)
+        && !first_pass
+        && allowance > Offset::from_um(100)
+        && median.nm() * 5 > allowance.nm() * 2
+    {
+        out.push(format!(
+            "the wall stands {:.3} mm off its place, {:.0} % of allowance_mm = {}: if that is the stock a first pass left, give --first-pass with its job; otherwise look at the probe and the origin",
+            mm(median),
+            100.0 * mm(median) / mm(allowance),
+            mm(allowance)
+        ));
     }
     out
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path as FilePath;
 
+use super::doubts::misread;
 use crate::diagnostics::{Failure, Source};
 use crate::job::{Job, ProbeFlags, Which};
 use crate::measurement::Measurement;
@@ -68,6 +69,7 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(measurement.remarks(&file));
+    warnings.extend(misread(&pass, false, &measurement.contacts));
     let depth = mm(pass.job.numbers.cut.axial_depth);
     let contacts = measurement.contacts.iter().map(|c| Point {
         line: c.line,

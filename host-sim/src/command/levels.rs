@@ -35,7 +35,11 @@ pub(super) fn each(
             levels.written.push(number);
             continue;
         }
-        let other = pass.at_level(number)?;
+        let mut other = pass.at_level(number)?;
+        if let Some(surface) = &pass.surface {
+            // The earlier pass left the same at every depth that it cut alike.
+            other = other.over(surface.clone())?;
+        }
         let mut buffer = PathBuffer::default();
         let sampled = other.sample(&mut buffer)?.with_law(path.setup().law);
         match difference(pass, path, &other, &sampled) {
@@ -55,9 +59,7 @@ pub(super) fn each(
 /// Why the correction of one depth does not hold at another.
 fn difference(pass: &Pass, path: &Path, other: &Pass, sampled: &Path) -> Option<&'static str> {
     let feeds = |pass: &Pass| pass.blocks.iter().map(|b| b.feed).collect::<Vec<_>>();
-    if pass.surface.is_some() {
-        Some("the surface that an earlier pass left is known for one depth only")
-    } else if feeds(pass) != feeds(other) {
+    if feeds(pass) != feeds(other) {
         Some("its feeds are others")
     } else if pass.core.setup != other.core.setup {
         Some("its spindle speed or direction is another")

@@ -10,4 +10,5 @@ mod levels;
 pub mod probe;
 pub mod second_pass;
 pub mod simulate;
+mod first_pass;
 pub mod split;

@@ -7,6 +7,7 @@
 
 use truepath_core::correct::{Band, Profile, profile};
 use truepath_core::cut::{Path, Sample, State};
+use truepath_core::gcode::program_crc;
 use truepath_core::geometry::Vector;
 use truepath_core::job::LawName;
 
@@ -16,6 +17,7 @@ use crate::diagnostics::{Failure, InputError};
 use crate::job::Route;
 use crate::measurement::Measurement;
 use crate::pass::{Pass, PathBuffer};
+use crate::program::first_pass_of;
 use crate::report::{float, mm};
 use crate::surface::Surface;
 
@@ -104,6 +106,13 @@ fn agree(second: &Pass, first: &Pass) -> Result<(), Failure> {
         let help = "use the first-pass.toml that truepath split wrote for this job";
         let error = InputError::new("K003", found, "two passes of one part", help);
         return Err(error.at(first.job.source(), first.job.span(table)).into());
+    }
+    let original = program_crc(second.program.bytes());
+    if let Some((named, place)) = first_pass_of(first.program.bytes()).filter(|(named, _)| *named != original) {
+        let found = format!("this is the first pass of a program with CRC-32 {named:08X}");
+        let expected = format!("that of {}, {original:08X}", second.program.name());
+        let help = "give the first-pass.toml that truepath split wrote for this job; split again if the program was changed";
+        return Err(InputError::new("K003", found, expected, help).at(&first.program, place).into());
     }
     if a.correct.law == LawName::Paper {
         let help = "set law = \"model\" or \"mirror\"";

@@ -54,6 +54,13 @@ impl Source {
         let start = (start + column.saturating_sub(1) as usize).min(self.0.bytes.len());
         start..(start + length as usize).min(self.0.bytes.len())
     }
+    /// The place of a whole line, counted from 1, without its end.
+    pub fn line_span(&self, line: u32) -> Range<usize> {
+        let start = self.span_at(line, 1, 0).start;
+        let rest = self.bytes().get(start..).unwrap_or_default();
+        let length = rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(rest.len());
+        start..start + length
+    }
     /// Line and column (characters) of a byte of the file, both counted from 1.
     pub fn line_column(&self, byte: usize) -> (usize, usize) {
         let lines = line_starts(&self.0.bytes);

@@ -37,4 +37,6 @@ mod region;
 mod survey;
 
 pub use listing::{FeatureSummary, PassRow, Row, listing};
+pub use place::lines_named;
 pub use plan::{FeaturePass, Plan, plan};
+pub use survey::Survey;

@@ -9,6 +9,18 @@ use super::marker::Marked;
 use crate::diagnostics::{InputError, Source};
 use crate::job::{FeaturePlace, FeatureTable, Job};
 
+/// The lines of every feature of a job that names its own; `None` for those that markers show.
+///
+/// # Errors
+/// `N008` when a feature names blocks or lines that the program does not have.
+pub fn lines_named(job: &Job, program: &Source) -> Result<Vec<Option<LineRange>>, InputError> {
+    let named = |feature: &FeatureTable| match feature.place {
+        FeaturePlace::Markers => Ok(None),
+        FeaturePlace::Lines(_) | FeaturePlace::Blocks(_) => lines(job, feature, program, &[]).map(Some),
+    };
+    job.features.iter().map(named).collect()
+}
+
 /// The lines of a feature.
 pub(super) fn lines(
     job: &Job,

@@ -17,14 +17,19 @@ const LEAD: Offset = Offset::from_um(2_000);
 
 /// All runs of a program.
 #[derive(Clone, Debug)]
-pub(super) struct Survey {
-    pub(super) runs: Vec<Found>,
-    pub(super) blocks: Vec<Block>,
+pub struct Survey {
+    /// The runs, in the order of execution.
+    pub runs: Vec<Found>,
+    /// Blocks of all runs, in the same order.
+    pub blocks: Vec<Block>,
 }
 
 impl Survey {
     /// Reads a program as the job says that its control does.
-    pub(super) fn read(job: &Job, program: &Source) -> Result<Self, InputError> {
+    ///
+    /// # Errors
+    /// What is wrong with the program.
+    pub fn read(job: &Job, program: &Source) -> Result<Self, InputError> {
         let mut blocks: Vec<Block> = Vec::new();
         let mut read: Vec<Candidate> = Vec::new();
         let mut memory = Box::new(HostMemory::new());

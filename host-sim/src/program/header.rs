@@ -1,8 +1,15 @@
 //! The comment that marks a corrected program, and its place.
 
+use std::ops::Range;
+
 use truepath_core::gcode::{CORRECTED_MARK, Lines, Token, Words};
 
 use super::{Purpose, RewriteOptions};
+
+/// How the mark of a first pass begins.
+const FIRST_PASS: &str = "(TRUEPATH FIRST PASS";
+/// What stands before the CRC-32 of the original.
+const ORIGINAL: &str = "(ORIGINAL CRC32 ";
 
 /// How many lines stand before the mark: `%` and the program's name stay first, because controls look for them there.
 pub(super) fn place(program: &[u8]) -> u32 {
@@ -32,7 +39,7 @@ pub struct Origin {
 
 /// The lines of the mark.
 pub(super) fn text(crc: u32, options: &RewriteOptions, line_end: &[u8]) -> Vec<u8> {
-    let facts = format!("(ORIGINAL CRC32 {crc:08X}, TOLERANCE {} MM)", options.tolerance.nm() as f64 / 1e6);
+    let facts = format!("{ORIGINAL}{crc:08X}, TOLERANCE {} MM)", options.tolerance.nm() as f64 / 1e6);
     let named = |name: &str, crc: Option<u32>| crc.map(|crc| format!("({name} CRC32 {crc:08X})"));
     let origin = [named("JOB", options.origin.job), named("PROBE FILE", options.origin.probe)];
     let tool = format!("(WRITTEN BY TRUEPATH {})", env!("CARGO_PKG_VERSION"));
@@ -41,7 +48,7 @@ pub(super) fn text(crc: u32, options: &RewriteOptions, line_end: &[u8]) -> Vec<u
             (CORRECTED_MARK.to_owned(), "(DO NOT CORRECT AGAIN, DO NOT ARM A COPROCESSOR WITH THIS PROGRAM)".to_owned())
         }
         Purpose::FirstPass { left } => (
-            format!("(TRUEPATH FIRST PASS, LEAVES {} MM)", left.nm() as f64 / 1e6),
+            format!("{FIRST_PASS}, LEAVES {} MM)", left.nm() as f64 / 1e6),
             "(PROBE THE WALL BEFORE THE SECOND PASS)".to_owned(),
         ),
     };
@@ -53,6 +60,15 @@ pub(super) fn text(crc: u32, options: &RewriteOptions, line_end: &[u8]) -> Vec<u
         text.extend_from_slice(line_end);
     }
     text
+}
+
+/// The CRC-32 of the program whose first pass a program is, and where it is named; `None` for any other program.
+pub fn first_pass_of(program: &[u8]) -> Option<(u32, Range<usize>)> {
+    let place = |word: &str| program.windows(word.len()).position(|w| w.eq_ignore_ascii_case(word.as_bytes()));
+    place(FIRST_PASS)?;
+    let start = place(ORIGINAL)? + ORIGINAL.len();
+    let digits = std::str::from_utf8(program.get(start..start + 8)?).ok()?;
+    Some((u32::from_str_radix(digits, 16).ok()?, start..start + 8))
 }
 
 /// What every control accepts inside a comment.

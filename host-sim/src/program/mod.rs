@@ -35,7 +35,7 @@ mod writer;
 
 use std::ops::Range;
 
-use truepath_core::gcode::{Options, is_marked_corrected};
+use truepath_core::gcode::{LineRange, Options, is_marked_corrected};
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
@@ -43,7 +43,7 @@ use crate::diagnostics::{Failure, InputError, Source};
 pub use difference::{Difference, Shift};
 pub use fit::{Piece, Samples, Shape, fit};
 pub use grid::Grid;
-pub use header::Origin;
+pub use header::{Origin, first_pass_of};
 
 /// The corrected path of one line of the contour.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -110,6 +110,19 @@ pub struct Rewritten {
     pub text: Vec<u8>,
     /// What is different.
     pub difference: Difference,
+    /// Lines of the original behind which lines were added, with their number, in order.
+    pub added: Vec<(u32, u32)>,
+}
+
+impl Rewritten {
+    /// Where lines of the original stand in the written text, with everything they have become.
+    pub fn lines(&self, original: LineRange) -> LineRange {
+        let behind = |holds: &dyn Fn(u32) -> bool| {
+            self.added.iter().filter(|(line, _)| holds(*line)).map(|(_, count)| count).sum::<u32>()
+        };
+        let [first, last] = [original.first, original.last];
+        LineRange { first: first + behind(&|line| line < first), last: last + behind(&|line| line <= last) }
+    }
 }
 
 /// Writes a corrected program. `edits` are in the order of the program, one for every line of the contour.
@@ -137,7 +150,11 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
     let (written, proof) = within_kinks(source, &moves, edits, options)?;
     let changed = (written.touched.keys().copied(), written.unchanged);
     let difference = Difference::new(original, &moves, edits, changed, &proof, options);
-    Ok(Rewritten { text: written.text, difference })
+    let head = String::from_utf8_lossy(&written.head.1).lines().count();
+    let mut added: Vec<(u32, u32)> = written.touched.iter().map(|(&line, &parts)| (line, parts as u32 - 1)).collect();
+    added.push((written.head.0, head as u32));
+    added.sort_unstable();
+    Ok(Rewritten { text: written.text, difference, added })
 }
 
 /// Attempts to keep kinks below the limit.

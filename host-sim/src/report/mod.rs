@@ -5,7 +5,7 @@ mod points;
 mod summary;
 mod tables;
 
-pub use path::block_edits;
+pub use path::{block_edits, carried_edits};
 pub use points::points_csv;
 pub use summary::{
     CorrectSummary, InspectSummary, Parameter, SimulateSummary, correct_summary, inspect_summary, simulate_summary,

@@ -32,14 +32,30 @@ fn correction_at(path: &Path, nodes: &[Node], s: Offset, ends_block: bool) -> Ve
 /// The corrected path, one list of points per line of the program, from the end of the block before to its own end. Where
 /// the moves that lead to the contour and away from it are known, the correction comes and goes along them.
 pub fn block_edits(pass: &Pass, path: &Path, nodes: &[Node]) -> Vec<BlockEdit> {
-    let [lead_in, lead_out] = pass.leads();
+    written_with(pass, pass.leads(), path, nodes, |u| u * u * (Real::from_int(3) - u - u))
+}
+
+/// The same with leads that are moved as they are, by what the contour is moved at their end.
+pub fn carried_edits(pass: &Pass, leads: [&[Block]; 2], path: &Path, nodes: &[Node]) -> Vec<BlockEdit> {
+    written_with(pass, leads, path, nodes, |_| Real::ONE)
+}
+
+/// `share` is the part of the correction along a lead, from 0 far from the contour to 1 beside it.
+fn written_with(
+    pass: &Pass,
+    [lead_in, lead_out]: [&[Block]; 2],
+    path: &Path,
+    nodes: &[Node],
+    share: impl Fn(Real) -> Real,
+) -> Vec<BlockEdit> {
     let mut edits: Vec<BlockEdit> = Vec::new();
     if let Some(first) = pass.blocks.first() {
-        lead(lead_in, correction_at(path, nodes, first.s, false), true, &mut edits);
+        lead(lead_in, correction_at(path, nodes, first.s, false), &share, &mut edits);
     }
     contour(pass, path, nodes, &mut edits);
     if let Some(last) = pass.blocks.last() {
-        lead(lead_out, correction_at(path, nodes, last.s + last.curve.length(), true), false, &mut edits);
+        let full = correction_at(path, nodes, last.s + last.curve.length(), true);
+        lead(lead_out, full, |u| share(Real::ONE - u), &mut edits);
     }
     edits
 }
@@ -56,8 +72,8 @@ fn add(edits: &mut Vec<BlockEdit>, line: u32, points: Vec<[i64; 2]>) {
     }
 }
 
-/// Moves along which the correction grows from nothing to `full`, or fades: smoothly, so that neither end has a kink.
-fn lead(blocks: &[Block], full: Vector, grows: bool, edits: &mut Vec<BlockEdit>) {
+/// Moves along which a share of `full` is applied; it depends on how much of them lies behind, 0 to 1.
+fn lead(blocks: &[Block], full: Vector, share: impl Fn(Real) -> Real, edits: &mut Vec<BlockEdit>) {
     let whole = blocks.iter().fold(Offset::ZERO, |sum, b| sum + b.curve.length());
     let mut before = Offset::ZERO;
     for block in blocks {
@@ -66,9 +82,7 @@ fn lead(blocks: &[Block], full: Vector, grows: bool, edits: &mut Vec<BlockEdit>)
         let point = |k: i64| {
             let fraction = Real::ratio(k, pieces);
             let u = (before + length.scaled(fraction)).over(whole).max(Real::ZERO).min(Real::ONE);
-            let u = if grows { u } else { Real::ONE - u };
-            let share = u * u * (Real::from_int(3) - u - u);
-            raw(block.curve.point(fraction) + full.scaled(share))
+            raw(block.curve.point(fraction) + full.scaled(share(u)))
         };
         let points = (0..=pieces).map(point).collect();
         add(edits, block.line, points);
