@@ -11,6 +11,7 @@
 //! Limits: lathe codes are refused by name, and so are scaling (G51), rotation by G68, polar coordinates of Fanuc (G16)
 //! and modal macros (G66).
 
+use super::compensation::CompensationStage;
 use super::execute::Execution;
 use super::flow::{Next, Reader, Sentence};
 use super::{
@@ -68,7 +69,9 @@ impl<'t> Interpreter<'t> {
         let mut warnings = Warnings::default();
         reader.frame().warn(&mut warnings);
         let mut sentence = Sentence::new(program.text);
-        let mut execution = Execution::new(self.options, memory, warnings, sink);
+        // Large, and lent so that it is never moved: the stack of a board has room for one.
+        let mut compensation = CompensationStage::default();
+        let mut execution = Execution::new(self.options, memory, &mut compensation, warnings, sink);
         while reader.next(&mut execution, &mut sentence)? {
             let next = execution.sentence(&sentence)?;
             if next != Next::Continue {

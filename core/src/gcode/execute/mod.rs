@@ -64,7 +64,7 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     pub(super) program_number: Option<u32>,
     pub(super) end: Option<u32>,
     pub(super) warnings: Warnings,
-    compensation: CompensationStage<'p>,
+    compensation: &'s mut CompensationStage<'p>,
     memory: &'s mut Memory<'m>,
     text: &'p [u8],
     line: Line<'p>,
@@ -81,9 +81,9 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     returning: Option<SavedModes>,
 }
 
-impl<'m, S> Surroundings<'m> for Execution<'_, '_, 'm, S> {
-    fn memory_mut(&mut self) -> &mut Memory<'m> {
-        self.memory
+impl<S> Surroundings for Execution<'_, '_, '_, S> {
+    fn change<R>(&mut self, how: impl FnOnce(&mut Memory<'_>) -> R) -> R {
+        how(self.memory)
     }
     fn level_ended(&mut self, level: u8) {
         self.modes_of_level(level);
@@ -95,7 +95,13 @@ where
     S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
 {
     /// At the start of a program.
-    pub(super) fn new(options: Options<'p>, memory: &'s mut Memory<'m>, warnings: Warnings, sink: &'s mut S) -> Self {
+    pub(super) fn new(
+        options: Options<'p>,
+        memory: &'s mut Memory<'m>,
+        compensation: &'s mut CompensationStage<'p>,
+        warnings: Warnings,
+        sink: &'s mut S,
+    ) -> Self {
         let mut execution = Self {
             options,
             modal: Modal::initial(options.units),
@@ -104,7 +110,7 @@ where
             program_number: None,
             end: None,
             warnings,
-            compensation: CompensationStage::default(),
+            compensation,
             memory,
             text: &[],
             line: Line { number: 1, start: 0, text: &[] },

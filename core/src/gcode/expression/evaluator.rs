@@ -34,16 +34,16 @@ enum Waiting {
 }
 
 /// Computes expressions with the parameters of a program.
-pub(in super::super) struct Evaluator<'e> {
-    parameters: &'e dyn MachineParameters,
+pub(in super::super) struct Evaluator<'e, P> {
+    parameters: &'e P,
     dialect: Dialect,
     operands: heapless::Vec<f64, DEPTH>,
     waiting: heapless::Vec<(Waiting, usize), DEPTH>,
 }
 
-impl<'e> Evaluator<'e> {
+impl<'e, P: MachineParameters> Evaluator<'e, P> {
     /// With these parameters.
-    pub(in super::super) const fn new(parameters: &'e dyn MachineParameters, dialect: Dialect) -> Self {
+    pub(in super::super) const fn new(parameters: &'e P, dialect: Dialect) -> Self {
         Self { parameters, dialect, operands: heapless::Vec::new(), waiting: heapless::Vec::new() }
     }
 

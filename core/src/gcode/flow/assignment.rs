@@ -22,11 +22,7 @@ pub(super) type Assignments = heapless::Vec<(Destination, f64), ASSIGNMENTS>;
 
 impl<'p> Reader<'p> {
     /// What an assignment sets, and to what.
-    pub(super) fn assignment(
-        &self,
-        machine: &dyn Surroundings<'_>,
-        span: Span,
-    ) -> Result<(Destination, f64), GcodeError> {
+    pub(super) fn assignment(&self, machine: &impl Surroundings, span: Span) -> Result<(Destination, f64), GcodeError> {
         let text = trimmed(self.rest(span.start.saturating_add(1)));
         let (destination, rest) = if text.first() == Some(&b'<') {
             let (_, len) = name(text).map_err(|kind| self.error(kind, span))?;
@@ -50,14 +46,10 @@ impl<'p> Reader<'p> {
     }
 
     /// Makes the assignments of a block, after all of it was read.
-    pub(super) fn assign(
-        &self,
-        machine: &mut dyn Surroundings<'_>,
-        assignments: &Assignments,
-    ) -> Result<(), GcodeError> {
+    pub(super) fn assign(&self, machine: &mut impl Surroundings, assignments: &Assignments) -> Result<(), GcodeError> {
         for &(destination, value) in assignments {
             let done = match destination {
-                Destination::Number(number) => machine.memory_mut().set(number, value),
+                Destination::Number(number) => machine.change(|m| m.set(number, value)),
                 Destination::Name(left) => {
                     let start = self.line.text.len().saturating_sub(left);
                     let (name, _) = name(self.line.text.get(start..).unwrap_or(&[]))
@@ -65,7 +57,7 @@ impl<'p> Reader<'p> {
                     if machine.named(&name).is_some() {
                         Err(ParameterError::ReadOnly)
                     } else {
-                        machine.memory_mut().set_named(&name, value)
+                        machine.change(|m| m.set_named(&name, value))
                     }
                 }
             };

@@ -38,7 +38,7 @@ impl<'p> Reader<'p> {
         &mut self,
         next: Next,
         sentence: &Sentence<'p>,
-        machine: &mut dyn Surroundings<'_>,
+        machine: &mut impl Surroundings,
     ) -> Result<(), GcodeError> {
         match next {
             Next::Continue => Ok(()),
@@ -60,7 +60,7 @@ impl<'p> Reader<'p> {
                 let kind = if arguments { CallKind::Macro } else { CallKind::Program };
                 self.call(place, kind, times, span)?;
                 if arguments {
-                    machine.memory_mut().enter();
+                    machine.change(|m| m.enter());
                     self.pass(sentence, machine, span)?;
                 }
                 Ok(())
@@ -87,7 +87,7 @@ impl<'p> Reader<'p> {
     }
 
     /// Behind the last line of a text.
-    pub(super) fn end_of_text(&mut self, machine: &mut dyn Surroundings<'_>) -> Result<(), GcodeError> {
+    pub(super) fn end_of_text(&mut self, machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         match self.calls.last() {
             None => self.ended = true,
             Some(Call { kind: CallKind::Sub, .. }) => {
@@ -115,7 +115,7 @@ impl<'p> Reader<'p> {
     }
 
     /// The end of a subprogram: its next turn, or back.
-    fn turn(&mut self, machine: &mut dyn Surroundings<'_>) {
+    fn turn(&mut self, machine: &mut impl Surroundings) {
         self.jumps = self.jumps.saturating_add(1);
         let depth = self.calls.len() as u8;
         if let Some(call) = self.calls.last_mut()
@@ -130,13 +130,13 @@ impl<'p> Reader<'p> {
     }
 
     /// Back to the caller.
-    pub(super) fn leave(&mut self, machine: &mut dyn Surroundings<'_>) {
+    pub(super) fn leave(&mut self, machine: &mut impl Surroundings) {
         let Some(call) = self.calls.pop() else { return };
         self.jumps = self.jumps.saturating_add(1);
         self.open.leave(self.calls.len() as u8);
         machine.level_ended(self.calls.len().saturating_add(1) as u8);
         if call.kind != CallKind::Program {
-            machine.memory_mut().leave();
+            machine.change(|m| m.leave());
         }
         self.place = call.back;
     }
@@ -157,7 +157,7 @@ impl<'p> Reader<'p> {
                 return Some(Place { lines, ..place.clone() });
             }
         }
-        let file = self.program.library?.find(&digits(number))?;
+        let file = self.program.file(&digits(number))?;
         let place = Place::start_of(file.text, file.number);
         Some(match place.program(number) {
             Some(lines) => Place { lines, ..place },
@@ -166,7 +166,7 @@ impl<'p> Reader<'p> {
     }
 
     /// Passes the words of a G65 block, argument lists I and II of custom macro B.
-    fn pass(&self, sentence: &Sentence<'p>, machine: &mut dyn Surroundings<'_>, span: Span) -> Result<(), GcodeError> {
+    fn pass(&self, sentence: &Sentence<'p>, machine: &mut impl Surroundings, span: Span) -> Result<(), GcodeError> {
         let mut before = [0u16; 3];
         for word in &sentence.words {
             let number = match word.letter {
@@ -184,7 +184,7 @@ impl<'p> Reader<'p> {
                 let limit = self.dialect.locals();
                 return Err(self.error(FlowError::TooManyArguments { limit }, span));
             }
-            machine.memory_mut().set(number, word.value.value()).map_err(|kind| self.error(kind, span))?;
+            machine.change(|m| m.set(number, word.value.value())).map_err(|kind| self.error(kind, span))?;
         }
         Ok(())
     }

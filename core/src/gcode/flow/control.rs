@@ -23,7 +23,7 @@ pub(super) struct OWord<'p> {
 
 impl<'p> Reader<'p> {
     /// Executes a statement that steers the program.
-    pub(super) fn steer(&mut self, span: Span, machine: &mut dyn Surroundings<'_>) -> Result<(), GcodeError> {
+    pub(super) fn steer(&mut self, span: Span, machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         let text = self.rest(span.start);
         let Some((b'O' | b'o', behind)) = text.split_first() else {
             return self.statement(span, machine);
@@ -93,14 +93,14 @@ impl<'p> Reader<'p> {
     }
 
     /// The number in brackets behind a keyword.
-    fn bracket(&self, word: OWord<'p>, machine: &dyn Surroundings<'_>) -> Result<(f64, &'p [u8]), GcodeError> {
+    fn bracket(&self, word: OWord<'p>, machine: &impl Surroundings) -> Result<(f64, &'p [u8]), GcodeError> {
         if trimmed(word.rest).first() != Some(&b'[') {
             return Err(self.error(FlowError::Condition, word.span));
         }
         self.evaluate(machine, word.rest, false)
     }
 
-    pub(super) fn is_true(&self, word: OWord<'p>, machine: &dyn Surroundings<'_>) -> Result<bool, GcodeError> {
+    pub(super) fn is_true(&self, word: OWord<'p>, machine: &impl Surroundings) -> Result<bool, GcodeError> {
         let (value, rest) = self.bracket(word, machine)?;
         self.nothing_behind(rest)?;
         Ok(value != 0.0 && !value.is_nan())
@@ -122,7 +122,7 @@ impl<'p> Reader<'p> {
         Err(self.error(FlowError::NoEnd, word.span))
     }
 
-    fn condition(&mut self, word: OWord<'p>, machine: &mut dyn Surroundings<'_>) -> Result<(), GcodeError> {
+    fn condition(&mut self, word: OWord<'p>, machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         let mut is_true = self.is_true(word, machine)?;
         while !is_true {
             match self.seek(word, &[Keyword::ElseIf, Keyword::Else, Keyword::EndIf])? {
@@ -134,7 +134,7 @@ impl<'p> Reader<'p> {
         self.open_here(word, Kind::If)
     }
 
-    fn while_loop(&mut self, word: OWord<'p>, machine: &mut dyn Surroundings<'_>) -> Result<(), GcodeError> {
+    fn while_loop(&mut self, word: OWord<'p>, machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         let is_true = self.is_true(word, machine)?;
         let depth = self.depth();
         if let Some(open) = self.open.find(word.label, depth)
@@ -155,7 +155,7 @@ impl<'p> Reader<'p> {
         self.seek(word, &[Keyword::EndWhile]).map(|_| ())
     }
 
-    fn repeat(&mut self, word: OWord<'p>, machine: &mut dyn Surroundings<'_>) -> Result<(), GcodeError> {
+    fn repeat(&mut self, word: OWord<'p>, machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         let (value, rest) = self.bracket(word, machine)?;
         self.nothing_behind(rest)?;
         // The conversion saturates; what is no number counts as 0.
@@ -193,7 +193,7 @@ impl<'p> Reader<'p> {
         &mut self,
         word: OWord<'p>,
         what: Keyword,
-        machine: &mut dyn Surroundings<'_>,
+        machine: &mut impl Surroundings,
     ) -> Result<(), GcodeError> {
         self.nothing_behind(word.rest)?;
         let depth = self.depth();
@@ -222,7 +222,7 @@ impl<'p> Reader<'p> {
         }
     }
 
-    fn call_sub(&mut self, word: OWord<'p>, name: &[u8], machine: &mut dyn Surroundings<'_>) -> Result<(), GcodeError> {
+    fn call_sub(&mut self, word: OWord<'p>, name: &[u8], machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         let mut arguments = heapless::Vec::<f64, { ARGUMENTS as usize }>::new();
         let mut rest = word.rest;
         while trimmed(rest).first() == Some(&b'[') {
@@ -234,12 +234,12 @@ impl<'p> Reader<'p> {
         self.nothing_behind(rest)?;
         let place = self.sub_place(word.label, name).ok_or_else(|| self.error(FlowError::NoSuchProgram, word.span))?;
         self.call(place, CallKind::Sub, 1, word.span)?;
-        let memory = machine.memory_mut();
-        memory.enter();
-        for (number, value) in (1u16..).zip(arguments) {
-            memory.set(number, value).map_err(|kind| self.error(kind, word.span))?;
-        }
-        Ok(())
+        machine
+            .change(|memory| {
+                memory.enter();
+                (1u16..).zip(&arguments).try_for_each(|(number, value)| memory.set(number, *value))
+            })
+            .map_err(|kind| self.error(kind, word.span))
     }
 
     /// Behind the `sub` line of a label: in this text, in the main program, or in a file of its own.
@@ -256,22 +256,21 @@ impl<'p> Reader<'p> {
                 Ok((name, _)) => name,
                 Err(_) => name.iter().copied().take_while(u8::is_ascii_digit).collect(),
             };
-            let file = self.program.library?.find(&name)?;
+            let file = self.program.file(&name)?;
             within(Place::start_of(file.text, file.number))
         })
     }
 
-    fn return_from_sub(&mut self, word: OWord<'p>, machine: &mut dyn Surroundings<'_>) -> Result<(), GcodeError> {
+    fn return_from_sub(&mut self, word: OWord<'p>, machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         if !self.calls.last().is_some_and(|call| call.kind == CallKind::Sub) {
             return Err(self.error(FlowError::ReturnOutside, word.span));
         }
         let given = trimmed(word.rest).first() == Some(&b'[');
         let (value, rest) = if given { self.evaluate(machine, word.rest, false)? } else { (0.0, word.rest) };
         self.nothing_behind(rest)?;
-        let memory = machine.memory_mut();
         let returned = if given { 1.0 } else { 0.0 };
         for (name, value) in [(&b"_value"[..], value), (b"_value_returned", returned)] {
-            memory.set_named(name, value).map_err(|kind| self.error(kind, word.span))?;
+            machine.change(|m| m.set_named(name, value)).map_err(|kind| self.error(kind, word.span))?;
         }
         self.leave(machine);
         Ok(())

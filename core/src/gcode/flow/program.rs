@@ -29,6 +29,13 @@ impl<'p> Program<'p> {
     pub const fn new(text: &'p [u8]) -> Self {
         Self { text, library: None }
     }
+
+    /// A file of its library. Never inlined, so that a search of the call graph finds the one call whose target it
+    /// cannot see, in a function of its own.
+    #[inline(never)]
+    pub(super) fn file(&self, name: &[u8]) -> Option<LibraryFile<'p>> {
+        self.library?.find(name)
+    }
 }
 
 impl<'p> From<&'p [u8]> for Program<'p> {

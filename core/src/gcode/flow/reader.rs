@@ -68,7 +68,7 @@ impl<'p> Reader<'p> {
     /// Reads the next block to be executed; `false` when there is none.
     pub(in super::super) fn next(
         &mut self,
-        machine: &mut dyn Surroundings<'_>,
+        machine: &mut impl Surroundings,
         sentence: &mut Sentence<'p>,
     ) -> Result<bool, GcodeError> {
         while !self.ended {
@@ -112,7 +112,7 @@ impl<'p> Reader<'p> {
         Ok(())
     }
 
-    fn read(&self, machine: &mut dyn Surroundings<'_>, sentence: &mut Sentence<'p>) -> Result<Read, GcodeError> {
+    fn read(&self, machine: &mut impl Surroundings, sentence: &mut Sentence<'p>) -> Result<Read, GcodeError> {
         let line = self.line;
         sentence.text = self.place.text;
         sentence.line = line;
@@ -206,7 +206,7 @@ impl<'p> Reader<'p> {
     }
 
     /// The value of a word behind its first `skipped` bytes; `None` for a vacant parameter.
-    fn value(&self, machine: &dyn Surroundings<'_>, span: Span, skipped: usize) -> Result<Option<f64>, GcodeError> {
+    fn value(&self, machine: &impl Surroundings, span: Span, skipped: usize) -> Result<Option<f64>, GcodeError> {
         let (value, rest) = self.evaluate(machine, self.rest(span.start.saturating_add(skipped)), false)?;
         self.ends_at(rest, span.end())?;
         Ok(if value.is_nan() { None } else { Some(value) })
@@ -215,7 +215,7 @@ impl<'p> Reader<'p> {
     /// The value at the start of a rest of the line, and what follows it.
     pub(super) fn evaluate(
         &self,
-        machine: &dyn Surroundings<'_>,
+        machine: &impl Surroundings,
         text: &'p [u8],
         open: bool,
     ) -> Result<(f64, &'p [u8]), GcodeError> {

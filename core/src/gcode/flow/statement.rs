@@ -11,7 +11,7 @@ use super::reader::Reader;
 
 impl<'p> Reader<'p> {
     /// Executes a statement of the macro language.
-    pub(super) fn statement(&mut self, span: Span, machine: &mut dyn Surroundings<'_>) -> Result<(), GcodeError> {
+    pub(super) fn statement(&mut self, span: Span, machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         if !self.dialect.has_macro_b() {
             return Err(self.error(FlowError::OtherDialect, span));
         }
@@ -54,12 +54,7 @@ impl<'p> Reader<'p> {
     }
 
     /// The value of a condition, and what follows it.
-    fn truth(
-        &self,
-        text: &'p [u8],
-        span: Span,
-        machine: &dyn Surroundings<'_>,
-    ) -> Result<(bool, &'p [u8]), GcodeError> {
+    fn truth(&self, text: &'p [u8], span: Span, machine: &impl Surroundings) -> Result<(bool, &'p [u8]), GcodeError> {
         if trimmed(text).first() != Some(&b'[') {
             return Err(self.error(FlowError::Condition, span));
         }
@@ -75,7 +70,7 @@ impl<'p> Reader<'p> {
         whole.ok_or_else(|| self.error(FlowError::Label, span))
     }
 
-    fn goto(&mut self, text: &'p [u8], span: Span, machine: &dyn Surroundings<'_>) -> Result<(), GcodeError> {
+    fn goto(&mut self, text: &'p [u8], span: Span, machine: &impl Surroundings) -> Result<(), GcodeError> {
         let (value, rest) = self.evaluate(machine, text, false)?;
         self.nothing_behind(rest)?;
         let whole = Number::Computed(value).exactly_times(1).and_then(|v| u32::try_from(v).ok());
@@ -83,7 +78,7 @@ impl<'p> Reader<'p> {
         self.jump(number, span)
     }
 
-    fn then(&self, text: &'p [u8], span: Span, machine: &mut dyn Surroundings<'_>) -> Result<(), GcodeError> {
+    fn then(&self, text: &'p [u8], span: Span, machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         let text = trimmed(text);
         let largest = self.dialect.largest_parameter();
         let wrong = || self.error(FlowError::Keyword, span);
@@ -97,7 +92,7 @@ impl<'p> Reader<'p> {
         let right = trimmed(rest).strip_prefix(b"=").ok_or_else(wrong)?;
         let (value, rest) = self.evaluate(machine, right, true)?;
         self.nothing_behind(rest)?;
-        machine.memory_mut().set(number, value).map_err(|kind| self.error(kind, span))
+        machine.change(|m| m.set(number, value)).map_err(|kind| self.error(kind, span))
     }
 
     fn open_macro(&mut self, label: u32, span: Span) -> Result<(), GcodeError> {

@@ -26,9 +26,9 @@ pub trait MachineParameters {
 }
 
 /// The same with a memory that can be written to.
-pub(super) trait Surroundings<'m>: MachineParameters {
-    /// The memory.
-    fn memory_mut(&mut self) -> &mut Memory<'m>;
+pub(super) trait Surroundings: MachineParameters {
+    /// Changes the memory.
+    fn change<R>(&mut self, how: impl FnOnce(&mut Memory<'_>) -> R) -> R;
     /// A call has ended; `level` is how deep it stood.
     fn level_ended(&mut self, level: u8);
 }

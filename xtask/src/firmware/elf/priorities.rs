@@ -98,6 +98,8 @@ pub const INDIRECT: &[Indirect] = &[
     (FIT, TOLD_OF_A_LAW),
     (TOLD_OF_A_LAW[0], TOLD),
     ("design_observed", TOLD),
+    // A device has no library of other programs.
+    ("flow::program::Program>::file", &[]),
 ];
 
 /// Recursion on a board, with how often it goes around at the most.
