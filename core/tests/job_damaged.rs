@@ -4,6 +4,7 @@ mod job_support;
 
 use job_support::{Part, Room, corner, made, short, um};
 use proptest::prelude::*;
+use truepath_core::gcode::DeviceMemory;
 use truepath_core::image::Image;
 use truepath_core::job::{COMPACT_BYTES, Job, JobError};
 use truepath_core::units::{Offset, Real};
@@ -144,6 +145,9 @@ fn the_extremes_of_every_range_are_computed_or_refused() {
 
 #[test]
 fn the_room_of_these_tests_is_what_it_says() {
-    assert!(size_of::<Room>() >= Room::COUNTS.bytes());
-    assert!(size_of::<Room>() - Room::COUNTS.bytes() < 256);
+    let said = Room::COUNTS.bytes() + size_of::<DeviceMemory>();
+    assert!(size_of::<Room>() >= said);
+    assert!(size_of::<Room>() - said < 256);
+    // What the documentation of the workspace says of the parameters.
+    assert!(size_of::<DeviceMemory>() <= 10 << 10);
 }
