@@ -188,3 +188,26 @@ fn the_first_pass_of_another_program_is_refused() {
     };
     assert_eq!((error.code(), error.line_column().map(|(line, _)| line)), ("K003", Some(3)), "{error}");
 }
+
+#[test]
+fn who_corrects_the_first_pass_itself_is_told_what_that_means() {
+    let folder = tempfile::tempdir().unwrap();
+    let (program, text) = pocket();
+    let job = write(folder.path(), &program, &text);
+    let written = run(&job, &folder.path().join("first")).unwrap();
+    let probe = folder.path().join("probe.txt");
+    fs::write(&probe, touches([-4.0, -2.5])).unwrap();
+    let out = folder.path().join("again");
+    let options = correct::Options {
+        job: &written.job,
+        probe: &probe,
+        out: &out,
+        force: false,
+        route: Some(Route::Program),
+        first_pass: None,
+        probe_flags: ProbeFlags::default(),
+        which: Which::default(),
+    };
+    let summary = correct::run(&options, &mut |_| ()).unwrap();
+    assert!(summary.warnings.iter().any(|w| w.contains("that of a first pass")), "{:?}", summary.warnings);
+}

@@ -16,7 +16,7 @@ use crate::job::{Job, ProbeFlags, Route, Which};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
-use crate::program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
+use crate::program::{BlockEdit, Origin, RewriteOptions, Rewritten, first_pass_of, rewrite_program};
 use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, mm, points_csv};
 
 use crate::report::json;
@@ -210,6 +210,12 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
     let route = options.route.unwrap_or(pass.job.route);
     let mut remarks = measurement.remarks(&file);
+    if first.is_none() && first_pass_of(pass.program.bytes()).is_some() {
+        remarks.push(
+            "this job is that of a first pass: the corrected program leaves the stock of the second pass, on the next part. For the second pass of this part correct the job that was split, with --first-pass"
+                .to_owned(),
+        );
+    }
     remarks.extend(misread(first.as_ref().unwrap_or(&pass), first.is_some(), &measurement.contacts));
     let done = match &first {
         None => correct(&pass, &measurement, &remarks, &[route], progress)?,

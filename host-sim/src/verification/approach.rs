@@ -73,11 +73,11 @@ mod tests {
     }
 
     #[test]
-    fn a_way_is_free_where_the_next_wall_is_farther_than_ball_and_margin() {
+    fn a_way_is_free_where_no_other_wall_is_nearer_than_the_one_to_be_touched() {
         let ball = Ball { radius: 3.0, clearance: 2.0 };
         let at = |y: f64| ball.is_free([0.0, y], [-1.0, 0.0], &corner());
-        assert!(at(10.0) && at(4.0));
-        assert!(!at(3.9), "the ball would pass the other wall closer than the margin");
+        assert!(at(10.0) && at(5.0));
+        assert!(!at(4.9), "at the stand-off the other wall would be nearer than the one to be touched");
     }
 
     #[test]
