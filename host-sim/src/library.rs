@@ -55,12 +55,18 @@ impl Folder {
 impl Library for Folder {
     fn find(&self, name: &[u8]) -> Option<LibraryFile<'_>> {
         let name = std::str::from_utf8(name).ok()?;
-        let index =
-            self.files.iter().position(|file| file.stem == name || file.stem.strip_prefix('o') == Some(name))?;
+        let index = self.files.iter().position(|file| is_named(&file.stem, name))?;
         let entry = &self.files[index];
         let source = entry.source.get_or_init(|| Source::read(&entry.path).ok()).as_ref()?;
         Some(LibraryFile { number: u16::try_from(index + 1).ok()?, text: source.bytes() })
     }
+}
+
+/// Whether a file is the subprogram: by name, or by number with or without O and zeros before it.
+fn is_named(stem: &str, name: &str) -> bool {
+    let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit()).then(|| text.parse::<u32>().ok()).flatten();
+    let number = || digits(name).is_some_and(|n| digits(stem.strip_prefix('o').unwrap_or(stem)) == Some(n));
+    stem == name || stem.strip_prefix('o') == Some(name) || number()
 }
 
 fn is_program(path: &Path) -> bool {
@@ -76,8 +82,13 @@ mod tests {
     #[test]
     fn files_beside_the_program_are_found_by_name_and_by_number() {
         let folder = tempfile::tempdir().expect("a folder");
-        for (name, text) in [("main.ngc", "M2"), ("Pocket.NGC", "o<pocket> sub"), ("O1234.nc", "M99"), ("7.tap", "G0")]
-        {
+        for (name, text) in [
+            ("main.ngc", "M2"),
+            ("Pocket.NGC", "o<pocket> sub"),
+            ("O1234.nc", "M99"),
+            ("7.tap", "G0"),
+            ("o0042.nc", "M2"),
+        ] {
             std::fs::write(folder.path().join(name), text).expect("written");
         }
         std::fs::write(folder.path().join("notes.txt"), "x").expect("written");
@@ -86,6 +97,7 @@ mod tests {
         assert_eq!(text(b"pocket"), Some(&b"o<pocket> sub"[..]));
         assert_eq!((text(b"1234"), text(b"7")), (Some(&b"M99"[..]), Some(&b"G0"[..])));
         assert_eq!((text(b"notes"), text(b"234")), (None, None));
+        assert_eq!((text(b"42"), text(b"0042")), (Some(&b"M2"[..]), Some(&b"M2"[..])));
         let number = library.find(b"7").expect("found").number;
         assert!(library.source(number).is_some_and(|s| s.name().ends_with("7.tap")));
         assert!(library.source(0).is_none());

@@ -1,13 +1,12 @@
 //! `truepath canon`: what a program does, move by move.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use truepath_core::gcode::Units;
+use truepath_core::gcode::{Dialect, Units};
 
 use super::{Terminal, print};
-use crate::canon::{CanonOptions, ToolTable, write_canon};
+use crate::canon::{CanonOptions, ParameterFile, ToolTable, write_canon};
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::output::OutputFile;
 
@@ -19,10 +18,22 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     tool_table: Option<PathBuf>,
     /// Unit of the tool table.
-    #[arg(long, value_enum, default_value_t = TableUnits::Mm)]
-    tool_table_units: TableUnits,
+    #[arg(long, value_enum, default_value_t = FileUnits::Mm)]
+    tool_table_units: FileUnits,
+    /// LinuxCNC parameter file with offsets and reference points; without it they are 0.
+    #[arg(long, value_name = "VAR")]
+    parameters: Option<PathBuf>,
+    /// Unit of the machine: of the lengths in the parameter file.
+    #[arg(long, value_enum, default_value_t = FileUnits::Mm)]
+    machine_units: FileUnits,
+    /// Folder with the files of subprograms; by default that of the program.
+    #[arg(long, value_name = "DIR")]
+    subprograms: Option<PathBuf>,
+    /// The control the program is written for.
+    #[arg(long, value_enum, default_value_t = Control::Linuxcnc)]
+    dialect: Control,
     /// Skip blocks that begin with `/`.
-    #[arg(long)]
+    #[arg(long, alias = "block-delete")]
     skip_block_delete: bool,
     /// Write to a file instead of standard output.
     #[arg(short, long, value_name = "FILE")]
@@ -33,27 +44,76 @@ pub(super) struct Arguments {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum TableUnits {
+enum FileUnits {
     Mm,
     Inch,
 }
 
+impl From<FileUnits> for Units {
+    fn from(units: FileUnits) -> Self {
+        match units {
+            FileUnits::Mm => Self::Millimetres,
+            FileUnits::Inch => Self::Inches,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Control {
+    Linuxcnc,
+    Fanuc,
+    Haas,
+    Siemens,
+    Mach,
+}
+
+impl From<Control> for Dialect {
+    fn from(control: Control) -> Self {
+        match control {
+            Control::Linuxcnc => Self::Linuxcnc,
+            Control::Fanuc => Self::Fanuc,
+            Control::Haas => Self::Haas,
+            Control::Siemens => Self::Siemens,
+            Control::Mach => Self::Mach,
+        }
+    }
+}
+
+impl Arguments {
+    fn options(&self) -> Result<CanonOptions, Failure> {
+        let tools = self.tool_table.as_deref().map(Source::read).transpose()?;
+        let tools = tools.map(|source| ToolTable::parse(&source, self.tool_table_units.into())).transpose()?;
+        let parameters = self.parameters.as_deref().map(Source::read).transpose()?;
+        Ok(CanonOptions {
+            tools: tools.unwrap_or_default(),
+            parameters: parameters.map(|source| ParameterFile::parse(&source)).transpose()?.unwrap_or_default(),
+            machine_units: self.machine_units.into(),
+            dialect: self.dialect.into(),
+            skip_block_delete: self.skip_block_delete,
+            subprograms: self.subprograms.clone(),
+        })
+    }
+}
+
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
     let source = Source::read(&arguments.file)?;
-    let tools = match &arguments.tool_table {
-        None => ToolTable::default(),
+    let options = arguments.options()?;
+    let summary = match &arguments.output {
         Some(path) => {
-            let units = match arguments.tool_table_units {
-                TableUnits::Mm => Units::Millimetres,
-                TableUnits::Inch => Units::Inches,
-            };
-            ToolTable::parse(&Source::read(path)?, units)?
+            let mut file = OutputFile::create(path, arguments.force)?;
+            let written = write_canon(&source, &options, &mut file)?;
+            let summary = written.map_err(|e| InputError::unwritable(path, &e))?;
+            file.commit()?;
+            summary
+        }
+        None => {
+            // A program that is refused prints nothing.
+            let mut text = Vec::new();
+            let summary = write_canon(&source, &options, &mut text)?.map_err(|e| Failure::Internal(e.to_string()))?;
+            print(&text)?;
+            summary
         }
     };
-    let options = CanonOptions { tools, skip_block_delete: arguments.skip_block_delete };
-    let mut text = Vec::new();
-    let written = write_canon(&source, &options, &mut text)?;
-    let summary = written.map_err(|e| Failure::Internal(e.to_string()))?;
     for warning in summary.warnings.as_slice() {
         terminal.warn(&format!(
             "{}:{}:{}: {}: {}",
@@ -64,12 +124,5 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
             warning.kind
         ));
     }
-    match &arguments.output {
-        Some(path) => {
-            let mut file = OutputFile::create(path, arguments.force)?;
-            file.write_all(&text).map_err(|e| InputError::unwritable(path, &e))?;
-            Ok(file.commit()?)
-        }
-        None => print(&text),
-    }
+    Ok(())
 }

@@ -60,6 +60,8 @@ pub struct Program {
     pub file: String,
     /// Its bytes.
     pub text: Vec<u8>,
+    /// The file it calls, when it was made for that.
+    pub called: Vec<u8>,
 }
 
 /// All programs, in the order of their names.
@@ -99,7 +101,7 @@ fn load(path: &Path, origin: Origin) -> Result<Program, Failure> {
         .iter()
         .find_map(|prefix| whole.strip_prefix(prefix));
     let name = if origin == Origin::Shipped { short.unwrap_or(&whole).to_owned() } else { file.clone() };
-    Ok(Program { origin, name, folder, file, text })
+    Ok(Program { origin, name, folder, file, text, called: Vec::new() })
 }
 
 /// A program that calls the subroutine a file is named after.
@@ -121,6 +123,7 @@ fn caller_of(shipped: &Program) -> Option<Program> {
         folder: shipped.folder.clone(),
         file: "truepath-caller.ngc".to_owned(),
         text: call.into_bytes(),
+        called: shipped.text.clone(),
     })
 }
 
@@ -148,6 +151,7 @@ mod tests {
             folder: "/lib".into(),
             file: "circle.ngc".into(),
             text: text.into(),
+            called: Vec::new(),
         }
     }
 

@@ -5,6 +5,7 @@
 
 mod corpus;
 mod document;
+mod expected;
 mod mend;
 mod outcome;
 mod rule;
@@ -61,8 +62,12 @@ pub fn check(write: bool) -> Outcome {
         println!("{} {}: {}", if goal.reached { "reached" } else { "MISSED " }, goal.name, goal.stands);
     }
     let path = root().join(DOCUMENT);
+    let expected = root().join(expected::FILE);
     if write {
-        fs::write(&path, text).map_err(|e| Failure::found(format!("{}: {e}", path.display())))?;
+        let recorded = expected::record(&programs, &verdicts)?;
+        for (path, text) in [(&path, &text), (&expected, &recorded)] {
+            fs::write(path, text).map_err(|e| Failure::found(format!("{}: {e}", path.display())))?;
+        }
     }
     let missed: Vec<String> =
         goals.iter().filter(|g| !g.reached).map(|g| format!("{}: {}", g.name, g.stands)).collect();

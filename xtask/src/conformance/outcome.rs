@@ -4,10 +4,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use super::corpus::Program;
-use crate::repository::{program, target};
+use super::corpus::{OWN, Program};
+use crate::repository::{program, root, target};
 use crate::step::Failure;
 
+/// The tool table, beside our own programs; its lengths are inches, as the reference takes them without a configuration.
+const TOOLS: &str = "tools.tbl";
+/// The parameters: every one the reference wants to find, 0 but for the number of the coordinate system in force.
+const PARAMETERS: &str = "machine.var";
 /// Seconds either program may take.
 const PATIENCE: u32 = 10;
 
@@ -44,25 +48,6 @@ pub struct Bench {
     truepath: PathBuf,
 }
 
-/// Tools 1 … 99, lengths and diameters in inches, as the reference takes them without a configuration.
-pub fn tool_table() -> String {
-    let row = |n: u32| {
-        let (z, d) = (f64::from(n % 10) / 10.0, f64::from(n) / 100.0);
-        format!("T{n} P{n} Z{z:.3} D{d:.3} ;tool {n}\n")
-    };
-    (1..=99).map(row).collect()
-}
-
-/// Every parameter the reference wants to find, 0 but for the number of the coordinate system in force.
-pub fn parameters() -> String {
-    let ranges = [5161..=5169, 5181..=5189, 5210..=5219].into_iter();
-    let systems = (0..9).map(|n| 5221 + 20 * n..=5230 + 20 * n);
-    let zeros = ranges.chain(systems).flatten().map(|n| (n, 0)).chain([(5220, 1)]);
-    let mut all: Vec<(u32, u32)> = zeros.collect();
-    all.sort_unstable();
-    all.iter().map(|(n, value)| format!("{n}\t{value}.000000\n")).collect()
-}
-
 impl Bench {
     /// A fresh folder for the program numbered `index`.
     ///
@@ -82,7 +67,10 @@ impl Bench {
                 let _ = fs::copy(&path, folder.join(path.file_name().unwrap_or_default()));
             }
         }
-        fs::write(folder.join("tools.tbl"), tool_table()).map_err(fail)?;
+        for name in [TOOLS, PARAMETERS] {
+            let from = root().join(OWN).join(name);
+            fs::copy(&from, folder.join(name)).map_err(|e| Failure::found(format!("{}: {e}", from.display())))?;
+        }
         let truepath = target().join("debug/truepath");
         Ok(Self { folder, truepath })
     }
@@ -90,12 +78,15 @@ impl Bench {
     fn put(&self, file: &str, text: &[u8]) {
         // A file that cannot be written shows in both outcomes.
         let _ = fs::write(self.folder.join(file), text);
-        let _ = fs::write(self.folder.join("machine.var"), parameters());
+        // The reference writes what it ends with into its copy.
+        let _ = fs::copy(root().join(OWN).join(PARAMETERS), self.folder.join(PARAMETERS));
     }
 
     fn run(&self, name: &Path, arguments: &[&str]) -> Ran {
         let mut command: Command = program("timeout");
         command.arg(PATIENCE.to_string()).arg(name).args(arguments).current_dir(&self.folder);
+        // The reference keeps its tool table in a file of the home folder, which runs at the same time would share.
+        command.env("HOME", &self.folder).env("LC_ALL", "C");
         match command.stdin(Stdio::null()).output() {
             Ok(output) => Ran {
                 code: output.status.code(),
@@ -109,15 +100,20 @@ impl Bench {
     /// What the reference makes of it.
     pub fn theirs(&self, file: &str, text: &[u8]) -> Outcome {
         self.put(file, text);
-        let ran = self.run(Path::new("rs274"), &["-t", "tools.tbl", "-v", "machine.var", "-g", file]);
+        let ran = self.run(Path::new("rs274"), &["-t", TOOLS, "-v", PARAMETERS, "-g", file]);
         let said: Vec<&str> =
             ran.said.lines().filter(|l| *l != "executing" && !l.contains("updating variable")).collect();
         let end = match ran.code {
             Some(0) => End::Accepted,
-            Some(1) => End::Refused {
-                message: said.first().copied().unwrap_or_default().to_owned(),
-                line: said.get(1).copied().unwrap_or_default().to_owned(),
-            },
+            Some(1) => {
+                let message = said.first().copied().unwrap_or_default().to_owned();
+                // Of a missing subroutine it tells the number of the line that calls it.
+                let number = message.split_once("from line: ").and_then(|(_, n)| n.parse::<usize>().ok());
+                let called =
+                    number.and_then(|n| String::from_utf8_lossy(text).split('\n').nth(n - 1).map(str::to_owned));
+                let line = called.unwrap_or_else(|| said.get(1).copied().unwrap_or_default().to_owned());
+                End::Refused { message, line }
+            }
             Some(124) => End::Crashed(format!("not done after {PATIENCE} s")),
             _ => End::Crashed("the program died".to_owned()),
         };
@@ -127,7 +123,9 @@ impl Bench {
     /// What `truepath canon` makes of it.
     pub fn ours(&self, file: &str, text: &[u8]) -> Outcome {
         self.put(file, text);
-        let arguments = ["--json", "canon", file, "--tool-table", "tools.tbl", "--tool-table-units", "inch"];
+        let tools = ["--tool-table", TOOLS, "--tool-table-units", "inch"];
+        let parameters = ["--parameters", PARAMETERS, "--machine-units", "inch"];
+        let arguments = [&["--json", "canon", file][..], &tools, &parameters].concat();
         let ran = self.run(&self.truepath, &arguments);
         let end = match ran.code {
             Some(0) => End::Accepted,

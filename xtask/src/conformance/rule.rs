@@ -63,7 +63,7 @@ impl Rule {
             }
             End::Accepted => {}
         }
-        has_lathe_code(&program.text).then_some(Self::Lathe)
+        [&program.text, &program.called].iter().any(|text| has_lathe_code(text)).then_some(Self::Lathe)
     }
 }
 

@@ -45,7 +45,7 @@ impl<'a> Call<'a> {
             "SET_G92_OFFSET",
             "SET_XY_ROTATION",
             "USE_TOOL_LENGTH_OFFSET",
-            "START_SPEED_FEED_SYNCH",
+            "START_SPEED_FEED_SYNC",
         ];
         MOTION.contains(&self.name)
     }

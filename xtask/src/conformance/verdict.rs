@@ -78,6 +78,8 @@ pub struct Verdict {
     pub warned: bool,
     /// What was said or where they part.
     pub detail: String,
+    /// What the reference made of it.
+    pub theirs: Outcome,
 }
 
 impl Verdict {
@@ -115,6 +117,7 @@ impl Verdict {
             mended: mended_motion,
             warned: ours.warned,
             detail,
+            theirs,
         }
     }
 
@@ -160,6 +163,6 @@ fn compare(theirs: &Outcome, ours: &Outcome) -> (Class, String) {
 }
 
 /// A line without blanks and case.
-fn bare(line: &str) -> String {
+pub fn bare(line: &str) -> String {
     line.chars().filter(|c| !c.is_whitespace()).collect::<String>().to_ascii_lowercase()
 }

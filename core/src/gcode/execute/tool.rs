@@ -51,8 +51,13 @@ where
         self.emit(Canon::ChangeTool(self.modal.tool), code.span)
     }
 
+    /// Whether any tool is taken to be there.
+    fn knows_no_tools(&self) -> bool {
+        self.options.machine.is_none() || self.options.tools.is_empty()
+    }
+
     fn require_tool(&self, tool: u32, span: Span) -> Result<(), GcodeError> {
-        if self.options.machine.is_none() || tool == 0 || self.tool_row(tool).is_some() {
+        if self.knows_no_tools() || tool == 0 || self.tool_row(tool).is_some() {
             return Ok(());
         }
         Err(self.error(SettingError::ToolUnknown { tool }.into(), span))
@@ -123,7 +128,7 @@ where
         let tool = number.or(self.modal.tool).unwrap_or(0);
         match self.tool_row(tool) {
             Some(row) => Ok(row.offset),
-            None if tool == 0 || self.options.machine.is_none() => Ok([0; 9]),
+            None if tool == 0 || self.knows_no_tools() => Ok([0; 9]),
             None => Err(self.error(SettingError::ToolUnknown { tool }.into(), span)),
         }
     }

@@ -1,0 +1,132 @@
+//! The calls that move.
+
+use std::io::Write;
+
+use truepath_core::gcode::{Axes, Canon, FeedMode, Modal, Plane};
+use truepath_core::geometry::Point;
+use truepath_core::units::Position;
+
+use super::call::{MILLION, real};
+use super::printer::Printer;
+
+/// An arc in any plane: its ends and centre in the order of the plane's axes.
+struct Arc {
+    plane: Plane,
+    to: Axes,
+    centre: Point,
+    counter_clockwise: bool,
+    turns: u32,
+}
+
+impl<W: Write> Printer<'_, W> {
+    /// Prints a step that moves an axis.
+    pub(super) fn motion(&mut self, canon: &Canon, modal: &Modal) {
+        match *canon {
+            Canon::Traverse { to, .. } => {
+                self.go(to);
+                self.straight("STRAIGHT_TRAVERSE", modal);
+            }
+            Canon::Feed { to, .. } => {
+                self.inverse_time(modal, distance, to);
+                self.go(to);
+                self.straight("STRAIGHT_FEED", modal);
+            }
+            Canon::Arc { to, centre, counter_clockwise, turns, .. } => {
+                self.arc(&Arc { plane: Plane::Xy, to, centre, counter_clockwise, turns }, modal);
+            }
+            Canon::PlaneArc { plane, to, centre, counter_clockwise, turns, .. } => {
+                self.arc(&Arc { plane, to, centre, counter_clockwise, turns }, modal);
+            }
+            Canon::Spline { to, points, .. } => {
+                self.go(to);
+                self.lines.call("NURBS_FEED", &format!("{points}, ..."));
+            }
+            Canon::Probe { to, .. } => {
+                self.lines.call("TURN_PROBE_ON", "");
+                self.go(to);
+                self.straight("STRAIGHT_PROBE", modal);
+                self.lines.call("TURN_PROBE_OFF", "");
+            }
+            Canon::Tap { from, to } => {
+                self.go(to);
+                self.lines.open("RIGID_TAP");
+                let unit = modal.units.nanometres();
+                self.lines.push_values(&self.at.map(|v| (v, unit)), ", ");
+                self.lines.close();
+                self.go(from);
+            }
+            // Without knowledge of the machine: its coordinates less the offsets are those of the program.
+            Canon::MachineMove { to, rapid } => {
+                self.go(modal.shifts.to_program(to));
+                self.straight(if rapid { "STRAIGHT_TRAVERSE" } else { "STRAIGHT_FEED" }, modal);
+            }
+            Canon::Reference { axes, via, .. } => {
+                self.go(via);
+                self.straight("STRAIGHT_TRAVERSE", modal);
+                let zero = modal.shifts.to_program(Axes::ORIGIN);
+                for (axis, _) in axes.into_iter().enumerate().filter(|(_, moves)| *moves) {
+                    let mut one = Axes::UNKNOWN;
+                    one.set(axis, zero.get(axis));
+                    self.go(one);
+                }
+                self.straight("STRAIGHT_TRAVERSE", modal);
+            }
+            _ => {}
+        }
+    }
+
+    fn straight(&mut self, name: &str, modal: &Modal) {
+        let unit = modal.units.nanometres();
+        let ([x, y, z], [a, b, c, ..]) = (self.at, modal.auxiliary);
+        self.lines.open(name);
+        self.lines.push_values(&[(x, unit), (y, unit), (z, unit), (a, MILLION), (b, MILLION), (c, MILLION)], ", ");
+        self.lines.close();
+    }
+
+    fn arc(&mut self, arc: &Arc, modal: &Modal) {
+        let [first, second, third] = arc.plane.axes();
+        let turns = i64::from(arc.turns) + 1;
+        let length = |from: [i64; 3], to: [i64; 3]| {
+            let (i, j) = (arc.centre.x.nm(), arc.centre.y.nm());
+            let angle = |p: [i64; 3]| ((p[second] - j) as f64).atan2((p[first] - i) as f64);
+            let radius = ((from[first] - i) as f64).hypot((from[second] - j) as f64);
+            let sweep = if arc.counter_clockwise { angle(to) - angle(from) } else { angle(from) - angle(to) };
+            let turn = std::f64::consts::TAU;
+            // Less than a millionth of a turn is a full one.
+            let sweep = if sweep.rem_euclid(turn) < turn * 1e-6 { turn } else { sweep.rem_euclid(turn) };
+            (radius * (sweep + turn * (turns - 1) as f64)).hypot((to[third] - from[third]) as f64)
+        };
+        self.inverse_time(modal, length, arc.to);
+        self.go(arc.to);
+        let unit = modal.units.nanometres();
+        let [a, b, c, ..] = modal.auxiliary;
+        let at = self.at;
+        self.lines.open("ARC_FEED");
+        let ends = [at[first], at[second], arc.centre.x.nm(), arc.centre.y.nm()];
+        self.lines.push_values(&ends.map(|v| (v, unit)), ", ");
+        self.lines.push(if arc.counter_clockwise { ", " } else { ", -" });
+        self.lines.push_whole(turns.unsigned_abs());
+        self.lines.push(", ");
+        let rest = [(at[third], unit), (a, MILLION), (b, MILLION), (c, MILLION)];
+        self.lines.push_values(&rest, ", ");
+        self.lines.close();
+    }
+
+    /// In G93 the feed of a move is its length by the time F gives.
+    fn inverse_time(&mut self, modal: &Modal, length: impl Fn([i64; 3], [i64; 3]) -> f64, to: Axes) {
+        if modal.feed_mode != FeedMode::InverseTime {
+            return;
+        }
+        let mut there = self.at;
+        for (there, to) in there.iter_mut().zip([to.x, to.y, to.z]) {
+            *there = to.map_or(*there, Position::nm);
+        }
+        let length = length(self.at, there) / modal.units.nanometres() as f64;
+        self.feed_rate(length * modal.feed.map_or(0.0, real));
+    }
+}
+
+fn distance(from: [i64; 3], to: [i64; 3]) -> f64 {
+    let squares = from.iter().zip(to).map(|(a, b)| ((b - a) as f64).powi(2));
+    squares.sum::<f64>().sqrt()
+}

@@ -1,0 +1,272 @@
+//! The calls of a block in the order of the reference.
+//!
+//! RS274/NGC executes the parts of a block in a fixed order (NIST 6556, table 8); the core keeps to it but for the
+//! unit, which it reads first. So what sets modes is gathered until the first move of its block and put in order; moves
+//! are printed as they come.
+
+use std::io::{self, Write};
+
+use truepath_core::gcode::{
+    Axes, Canon, Event, HostMemory, Line, Memory, Modal, NineAxes, RetractLevel, Source, Span, Token, Units, Words,
+    WrittenWord,
+};
+
+use super::CanonOptions;
+use super::call::MILLION;
+use super::comment::Remark;
+use super::lines::Lines;
+
+/// What sets modes, with the modes after it.
+pub(super) struct Step {
+    pub(super) canon: Canon,
+    pub(super) modal: Modal,
+    rank: u8,
+}
+
+/// The state of the text: what the reference knows between blocks.
+pub(super) struct Printer<'a, W> {
+    pub(super) options: &'a CanonOptions,
+    pub(super) lines: Lines<W>,
+    /// The block whose calls are gathered: file, line, and how often the program had jumped.
+    block: Option<(u16, u32, u32)>,
+    steps: Vec<Step>,
+    remark: Option<Remark>,
+    /// Whether a program's name stands in the block: the reference then shows no comment.
+    named: bool,
+    /// Where the axes stand, nanometres.
+    pub(super) at: [i64; 3],
+    pub(super) coolant: [bool; 2],
+    pub(super) work_offset: u16,
+    /// Distance modes and retract level as last told.
+    told: (bool, bool, RetractLevel),
+    /// Whether a motion was in force, which G80 ends.
+    moving: bool,
+    /// Whether the block has a G80 that is still to be told.
+    cancels: bool,
+}
+
+/// Rank of the distance modes, which are no events.
+const DISTANCE_RANK: u8 = 18;
+
+/// The order of the parts of a block.
+const fn rank(canon: &Canon) -> u8 {
+    match canon {
+        Canon::ProgramNumber(_) | Canon::Comment(_) => 0,
+        Canon::FeedMode(_) => 1,
+        Canon::FeedRate(_) => 2,
+        Canon::SpindleSpeed(_) => 3,
+        Canon::SelectTool(_) => 4,
+        Canon::OtherM(62..=68) => 5,
+        Canon::ChangeTool(_) => 6,
+        Canon::Spindle(_) => 7,
+        Canon::Coolant(_) => 8,
+        Canon::OtherM(_) => 9,
+        Canon::Dwell(_) => 10,
+        Canon::Plane(_) => 11,
+        Canon::Units(_) => 12,
+        Canon::Compensation { .. } => 13,
+        Canon::ToolLength(_) => 14,
+        Canon::WorkOffset(_) => 15,
+        Canon::PathControl(_) => 16,
+        Canon::Shift(_) | Canon::ToolEntry { .. } => 19,
+        _ => 20,
+    }
+}
+
+impl<'a, W: Write> Printer<'a, W> {
+    /// With the calls by which the reference begins.
+    pub(super) fn new(options: &'a CanonOptions, out: W) -> Self {
+        let mut printer = Self {
+            options,
+            lines: Lines::new(out),
+            block: None,
+            steps: Vec::new(),
+            remark: None,
+            named: false,
+            at: [0; 3],
+            coolant: [false; 2],
+            work_offset: 1,
+            told: (true, false, RetractLevel::Clearance),
+            moving: false,
+            cancels: false,
+        };
+        printer.begin();
+        printer
+    }
+
+    /// What the machine was left in.
+    fn begin(&mut self) {
+        let mut buffers = Box::new(HostMemory::new());
+        let mut memory = buffers.lend();
+        self.options.parameters.load(&mut memory);
+        let system = memory.get(5220).clamp(1.0, 9.0) as u16;
+        let (work, rotation) = self.stored_offset(system, &memory);
+        let local = if memory.get(5210) > 0.5 { self.stored_axes(5211, &memory) } else { [0; 9] };
+        self.work_offset = system;
+        self.lines.call("USE_LENGTH_UNITS", "CANON_UNITS_MM");
+        self.offset("SET_G5X_OFFSET", Some(system), &work, Units::Millimetres);
+        self.offset("SET_G92_OFFSET", None, &local, Units::Millimetres);
+        self.rotation(rotation);
+        self.lines.call("SET_FEED_REFERENCE", "CANON_XYZ");
+        self.lines.call("ON_RESET", "");
+    }
+
+    /// A work offset as the parameters hold it, and its rotation.
+    pub(super) fn stored_offset(&self, system: u16, memory: &Memory<'_>) -> (NineAxes, i64) {
+        let first = 5201 + 20 * system;
+        (self.stored_axes(first, memory), scaled(memory.get(first + 9), MILLION))
+    }
+
+    fn stored_axes(&self, first: u16, memory: &Memory<'_>) -> NineAxes {
+        let unit = self.options.machine_units.nanometres();
+        let mut values: NineAxes = [0; 9];
+        for ((value, number), axis) in values.iter_mut().zip(first..).zip(0..) {
+            *value = scaled(memory.get(number), if (3..6).contains(&axis) { MILLION } else { unit });
+        }
+        values
+    }
+
+    /// Takes one step of the program.
+    pub(super) fn event(&mut self, event: &Event<'_>) {
+        let source = &event.source;
+        let block = (source.file, source.line, source.jumps);
+        if self.block != Some(block) {
+            self.end_block();
+            self.block = Some(block);
+            self.lines.set_label(source.number.and_then(|_| label(event.text, source)));
+            // Motion ends without a step of its own: perhaps in this block, perhaps in one before.
+            let still = event.modal.motion.is_none();
+            self.cancels = still && (self.moving || cancels_motion(event.text, source));
+            self.moving = !still;
+        }
+        match event.canon {
+            Canon::Comment(body) => self.comment(event, body),
+            Canon::ProgramNumber(_) => self.named = true,
+            canon => {
+                let rank = rank(&canon);
+                if rank < 20 {
+                    self.steps.push(Step { canon, modal: *event.modal, rank });
+                } else {
+                    self.settle();
+                    self.tell_modes(event.modal);
+                    self.call(&canon, event.modal, Some(event));
+                }
+            }
+        }
+    }
+
+    fn comment(&mut self, event: &Event<'_>, body: Span) {
+        // What follows a semicolon is not shown by the reference, and of several comments the last one.
+        if event.text.get(body.start.wrapping_sub(1)) != Some(&b';') {
+            self.remark = Some(Remark::of(body.of(event.text), event.parameters));
+        }
+    }
+
+    /// Prints what was gathered of a block, in order.
+    fn settle(&mut self) {
+        match self.remark.take().filter(|_| !self.named) {
+            Some(Remark::Call(name, text)) => {
+                self.lines.open(name);
+                self.lines.push("\"");
+                self.lines.push(&text);
+                self.lines.push("\"");
+                self.lines.close();
+            }
+            Some(Remark::Bare(text)) => self.lines.bare(text.as_bytes()),
+            None => {}
+        }
+        if self.steps.is_empty() {
+            return;
+        }
+        let mut steps = std::mem::take(&mut self.steps);
+        steps.sort_by_key(|step| step.rank);
+        for step in &steps {
+            if step.rank > DISTANCE_RANK {
+                self.tell_modes(&step.modal);
+            }
+            self.call(&step.canon, &step.modal, None);
+        }
+        if let Some(last) = steps.last() {
+            self.tell_distance(&last.modal);
+        }
+        steps.clear();
+        self.steps = steps;
+    }
+
+    fn end_block(&mut self) {
+        self.settle();
+        self.tell_cancel();
+        self.named = false;
+    }
+
+    fn tell_cancel(&mut self) {
+        if std::mem::take(&mut self.cancels) {
+            self.lines.remark("motion mode set to none");
+        }
+    }
+
+    /// Comments of the reference on modes that are no events.
+    fn tell_modes(&mut self, modal: &Modal) {
+        self.tell_distance(modal);
+        self.tell_cancel();
+    }
+
+    fn tell_distance(&mut self, modal: &Modal) {
+        let now = (modal.absolute, modal.absolute_centres, modal.retract);
+        if now == self.told {
+            return;
+        }
+        let name = |absolute: bool| if absolute { "absolute" } else { "incremental" };
+        if now.0 != self.told.0 {
+            self.lines.remark(&format!("distance mode changed to {}", name(now.0)));
+        }
+        if now.1 != self.told.1 {
+            self.lines.remark(&format!("IJK distance mode changed to {}", name(now.1)));
+        }
+        if now.2 != self.told.2 {
+            let level = if now.2 == RetractLevel::Before { "old_z" } else { "r_plane" };
+            self.lines.remark(&format!("retract mode set to {level}"));
+        }
+        self.told = now;
+    }
+
+    /// Moves to a place; an axis that is not known stays.
+    pub(super) fn go(&mut self, to: Axes) {
+        for (at, to) in self.at.iter_mut().zip([to.x, to.y, to.z]) {
+            *at = to.map_or(*at, |p| p.nm());
+        }
+    }
+
+    /// Prints what is left; `whole` when the program was read to its end.
+    ///
+    /// # Errors
+    /// What the writer answered.
+    pub(super) fn finish(mut self, whole: bool) -> io::Result<()> {
+        if whole {
+            self.end_block();
+        }
+        self.lines.finish()
+    }
+}
+
+/// A parameter in whole numbers.
+fn scaled(value: f64, unit: i64) -> i64 {
+    (value * unit as f64).round() as i64
+}
+
+/// Whether G80 stands in a block.
+fn cancels_motion(text: &[u8], source: &Source) -> bool {
+    let line = Line { number: source.line, start: source.block.start, text: source.block.of(text) };
+    Words::new(line).map_while(Result::ok).any(|token| {
+        matches!(token, Token::Word(WrittenWord { letter: b'G', value: Some(value), .. }) if value.exactly_times(10) == Some(800))
+    })
+}
+
+/// The digits of the N word of a block before its point, as written.
+fn label<'t>(text: &'t [u8], source: &Source) -> Option<&'t [u8]> {
+    let block = source.block.of(text);
+    let start = block.iter().position(|b| b.eq_ignore_ascii_case(&b'N'))? + 1;
+    let rest = block.get(start..)?.trim_ascii_start();
+    let end = rest.iter().position(|b| !b.is_ascii_digit()).unwrap_or(rest.len());
+    rest.get(..end)
+}
