@@ -38,14 +38,18 @@ impl Writer<'_> {
             let block = self.block(step.line);
             let named = [b'X', b'Y'].map(|letter| block.word(letter).is_some());
             match step.kind {
-                Kind::Traverse | Kind::Feed => {}
+                Kind::Traverse | Kind::Feed if !step.in_cycle() && !block.has_corner() => {}
                 Kind::Arc(..) if place(step.from).is_some() => {
                     let pen = Pen::new([0.0; 2], &step.modal);
                     self.carry(pen, step, by);
                     continue;
                 }
                 _ => {
-                    let found = "the move to the start of the contour cannot be changed";
+                    let found = if step.in_cycle() {
+                        "the contour begins at a hole of a canned cycle, which must stay where it is"
+                    } else {
+                        "the move to the start of the contour cannot be changed"
+                    };
                     return Err(self.refusal("P002", step.line, [found, EXPECTED, HELP]));
                 }
             }

@@ -1,7 +1,10 @@
 //! After a stretch of contour: back to the places of the program, from the displaced end.
 //!
 //! What stands still follows the pen, an arc (a lead-out) is displaced as a whole, and the first straight move goes to
-//! its own place again: an axis that it does not name is added where it is displaced.
+//! its own place again: an axis that it does not name is added where it is displaced. A hole of a canned cycle is
+//! drilled where it was; where its line cannot say so, it is refused.
+
+use truepath_core::gcode::Plane;
 
 use super::pen::{Pen, place};
 use super::survey::{Kind, Move};
@@ -42,7 +45,29 @@ impl Writer<'_> {
             let from = [step.from.x, step.from.y];
             let pen = Pen::new([0, 1].map(|axis| from[axis].map_or(0.0, |p| p.nm() as f64) + by[axis]), &step.modal);
             match step.kind {
+                _ if step.in_cycle() => {
+                    let hole = after.iter().skip(index).take_while(|m| (m.line, m.jumps) == (step.line, step.jumps));
+                    let found = self.what_keeps_a_hole(step, &hole.collect::<Vec<_>>());
+                    if let Some(found) = found {
+                        let help = "put a G0 move in X and Y between the contour and this line";
+                        return Err(self.refusal(
+                            "P003",
+                            step.line,
+                            [found, "a move away from the contour first", help],
+                        ));
+                    }
+                    // It is raised where it stands before it goes to the hole.
+                    if !step.stands_still() {
+                        self.go_home(pen, step, by);
+                        return Ok(Some((index, pen)));
+                    }
+                }
                 _ if step.stands_still() => self.follow(pen, step),
+                _ if self.block(step.line).has_corner() => {
+                    let found = "the control cuts the corner behind this move, which begins displaced";
+                    let help = "put a short G1 move between the contour and this line";
+                    return Err(self.refusal("P003", step.line, [found, "a move without ,R or ,C", help]));
+                }
                 Kind::Arc(..) => {
                     self.carry(pen, step, by);
                 }
@@ -58,6 +83,24 @@ impl Writer<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// Why a hole cannot be drilled at its own place from the displaced end of the contour, by the words of its line.
+    fn what_keeps_a_hole(&self, step: &Move, moves: &[&Move]) -> Option<&'static str> {
+        let block = self.block(step.line);
+        if moves.iter().all(|m| m.stands_still()) {
+            Some("the first hole of this cycle is at the end of the contour, which is displaced")
+        } else if step.modal.plane != Plane::Xy {
+            Some("this cycle drills along another axis than Z from the displaced end of the contour")
+        } else if !step.modal.absolute
+            && block.word(b'L').is_some_and(|w| w.value.and_then(|v| v.exactly_times(1)) != Some(1))
+        {
+            Some(
+                "the holes of this cycle are counted in steps (G91 with repetitions) from the displaced end of the contour",
+            )
+        } else {
+            None
+        }
     }
 
     /// Gives the straight move from the displaced place its own end.

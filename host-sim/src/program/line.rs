@@ -75,6 +75,20 @@ impl<'a> Block<'a> {
     pub(super) fn motion_word(&self) -> Option<&WrittenWord> {
         self.words().find(|w| w.letter == b'G' && whole(w).is_some_and(|n| (0..=3).contains(&n)))
     }
+    /// Whether the line says itself how it moves. A G word that is computed counts: what it names is not known here.
+    pub(super) fn names(&self, motion: Motion) -> bool {
+        let tenths = Some(i64::from(motion.code().tenths()));
+        let names = |w: &WrittenWord| w.value.is_none() || w.value.and_then(|v| v.exactly_times(10)) == tenths;
+        self.motion_word().is_some() || self.words().any(|w| w.letter == b'G' && names(w))
+    }
+    /// Whether a G word of the line is a parameter or an expression.
+    pub(super) fn has_computed_code(&self) -> bool {
+        self.words().any(|w| w.letter == b'G' && w.value.is_none())
+    }
+    /// Whether the control cuts the corner to the next line (`,R`, `,C`).
+    pub(super) fn has_corner(&self) -> bool {
+        self.tokens.iter().any(|t| matches!(t, Token::Corner(_)))
+    }
     /// Whether its G words are written with two digits.
     pub(super) const fn two_digits(&self) -> bool {
         self.style.two_digits

@@ -70,7 +70,7 @@ impl Writer<'_> {
         let beside = |s: &[i64; 2]| curves.iter().map(|c| distance(*s, c)).fold(f64::INFINITY, f64::min);
         let stays = || pen.is_at(from) && Pen::new(end.map(|v| v as f64), &step.modal).is_at(to);
         if stays() && edit.samples.iter().all(|s| beside(s) <= 0.5 * tolerance) {
-            if self.motion != step.modal.motion && self.block(step.line).motion_word().is_none() {
+            if self.motion != step.modal.motion && !step.modal.motion.is_some_and(|m| self.block(step.line).names(m)) {
                 self.state_motion(step);
             }
             self.motion = step.modal.motion;
@@ -109,6 +109,15 @@ impl Writer<'_> {
                 "P006",
                 line,
                 [found, "feed per minute or per revolution", "post the contour with G94"],
+            ));
+        }
+        if self.original(line).has_computed_code() {
+            let found =
+                "a G word of the contour is a parameter or an expression, and its lines get G words of their own";
+            return Err(self.refusal(
+                "P006",
+                line,
+                [found, "G words with numbers", "write the G code out on this line"],
             ));
         }
         if matches!(step.kind, Kind::Arc(_, turns) if turns > 0) {

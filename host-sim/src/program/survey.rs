@@ -39,6 +39,10 @@ impl Move {
     pub(super) const fn is_straight(&self) -> bool {
         matches!(self.kind, Kind::Traverse | Kind::Feed)
     }
+    /// Whether it belongs to a canned cycle: its line stands for several moves.
+    pub(super) const fn in_cycle(&self) -> bool {
+        matches!(self.modal.motion, Some(Motion::Cycle(_)))
+    }
     /// Whether its start and end are one point of the plane, both known.
     pub(super) fn stands_still(&self) -> bool {
         self.is_straight() && self.from.point().is_some() && self.from.point() == self.to.point()

@@ -149,7 +149,7 @@ impl<'a> Writer<'a> {
     pub(super) fn state_motion(&mut self, step: &Move) {
         let Some(motion) = step.modal.motion else { return };
         let block = self.block(step.line);
-        if self.motion != Some(motion) && block.motion_word().is_none() {
+        if self.motion != Some(motion) && !block.names(motion) {
             let text = block.with_motion(motion);
             self.replaced.insert(step.line, vec![text]);
         }
