@@ -2,12 +2,17 @@
 
 use std::path::Path;
 
+use truepath::command::correct::{Corrected, correct};
 use truepath::diagnostics::{Failure, Form, Source};
-use truepath::job::Job;
-use truepath::pass::Pass;
-use truepath::program::{BlockEdit, RewriteOptions, rewrite_program};
+use truepath::job::{Job, Route};
+use truepath::measurement::Measurement;
+use truepath::pass::{Pass, read_blocks};
+use truepath::plant::Machine;
+use truepath::workshop;
 
 const JOB: &str = include_str!("../demo/corner/job.toml");
+
+const PLANT: &str = "ktc_n_per_mm2 = 700\nkrc_n_per_mm2 = 210\nkte_n_per_mm = 14\nkre_n_per_mm = 14\nstiffness_x_n_per_mm = 1500\nstiffness_y_n_per_mm = 2000\n";
 
 /// The wall of the drawing, the cutter of 20 mm on its left, and the path of the cutter's centre beside it.
 const DRAWN: &str = "%\nG21 G90 G17 G40\nT1 M6\nS1000 M3\nG0 X24 Y100 Z50\nG0 Z-10\nG1 G41 D1 X24 Y80 F400\nY35\nG3 X39 Y20 I15\nG1 X90\nG40 X110\nG0 Z50\nM30\n%\n";
@@ -35,14 +40,31 @@ fn a_compensated_program_is_the_same_contour_as_the_path_of_the_centre() {
     assert!(!drawn.warnings.iter().any(|w| w.contains("W013")), "{:?}", drawn.warnings);
 }
 
+/// Mills the pass, probes it and corrects its program.
+fn corrected(pass: &Pass) -> Corrected {
+    let machine: Machine = toml::from_str(PLANT).unwrap();
+    let milled = workshop::mill(pass, &machine, None).unwrap();
+    let probe = workshop::probe(pass, &milled, &[25.0, 40.0, 55.0, 70.0, 90.0], &[0.3, 0.8], 6.0).unwrap();
+    let file = Source::new("probe.txt", probe.into_bytes());
+    let measurement = shown(Measurement::read(pass, &file));
+    shown(correct(pass, &measurement, &[], &[Route::Program], &mut |_| ()))
+}
+
 #[test]
-fn a_compensated_program_is_not_corrected_in_its_own_text() {
-    let drawn = shown(pass(DRAWN, "compensation = \"radius\""));
-    let options = RewriteOptions { program: drawn.job.numbers.program_options(), ..RewriteOptions::default() };
-    let edit = BlockEdit { line: 7, samples: Vec::new() };
-    let Err(error) = rewrite_program(&drawn.program, &[edit], &options) else { panic!("it was written") };
-    let shown = error.render(Form::Plain);
-    assert!(shown.contains("P007") && shown.contains("part.nc:7") && shown.contains("--route coprocessor"), "{shown}");
+fn a_compensated_program_is_corrected_as_the_path_of_the_centre() {
+    let [drawn, centre] = [(DRAWN, "radius"), (CENTRE, "centre")]
+        .map(|(program, compensation)| corrected(&shown(pass(program, &format!("compensation = \"{compensation}\"")))));
+    let difference = drawn.summary.program.unwrap();
+    assert!(difference.compensation_taken_out && difference.largest_shift.mm > 0.005, "{difference:?}");
+    assert!(difference.text("part.nc").contains("taken out of the contour"));
+    let text = String::from_utf8(drawn.program.unwrap()).unwrap();
+    assert!(!text.contains("G41") && text.contains("\nG40 X") && text.contains("OF THE CUTTER CENTRE"), "{text}");
+    let read = |text: &[u8]| shown(read_blocks(&Source::new("corrected.nc", text.to_vec()))).0;
+    let (a, b) = (read(text.as_bytes()), read(&centre.program.unwrap()));
+    assert_eq!(a.len(), b.len(), "{text}");
+    for (a, b) in a.iter().zip(&b) {
+        assert!(a.curve.end().distance(b.curve.end()).nm() <= 200, "{text}");
+    }
 }
 
 #[test]

@@ -347,23 +347,6 @@ fn an_axis_that_the_line_after_the_contour_does_not_name_returns_to_its_place() 
 }
 
 #[test]
-fn a_path_that_the_control_moves_aside_is_refused_and_a_side_that_is_only_told_is_not() {
-    let told = "G21 G90 M3 S1500\nG0 X34 Y80\nG1 Z-15 F400\nG41 D1\nG1 X34 Y35\nG3 X39 Y30 I5 J0\nG1 X90 Y30\nG0 Z9\nG40\nM2\n";
-    let applied = told.replace("G41 D1", "G41.1 D4");
-    for (program, refused) in [(told.to_owned(), false), (applied, true)] {
-        let contour: Vec<_> =
-            edits(CORNER, bump).into_iter().zip([5, 6, 7]).map(|(e, line)| BlockEdit { line, ..e }).collect();
-        match rewrite_program(&Source::new("corner.nc", program.into_bytes()), &contour, &options()) {
-            Ok(rewritten) => assert!(!refused && text(&rewritten).contains("\nG41 D1\n")),
-            Err(Failure::Input(error)) => {
-                assert!(refused && (error.code(), error.line_column()) == ("P007", Some((5, 1))), "{error}");
-            }
-            Err(other) => panic!("{other}"),
-        }
-    }
-}
-
-#[test]
 fn a_contour_whose_start_no_move_sets_is_refused() {
     let program = "G21 G90 M3 S1500\nG0 X34 Y80\nG28\nG1 X34 Y35 F400\nG1 Z-15\nG1 X34 Y80\nG1 X0 Y80\nM2\n";
     let at = |y: i64| [34_000_000, y];

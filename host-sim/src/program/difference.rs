@@ -36,6 +36,8 @@ pub struct Difference {
     pub contour_lines_kept: usize,
     /// Lines beside the contour that were changed, because they hang on its ends.
     pub other_lines_changed: Vec<u32>,
+    /// Whether the control's cutter compensation (G41, G42) was taken out: the contour is the path of the centre.
+    pub compensation_taken_out: bool,
     /// G1 moves along the written contour.
     pub straight_moves: usize,
     /// G2 and G3 moves along it.
@@ -67,7 +69,7 @@ impl Difference {
         program: &[u8],
         moves: &[Move],
         edits: &[BlockEdit],
-        (touched, kept): (impl Iterator<Item = u32>, usize),
+        (touched, kept, centre_path): (impl Iterator<Item = u32>, usize, bool),
         proof: &Proof,
         options: &RewriteOptions,
     ) -> Self {
@@ -78,6 +80,7 @@ impl Difference {
             contour_lines_changed: edits.len() - kept,
             contour_lines_kept: kept,
             other_lines_changed: others,
+            compensation_taken_out: centre_path,
             straight_moves: proof.lines,
             arcs: proof.arcs,
             largest_shift: largest_shift(moves, edits),
@@ -110,6 +113,7 @@ impl Difference {
              contour lines written anew        {}\n\
              contour lines kept                {}\n\
              other lines changed               {}\n\
+             cutter compensation               {}\n\
              written for the contour           {} G1, {} G2/G3\n\
              largest shift                     {:.4} mm, line {} near X{:.3} Y{:.3} mm\n\
              largest deviation from the path   {:.5} mm (tolerance {} mm)\n\
@@ -127,6 +131,11 @@ impl Difference {
                 "none".to_owned()
             } else {
                 format!("{} (to and from the contour's ends)", others.join(", "))
+            },
+            if self.compensation_taken_out {
+                "taken out of the contour: it is the path of the cutter's centre"
+            } else {
+                "as it was"
             },
             self.straight_moves,
             self.arcs,

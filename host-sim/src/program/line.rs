@@ -89,6 +89,16 @@ impl<'a> Block<'a> {
     pub(super) fn has_corner(&self) -> bool {
         self.tokens.iter().any(|t| matches!(t, Token::Corner(_)))
     }
+    /// Whether it has G41, G42, G41.1 or G42.1.
+    pub(super) fn switches_compensation_on(&self) -> bool {
+        self.words().any(compensates)
+    }
+    /// The line without the words that switch compensation on, and without D.
+    pub(super) fn without_compensation(&self) -> Vec<u8> {
+        let words = self.words().filter(|w| compensates(w) || w.letter == b'D');
+        let edits = words.map(|w| (self.with_blanks_before(self.word_range(w)), String::new()));
+        self.edited(edits.collect())
+    }
     /// Whether its G words are written with two digits.
     pub(super) const fn two_digits(&self) -> bool {
         self.style.two_digits
@@ -224,6 +234,11 @@ impl<'a> Block<'a> {
         let words = words.replace(' ', self.style.gap);
         if self.style.lower { words.to_lowercase() } else { words }
     }
+}
+
+fn compensates(word: &WrittenWord) -> bool {
+    let tenths = word.value.and_then(|v| v.exactly_times(10));
+    word.letter == b'G' && matches!(tenths, Some(410 | 411 | 420 | 421))
 }
 
 fn acts_after_move(word: &WrittenWord) -> bool {

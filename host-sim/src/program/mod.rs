@@ -5,6 +5,7 @@
 //! * the moves that lead to the contour's start end at the corrected start,
 //! * lead-in and lead-out arcs outside the contour are displaced as a whole, so that they stay tangent,
 //! * the first straight XY move after the contour returns to its own place, an axis it does not name being added,
+//! * where the control compensates the contour (G41, G42) it becomes the [path of the centre](centre_path),
 //! * a move that relied on the modal code of the last contour line gets that code written out, and
 //! * a comment marks the program, and a marked program is refused: a correction must never be applied twice.
 //!
@@ -18,6 +19,7 @@
 
 mod approach;
 mod assemble;
+mod centre_path;
 mod departure;
 mod deviation;
 mod difference;
@@ -35,7 +37,7 @@ mod writer;
 
 use std::ops::Range;
 
-use truepath_core::gcode::{LineRange, Options, is_marked_corrected};
+use truepath_core::gcode::{LineRange, Lines, Options, is_marked_corrected};
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
@@ -131,7 +133,8 @@ impl Rewritten {
 /// `P001` for a program that is corrected already, `P002` when no move that can be displaced leads to the start of the
 /// contour, `P003` when one that cannot be displaced (a G18 arc, a probing move) begins at its end, `P004` when a line
 /// of the contour is executed several times, `P005` when the origin is set at the displaced end, `P006` for lines that
-/// cannot be divided (G93, arcs of several turns), `P007` when the control applies cutter compensation to it,
+/// cannot be divided (G93, arcs of several turns), `P007` when the control's
+/// cutter compensation cannot be taken out,
 /// the interpreter's own errors; internal when the edits do not belong to the program or the text fails the proof.
 pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOptions) -> Result<Rewritten, Failure> {
     let original = source.bytes();
@@ -148,7 +151,7 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
     }
     let moves = survey::survey(original, options.program).map_err(|e| InputError::of_program(source, &e))?;
     let (written, proof) = within_kinks(source, &moves, edits, options)?;
-    let changed = (written.touched.keys().copied(), written.unchanged);
+    let changed = (written.touched.keys().copied(), written.unchanged, written.centre_path);
     let difference = Difference::new(original, &moves, edits, changed, &proof, options);
     let head = String::from_utf8_lossy(&written.head.1).lines().count();
     let mut added: Vec<(u32, u32)> = written.touched.iter().map(|(&line, &parts)| (line, parts as u32 - 1)).collect();
@@ -182,9 +185,9 @@ fn within_kinks(
             program: options.program,
             tolerance: options.tolerance.nm() as f64,
             step,
+            centre_path: written.centre_path,
         };
-        let proof = proof::prove(&claim)
-            .map_err(|what| Failure::Internal(format!("the corrected program is not what it should be: {what}")))?;
+        let proof = proof::prove(&claim).map_err(|what| unproved(source, edits, &written, &what))?;
         let mut largest = 0.0f64;
         let before = tolerances.clone();
         for kink in proof.kinks.iter().filter(|k| k.beyond > options.max_kink_deg) {
@@ -203,6 +206,19 @@ fn within_kinks(
         }
     }
     first.ok_or_else(|| Failure::Internal("no attempt to write the program was made".to_owned()))
+}
+
+/// A text that fails the proof. Without compensation that is a fault of the writer; what compensation may do is more
+/// than it can write.
+fn unproved(source: &Source, edits: &[BlockEdit], written: &writer::Written, what: &str) -> Failure {
+    if !written.centre_path {
+        return Failure::Internal(format!("the corrected program is not what it should be: {what}"));
+    }
+    let line = edits.first().map_or(0, |e| e.line);
+    let span = Lines::new(source.bytes()).find(|l| l.number == line).map_or(0..0, |l| l.span().start..l.span().end());
+    let found = format!("the path that G41 or G42 leads along cannot be written without them ({what})");
+    let help = "use --route coprocessor, or post the program with the path of the cutter's centre";
+    InputError::new("P007", found, "the path of the cutter's centre", help).at(source, span).into()
 }
 
 /// Where the mark stands.

@@ -68,7 +68,11 @@ impl Writer<'_> {
             return Err(Failure::Internal(format!("the corrected path jumps at line {}", edit.line)));
         }
         let beside = |s: &[i64; 2]| curves.iter().map(|c| distance(*s, c)).fold(f64::INFINITY, f64::min);
-        let stays = || pen.is_at(from) && Pen::new(end.map(|v| v as f64), &step.modal).is_at(to);
+        let stays = || {
+            !self.centre.contains(&step.line)
+                && pen.is_at(from)
+                && Pen::new(end.map(|v| v as f64), &step.modal).is_at(to)
+        };
         if stays() && edit.samples.iter().all(|s| beside(s) <= 0.5 * tolerance) {
             if self.motion != step.modal.motion && !step.modal.motion.is_some_and(|m| self.block(step.line).names(m)) {
                 self.state_motion(step);

@@ -5,11 +5,12 @@
 //! ([`stretch`](super::stretch)), after it whatever depended on its end is put right
 //! ([`departure`](super::departure)).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use truepath_core::gcode::{Line, Lines, Motion};
 
 use super::assemble::{Replaced, assemble};
+use super::centre_path;
 use super::line::Block;
 use super::pen::Pen;
 use super::survey::Move;
@@ -25,6 +26,8 @@ pub(super) struct Written {
     pub(super) touched: BTreeMap<u32, usize>,
     /// Lines of the contour that stay.
     pub(super) unchanged: usize,
+    /// Whether the control's compensation has been taken out of the contour.
+    pub(super) centre_path: bool,
 }
 
 /// What has been written so far.
@@ -37,6 +40,8 @@ pub(super) struct Writer<'a> {
     /// The motion in force in the written text.
     pub(super) motion: Option<Motion>,
     pub(super) unchanged: usize,
+    /// Lines whose words lead beside the path of the cutter's centre: they are never kept.
+    pub(super) centre: BTreeSet<u32>,
 }
 
 /// Writes the program; `tolerances` are those of the edits, nm.
@@ -47,15 +52,27 @@ pub(super) fn write(
     tolerances: &[f64],
     options: &RewriteOptions,
 ) -> Result<Written, Failure> {
-    let lines: Vec<Line<'_>> = Lines::new(source.bytes()).collect();
-    let two_digits = lines.iter().map(|&l| Block::new(l, false)).any(|b| b.motion_word().is_some() && b.two_digits());
-    let replaced = Replaced::new();
-    let mut writer = Writer { source, lines, options, replaced, two_digits, motion: None, unchanged: 0 };
+    let raw: Vec<Line<'_>> = Lines::new(source.bytes()).collect();
+    let two_digits = raw.iter().map(|&l| Block::new(l, false)).any(|b| b.motion_word().is_some() && b.two_digits());
+    let compensated = centre_path::stretches(moves, edits);
+    let noted = centre_path::noted(options);
+    let options = if compensated.is_empty() { options } else { &noted };
+    let switches = centre_path::without_switches(&raw, moves, &compensated);
+    let stripped = switches.as_ref().cloned().unwrap_or_default();
+    let text = |l: &Line<'_>| stripped.get(&l.number).map(Vec::as_slice);
+    let lines: Vec<Line<'_>> = raw.iter().map(|l| Line { text: text(l).unwrap_or(l.text), ..*l }).collect();
+    let replaced: Replaced = stripped.iter().map(|(&line, text)| (line, vec![text.clone()])).collect();
+    let centre = BTreeSet::new();
+    let mut writer = Writer { source, lines, options, replaced, two_digits, motion: None, unchanged: 0, centre };
     if edits.is_empty() {
         return Err(Failure::Internal("there is no line to correct".to_owned()));
     }
     writer.refuse_repetition(moves, edits.iter().map(|edit| edit.line))?;
-    writer.refuse_compensation(moves, edits)?;
+    if let Err(line) = switches {
+        let found = "the control compensates this path (G41, G42), switched on by no line before it";
+        return Err(writer.refuse_compensation(line, found));
+    }
+    writer.write_centre_path(moves, &compensated, edits)?;
     let mut edits: Vec<_> = edits.iter().zip(tolerances.iter().copied()).collect();
     edits.reverse();
     let (mut at, mut end) = (0, None);
@@ -77,9 +94,9 @@ pub(super) fn write(
         writer.depart(pen, &moves[at - 1], &moves[at..])?;
     }
     writer.refuse_repetition(moves, writer.replaced.keys().copied())?;
-    let (text, head) = assemble(source.bytes(), &writer.lines, &writer.replaced, options);
+    let (text, head) = assemble(source.bytes(), &raw, &writer.replaced, options);
     let touched = writer.replaced.iter().map(|(&line, parts)| (line, parts.len())).collect();
-    Ok(Written { text, head, touched, unchanged: writer.unchanged })
+    Ok(Written { text, head, touched, unchanged: writer.unchanged, centre_path: !compensated.is_empty() })
 }
 
 impl<'a> Writer<'a> {
@@ -127,22 +144,6 @@ impl<'a> Writer<'a> {
     /// A move written in another file cannot be displaced.
     pub(super) fn refuse_other_file(&self, step: &Move) -> Result<(), Failure> {
         self.refuse_repetition(&[], std::iter::once(step.line).filter(|line| *line == 0))
-    }
-
-    /// A path that the control itself moves aside cannot be written: the correction is to the cutter's centre.
-    fn refuse_compensation(&self, moves: &[Move], edits: &[BlockEdit]) -> Result<(), Failure> {
-        let step = moves.iter().find(|m| m.modal.compensated && edits.iter().any(|e| e.line == m.line));
-        step.map_or(Ok(()), |step| {
-            Err(self.refusal(
-                "P007",
-                step.line,
-                [
-                    "the control moves this path aside by the cutter's radius (G41 or G42)",
-                    "the path of the cutter's centre",
-                    "post the program with the centre path (wear compensation), or use --route coprocessor",
-                ],
-            ))
-        })
     }
 
     /// Writes out the motion of a move that relied on the code of an earlier line, where that is another one now.

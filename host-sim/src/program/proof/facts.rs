@@ -68,26 +68,31 @@ impl Fact {
     }
 }
 
-/// All steps of a program.
-pub(super) fn facts(program: &[u8], options: Options) -> Result<Vec<Fact>, GcodeError> {
+/// All steps of a program; with `centre_path` apart from cutter compensation, which shows in the path of the centre.
+pub(super) fn facts(program: &[u8], options: Options, centre_path: bool) -> Result<Vec<Fact>, GcodeError> {
     let mut facts = Vec::new();
     let mut memory = Box::new(HostMemory::new());
     Interpreter::new(options).run(program, &mut memory.lend(), &mut |event| {
         let what = match event.canon {
             // `;` at the end of a line says nothing.
             Canon::Comment(span) if span.len == 0 => return Ok(()),
+            Canon::Compensation { .. } if centre_path => return Ok(()),
             Canon::Comment(span) => What::Comment(span.of(event.text).to_vec()),
             Canon::Traverse { from, to } => What::Straight { rapid: true, from, to },
             Canon::Feed { from, to } => What::Straight { rapid: false, from, to },
             Canon::Arc { from, to, curve, .. } => What::Arc { from, to, curve },
             other => What::Other(other),
         };
+        let mut modal = Modal { motion: None::<Motion>, ..*event.modal };
+        if centre_path {
+            modal = Modal { wall: None, radius_offset: None, compensated: false, ..modal };
+        }
         facts.push(Fact {
             line: if event.source.file == 0 { event.source.line } else { 0 },
             number: event.source.number,
             block_delete: event.source.block_delete,
             what,
-            modal: Modal { motion: None::<Motion>, ..*event.modal },
+            modal,
         });
         Ok(())
     })?;

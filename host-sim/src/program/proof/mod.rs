@@ -39,6 +39,8 @@ pub(super) struct Claim<'a> {
     pub(super) tolerance: f64,
     /// One step of the program's coordinates, nm.
     pub(super) step: f64,
+    /// Whether cutter compensation was taken out of the contour.
+    pub(super) centre_path: bool,
 }
 
 /// What was found, counted from the written text.
@@ -62,7 +64,9 @@ pub(super) struct Proof {
 /// Compares; the error says what has changed that must not.
 pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
     bytes::compare(claim.original, claim.written, claim.touched, claim.head)?;
-    let read = |text: &[u8]| facts(text, claim.program).map_err(|e| format!("line {} cannot be read: {e}", e.line));
+    let read = |text: &[u8]| {
+        facts(text, claim.program, claim.centre_path).map_err(|e| format!("line {} cannot be read: {e}", e.line))
+    };
     let original = read(claim.original)?;
     let head = claim.head.0 + 1..=claim.head.0 + Lines::new(claim.head.1).count() as u32;
     let written: Vec<Fact> = read(claim.written)?.into_iter().filter(|f| !head.contains(&f.line)).collect();

@@ -26,6 +26,7 @@ fn verdict(original: &str, written: &str) -> Result<Proof, String> {
         program: Options::default(),
         tolerance: 1_000.0,
         step: 100.0,
+        centre_path: false,
     })
 }
 
