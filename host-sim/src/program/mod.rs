@@ -32,12 +32,13 @@ mod proof;
 mod spacing;
 mod stretch;
 mod survey;
+mod unproved;
 mod vector;
 mod writer;
 
 use std::ops::Range;
 
-use truepath_core::gcode::{LineRange, Lines, Options, is_marked_corrected};
+use truepath_core::gcode::{LineRange, Options, is_marked_corrected};
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
@@ -187,7 +188,8 @@ fn within_kinks(
             step,
             centre_path: written.centre_path,
         };
-        let proof = proof::prove(&claim).map_err(|what| unproved(source, edits, &written, &what))?;
+        let proof =
+            proof::prove(&claim).map_err(|what| unproved::failure(source, edits, written.centre_path, &what))?;
         let mut largest = 0.0f64;
         let before = tolerances.clone();
         for kink in proof.kinks.iter().filter(|k| k.beyond > options.max_kink_deg) {
@@ -206,19 +208,6 @@ fn within_kinks(
         }
     }
     first.ok_or_else(|| Failure::Internal("no attempt to write the program was made".to_owned()))
-}
-
-/// A text that fails the proof. Without compensation that is a fault of the writer; what compensation may do is more
-/// than it can write.
-fn unproved(source: &Source, edits: &[BlockEdit], written: &writer::Written, what: &str) -> Failure {
-    if !written.centre_path {
-        return Failure::Internal(format!("the corrected program is not what it should be: {what}"));
-    }
-    let line = edits.first().map_or(0, |e| e.line);
-    let span = Lines::new(source.bytes()).find(|l| l.number == line).map_or(0..0, |l| l.span().start..l.span().end());
-    let found = format!("the path that G41 or G42 leads along cannot be written without them ({what})");
-    let help = "use --route coprocessor, or post the program with the path of the cutter's centre";
-    InputError::new("P007", found, "the path of the cutter's centre", help).at(source, span).into()
 }
 
 /// Where the mark stands.

@@ -49,3 +49,11 @@ fn every_refusal_says_what_to_do() {
         assert!(format!("{error:?}").contains(advice), "{error:?}");
     }
 }
+
+#[test]
+fn a_program_that_computes_with_its_displaced_place_is_refused() {
+    for after in ["#1=#5421\nG0 X100 Y100\nG0 Y#1\n", "G0 X100 Y[100 - #<_y>]\n"] {
+        let error = refusal(&program("", WALLS, after));
+        assert_eq!((error.code(), error.line_column()), ("P003", Some((7, 1))), "{error}");
+    }
+}
