@@ -12,6 +12,7 @@
 //! and modal macros (G66).
 
 use super::compensation::CompensationStage;
+use super::corner::CornerStage;
 use super::execute::Execution;
 use super::flow::{Next, Reader, Sentence};
 use super::{
@@ -69,9 +70,10 @@ impl<'t> Interpreter<'t> {
         let mut warnings = Warnings::default();
         reader.frame().warn(&mut warnings);
         let mut sentence = Sentence::new(program.text);
-        // Large, and lent so that it is never moved: the stack of a board has room for one.
-        let mut compensation = CompensationStage::default();
-        let mut execution = Execution::new(self.options, memory, &mut compensation, warnings, sink);
+        // Large, and lent so that they are never moved: the stack of a board has room for one of each.
+        let (mut corner, mut compensation) = (CornerStage::default(), CompensationStage::default());
+        let stages = (&mut corner, &mut compensation);
+        let mut execution = Execution::new(self.options, memory, stages, warnings, sink);
         while reader.next(&mut execution, &mut sentence)? {
             let next = execution.sentence(&sentence)?;
             if next != Next::Continue {

@@ -83,6 +83,7 @@ impl fmt::Display for GcodeErrorKind {
             Self::Compensation(error) => error.fmt(f),
             Self::Expression(error) => error.fmt(f),
             Self::Flow(error) => error.fmt(f),
+            Self::Corner(error) => error.fmt(f),
             Self::Cycle(error) => error.fmt(f),
             Self::Setting(error) => error.fmt(f),
             _ => self.fmt_block(f),

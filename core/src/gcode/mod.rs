@@ -35,6 +35,7 @@ mod code;
 mod comment;
 pub mod compensation;
 mod contour;
+mod corner;
 mod dialect;
 mod error;
 mod execute;
@@ -62,7 +63,7 @@ pub use contour::{
 };
 pub use dialect::Dialect;
 pub use error::{
-    CycleError, ExpressionError, FlowError, Foreign, GcodeError, GcodeErrorKind, ParameterError, SettingError,
+    CornerError, CycleError, ExpressionError, FlowError, Foreign, GcodeError, GcodeErrorKind, ParameterError, SettingError,
 };
 pub use execute::{Machine, Modal, Motion, Tool};
 pub use flow::{Library, LibraryFile, Program, Word};

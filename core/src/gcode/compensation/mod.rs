@@ -22,11 +22,11 @@ mod remains;
 mod stage;
 #[cfg(test)]
 mod tests;
-mod unit;
+pub(in crate::gcode) mod unit;
 
 pub use error::CompensationError;
 pub use leg::{Cutter, Piece, Shape};
 pub use path::{CutterPath, Step};
 pub use stage::WAITING;
-pub(in crate::gcode) use stage::{CompensationStage, Waiting};
+pub(in crate::gcode) use stage::{CompensationStage, Waiting, in_plane, moved, put};
 use unit::FINE_BITS;

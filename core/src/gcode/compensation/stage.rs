@@ -206,20 +206,20 @@ impl<'p> CompensationStage<'p> {
 }
 
 /// The two coordinates of a place in a plane.
-fn in_plane(at: Axes, plane: Plane) -> Option<Point> {
+pub(in crate::gcode) fn in_plane(at: Axes, plane: Plane) -> Option<Point> {
     let [first, second, _] = plane.axes();
     Some(Point { x: at.get(first)?, y: at.get(second)? })
 }
 
 /// Sets them.
-fn put(at: &mut Axes, point: Point, plane: Plane) {
+pub(in crate::gcode) fn put(at: &mut Axes, point: Point, plane: Plane) {
     let [first, second, _] = plane.axes();
     at.set(first, Some(point.x));
     at.set(second, Some(point.y));
 }
 
 /// A step whose way in the plane is `piece`; anything but a move is left as it is.
-fn moved(canon: Canon, piece: Piece, plane: Plane) -> Result<Canon, CompensationError> {
+pub(in crate::gcode) fn moved(canon: Canon, piece: Piece, plane: Plane) -> Result<Canon, CompensationError> {
     let (mut from, mut to, traverse) = match canon {
         Canon::Traverse { from, to } => (from, to, true),
         Canon::Feed { from, to } | Canon::Arc { from, to, .. } | Canon::PlaneArc { from, to, .. } => (from, to, false),

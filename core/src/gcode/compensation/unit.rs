@@ -14,34 +14,34 @@ use crate::units::{Offset, isqrt_rounded, shift_rounded};
 const UNIT_BITS: u32 = 60;
 
 /// Bits of a nanometre in a [`Fine`] length.
-pub(super) const FINE_BITS: u32 = 16;
+pub(in crate::gcode) const FINE_BITS: u32 = 16;
 
 /// One, in units of 2⁻⁶⁰.
-pub(super) const ONE: i128 = 1 << UNIT_BITS;
+pub(in crate::gcode) const ONE: i128 = 1 << UNIT_BITS;
 
 /// A length in 2⁻¹⁶ nm.
-pub(super) type Fine = i128;
+pub(in crate::gcode) type Fine = i128;
 
 /// A direction in the plane, components in units of 2⁻⁶⁰.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Unit {
+pub(in crate::gcode) struct Unit {
     x: i128,
     y: i128,
 }
 
 /// From whole nanometres.
-pub(super) fn fine(length: Offset) -> Fine {
+pub(in crate::gcode) fn fine(length: Offset) -> Fine {
     i128::from(length.nm()) << FINE_BITS
 }
 
 /// The root of a sum of squares in 2⁻³² nm².
-pub(super) fn root(square: i128) -> Option<Fine> {
+pub(in crate::gcode) fn root(square: i128) -> Option<Fine> {
     let square = u128::try_from(square).ok()?;
     i128::try_from(isqrt_rounded(square)).ok()
 }
 
 /// The length of a displacement.
-pub(super) fn length(v: Vector) -> Fine {
+pub(in crate::gcode) fn length(v: Vector) -> Fine {
     // Two coordinates of ±200 m: the sum of squares is below 2⁷⁷.
     let square = v.length_squared().min(u128::MAX >> 34) << (FINE_BITS.saturating_mul(2));
     i128::try_from(isqrt_rounded(square)).unwrap_or(i128::MAX)
@@ -49,7 +49,7 @@ pub(super) fn length(v: Vector) -> Fine {
 
 impl Unit {
     /// The direction of a displacement; `None` for the zero vector.
-    pub(super) fn of(v: Vector) -> Option<Self> {
+    pub(in crate::gcode) fn of(v: Vector) -> Option<Self> {
         let (x, y) = (i128::from(v.x.nm()), i128::from(v.y.nm()));
         let largest = x.unsigned_abs().max(y.unsigned_abs());
         if largest == 0 {
@@ -66,36 +66,36 @@ impl Unit {
     }
 
     /// A quarter turn counter-clockwise.
-    pub(super) const fn left(self) -> Self {
+    pub(in crate::gcode) const fn left(self) -> Self {
         Self { x: self.y.saturating_neg(), y: self.x }
     }
 
     /// The opposite direction.
-    pub(super) const fn reversed(self) -> Self {
+    pub(in crate::gcode) const fn reversed(self) -> Self {
         Self { x: self.x.saturating_neg(), y: self.y.saturating_neg() }
     }
 
     /// Cosine of the turn from here to `other`, units of 2⁻⁶⁰.
-    pub(super) const fn dot(self, other: Self) -> i128 {
+    pub(in crate::gcode) const fn dot(self, other: Self) -> i128 {
         let p = self.x.saturating_mul(other.x);
         shift_rounded(p.saturating_add(self.y.saturating_mul(other.y)), UNIT_BITS)
     }
 
     /// Sine of the turn from here to `other`, units of 2⁻⁶⁰.
-    pub(super) const fn cross(self, other: Self) -> i128 {
+    pub(in crate::gcode) const fn cross(self, other: Self) -> i128 {
         let p = self.x.saturating_mul(other.y);
         shift_rounded(p.saturating_sub(self.y.saturating_mul(other.x)), UNIT_BITS)
     }
 
     /// The component of a displacement along this direction.
-    pub(super) fn along(self, v: Vector) -> Fine {
+    pub(in crate::gcode) fn along(self, v: Vector) -> Fine {
         let p = i128::from(v.x.nm()).saturating_mul(self.x);
         let sum = p.saturating_add(i128::from(v.y.nm()).saturating_mul(self.y));
         shift_rounded(sum, UNIT_BITS.saturating_sub(FINE_BITS))
     }
 
     /// `from` + `a` along this direction + `b` along its left, each coordinate rounded once.
-    pub(super) fn step(self, from: Point, a: Fine, b: Fine) -> Point {
+    pub(in crate::gcode) fn step(self, from: Point, a: Fine, b: Fine) -> Point {
         let left = self.left();
         let part = |u: i128, v: i128| {
             let sum = a.saturating_mul(u).saturating_add(b.saturating_mul(v));

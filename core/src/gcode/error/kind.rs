@@ -2,7 +2,7 @@
 
 use super::super::compensation::CompensationError;
 use super::super::{GCode, LineRange, RunPart};
-use super::{CycleError, ExpressionError, FlowError, Foreign, ParameterError, SettingError};
+use super::{CornerError, CycleError, ExpressionError, FlowError, Foreign, ParameterError, SettingError};
 use crate::units::Offset;
 
 /// What is wrong.
@@ -156,6 +156,8 @@ pub enum GcodeErrorKind {
     Flow(FlowError),
     /// A canned cycle, a spline, a probing move.
     Cycle(CycleError),
+    /// What a corner word asks for.
+    Corner(CornerError),
     /// An offset, a tool, a mode.
     Setting(SettingError),
 
@@ -211,6 +213,7 @@ impl GcodeErrorKind {
             Self::Compensation(error) => error.code(),
             Self::Expression(error) => error.code(),
             Self::Flow(error) => error.code(),
+            Self::Corner(error) => error.code(),
             Self::Cycle(error) => error.code(),
             Self::Setting(error) => error.code(),
             Self::NotWhole { .. } => "G027",

@@ -1,11 +1,12 @@
 //! What can be wrong with a program, and where.
 //!
 //! Every kind has a code that never changes its meaning (`G00…` lexical, `G02…` one block, `G03…` a code, `G04…` motion,
-//! `G05…` arcs, `G07…` the contour, `G08…` parameters, `G12…` and `G13…` cutter compensation,
+//! `G05…` arcs and corners, `G11…` corners, `G07…` the contour, `G08…` parameters, `G12…` and `G13…` cutter compensation,
 //! `G14…` and `G15…` the order of blocks, `G16…` and
 //! `G17…` expressions) and carries both sides of a mismatch. The sentences shown to the
 //! user are in `message.rs`, those of a theme with its kinds.
 
+mod corner;
 mod cycle;
 mod expression;
 mod flow;
@@ -15,6 +16,7 @@ mod setting;
 
 use super::{Line, Span};
 
+pub use corner::CornerError;
 pub use cycle::CycleError;
 pub use expression::ExpressionError;
 pub use flow::FlowError;

@@ -59,10 +59,6 @@ pub enum SettingError {
     MachineMoveIncremental,
     /// M72 without M70 or M73.
     NothingSaved,
-    /// `,R` or `,C` on a block that is no line, or is not followed by one.
-    CornerWithoutLine,
-    /// The rounding or chamfer is longer than one of its lines.
-    CornerTooLarge,
 }
 
 impl SettingError {
@@ -81,8 +77,6 @@ impl SettingError {
             Self::PolarMixed { .. } => "G069",
             Self::MachineMoveIncremental => "G049",
             Self::NothingSaved => "G048",
-            Self::CornerWithoutLine => "G058",
-            Self::CornerTooLarge => "G059",
         }
     }
 }
@@ -125,12 +119,6 @@ impl fmt::Display for SettingError {
             }
             Self::NothingSaved => {
                 f.write_str("M72 restores modes, but M70 or M73 has not saved any here; add M70 before it")
-            }
-            Self::CornerWithoutLine => f.write_str(
-                "`,R` and `,C` stand between two lines of the plane; remove the word or write the corner out",
-            ),
-            Self::CornerTooLarge => {
-                f.write_str("the corner (`,R`, `,C`) is larger than one of its two lines; give a smaller one")
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::super::block::BlockWords;
 use super::super::code::Group;
 use super::super::compensation::{CompensationError, Cutter, Waiting};
-use super::super::{Canon, CompensationBy, Event, GcodeError, GcodeErrorKind, Line, Plane, Span, WarningKind};
+use super::super::{Canon, CompensationBy, Event, GcodeError, GcodeErrorKind, Line, Plane, Source, Span, WarningKind};
 use super::Execution;
 use crate::geometry::Side;
 use crate::units::{Offset, div_rounded};
@@ -11,7 +11,7 @@ use crate::units::{Offset, div_rounded};
 /// The largest radius, 100 m.
 const LARGEST_NM: u64 = 100_000_000_000;
 
-impl<S> Execution<'_, '_, '_, S>
+impl<'p, S> Execution<'p, '_, '_, S>
 where
     S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
 {
@@ -110,6 +110,7 @@ where
 
     /// Ends compensation: what waits goes on.
     pub(in super::super) fn stop_compensation(&mut self, span: Span) -> Result<(), GcodeError> {
+        self.no_corner_waits()?;
         self.compensation.stop().map_err(|kind| self.error(kind.into(), span))?;
         self.give_ready()
     }
@@ -126,15 +127,35 @@ where
 
     fn give_ready(&mut self) -> Result<(), GcodeError> {
         while let Some(step) = self.compensation.next() {
-            let Some(sink) = self.sink.take() else {
-                return Ok(());
-            };
-            let Waiting { canon, source, modal, text } = step;
-            let answer = sink(&Event { canon, source, modal: &modal, text, parameters: self });
-            self.sink = Some(sink);
-            let line = Line { number: source.line, start: source.block.start, text: &[] };
-            answer.map_err(|kind| GcodeError::new(kind, &line, source.block).in_file(source.file))?;
+            self.give(&step)?;
         }
         Ok(())
     }
+
+    /// Gives a step that has waited to the sink; what it answers is an error at the step's block.
+    fn give(&mut self, step: &Waiting<'p>) -> Result<(), GcodeError> {
+        let Some(sink) = self.sink.take() else {
+            return Ok(());
+        };
+        let Waiting { canon, source, modal, text } = *step;
+        let answer = sink(&Event { canon, source, modal: &modal, text, parameters: self });
+        self.sink = Some(sink);
+        answer.map_err(|kind| error_of(source, kind, source.block))
+    }
+
+    /// Gives a step that has waited for a corner on to compensation, or to the sink.
+    pub(super) fn give_on(&mut self, step: Waiting<'p>) -> Result<(), GcodeError> {
+        if self.compensation.is_idle() {
+            return self.give(&step);
+        }
+        let source = step.source;
+        self.compensation.accept(step).map_err(|kind| error_of(source, kind.into(), source.block))?;
+        self.give_ready()
+    }
+}
+
+/// An error of a block that is no longer the present one.
+pub(super) fn error_of(source: Source, kind: GcodeErrorKind, span: Span) -> GcodeError {
+    let line = Line { number: source.line, start: source.block.start, text: &[] };
+    GcodeError::new(kind, &line, span).in_file(source.file)
 }

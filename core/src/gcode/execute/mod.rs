@@ -8,7 +8,7 @@
 //! | `axes.rs` | axis words → places |
 //! | `motion.rs` | which code moves |
 //! | `circle.rs`, `arc.rs` | arcs in the three planes, and where their centres lie |
-//! | `compensate.rs` | G40 … G42 |
+//! | `corner.rs`, `compensate.rs` | `,R` and `,C`; G40 … G42 |
 //! | `home.rs`, `probe.rs` | G28, G30, G53; probing and tapping |
 //! | `cycle.rs`, `cycle_words.rs` | canned cycles |
 //! | `curve.rs`, `spline.rs` | splines, and their flattening |
@@ -20,6 +20,7 @@ mod axes;
 mod call;
 mod circle;
 mod compensate;
+mod corner;
 mod curve;
 mod cycle;
 mod cycle_words;
@@ -40,6 +41,7 @@ mod tool;
 
 use super::block::BlockWords;
 use super::compensation::CompensationStage;
+use super::corner::CornerStage;
 use super::flow::{Next, Sentence};
 use super::parameter::Surroundings;
 use super::{
@@ -64,6 +66,7 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     pub(super) program_number: Option<u32>,
     pub(super) end: Option<u32>,
     pub(super) warnings: Warnings,
+    corner: &'s mut CornerStage<'p>,
     compensation: &'s mut CompensationStage<'p>,
     memory: &'s mut Memory<'m>,
     text: &'p [u8],
@@ -98,7 +101,7 @@ where
     pub(super) fn new(
         options: Options<'p>,
         memory: &'s mut Memory<'m>,
-        compensation: &'s mut CompensationStage<'p>,
+        (corner, compensation): (&'s mut CornerStage<'p>, &'s mut CompensationStage<'p>),
         warnings: Warnings,
         sink: &'s mut S,
     ) -> Self {
@@ -110,6 +113,7 @@ where
             program_number: None,
             end: None,
             warnings,
+            corner,
             compensation,
             memory,
             text: &[],
@@ -158,6 +162,14 @@ where
 
     /// Gives one step to the sink; what it answers is an error at `span`.
     pub(super) fn emit(&mut self, canon: Canon, span: Span) -> Result<(), GcodeError> {
+        if self.corner.is_waiting() {
+            return self.behind_corner(canon, span);
+        }
+        self.emit_on(canon, span)
+    }
+
+    /// Gives one step on, behind the corners.
+    fn emit_on(&mut self, canon: Canon, span: Span) -> Result<(), GcodeError> {
         if !self.compensation.is_idle() {
             return self.compensate(canon, span);
         }

@@ -8,7 +8,7 @@ use super::super::code::Group;
 use super::super::flow::Next;
 use super::super::mcode::MCodes;
 use super::super::{
-    Canon, Event, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel, SettingError, WarningKind, Word,
+    Canon, CornerError, Event, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel, SettingError, WarningKind, Word,
 };
 use super::Execution;
 
@@ -64,7 +64,7 @@ where
         if let Some(word) = block.first_unused() {
             let kind = match word.letter {
                 b'E' => GcodeErrorKind::ForeignDialect(Foreign::Printer),
-                b'r' | b'c' => SettingError::CornerWithoutLine.into(),
+                b'r' | b'c' => CornerError::WithoutLine.into(),
                 letter => GcodeErrorKind::UnusedWord { letter },
             };
             return Err(self.error(kind, word.span));

@@ -41,7 +41,10 @@ where
                 }
                 self.check_feed();
                 self.check_revolutions()?;
-                self.feed_to(to, span)
+                match self.corner_word(block)? {
+                    Some((corner, word)) => self.feed_to_corner(to, corner, word),
+                    None => self.feed_to(to, span),
+                }
             }
             Some(Motion::Traverse | Motion::Feed) => Ok(()),
             Some(Motion::Arc { counter_clockwise }) => {

@@ -6,7 +6,7 @@
 //! §3.3, and the Fanuc and Haas spellings of the same. Nothing is skipped: a byte that belongs to none of these is an
 //! error with its place. Expressions are measured here, not computed.
 
-use super::super::{Foreign, GcodeError, GcodeErrorKind, Line, Span};
+use super::super::{CornerError, Foreign, GcodeError, GcodeErrorKind, Line, Span};
 use super::decimal::{NumberError, number, trimmed};
 use super::extent;
 use super::{Token, WrittenWord};
@@ -130,7 +130,7 @@ impl<'a> Words<'a> {
         self.value(from, letter).map(Token::Word)
     }
 
-    /// `,R` or `,C` behind its comma.
+    /// `,R` or `,C` behind its comma; `,A` is refused by name.
     fn corner(&mut self, from: &'a [u8]) -> Result<Token, GcodeError> {
         let rest = trimmed(self.rest);
         match rest.first().map(u8::to_ascii_uppercase) {
@@ -138,6 +138,7 @@ impl<'a> Words<'a> {
                 self.rest = rest.get(1..).unwrap_or(&[]);
                 self.value(from, letter).map(Token::Corner)
             }
+            Some(b'A') => Err(self.error(from, CornerError::Angle.into())),
             _ => Err(self.error(from, GcodeErrorKind::UnexpectedByte(b','))),
         }
     }
