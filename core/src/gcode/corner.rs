@@ -19,7 +19,7 @@ use crate::geometry::Point;
 use crate::units::{Offset, div_rounded, shift_rounded};
 
 /// Steps that may wait between the two lines of a corner.
-pub(super) const BETWEEN: usize = 6;
+pub(super) const BETWEEN: usize = 4;
 
 /// What may be missing of a line by the rounding of the corners at its two ends, 2 nm.
 const ROUNDING: Fine = 2 << FINE_BITS;
