@@ -75,3 +75,12 @@ fn a_wall_that_the_cutter_cannot_follow_is_refused_at_its_line() {
     let shown = pass(DRAWN, "compensation = \"diameter\"").expect_err("no such choice").render(Form::Plain);
     assert!(shown.contains("J007") && shown.contains("radius"), "{shown}");
 }
+
+#[test]
+fn leads_along_which_the_offset_is_taken_and_given_up_are_no_wall() {
+    let centre = pass(CENTRE, "").expect("a readable job");
+    let lines = centre.core.contour.lines;
+    assert_eq!((lines.first, lines.last, centre.blocks.len()), (8, 10, 3), "the G41 and G40 moves are leads");
+    let [before, behind] = centre.leads();
+    assert_eq!((before.len(), behind.len()), (1, 1));
+}

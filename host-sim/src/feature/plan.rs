@@ -56,7 +56,8 @@ pub struct Plan {
     pub warnings: Vec<String>,
 }
 
-/// Finds the feature; `None` when job and program name none and the program has one run of cutting moves at most.
+/// Finds the feature; `None` when job and program name none and the program has one run of cutting moves at most,
+/// without leads that G41, G42 and G40 show.
 ///
 /// # Errors
 /// What is wrong with the program, its markers or the features of the job, and what is ambiguous.
@@ -69,7 +70,8 @@ pub fn plan(job: &Job, program: &Source) -> Result<Option<Plan>, Failure> {
     let survey = Survey::read(job, program)?;
     let regions = regions(job, program, &marked)?;
     let simple = regions.iter().all(|r| r.origin == Origin::Search) && job.which == Which::default();
-    if simple && survey.runs.len() <= 1 {
+    let leads = survey.runs.iter().any(|found| found.run.entry > 0 || found.run.exit > 0);
+    if simple && survey.runs.len() <= 1 && !leads {
         return Ok(None);
     }
     let region = chosen(job, &regions, &survey)?;

@@ -2,7 +2,8 @@
 //!
 //! The rules, in this order:
 //! 1. A run cut with another tool than the one asked for does not count.
-//! 2. Leads are split off ([`without_leads`]); a program with one run is left as it is.
+//! 2. Leads are split off ([`without_leads`]); the only run of a program is left as it is unless G41, G42 and G40 show
+//!    its leads.
 //! 3. The same path at another height is another level of the same contour; the same path at the same height again is a
 //!    spring pass, in whichever direction and from wherever it goes round.
 //! 4. A path that lies wholly on the free side of another one, no farther from it than a cutter's diameter, and that
@@ -112,7 +113,7 @@ pub struct Criteria {
 pub fn search(runs: &mut [Found], blocks: &[Block], criteria: &Criteria) -> u32 {
     let several = runs.len() > 1;
     for found in runs.iter_mut().filter(|f| counts(f, criteria)) {
-        if several {
+        if several || told(found) {
             split(found, blocks);
         }
     }
@@ -143,6 +144,11 @@ pub fn search(runs: &mut [Found], blocks: &[Block], criteria: &Criteria) -> u32 
         }
     }
     contours
+}
+
+/// Whether G41, G42 or G40 in the run say where its leads are.
+const fn told(found: &Found) -> bool {
+    found.run.entry > 0 || found.run.exit > 0
 }
 
 fn counts(found: &Found, criteria: &Criteria) -> bool {
