@@ -9,6 +9,7 @@ use truepath_core::job::{
     Buffer, Buffers, COMPACT_BYTES, Counts, ForceModel, Job, JobError, LARGEST_NUMBER, LawName, Pass, Stage, Stickout,
     Workspace, image,
 };
+use truepath_core::gcode::{Dialect, PointlessLength};
 use truepath_core::units::{Offset, Real};
 
 /// Checksums of the images, which hold on every machine and in every build.
@@ -189,6 +190,7 @@ fn a_contour_of_sixteen_thousand_lines_fits_into_eight_mebibytes() {
 fn a_job_survives_its_compact_form_and_nothing_else_is_one() {
     let mut largest = corner().job;
     largest.wall = None;
+    (largest.dialect, largest.decimal) = (Dialect::Mach, PointlessLength::Least);
     largest.tool.measured_diameter = Some(um(20_001));
     largest.tool.cantilever =
         Some(Stickout { length: Offset::from_nm(499_999_999), material: truepath_core::cut::ToolMaterial::Carbide });

@@ -82,7 +82,9 @@ impl<'t> Interpreter<'t> {
         }
         if execution.end.is_none() {
             execution.stop_compensation(sentence.line.span())?;
-            execution.warn_at(WarningKind::EndMissing, &sentence.line, sentence.line.span());
+            if !execution.repeats {
+                execution.warn_at(WarningKind::EndMissing, &sentence.line, sentence.line.span());
+            }
         } else if let Some(line) = reader.text_after_end() {
             execution.warn_at(WarningKind::TextAfterEnd, &line, line.span());
         }

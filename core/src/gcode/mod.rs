@@ -71,7 +71,7 @@ pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};
 pub use interpreter::{Interpreter, ProgramSummary};
 pub use lexical::{Decimal, Number, Token, Words, WrittenWord};
 pub use mode::{Coolant, FeedMode, PathControl, Plane, RetractLevel, Spindle, ToolLength, Units};
-pub use options::{CompensationBy, Options};
+pub use options::{CompensationBy, Options, PointlessLength};
 pub use parameter::{DeviceMemory, HostMemory, MachineParameters, Memory, MemoryBuffers, NamedSlot};
 pub use place::Axes;
 pub use shifts::{AXIS_LETTERS, NineAxes, Shifts};

@@ -19,6 +19,13 @@ impl Units {
             Self::Millimetres => 1_000_000,
         }
     }
+    /// Nanometres in the least increment of a control set to it: 0.001 mm, 0.0001 in.
+    pub const fn least_increment(self) -> i64 {
+        match self {
+            Self::Inches => 2_540,
+            Self::Millimetres => 1_000,
+        }
+    }
 }
 
 /// The spindle.

@@ -16,6 +16,20 @@ pub enum CompensationBy {
     Table,
 }
 
+/// What a length without a point is, `X10`.
+///
+/// It counts for axes, centres, radii, corners and every other length or angle of a block. F, S, P and L are always as
+/// written, and so are parameters and expressions; with [`Self::Least`] an argument of G65 that is a length needs a
+/// point, because controls differ in what they pass on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum PointlessLength {
+    /// In millimetres, inches or degrees, as a calculator reads it.
+    #[default]
+    Calculator,
+    /// In least increments of the control: 0.001 mm, 0.0001 in or 0.001°.
+    Least,
+}
+
 /// What the program does not say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options<'t> {
@@ -27,6 +41,8 @@ pub struct Options<'t> {
     pub skip_block_delete: bool,
     /// The control the program is written for.
     pub dialect: Dialect,
+    /// What a length without a point is.
+    pub decimal: PointlessLength,
     /// How many blocks may be executed beyond as many as the program has lines; loops that run longer are an error.
     pub block_limit: u32,
     /// By what G41 and G42 move the path aside.
@@ -42,7 +58,8 @@ pub struct Options<'t> {
 }
 
 impl Default for Options<'_> {
-    /// Millimetres, positions unknown, `/` blocks executed, LinuxCNC, a million blocks more than lines, no
+    /// Millimetres, positions unknown, `/` blocks executed, LinuxCNC, lengths without a point as a calculator
+    /// reads them, a million blocks more than lines, no
     /// machine, splines to 1 µm.
     fn default() -> Self {
         Self {
@@ -50,6 +67,7 @@ impl Default for Options<'_> {
             start: Axes::UNKNOWN,
             skip_block_delete: false,
             dialect: Dialect::Linuxcnc,
+            decimal: PointlessLength::Calculator,
             block_limit: 1_000_000,
             compensation: CompensationBy::Nothing,
             tools: &[],

@@ -40,6 +40,10 @@ pub enum WarningKind {
     },
     /// G41 or G42: the side is recorded, no offset computed.
     CompensationNotApplied,
+    /// A length without a point, for a control that may take it for least increments.
+    LengthWithoutPoint,
+    /// M99 in the main program.
+    Repeats,
 }
 
 impl WarningKind {
@@ -59,6 +63,8 @@ impl WarningKind {
             Self::BareG53 => "W011",
             Self::UnusedOffsetNumber { .. } => "W012",
             Self::CompensationNotApplied => "W013",
+            Self::LengthWithoutPoint => "W014",
+            Self::Repeats => "W015",
         }
     }
 }
@@ -131,6 +137,12 @@ impl fmt::Display for WarningKind {
             Self::BareG53 => f.write_str("G53 without axis words has no effect"),
             Self::UnusedOffsetNumber { letter } => {
                 write!(f, "{} is given without the code that uses it; it has no effect here", Letter(letter))
+            }
+            Self::LengthWithoutPoint => f.write_str(
+                "a length without a point is read in millimetres or inches; a control set to least increments moves 1000 (10,000 in inches) times less: write the point, or choose least increments",
+            ),
+            Self::Repeats => {
+                f.write_str("M99 in the main program repeats it without end; it is read once")
             }
             Self::CompensationNotApplied => f.write_str(
                 "G41/G42: the program is read as the path of the cutter's centre and tells the side of the wall; the D offset must be zero or wear only",

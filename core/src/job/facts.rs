@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::correct::Target;
 use crate::cut::ToolMaterial;
+use crate::gcode::{Dialect, PointlessLength};
 use crate::geometry::Side;
 use crate::probe::{Format, Layout};
 use crate::units::{Offset, Real};
@@ -15,6 +16,12 @@ use crate::units::{Offset, Real};
 /// The job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Job {
+    /// The control the program is written for.
+    #[serde(with = "super::wire")]
+    pub dialect: Dialect,
+    /// What a length without a point is in the program.
+    #[serde(with = "super::wire")]
+    pub decimal: PointlessLength,
     /// Side of travel of the finished wall; `None` leaves it to G41/G42 of the program.
     #[serde(with = "super::wire")]
     pub wall: Option<Side>,

@@ -155,7 +155,7 @@ impl Job {
             Compensation::Centre => CompensationBy::Nothing,
             Compensation::Radius => CompensationBy::Radius(Offset::from_nm(self.tool.diameter.nm() / 2)),
         };
-        Options { compensation, ..Options::default() }
+        Options { compensation, dialect: self.dialect, decimal: self.decimal, ..Options::default() }
     }
 }
 

@@ -8,6 +8,7 @@ use serde::ser::{Serialize, Serializer};
 use super::facts::Compensation;
 use crate::correct::Target;
 use crate::cut::{ToolMaterial, WallLaw};
+use crate::gcode::{Dialect, PointlessLength};
 use crate::geometry::Side;
 use crate::probe::Format;
 use crate::units::Real;
@@ -79,6 +80,10 @@ choice!(
     Format: 0 = Format::Linuxcnc, 1 = Format::Columns, 2 = Format::LinuxcncLog, 3 = Format::Grbl, 4 = Format::Inspection,
     5 = Format::Dprnt
 );
+choice!(
+    Dialect: 0 = Dialect::Linuxcnc, 1 = Dialect::Fanuc, 2 = Dialect::Haas, 3 = Dialect::Siemens, 4 = Dialect::Mach
+);
+choice!(PointlessLength: 0 = PointlessLength::Calculator, 1 = PointlessLength::Least);
 choice!(Compensation: 0 = Compensation::Centre, 1 = Compensation::Radius);
 choice!(Target: 0 = Target::Mean, 1 = Target::Tip, 2 = Target::Minimax);
 choice!(WallLaw: 0 = WallLaw::Mean, 1 = WallLaw::Helical);

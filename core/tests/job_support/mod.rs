@@ -67,6 +67,8 @@ pub fn corner() -> Part {
             setup: 1,
         },
         part: None,
+        dialect: truepath_core::gcode::Dialect::Linuxcnc,
+        decimal: truepath_core::gcode::PointlessLength::Calculator,
     };
     let program = include_bytes!("../../../host-sim/demo/corner/program.nc");
     Part { job, program, probe: include_bytes!("../data/corner-probe.txt") }

@@ -29,7 +29,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use truepath_core::gcode::{
-    Axes, CompensationBy, Dialect, HostMemory, Interpreter, Machine, Options, Program, ProgramSummary, Units,
+    Axes, CompensationBy, Dialect, HostMemory, Interpreter, Machine, Options, PointlessLength, Program, ProgramSummary,
+    Units,
 };
 use truepath_core::units::Offset;
 
@@ -54,6 +55,8 @@ pub struct CanonOptions {
     pub machine_units: Units,
     /// The control the program is written for.
     pub dialect: Dialect,
+    /// What a length without a point is.
+    pub decimal: PointlessLength,
     /// Whether blocks with `/` are skipped.
     pub skip_block_delete: bool,
     /// The folder with the files of subprograms; by default that of the program.
@@ -67,6 +70,7 @@ impl Default for CanonOptions {
             parameters: ParameterFile::default(),
             machine_units: Units::Millimetres,
             dialect: Dialect::Linuxcnc,
+            decimal: PointlessLength::Calculator,
             skip_block_delete: false,
             subprograms: None,
         }
@@ -86,6 +90,7 @@ pub fn write_canon(
         start: Axes::ORIGIN,
         skip_block_delete: options.skip_block_delete,
         dialect: options.dialect,
+        decimal: options.decimal,
         tools: options.tools.tools(),
         machine: Some(Machine { units: options.machine_units, probe_before_end: PROBE_BEFORE_END }),
         whole_splines: true,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use truepath_core::gcode::{Dialect, Units};
+use truepath_core::gcode::{Dialect, PointlessLength, Units};
 
 use super::{Terminal, print};
 use crate::canon::{CanonOptions, ParameterFile, ToolTable, write_canon};
@@ -32,6 +32,9 @@ pub(super) struct Arguments {
     /// The control the program is written for.
     #[arg(long, value_enum, default_value_t = Control::Linuxcnc)]
     dialect: Control,
+    /// What a length without a point is: millimetres and inches, or least increments (0.001 mm, 0.0001 in).
+    #[arg(long, value_enum, default_value_t = Pointless::Calculator)]
+    decimal: Pointless,
     /// Skip blocks that begin with `/`.
     #[arg(long, alias = "block-delete")]
     skip_block_delete: bool,
@@ -54,6 +57,21 @@ impl From<FileUnits> for Units {
         match units {
             FileUnits::Mm => Self::Millimetres,
             FileUnits::Inch => Self::Inches,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Pointless {
+    Calculator,
+    Least,
+}
+
+impl From<Pointless> for PointlessLength {
+    fn from(decimal: Pointless) -> Self {
+        match decimal {
+            Pointless::Calculator => Self::Calculator,
+            Pointless::Least => Self::Least,
         }
     }
 }
@@ -89,6 +107,7 @@ impl Arguments {
             parameters: parameters.map(|source| ParameterFile::parse(&source)).transpose()?.unwrap_or_default(),
             machine_units: self.machine_units.into(),
             dialect: self.dialect.into(),
+            decimal: self.decimal.into(),
             skip_block_delete: self.skip_block_delete,
             subprograms: self.subprograms.clone(),
         })

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::path::Path;
 
 use toml::de::DeTable;
+use truepath_core::gcode::{Dialect, PointlessLength};
 use truepath_core::geometry::Side;
 use truepath_core::job::{Cut, Force, ForceModel, Machine};
 use truepath_core::units::{Offset, Real};
@@ -18,6 +19,19 @@ use super::limits::Limits;
 use super::material::MATERIALS;
 use super::{Decimal, Job, Which};
 use crate::diagnostics::{InputError, Source};
+
+/// Names of the controls a program may be written for.
+const DIALECTS: [(&str, Dialect); 5] = [
+    ("linuxcnc", Dialect::Linuxcnc),
+    ("fanuc", Dialect::Fanuc),
+    ("haas", Dialect::Haas),
+    ("siemens", Dialect::Siemens),
+    ("mach", Dialect::Mach),
+];
+
+/// What a length without a point may be.
+const DECIMALS: [(&str, PointlessLength); 2] =
+    [("calculator", PointlessLength::Calculator), ("least", PointlessLength::Least)];
 
 /// Reads the whole job.
 pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
@@ -44,6 +58,8 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         ));
     }
     let wall = root.choice("wall", &[("left", Side::Left), ("right", Side::Right)])?;
+    let dialect = root.choice("dialect", &DIALECTS)?.unwrap_or_default();
+    let decimal = root.choice("decimal", &DECIMALS)?.unwrap_or_default();
     let tool_section = root.required_section("tool", "diameter_mm, teeth and helix_deg")?;
     let tool = tool(&source, &tool_section)?;
     let features = features(&source, &root, tool.diameter)?;
@@ -62,7 +78,19 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     drop(root);
     Ok(Job {
         program,
-        numbers: truepath_core::job::Job { wall, allowance, tool, cut, force, machine, probe, correct, part: None },
+        numbers: truepath_core::job::Job {
+            dialect,
+            decimal,
+            wall,
+            allowance,
+            tool,
+            cut,
+            force,
+            machine,
+            probe,
+            correct,
+            part: None,
+        },
         backlash,
         tolerance: writing.tolerance,
         max_arc_radius: writing.max_arc_radius,

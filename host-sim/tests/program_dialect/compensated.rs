@@ -11,6 +11,7 @@ const DEFAULT: Options<'static> = Options {
     start: truepath_core::gcode::Axes::UNKNOWN,
     skip_block_delete: false,
     dialect: truepath_core::gcode::Dialect::Linuxcnc,
+    decimal: truepath_core::gcode::PointlessLength::Calculator,
     block_limit: 1_000_000,
     compensation: CompensationBy::Nothing,
     tools: &[],

@@ -57,6 +57,11 @@ pub enum SettingError {
     },
     /// G53 in G91.
     MachineMoveIncremental,
+    /// An argument of G65 that is a length without a point, where such lengths are in least increments.
+    ArgumentWithoutPoint {
+        /// Its letter.
+        letter: u8,
+    },
     /// M72 without M70 or M73.
     NothingSaved,
 }
@@ -76,6 +81,7 @@ impl SettingError {
             Self::FeedPerRevolution => "G068",
             Self::PolarMixed { .. } => "G069",
             Self::MachineMoveIncremental => "G049",
+            Self::ArgumentWithoutPoint { .. } => "G116",
             Self::NothingSaved => "G048",
         }
     }
@@ -117,6 +123,11 @@ impl fmt::Display for SettingError {
             Self::MachineMoveIncremental => {
                 f.write_str("a move in machine coordinates (G53) cannot be incremental; write G90 before it")
             }
+            Self::ArgumentWithoutPoint { letter } => write!(
+                f,
+                "{} is passed to a macro without a point, and controls set to least increments differ in what it means; write the point",
+                Letter(letter)
+            ),
             Self::NothingSaved => {
                 f.write_str("M72 restores modes, but M70 or M73 has not saved any here; add M70 before it")
             }

@@ -2,7 +2,10 @@
 
 use super::super::block::BlockWords;
 use super::super::shifts::sin_cos_degrees;
-use super::super::{AXIS_LETTERS, Axes, Event, GcodeError, GcodeErrorKind, SettingError, Units, WarningKind, Word};
+use super::super::{
+    AXIS_LETTERS, Axes, Decimal, Event, GcodeError, GcodeErrorKind, Number, PointlessLength, SettingError, Units,
+    WarningKind, Word,
+};
 use super::Execution;
 use crate::units::{Offset, Position, Real, atan2, hypot_nm};
 
@@ -40,10 +43,29 @@ where
         if turns(axis) { self.scaled(word, Units::Millimetres) } else { self.length(word) }
     }
 
-    fn scaled(&self, word: Word, units: Units) -> Result<Offset, GcodeError> {
-        match word.value.nanometres(units) {
+    fn scaled(&mut self, word: Word, units: Units) -> Result<Offset, GcodeError> {
+        let nm = match word.value {
+            Number::Exact(number) if self.reads_points && !word.has_point(self.text) => {
+                self.pointless(word, number, units)
+            }
+            value => value.nanometres(units),
+        };
+        match nm {
             Some(nm) if nm.unsigned_abs() <= FARTHEST_NM => Ok(Offset::from_nm(nm)),
             _ => Err(self.error(GcodeErrorKind::OutOfRange { letter: word.letter }, word.span)),
+        }
+    }
+
+    /// The nanometres of a number without a point.
+    fn pointless(&mut self, word: Word, number: Decimal, units: Units) -> Option<i64> {
+        match self.options.decimal {
+            PointlessLength::Least => i64::try_from(number.times(units.least_increment())).ok(),
+            PointlessLength::Calculator => {
+                if number.mantissa() != 0 {
+                    self.warn(WarningKind::LengthWithoutPoint, word.span);
+                }
+                i64::try_from(number.times(units.nanometres())).ok()
+            }
         }
     }
 

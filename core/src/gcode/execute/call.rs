@@ -4,7 +4,9 @@ use super::super::block::BlockWords;
 use super::super::code::Group;
 use super::super::flow::{Next, Target};
 use super::super::mcode::MCodes;
-use super::super::{CycleError, Dialect, Event, GcodeError, GcodeErrorKind, SettingError, Word};
+use super::super::{
+    CycleError, Dialect, Event, GcodeError, GcodeErrorKind, Number, PointlessLength, SettingError, WarningKind, Word,
+};
 use super::Execution;
 
 /// Repetitions of a call in one block.
@@ -15,6 +17,7 @@ where
     S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
 {
     /// G65: every other word of the block is an argument.
+    /// Where numbers without a point are in least increments, a length among the arguments must have one.
     pub(super) fn macro_call(&self, block: &BlockWords<'_>) -> Result<Option<Next>, GcodeError> {
         let Some((code, span)) = block.code(Group::OneShot).filter(|(code, _)| code.tenths() == 650) else {
             return Ok(None);
@@ -22,17 +25,30 @@ where
         let Some(word) = block.word(b'P') else {
             return Err(self.error(CycleError::WordMissing { code, letter: b'P' }.into(), span));
         };
+        if self.options.decimal == PointlessLength::Least {
+            let open = |word: &Word| match word.value {
+                Number::Exact(number) => number.mantissa() != 0 && !word.has_point(self.text),
+                Number::Computed(_) => false,
+            };
+            if let Some(word) = b"ABCIJKQRUVWXYZ".iter().find_map(|&letter| block.word(letter).filter(open)) {
+                return Err(self.error(SettingError::ArgumentWithoutPoint { letter: word.letter }.into(), word.span));
+            }
+        }
         let times = block.word(b'L').map(|word| self.between(word, 1, REPETITIONS)).transpose()?.unwrap_or(1);
         let target = Target::Program(self.whole(word)?);
         Ok(Some(Next::Call { target, times, arguments: true, span }))
     }
 
     /// M97, M98, M99.
-    pub(super) fn subprogram(&self, block: &mut BlockWords<'_>, m: &MCodes) -> Result<Option<Next>, GcodeError> {
+    pub(super) fn subprogram(&mut self, block: &mut BlockWords<'_>, m: &MCodes) -> Result<Option<Next>, GcodeError> {
         let Some(code) = m.call else { return Ok(None) };
         let (p, l) = (block.use_word(b'P'), block.use_word(b'L'));
         if code.number == 99 {
             let to = p.map(|word| self.whole(word)).transpose()?;
+            if to.is_none() && self.source.depth == 0 {
+                self.repeats = true;
+                self.warn(WarningKind::Repeats, code.span);
+            }
             return Ok(Some(Next::Return { to, span: code.span }));
         }
         let Some(word) = p else {

@@ -45,8 +45,8 @@ use super::corner::CornerStage;
 use super::flow::{Next, Sentence};
 use super::parameter::Surroundings;
 use super::{
-    Axes, Canon, Event, GcodeError, GcodeErrorKind, Line, Memory, Options, Source, Span, Token, WarningKind, Warnings,
-    Words,
+    Axes, Canon, Event, GcodeError, GcodeErrorKind, Line, Memory, Options, PointlessLength, Source, Span, Token,
+    WarningKind, Warnings, Words,
 };
 
 use curve::SplineMemory;
@@ -63,6 +63,10 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     pub(super) modal: Modal,
     pub(super) at: Axes,
     pub(super) units_given: bool,
+    /// Whether it matters that a length has no point.
+    reads_points: bool,
+    /// Whether M99 has ended the main program.
+    pub(super) repeats: bool,
     pub(super) program_number: Option<u32>,
     pub(super) end: Option<u32>,
     pub(super) warnings: Warnings,
@@ -110,6 +114,8 @@ where
             modal: Modal::initial(options.units),
             at: options.start,
             units_given: false,
+            reads_points: options.dialect.has_macro_b() || options.decimal == PointlessLength::Least,
+            repeats: false,
             program_number: None,
             end: None,
             warnings,

@@ -8,7 +8,8 @@ use super::super::code::Group;
 use super::super::flow::Next;
 use super::super::mcode::MCodes;
 use super::super::{
-    Canon, CornerError, Event, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel, SettingError, WarningKind, Word,
+    Canon, CornerError, Event, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel, SettingError, WarningKind,
+    Word,
 };
 use super::Execution;
 
@@ -19,6 +20,10 @@ where
     /// Executes a block; tells where the program goes on.
     pub(super) fn execute(&mut self, block: &mut BlockWords<'_>) -> Result<Next, GcodeError> {
         if let Some((second, span)) = block.program {
+            // A subprogram begins with its own number.
+            if self.source.depth > 0 {
+                return Ok(Next::Continue);
+            }
             if let Some(first) = self.program_number {
                 return Err(self.error(GcodeErrorKind::SecondProgram { first, second }, span));
             }

@@ -13,6 +13,13 @@ pub struct Word {
     pub span: Span,
 }
 
+impl Word {
+    /// Whether a point is written in its number; `text` is the file it stands in.
+    pub fn has_point(&self, text: &[u8]) -> bool {
+        self.span.of(text).contains(&b'.')
+    }
+}
+
 /// Words of a block; one more is an error.
 pub(in super::super) const WORDS: usize = 64;
 
