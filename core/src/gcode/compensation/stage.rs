@@ -71,6 +71,13 @@ impl<'p> CompensationStage<'p> {
         Ok(())
     }
 
+    /// Gives a program place the plane coordinates at which G40 has left the cutter, where no move came since.
+    pub(in crate::gcode) fn name_place_left(&self, at: &mut Axes) {
+        if let Some(beside) = self.beside {
+            put(at, beside, self.plane);
+        }
+    }
+
     /// Takes a step; what may go on afterwards is [`Self::next`].
     ///
     /// # Errors

@@ -30,6 +30,11 @@ impl<S> MachineParameters for Execution<'_, '_, '_, S> {
         {
             return Some(self.coordinate(axis));
         }
+        if let Some([letter]) = name.strip_prefix(b"abs_")
+            && let Some(axis) = b"xyzabcuvw".iter().position(|l| l == letter)
+        {
+            return Some(self.machine_coordinate(axis));
+        }
         let modal = &self.modal;
         let inches = modal.units == Units::Inches;
         Some(match name {
@@ -110,6 +115,12 @@ impl<S> Execution<'_, '_, '_, S> {
     fn spindle_offset(&self, axis: usize) -> f64 {
         let offset = self.spindle_tool().and_then(|tool| tool.offset.get(axis).copied()).unwrap_or(0);
         Number::of_nanometres(offset, if turns(axis) { Units::Millimetres } else { self.machine_units() })
+    }
+
+    /// The machine coordinate of an axis in the unit of the program.
+    fn machine_coordinate(&self, axis: usize) -> f64 {
+        let value = self.machine_axes().get(axis).copied().flatten().unwrap_or(0);
+        Number::of_nanometres(value, if turns(axis) { Units::Millimetres } else { self.modal.units })
     }
 
     /// The program coordinate of an axis in the unit of the program.

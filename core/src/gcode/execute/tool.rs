@@ -47,6 +47,9 @@ where
         if self.options.machine.is_none() {
             // Many machines lift to change the tool, and the new one has another length.
             self.at.z = None;
+        } else if !self.modal.compensated {
+            // LinuxCNC asks the machine where it stands after a change, which is beside the path when G40 came before.
+            self.compensation.name_place_left(&mut self.at);
         }
         self.emit(Canon::ChangeTool(self.modal.tool), code.span)
     }
