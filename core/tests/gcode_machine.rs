@@ -148,3 +148,26 @@ fn polar_words_name_places_about_the_origin() {
 fn saved_modes_come_back_when_the_subroutine_returns() {
     expect("f100\no1 sub\nm73\ng91\no1 endsub\no1 call\ng1 x1\nx1\nm2", &["F 1.0000 0.0000 0.0000"; 2]);
 }
+
+#[test]
+fn a_tool_change_after_compensation_names_the_place_where_the_cutter_was_left() {
+    expect(
+        "g20 f10\ng0 x0 y0 z0\ng1 y-10\ng41.1 d2 g1 x0 y0\nx10\ng40\nt1 m6\ng0 z20\nm2",
+        &[
+            "T 0.0000 0.0000 0.0000",
+            "F 0.0000 -10.0000 0.0000",
+            "F -1.0000 0.0000 0.0000",
+            "A 0.0000 1.0000 0.0000",
+            "F 10.0000 1.0000 0.0000",
+            "T 10.0000 1.0000 20.0000",
+        ],
+    );
+}
+
+#[test]
+fn machine_coordinates_are_parameters() {
+    expect(
+        "g20\ng0 x0 y0 z0\ng10 l2 p1 x5 y6 z7\ng0 x1 y2 z3\ng0 x#<_abs_x> y#<_abs_y> z#<_abs_z>\nm2",
+        &["T 0.0000 0.0000 0.0000", "T 1.0000 2.0000 3.0000", "T 6.0000 8.0000 10.0000"],
+    );
+}
