@@ -141,7 +141,7 @@ const TABLE: &[(&[u8], &str)] = &[
         b"S\nG1 X34000000",
         "line 2, column 4: G030: X leads farther than 100 m from the origin; is a point missing, or the unit wrong?",
     ),
-    (b"S\nG1 X1 F2500000", "line 2, column 7: G030: the number of F is above 1000000; is a point missing?"),
+    (b"S\nG1 X1 F2500000000", "line 2, column 7: G030: the number of F is above 1000000000; is a point missing?"),
     (b"T99999999999", "line 1, column 1: G030: the number of T is too large; the limit is 4294967295"),
     (
         b"O1\nG21\nO2\nM30",

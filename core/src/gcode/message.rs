@@ -144,7 +144,7 @@ impl GcodeErrorKind {
                 )
             }
             Self::OutOfRange { letter: letter @ (b'F' | b'S') } => {
-                write!(f, "the number of {} is above 1000000; is a point missing?", Letter(letter))
+                write!(f, "the number of {} is above 1000000000; is a point missing?", Letter(letter))
             }
             Self::OutOfRange { letter } => {
                 write!(f, "the number of {} is too large; the limit is 4294967295", Letter(letter))

@@ -14,18 +14,21 @@ pub(super) enum Remark {
 }
 
 impl Remark {
-    /// Of the body of a comment in parentheses.
-    pub(super) fn of(body: &[u8], parameters: &dyn MachineParameters) -> Self {
+    /// Of the body of a comment in parentheses; `None` for a DEBUG comment while `#5599` is 0.
+    pub(super) fn of(body: &[u8], parameters: &dyn MachineParameters) -> Option<Self> {
         let comment = Comment::of(body);
+        if comment.kind == CommentKind::Debug && parameters.memory().given(5599) == Some(0.0) {
+            return None;
+        }
         let mut text = String::new();
         // Writing to memory does not fail.
         let _ = comment.write(parameters, &mut text);
-        match comment.kind {
+        Some(match comment.kind {
             CommentKind::Message | CommentKind::Debug => Self::Call("MESSAGE", text),
             CommentKind::Log => Self::Call("LOG", text),
             CommentKind::Print => Self::Bare(text),
             _ => Self::Call("COMMENT", String::from_utf8_lossy(body).trim_start().to_owned()),
-        }
+        })
     }
 }
 
@@ -52,7 +55,17 @@ mod tests {
         let mut buffers = Box::new(HostMemory::new());
         let mut memory = buffers.lend();
         memory.set(31, 2.25).expect("room");
-        Remark::of(body.as_bytes(), &Machine(memory))
+        Remark::of(body.as_bytes(), &Machine(memory)).expect("shown")
+    }
+
+    #[test]
+    fn debug_comments_are_silent_while_their_switch_is_off() {
+        let mut buffers = Box::new(HostMemory::new());
+        let mut memory = buffers.lend();
+        memory.set(5599, 0.0).expect("room");
+        let machine = Machine(memory);
+        assert_eq!(Remark::of(b"DEBUG, x", &machine), None);
+        assert!(Remark::of(b"MSG, x", &machine).is_some());
     }
 
     #[test]

@@ -136,14 +136,16 @@ impl<'a, W: Write> Printer<'a, W> {
             self.lines.set_label(source.number.and_then(|_| label(event.text, source)));
             // Motion ends without a step of its own: perhaps in this block, perhaps in one before.
             let still = event.modal.motion.is_none();
-            self.cancels = still && (self.moving || cancels_motion(event.text, source));
+            self.cancels = still && (self.moving || has_g(event.text, source, &[800]));
             self.moving = !still;
         }
         match event.canon {
             Canon::Comment(body) => self.comment(event, body),
             Canon::ProgramNumber(_) => self.named = true,
             canon => {
-                let rank = rank(&canon);
+                // M72 brings the unit back before the feed.
+                let restored = matches!(canon, Canon::Units(_)) && !has_g(event.text, source, &[200, 210, 700, 710]);
+                let rank = if restored { 1 } else { rank(&canon) };
                 if rank < 20 {
                     self.steps.push(Step { canon, modal: *event.modal, rank });
                 } else {
@@ -158,7 +160,7 @@ impl<'a, W: Write> Printer<'a, W> {
     fn comment(&mut self, event: &Event<'_>, body: Span) {
         // What follows a semicolon is not shown by the reference, and of several comments the last one.
         if event.text.get(body.start.wrapping_sub(1)) != Some(&b';') {
-            self.remark = Some(Remark::of(body.of(event.text), event.parameters));
+            self.remark = Remark::of(body.of(event.text), event.parameters);
         }
     }
 
@@ -254,11 +256,14 @@ fn scaled(value: f64, unit: i64) -> i64 {
     (value * unit as f64).round() as i64
 }
 
-/// Whether G80 stands in a block.
-fn cancels_motion(text: &[u8], source: &Source) -> bool {
+/// Whether one of these G codes (in tenths) stands in a block.
+fn has_g(text: &[u8], source: &Source, codes: &[i64]) -> bool {
     let line = Line { number: source.line, start: source.block.start, text: source.block.of(text) };
-    Words::new(line).map_while(Result::ok).any(|token| {
-        matches!(token, Token::Word(WrittenWord { letter: b'G', value: Some(value), .. }) if value.exactly_times(10) == Some(800))
+    Words::new(line).map_while(Result::ok).any(|token| match token {
+        Token::Word(WrittenWord { letter: b'G', value: Some(value), .. }) => {
+            value.exactly_times(10).is_some_and(|tenths| codes.contains(&tenths))
+        }
+        _ => false,
     })
 }
 

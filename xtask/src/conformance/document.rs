@@ -109,7 +109,10 @@ pub fn document(verdicts: &[Verdict], version: &str) -> String {
         let (we, both) = (count(Class::OnlyWe), count(Class::BothSameLine));
         let _ = writeln!(out, "| {} | {} | {same} | {we} | {both} |", rule.name(), under.len());
     }
-    out += "\n## Not the same\n\n";
+    out += "\n## Not the same\n\nKnown reasons. Run without a machine, the reference reads its place back after M6: where G43 stands in \
+            the same block the place keeps its old name, and after a G40 without a move the path of the cutter's centre counts \
+            as programmed. It does not find the tool that M61 names. A move that waits for its corner is told in the unit that \
+            comes after it.\n\n";
     for class in [Class::Differs, Class::OnlyThey, Class::OnlyWe, Class::BothOtherLine, Class::WeCrash] {
         let here: Vec<&Verdict> = verdicts.iter().filter(|v| v.class == class).collect();
         if here.is_empty() {

@@ -67,6 +67,8 @@ pub enum CycleError {
     },
     /// A probing move without length.
     ProbeTooShort,
+    /// A canned cycle in G93: its moves would each take the time that F gives.
+    InverseTime,
 }
 
 impl CycleError {
@@ -85,6 +87,7 @@ impl CycleError {
             Self::SplinePoints { .. } => "G099",
             Self::SplineTooLong { .. } => "G100",
             Self::ProbeTooShort => "G101",
+            Self::InverseTime => "G102",
         }
     }
 }
@@ -140,6 +143,9 @@ impl fmt::Display for CycleError {
             }
             Self::SplineTooLong { limit } => {
                 write!(f, "the spline has more than {limit} control points; end it with G5.3 and begin another")
+            }
+            Self::InverseTime => {
+                f.write_str("canned cycles have no time of their own in G93; select G94 or G95 before")
             }
             Self::ProbeTooShort => {
                 f.write_str("the probing move has no length; give a target away from the present place")

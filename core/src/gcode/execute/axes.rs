@@ -3,10 +3,11 @@
 use super::super::block::BlockWords;
 use super::super::shifts::sin_cos_degrees;
 use super::super::{
-    AXIS_LETTERS, Axes, Decimal, Event, GcodeError, GcodeErrorKind, Number, PointlessLength, SettingError, Units,
-    WarningKind, Word,
+    AXIS_LETTERS, Axes, Decimal, Event, GcodeError, GcodeErrorKind, Number, Plane, PointlessLength, SettingError,
+    Units, WarningKind, Word,
 };
 use super::Execution;
+use crate::geometry::Point;
 use crate::units::{Offset, Position, Real, atan2, hypot_nm};
 
 /// The farthest coordinate and the longest length word, 100 m; for angles 100,000 degrees.
@@ -119,8 +120,9 @@ where
     /// Uses the axis words: where they lead. Axes that turn, U, V and W are moved at once.
     pub(super) fn destination(&mut self, block: &mut BlockWords<'_>) -> Result<Axes, GcodeError> {
         let mut to = self.at;
-        if block.has_unused(b"@^") {
-            self.polar(block, &mut to)?;
+        if let Some(polar) = self.polar_words(block)? {
+            let place = self.polar_place(polar, self.at)?;
+            (to.x, to.y) = (Some(place.x), Some(place.y));
         }
         for axis in 0..3 {
             let letter = self.letter(axis);
@@ -151,42 +153,53 @@ where
         Ok(())
     }
 
-    /// `@` (distance from the origin) and `^` (angle) in X and Y.
-    fn polar(&mut self, block: &mut BlockWords<'_>, to: &mut Axes) -> Result<(), GcodeError> {
+    /// `@` (distance from the origin) and `^` (angle) in X and Y, used; only in G17.
+    pub(super) fn polar_words(&mut self, block: &mut BlockWords<'_>) -> Result<Option<Polar>, GcodeError> {
+        if self.modal.plane != Plane::Xy || !block.has_unused(b"@^") {
+            return Ok(None);
+        }
         let (radius, angle) = (block.use_word(b'@'), block.use_word(b'^'));
         for letter in [b'X', b'Y'] {
             if let Some(word) = block.word(letter) {
                 return Err(self.error(SettingError::PolarMixed { letter }.into(), word.span));
             }
         }
-        let at = self.at.point();
+        let radius = radius.map(|word| self.length(word)).transpose()?;
+        let angle = angle.map(|word| self.scaled(word, Units::Millimetres)).transpose()?;
+        Ok(Some(Polar { radius, angle: angle.map(Offset::nm) }))
+    }
+
+    /// Where polar words lead from a place: what is not given stays, in G91 what is given is added.
+    pub(super) fn polar_place(&self, polar: Polar, at: Axes) -> Result<Point, GcodeError> {
         let absolute = self.modal.absolute;
-        let whole = absolute && radius.is_some() && angle.is_some();
-        let (far, direction) = match at {
-            _ if whole => (Offset::ZERO, 0),
-            Some(at) => {
+        let (far, direction) = match (polar, at.point()) {
+            (Polar { radius: Some(radius), angle: Some(angle) }, _) if absolute => (radius, angle),
+            (Polar { radius, angle }, Some(at)) => {
                 let (x, y) = (at.x - Position::ZERO, at.y - Position::ZERO);
                 let radians = atan2(y.nm(), x.nm());
-                (hypot_nm(x, y), Offset::from_nm(180_000_000).scaled(radians.over(Real::PI)).nm())
+                let far = hypot_nm(x, y);
+                let direction = Offset::from_nm(180_000_000).scaled(radians.over(Real::PI)).nm();
+                let base = |value: i64| if absolute { 0 } else { value };
+                (
+                    radius.map_or(far, |r| Offset::from_nm(base(far.nm())) + r),
+                    angle.map_or(direction, |a| base(direction).saturating_add(a)),
+                )
             }
-            None => {
-                let axis = if self.at.x.is_none() { b'X' } else { b'Y' };
+            (_, None) => {
+                let axis = if at.x.is_none() { b'X' } else { b'Y' };
                 return Err(self.error(GcodeErrorKind::PositionUnknown { axis }, self.block_span()));
             }
         };
-        let far = match radius {
-            Some(word) if absolute => self.length(word)?,
-            Some(word) => far + self.length(word)?,
-            None => far,
-        };
-        let direction = match angle {
-            Some(word) if absolute => self.scaled(word, Units::Millimetres)?.nm(),
-            Some(word) => direction.saturating_add(self.scaled(word, Units::Millimetres)?.nm()),
-            None => direction,
-        };
         let (sine, cosine) = sin_cos_degrees(direction);
-        to.x = Some(Position::ZERO + far.scaled(cosine));
-        to.y = Some(Position::ZERO + far.scaled(sine));
-        Ok(())
+        Ok(Point { x: Position::ZERO + far.scaled(cosine), y: Position::ZERO + far.scaled(sine) })
     }
+}
+
+/// Polar words of a block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Polar {
+    /// `@`.
+    radius: Option<Offset>,
+    /// `^`, millionths of a degree.
+    angle: Option<i64>,
 }

@@ -36,7 +36,7 @@ where
             Units::Inches => Curve::arc_within(start, end, centre, counter_clockwise, INCH_TOLERANCE),
         };
         let curve = arc.map_err(|e| self.error(e.into(), span))?;
-        self.check_feed();
+        self.check_feed()?;
         self.check_revolutions()?;
         self.at = to;
         let canon = if plane == Plane::Xy {

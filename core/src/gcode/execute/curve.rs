@@ -136,7 +136,7 @@ where
     }
 
     fn draw(&mut self, points: &[ControlPoint], order: usize, to: Axes, span: Span) -> Result<(), GcodeError> {
-        self.check_feed();
+        self.check_feed()?;
         self.check_revolutions()?;
         let from = self.at;
         if self.options.whole_splines {

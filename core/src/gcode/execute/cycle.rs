@@ -8,7 +8,8 @@
 
 use super::super::block::BlockWords;
 use super::super::{
-    Axes, Canon, CycleError, Event, GCode, GcodeError, GcodeErrorKind, Number, Plane, RetractLevel, Span, Spindle,
+    Axes, Canon, CycleError, Event, FeedMode, GCode, GcodeError, GcodeErrorKind, Number, Plane, RetractLevel, Span,
+    Spindle,
 };
 use super::Execution;
 use super::cycle_words::CycleMemory;
@@ -60,15 +61,22 @@ where
     /// Executes the cycle that is on with the words of this block.
     pub(super) fn cycle(&mut self, block: &mut BlockWords<'_>, code: GCode) -> Result<(), GcodeError> {
         let span = self.block_span();
+        if self.modal.feed_mode == FeedMode::InverseTime {
+            return Err(self.error(CycleError::InverseTime.into(), span));
+        }
         let memory = self.cycle_words(block, code, span)?;
         self.cycle = Some(memory);
         let plane = self.modal.plane;
         let [first, second, third] = plane.axes();
         let repetitions = self.repetitions(block)?;
+        let polar = self.polar_words(block)?;
         let by = self.axis_steps(block, [first, second])?;
         let before = self.at.get(third);
         let incremental = !self.modal.absolute;
-        let clearance = match (incremental, before) {
+        // The level before the first of a series of cycles is that of all of them.
+        let initial = self.initial_level.or(before);
+        self.initial_level = initial;
+        let clearance = match (incremental, initial) {
             (false, _) => Position::from_nm(memory.clearance),
             (true, Some(height)) => Position::from_nm(height.nm().saturating_add(memory.clearance)),
             (true, None) => {
@@ -81,15 +89,17 @@ where
         if bottom > clearance {
             return Err(self.error(CycleError::BelowBottom { clearance, bottom }.into(), span));
         }
-        self.check_feed();
-        let raised = before.is_some_and(|height| height < clearance);
+        self.check_feed()?;
+        let raised = initial.is_some_and(|height| height < clearance);
         if raised {
             let mut up = self.at;
             up.set(third, Some(clearance));
             self.traverse_to(up, span)?;
         }
-        let old = if raised { clearance } else { before.unwrap_or(clearance) };
-        let retract = if self.modal.retract == RetractLevel::Before { old } else { clearance };
+        let back = self.modal.retract == RetractLevel::Before;
+        let retract = initial.filter(|_| back && !raised).unwrap_or(clearance);
+        // The height of the way to the first hole.
+        let way = if back { retract } else { before.map_or(clearance, |height| height.max(clearance)) };
         for repetition in 0..repetitions {
             let mut place = [self.at.get(first), self.at.get(second)];
             for (at, by) in place.iter_mut().zip(by) {
@@ -99,8 +109,15 @@ where
                     None => *at,
                 };
             }
+            if let Some(polar) = polar {
+                let there = self.polar_place(polar, self.at)?;
+                place = [Some(there.x), Some(there.y)];
+            }
             let hole = Hole { plane, place, clearance, bottom, retract };
-            let height = if repetition == 0 && before.is_none() { None } else { self.at.get(third) };
+            let height = match (repetition, before) {
+                (0, before) => before.map(|_| if raised { clearance } else { way }),
+                _ => self.at.get(third),
+            };
             let mut over = hole.at(clearance);
             over.set(third, height);
             self.traverse_to(over, span)?;

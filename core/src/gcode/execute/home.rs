@@ -86,7 +86,7 @@ where
             return Err(self.error(SettingError::MachineMoveIncremental.into(), span));
         }
         if !rapid {
-            self.check_feed();
+            self.check_feed()?;
         }
         let mut machine: NineAxes = [0; 9];
         let mut moves = [false; 9];

@@ -54,6 +54,8 @@ use cycle_words::CycleMemory;
 use saved::{LEVELS, SavedModes};
 use tool::CHANGED_TOOLS;
 
+use crate::units::Position;
+
 pub use machine::{Machine, Tool};
 pub use modal::{Modal, Motion};
 
@@ -81,6 +83,12 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     /// Whether the present block gives F.
     feed_given: bool,
     cycle: Option<CycleMemory>,
+    /// The line that is being read.
+    reading: u32,
+    /// Whether mist and flood are on.
+    coolant: (bool, bool),
+    /// Where the third axis stood before the first of the cycles that follow each other.
+    initial_level: Option<Position>,
     splines: SplineMemory,
     changed_tools: heapless::Vec<Tool, CHANGED_TOOLS>,
     saved: [Option<SavedModes>; LEVELS],
@@ -91,6 +99,9 @@ pub(super) struct Execution<'p, 's, 'm, S> {
 impl<S> Surroundings for Execution<'_, '_, '_, S> {
     fn change<R>(&mut self, how: impl FnOnce(&mut Memory<'_>) -> R) -> R {
         how(self.memory)
+    }
+    fn reading(&mut self, line: u32) {
+        self.reading = line;
     }
     fn level_ended(&mut self, level: u8) {
         self.modes_of_level(level);
@@ -128,6 +139,9 @@ where
             sink: Some(sink),
             feed_given: false,
             cycle: None,
+            reading: 1,
+            coolant: (false, false),
+            initial_level: None,
             splines: SplineMemory::default(),
             changed_tools: heapless::Vec::new(),
             saved: [None; LEVELS],

@@ -2,6 +2,7 @@
 
 use super::super::block::BlockWords;
 use super::super::code::Group;
+use super::super::compensation::CompensationError;
 use super::super::{
     Axes, Canon, CycleError, Event, GCode, GcodeError, GcodeErrorKind, Motion, SettingError, Span, WarningKind,
 };
@@ -39,7 +40,7 @@ where
                 if motion == Motion::Traverse {
                     return self.traverse_to(to, span);
                 }
-                self.check_feed();
+                self.check_feed()?;
                 self.check_revolutions()?;
                 match self.corner_word(block)? {
                     Some((corner, word)) => self.feed_to_corner(to, corner, word),
@@ -70,6 +71,10 @@ where
 
     /// The codes for one block; `true` when nothing more moves in it.
     fn one_shot(&mut self, block: &mut BlockWords<'_>, code: GCode, span: Span) -> Result<bool, GcodeError> {
+        let machine = matches!(code.tenths(), 280..=301) || (code.tenths() == 530 && Self::names_axes(block));
+        if machine && self.modal.compensated {
+            return Err(self.error(CompensationError::Forbidden.into(), span));
+        }
         match code.tenths() {
             100 => self.set_table(block, span)?,
             280 | 300 => self.reference(block, code.tenths() == 300, span)?,
@@ -132,6 +137,9 @@ where
             }
             self.splines.interrupted();
             self.cycle = None;
+        }
+        if !matches!(motion, Some(Motion::Cycle(_))) {
+            self.initial_level = None;
         }
         self.modal.motion = motion;
         Ok(())

@@ -174,7 +174,9 @@ where
         let system = u16::try_from(self.between(word, 0, 9)?).unwrap_or(0);
         let system = if system == 0 { self.modal.work_offset } else { system };
         let active = system == self.modal.work_offset;
-        let rotation = block.use_word(b'R').filter(|_| !from_here).map(|word| self.axis_value(word, 3)).transpose()?;
+        // G10 L20 has no R: the word is left over.
+        let word = if from_here { None } else { block.use_word(b'R') };
+        let rotation = word.map(|word| self.axis_value(word, 3)).transpose()?;
         let words = self.all_axes(block)?;
         let first = work_place(system);
         let mut shifts = self.modal.shifts;

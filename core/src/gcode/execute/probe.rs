@@ -23,10 +23,10 @@ where
         let span = self.block_span();
         let (from, auxiliary) = (self.at, self.modal.auxiliary);
         let to = self.destination(block)?;
-        if from == to && auxiliary == self.modal.auxiliary && to != Axes::UNKNOWN {
+        if must && from == to && auxiliary == self.modal.auxiliary && to != Axes::UNKNOWN {
             return Err(self.error(CycleError::ProbeTooShort.into(), span));
         }
-        self.check_feed();
+        self.check_feed()?;
         let code = if to == from { auxiliary } else { self.modal.auxiliary };
         self.modal.auxiliary = code;
         self.emit(Canon::Probe { from, to, away, must }, span)?;

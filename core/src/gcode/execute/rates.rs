@@ -3,13 +3,13 @@
 use super::super::block::BlockWords;
 use super::super::code::Group;
 use super::super::{
-    Canon, CycleError, Event, FeedMode, GcodeError, GcodeErrorKind, SettingError, Units, WarningKind, Word,
+    Canon, CycleError, Event, FeedMode, GCode, GcodeError, GcodeErrorKind, SettingError, Units, WarningKind, Word,
 };
 use super::Execution;
 use crate::units::Real;
 
 /// The largest F (mm/min) and S (rpm).
-const LARGEST_RATE: i32 = 1_000_000;
+const LARGEST_RATE: i32 = 1_000_000_000;
 
 impl<S> Execution<'_, '_, '_, S>
 where
@@ -89,12 +89,18 @@ where
         Ok(())
     }
 
-    /// Warns of a cutting move without a feed. In G93 every block with a cutting move needs its own F.
-    pub(super) fn check_feed(&mut self) {
-        let stale = self.modal.feed_mode == FeedMode::InverseTime && !self.feed_given;
-        if stale || self.modal.feed.is_none_or(|f| f == 0) {
+    /// Warns of a cutting move without a feed.
+    ///
+    /// # Errors
+    /// In G93 every block with a cutting move needs an F of its own.
+    pub(super) fn check_feed(&mut self) -> Result<(), GcodeError> {
+        if self.modal.feed_mode == FeedMode::InverseTime && !self.feed_given {
+            return Err(self.word_missing(GCode::from_tenths(930), b'F', self.block_span()));
+        }
+        if self.modal.feed.is_none_or(|f| f == 0) {
             self.warn(WarningKind::FeedMissing, self.block_span());
         }
+        Ok(())
     }
 
     /// Refuses a cutting move in G95 with the spindle's speed 0.

@@ -18,7 +18,8 @@ impl<S> MachineParameters for Execution<'_, '_, '_, S> {
                 Some(Number::of_nanometres(diameter.nm(), self.machine_units()))
             }
             5420..=5428 => Some(self.coordinate(usize::try_from(number).ok()?.checked_sub(5420)?)),
-            5599 => Some(1.0),
+            // LinuxCNC shows its DEBUG comments until a program sets this to 0.
+            5599 if self.memory.given(5599).is_none() => Some(1.0),
             _ => None,
         }
     }
@@ -58,6 +59,8 @@ impl<S> MachineParameters for Execution<'_, '_, '_, S> {
                 system @ 1..=6 => system.saturating_add(53).saturating_mul(10),
                 system => system.saturating_add(584),
             }),
+            b"mist" => flag(self.coolant.0),
+            b"flood" => flag(self.coolant.1),
             b"tool_offset" => flag(modal.length_offset),
             b"retract_r_plane" => flag(modal.retract == RetractLevel::Clearance),
             b"retract_old_z" => flag(modal.retract == RetractLevel::Before),
@@ -74,7 +77,7 @@ impl<S> MachineParameters for Execution<'_, '_, '_, S> {
             b"current_pocket" => f64::from(self.pocket(modal.tool)),
             b"selected_pocket" => f64::from(self.pocket(modal.selected)),
             b"call_level" => f64::from(self.source.depth),
-            b"line" => f64::from(self.source.line),
+            b"line" => f64::from(self.reading),
             b"motion_mode" => f64::from(modal.motion.map_or(800, |motion| motion.code().tenths())),
             b"plane" => f64::from(match modal.plane {
                 Plane::Xy => 170u16,

@@ -36,12 +36,14 @@ where
 
     /// M66: P or E, L how to wait, Q how long.
     fn wait_words(&mut self, block: &mut BlockWords<'_>, code: MCode) -> Result<(), GcodeError> {
+        let digital = block.word(b'P').is_some();
         let Some(word) = block.use_word(b'P').or_else(|| block.use_word(b'E')) else {
             return Err(self.error(SettingError::MWordMissing { m: 66, letter: b'P' }.into(), code.span));
         };
         self.whole(word)?;
         let wait = match block.use_word(b'L') {
-            Some(word) => self.between(word, 0, 4)?,
+            // The value of an analog input can only be read.
+            Some(word) => self.between(word, 0, if digital { 4 } else { 0 })?,
             None => 0,
         };
         let time = block.use_word(b'Q');
@@ -55,7 +57,12 @@ where
     pub(super) fn spindle(&mut self, block: &mut BlockWords<'_>, m: &MCodes) -> Result<(), GcodeError> {
         let Some(code) = m.spindle else { return Ok(()) };
         if code.number == 19 {
-            for letter in [b'R', b'Q', b'P'] {
+            if let Some(word) = block.use_word(b'R')
+                && (word.value.is_negative() || word.value.real() > 360)
+            {
+                return Err(self.error(GcodeErrorKind::OutOfRange { letter: b'R' }, word.span));
+            }
+            for letter in [b'Q', b'P'] {
                 block.use_word(letter);
             }
             return self.emit(Canon::OtherM(19), code.span);
@@ -71,6 +78,11 @@ where
     /// M7, M8, M9; M48 … M53; codes that are not known.
     pub(super) fn switches(&mut self, block: &mut BlockWords<'_>, m: &MCodes) -> Result<(), GcodeError> {
         for code in &m.coolant {
+            self.coolant = match code.number {
+                7 => (true, self.coolant.1),
+                8 => (self.coolant.0, true),
+                _ => (false, false),
+            };
             let coolant = match code.number {
                 7 => Coolant::Mist,
                 8 => Coolant::Flood,

@@ -9,6 +9,9 @@ use super::reader::Reader;
 /// Parameters set in one block.
 pub(super) const ASSIGNMENTS: usize = 32;
 
+/// LinuxCNC's switch of DEBUG comments, which has a value before a program sets it.
+const DEBUG_SWITCH: u16 = 5599;
+
 /// What an assignment sets.
 #[derive(Clone, Copy)]
 pub(super) enum Destination {
@@ -34,7 +37,7 @@ impl<'p> Reader<'p> {
                 let largest = self.dialect.largest_parameter();
                 return Err(self.error(ParameterError::Number { largest }, span));
             }
-            if machine.number(u32::from(number)).is_some() {
+            if number != DEBUG_SWITCH && machine.number(u32::from(number)).is_some() {
                 return Err(self.error(ParameterError::ReadOnly, span));
             }
             (Destination::Number(number), rest)

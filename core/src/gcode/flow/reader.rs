@@ -114,6 +114,7 @@ impl<'p> Reader<'p> {
 
     fn read(&self, machine: &mut impl Surroundings, sentence: &mut Sentence<'p>) -> Result<Read, GcodeError> {
         let line = self.line;
+        machine.reading(line.number);
         sentence.text = self.place.text;
         sentence.line = line;
         sentence.source = Source {

@@ -27,6 +27,11 @@ impl Memory<'_> {
         self.levels.get(number).or_else(|| self.table.get(number)).unwrap_or(self.levels.vacant())
     }
 
+    /// The value of a numbered parameter that is not local, when it was set.
+    pub fn given(&self, number: u16) -> Option<f64> {
+        self.table.get(number)
+    }
+
     /// Sets a numbered parameter.
     ///
     /// # Errors

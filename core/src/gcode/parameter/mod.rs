@@ -29,6 +29,8 @@ pub trait MachineParameters {
 pub(super) trait Surroundings: MachineParameters {
     /// Changes the memory.
     fn change<R>(&mut self, how: impl FnOnce(&mut Memory<'_>) -> R) -> R;
+    /// A block of this line is about to be read.
+    fn reading(&mut self, line: u32);
     /// A call has ended; `level` is how deep it stood.
     fn level_ended(&mut self, level: u8);
 }
