@@ -98,8 +98,8 @@ where
         }
         let back = self.modal.retract == RetractLevel::Before;
         let retract = initial.filter(|_| back && !raised).unwrap_or(clearance);
-        // The height of the way to the first hole.
-        let way = if back { retract } else { before.map_or(clearance, |height| height.max(clearance)) };
+        // The height of the way to the first hole: where the tool stands when that is above R.
+        let way = before.map_or(clearance, |height| if height > clearance { height } else { retract });
         for repetition in 0..repetitions {
             let mut place = [self.at.get(first), self.at.get(second)];
             for (at, by) in place.iter_mut().zip(by) {
