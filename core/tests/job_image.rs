@@ -4,12 +4,12 @@ mod job_support;
 
 use job_support::{Part, Room, corner, made, pocket, short, um};
 use truepath_core::cut::WallLaw;
+use truepath_core::gcode::{Dialect, PointlessLength};
 use truepath_core::image::{Binding, DEVICE_NODES, Image, image_bytes};
 use truepath_core::job::{
     Buffer, Buffers, COMPACT_BYTES, Counts, ForceModel, Job, JobError, LARGEST_NUMBER, LawName, Pass, Stage, Stickout,
     Workspace, image,
 };
-use truepath_core::gcode::{Dialect, PointlessLength};
 use truepath_core::units::{Offset, Real};
 
 /// Checksums of the images, which hold on every machine and in every build.

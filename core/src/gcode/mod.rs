@@ -63,7 +63,8 @@ pub use contour::{
 };
 pub use dialect::Dialect;
 pub use error::{
-    CornerError, CycleError, ExpressionError, FlowError, Foreign, GcodeError, GcodeErrorKind, ParameterError, SettingError,
+    CornerError, CycleError, ExpressionError, FlowError, Foreign, GcodeError, GcodeErrorKind, ParameterError,
+    SettingError,
 };
 pub use execute::{Machine, Modal, Motion, Tool};
 pub use flow::{Library, LibraryFile, Program, Word};

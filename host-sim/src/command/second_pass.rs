@@ -111,7 +111,8 @@ fn agree(second: &Pass, first: &Pass) -> Result<(), Failure> {
     if let Some((named, place)) = first_pass_of(first.program.bytes()).filter(|(named, _)| *named != original) {
         let found = format!("this is the first pass of a program with CRC-32 {named:08X}");
         let expected = format!("that of {}, {original:08X}", second.program.name());
-        let help = "give the first-pass.toml that truepath split wrote for this job; split again if the program was changed";
+        let help =
+            "give the first-pass.toml that truepath split wrote for this job; split again if the program was changed";
         return Err(InputError::new("K003", found, expected, help).at(&first.program, place).into());
     }
     if a.correct.law == LawName::Paper {
