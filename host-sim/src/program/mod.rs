@@ -5,11 +5,11 @@
 //! * the moves that lead to the contour's start end at the corrected start,
 //! * lead-in and lead-out arcs outside the contour are displaced as a whole, so that they stay tangent,
 //! * the first straight XY move after the contour returns to its own place, an axis it does not name being added,
-//! * where the control compensates the contour (G41, G42) it becomes the [path of the centre](centre_path),
+//! * where the control compensates the contour (G41, G42) it becomes the path of the centre (`centre_path`),
 //! * a move that relied on the modal code of the last contour line gets that code written out, and
 //! * a comment marks the program, and a marked program is refused: a correction must never be applied twice.
 //!
-//! The written text is then read back and [proved](proof) to differ from the original in the contour and in nothing
+//! The written text is then read back and proved (`proof`) to differ from the original in the contour and in nothing
 //! else; what fails the proof is not written. [`Difference`] reports what was counted on the way.
 //!
 //! The contour may come in several stretches (passes), each written once: a line that is executed several times is
