@@ -58,7 +58,7 @@ fn a_compensated_program_is_corrected_as_the_path_of_the_centre() {
     assert!(difference.compensation_taken_out && difference.largest_shift.mm > 0.005, "{difference:?}");
     assert!(difference.text("part.nc").contains("taken out of the contour"));
     let text = String::from_utf8(drawn.program.unwrap()).unwrap();
-    assert!(!text.contains("G41") && text.contains("\nG40 X") && text.contains("OF THE CUTTER CENTRE"), "{text}");
+    assert!(!text.contains("G41") && text.contains("\nG40 ") && text.contains("OF THE CUTTER CENTRE"), "{text}");
     let read = |text: &[u8]| shown(read_blocks(&Source::new("corrected.nc", text.to_vec()))).0;
     let (a, b) = (read(text.as_bytes()), read(&centre.program.unwrap()));
     assert_eq!(a.len(), b.len(), "{text}");
