@@ -111,6 +111,7 @@ fn designed(machine: &Loop) -> Vec<Node> {
         profiles: &mut vec![Profile::default(); n],
         updates: &mut vec![Update::default(); n],
         best: &mut vec![Node::default(); n],
+        residual: &[],
     };
     correct::design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
     nodes

@@ -41,6 +41,7 @@ fn left_by(law: &str, blocks: &[Block]) -> (f64, f64) {
         profiles: &mut vec![Profile::default(); n],
         updates: &mut vec![Update::default(); n],
         best: &mut vec![Node::default(); n],
+        residual: &[],
     };
     let wanted = Design { law, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
     design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace);

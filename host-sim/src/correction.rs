@@ -106,6 +106,7 @@ pub fn corrected(
         profiles: &mut profiles,
         updates: &mut updates,
         best: &mut best,
+        residual: &[],
     };
     let mut nodes = vec![Node::default(); count];
     let mut predicted = vec![Predicted::default(); count];

@@ -94,6 +94,7 @@ impl Lent {
             profiles: &mut self.profiles,
             updates: &mut self.updates,
             best: &mut self.best,
+            residual: &[],
         }
     }
 }

@@ -1,7 +1,8 @@
 //! From the identified machine to the correction beside every sample of the contour.
 
+use super::node::{Node, commanded};
 use super::paper::PaperTransfer;
-use super::profile::{Band, Profile, Target, profile};
+use super::profile::{Band, Profile, Target, add_residual, profile};
 use super::refine::{Update, refine, settle_ends};
 use crate::cut::{ForceTable, Loop, Passage, Path, State};
 use crate::geometry::Vector;
@@ -17,22 +18,6 @@ pub enum Law {
     Mirror,
     /// P23 eqs. (8)–(12) as printed; depends on the origin of the program.
     Paper(PaperTransfer),
-}
-
-/// The correction at one sample of the contour, in its two parts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Node {
-    /// The part that scales with the live feed per tooth.
-    pub chip: Vector,
-    /// The part that does not.
-    pub edge: Vector,
-}
-
-impl Node {
-    /// The correction at the programmed feed.
-    pub fn total(&self) -> Vector {
-        self.chip + self.edge
-    }
 }
 
 /// Wall errors beside one sample.
@@ -71,6 +56,9 @@ pub struct DesignWorkspace<'a> {
     pub updates: &'a mut [Update],
     /// The best correction so far.
     pub best: &'a mut [Node],
+    /// Wall error that parts have shown beside what the model predicts, as long as the contour's own samples; empty where
+    /// none is known. The correction cancels it as well.
+    pub residual: &'a [Offset],
 }
 
 /// Refinements on the predicted wall error.
@@ -79,21 +67,6 @@ const REFINEMENTS: usize = 24;
 const SETTLED: Offset = Offset::from_nm(200);
 /// Refinements without a tenth of improvement after which it stops: what is left cannot be reached by this cutter.
 const PATIENCE: usize = 8;
-
-/// The commanded displacement at a sample of the path: the correction of the contour. Beyond its ends it is held, or
-/// taken from the other end where the contour closes.
-fn commanded(path: &Path, nodes: &[Node], index: usize) -> Vector {
-    let last = nodes.len().saturating_sub(1);
-    let mut at = index.saturating_sub(path.first());
-    if path.is_closed()
-        && (index < path.first() || at > last)
-        && let Some(sample) = path.samples().get(index)
-    {
-        let round = if index < path.first() { path.length() } else { -path.length() };
-        at = path.index_at(sample.s + round).saturating_sub(path.first());
-    }
-    nodes.get(at.min(last)).map_or(Vector::ZERO, Node::total)
-}
 
 /// What a design tells while it works.
 #[derive(Clone, Copy, Debug)]
@@ -218,6 +191,7 @@ fn pass(
         commanded(path, nodes, i)
     });
     profile(machine, workspace.states, wanted.band, workspace.displacements, workspace.profiles);
+    add_residual(workspace.profiles, workspace.residual);
     passage
 }
 
@@ -291,6 +265,7 @@ pub fn uncertainty(
             Loop { path, table: &table, coefficients: parameters.coefficients, compliance: parameters.compliance };
         displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
         profile(&displaced, workspace.states, wanted.band, workspace.displacements, workspace.profiles);
+        add_residual(workspace.profiles, workspace.residual);
         for ((s, p), base) in sigma.iter_mut().zip(workspace.profiles.iter()).zip(predicted) {
             let change = p.aim(wanted.target, None) - base.after.aim(wanted.target, None);
             *s = crate::units::hypot_nm(*s, change);

@@ -6,11 +6,13 @@
 //! the *predicted wall error*. P23 eqs. (8)–(12) and the first-order mirror are kept as named laws to compare with.
 
 mod design;
+mod node;
 mod paper;
 mod profile;
 mod refine;
 
-pub use design::{Design, DesignStep, DesignWorkspace, Law, Node, Predicted, design, design_observed, uncertainty};
+pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design, design_observed, uncertainty};
+pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, Profile, Target, profile};
 pub use refine::Update;

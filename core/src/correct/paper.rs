@@ -4,7 +4,7 @@
 //! eqs. (10)–(11): scaled along the path by the ratio of chip areas; eq. (12): `x_cc = (MS·k + 1)·x_c`. The result
 //! depends on where the origin of the program is, and the direction of the force is not turned through the corner.
 
-use super::design::Node;
+use super::node::Node;
 use crate::cut::{Loop, State};
 use crate::geometry::{Point, Vector};
 use crate::units::{Offset, Real, sin_cos};

@@ -82,6 +82,16 @@ impl Profile {
     }
 }
 
+/// Adds the wall error that parts have shown beside the model: the same at every height.
+pub(super) fn add_residual(profiles: &mut [Profile], residual: &[Offset]) {
+    for (p, more) in profiles.iter_mut().zip(residual).filter(|(p, _)| p.on_wall) {
+        p.mean += *more;
+        p.lowest += *more;
+        p.highest += *more;
+        p.tip += *more;
+    }
+}
+
 /// Reads the profile off the wall beside each sample of the contour.
 ///
 /// `states` belong to the path's working range; `profiles` to the contour's own samples; `displacements` is as long

@@ -1,6 +1,7 @@
 //! Refinement of a correction on the predicted wall error, and where it is not refined.
 
-use super::design::{Design, Node};
+use super::design::Design;
+use super::node::Node;
 use super::profile::Profile;
 use crate::cut::Path;
 use crate::units::{Offset, Real};

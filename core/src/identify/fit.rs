@@ -1,30 +1,13 @@
-//! The fit: Gauss–Newton with priors and a robust loss, and the evidence for a wall law.
+//! The fit: Gauss–Newton with priors and a robust loss, over one part or several.
 
 use super::observation::{Observation, PredictionWorkspace, predict};
+use super::outcome::Fit;
 use super::parameters::{COUNT, Parameter, Parameters, Prior};
-use super::solve::{Information, Matrix};
-use crate::cut::{ForceTable, Path, WallLaw};
+use super::part::EarlierPart;
+use super::solve::Information;
+use crate::cut::{ForceTable, Path};
 use crate::geometry::Vector;
 use crate::units::{Offset, Real};
-
-/// Result of an identification.
-#[derive(Clone, Copy, Debug)]
-pub struct Fit {
-    /// The identified parameters.
-    pub parameters: Parameters,
-    /// Distance from the prior, in its standard deviations.
-    pub theta: [Real; COUNT],
-    /// Covariance in units of the prior's standard deviations; its diagonal is 1 where the points say nothing.
-    pub covariance: Matrix,
-    /// Robust sum of squared residuals plus that of the prior, of all points.
-    pub cost: Real,
-    /// Gauss–Newton steps taken.
-    pub steps: u32,
-    /// Points that the robust loss set aside (weight below 0.3).
-    pub outliers: usize,
-    /// Evidence of the model, −½(cost + ln det), natural logarithm up to a constant; larger is better.
-    pub evidence: Real,
-}
 
 /// Gauss–Newton steps at most.
 const MAX_STEPS: u32 = 12;
@@ -35,13 +18,6 @@ const HUBER: Real = Real::ratio(25, 10);
 const WILD: Real = Real::from_int(25);
 /// Step of the difference quotients, in prior standard deviations.
 const DIFFERENCE: Real = Real::ratio(1, 32);
-
-impl Fit {
-    /// Standard deviation of a parameter over that of its prior, 0…1: small where the points decide.
-    pub fn remaining(&self, index: usize) -> Real {
-        self.covariance.get(index).and_then(|row| row.get(index)).map_or(Real::ONE, |v| v.sqrt())
-    }
-}
 
 /// Fits the parameters to the observations.
 ///
@@ -67,62 +43,25 @@ pub fn identify_observed(
     workspace: &mut PredictionWorkspace,
     observe: &mut dyn FnMut(u16),
 ) -> Fit {
-    let task = Task { path, prior, commanded };
-    let mut table = ForceTable::BLANK;
-    table.tabulate(prior.mean.coefficients.size_exponent);
-    let mut theta = [Real::ZERO; COUNT];
-    let (information, cost, mut steps) =
-        task.settle(&mut table, &mut theta, Real::MAX, observations, workspace, observe);
-    let ln_determinant = information.log2_determinant() * Real::ratio(693_147_181, 1_000_000_000);
-    let evidence = -((cost + ln_determinant) * Real::HALF);
-    let mut covariance = information.covariance();
-    // A few points far off are of something else than this wall: they pull no more.
-    let wild = observations.iter().filter(|o| o.residual().abs() > WILD).count();
-    if wild > 0 && wild.saturating_mul(4) <= observations.len() {
-        let quiet = &mut |_| ();
-        let (information, _, more) = task.settle(&mut table, &mut theta, WILD, observations, workspace, quiet);
-        covariance = information.covariance();
-        steps = steps.saturating_add(more);
-    }
-    let outliers = observations.iter().filter(|o| o.weight < Real::ratio(3, 10)).count();
-    Fit { parameters: prior.at(&theta), theta, covariance, cost, steps, outliers, evidence }
+    let task = Task { path, prior, commanded: |_, i| commanded(i) };
+    task.fit(&mut [], observations, workspace, observe)
 }
 
-/// By how much the evidence for the mean law must exceed that for the helical one before it is believed (20 : 1).
-const DECISIVE: Real = Real::from_int(3);
-
-/// Identifies under both wall laws and takes the mean law only where the points speak decisively for it: on a
-/// helical cutter it is the wrong one, and a few points at one height cannot tell.
+/// As [`identify_observed`], over several parts that one machine cut.
 ///
-/// `around` gives the prior for a law. Returns the law with its prior and fit; the observations hold its predictions.
-pub fn identify_law(
+/// The observations are those of the `earlier` parts, one part behind the other, then those of the last.
+/// `commanded(part, sample)` is the displacement that the program of a part, counted from 0, commanded. Every part has a
+/// datum of its own; that of [`Fit::parameters`] is the last one's, the others are left in `earlier`.
+pub fn identify_parts(
     path: &Path,
-    around: impl Fn(WallLaw) -> Prior,
+    prior: &Prior,
+    earlier: &mut [EarlierPart],
     observations: &mut [Observation],
-    commanded: impl Fn(usize) -> Vector + Copy,
-    workspace: &mut PredictionWorkspace,
-) -> (WallLaw, Prior, Fit) {
-    identify_law_observed(path, around, observations, commanded, workspace, &mut |_| ())
-}
-
-/// As [`identify_law`], observed as [`identify_observed`].
-pub fn identify_law_observed(
-    path: &Path,
-    around: impl Fn(WallLaw) -> Prior,
-    observations: &mut [Observation],
-    commanded: impl Fn(usize) -> Vector + Copy,
+    commanded: impl Fn(usize, usize) -> Vector + Copy,
     workspace: &mut PredictionWorkspace,
     observe: &mut dyn FnMut(u16),
-) -> (WallLaw, Prior, Fit) {
-    let mut under = |law, observations: &mut [Observation], fits: u16| {
-        let prior = around(law);
-        let third = &mut |permille: u16| observe(fits.saturating_mul(1000).saturating_add(permille) / 3);
-        let fit = identify_observed(&path.with_law(law), &prior, observations, commanded, workspace, third);
-        (law, prior, fit)
-    };
-    let mean = under(WallLaw::Mean, observations, 0);
-    let helical = under(WallLaw::Helical, observations, 1);
-    if mean.2.evidence > helical.2.evidence + DECISIVE { under(WallLaw::Mean, observations, 2) } else { helical }
+) -> Fit {
+    Task { path, prior, commanded }.fit(earlier, observations, workspace, observe)
 }
 
 /// Share of the longest possible fit that is done after some steps and parameters of the next linearisation, ‰.
@@ -139,7 +78,46 @@ struct Task<'t, C> {
     commanded: C,
 }
 
-impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
+/// The points at which a fit looks, part by part, and the memory they are predicted in.
+struct Points<'p, 'w> {
+    earlier: &'p mut [EarlierPart],
+    observations: &'p mut [Observation],
+    workspace: &'p mut PredictionWorkspace<'w>,
+}
+
+impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
+    fn fit(
+        &self,
+        earlier: &mut [EarlierPart],
+        observations: &mut [Observation],
+        workspace: &mut PredictionWorkspace,
+        observe: &mut dyn FnMut(u16),
+    ) -> Fit {
+        let prior = self.prior;
+        let mut table = ForceTable::BLANK;
+        table.tabulate(prior.mean.coefficients.size_exponent);
+        let mut theta = [Real::ZERO; COUNT];
+        for part in earlier.iter_mut() {
+            *part = EarlierPart::new(part.points);
+        }
+        let mut points = Points { earlier, observations, workspace };
+        let (information, cost, mut steps) = self.settle(&mut table, &mut theta, Real::MAX, &mut points, observe);
+        let taken_out = points.earlier.iter().fold(Real::ZERO, |sum, part| sum + part.eliminated.log2_determinant());
+        let ln_determinant = (information.log2_determinant() + taken_out) * Real::ratio(693_147_181, 1_000_000_000);
+        let evidence = -((cost + ln_determinant) * Real::HALF);
+        let mut covariance = information.covariance();
+        // A few points far off are of something else than this wall: they pull no more.
+        let wild = points.observations.iter().filter(|o| o.residual().abs() > WILD).count();
+        if wild > 0 && wild.saturating_mul(4) <= points.observations.len() {
+            let quiet = &mut |_| ();
+            let (information, _, more) = self.settle(&mut table, &mut theta, WILD, &mut points, quiet);
+            covariance = information.covariance();
+            steps = steps.saturating_add(more);
+        }
+        let outliers = points.observations.iter().filter(|o| o.weight < Real::ratio(3, 10)).count();
+        Fit { parameters: prior.at(&theta), theta, covariance, cost, steps, outliers, evidence }
+    }
+
     /// Goes downhill from `theta` until the cost settles. Returns information, cost and steps taken; points beyond
     /// `gate` have no weight.
     fn settle(
@@ -147,13 +125,12 @@ impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
         table: &mut ForceTable,
         theta: &mut [Real; COUNT],
         gate: Real,
-        observations: &mut [Observation],
-        workspace: &mut PredictionWorkspace,
+        points: &mut Points,
         observe: &mut dyn FnMut(u16),
     ) -> (Information, Real, u32) {
-        let mut cost = self.evaluate(table, theta, gate, observations, workspace);
+        let mut cost = self.evaluate(table, theta, gate, points);
         let mut steps = 0;
-        let mut information = self.linearise(table, theta, observations, workspace, &mut |k| observe(permille(0, k)));
+        let mut information = self.linearise(table, theta, points, &mut |k| observe(permille(0, k)));
         while steps < MAX_STEPS {
             steps = steps.saturating_add(1);
             let step = information.step();
@@ -165,7 +142,10 @@ impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
                 for (t, s) in trial.iter_mut().zip(&step) {
                     *t += *s * share;
                 }
-                let trial_cost = self.evaluate(table, &trial, gate, observations, workspace);
+                for part in points.earlier.iter_mut() {
+                    part.look(&step, share);
+                }
+                let trial_cost = self.evaluate(table, &trial, gate, points);
                 if trial_cost <= cost {
                     break (Some(trial), trial_cost);
                 }
@@ -176,32 +156,46 @@ impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
             };
             let Some(accepted) = taken else { break };
             *theta = accepted;
+            for part in points.earlier.iter_mut() {
+                part.datum = part.trial;
+            }
             let settled = largest < Real::ratio(1, 2000) || cost - new_cost < Real::ratio(1, 100_000);
             cost = new_cost;
-            let tell = &mut |k| observe(permille(steps, k));
-            information = self.linearise(table, theta, observations, workspace, tell);
+            information = self.linearise(table, theta, points, &mut |k| observe(permille(steps, k)));
             if settled {
                 break;
             }
         }
-        cost = self.evaluate(table, theta, gate, observations, workspace);
+        for part in points.earlier.iter_mut() {
+            part.trial = part.datum;
+        }
+        cost = self.evaluate(table, theta, gate, points);
         (information, cost, steps)
     }
 
+    /// Predicts the points of every part with its own correction and datum.
+    fn predict(&self, table: &ForceTable, parameters: &Parameters, points: &mut Points) {
+        let mut rest = &mut *points.observations;
+        for k in 0..=points.earlier.len() {
+            let (count, datum) = match points.earlier.get(k) {
+                Some(part) => (part.points.min(rest.len()), part.trial_datum(self.prior)),
+                None => (rest.len(), parameters.datum),
+            };
+            let (own, others) = rest.split_at_mut(count);
+            let parameters = Parameters { datum, ..*parameters };
+            predict(self.path, table, &parameters, |i| (self.commanded)(k, i), own, points.workspace);
+            rest = others;
+        }
+    }
+
     /// Predicts all points and returns the robust cost; sets their weights.
-    fn evaluate(
-        &self,
-        table: &mut ForceTable,
-        theta: &[Real; COUNT],
-        gate: Real,
-        observations: &mut [Observation],
-        workspace: &mut PredictionWorkspace,
-    ) -> Real {
+    fn evaluate(&self, table: &mut ForceTable, theta: &[Real; COUNT], gate: Real, points: &mut Points) -> Real {
         let parameters = self.prior.at(theta);
         renew(table, &parameters);
-        predict(self.path, table, &parameters, self.commanded, observations, workspace);
-        let mut cost = theta.iter().fold(Real::ZERO, |sum, t| sum + *t * *t);
-        for o in observations.iter_mut() {
+        self.predict(table, &parameters, points);
+        let datums = points.earlier.iter().flat_map(|part| &part.trial);
+        let mut cost = theta.iter().chain(datums).fold(Real::ZERO, |sum, t| sum + *t * *t);
+        for o in points.observations.iter_mut() {
             let residual = o.residual().abs();
             // Huber: quadratic near zero, linear in the tails, level beyond the gate.
             (o.weight, cost) = if residual <= HUBER {
@@ -223,8 +217,7 @@ impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
         &self,
         table: &ForceTable,
         theta: &[Real; COUNT],
-        observations: &mut [Observation],
-        workspace: &mut PredictionWorkspace,
+        points: &mut Points,
         observe: &mut dyn FnMut(usize),
     ) -> Information {
         let mut changed = ForceTable::BLANK;
@@ -236,11 +229,11 @@ impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
                 Parameter::DatumY => Some(-o.normal.y),
                 _ => None,
             };
-            for o in observations.iter_mut() {
+            for o in points.observations.iter_mut() {
                 let value = direct(o).map(|d| Offset::from_mm(*sigma).over(o.deviation()) * d);
                 set(o, k, value.unwrap_or(Real::ZERO));
             }
-            if *sigma == Real::ZERO || observations.iter().any(|o| direct(o).is_some()) {
+            if *sigma == Real::ZERO || points.observations.iter().any(|o| direct(o).is_some()) {
                 continue;
             }
             for side in [DIFFERENCE, -DIFFERENCE] {
@@ -256,11 +249,11 @@ impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
                     &changed
                 };
                 // The prediction at the point itself is needed again: it is kept aside.
-                for o in observations.iter_mut() {
+                for o in points.observations.iter_mut() {
                     o.base = o.predicted;
                 }
-                predict(self.path, table, &parameters, self.commanded, observations, workspace);
-                for o in observations.iter_mut() {
+                self.predict(table, &parameters, points);
+                for o in points.observations.iter_mut() {
                     let change = (o.predicted - o.base).over(o.deviation()) / (side + side);
                     o.predicted = o.base;
                     let sum = o.sensitivity.get(k).copied().unwrap_or_default() + change;
@@ -269,7 +262,13 @@ impl<C: Fn(usize) -> Vector + Copy> Task<'_, C> {
             }
         }
         let mut information = Information::prior(theta);
-        for o in observations.iter() {
+        let mut rest = &*points.observations;
+        for part in points.earlier.iter_mut() {
+            let (own, others) = rest.split_at(part.points.min(rest.len()));
+            part.inform(&mut information, own);
+            rest = others;
+        }
+        for o in rest {
             information.add(&o.sensitivity, o.residual(), o.weight);
         }
         information

@@ -6,11 +6,17 @@
 //! same wall, so the compliance carries the scale of both.
 
 mod fit;
+mod law;
 mod observation;
+mod outcome;
 mod parameters;
+mod part;
 mod solve;
 
-pub use fit::{Fit, identify, identify_law, identify_law_observed, identify_observed};
+pub use fit::{identify, identify_observed, identify_parts};
+pub use law::{identify_law, identify_law_observed, identify_law_parts};
 pub use observation::{Observation, PredictionWorkspace, predict};
+pub use outcome::Fit;
 pub use parameters::{COUNT, Parameter, Parameters, Prior};
+pub use part::{EarlierPart, Eliminated};
 pub use solve::{Information, Matrix, square_root};

@@ -14,13 +14,13 @@ use crate::units::{Real, log2};
 pub type Matrix = [[Real; COUNT]; COUNT];
 
 /// Scalars eliminated one by one; the remaining two form the vector.
-const SCALARS: usize = COUNT - 2;
+pub(super) const SCALARS: usize = COUNT - 2;
 
 /// Accumulated information (JᵀWJ + 1) and gradient.
 #[derive(Clone, Copy, Debug)]
 pub struct Information {
-    matrix: Matrix,
-    gradient: [Real; COUNT],
+    pub(super) matrix: Matrix,
+    pub(super) gradient: [Real; COUNT],
 }
 
 impl Information {
@@ -159,50 +159,4 @@ impl Factor {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn observations(seed: &[i32]) -> std::vec::Vec<([Real; COUNT], Real)> {
-        seed.chunks_exact(COUNT + 1)
-            .map(|c| (core::array::from_fn(|i| Real::ratio(c[i].into(), 1000)), Real::ratio(c[COUNT].into(), 1000)))
-            .collect()
-    }
-
-    proptest! {
-        #[test]
-        fn the_step_solves_the_normal_equations(seed in prop::collection::vec(-30_000i32..30_000, (COUNT + 1) * 14)) {
-            let mut info = Information::prior(&[Real::ZERO; COUNT]);
-            for (row, residual) in observations(&seed) {
-                info.add(&row, residual, Real::ONE);
-            }
-            let x = info.step();
-            for i in 0..COUNT {
-                let product = (0..COUNT).fold(Real::ZERO, |s, j| s + info.matrix[i][j] * x[j]);
-                prop_assert!((product - info.gradient[i]).abs() < Real::ratio(1, 1000), "row {}", i);
-            }
-        }
-
-        #[test]
-        fn signs_and_the_last_two_places_may_be_exchanged(
-            seed in prop::collection::vec(-30_000i32..30_000, (COUNT + 1) * 14)
-        ) {
-            // A quarter turn: parameters 1 and 2 change sign, (x, y) becomes (−y, x).
-            let turn = |r: &[Real; COUNT]| {
-                let mut t = *r;
-                t[1] = -r[1];
-                t[2] = -r[2];
-                t[SCALARS] = -r[SCALARS + 1];
-                t[SCALARS + 1] = r[SCALARS];
-                t
-            };
-            let mut info = Information::prior(&[Real::ZERO; COUNT]);
-            let mut turned = info;
-            for (row, residual) in observations(&seed) {
-                info.add(&row, residual, Real::HALF);
-                turned.add(&turn(&row), residual, Real::HALF);
-            }
-            prop_assert_eq!(turn(&info.step()), turned.step());
-        }
-    }
-}
+mod tests;

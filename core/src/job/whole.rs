@@ -105,6 +105,7 @@ pub fn image(
         profiles: workspace.profiles.get_mut(..count).unwrap_or_default(),
         updates: workspace.updates.get_mut(..count).unwrap_or_default(),
         best: workspace.best.get_mut(..count).unwrap_or_default(),
+        residual: &[],
     };
     let designed = designed(&pass, &path, &identified, contacts, nodes, &mut lent, &mut |permille| {
         gauge.tell(Stage::Design, permille);
