@@ -20,6 +20,7 @@ pub mod refusal;
 pub mod replay;
 pub mod report;
 pub mod setpoints;
+pub mod study;
 pub mod surface;
 pub mod verification;
 pub mod workshop;

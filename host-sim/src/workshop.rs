@@ -84,13 +84,34 @@ pub fn mill(pass: &Pass, machine: &plant::Machine, commanded: Option<&[plant::Po
 /// # Errors
 /// What the plant refuses.
 pub fn probe(pass: &Pass, milled: &Milled, places_mm: &[f64], levels: &[f64], ball_mm: f64) -> Result<String, Failure> {
+    probe_shifted(pass, milled, places_mm, levels, ball_mm, [0.0; 2])
+}
+
+/// The same after the datum has moved by `datum_mm` in x and y since the part was cut: every reading is off by that.
+///
+/// # Errors
+/// What the plant refuses.
+pub fn probe_shifted(
+    pass: &Pass,
+    milled: &Milled,
+    places_mm: &[f64],
+    levels: &[f64],
+    ball_mm: f64,
+    datum_mm: plant::Point,
+) -> Result<String, Failure> {
     let plan = plant::ProbePlan {
         s_mm: places_mm.to_vec(),
         levels: levels.to_vec(),
         ball_diameter_mm: ball_mm,
         tip_z_mm: pass.core.contour.z.nm() as f64 / 1e6,
     };
-    plant::probe(milled, &plan).map(|touches| plant::probeopen_text(&touches)).map_err(|e| refused(&e))
+    let mut touches = plant::probe(milled, &plan).map_err(|e| refused(&e))?;
+    for touch in &mut touches {
+        for (place, shift) in touch.ball_centre.iter_mut().zip(datum_mm) {
+            *place += shift;
+        }
+    }
+    Ok(plant::probeopen_text(&touches))
 }
 
 /// The commanded centres of a corrected program: the contour moves, sampled finely.

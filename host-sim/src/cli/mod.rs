@@ -15,6 +15,7 @@ mod probe_flags;
 mod replay;
 mod simulate;
 mod split;
+mod study;
 mod terminal;
 mod which;
 
@@ -61,6 +62,8 @@ enum Command {
     Correct(correct::Arguments),
     /// For a single part: a program that cuts half of the allowance, to be probed before the second half.
     Split(split::Arguments),
+    /// How well the method does on virtual machines of all kinds, and where it stops working.
+    Study(study::Arguments),
     /// Recorded setpoints through the device's own code.
     Replay(replay::Arguments),
     /// A correction image as text.
@@ -101,6 +104,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Inspect(arguments) => inspect::run(&arguments, terminal),
         Command::Correct(arguments) => correct::run(&arguments, terminal),
         Command::Split(arguments) => split::run(&arguments, terminal),
+        Command::Study(arguments) => study::run(&arguments, terminal),
         Command::Replay(arguments) => replay::run(&arguments, terminal),
         Command::Image(arguments) => image::run(&arguments, terminal),
         Command::Hil(arguments) => hil::run(&arguments, terminal),

@@ -12,3 +12,4 @@ pub mod probe;
 pub mod second_pass;
 pub mod simulate;
 pub mod split;
+pub mod study;

@@ -60,7 +60,7 @@ pub use mill::{Milled, Sample, Track, mill};
 pub use path::{Path, Side};
 pub use place::Place;
 pub use probe::{ProbePlan, Touch, probe, probeopen_text};
-pub use score::{Comparison, Score, judged_levels};
+pub use score::{Comparison, Judged, Score, judged_levels, judged_trim_mm};
 pub use segment::Segment;
 pub use setup::{Cut, FeedChange, Spindle};
 

@@ -39,6 +39,20 @@ pub struct Comparison {
     pub factor: f64,
 }
 
+/// What is left out at the ends of a contour when it is judged, mm.
+pub fn judged_trim_mm(radius_mm: f64) -> f64 {
+    (0.8 * radius_mm).max(6.0)
+}
+
+/// A judged wall.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// The numbers.
+    pub score: Score,
+    /// (place along the contour, mean wall error over the ten heights), mm, where the score looks.
+    pub mean_mm: Vec<(f64, f64)>,
+}
+
 impl Milled {
     /// Mean wall error over the ten heights at each nominal sample, mm; NaN where undefined.
     pub fn mean_errors(&self) -> Vec<f64> {
@@ -47,9 +61,14 @@ impl Milled {
 
     /// Judges the wall.
     pub fn score(&self) -> Score {
+        self.judge().score
+    }
+
+    /// Judges the wall and keeps the errors that are judged.
+    pub fn judge(&self) -> Judged {
         let errors = self.wall_errors(&judged_levels());
         let mean = mean_over(&errors);
-        let trim = (0.8 * self.cut.radius_mm).max(6.0);
+        let trim = judged_trim_mm(self.cut.radius_mm);
         let (lo, hi) = (trim, self.path.length_mm - trim);
         let mut score = Score {
             max_error_mm: 0.0,
@@ -58,7 +77,7 @@ impl Milled {
             gouge_mm: f64::NEG_INFINITY,
             axial_form_mm: 0.0,
         };
-        let (mut squares, mut count) = (0.0, 0u32);
+        let mut mean_mm = Vec::new();
         for (i, &m) in mean.iter().enumerate() {
             let s = self.path.s_mm[i];
             if s <= lo || s >= hi || !m.is_finite() {
@@ -66,8 +85,7 @@ impl Milled {
             }
             score.max_error_mm = score.max_error_mm.max(m.abs());
             score.gouge_mm = score.gouge_mm.max(-m);
-            squares += m * m;
-            count += 1;
+            mean_mm.push((s, m));
             let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
             for e in errors.iter().map(|row| row[i]).filter(|e| e.is_finite()) {
                 score.worst_height_mm = score.worst_height_mm.max(e.abs());
@@ -76,18 +94,20 @@ impl Milled {
             }
             score.axial_form_mm = score.axial_form_mm.max(most - least);
         }
-        if count == 0 {
+        if mean_mm.is_empty() {
             let none = f64::NAN;
-            return Score {
+            score = Score {
                 max_error_mm: none,
                 rms_error_mm: none,
                 worst_height_mm: none,
                 gouge_mm: none,
                 axial_form_mm: none,
             };
+        } else {
+            let squares: f64 = mean_mm.iter().map(|(_, m)| m * m).sum();
+            score.rms_error_mm = (squares / mean_mm.len() as f64).sqrt();
         }
-        score.rms_error_mm = (squares / f64::from(count)).sqrt();
-        score
+        Judged { score, mean_mm }
     }
 
     /// Cuts the same contour on the same machine along `commanded` and compares.

@@ -1,0 +1,94 @@
+//! `study`: the cases that are asked for and not yet finished, on all cores, and the summary of all that are.
+
+use std::path::Path as FilePath;
+
+use crate::diagnostics::{Failure, InputError};
+use crate::study::families::{FAMILIES, Family, family};
+use crate::study::id::{Axis, CaseId, Cell};
+use crate::study::ledger::{Ledger, program_key};
+use crate::study::outcome::Outcome;
+use crate::study::seeds::Set;
+use crate::study::{carry, pool};
+
+/// What is studied.
+#[derive(Clone, Debug)]
+pub struct Options<'a> {
+    /// Folder of the results.
+    pub out: &'a FilePath,
+    /// Which seeds.
+    pub set: Set,
+    /// Names of families; all when empty.
+    pub families: &'a [String],
+    /// Seeds a family, or cases in all for random machines.
+    pub seeds: u64,
+    /// The grid, if one.
+    pub axis: Option<Axis>,
+    /// Drop earlier results.
+    pub force: bool,
+    /// Threads; all cores when `None`.
+    pub threads: Option<usize>,
+}
+
+/// The cases of a request.
+///
+/// # Errors
+/// `Y003` for a family that does not exist, `Y004` for more seeds than the set has.
+pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
+    let unknown = |name: &str| {
+        let names: Vec<&str> = FAMILIES.iter().map(|f| f.name).collect();
+        InputError::new(
+            "Y003",
+            format!("no family `{name}`"),
+            format!("one of {}", names.join(", ")),
+            "correct the name",
+        )
+    };
+    let chosen: Vec<&Family> = if options.families.is_empty() {
+        FAMILIES.iter().collect()
+    } else {
+        let each = options.families.iter().map(|name| family(name).ok_or_else(|| unknown(name)));
+        each.collect::<Result<_, _>>()?
+    };
+    let seeds = options.set.seeds();
+    let most = seeds.end - seeds.start;
+    if options.seeds == 0 || options.seeds > most {
+        let found = format!("{} seeds", options.seeds);
+        return Err(InputError::new("Y004", found, format!("1 to {most}"), "ask for another number").into());
+    }
+    let cells: Vec<Option<Cell>> = match options.axis {
+        None => vec![None],
+        Some(axis) => axis.values().iter().map(|&value| Some(Cell { axis, value })).collect(),
+    };
+    let mut cases = Vec::new();
+    for seed in seeds.take(options.seeds as usize) {
+        // Random machines go round the families; otherwise every family gets every seed.
+        let these = match options.set {
+            Set::Random => vec![chosen[(seed % chosen.len() as u64) as usize]],
+            Set::Tuning | Set::Test => chosen.clone(),
+        };
+        for family in these {
+            cases.extend(cells.iter().map(|&cell| CaseId { family: family.name.to_owned(), seed, cell }));
+        }
+    }
+    Ok(cases)
+}
+
+/// Runs what is not yet finished and returns all results of the folder. `progress` is told (finished, of) cases.
+///
+/// # Errors
+/// A wrong request, results of another program, outputs that cannot be written.
+pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Vec<Outcome>, Failure> {
+    let cases = cases(options)?;
+    let mut ledger = Ledger::open(options.out, &program_key(), options.force)?;
+    let all = cases.len() as u64;
+    let left: Vec<CaseId> = cases.into_iter().filter(|id| !ledger.finished.contains_key(&id.to_string())).collect();
+    let mut finished = all - left.len() as u64;
+    progress(finished, all);
+    let threads = options.threads.unwrap_or_else(pool::cores);
+    pool::each(&left, threads, carry::outcome, |outcome| {
+        finished += 1;
+        progress(finished, all);
+        ledger.append(outcome)
+    })?;
+    Ok(ledger.finished.into_values().collect())
+}

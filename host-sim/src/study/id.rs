@@ -1,0 +1,130 @@
+//! Names of cases: `family/seed`, and `family/seed/axis=value` where one thing was changed for a grid.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::families::family;
+use super::seeds::Set;
+
+/// What a grid changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Axis {
+    /// Standard deviation of the probe, µm.
+    Noise,
+    /// Number of touches.
+    Points,
+    /// Mistakes of the user, as a multiple of the usual.
+    Prior,
+}
+
+impl Axis {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Noise, Self::Points, Self::Prior];
+
+    /// Its name in case ids and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Noise => "noise",
+            Self::Points => "points",
+            Self::Prior => "prior",
+        }
+    }
+
+    /// What it is, with its unit.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Noise => "probe noise, µm (1 sigma)",
+            Self::Points => "number of touches",
+            Self::Prior => "mistakes of the job, times the usual",
+        }
+    }
+
+    /// The values of the grid.
+    pub const fn values(self) -> &'static [f64] {
+        match self {
+            Self::Noise => &[0.0, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0],
+            Self::Points => &[2.0, 3.0, 4.0, 6.0, 9.0, 12.0, 18.0, 30.0],
+            Self::Prior => &[0.0, 0.5, 1.0, 1.5, 2.0, 3.0],
+        }
+    }
+}
+
+/// One cell of a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// What is changed.
+    pub axis: Axis,
+    /// To what.
+    pub value: f64,
+}
+
+/// Name of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseId {
+    /// Name of the family.
+    pub family: String,
+    /// Seed.
+    pub seed: u64,
+    /// The cell of a grid it belongs to.
+    pub cell: Option<Cell>,
+}
+
+impl CaseId {
+    /// The set of the seed.
+    pub fn set(&self) -> Set {
+        // Ids are made from the sets or checked when read.
+        Set::of(self.seed).unwrap_or(Set::Random)
+    }
+}
+
+impl fmt::Display for CaseId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.family, self.seed)?;
+        self.cell.map_or(Ok(()), |cell| write!(f, "/{}={}", cell.axis.name(), cell.value))
+    }
+}
+
+impl FromStr for CaseId {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut parts = text.split('/');
+        let name = parts.next().unwrap_or_default();
+        let family = family(name).ok_or_else(|| format!("`{name}` is no family"))?;
+        let seed = parts.next().unwrap_or_default();
+        let seed: u64 = seed.parse().map_err(|_| format!("`{seed}` is no seed"))?;
+        Set::of(seed).ok_or_else(|| format!("{seed} is in no set of seeds"))?;
+        let cell = parts.next().map(cell).transpose()?;
+        match parts.next() {
+            None => Ok(Self { family: family.name.to_owned(), seed, cell }),
+            Some(rest) => Err(format!("`{rest}` follows the id")),
+        }
+    }
+}
+
+fn cell(text: &str) -> Result<Cell, String> {
+    let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not axis=value"))?;
+    let axis = Axis::ALL.into_iter().find(|a| a.name() == name).ok_or_else(|| format!("`{name}` is no axis"))?;
+    let value: f64 = value.parse().map_err(|_| format!("`{value}` is no number"))?;
+    let (low, high) = (axis.values()[0], axis.values()[axis.values().len() - 1]);
+    if (low..=high).contains(&value) {
+        Ok(Cell { axis, value })
+    } else {
+        Err(format!("{name} is {low} to {high}, found {value}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_id_reads_back_as_it_was_written() {
+        for text in ["bore/1001", "corner-far/7003/noise=2.5", "boss/100000/points=30"] {
+            assert_eq!(text.parse::<CaseId>().expect("an id").to_string(), text);
+        }
+        for text in ["bore", "bore/5", "bore/1001/noise=-1", "bore/1001/wind=1", "cave/1001", "bore/1001/noise=1/x"] {
+            assert!(text.parse::<CaseId>().is_err(), "{text}");
+        }
+    }
+}

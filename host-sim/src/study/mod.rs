@@ -1,0 +1,22 @@
+//! The study: how well the method does on machines that the model has never seen, and where it stops working.
+//!
+//! Cases are drawn from fixed [`families`] by fixed [`seeds`]; each goes the user's whole way on the plant: the first part is
+//! milled and probed, the program corrected, the next part milled with it and judged. What is refused or fails is kept
+//! as a failure. Results are appended to a table as they come, so an interrupted study goes on where it was.
+
+pub mod belief;
+pub mod carry;
+pub mod case;
+pub mod contour;
+pub mod draw;
+pub mod families;
+pub mod id;
+pub mod ledger;
+pub mod machine;
+pub mod outcome;
+pub mod part;
+pub mod places;
+pub mod pool;
+pub mod seeds;
+pub mod statistics;
+pub mod text;
