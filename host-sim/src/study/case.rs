@@ -32,6 +32,10 @@ const SOFTEST: f64 = 1.0 / 250.0;
 /// No height of the wall is farther off than this share of the allowance.
 const FARTHEST: f64 = 0.5;
 
+/// The cutter is nowhere pushed farther than this by the mean force on the uncorrected part, mm: the jobs state a clamp of
+/// 1 mm, which a corrected part, cut to its full depth, then has room in.
+const PUSHED_MM: f64 = 0.6;
+
 /// Least wall error worth a case, mm.
 const LEAST_MM: f64 = 0.045;
 
@@ -168,8 +172,10 @@ fn scaled(pass: &Pass, drawn: &mut Drawn) -> Result<(Milled, Judged), Failure> {
         let c = &drawn.machine.compliance_mm_per_n;
         let softer = SOFTEST / (0.5 * (c[0][0] + c[1][1]));
         let farther = FARTHEST * allowance / judged.score.worst_height_mm.max(1e-6);
+        let pushed = milled.samples.iter().map(|s| (s.actual[0] - s.commanded[0]).hypot(s.actual[1] - s.commanded[1]));
+        let pushed = PUSHED_MM / pushed.fold(1e-6, f64::max);
         // A softer machine also cuts less, so the error grows more slowly than the compliance.
-        let factor = ratio.min(softer).min(farther).clamp(0.05, 4.0);
+        let factor = ratio.min(softer).min(farther).min(pushed).clamp(0.05, 4.0);
         if trials == TRIALS || (factor - 1.0).abs() < CLOSE {
             return Ok((milled, judged));
         }
