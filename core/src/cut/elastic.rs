@@ -150,28 +150,36 @@ impl Loop<'_> {
     /// Displacement of the cutter from the nominal centre at the instant it makes the wall at a height, given as a
     /// fraction 0…1 of the engaged depth above the tip.
     pub fn at_height(&self, state: &State, fraction: Real) -> Vector {
-        state.commanded + self.deflection_parts(state, fraction).1
+        let force = self.force_at(state, fraction).total(state.chip_scale);
+        state.commanded + self.displaced(state, fraction, force)
     }
 
     /// Deflection at a height: (its chip part, the whole).
     pub fn deflection_parts(&self, state: &State, fraction: Real) -> (Vector, Vector) {
-        let force = match self.path.setup().law {
-            WallLaw::Mean => self.mean(state.engaged),
-            WallLaw::Helical => {
-                let setup = self.path.setup();
-                self.table.at_height(
-                    (setup, self.path.helix()),
-                    &self.coefficients,
-                    state.engaged,
-                    setup.axial_depth * fraction,
-                )
-            }
-        };
-        let factor = self.compliance.height_factor(fraction);
-        let heading = self.path.setup().wall.heading(state.normal);
-        let displaced = |f: (Real, Real)| self.compliance.displacement(state.normal, heading, f).scaled(factor);
+        let force = self.force_at(state, fraction);
         let chip = (force.chip_n * state.chip_scale, force.chip_t * state.chip_scale);
-        (displaced(chip), displaced(force.total(state.chip_scale)))
+        let whole = force.total(state.chip_scale);
+        (self.displaced(state, fraction, chip), self.displaced(state, fraction, whole))
+    }
+
+    /// The force at the instant the wall at a height is made.
+    fn force_at(&self, state: &State, fraction: Real) -> SplitForce {
+        let setup = self.path.setup();
+        match setup.law {
+            WallLaw::Mean => self.mean(state.engaged),
+            WallLaw::Helical => self.table.at_height(
+                (setup, self.path.helix()),
+                &self.coefficients,
+                state.engaged,
+                setup.axial_depth * fraction,
+            ),
+        }
+    }
+
+    /// What a force (normal, tangential) displaces the cutter by at a height.
+    fn displaced(&self, state: &State, fraction: Real, force: (Real, Real)) -> Vector {
+        let heading = self.path.setup().wall.heading(state.normal);
+        self.compliance.displacement(state.normal, heading, force).scaled(self.compliance.height_factor(fraction))
     }
 }
 

@@ -48,10 +48,9 @@ impl<'a> Envelope<'a> {
         let wall = self.path.wall(sample);
         let gap = |at: usize| self.gap(at, sample, wall);
         let mut best = (index, gap(index)?);
+        let lower = |at: usize, best: Offset| self.lower(at, sample, wall, best);
         let mut consider = |at: usize| {
-            if let Some(g) = gap(at)
-                && g < best.1
-            {
+            if let Some(g) = lower(at, best.1) {
                 best = (at, g);
             }
         };
@@ -78,7 +77,11 @@ impl<'a> Envelope<'a> {
         let mut stride = (far / 8).max(1);
         while stride > 0 {
             let from = best.0;
-            consider_around(&gap, &mut best, from, stride);
+            for at in [from.saturating_sub(stride), from.saturating_add(stride)] {
+                if let Some(g) = lower(at, best.1) {
+                    best = (at, g);
+                }
+            }
             if best.0 == from {
                 stride /= 2;
             }
@@ -93,6 +96,23 @@ impl<'a> Envelope<'a> {
 
     /// How far the circle at sample `at` ends short of the wall point, along the normal; `None` when it passes beside.
     fn gap(&self, at: usize, sample: &Sample, wall: Point) -> Option<Offset> {
+        self.reach(at, sample, wall).map(|(ahead, square)| ahead - root(square))
+    }
+
+    /// The gap at sample `at` where it is below another. Most are not, and that is seen without a root: with
+    /// q = ahead − best the gap is no less than best when q² ≥ r² − beside².
+    fn lower(&self, at: usize, sample: &Sample, wall: Point, best: Offset) -> Option<Offset> {
+        let (ahead, square) = self.reach(at, sample, wall)?;
+        let q = (ahead - best).nm();
+        if q >= 0 && q.saturating_mul(q) >= square {
+            return None;
+        }
+        Some(ahead - root(square)).filter(|g| *g < best)
+    }
+
+    /// Of the circle at sample `at`: distance of the wall point from its centre along the normal, and r² − beside², nm²;
+    /// `None` when it passes beside.
+    fn reach(&self, at: usize, sample: &Sample, wall: Point) -> Option<(Offset, i64)> {
         let displacement = *self.displacements.get(at.checked_sub(self.from)?)?;
         let centre = self.path.samples().get(at)?.point + displacement;
         let v = wall.from(centre);
@@ -100,21 +120,12 @@ impl<'a> Envelope<'a> {
         let beside = v.along(self.path.setup().wall.heading(normal)).nm();
         let r = self.path.setup().radius.nm();
         let square = r.saturating_mul(r).saturating_sub(beside.saturating_mul(beside));
-        if square <= 0 {
-            return None;
-        }
-        Some(v.along(normal) - Offset::from_nm(isqrt_rounded(square.unsigned_abs().into()) as i64))
+        (square > 0).then(|| (v.along(normal), square))
     }
 }
 
-fn consider_around(gap: &impl Fn(usize) -> Option<Offset>, best: &mut (usize, Offset), from: usize, stride: usize) {
-    for at in [from.saturating_sub(stride), from.saturating_add(stride)] {
-        if let Some(g) = gap(at)
-            && g < best.1
-        {
-            *best = (at, g);
-        }
-    }
+fn root(square: i64) -> Offset {
+    Offset::from_nm(isqrt_rounded(square.unsigned_abs().into()) as i64)
 }
 
 /// Lowest point of the parabola through three even places, the middle one being the lowest.

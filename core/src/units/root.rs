@@ -1,12 +1,23 @@
 //! Square roots of integers, rounded to nearest.
+//!
+//! A table gives the reciprocal root of a number normalised to 64 bits, Newton's steps refine it; they multiply and never
+//! divide: a division of 64 bits is slow on a PC and a routine on the microcontroller, and the root is the heart of the
+//! wall's envelope. The remainder makes the result exact, so nothing but the time depends on the approximation.
 
 use super::Offset;
 
 /// The square root of an integer, rounded to nearest (exact: no tie exists). Error ≤ 1/2.
 pub const fn isqrt_rounded(value: u128) -> u128 {
-    let root = value.isqrt();
-    // value > (root + 1/2)² exactly when value − root² > root.
-    if value.saturating_sub(root.saturating_mul(root)) > root { root.saturating_add(1) } else { root }
+    if value >> 64 == 0 {
+        let value = value as u64;
+        let root = floor_64(value);
+        // value > (root + 1/2)² exactly when value − root² > root.
+        let up = value.wrapping_sub(root.wrapping_mul(root)) > root;
+        return root.wrapping_add(up as u64) as u128;
+    }
+    let root = floor_128(value);
+    let up = value.wrapping_sub(square(root)) > root as u128;
+    (root as u128).wrapping_add(up as u128)
 }
 
 /// The length of (x, y), rounded to the nanometre, saturating.
@@ -17,20 +28,137 @@ pub const fn hypot_nm(x: Offset, y: Offset) -> Offset {
     if root > i64::MAX as u128 { Offset::MAX } else { Offset::from_nm(root as i64) }
 }
 
+const fn square(v: u64) -> u128 {
+    (v as u128).wrapping_mul(v as u128)
+}
+
+const fn floor_64(value: u64) -> u64 {
+    if value == 0 {
+        return 0;
+    }
+    let shift = value.leading_zeros() & !1;
+    normalised(value << shift).0 >> (shift / 2)
+}
+
+/// For a value of more than 64 bits.
+const fn floor_128(value: u128) -> u64 {
+    let shift = value.leading_zeros() & !1;
+    let n = value << shift;
+    let (leading, reciprocal) = normalised((n >> 64) as u64);
+    // The root of the upper half is half of the digits; what it leaves of n, over twice the root, is the other half. The
+    // second time removes what the reciprocal's 30 bits left.
+    let mut root = leading << 32;
+    let mut times = 0;
+    while times < 2 {
+        let rest = (n.wrapping_sub(square(root)) as i128) >> 40;
+        root = root.saturating_add_signed((rest.wrapping_mul(reciprocal as i128) >> 56) as i64);
+        times = i32::wrapping_add(times, 1);
+    }
+    while square(root) > n {
+        root = root.wrapping_sub(1);
+    }
+    while n.wrapping_sub(square(root)) > (root as u128) << 1 {
+        root = root.wrapping_add(1);
+    }
+    root >> (shift / 2)
+}
+
+/// For n ≥ 2⁶²: (⌊√n⌋, 2⁶³/√n to about 30 bits).
+const fn normalised(n: u64) -> (u64, u64) {
+    let mut x = first(n);
+    let m = n >> 32;
+    let mut times = 0;
+    while times < 2 {
+        // x ← x·(3 − m·x²)/2 with 31 fractional bits; from 8 good bits to 15, to 30.
+        let product = m.wrapping_mul(x.wrapping_mul(x) >> 32) >> 31;
+        x = x.saturating_mul((3u64 << 31).wrapping_sub(product)) >> 32;
+        times = i32::wrapping_add(times, 1);
+    }
+    let mut root = within_32(m.wrapping_mul(x) >> 31);
+    // What it leaves of n, over twice the root.
+    let rest = n.wrapping_sub(root.wrapping_mul(root)) as i64;
+    root = within_32(root.wrapping_add_signed((rest >> 8).wrapping_mul(x as i64) >> 56));
+    while root.wrapping_mul(root) > n {
+        root = root.wrapping_sub(1);
+    }
+    while n.wrapping_sub(root.wrapping_mul(root)) > root << 1 {
+        root = root.wrapping_add(1);
+    }
+    (root, x)
+}
+
+/// No root of 64 bits has more than 32.
+const fn within_32(root: u64) -> u64 {
+    if root > u32::MAX as u64 { u32::MAX as u64 } else { root }
+}
+
+/// The reciprocal root of the middle of the interval that the leading byte of n (64…255) stands for.
+#[expect(clippy::indexing_slicing, reason = "a byte is below 256")]
+const fn first(n: u64) -> u64 {
+    (RECIPROCAL_ROOTS[(n >> 56) as u8 as usize] as u64) << 16
+}
+
+/// 2¹⁵/√m at the middles of intervals of m, 1/256 wide.
+static RECIPROCAL_ROOTS: [u16; 256] = {
+    let mut table = [u16::MAX; 256];
+    let mut rest: &mut [u16] = &mut table;
+    let mut byte = 0u64;
+    while let [slot, behind @ ..] = rest {
+        // √(2³⁰/m), m = (byte + 1/2)/256.
+        let root = (1u64 << 39).div_euclid(byte.wrapping_mul(2).wrapping_add(1)).isqrt();
+        *slot = if root > u16::MAX as u64 { u16::MAX } else { root as u16 };
+        byte = byte.wrapping_add(1);
+        rest = behind;
+    }
+    table
+};
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::arithmetic_side_effects)]
     use super::*;
     use proptest::prelude::*;
 
+    /// The root of the standard library, rounded.
+    fn expected(v: u128) -> u128 {
+        let root = v.isqrt();
+        root + u128::from(v - root * root > root)
+    }
+
+    #[test]
+    fn roots_about_every_power_of_two_and_its_squares_are_exact() {
+        for bits in 0..128u32 {
+            let power = 1u128 << bits;
+            for near in 0..200 {
+                for v in [power.wrapping_add(near), power.wrapping_sub(near), u128::MAX - near] {
+                    assert_eq!(isqrt_rounded(v), expected(v), "{v}");
+                }
+                let root = (power >> (bits / 2)).wrapping_sub(near) & u128::from(u64::MAX);
+                for v in [root * root, (root * root).wrapping_sub(1), root * root + root, root * root + root + 1] {
+                    assert_eq!(isqrt_rounded(v), expected(v), "{v}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn roots_of_every_leading_byte_are_exact_at_both_ends_of_it() {
+        for byte in 64..=256u128 {
+            for shift in [56u32, 54, 120, 119] {
+                let edge = if byte == 256 && shift == 120 { u128::MAX } else { byte << shift };
+                for v in [edge - 2, edge - 1, edge, edge.saturating_add(1)] {
+                    assert_eq!(isqrt_rounded(v), expected(v), "{v}");
+                }
+            }
+        }
+    }
+
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4096))]
         #[test]
-        fn root_is_the_nearest_integer(v in any::<u128>()) {
-            let v = v >> 4;
-            let r = isqrt_rounded(v);
-            // (r − 1/2)² ≤ v ≤ (r + 1/2)², in whole numbers.
-            prop_assert!(r * r - r < v || r == 0);
-            prop_assert!(v <= r * r + r);
+        fn root_is_the_nearest_integer(v in any::<u128>(), drop in 0u32..127) {
+            let v = v >> drop;
+            prop_assert_eq!(isqrt_rounded(v), expected(v));
         }
     }
 }
