@@ -7,6 +7,7 @@ pub mod command;
 pub mod correction;
 pub mod diagnostics;
 pub mod feature;
+pub mod feed;
 pub mod image;
 pub mod job;
 pub mod library;

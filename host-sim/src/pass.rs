@@ -13,6 +13,7 @@ use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::feature::{self, FeaturePass, FeatureSummary, Plan};
+use crate::feed::Schedule;
 use crate::job::Job;
 use crate::refusal::Inputs;
 use crate::report::mm;
@@ -210,11 +211,24 @@ impl Pass {
     /// # Errors
     /// When an outside arc is so tight that it leaves no wall.
     pub fn sample<'a>(&self, buffer: &'a mut PathBuffer) -> Result<Path<'a>, Failure> {
+        self.sample_fed(buffer, None)
+    }
+
+    /// Samples the path with the feeds of a schedule, where there is one, in place of those of the program.
+    ///
+    /// # Errors
+    /// As [`Pass::sample`].
+    pub fn sample_fed<'a>(&self, buffer: &'a mut PathBuffer, schedule: Option<&Schedule>) -> Result<Path<'a>, Failure> {
         let contour = self.path_contour();
         let needed = Path::samples_needed(&contour, &self.core.setup, self.core.step());
+        let fed = |sample: &mut Sample| {
+            if let Some(schedule) = schedule {
+                sample.feed = schedule.feed(sample.s, sample.feed);
+            }
+        };
         let Some(surface) = &self.surface else {
             buffer.0 = vec![Sample::BLANK; needed];
-            return self.core.sample(&contour, &mut buffer.0).map_err(|error| self.refused(&error));
+            return self.core.sample_shaped(&contour, &mut buffer.0, fed).map_err(|error| self.refused(&error));
         };
         let mut even = vec![Sample::BLANK; needed];
         let stock: Vec<Point> = {
@@ -227,8 +241,11 @@ impl Pass {
         buffer.0 = even;
         // The walk gives the samples in the same order again.
         let mut next = stock.into_iter();
-        let surface = |sample: &Sample| next.next().unwrap_or(sample.stock);
-        self.core.sample_over(&contour, &mut buffer.0, surface).map_err(|error| self.refused(&error))
+        let shape = |sample: &mut Sample| {
+            sample.stock = next.next().unwrap_or(sample.stock);
+            fed(sample);
+        };
+        self.core.sample_shaped(&contour, &mut buffer.0, shape).map_err(|error| self.refused(&error))
     }
 }
 

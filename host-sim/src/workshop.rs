@@ -1,7 +1,7 @@
 //! The plant in the service of a pass: nominal path and cut handed over in float, and nothing of the model.
 
 use truepath_core::gcode::Spindle;
-use truepath_core::geometry::{Point, Shape, Side};
+use truepath_core::geometry::{Block, Point, Shape, Side};
 use truepath_core::units::Real;
 
 use crate::diagnostics::Failure;
@@ -79,6 +79,44 @@ pub fn mill(pass: &Pass, machine: &plant::Machine, commanded: Option<&[plant::Po
     plant::mill(&path, &cut(pass), machine, commanded).map_err(|e| refused(&e))
 }
 
+/// Mills a pass with a corrected program: along its path and at its feeds.
+///
+/// # Errors
+/// What the plant refuses, and whatever is wrong with the program.
+pub fn mill_program(pass: &Pass, machine: &plant::Machine, text: &[u8]) -> Result<Milled, Failure> {
+    let blocks = contour(pass, text)?;
+    let path = path(pass).map_err(|e| refused(&e))?;
+    let mut cut = cut(pass);
+    if pass.job.numbers.cut.feed_mm_per_min.is_none() {
+        (cut.feed_mm_per_min, cut.feed_changes) = feeds(&path, &blocks);
+    }
+    plant::mill(&path, &cut, machine, Some(&centres(&blocks))).map_err(|e| refused(&e))
+}
+
+/// How far beyond the length of a block its end is looked for, mm.
+const DRIFT_MM: f64 = 2.0;
+
+/// The feed at the start, and where it changes along the nominal path.
+fn feeds(path: &plant::Path, blocks: &[Block]) -> (f64, Vec<plant::FeedChange>) {
+    let mut at = 0;
+    let mut feed = blocks.first().map_or(0.0, |b| float(b.feed));
+    let first = feed;
+    let mut changes = Vec::new();
+    for block in blocks {
+        if float(block.feed) != feed {
+            feed = float(block.feed);
+            changes.push(plant::FeedChange { from_s_mm: path.s_mm[at], feed_mm_per_min: feed });
+        }
+        // Where the block ends: the path may come near that place again later, so only a stretch onwards is looked at.
+        let end = coordinates(block.curve.end());
+        let off = |k: &usize| (path.centre[*k][0] - end[0]).hypot(path.centre[*k][1] - end[1]);
+        let reach = path.s_mm[at] + 1.1 * mm(block.curve.length()) + DRIFT_MM;
+        let stretch = (at..path.s_mm.len()).take_while(|k| path.s_mm[*k] <= reach);
+        at = stretch.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(at);
+    }
+    (first, changes)
+}
+
 /// Touches a milled part and writes the file LinuxCNC's PROBEOPEN would.
 ///
 /// # Errors
@@ -119,13 +157,21 @@ pub fn probe_shifted(
 /// # Errors
 /// Whatever is wrong with the program.
 pub fn commanded(pass: &Pass, text: &[u8]) -> Result<Vec<plant::Point>, Failure> {
+    Ok(centres(&contour(pass, text)?))
+}
+
+/// The contour of a corrected program.
+fn contour(pass: &Pass, text: &[u8]) -> Result<Vec<Block>, Failure> {
     let source = crate::diagnostics::Source::new(format!("{} (corrected)", pass.program.name()), text.to_vec());
-    let blocks = crate::pass::read_blocks(&source)?.0;
+    Ok(crate::pass::read_blocks(&source)?.0)
+}
+
+fn centres(blocks: &[Block]) -> Vec<plant::Point> {
     let mut points = Vec::new();
-    for block in &blocks {
+    for block in blocks {
         let pieces = (mm(block.curve.length()) / 0.02).ceil().max(1.0) as i64;
         let skip = i64::from(!points.is_empty());
         points.extend((skip..=pieces).map(|k| coordinates(block.curve.point(Real::ratio(k, pieces)))));
     }
-    Ok(points)
+    points
 }

@@ -43,7 +43,7 @@ fn edits(program: &str, by: impl Fn(f64, [f64; 2]) -> [f64; 2]) -> Vec<BlockEdit
             let d = by(s.nm() as f64 * 1e-6, [real(left.x), real(left.y)]);
             [place.point.x.nm() + (d[0] * 1e6).round() as i64, place.point.y.nm() + (d[1] * 1e6).round() as i64]
         };
-        BlockEdit { line: block.line, samples: (0..=count).map(sample).collect() }
+        BlockEdit::new(block.line, (0..=count).map(sample).collect())
     };
     let mut edits: Vec<_> = blocks.iter().enumerate().map(edit).collect();
     for i in 1..edits.len() {
@@ -350,16 +350,16 @@ fn an_axis_that_the_line_after_the_contour_does_not_name_returns_to_its_place() 
 fn a_contour_whose_start_no_move_sets_is_refused() {
     let program = "G21 G90 M3 S1500\nG0 X34 Y80\nG28\nG1 X34 Y35 F400\nG1 Z-15\nG1 X34 Y80\nG1 X0 Y80\nM2\n";
     let at = |y: i64| [34_000_000, y];
-    let edit = BlockEdit { line: 6, samples: vec![at(35_100_000), at(60_000_000), at(80_000_000)] };
-    let second = BlockEdit { line: 7, samples: vec![at(80_000_000), [0, 80_000_000]] };
+    let edit = BlockEdit::new(6, vec![at(35_100_000), at(60_000_000), at(80_000_000)]);
+    let second = BlockEdit::new(7, vec![at(80_000_000), [0, 80_000_000]]);
     let source = Source::new("corner.nc", program.as_bytes().to_vec());
     // The start is set by a plain G1 here, which may move.
     assert!(rewrite_program(&source, &[edit, second], &options()).is_ok());
     // Here the contour begins where the machine happens to stand.
     let program = "G21 G90 M3 S1500\nG1 Z-15 F400\nG1 X34\nG1 Y80\nM2\n";
     let edits = [
-        BlockEdit { line: 3, samples: vec![[0, 100_000], [34_000_000, 100_000]] },
-        BlockEdit { line: 4, samples: vec![[34_000_000, 100_000], at(80_000_000)] },
+        BlockEdit::new(3, vec![[0, 100_000], [34_000_000, 100_000]]),
+        BlockEdit::new(4, vec![[34_000_000, 100_000], at(80_000_000)]),
     ];
     let source = Source::new("corner.nc", program.as_bytes().to_vec());
     let mut options = options();
@@ -372,7 +372,7 @@ fn a_contour_whose_start_no_move_sets_is_refused() {
 fn the_program_of_a_mirrored_path_is_the_mirrored_program() {
     let mirrored = CORNER.replace('X', "X-").replace("I5", "I-5").replace("G03", "G02");
     let upright = edits(CORNER, bump);
-    let mirror = |e: &BlockEdit| BlockEdit { line: e.line, samples: e.samples.iter().map(|s| [-s[0], s[1]]).collect() };
+    let mirror = |e: &BlockEdit| BlockEdit::new(e.line, e.samples.iter().map(|s| [-s[0], s[1]]).collect());
     let reference = blocks(&text(&rewrite(CORNER, &upright)));
     let flipped = blocks(&text(&rewrite(&mirrored, &upright.iter().map(mirror).collect::<Vec<_>>())));
     assert_eq!(reference.len(), flipped.len());

@@ -135,7 +135,7 @@ fn edits(blocks: &[Block], wave: [f64; 4]) -> Vec<BlockEdit> {
         if let Some(before) = edits.last() {
             samples[0] = *before.samples.last().expect("a sample");
         }
-        edits.push(BlockEdit { line: block.line, samples });
+        edits.push(BlockEdit::new(block.line, samples));
     }
     edits
 }

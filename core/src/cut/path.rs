@@ -116,6 +116,21 @@ impl<'a> Path<'a> {
         buffer: &'a mut [Sample],
         mut surface: impl FnMut(&Sample) -> Point,
     ) -> Result<Self, PathError> {
+        Self::sample_shaped(contour, setup, step, buffer, |sample| sample.stock = surface(sample))
+    }
+
+    /// Samples a contour whose stock and feed `shape` may change, sample by sample: another surface, as in
+    /// [`Path::sample_over`], or a feed that changes within a block.
+    ///
+    /// # Errors
+    /// As [`Path::sample`].
+    pub fn sample_shaped(
+        contour: &Contour,
+        setup: &CutSetup,
+        step: Offset,
+        buffer: &'a mut [Sample],
+        mut shape: impl FnMut(&mut Sample),
+    ) -> Result<Self, PathError> {
         for block in contour.blocks() {
             // The wall lies inside an arc that turns towards it: the arc must be as wide as the cutter (and is
             // exactly that where a control rolls round a sharp corner).
@@ -132,9 +147,10 @@ impl<'a> Path<'a> {
             return Err(PathError::BufferTooShort { needed, lent });
         }
         let mut slots = buffer.iter_mut();
-        walk(contour, setup, step, |sample| {
+        walk(contour, setup, step, |mut sample| {
             if let Some(slot) = slots.next() {
-                *slot = Sample { stock: surface(&sample), ..sample };
+                shape(&mut sample);
+                *slot = sample;
             }
         });
         let used = buffer.get_mut(..needed).unwrap_or_default();

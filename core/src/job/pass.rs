@@ -97,7 +97,20 @@ impl Pass {
         &self,
         contour: &Contour,
         buffer: &'a mut [Sample],
-        surface: impl FnMut(&Sample) -> Point,
+        mut surface: impl FnMut(&Sample) -> Point,
+    ) -> Result<Path<'a>, JobError> {
+        self.sample_shaped(contour, buffer, |sample| sample.stock = surface(sample))
+    }
+
+    /// The same with the stock and the feed that `shape` gives each sample, see [`Path::sample_shaped`].
+    ///
+    /// # Errors
+    /// As [`Pass::sample`].
+    pub fn sample_shaped<'a>(
+        &self,
+        contour: &Contour,
+        buffer: &'a mut [Sample],
+        shape: impl FnMut(&mut Sample),
     ) -> Result<Path<'a>, JobError> {
         let lent = buffer.len();
         // Every block but the first may save one sample.
@@ -106,7 +119,7 @@ impl Pass {
         if least > lent {
             return Err(JobError::full(Buffer::Samples, least, lent));
         }
-        Path::sample_over(contour, &self.setup, self.step(), buffer, surface).map_err(|error| match error {
+        Path::sample_shaped(contour, &self.setup, self.step(), buffer, shape).map_err(|error| match error {
             PathError::NoWall { line } => JobError::Undercut { line },
             PathError::BufferTooShort { needed, lent } => JobError::full(Buffer::Samples, needed, lent),
         })

@@ -8,6 +8,7 @@ use truepath_core::job;
 use truepath_core::probe::Contact;
 
 use super::doubts::{doubts, kinked, misread};
+use super::feeds;
 use super::levels::{self, Levels};
 use super::second_pass;
 use crate::correction::{Correction, Identified, corrected, identified};
@@ -139,11 +140,21 @@ pub(super) fn design(
     let table = identified.table();
     let machine = identified.machine(&path, &table);
     let law = job::law(&pass.core, &machine, contacts);
+    let mut feeds = feeds::planned(pass, &machine, &identified, !contacts.is_empty(), routes)?;
+    feeds.compare(pass, &machine, &identified, law);
+    let mut fed = PathBuffer::default();
+    let path = match &feeds.schedule {
+        Some(schedule) => pass.sample_fed(&mut fed, Some(schedule))?.with_law(identified.law()),
+        None => path,
+    };
+    let machine = identified.machine(&path, &table);
     let correction = corrected(pass, &machine, &identified, law, |share| progress(0.2 + 0.7 * share))?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.texts.iter().cloned());
     warnings.extend(doubts(pass, &identified, &correction, &machine));
+    warnings.extend(feeds.doubts(mm(correction.sigma.iter().copied().max().unwrap_or_default())));
     let mut summary = correct_summary(pass, &identified, &correction, remarks.set_aside, warnings);
+    summary.feed = feeds.summary;
     let (mut program, mut image, mut other_images) = (None, None, Vec::new());
     let mut levels = Levels::default();
     for route in routes {
@@ -151,7 +162,7 @@ pub(super) fn design(
             Route::Program => {
                 let mut edits = Vec::new();
                 levels = levels::each(pass, &path, |_, pass, path| {
-                    edits.extend(block_edits(pass, path, &correction.nodes));
+                    edits.extend(block_edits(pass, path, &correction.nodes, feeds.schedule.as_ref()));
                     Ok(())
                 })?;
                 let written = corrected_program(pass, remarks.probe, &edits)?;
@@ -227,8 +238,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     };
     if let Some(text) = &done.program {
         folder.write("corrected.nc", text)?;
-        let difference = done.summary.program.as_ref().map(|d| d.text(pass.program.name()));
-        folder.write("difference.txt", difference.unwrap_or_default().as_bytes())?;
+        folder.write("difference.txt", done.summary.difference(pass.program.name()).as_bytes())?;
     }
     if let Some(bytes) = &done.image {
         folder.write("correction.tpi", bytes)?;

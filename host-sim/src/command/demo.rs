@@ -139,8 +139,7 @@ fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(
     out.write("plant.toml", story.plant.as_bytes())?;
     out.write("probe.txt", probe.as_bytes())?;
     out.write("corrected.nc", text)?;
-    let difference = corrected.summary.program.as_ref().map(|d| d.text("program.nc"));
-    out.write("difference.txt", difference.unwrap_or_default().as_bytes())?;
+    out.write("difference.txt", corrected.summary.difference("program.nc").as_bytes())?;
     out.write("correction.tpi", corrected.image.as_deref().unwrap_or_default())?;
     out.write("correction.csv", &corrected.table)?;
     out.write("summary.json", &json(&corrected.summary)?)?;

@@ -4,6 +4,7 @@ pub mod correct;
 pub mod demo;
 pub mod device;
 mod doubts;
+mod feeds;
 mod first_pass;
 pub mod hil;
 pub mod inspect;

@@ -11,6 +11,7 @@ use truepath_core::units::{Offset, Real};
 
 use super::check_correct::correct;
 use super::check_feature::features;
+use super::check_feed::feed;
 use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
 use super::check_tool::{reach, tool};
@@ -71,6 +72,7 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         machine(&root.required_section("machine", "stiffness_x_n_per_mm and stiffness_y_n_per_mm")?)?;
     let probe = root.section("probe")?.map(|section| probe(&source, &section)).transpose()?;
     let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
+    let feed = feed(root.section("feed")?.as_ref())?;
     root.close()?;
     let program = folder.join(program.0);
     let Stock { allowance, surface } = stock;
@@ -96,6 +98,7 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         max_arc_radius: writing.max_arc_radius,
         max_kink_deg: writing.max_kink_deg,
         route: writing.route,
+        feed,
         surface,
         features,
         which: Which::default(),

@@ -23,6 +23,7 @@
 mod check;
 mod check_correct;
 mod check_feature;
+mod check_feed;
 mod check_probe;
 mod check_stock;
 mod check_tool;
@@ -42,6 +43,7 @@ use crate::surface::Surface;
 
 pub(crate) use check_feature::is_id;
 pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
+pub use check_feed::{FeedTable, ForceLimit};
 pub use check_probe::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
 pub use decimal::Decimal;
 pub use material::{MATERIALS, Material};
@@ -63,6 +65,8 @@ pub struct Job {
     pub max_kink_deg: f64,
     /// Where the correction is applied.
     pub route: Route,
+    /// How far the feeds along the contour may be changed; `None` leaves every F word.
+    pub feed: Option<FeedTable>,
     /// The actual surface of the stock, as a path that can be opened; its allowance follows from it.
     pub surface: Option<PathBuf>,
     /// The `[[feature]]` tables.

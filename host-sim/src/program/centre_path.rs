@@ -127,7 +127,7 @@ impl Writer<'_> {
                 let counter_clockwise = sweep.bits() > 0;
                 let centre = [centre.x.nm() as f64, centre.y.nm() as f64];
                 let words = pen.draw(target, &Shape::Arc { centre, counter_clockwise });
-                block.moved(Motion::Arc { counter_clockwise }, false, &words, false)
+                block.moved(Motion::Arc { counter_clockwise }, false, &words, false, None)
             }
             _ => {
                 let found = "this move cannot be written where compensation (G41, G42) leads the cutter's centre";

@@ -60,8 +60,11 @@ pub struct Difference {
     pub steps_outside_compared: usize,
     /// Moves among them.
     pub moves_outside_compared: usize,
-    /// F words along the contour, all the same.
+    /// F words along the contour: all the same, or the wanted percentages.
     pub feeds_along_compared: usize,
+    /// Whether feeds along the contour were to change.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub feeds_scheduled: bool,
 }
 
 impl Difference {
@@ -93,6 +96,7 @@ impl Difference {
             steps_outside_compared: proof.steps_outside,
             moves_outside_compared: proof.moves_outside,
             feeds_along_compared: proof.feeds,
+            feeds_scheduled: edits.iter().any(|edit| !edit.feeds.is_empty()),
         }
     }
 
@@ -122,7 +126,7 @@ impl Difference {
              \n\
              Both programs were then read and compared step by step:\n\
              {} steps outside the contour, {} of them moves: the same, but for the ends at the contour.\n\
-             Along the contour: feeds ({} F words), speeds, heights, modes, comments, functions and block numbers are the same.\n\
+             Along the contour: {}speeds, heights, modes, comments, functions and block numbers are the same.\n\
              All lines not named above have kept their bytes. Nothing else changed.\n",
             self.program_lines,
             self.contour_lines_changed,
@@ -149,7 +153,14 @@ impl Difference {
             self.max_kink_deg,
             self.steps_outside_compared,
             self.moves_outside_compared,
-            self.feeds_along_compared,
+            if self.feeds_scheduled {
+                format!(
+                    "{} F words are the wanted percentages of the programmed feeds, put back behind it;\n",
+                    self.feeds_along_compared
+                )
+            } else {
+                format!("feeds ({} F words), ", self.feeds_along_compared)
+            },
         );
         text
     }

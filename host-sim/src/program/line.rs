@@ -106,16 +106,30 @@ impl<'a> Block<'a> {
 
     /// The line with its coordinates replaced by `coordinates` (words separated by one space) and its motion by
     /// `motion`, which is written only where the line names one or `needed`. Codes that act after the move are left
-    /// out when `more` lines of the same move follow; they belong to the last one.
-    pub(super) fn moved(&self, motion: Motion, needed: bool, coordinates: &str, more: bool) -> Vec<u8> {
+    /// out when `more` lines of the same move follow; they belong to the last one. `feed` is the value of its F word,
+    /// where that becomes another one.
+    pub(super) fn moved(
+        &self,
+        motion: Motion,
+        needed: bool,
+        coordinates: &str,
+        more: bool,
+        feed: Option<&str>,
+    ) -> Vec<u8> {
         let mut edits: Vec<(Range<usize>, String)> = Vec::new();
+        let mut coordinates = coordinates.to_owned();
+        match (feed, self.word(b'F')) {
+            (Some(feed), Some(word)) => edits.push((self.word_range(word), self.spelt(&format!("F{feed}")))),
+            (Some(feed), None) => coordinates += &format!(" F{feed}"),
+            (None, _) => {}
+        }
         let named = self.motion_word();
         if let Some(word) = named
             && word.value.and_then(|v| v.exactly_times(10)) != Some(i64::from(motion.code().tenths()))
         {
             edits.push((self.word_range(word), self.spelt(&self.motion_text(motion))));
         }
-        let mut text = self.spelt(coordinates);
+        let mut text = self.spelt(&coordinates);
         if named.is_none() && needed {
             text = format!("{}{}{text}", self.spelt(&self.motion_text(motion)), self.style.gap);
         }
@@ -142,11 +156,7 @@ impl<'a> Block<'a> {
 
     /// A further line of the same move.
     pub(super) fn further(&self, motion: Motion, coordinates: &str, last: bool) -> Vec<u8> {
-        let indent = self.line.text.iter().take_while(|b| matches!(b, b' ' | b'\t')).count();
-        let mut text = self.line.text.get(..indent).unwrap_or_default().to_vec();
-        if let Some(token @ Token::BlockDelete { .. }) = self.tokens.first() {
-            text.extend_from_slice(self.line.text.get(self.range(token)).unwrap_or_default());
-        }
+        let mut text = self.start();
         text.extend_from_slice(self.spelt(&format!("{} {coordinates}", self.motion_text(motion))).as_bytes());
         if last {
             for word in self.words().filter(|w| acts_after_move(w)) {
@@ -154,6 +164,26 @@ impl<'a> Block<'a> {
                 text.extend_from_slice(self.line.text.get(self.word_range(word)).unwrap_or_default());
             }
         }
+        self.end(text)
+    }
+
+    /// A line with nothing but these words.
+    pub(super) fn alone(&self, words: &str) -> Vec<u8> {
+        let mut text = self.start();
+        text.extend_from_slice(self.spelt(words).as_bytes());
+        self.end(text)
+    }
+
+    /// What stands before the words of a further line: indent and `/`.
+    fn start(&self) -> Vec<u8> {
+        let indent = self.line.text.iter().take_while(|b| matches!(b, b' ' | b'\t')).count();
+        let mut text = self.line.text.get(..indent).unwrap_or_default().to_vec();
+        if let Some(token @ Token::BlockDelete { .. }) = self.tokens.first() {
+            text.extend_from_slice(self.line.text.get(self.range(token)).unwrap_or_default());
+        }
+        text
+    }
+    fn end(&self, mut text: Vec<u8>) -> Vec<u8> {
         if self.style.ends_with_semicolon {
             text.push(b';');
         }

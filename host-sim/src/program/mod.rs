@@ -1,7 +1,7 @@
 //! The corrected program: the original text in which only the contour moves.
 //!
 //! Each line of the contour becomes one or more lines and arcs fitted to the corrected centre path ([`fit`]). Block
-//! numbers, comments, feeds, spelling and line ends stay; every other line keeps its bytes, except that
+//! numbers, comments, spelling and line ends stay, and so do feeds, unless others are asked for (`feed`); every other line keeps its bytes, except that
 //! * the moves that lead to the contour's start end at the corrected start,
 //! * lead-in and lead-out arcs outside the contour are displaced as a whole, so that they stay tangent,
 //! * the first straight XY move after the contour returns to its own place, an axis it does not name being added,
@@ -23,6 +23,7 @@ mod centre_path;
 mod departure;
 mod deviation;
 mod difference;
+mod feed;
 mod fit;
 mod grid;
 mod header;
@@ -56,6 +57,25 @@ pub struct BlockEdit {
     /// Points of the corrected centre path in program coordinates, nm, from the start of the block to its end and about
     /// 0.1 mm apart. The first one is the last one of the block before.
     pub samples: Vec<[i64; 2]>,
+    /// Where along the samples the feed changes, in order and from the first sample on; empty where every feed stays that
+    /// of the program.
+    pub feeds: Vec<FeedFrom>,
+}
+
+/// A feed from a point of a corrected path on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FeedFrom {
+    /// Index of the sample.
+    pub sample: usize,
+    /// Percent of the programmed feed.
+    pub percent: u16,
+}
+
+impl BlockEdit {
+    /// The corrected path of a line at the feed of the program.
+    pub const fn new(line: u32, samples: Vec<[i64; 2]>) -> Self {
+        Self { line, samples, feeds: Vec::new() }
+    }
 }
 
 /// What a program is rewritten for; it decides the comment at its head.

@@ -6,6 +6,7 @@ use truepath_core::units::Offset;
 
 use super::BlockEdit;
 use super::deviation::distance;
+use super::feed::spans;
 use super::fit::{Piece, Samples, Shape, fit};
 use super::pen::{Pen, place};
 use super::spacing::bulges;
@@ -36,6 +37,9 @@ impl Writer<'_> {
             if step.line != edit.line || !step.cuts() {
                 break;
             }
+            if !still.is_empty() {
+                self.restore_feed()?;
+            }
             for step in still.drain(..) {
                 self.follow(pen.under(&step.modal), step);
                 self.state_motion(step);
@@ -47,6 +51,7 @@ impl Writer<'_> {
             at += count;
             end = at;
         }
+        self.restore_feed()?;
         Ok(end)
     }
 
@@ -57,6 +62,12 @@ impl Writer<'_> {
         };
         self.refuse_what_cannot_be_divided(step)?;
         *pen = pen.under(&step.modal);
+        self.notice_feeds_before(step.line);
+        let spans = spans(edit);
+        let as_programmed = spans.iter().all(|span| span.2 == 100) && self.feed.is_none();
+        if !as_programmed {
+            self.refuse_several_feeds(cuts)?;
+        }
         let curves: Vec<Curve> = cuts.iter().filter_map(Move::curve).collect();
         let (Some(&begin), Some(&end), Some(from), Some(to)) =
             (edit.samples.first(), edit.samples.last(), place(step.from), place(last.to))
@@ -73,7 +84,7 @@ impl Writer<'_> {
                 && pen.is_at(from)
                 && Pen::new(end.map(|v| v as f64), &step.modal).is_at(to)
         };
-        if stays() && edit.samples.iter().all(|s| beside(s) <= 0.5 * tolerance) {
+        if as_programmed && stays() && edit.samples.iter().all(|s| beside(s) <= 0.5 * tolerance) {
             if self.motion != step.modal.motion && !step.modal.motion.is_some_and(|m| self.block(step.line).names(m)) {
                 self.state_motion(step);
             }
@@ -84,22 +95,29 @@ impl Writer<'_> {
         }
         let step_nm = pen.grid().step_nm();
         let within = (tolerance - step_nm).max(0.5 * tolerance);
-        let (pieces, points) = pieces(pen, &edit.samples, &curves, within, self.options.max_arc_radius);
         let block = self.original(step.line);
-        let mut text = Vec::new();
-        for (index, (piece, target)) in pieces.iter().zip(&points).enumerate() {
-            let motion = match piece.shape {
-                Shape::Line => Motion::Feed,
-                Shape::Arc { counter_clockwise, .. } => Motion::Arc { counter_clockwise },
-            };
-            let words = pen.draw(*target, &piece.shape);
-            let more = index + 1 < pieces.len();
-            text.push(if index == 0 {
-                block.moved(motion, self.motion != Some(motion), &words, more)
-            } else {
-                block.further(motion, &words, !more)
-            });
-            self.motion = Some(motion);
+        let own_feed = block.word(b'F').is_some();
+        let mut text: Vec<Vec<u8>> = Vec::new();
+        for (k, &(from, to, percent)) in spans.iter().enumerate() {
+            let samples = &edit.samples[from..=to];
+            let (pieces, points) = pieces(pen, samples, &curves, within, self.options.max_arc_radius);
+            for (index, (piece, target)) in pieces.iter().zip(&points).enumerate() {
+                let motion = match piece.shape {
+                    Shape::Line => Motion::Feed,
+                    Shape::Arc { counter_clockwise, .. } => Motion::Arc { counter_clockwise },
+                };
+                let mut words = pen.draw(*target, &piece.shape);
+                let more = k + 1 < spans.len() || index + 1 < pieces.len();
+                let first = text.is_empty();
+                let feed = if index == 0 { self.feed_word(step, percent, first && own_feed)? } else { None };
+                text.push(if first {
+                    block.moved(motion, self.motion != Some(motion), &words, more, feed.as_deref())
+                } else {
+                    words += &feed.map_or_else(String::new, |feed| format!(" F{feed}"));
+                    block.further(motion, &words, !more)
+                });
+                self.motion = Some(motion);
+            }
         }
         self.replaced.insert(step.line, text);
         Ok(())

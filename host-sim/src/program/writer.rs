@@ -11,6 +11,7 @@ use truepath_core::gcode::{Line, Lines, Motion};
 
 use super::assemble::{Replaced, assemble};
 use super::centre_path;
+use super::feed::Scheduled;
 use super::line::Block;
 use super::pen::Pen;
 use super::survey::Move;
@@ -42,6 +43,8 @@ pub(super) struct Writer<'a> {
     pub(super) unchanged: usize,
     /// Lines whose words lead beside the path of the cutter's centre: they are never kept.
     pub(super) centre: BTreeSet<u32>,
+    /// The feed in force in the written text, where it is another one than in the program.
+    pub(super) feed: Option<Scheduled>,
 }
 
 /// Writes the program; `tolerances` are those of the edits, nm.
@@ -63,7 +66,8 @@ pub(super) fn write(
     let lines: Vec<Line<'_>> = raw.iter().map(|l| Line { text: text(l).unwrap_or(l.text), ..*l }).collect();
     let replaced: Replaced = stripped.iter().map(|(&line, text)| (line, vec![text.clone()])).collect();
     let centre = BTreeSet::new();
-    let mut writer = Writer { source, lines, options, replaced, two_digits, motion: None, unchanged: 0, centre };
+    let mut writer =
+        Writer { source, lines, options, replaced, two_digits, motion: None, unchanged: 0, centre, feed: None };
     if edits.is_empty() {
         return Err(Failure::Internal("there is no line to correct".to_owned()));
     }
@@ -212,7 +216,7 @@ mod tests {
     fn a_line_of_the_contour_that_comes_again_is_refused_and_so_is_one_of_another_file() {
         let source = Source::new("loop.nc", b"G21 G90 G0 X0 Y0\nG1 X10 F100\nG0 X0\nM2\n".to_vec());
         let options = RewriteOptions::default();
-        let edits = [BlockEdit { line: 2, samples: vec![[0, 100_000], [10_000_000, 100_000]] }];
+        let edits = [BlockEdit::new(2, vec![[0, 100_000], [10_000_000, 100_000]])];
         let once = survey(source.bytes(), options.program).expect("a readable program");
         let written = |moves: &[Move]| write(&source, moves, &edits, &[1_000.0], &options);
         assert!(written(&once).is_ok());

@@ -5,8 +5,9 @@ use truepath_core::cut::Path;
 use truepath_core::geometry::{Block, Point, Vector};
 use truepath_core::units::{Offset, Real};
 
+use crate::feed::Schedule;
 use crate::pass::Pass;
-use crate::program::BlockEdit;
+use crate::program::{BlockEdit, FeedFrom};
 
 /// Distance of points along a lead.
 const STEP_NM: i64 = 100_000;
@@ -31,13 +32,13 @@ fn correction_at(path: &Path, nodes: &[Node], s: Offset, ends_block: bool) -> Ve
 
 /// The corrected path, one list of points per line of the program, from the end of the block before to its own end. Where
 /// the moves that lead to the contour and away from it are known, the correction comes and goes along them.
-pub fn block_edits(pass: &Pass, path: &Path, nodes: &[Node]) -> Vec<BlockEdit> {
-    written_with(pass, pass.leads(), path, nodes, |u| u * u * (Real::from_int(3) - u - u))
+pub fn block_edits(pass: &Pass, path: &Path, nodes: &[Node], schedule: Option<&Schedule>) -> Vec<BlockEdit> {
+    written_with(pass, pass.leads(), path, (nodes, schedule), |u| u * u * (Real::from_int(3) - u - u))
 }
 
 /// The same with leads that are moved as they are, by what the contour is moved at their end.
 pub fn carried_edits(pass: &Pass, leads: [&[Block]; 2], path: &Path, nodes: &[Node]) -> Vec<BlockEdit> {
-    written_with(pass, leads, path, nodes, |_| Real::ONE)
+    written_with(pass, leads, path, (nodes, None), |_| Real::ONE)
 }
 
 /// `share` is the part of the correction along a lead, from 0 far from the contour to 1 beside it.
@@ -45,14 +46,14 @@ fn written_with(
     pass: &Pass,
     [lead_in, lead_out]: [&[Block]; 2],
     path: &Path,
-    nodes: &[Node],
+    (nodes, schedule): (&[Node], Option<&Schedule>),
     share: impl Fn(Real) -> Real,
 ) -> Vec<BlockEdit> {
     let mut edits: Vec<BlockEdit> = Vec::new();
     if let Some(first) = pass.blocks.first() {
         lead(lead_in, correction_at(path, nodes, first.s, false), &share, &mut edits);
     }
-    contour(pass, path, nodes, &mut edits);
+    contour(pass, path, (nodes, schedule), &mut edits);
     if let Some(last) = pass.blocks.last() {
         let full = correction_at(path, nodes, last.s + last.curve.length(), true);
         lead(lead_out, full, |u| share(Real::ONE - u), &mut edits);
@@ -64,11 +65,16 @@ const fn raw(p: Point) -> [i64; 2] {
     [p.x.nm(), p.y.nm()]
 }
 
-/// Adds a line's points to those there are; a line with several moves is one edit.
-fn add(edits: &mut Vec<BlockEdit>, line: u32, points: Vec<[i64; 2]>) {
+/// Adds a line's points to those there are, with the feeds from them on; a line with several moves is one edit.
+fn add(edits: &mut Vec<BlockEdit>, line: u32, points: Vec<[i64; 2]>, feeds: Vec<FeedFrom>) {
     match edits.last_mut() {
-        Some(last) if last.line == line => last.samples.extend_from_slice(&points[1..]),
-        _ => edits.push(BlockEdit { line, samples: points }),
+        Some(last) if last.line == line => {
+            let before = last.samples.len() - 1;
+            last.feeds.extend(feeds.iter().map(|f| FeedFrom { sample: before + f.sample, ..*f }));
+            last.feeds.dedup_by_key(|from| from.percent);
+            last.samples.extend_from_slice(&points[1..]);
+        }
+        _ => edits.push(BlockEdit { feeds, ..BlockEdit::new(line, points) }),
     }
 }
 
@@ -85,12 +91,12 @@ fn lead(blocks: &[Block], full: Vector, share: impl Fn(Real) -> Real, edits: &mu
             raw(block.curve.point(fraction) + full.scaled(share(u)))
         };
         let points = (0..=pieces).map(point).collect();
-        add(edits, block.line, points);
+        add(edits, block.line, points, Vec::new());
         before += length;
     }
 }
 
-fn contour(pass: &Pass, path: &Path, nodes: &[Node], edits: &mut Vec<BlockEdit>) {
+fn contour(pass: &Pass, path: &Path, (nodes, schedule): (&[Node], Option<&Schedule>), edits: &mut Vec<BlockEdit>) {
     let samples = &path.samples()[path.first()..path.first() + path.count()];
     let mut at = 0usize;
     for block in &pass.blocks {
@@ -100,13 +106,22 @@ fn contour(pass: &Pass, path: &Path, nodes: &[Node], edits: &mut Vec<BlockEdit>)
         let start = raw(block.curve.start() + correction_at(path, nodes, block.s, false));
         let mut points: Vec<[i64; 2]> = before.into_iter().filter(|b| *b != start).collect();
         points.push(start);
+        let mut feeds = Vec::new();
+        let mut feed = |sample: usize, s: Offset| {
+            let Some(percent) = schedule.map(|schedule| schedule.percent(s)) else { return };
+            if feeds.last().is_none_or(|from: &FeedFrom| from.percent != percent) {
+                feeds.push(FeedFrom { sample, percent });
+            }
+        };
+        feed(0, block.s);
         while at < samples.len() && samples[at].s < end {
             if samples[at].s > block.s {
+                feed(points.len(), samples[at].s);
                 points.push(raw(samples[at].point + nodes[at].total()));
             }
             at += 1;
         }
         points.push(raw(block.curve.end() + correction_at(path, nodes, end, true)));
-        add(edits, block.line, points);
+        add(edits, block.line, points, feeds);
     }
 }

@@ -11,6 +11,7 @@ use super::tables::TraceRow;
 use super::{float, mm};
 use crate::correction::{Correction, Identified};
 use crate::feature::FeatureSummary;
+use crate::feed::FeedSummary;
 use crate::pass::Pass;
 use crate::program::Difference;
 
@@ -69,11 +70,23 @@ pub struct CorrectSummary {
     /// The corrected program against its original, when one was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub program: Option<Difference>,
+    /// The scheduled feeds; absent when the job does not ask for them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub feed: Option<FeedSummary>,
     /// The feature it is about; absent in a program with one cut and no names.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feature: Option<FeatureSummary>,
     /// What the user should know.
     pub warnings: Vec<String>,
+}
+
+impl CorrectSummary {
+    /// `difference.txt`, for a program of this name; empty when no program was written.
+    pub fn difference(&self, original: &str) -> String {
+        let program = self.program.as_ref().map(|difference| difference.text(original));
+        let feed = self.feed.as_ref().map(FeedSummary::text);
+        program.map_or_else(String::new, |text| text + &feed.unwrap_or_default())
+    }
 }
 
 fn largest(values: impl Iterator<Item = Offset>) -> f64 {
@@ -111,6 +124,7 @@ pub fn correct_summary(
         program_crc32: format!("{:08x}", pass.core.program_crc),
         feature: pass.feature(&[]),
         program: None,
+        feed: None,
         warnings,
     }
 }

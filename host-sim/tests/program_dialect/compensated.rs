@@ -77,7 +77,7 @@ fn without_a_correction_the_path_is_the_one_the_control_would_have_made() {
                 let at = |k| block.curve.point(truepath_core::units::Real::ratio(k, count));
                 samples.extend((1..=count).map(at).map(|p| [p.x.nm(), p.y.nm()]));
             }
-            BlockEdit { line: e.line, samples }
+            BlockEdit::new(e.line, samples)
         })
         .collect();
     let after = blocks(&written(DRAWN, &still), DEFAULT);

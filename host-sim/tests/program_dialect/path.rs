@@ -41,7 +41,7 @@ pub fn edits(program: &str, options: Options<'static>) -> Vec<BlockEdit> {
                 if let Some(edit) = last {
                     samples[0] = *edit.samples.last().expect("a sample");
                 }
-                edits.push(BlockEdit { line: block.line, samples });
+                edits.push(BlockEdit::new(block.line, samples));
             }
         }
     }

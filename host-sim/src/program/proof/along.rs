@@ -38,6 +38,11 @@ impl<'a> Follower<'a> {
         rest.iter().all(|s| length(difference(*s, place)) <= self.slack)
     }
 
+    /// Index of the sample reached.
+    pub(super) const fn reached(&self) -> usize {
+        self.at
+    }
+
     /// The chords before and after the sample reached.
     pub(super) fn chords(&self) -> [Option<[f64; 2]>; 2] {
         let sample = |k: usize| self.samples.get(k).copied();

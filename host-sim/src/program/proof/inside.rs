@@ -3,13 +3,16 @@
 //! One line of the original stands for one stretch of the wanted path and becomes one or more lines and arcs. What
 //! else the line does (comment, feed, coolant, stop) must be there once, before its path is over.
 
+use std::ops::Range;
+
 use truepath_core::gcode::Canon;
 
-use super::super::BlockEdit;
+use super::super::{BlockEdit, feed};
 use super::along::{Follower, difference};
 use super::facts::{Fact, What};
 use super::kink::{Kink, Turns, Wanted};
 use super::outside::Shift;
+use crate::report::float;
 
 /// What was found along the contour.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +31,8 @@ pub(super) struct Along {
 pub(super) struct Terms {
     pub(super) tolerance: f64,
     pub(super) slack: f64,
+    /// Whether feeds along the contour were to change.
+    pub(super) scheduled: bool,
 }
 
 /// Compares one stretch of contour. `original` ends with its last cutting step; gives how many of the `written` steps
@@ -75,11 +80,14 @@ pub(super) fn compare(
             new += 1;
             let Some(curve) = fact.curve() else { continue };
             let [before, after] = follower.chords();
+            let from_sample = follower.reached();
             let wanted = Wanted { chords: [before.or(turns.wanted_end), after], curvature: bend };
             if length(place, [curve.start().x.nm(), curve.start().y.nm()]) > terms.slack || !follower.take(&curve) {
                 return Err(fail("the path", Some(fact)));
             }
-            same_modes(first, fact, pieces == 0).map_err(|what| fail(what, Some(fact)))?;
+            let percent = percent(edit, from_sample..follower.reached());
+            let percent = percent.ok_or_else(|| fail("the place of a feed", Some(fact)))?;
+            same_modes(first, fact, pieces == 0, percent).map_err(|what| fail(what, Some(fact)))?;
             place = [curve.end().x.nm(), curve.end().y.nm()];
             pieces += 1;
             match fact.what {
@@ -98,16 +106,21 @@ pub(super) fn compare(
         }
         turns.wanted_end = follower.chords()[0].or(turns.wanted_end);
         // What else the original does before its cut is over may stand behind a path that has vanished.
-        let others = others(&original[from..old]);
-        let count = others.len();
-        while self::others(&written[begin..new]).len() < count && written.get(new).is_some_and(|f| f.curve().is_none())
+        let feeds = |facts: &[Fact]| facts.iter().filter(|f| feed_word(f)).count();
+        let others = |facts: &[Fact]| others(facts, terms.scheduled);
+        let expected = others(&original[from..old]);
+        while others(&written[begin..new]).len() < expected.len()
+            && written.get(new).is_some_and(|f| f.curve().is_none())
         {
             new += 1;
         }
-        if others != self::others(&written[begin..new]) {
+        if expected != others(&written[begin..new]) {
             return Err(fail("a comment, feed or function", written.get(begin)));
         }
-        along.feeds += others.iter().filter(|o| o.starts_with("FeedRate")).count();
+        // The feed of the program is put back on a line of its own.
+        let put_back = terms.scheduled && new > begin && written[new - 1].modal.feed != last.modal.feed;
+        new += usize::from(put_back && written.get(new).is_some_and(feed_word));
+        along.feeds += feeds(&written[begin..new]);
         along.deviation_nm = along.deviation_nm.max(follower.deviation);
     }
     along.first_edit += edits.len();
@@ -127,13 +140,26 @@ fn length(a: [i64; 2], b: [i64; 2]) -> f64 {
     super::super::vector::length(difference(a, b))
 }
 
+fn feed_word(fact: &Fact) -> bool {
+    matches!(fact.what, What::Other(Canon::FeedRate(_)))
+}
+
+/// The percentage of the programmed feed between two samples; `None` when it changes between them.
+fn percent(edit: &BlockEdit, samples: Range<usize>) -> Option<u16> {
+    let spans = feed::spans(edit);
+    let span = spans.iter().find(|span| span.0 <= samples.start && samples.end <= span.1);
+    span.map(|span| span.2)
+}
+
 /// The steps that are no moves in the plane, as text to compare: the order within one line is the control's affair.
-fn others(facts: &[Fact]) -> Vec<String> {
+/// Feeds that were to change show in the modes of the moves.
+fn others(facts: &[Fact], scheduled: bool) -> Vec<String> {
     let text = |fact: &Fact| match &fact.what {
+        What::Other(Canon::FeedRate(_)) if scheduled => None,
         What::Comment(bytes) => Some(format!("Comment {bytes:?}")),
         What::Other(canon) => Some(format!("{canon:?}")),
         What::Straight { rapid, from, to } if fact.stands_still() && from.z != to.z => {
-            Some(format!("Still {rapid} {:?} {:?}", from.z, to.z))
+            Some(format!("Still {rapid} {:?} {:?} {:?}", from.z, to.z, fact.modal.feed))
         }
         What::Straight { .. } | What::Arc { .. } => None,
     };
@@ -153,17 +179,26 @@ fn level(fact: &Fact) -> bool {
     fact.ends().is_some_and(|(from, to)| from.z == to.z)
 }
 
-/// Height, feed, speed, tool and the other modes of a written piece are those of the original line, and so is its block
-/// number if it is the first.
-fn same_modes(old: &Fact, new: &Fact, first: bool) -> Result<(), &'static str> {
+/// Height, speed, tool and the other modes of a written piece are those of the original line, its feed is `percent` of it,
+/// and its block number is that of the line if it is the first.
+fn same_modes(old: &Fact, new: &Fact, first: bool, percent: u16) -> Result<(), &'static str> {
     let z = |fact: &Fact| fact.ends().map(|(from, to)| (from.z, to.z));
     if z(old) != z(new) {
         return Err("the height");
     }
-    if old.modal.feed != new.modal.feed {
+    let is_feed = match (percent, old.modal.feed, new.modal.feed) {
+        (100, old, new) => old == new,
+        (_, Some(programmed), Some(written)) => {
+            let wanted = float(programmed) * f64::from(percent) / 100.0;
+            (float(written) - wanted).abs() <= feed::rounding(&new.modal)
+        }
+        _ => false,
+    };
+    if !is_feed {
         return Err("the feed");
     }
     let mut modal = new.modal;
+    modal.feed = old.modal.feed;
     // M5 on a line of the contour stops the spindle when the path of the whole line is over.
     modal.spindle = old.modal.spindle;
     if old.modal != modal {

@@ -2,8 +2,8 @@
 //!
 //! Both texts are read by the interpreter of the core, without anything the writer knows of its own work, and compared
 //! step by step: outside the contour every step with all modes is the same ([`outside`]); along it the path follows
-//! the wanted points within the tolerance, in both directions, at the feeds, heights and modes of the original
-//! ([`inside`]); lines not said to be changed keep their bytes ([`bytes`]).
+//! the wanted points within the tolerance, in both directions, at the heights and modes of the original and at its feeds
+//! or the wanted share of them ([`inside`]); lines not said to be changed keep their bytes ([`bytes`]).
 //!
 //! Limits: what the interpreter does not tell apart (spaces, order of words) is compared as bytes on untouched lines
 //! only.
@@ -74,6 +74,7 @@ pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
     let mut along = Along::default();
     let mut proof = Proof::default();
     let mut edits = claim.edits;
+    let scheduled = edits.iter().any(|edit| !edit.feeds.is_empty());
     let (mut old, mut new, mut before) = (0, 0, None);
     let mut stretches = 0;
     loop {
@@ -98,7 +99,7 @@ pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
         proof.steps_outside += gap;
         new += gap;
         let (Some(begin), Some(end)) = (begin, end) else { break };
-        let terms = Terms { tolerance: claim.tolerance, slack };
+        let terms = Terms { tolerance: claim.tolerance, slack, scheduled };
         new += inside::compare(&original[begin..end], &written[new..], mine, terms, &mut along)?;
         old = end;
         before = ends.map(|e| e[1]);
