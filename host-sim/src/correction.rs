@@ -2,13 +2,14 @@
 //! reports.
 
 use truepath_core::correct::{
-    Design, DesignStep, DesignWorkspace, Law, Node, Predicted, Profile, Update, design_observed, uncertainty,
+    Band, Design, DesignStep, DesignWorkspace, Law, Node, Predicted, Profile, Update, add_residual, commanded,
+    design_observed, profile, uncertainty,
 };
 use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{Fit, Observation, PredictionWorkspace, Prior};
 use truepath_core::job;
-use truepath_core::units::Offset;
+use truepath_core::units::{Offset, hypot_nm};
 
 use crate::diagnostics::Failure;
 use crate::measurement::Measurement;
@@ -81,6 +82,26 @@ impl Identified {
     }
 }
 
+/// What a correction is made from, beside the machine.
+#[derive(Clone, Copy, Debug)]
+pub struct Wish<'a> {
+    /// How it is made.
+    pub law: Law,
+    /// Wall error beside the model, one entry per sample of the contour; empty where none is known.
+    pub residual: &'a [Offset],
+    /// Its standard deviation, the same way.
+    pub residual_sigma: &'a [Offset],
+    /// A correction that is kept as it is instead of a new one.
+    pub kept: Option<&'a [Node]>,
+}
+
+impl Wish<'_> {
+    /// By a law, of what the model predicts alone.
+    pub const fn of(law: Law) -> Self {
+        Self { law, residual: &[], residual_sigma: &[], kept: None }
+    }
+}
+
 /// Designs the correction of an identified pass. `progress` is told the share done, 0…1.
 ///
 /// # Errors
@@ -89,11 +110,11 @@ pub fn corrected(
     pass: &Pass,
     machine: &Loop,
     identified: &Identified,
-    law: Law,
+    wish: &Wish,
     mut progress: impl FnMut(f64),
 ) -> Result<Correction, Failure> {
     let path = machine.path;
-    let wanted = pass.job.numbers.design(law);
+    let wanted = pass.job.numbers.design(wish.law);
     let (count, working) = (path.count(), path.working().len());
     let mut states = vec![State::REST; working];
     let mut displacements = vec![Vector::ZERO; working];
@@ -106,7 +127,7 @@ pub fn corrected(
         profiles: &mut profiles,
         updates: &mut updates,
         best: &mut best,
-        residual: &[],
+        residual: wish.residual,
     };
     let mut nodes = vec![Node::default(); count];
     let mut predicted = vec![Predicted::default(); count];
@@ -116,9 +137,34 @@ pub fn corrected(
             progress(0.6 * f64::from(permille) / 1000.0);
         }
     });
+    let passage = match wish.kept {
+        None => passage,
+        Some(kept) => {
+            let (walls, passage) = walls(machine, wanted.band, kept, wish.residual);
+            nodes.copy_from_slice(kept);
+            predicted.iter_mut().zip(walls).for_each(|(p, wall)| p.after = wall);
+            passage
+        }
+    };
     job::check_clamp(&pass.job.numbers, path, &nodes).map_err(|error| pass.refused(&error))?;
     let belief = (identified.prior(), identified.fit());
     uncertainty(machine, belief, &wanted, &nodes, &predicted, &mut sigma, &mut workspace);
+    for (sigma, more) in sigma.iter_mut().zip(wish.residual_sigma) {
+        *sigma = hypot_nm(*sigma, *more);
+    }
     progress(1.0);
     Ok(Correction { nodes, predicted, sigma, wanted, passage })
+}
+
+/// The wall beside every sample of the contour that a machine leaves with a correction, empty for none.
+pub fn walls(machine: &Loop, band: Band, nodes: &[Node], residual: &[Offset]) -> (Vec<Profile>, Passage) {
+    let path = machine.path;
+    let working = path.working();
+    let mut states = vec![State::REST; working.len()];
+    let passage = machine.run(working.start, &mut states, |i| commanded(path, nodes, i));
+    let mut displacements = vec![Vector::ZERO; working.len()];
+    let mut walls = vec![Profile::default(); path.count()];
+    profile(machine, &states, band, &mut displacements, &mut walls);
+    add_residual(&mut walls, residual);
+    (walls, passage)
 }

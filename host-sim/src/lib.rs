@@ -10,6 +10,7 @@ pub mod feature;
 pub mod feed;
 pub mod image;
 pub mod job;
+pub mod learning;
 pub mod library;
 pub mod measurement;
 pub mod output;

@@ -14,5 +14,5 @@ mod refine;
 pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design, design_observed, uncertainty};
 pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};
-pub use profile::{Band, Profile, Target, profile};
+pub use profile::{Band, Profile, Target, add_residual, profile};
 pub use refine::Update;

@@ -83,7 +83,7 @@ impl Profile {
 }
 
 /// Adds the wall error that parts have shown beside the model: the same at every height.
-pub(super) fn add_residual(profiles: &mut [Profile], residual: &[Offset]) {
+pub fn add_residual(profiles: &mut [Profile], residual: &[Offset]) {
     for (p, more) in profiles.iter_mut().zip(residual).filter(|(p, _)| p.on_wall) {
         p.mean += *more;
         p.lowest += *more;

@@ -1,6 +1,6 @@
 //! `truepath correct`: from a probe file to the corrected program or the correction image.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
@@ -38,22 +38,27 @@ pub(super) struct Arguments {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum RouteArgument {
+pub(super) enum RouteArgument {
     Program,
     Coprocessor,
 }
 
+impl From<RouteArgument> for Route {
+    fn from(argument: RouteArgument) -> Self {
+        match argument {
+            RouteArgument::Program => Self::Program,
+            RouteArgument::Coprocessor => Self::Coprocessor,
+        }
+    }
+}
+
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
-    let route = arguments.route.map(|r| match r {
-        RouteArgument::Program => Route::Program,
-        RouteArgument::Coprocessor => Route::Coprocessor,
-    });
     let options = Options {
         job: &arguments.job,
         probe: &arguments.probe,
         out: &arguments.output,
         force: arguments.force,
-        route,
+        route: arguments.route.map(Route::from),
         first_pass: arguments.first_pass.as_deref(),
         probe_flags: arguments.probe_flags.flags(),
         which: arguments.which.which(),
@@ -64,10 +69,10 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     for warning in &summary.warnings {
         terminal.warn(warning);
     }
-    print(&if terminal.json() { json(&summary)? } else { words(&summary, arguments).into_bytes() })
+    print(&if terminal.json() { json(&summary)? } else { words(&summary, &arguments.output).into_bytes() })
 }
 
-fn words(s: &CorrectSummary, arguments: &Arguments) -> String {
+pub(super) fn words(s: &CorrectSummary, output: &Path) -> String {
     let factor = s.max_error_before_mm / s.max_error_after_mm.max(1e-6);
     let mut text = s.feature.as_ref().map(listing).unwrap_or_default();
     text += &format!(
@@ -95,6 +100,6 @@ fn words(s: &CorrectSummary, arguments: &Arguments) -> String {
         text +=
             &format!("  {name:<24} {:>10.4} {:>10.4} {:>8.4} {:<5}{seen}\n", p.value + 0.0, p.sigma, p.prior, p.unit);
     }
-    text += &format!("\nwritten to {}\n", arguments.output.display());
+    text += &format!("\nwritten to {}\n", output.display());
     text
 }

@@ -10,6 +10,7 @@ mod device;
 mod hil;
 mod image;
 mod inspect;
+mod learn;
 mod probe;
 mod probe_flags;
 mod replay;
@@ -60,6 +61,8 @@ enum Command {
     Inspect(inspect::Arguments),
     /// From a probe file to the corrected program or the image for the coprocessor.
     Correct(correct::Arguments),
+    /// From the probe file of a corrected part to the correction of the next one.
+    Learn(learn::Arguments),
     /// For a single part: a program that cuts half of the allowance, to be probed before the second half.
     Split(split::Arguments),
     /// How well the method does on virtual machines of all kinds, and where it stops working.
@@ -103,6 +106,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Probe(arguments) => probe::run(&arguments, terminal),
         Command::Inspect(arguments) => inspect::run(&arguments, terminal),
         Command::Correct(arguments) => correct::run(&arguments, terminal),
+        Command::Learn(arguments) => learn::run(&arguments, terminal),
         Command::Split(arguments) => split::run(&arguments, terminal),
         Command::Study(arguments) => study::run(&arguments, terminal),
         Command::Replay(arguments) => replay::run(&arguments, terminal),

@@ -5,15 +5,15 @@ use std::path::Path as FilePath;
 use truepath_core::checksum::crc32;
 use truepath_core::cut::Path;
 use truepath_core::job;
-use truepath_core::probe::Contact;
 
 use super::doubts::{doubts, kinked, misread};
 use super::feeds;
 use super::levels::{self, Levels};
 use super::second_pass;
-use crate::correction::{Correction, Identified, corrected, identified};
+use crate::correction::{Correction, Identified, Wish, corrected, identified};
 use crate::diagnostics::{Failure, Source};
 use crate::job::{Job, ProbeFlags, Route, Which};
+use crate::learning::History;
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
@@ -22,8 +22,11 @@ use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv
 
 use crate::report::json;
 
+/// The parts so far; see [`learning`](crate::learning).
+pub(super) const HISTORY: &str = "history.json";
 /// Files this command may write.
-const FILES: &[&str] = &[
+pub(super) const FILES: &[&str] = &[
+    HISTORY,
     "corrected.nc",
     "difference.txt",
     "correction.tpi",
@@ -100,7 +103,10 @@ pub fn correct(
     let sampled = pass.sample(&mut buffer)?;
     let identified = identified(pass, &sampled, measurement, |share| progress(0.2 * share))?;
     let remarks = Remarks::of(measurement, remarks);
-    design(pass, &sampled, identified, &measurement.contacts, remarks, routes, progress)
+    let path = sampled.with_law(identified.law());
+    let table = identified.table();
+    let law = job::law(&pass.core, &identified.machine(&path, &table), &measurement.contacts);
+    design(pass, &sampled, identified, &Wish::of(law), remarks, routes, progress)
 }
 
 /// What a measurement leaves to be said.
@@ -112,17 +118,18 @@ pub(super) struct Remarks<'a> {
     pub(super) texts: &'a [String],
     /// CRC-32 of the probe file.
     pub(super) probe: u32,
+    /// Whether it is of the pass that is corrected, and not of one before it.
+    pub(super) of_this_pass: bool,
 }
 
 impl<'a> Remarks<'a> {
     /// Of a measurement, with sentences about it.
     pub(super) const fn of(measurement: &Measurement, texts: &'a [String]) -> Self {
-        Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc }
+        Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc, of_this_pass: true }
     }
 }
 
-/// Designs the correction of a pass for an identified machine. `contacts` are those of this pass, empty when it has not
-/// been measured.
+/// Designs the correction of a pass for an identified machine and writes it for the routes.
 ///
 /// # Errors
 /// A correction beyond the clamp, a contour that cannot be written.
@@ -130,7 +137,7 @@ pub(super) fn design(
     pass: &Pass,
     sampled: &Path,
     identified: Identified,
-    contacts: &[Contact],
+    wish: &Wish<'_>,
     remarks: Remarks<'_>,
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
@@ -139,16 +146,15 @@ pub(super) fn design(
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let machine = identified.machine(&path, &table);
-    let law = job::law(&pass.core, &machine, contacts);
-    let mut feeds = feeds::planned(pass, &machine, &identified, !contacts.is_empty(), routes)?;
-    feeds.compare(pass, &machine, &identified, law);
+    let mut feeds = feeds::planned(pass, &machine, &identified, remarks.of_this_pass, routes)?;
+    feeds.compare(pass, &machine, &identified, wish);
     let mut fed = PathBuffer::default();
     let path = match &feeds.schedule {
         Some(schedule) => pass.sample_fed(&mut fed, Some(schedule))?.with_law(identified.law()),
         None => path,
     };
     let machine = identified.machine(&path, &table);
-    let correction = corrected(pass, &machine, &identified, law, |share| progress(0.2 + 0.7 * share))?;
+    let correction = corrected(pass, &machine, &identified, wish, |share| progress(0.2 + 0.7 * share))?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.texts.iter().cloned());
     warnings.extend(doubts(pass, &identified, &correction, &machine));
@@ -236,6 +242,23 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
             done
         }
     };
+    folder.write("probe-raw.txt", file.bytes())?;
+    folder.write("summary.json", &json(&done.summary)?)?;
+    if first.is_none() {
+        folder.write(HISTORY, &History::first(&pass, &measurement, &done)?.text()?)?;
+    }
+    write(&folder, &pass, &measurement, &done)?;
+    folder.commit()?;
+    Ok(done.summary)
+}
+
+/// Writes what a correction in memory holds beside its summary.
+pub(super) fn write(
+    folder: &OutputFolder,
+    pass: &Pass,
+    measurement: &Measurement,
+    done: &Corrected,
+) -> Result<(), Failure> {
     if let Some(text) = &done.program {
         folder.write("corrected.nc", text)?;
         folder.write("difference.txt", done.summary.difference(pass.program.name()).as_bytes())?;
@@ -247,12 +270,9 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
         folder.write(&format!("correction-pass-{number}.tpi"), bytes)?;
     }
     folder.write("correction.csv", &done.table)?;
-    folder.write("points.csv", &points_csv(&measurement, &done.identified.observations)?)?;
-    folder.write("summary.json", &json(&done.summary)?)?;
+    folder.write("points.csv", &points_csv(measurement, &done.identified.observations)?)?;
     folder.write("correction.svg", &done.picture)?;
-    folder.write("probe-raw.txt", file.bytes())?;
-    folder.commit()?;
-    Ok(done.summary)
+    Ok(())
 }
 
 fn corrected_program(pass: &Pass, probe: u32, edits: &[BlockEdit]) -> Result<Rewritten, Failure> {

@@ -1,9 +1,8 @@
 //! The feeds of a correction: whether the job wants them changed, and what that comes to.
 
-use truepath_core::correct::Law;
 use truepath_core::cut::Loop;
 
-use crate::correction::{Identified, corrected};
+use crate::correction::{Identified, Wish, corrected};
 use crate::diagnostics::{Failure, InputError};
 use crate::feed::{FeedSummary, Schedule, Unscheduled, Wanted, largest_force, schedule};
 use crate::job::{ForceLimit, Route};
@@ -88,10 +87,10 @@ fn contradiction(pass: &Pass, key: &str, found: &str, expected: &str, help: &str
 
 impl Feeds {
     /// Notes what a correction at the feeds of the program would leave; `machine` is on the path with these.
-    pub(super) fn compare(&mut self, pass: &Pass, machine: &Loop, identified: &Identified, law: Law) {
+    pub(super) fn compare(&mut self, pass: &Pass, machine: &Loop, identified: &Identified, wish: &Wish<'_>) {
         let (Some(_), Some(summary)) = (&self.schedule, &mut self.summary) else { return };
         // Beyond the clamp there is none.
-        let Ok(plain) = corrected(pass, machine, identified, law, |_| ()) else { return };
+        let Ok(plain) = corrected(pass, machine, identified, wish, |_| ()) else { return };
         let told = correct_summary(pass, identified, &plain, 0, Vec::new());
         summary.unscheduled = Some(Unscheduled {
             max_error_after_mm: told.max_error_after_mm,

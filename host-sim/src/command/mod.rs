@@ -8,6 +8,7 @@ mod feeds;
 mod first_pass;
 pub mod hil;
 pub mod inspect;
+pub mod learn;
 mod levels;
 pub mod probe;
 pub mod second_pass;

@@ -9,10 +9,10 @@ use truepath_core::correct::{Band, Profile, profile};
 use truepath_core::cut::{Path, Sample, State};
 use truepath_core::gcode::program_crc;
 use truepath_core::geometry::Vector;
-use truepath_core::job::LawName;
+use truepath_core::job::{self, LawName};
 
 use super::correct::{Corrected, Remarks, design};
-use crate::correction::{Identified, identified};
+use crate::correction::{Identified, Wish, identified};
 use crate::diagnostics::{Failure, InputError};
 use crate::job::Route;
 use crate::measurement::Measurement;
@@ -41,8 +41,11 @@ pub fn correct(
     let second = second.clone().over(surface.clone())?;
     let mut buffer = PathBuffer::default();
     let sampled = second.sample(&mut buffer)?;
-    let remarks = Remarks::of(measurement, remarks);
-    let done = design(&second, &sampled, known, &[], remarks, routes, progress)?;
+    let remarks = Remarks { of_this_pass: false, ..Remarks::of(measurement, remarks) };
+    let path = sampled.with_law(known.law());
+    let table = known.table();
+    let law = job::law(&second.core, &known.machine(&path, &table), &[]);
+    let done = design(&second, &sampled, known, &Wish::of(law), remarks, routes, progress)?;
     Ok((done, surface))
 }
 

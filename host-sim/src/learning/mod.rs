@@ -1,0 +1,42 @@
+//! Learning from part to part: what earlier parts showed, kept in one file, and what follows for the next.
+//!
+//! | step | where |
+//! |---|---|
+//! | parts in their order: points, the correction each was cut with, what was promised | [`History`] |
+//! | what of job and program must be the same | [`Facts`] |
+//! | machine and material from all parts together | [`joint()`] |
+//! | places left out of a first fit | `holdout` |
+//! | whether the newest part came out worse | `monitor` |
+//! | all of it, to the next correction | [`update()`] |
+//!
+//! A correction is always the whole one, written into the original program: corrections are never added up, so applying
+//! one twice is impossible. `docs/learning.md` tells the method.
+//!
+//! | code | meaning |
+//! |---|---|
+//! | Q001 | no history, or not one that can be read |
+//! | Q002 | a history of another job, program or feature |
+//! | Q003 | a measurement that the history already holds |
+//! | Q004 | a corrected program or image that is not the one of the history |
+//! | Q005 | input and output folder are the same |
+//! | Q006 | a law of correction that cannot learn |
+
+mod facts;
+mod history;
+mod holdout;
+mod joint;
+mod monitor;
+mod nodes;
+mod points;
+mod update;
+mod verdict;
+
+pub use facts::Facts;
+pub use history::{History, MOST_PARTS, Next, Part, WrittenFile};
+pub use holdout::Residuals;
+pub use joint::{Joint, PartPoints, joint};
+pub use monitor::PartError;
+pub use nodes::Nodes;
+pub use points::Point;
+pub use update::{Update, update};
+pub use verdict::{Promise, Verdict};

@@ -1,0 +1,71 @@
+//! What a new part teaches: the model of all parts together, and whether to trust it.
+
+use truepath_core::correct::Node;
+use truepath_core::cut::Path;
+use truepath_core::units::Offset;
+
+use super::holdout::{self, Holdout};
+use super::joint::{Joint, PartPoints, joint};
+use super::monitor::Monitor;
+use super::verdict::{Promise, Verdict};
+use crate::diagnostics::Failure;
+use crate::pass::Pass;
+
+/// What follows for the next part.
+#[derive(Clone, Debug)]
+pub struct Update {
+    /// Machine and material.
+    pub joint: Joint,
+    /// Wall error beside the model, one entry per sample of the contour; empty when there is none.
+    pub residual: Vec<Offset>,
+    /// Its standard deviation.
+    pub residual_sigma: Vec<Offset>,
+    /// The earlier correction to go back to, when this part came out worse.
+    pub kept: Option<Vec<Node>>,
+    /// How the part came out.
+    pub verdict: Verdict,
+}
+
+/// Learns from the newest part, beside the earlier ones. `promised` is the predicted error of its correction with the
+/// standard deviation, beside every sample. `progress` is told the share done.
+///
+/// # Errors
+/// Points most of which do not fit, in the first part as well.
+pub fn update(
+    pass: &Pass,
+    path: &Path,
+    earlier: Vec<PartPoints>,
+    newest: PartPoints,
+    promised: &[(Offset, Offset)],
+    progress: &mut dyn FnMut(f64),
+) -> Result<Update, Failure> {
+    let before = joint(pass, path, &earlier, None, &mut |share| progress(0.3 * share));
+    let mut parts = earlier;
+    parts.push(newest);
+    let after = joint(pass, path, &parts, None, &mut |share| progress(0.3 + 0.3 * share));
+    let holdout = Holdout::of(&parts).map(|held| {
+        let less = held.without(&parts);
+        let updated = joint(pass, path, &less, Some(after.core.law), &mut |share| progress(0.6 + 0.3 * share));
+        holdout::Residuals {
+            places: held.places.clone(),
+            before_mm: held.residual(path, &parts, &before),
+            after_mm: held.residual(path, &parts, &updated),
+        }
+    });
+    let monitor = Monitor::of(pass, path, &parts, &after);
+    let promise = Promise::of(path, &monitor, promised);
+    let all: Vec<_> = after.observations.iter().flatten().copied().collect();
+    let fits = after.core.check(&all).is_ok();
+    // A part that came out worse is explained when points that the fit has not seen are predicted.
+    let explained = fits && holdout.as_ref().is_some_and(|h| h.after_mm * 2.0 < monitor.now.rms_mm);
+    let rolled_back = !fits || (monitor.is_worse() && !explained);
+    let kept = rolled_back.then(|| {
+        let better = parts.get(monitor.better).map(|p| p.nodes.clone()).unwrap_or_default();
+        if better.is_empty() { vec![Node::default(); path.count()] } else { better }
+    });
+    let chosen = if rolled_back { before } else { after };
+    let all: Vec<_> = chosen.observations.iter().flatten().copied().collect();
+    chosen.core.check(&all).map_err(|error| pass.refused(&error))?;
+    let verdict = Verdict::of(&parts, &monitor, promise, holdout, rolled_back, fits);
+    Ok(Update { joint: chosen, residual: Vec::new(), residual_sigma: Vec::new(), kept, verdict })
+}
