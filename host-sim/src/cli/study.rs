@@ -1,7 +1,7 @@
 //! `truepath study`: how well the method does on machines that the model has never seen.
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
@@ -9,17 +9,22 @@ use super::{Terminal, print};
 use crate::command::study::{Options, run as study};
 use crate::diagnostics::Failure;
 use crate::report::json;
-use crate::study::families::FAMILIES;
-use crate::study::id::Axis;
-use crate::study::outcome::Outcome;
+use crate::study::export;
+use crate::study::id::{Axis, CaseId};
 use crate::study::seeds::Set;
-use crate::study::statistics::{Spread, mean};
+use crate::study::summary::{Row, Summary};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Folder of the results; an interrupted study goes on there.
-    #[arg(short, long, value_name = "DIR")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "DIR", required_unless_present = "case")]
+    output: Option<PathBuf>,
+    /// One case in detail instead, by its id.
+    #[arg(long, value_name = "ID", conflicts_with_all = ["output", "set", "families", "seeds", "axis", "random"])]
+    case: Option<CaseId>,
+    /// Write program, job, machine, probe file and corrected program of that case.
+    #[arg(long, value_name = "DIR", requires = "case")]
+    export: Option<PathBuf>,
     /// Which seeds: those for tuning, or those kept for judging.
     #[arg(long, value_enum, default_value_t = SetArgument::Tuning)]
     set: SetArgument,
@@ -38,7 +43,7 @@ pub(super) struct Arguments {
     /// Threads. [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Drop earlier results.
+    /// Drop earlier results; with --export, replace files.
     #[arg(long)]
     force: bool,
 }
@@ -60,6 +65,11 @@ enum AxisArgument {
 }
 
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    if let Some(id) = &arguments.case {
+        return single(id, arguments, terminal);
+    }
+    // clap has seen to it that one of the two is there.
+    let output = arguments.output.as_deref().unwrap_or_else(|| Path::new("."));
     let set = match (arguments.random, arguments.set) {
         (Some(_), _) => Set::Random,
         (None, SetArgument::Tuning) => Set::Tuning,
@@ -71,7 +81,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         AxisArgument::Prior => Axis::Prior,
     });
     let options = Options {
-        out: &arguments.output,
+        out: output,
         set,
         families: &arguments.families,
         seeds: arguments.random.unwrap_or(arguments.seeds),
@@ -80,49 +90,53 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         threads: arguments.threads,
     };
     let mut bar = terminal.progress("studying", 1000);
-    let outcomes = study(&options, &mut |done, all| bar.reached(done * 1000 / all.max(1)))?;
+    let studied = study(&options, &mut |done, all| bar.reached(done * 1000 / all.max(1)))?;
     drop(bar);
-    print(&if terminal.json() { json(&outcomes)? } else { words(&outcomes, arguments).into_bytes() })
+    print(&if terminal.json() { json(&studied.summary)? } else { words(&studied.summary, output).into_bytes() })
 }
 
-fn words(outcomes: &[Outcome], arguments: &Arguments) -> String {
+/// One case in detail.
+fn single(id: &CaseId, arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let detail = export::detail(id)?;
+    if let Some(folder) = &arguments.export {
+        export::export(&detail, folder, arguments.force)?;
+    }
+    print(&if terminal.json() { json(&detail.outcome)? } else { export::words(&detail).into_bytes() })
+}
+
+fn words(summary: &Summary, output: &Path) -> String {
     let mut text = format!(
-        "{:<22} {:>5} {:>8} {:>8} {:>8} {:>9} {:>9} {:>8}\n",
-        "family", "cases", "median", "P10", "worst", "coverage", "failures", "worse"
+        "{:<22} {:>5} {:>7} {:>7} {:>7} {:>8} {:>8} {:>7} {:>7} {:>8} {:>8} {:>6}\n",
+        "", "cases", "median", "P10", "worst", "in 2 sg", "learned", "P10", "worst", "in 2 sg", "refused", "worse"
     );
-    let of = |name: &str| -> Vec<&Outcome> {
-        outcomes.iter().filter(|o| o.id().is_some_and(|id| id.family == name && id.cell.is_none())).collect()
-    };
-    let mut all: Vec<&Outcome> = Vec::new();
-    for family in FAMILIES {
-        let these = of(family.name);
-        if !these.is_empty() {
-            text += &row(family.name, &these);
+    for set in &summary.sets {
+        let _ = writeln!(text, "{} seeds", set.set.name());
+        for one in set.families.iter().chain([&set.all]) {
+            text += &row(one);
         }
-        all.extend(these);
     }
-    text += &row("all", &all);
-    for failed in outcomes.iter().filter(|o| !o.failure.is_empty()) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}: {}", failed.case, failed.failure);
+    for axis in &summary.axes {
+        let _ = writeln!(text, "{}", axis.axis);
+        for (_, one) in &axis.cells {
+            text += &row(one);
+        }
     }
-    let _ = writeln!(text, "\nwritten to {}", arguments.output.display());
+    for failed in summary.failures.iter().chain(&summary.worse) {
+        let _ = writeln!(text, "{}: {}", failed.case, failed.what);
+    }
+    let _ = writeln!(text, "\nwritten to {}", output.display());
     text
 }
 
-fn row(name: &str, outcomes: &[&Outcome]) -> String {
-    let factors: Vec<f64> = outcomes.iter().filter_map(|o| o.factor).collect();
-    let coverage: Vec<f64> = outcomes.iter().filter_map(|o| o.coverage).collect();
-    let spread = Spread::of(&factors);
-    let show = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.1}"));
-    format!(
-        "{name:<22} {:>5} {:>8} {:>8} {:>8} {:>9} {:>9} {:>8}\n",
-        outcomes.len(),
-        show(spread.map(|s| s.median)),
-        show(spread.map(|s| s.p10)),
-        show(spread.map(|s| s.worst)),
-        mean(&coverage).map_or_else(|| "-".to_owned(), |c| format!("{:.1} %", 100.0 * c)),
-        outcomes.iter().filter(|o| !o.failure.is_empty()).count(),
-        outcomes.iter().filter(|o| o.worse()).count(),
-    )
+fn row(row: &Row) -> String {
+    let mut text = format!("  {:<20} {:>5}", row.name, row.cases);
+    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.1}"));
+    for (spread, coverage) in [(row.first, row.coverage), (row.learned, row.learned_coverage)] {
+        for value in [spread.map(|s| s.median), spread.map(|s| s.p10), spread.map(|s| s.worst)] {
+            let _ = write!(text, " {:>7}", number(value));
+        }
+        let _ = write!(text, " {:>7}%", number(coverage.map(|c| 100.0 * c)));
+    }
+    let _ = writeln!(text, " {:>8} {:>6}", row.failures + row.learn_failures, row.worse);
+    text
 }

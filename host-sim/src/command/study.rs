@@ -1,13 +1,18 @@
 //! `study`: the cases that are asked for and not yet finished, on all cores, and the summary of all that are.
 
+use std::io::Write;
 use std::path::Path as FilePath;
 
 use crate::diagnostics::{Failure, InputError};
+use crate::output::OutputFile;
+use crate::report::json;
 use crate::study::families::{FAMILIES, Family, family};
 use crate::study::id::{Axis, CaseId, Cell};
 use crate::study::ledger::{Ledger, program_key};
 use crate::study::outcome::Outcome;
+use crate::study::page::page;
 use crate::study::seeds::Set;
+use crate::study::summary::{Summary, summary};
 use crate::study::{carry, pool};
 
 /// What is studied.
@@ -73,13 +78,24 @@ pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
     Ok(cases)
 }
 
-/// Runs what is not yet finished and returns all results of the folder. `progress` is told (finished, of) cases.
+/// What a run leaves: the summary of everything in the folder.
+#[derive(Clone, Debug)]
+pub struct Studied {
+    /// All results of the folder.
+    pub outcomes: Vec<Outcome>,
+    /// Their summary, as in `summary.json`.
+    pub summary: Summary,
+}
+
+/// Runs what is not yet finished; writes page and summary of all results of the folder. `progress` is told (finished,
+/// of) cases.
 ///
 /// # Errors
 /// A wrong request, results of another program, outputs that cannot be written.
-pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Vec<Outcome>, Failure> {
+pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Studied, Failure> {
     let cases = cases(options)?;
-    let mut ledger = Ledger::open(options.out, &program_key(), options.force)?;
+    let key = program_key();
+    let mut ledger = Ledger::open(options.out, &key, options.force)?;
     let all = cases.len() as u64;
     let left: Vec<CaseId> = cases.into_iter().filter(|id| !ledger.finished.contains_key(&id.to_string())).collect();
     let mut finished = all - left.len() as u64;
@@ -90,5 +106,16 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Vec<
         progress(finished, all);
         ledger.append(outcome)
     })?;
-    Ok(ledger.finished.into_values().collect())
+    let outcomes: Vec<Outcome> = ledger.finished.into_values().collect();
+    let summary = summary(&key, &outcomes);
+    let write = |name: &str, bytes: &[u8]| -> Result<(), Failure> {
+        let path = options.out.join(name);
+        // These two always follow from the table beside them.
+        let mut file = OutputFile::create(&path, true)?;
+        file.write_all(bytes).map_err(|e| InputError::unwritable(&path, &e))?;
+        Ok(file.commit()?)
+    };
+    write("summary.json", &json(&summary)?)?;
+    write("study.html", page(&summary, &outcomes)?.as_bytes())?;
+    Ok(Studied { outcomes, summary })
 }

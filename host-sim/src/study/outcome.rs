@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::id::CaseId;
+use super::id::{CaseId, Cell};
 
 /// One line of the table. Lengths are in mm; what was not reached is empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -70,6 +70,11 @@ impl Outcome {
     /// The name, read back.
     pub fn id(&self) -> Option<CaseId> {
         self.case.parse().ok()
+    }
+
+    /// The cell of a grid it belongs to.
+    pub fn cell(&self) -> Option<Cell> {
+        self.id().and_then(|id| id.cell)
     }
 
     /// Whether a correction made the part worse.
