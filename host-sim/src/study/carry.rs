@@ -1,25 +1,43 @@
-//! Carries a case through: probe, correct, mill, judge.
+//! Carries a case through: probe, correct, mill, judge; then probe that part, learn, mill, judge.
 
 use std::time::Instant;
 
 use super::case::Case;
 use super::id::CaseId;
 use super::outcome::{Outcome, one_line};
+use super::places::together;
 use crate::command::correct::{Corrected, correct};
+use crate::command::learn::{Learned, learn};
 use crate::diagnostics::{Failure, Source};
 use crate::job::Route;
+use crate::learning::History;
 use crate::measurement::Measurement;
-use crate::plant::Judged;
+use crate::plant::{Judged, Milled};
 use crate::workshop;
 
-/// A corrected case, for those who want its files.
+/// A corrected part.
 #[derive(Clone, Debug)]
 pub struct Carried {
-    /// The probe file of the first part.
+    /// The probe file the correction is made from.
     pub probe: String,
+    /// What it says.
+    pub measurement: Measurement,
     /// The correction.
     pub corrected: Corrected,
-    /// The corrected part.
+    /// The part cut with it.
+    pub milled: Milled,
+    /// Its wall.
+    pub after: Judged,
+}
+
+/// A part cut with what was learned.
+#[derive(Clone, Debug)]
+pub struct Taught {
+    /// The probe file learned from.
+    pub probe: String,
+    /// What was learned.
+    pub learned: Learned,
+    /// The wall of the part cut with it.
     pub after: Judged,
 }
 
@@ -29,14 +47,18 @@ pub fn outcome(id: &CaseId) -> Outcome {
         let case = Case::draw(id)?;
         let mut outcome = described(&case);
         match first(&case, &mut outcome) {
-            Ok(_) => {}
-            Err(failure) => outcome.failure = sentence(&failure),
+            Ok(carried) => {
+                if let Err(failure) = second(&case, &carried, &mut outcome) {
+                    outcome.learn_failure = one_line(&failure.to_string());
+                }
+            }
+            Err(failure) => outcome.failure = one_line(&failure.to_string()),
         }
         Ok(outcome)
     };
     match std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)) {
         Ok(Ok(outcome)) => outcome,
-        Ok(Err(failure)) => Outcome::failed(id, sentence(&failure)),
+        Ok(Err(failure)) => Outcome::failed(id, failure.to_string()),
         Err(_) => Outcome::failed(id, "panicked"),
     }
 }
@@ -56,14 +78,13 @@ pub fn described(case: &Case) -> Outcome {
     }
 }
 
-/// The first correction; what it did is added to `outcome`.
+/// The first correction and the part cut with it; what it did is added to `outcome`.
 ///
 /// # Errors
 /// What probing or the correction refuse.
 pub fn first(case: &Case, outcome: &mut Outcome) -> Result<Carried, Failure> {
-    let probe = case.probe(&case.first, &case.places_mm)?;
-    let file = Source::new(format!("{}/probe.txt", case.id), probe.clone().into_bytes());
-    let measurement = Measurement::read(&case.pass, &file)?;
+    let probe = case.probe(1, &case.first, &case.places_mm)?;
+    let measurement = measured(case, "probe.txt", &probe)?;
     let begun = Instant::now();
     let corrected = correct(&case.pass, &measurement, &[], &[Route::Program], &mut |_| ())?;
     outcome.correct_s = some(begun.elapsed().as_secs_f64());
@@ -74,9 +95,8 @@ pub fn first(case: &Case, outcome: &mut Outcome) -> Result<Carried, Failure> {
     let seen = summary.identified.iter().filter(|(_, p)| p.observable).map(|(name, _)| *name);
     outcome.identified = seen.collect::<Vec<_>>().join(" ");
 
-    let text = corrected.program.as_deref().ok_or_else(|| Failure::Internal("no corrected program".to_owned()))?;
-    let commanded = workshop::commanded(&case.pass, text)?;
-    let after = workshop::mill(&case.pass, &case.machine_of(2), Some(&commanded))?.judge();
+    let milled = cut(case, 2, &corrected)?;
+    let after = milled.judge();
     let score = &after.score;
     outcome.after_mm = some(score.max_error_mm);
     outcome.factor = some(case.before.score.max_error_mm / score.max_error_mm.max(1e-6));
@@ -85,7 +105,40 @@ pub fn first(case: &Case, outcome: &mut Outcome) -> Result<Carried, Failure> {
     outcome.worst_height_mm = some(score.worst_height_mm);
     outcome.axial_form_mm = some(score.axial_form_mm);
     outcome.coverage = coverage(&after, &corrected.table)?;
-    Ok(Carried { probe, corrected, after })
+    Ok(Carried { probe, measurement, corrected, milled, after })
+}
+
+/// One more part: the corrected one is touched where the first was and in three more places, and learned from.
+///
+/// # Errors
+/// What probing or learning refuse.
+pub fn second(case: &Case, carried: &Carried, outcome: &mut Outcome) -> Result<Taught, Failure> {
+    let places = together(&case.places_mm, &case.more_mm);
+    let probe = case.probe(2, &carried.milled, &places)?;
+    let measurement = measured(case, "probe-2.txt", &probe)?;
+    let history = History::first(&case.pass, &carried.measurement, &carried.corrected)?;
+    let begun = Instant::now();
+    let learned = learn(&case.pass, &history, &measurement, &[], &[Route::Program], &mut |_| ())?;
+    outcome.learn_s = some(begun.elapsed().as_secs_f64());
+    outcome.learned_predicted_mm = some(learned.corrected.summary.max_error_after_mm);
+    outcome.rolled_back = Some(learned.verdict.rolled_back);
+    let after = cut(case, 3, &learned.corrected)?.judge();
+    outcome.learned_mm = some(after.score.max_error_mm);
+    outcome.learned_factor = some(case.before.score.max_error_mm / after.score.max_error_mm.max(1e-6));
+    outcome.learned_gouge_mm = some(after.score.gouge_mm);
+    outcome.learned_coverage = coverage(&after, &learned.corrected.table)?;
+    Ok(Taught { probe, learned, after })
+}
+
+fn measured(case: &Case, name: &str, probe: &str) -> Result<Measurement, Failure> {
+    Measurement::read(&case.pass, &Source::new(format!("{}/{name}", case.id), probe.as_bytes().to_vec()))
+}
+
+/// Mills part `number` with a corrected program.
+fn cut(case: &Case, number: u64, corrected: &Corrected) -> Result<Milled, Failure> {
+    let text = corrected.program.as_deref().ok_or_else(|| Failure::Internal("no corrected program".to_owned()))?;
+    let commanded = workshop::commanded(&case.pass, text)?;
+    workshop::mill(&case.pass, &case.machine_of(number), Some(&commanded))
 }
 
 /// Share of the judged contour where the error lies within 2 sigma of the table of a correction.
@@ -110,11 +163,7 @@ fn coverage(judged: &Judged, table: &[u8]) -> Result<Option<f64>, Failure> {
     Ok(if judged.mean_mm.is_empty() { None } else { some(within as f64 / judged.mean_mm.len() as f64) })
 }
 
-/// A number for the table: seven figures are enough.
+/// A number for the table: seven decimals are enough.
 fn some(value: f64) -> Option<f64> {
     value.is_finite().then(|| (value * 1e7).round() / 1e7)
-}
-
-fn sentence(failure: &Failure) -> String {
-    one_line(&failure.to_string())
 }

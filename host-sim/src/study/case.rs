@@ -36,6 +36,9 @@ const FARTHEST: f64 = 0.5;
 /// 1 mm, which a corrected part, cut to its full depth, then has room in.
 const PUSHED_MM: f64 = 0.6;
 
+/// Standard deviation of the datum shift between cut and probe, in x and in y, mm.
+const DATUM_MM: f64 = 0.0015;
+
 /// Least wall error worth a case, mm.
 const LEAST_MM: f64 = 0.045;
 
@@ -57,8 +60,6 @@ pub struct Case {
     pub pass: Pass,
     /// The machine while the first part is cut.
     pub machine: Machine,
-    /// Datum shift between cut and probe, mm.
-    pub datum_mm: [f64; 2],
     /// Places of the first probing, mm along the contour.
     pub places_mm: Vec<f64>,
     /// Places added after the first correction.
@@ -119,21 +120,8 @@ impl Case {
             (places_mm, levels) = touches(&part, trim, points as usize);
         }
         let more_mm = places::more(&part.contour, trim);
-        let (machine, datum_mm) = (drawn.machine, drawn.datum_mm);
-        Ok(Self {
-            id: id.clone(),
-            part,
-            program,
-            job,
-            pass,
-            machine,
-            datum_mm,
-            places_mm,
-            more_mm,
-            levels,
-            first,
-            before,
-        })
+        let machine = drawn.machine;
+        Ok(Self { id: id.clone(), part, program, job, pass, machine, places_mm, more_mm, levels, first, before })
     }
 
     /// The machine while part `number` (1, 2, …) is cut: the same, with another blank and other noise of the probe.
@@ -141,13 +129,15 @@ impl Case {
         Machine { seed: self.machine.seed.wrapping_add(number - 1), ..self.machine.clone() }
     }
 
-    /// Touches a milled part.
+    /// Touches part `number`. Every part is clamped and its datum taken anew, so the datum shift is another one.
     ///
     /// # Errors
     /// Places without a wall.
-    pub fn probe(&self, milled: &Milled, places_mm: &[f64]) -> Result<String, Failure> {
+    pub fn probe(&self, number: u64, milled: &Milled, places_mm: &[f64]) -> Result<String, Failure> {
         let ball = text::ball_diameter_mm(&self.part);
-        workshop::probe_shifted(&self.pass, milled, places_mm, &self.levels, ball, self.datum_mm)
+        let mut chance = Draw::new(&format!("{}/datum/{number}", self.id.family), self.id.seed);
+        let datum_mm = [chance.normal(DATUM_MM), chance.normal(DATUM_MM)];
+        workshop::probe_shifted(&self.pass, milled, places_mm, &self.levels, ball, datum_mm)
     }
 }
 

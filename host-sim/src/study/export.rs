@@ -3,15 +3,17 @@
 use std::fmt::Write;
 use std::path::Path as FilePath;
 
-use super::carry::{Carried, described, first};
+use super::carry::{Carried, Taught, described, first, second};
 use super::case::Case;
 use super::id::CaseId;
 use super::outcome::Outcome;
 use crate::diagnostics::Failure;
 use crate::output::OutputFolder;
+use crate::plant::Judged;
 
 /// Files an export may write.
-const FILES: &[&str] = &["program.nc", "job.toml", "plant.toml", "probe.txt", "corrected.nc", "errors.csv"];
+const FILES: &[&str] =
+    &["program.nc", "job.toml", "plant.toml", "probe.txt", "corrected.nc", "probe-2.txt", "learned.nc", "errors.csv"];
 
 /// A case carried through as far as it goes.
 #[derive(Debug)]
@@ -22,6 +24,8 @@ pub struct Detail {
     pub outcome: Outcome,
     /// The correction, when there is one, or why not.
     pub carried: Result<Carried, Failure>,
+    /// What was learned from the corrected part, or why nothing.
+    pub taught: Option<Result<Taught, Failure>>,
 }
 
 /// Carries one case through.
@@ -35,7 +39,11 @@ pub fn detail(id: &CaseId) -> Result<Detail, Failure> {
     if let Err(failure) = &carried {
         outcome.failure = failure.to_string();
     }
-    Ok(Detail { case, outcome, carried })
+    let taught = carried.as_ref().ok().map(|carried| second(&case, carried, &mut outcome));
+    if let Some(Err(failure)) = &taught {
+        outcome.learn_failure = failure.to_string();
+    }
+    Ok(Detail { case, outcome, carried, taught })
 }
 
 /// Writes the files of a case.
@@ -49,14 +57,21 @@ pub fn export(detail: &Detail, folder: &FilePath, force: bool) -> Result<(), Fai
     out.write("job.toml", case.job.as_bytes())?;
     let plant = toml::to_string(&case.machine).map_err(|e| Failure::Internal(format!("plant.toml: {e}")))?;
     out.write("plant.toml", plant.as_bytes())?;
-    out.write("probe.txt", case.probe(&case.first, &case.places_mm)?.as_bytes())?;
+    out.write("probe.txt", case.probe(1, &case.first, &case.places_mm)?.as_bytes())?;
     if let Ok(carried) = &detail.carried {
         if let Some(program) = &carried.corrected.program {
             out.write("corrected.nc", program)?;
         }
-        let mut errors = "s_mm,before_mm,after_mm\n".to_owned();
-        for ((s, before), (_, after)) in case.before.mean_mm.iter().zip(&carried.after.mean_mm) {
-            let _ = writeln!(errors, "{s:.4},{before:.6},{after:.6}");
+        let taught = detail.taught.as_ref().and_then(|taught| taught.as_ref().ok());
+        if let Some(taught) = taught {
+            out.write("probe-2.txt", taught.probe.as_bytes())?;
+            out.write("learned.nc", taught.learned.corrected.program.as_deref().unwrap_or_default())?;
+        }
+        let mut errors = "s_mm,before_mm,after_mm,learned_mm\n".to_owned();
+        for (k, (s, before)) in case.before.mean_mm.iter().enumerate() {
+            let at = |judged: &Judged| judged.mean_mm.get(k).map_or(f64::NAN, |(_, error)| *error);
+            let learned = taught.map_or(f64::NAN, |taught| at(&taught.after));
+            let _ = writeln!(errors, "{s:.4},{before:.6},{:.6},{learned:.6}", at(&carried.after));
         }
         out.write("errors.csv", errors.as_bytes())?;
     }
@@ -104,7 +119,6 @@ pub fn words(detail: &Detail) -> String {
             machine.edge_wear_per_m, machine.stock_variation_mm, machine.probe_noise_mm
         ),
     );
-    line("datum shift", format!("{:.4} {:.4} mm", case.datum_mm[0], case.datum_mm[1]));
     let mm = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.4} mm"));
     line("error before", format!("{} (worst height {})", mm(o.before_mm), mm(o.worst_height_before_mm)));
     match &detail.carried {
@@ -134,6 +148,25 @@ pub fn words(detail: &Detail) -> String {
             }
             for warning in &carried.corrected.summary.warnings {
                 line("warning", warning.clone());
+            }
+        }
+    }
+    match &detail.taught {
+        None => {}
+        Some(Err(failure)) => line("learning refused", failure.to_string()),
+        Some(Ok(taught)) => {
+            line(
+                "after learning",
+                format!(
+                    "{}, factor {:.1}, predicted {}",
+                    mm(o.learned_mm),
+                    o.learned_factor.unwrap_or_default(),
+                    mm(o.learned_predicted_mm)
+                ),
+            );
+            line("within 2 sigma", format!("{:.1} % of the contour", 100.0 * o.learned_coverage.unwrap_or_default()));
+            for remark in taught.learned.verdict.remarks() {
+                line("remark", remark.clone());
             }
         }
     }

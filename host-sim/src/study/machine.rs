@@ -21,8 +21,6 @@ pub struct Drawn {
     pub machine: Machine,
     /// Largest wall error of the uncorrected part that is aimed at, mm.
     pub error_mm: f64,
-    /// Datum shift between cut and probe, x and y, mm.
-    pub datum_mm: [f64; 2],
 }
 
 /// Draws the machine of a part.
@@ -64,9 +62,8 @@ pub fn machine(draw: &mut Draw, part: &Part, width: Width) -> Drawn {
         seed: draw.seed(),
     };
     let error_mm = draw.scale(low, high).min(0.35 * part.cut.allowance_mm);
-    let datum_mm = [draw.normal(0.0015), draw.normal(0.0015)];
     let machine = if part.plain { plain(machine) } else { machine };
-    Drawn { machine, error_mm, datum_mm }
+    Drawn { machine, error_mm }
 }
 
 /// The papers' material on the papers' machine; compliances stay as drawn.

@@ -57,6 +57,10 @@ pub struct Outcome {
     pub learned_predicted_mm: Option<f64>,
     /// Share of the contour where the error after learning lies within 2 sigma.
     pub learned_coverage: Option<f64>,
+    /// Deepest gouge after learning, of the mean over the heights.
+    pub learned_gouge_mm: Option<f64>,
+    /// Whether learning went back to an earlier correction.
+    pub rolled_back: Option<bool>,
     /// Time of learning, s.
     pub learn_s: Option<f64>,
 }
