@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Terminal, print, which};
-use crate::command::probe::{Options, Report, run as probe};
+use super::{Terminal, print, probe_flags, which};
+use crate::command::probe::{Evidence, Options, Report, run as probe};
 use crate::diagnostics::Failure;
 use crate::report::json;
 use crate::verification::{Dialect, Settings};
@@ -16,19 +16,25 @@ pub(super) struct Arguments {
     /// The job.
     job: PathBuf,
     /// The control the program is for.
-    #[arg(long, value_enum)]
-    dialect: Dialect,
+    #[arg(long, value_enum, required_unless_present = "next", requires = "output")]
+    dialect: Option<Dialect>,
     /// The program to write.
-    #[arg(short, long, value_name = "FILE")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "FILE", required_unless_present = "next", requires = "dialect")]
+    output: Option<PathBuf>,
+    /// Further places, given what was measured: those after which the worst place of the corrected wall is most certain.
+    #[arg(long, requires = "probe")]
+    next: bool,
+    /// What was measured on the part cut by the job's program.
+    #[arg(long, value_name = "FILE", requires = "next")]
+    probe: Option<PathBuf>,
     /// Replace the file if it exists.
     #[arg(long)]
     force: bool,
     #[command(flatten)]
     which: which::WhichArguments,
-    /// Places along the contour; each is touched at every height.
-    #[arg(long, value_name = "N", default_value_t = Settings::default().places)]
-    points: u32,
+    /// Places along the contour; each is touched at every height [default: 8; with --next at most 4].
+    #[arg(long, value_name = "N")]
+    points: Option<u32>,
     /// Heights at each place.
     #[arg(long, value_name = "N", default_value_t = Settings::default().heights)]
     heights: u32,
@@ -59,17 +65,21 @@ pub(super) struct Arguments {
     /// Call the probe as this tool (T, M6, G43 H) instead of stopping for the operator.
     #[arg(long, value_name = "N")]
     probe_tool: Option<u32>,
+    #[command(flatten)]
+    probe_flags: probe_flags::Arguments,
 }
+
+/// Further places that are looked for, when the user does not say how many.
+const FURTHER: u32 = 4;
 
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
     let options = Options {
         job: &arguments.job,
-        dialect: arguments.dialect,
-        out: &arguments.output,
+        program: arguments.dialect.zip(arguments.output.as_deref()),
         force: arguments.force,
         which: arguments.which.which(),
         settings: Settings {
-            places: arguments.points,
+            places: arguments.points.unwrap_or(if arguments.next { FURTHER } else { Settings::default().places }),
             heights: arguments.heights,
             clearance: arguments.clearance,
             overtravel: arguments.overtravel,
@@ -81,6 +91,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
             feed_slow: arguments.feed_slow,
             probe_tool: arguments.probe_tool,
         },
+        measured: arguments.probe.as_deref().map(|probe| Evidence { probe, flags: arguments.probe_flags.flags() }),
     };
     let mut bar = terminal.progress("choosing places", 100);
     let report = probe(&options, &mut |share| bar.reached((100.0 * share) as u64))?;
@@ -91,8 +102,8 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     if terminal.json() {
         return print(&json(&report)?);
     }
-    let text = words(&report) + &format!("written to {}\n", arguments.output.display());
-    print(text.as_bytes())
+    let written = arguments.output.as_ref().map(|out| format!("written to {}\n", out.display()));
+    print((words(&report) + &written.unwrap_or_default()).as_bytes())
 }
 
 fn words(report: &Report) -> String {
@@ -102,6 +113,16 @@ fn words(report: &Report) -> String {
         if p.rank != last {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "       {} (line {}): {}", p.what, p.line, p.why);
+            if let Some(gain) = p.gain {
+                let _ = writeln!(
+                    text,
+                    "       corrected wall least certain at s = {:.2} mm: {:.4} mm -> {:.4} mm (one sigma){}",
+                    gain.worst_s_mm,
+                    gain.max_sigma_before_mm,
+                    gain.max_sigma_after_mm,
+                    if gain.worth_it { "" } else { ", below the noise of a reading" }
+                );
+            }
             last = p.rank;
         }
         let _ = writeln!(
@@ -114,9 +135,14 @@ fn words(report: &Report) -> String {
     for u in &report.unknowns {
         let _ = write!(text, " {} {:.0} %;", u.words, 100.0 * u.remaining);
     }
+    let wall = if report.points.iter().any(|p| p.gain.is_some()) {
+        "corrected wall where it is least certain"
+    } else {
+        "predicted wall"
+    };
     let _ = writeln!(
         text,
-        "\npredicted wall, one sigma: {:.4} mm before the touches, {:.4} mm after",
+        "\n{wall}, one sigma: {:.4} mm before the touches, {:.4} mm after",
         report.wall_sigma_before_mm, report.wall_sigma_after_mm
     );
     for kept in &report.kept_off {
@@ -124,8 +150,10 @@ fn words(report: &Report) -> String {
     }
     let _ = writeln!(
         text,
-        "safe height Z{:.3} mm, stand-off {:.3} mm before the wall; read the results with [probe] format = \"{}\"",
-        report.safe_z_mm, report.clearance_mm, report.probe_format
+        "safe height Z{:.3} mm, stand-off {:.3} mm before the wall{}",
+        report.safe_z_mm,
+        report.clearance_mm,
+        report.probe_format.map_or_else(String::new, |f| format!("; read the results with [probe] format = \"{f}\""))
     );
     text
 }

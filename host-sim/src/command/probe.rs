@@ -2,27 +2,37 @@
 
 use std::path::Path as FilePath;
 
+use super::probe_next;
 use crate::diagnostics::{Failure, InputError};
-use crate::job::{Job, Which};
+use crate::job::{Job, ProbeFlags, Which};
 use crate::output::OutputFile;
 use crate::pass::Pass;
-use crate::verification::{Dialect, KeptOff, Plan, Settings, Unknown, plan, write};
+use crate::verification::{Dialect, Gained, KeptOff, Plan, Settings, Unknown, plan, write};
 
 /// What is asked for.
 #[derive(Clone, Debug)]
 pub struct Options<'a> {
     /// The job.
     pub job: &'a FilePath,
-    /// The control.
-    pub dialect: Dialect,
-    /// The program to write.
-    pub out: &'a FilePath,
+    /// The control and the program to write; without them the places are listed only.
+    pub program: Option<(Dialect, &'a FilePath)>,
     /// Replace an existing file.
     pub force: bool,
     /// Choices.
     pub settings: Settings,
+    /// What was measured, when further places are asked for.
+    pub measured: Option<Evidence<'a>>,
     /// Feature and pass, when there are several.
     pub which: Which,
+}
+
+/// What was measured.
+#[derive(Clone, Debug)]
+pub struct Evidence<'a> {
+    /// The probe file of the part that will be touched again.
+    pub probe: &'a FilePath,
+    /// What the command line says of it.
+    pub flags: ProbeFlags,
 }
 
 /// A point of the program, for the list that is printed.
@@ -52,6 +62,9 @@ pub struct Point {
     pub why_height: &'static str,
     /// How many places were chosen before this one.
     pub rank: usize,
+    /// What the touches of its place are expected to bring; absent when nothing was measured before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Gained>,
 }
 
 /// Places looked at and kept off.
@@ -68,10 +81,12 @@ pub struct Kept {
 /// What was planned.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Report {
-    /// The control.
-    pub dialect: Dialect,
+    /// The control; absent when no program was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dialect: Option<Dialect>,
     /// `[probe] format` for the file of results.
-    pub probe_format: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub probe_format: Option<&'static str>,
     /// Every touch, in the order of the program.
     pub points: Vec<Point>,
     /// Height between places, mm.
@@ -80,7 +95,8 @@ pub struct Report {
     pub clearance_mm: f64,
     /// What the touches leave of every unknown.
     pub unknowns: Vec<Unknown>,
-    /// Standard deviation of the predicted wall before the touches, root mean square, mm.
+    /// Standard deviation of the wall before the touches, mm: of the predicted wall, root mean square, or, of further
+    /// places, the largest of the corrected wall.
     pub wall_sigma_before_mm: f64,
     /// The same after them.
     pub wall_sigma_after_mm: f64,
@@ -96,19 +112,27 @@ pub struct Report {
 /// Whatever is wrong with job, program or choices, and an output that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failure> {
     // A target that may not be written is refused before the work.
-    let mut file = OutputFile::create(options.out, options.force)?;
+    let mut file = options.program.map(|(_, out)| OutputFile::create(out, options.force)).transpose()?;
     let mut job = Job::read(options.job)?;
     job.which = options.which.clone();
+    if let Some(measured) = &options.measured {
+        job.override_probe(&measured.flags)?;
+    }
     let pass = Pass::read(job)?;
-    let plan = plan(&pass, &options.settings, progress)?;
-    let text = write(&plan, options.dialect, &log_name(options.out))?;
-    std::io::Write::write_all(&mut file, text.as_bytes()).map_err(|e| InputError::unwritable(options.out, &e))?;
-    file.commit()?;
-    Ok(report(&plan, options.dialect))
+    let plan = match &options.measured {
+        None => plan(&pass, &options.settings, progress)?,
+        Some(measured) => probe_next::of_file(pass, measured.probe, &options.settings, progress)?,
+    };
+    if let (Some((dialect, out)), Some(mut file)) = (options.program, file.take()) {
+        let text = write(&plan, dialect, &log_name(out))?;
+        std::io::Write::write_all(&mut file, text.as_bytes()).map_err(|e| InputError::unwritable(out, &e))?;
+        file.commit()?;
+    }
+    Ok(report(&plan, options.program.map(|(dialect, _)| dialect)))
 }
 
 /// The report of a plan.
-pub fn report(plan: &Plan, dialect: Dialect) -> Report {
+pub fn report(plan: &Plan, dialect: Option<Dialect>) -> Report {
     let points = plan.touches().map(|touch| Point {
         id: touch.id,
         s_mm: touch.place.s_mm,
@@ -122,10 +146,11 @@ pub fn report(plan: &Plan, dialect: Dialect) -> Report {
         why: touch.place.why.clone(),
         why_height: touch.height.why,
         rank: touch.place.rank,
+        gain: touch.place.gain,
     });
     Report {
         dialect,
-        probe_format: dialect.probe_format(),
+        probe_format: dialect.map(Dialect::probe_format),
         points: points.collect(),
         safe_z_mm: plan.safe_z_mm,
         clearance_mm: plan.settings.clearance,

@@ -9,13 +9,13 @@ use std::collections::HashMap;
 
 use truepath_core::cut::{ForceTable, Loop, Path, Sample, State};
 use truepath_core::geometry::{Point, Shape};
-use truepath_core::identify::Prior;
 use truepath_core::units::{Offset, Real};
 
 use crate::pass::Pass;
 use crate::report::{float, mm};
 
 use super::approach::{Ball, Xy, along, distance};
+use super::belief::Belief;
 use super::leads::milled_once;
 
 /// Why a place is not touched.
@@ -81,12 +81,18 @@ const ABRUPT_SHARE: f64 = 0.04;
 const CUT_AWAY: f64 = 0.02;
 
 /// Sorts the places of a pass.
-pub(super) fn candidates(pass: &Pass, path: &Path, prior: &Prior, ball: Ball, noise: f64) -> (Vec<Site>, Vec<KeptOff>) {
+pub(super) fn candidates(
+    pass: &Pass,
+    path: &Path,
+    belief: &Belief,
+    ball: Ball,
+    noise: f64,
+) -> (Vec<Site>, Vec<KeptOff>) {
     let samples = &path.samples()[path.first()..path.first() + path.count()];
     let radius = mm(path.setup().radius);
     let walls: Vec<Option<Xy>> = final_walls(path, samples, radius);
     let standing: Vec<Xy> = walls.iter().copied().flatten().collect();
-    let states = states(path, prior);
+    let states = states(path, belief);
     let start = path.working().start;
     let state = |sample: usize| states.get(sample.saturating_sub(start)).copied().unwrap_or(State::REST);
     let deflection = |sample: usize| {
@@ -131,14 +137,15 @@ pub(super) fn candidates(pass: &Pass, path: &Path, prior: &Prior, ball: Ball, no
     (sites, kept_off)
 }
 
-/// The states of the elastic loop along the path, by what the job says of machine and material.
-fn states(path: &Path, prior: &Prior) -> Vec<State> {
-    let table = ForceTable::new(prior.mean.coefficients.size_exponent);
+/// The states of the elastic loop along the path, by what is believed of machine and material.
+fn states(path: &Path, belief: &Belief) -> Vec<State> {
+    let parameters = belief.parameters();
+    let table = ForceTable::new(parameters.coefficients.size_exponent);
     let machine =
-        Loop { path, table: &table, coefficients: prior.mean.coefficients, compliance: prior.mean.compliance };
+        Loop { path, table: &table, coefficients: parameters.coefficients, compliance: parameters.compliance };
     let working = path.working();
     let mut states = vec![State::REST; working.len()];
-    machine.run(working.start, &mut states, |_| truepath_core::geometry::Vector::ZERO);
+    machine.run(working.start, &mut states, |i| belief.commanded(path, i));
     states
 }
 

@@ -7,8 +7,9 @@
 
 use crate::diagnostics::InputError;
 
-use super::plan::Plan;
+use super::plan::{Plan, Touch};
 use super::text::{MoreOffsets, Notation, Page, fixed, work_offset};
+use super::walk::{Words, walk};
 
 /// A reading nearer than this to the stand-off was no search, mm.
 const NO_SEARCH: f64 = 0.1;
@@ -17,11 +18,37 @@ const AT_END: f64 = 0.005;
 /// The block that stops the machine.
 const ALARM: u32 = 9000;
 
+struct Fanuc<'p> {
+    plan: &'p Plan,
+    n: Notation,
+}
+
+impl Words for Fanuc<'_> {
+    const PROBE: &'static str = "G31";
+
+    fn behind_the_reading(&self, page: &mut Page, touch: &Touch<'_>) {
+        let (plan, n, id) = (self.plan, self.n, touch.id);
+        let (from, to) = (plan.stand_off(touch.place), plan.search_end(touch.place));
+        page.line(format!("IF[{}LT{}]GOTO{ALARM}", away(n, from), n.number(NO_SEARCH)));
+        page.line(nominal(plan, n, id));
+        page.line(format!("IF[{}LT{}]GOTO{id}", away(n, to), n.number(AT_END)));
+        let digits = digits(n);
+        page.line(format!(
+            "DPRNT[G801*N{id}*X#5061[{digits}]*Y#5062[{digits}]*Z{}*R{}]",
+            n.number(touch.height.z_mm),
+            n.number(plan.ball_mm / 2.0)
+        ));
+    }
+
+    fn label(&self, touch: &Touch<'_>) -> String {
+        format!("N{} ", touch.id)
+    }
+}
+
 pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     let n = Notation::of(plan, 3);
     let count = plan.places.len() * plan.heights.len();
     let s = &plan.settings;
-    let (go, fast, slow) = (n.feed(s.feed_move), n.feed(s.feed_fast), n.feed(s.feed_slow));
     let mut page = Page::default();
     page.line("%");
     page.line("O7100 (TRUEPATH VERIFICATION)");
@@ -42,32 +69,7 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
         }
     }
     open(&mut page, plan, n);
-    let mut id = 0;
-    for place in &plan.places {
-        let (from, to) = (plan.stand_off(place), plan.search_end(place));
-        let (stand_off, end) = (n.xy(from), n.xy(to));
-        page.place(place, id + 1, id + plan.heights.len());
-        page.line(format!("G0 {stand_off}"));
-        for height in &plan.heights {
-            id += 1;
-            page.comment(&format!("point {id}, {}", height.why));
-            page.line(format!("G31 Z{} F{go}", n.number(height.z_mm)));
-            page.line(format!("G31 {end} F{fast}"));
-            page.line(format!("G1 {stand_off} F{fast}"));
-            page.line(format!("G31 {end} F{slow}"));
-            page.line(format!("IF[{}LT{}]GOTO{ALARM}", away(n, from), n.number(NO_SEARCH)));
-            page.line(nominal(plan, n, id));
-            page.line(format!("IF[{}LT{}]GOTO{id}", away(n, to), n.number(AT_END)));
-            let digits = digits(n);
-            page.line(format!(
-                "DPRNT[G801*N{id}*X#5061[{digits}]*Y#5062[{digits}]*Z{}*R{}]",
-                n.number(height.z_mm),
-                n.number(plan.ball_mm / 2.0)
-            ));
-            page.line(format!("N{id} G1 {stand_off} F{fast}"));
-        }
-        page.line(format!("G0 Z{}", n.number(plan.safe_z_mm)));
-    }
+    walk(&mut page, plan, n, &Fanuc { plan, n });
     close(&mut page, count);
     page.line("M30");
     page.line(format!("N{ALARM} PCLOS"));

@@ -6,14 +6,34 @@
 
 use crate::diagnostics::InputError;
 
-use super::plan::Plan;
+use super::plan::{Plan, Touch};
 use super::text::{MoreOffsets, Notation, Page, fixed, work_offset};
+use super::walk::{Words, walk};
+
+struct Grbl {
+    n: Notation,
+}
+
+impl Words for Grbl {
+    const PROBE: &'static str = "G38.3";
+
+    fn before_the_reading(&self, page: &mut Page, touch: &Touch<'_>) {
+        let place = touch.place;
+        page.line(format!(
+            ";VERIFY {} {} {} {} {}",
+            touch.id,
+            fixed(place.normal[0], 6),
+            fixed(place.normal[1], 6),
+            self.n.number(place.wall[0]),
+            self.n.number(place.wall[1])
+        ));
+    }
+}
 
 pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     let n = Notation::of(plan, 3);
     let count = plan.places.len() * plan.heights.len();
     let s = &plan.settings;
-    let (go, fast, slow) = (n.feed(s.feed_move), n.feed(s.feed_fast), n.feed(s.feed_slow));
     if let Some(tool) = s.probe_tool {
         return Err(InputError::new(
             "V005",
@@ -36,29 +56,7 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     page.line(format!("G0 Z{}", n.number(plan.safe_z_mm)));
     page.line(format!(";VERIFY PROGRAM {:08x}", plan.shop.crc));
     page.line(format!(";VERIFY POINTS {count}"));
-    let mut id = 0;
-    for place in &plan.places {
-        let (stand_off, end) = (n.xy(plan.stand_off(place)), n.xy(plan.search_end(place)));
-        page.place(place, id + 1, id + plan.heights.len());
-        page.line(format!("G0 {stand_off}"));
-        for height in &plan.heights {
-            id += 1;
-            page.comment(&format!("point {id}, {}", height.why));
-            page.line(format!("G38.3 Z{} F{go}", n.number(height.z_mm)));
-            page.line(format!("G38.3 {end} F{fast}"));
-            page.line(format!("G1 {stand_off} F{fast}"));
-            page.line(format!(
-                ";VERIFY {id} {} {} {} {}",
-                fixed(place.normal[0], 6),
-                fixed(place.normal[1], 6),
-                n.number(place.wall[0]),
-                n.number(place.wall[1])
-            ));
-            page.line(format!("G38.3 {end} F{slow}"));
-            page.line(format!("G1 {stand_off} F{fast}"));
-        }
-        page.line(format!("G0 Z{}", n.number(plan.safe_z_mm)));
-    }
+    walk(&mut page, plan, n, &Grbl { n });
     page.line(format!(";VERIFY END {count}"));
     page.line("M2");
     Ok(page.finish())

@@ -3,7 +3,9 @@
 //! A touch with sensitivities g (change of its reading per prior standard deviation, in standard deviations of the
 //! reading) turns the covariance P into P − P g gᵀ P / (1 + gᵀ P g).
 
-use truepath_core::identify::COUNT;
+use truepath_core::identify::{COUNT, Matrix, Parameter};
+
+use crate::report::float;
 
 /// Sensitivities of one touch.
 pub(super) type Row = [f64; COUNT];
@@ -18,6 +20,21 @@ impl Knowledge {
         let mut matrix = [[0.0; COUNT]; COUNT];
         for (k, row) in matrix.iter_mut().enumerate() {
             row[k] = 1.0;
+        }
+        Self(matrix)
+    }
+
+    /// After what was measured: the covariance of a fit. With a `fresh_datum` the part is another one, or clamped anew:
+    /// nothing is known of its datum.
+    pub(super) fn of(covariance: &Matrix, fresh_datum: bool) -> Self {
+        let mut matrix = covariance.map(|row| row.map(float));
+        let datum = |k: usize| matches!(Parameter::ALL[k], Parameter::DatumX | Parameter::DatumY);
+        for (i, row) in matrix.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                if fresh_datum && (datum(i) || datum(j)) {
+                    *entry = if i == j { 1.0 } else { 0.0 };
+                }
+            }
         }
         Self(matrix)
     }
@@ -50,6 +67,11 @@ impl Knowledge {
     /// Sum of the variances of many things, given the sum of the outer products of their rows.
     pub(super) fn total(&self, products: &[[f64; COUNT]; COUNT]) -> f64 {
         self.0.iter().zip(products).map(|(row, other)| dot(row, other)).sum()
+    }
+
+    /// Standard deviation of a thing with a row.
+    pub(super) fn sigma(&self, row: &Row) -> f64 {
+        dot(&self.times(row), row).max(0.0).sqrt()
     }
 
     fn times(&self, row: &Row) -> Row {

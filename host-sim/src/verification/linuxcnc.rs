@@ -6,14 +6,42 @@
 
 use crate::diagnostics::InputError;
 
-use super::plan::Plan;
+use super::plan::{Plan, Touch};
 use super::text::{MoreOffsets, Notation, Page, fixed, work_offset};
+use super::walk::{Words, walk};
+
+struct LinuxCnc {
+    n: Notation,
+}
+
+impl Words for LinuxCnc {
+    const PROBE: &'static str = "G38.3";
+
+    fn behind_the_way_down(&self, page: &mut Page, touch: &Touch<'_>) {
+        page.line(format!("o{} if [#5070 NE 0]", touch.id));
+        page.line("  (LOGCLOSE)");
+        page.line("  (MSG,touched where nothing should be: program ended)");
+        page.line("  M2");
+        page.line(format!("o{} endif", touch.id));
+    }
+
+    fn behind_the_reading(&self, page: &mut Page, touch: &Touch<'_>) {
+        let place = touch.place;
+        page.line(format!(
+            "(LOG,{},{},{},{},{},#5061,#5062,#5063,#5070)",
+            touch.id,
+            fixed(place.normal[0], 6),
+            fixed(place.normal[1], 6),
+            self.n.number(place.wall[0]),
+            self.n.number(place.wall[1])
+        ));
+    }
+}
 
 pub(super) fn write(plan: &Plan, log: &str) -> Result<String, InputError> {
     let n = Notation::of(plan, 4);
     let count = plan.places.len() * plan.heights.len();
     let s = &plan.settings;
-    let (go, fast, slow) = (n.feed(s.feed_move), n.feed(s.feed_fast), n.feed(s.feed_slow));
     let mut page = Page::default();
     page.header(plan, "LinuxCNC", "results go into a log file, format linuxcnc-log");
     page.line(format!("{} G17 G40 G80 G90 G94 G61", n.unit_code()));
@@ -40,34 +68,7 @@ pub(super) fn write(plan: &Plan, log: &str) -> Result<String, InputError> {
     ] {
         page.line(format!("(LOG,# {line})"));
     }
-    let mut id = 0;
-    for place in &plan.places {
-        let (stand_off, end) = (n.xy(plan.stand_off(place)), n.xy(plan.search_end(place)));
-        page.place(place, id + 1, id + plan.heights.len());
-        page.line(format!("G0 {stand_off}"));
-        for height in &plan.heights {
-            id += 1;
-            page.comment(&format!("point {id}, {}", height.why));
-            page.line(format!("G38.3 Z{} F{go}", n.number(height.z_mm)));
-            page.line(format!("o{id} if [#5070 NE 0]"));
-            page.line("  (LOGCLOSE)");
-            page.line("  (MSG,touched where nothing should be: program ended)");
-            page.line("  M2");
-            page.line(format!("o{id} endif"));
-            page.line(format!("G38.3 {end} F{fast}"));
-            page.line(format!("G1 {stand_off} F{fast}"));
-            page.line(format!("G38.3 {end} F{slow}"));
-            page.line(format!(
-                "(LOG,{id},{},{},{},{},#5061,#5062,#5063,#5070)",
-                fixed(place.normal[0], 6),
-                fixed(place.normal[1], 6),
-                n.number(place.wall[0]),
-                n.number(place.wall[1])
-            ));
-            page.line(format!("G1 {stand_off} F{fast}"));
-        }
-        page.line(format!("G0 Z{}", n.number(plan.safe_z_mm)));
-    }
+    walk(&mut page, plan, n, &LinuxCnc { n });
     page.line(format!("(LOG,# end {count})"));
     page.line("(LOGCLOSE)");
     page.comment(&format!("end of {count}"));

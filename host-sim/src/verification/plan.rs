@@ -3,15 +3,18 @@
 use std::collections::BTreeMap;
 
 use truepath_core::cut::WallLaw;
+use truepath_core::identify::Prior;
 
-use crate::diagnostics::{Failure, InputError};
+use crate::diagnostics::Failure;
 use crate::pass::{Pass, PathBuffer};
-use crate::report::{float, mm};
+use crate::report::mm;
 
-use super::approach::{Ball, along};
-use super::candidates::{KeptOff, candidates};
-use super::choice::choose;
-use super::heights::{Height, heights};
+use super::approach::along;
+use super::belief::Belief;
+use super::candidates::{KeptOff, Site};
+use super::choice::{Choice, choose};
+use super::ground::Ground;
+use super::heights::Height;
 use super::reason::{self, Unknown};
 use super::sensitivity::tellings;
 use super::settings::Settings;
@@ -34,6 +37,37 @@ pub struct Place {
     pub why: String,
     /// How many places were chosen before it: 0 is the most telling.
     pub rank: usize,
+    /// What its touches are expected to bring, where something was measured before.
+    pub gain: Option<Gained>,
+}
+
+/// What the touches of a further place are expected to bring.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Gained {
+    /// Largest standard deviation of the corrected wall before them, mm.
+    pub max_sigma_before_mm: f64,
+    /// The same after them, mm.
+    pub max_sigma_after_mm: f64,
+    /// Where the wall is least certain before them, mm along the contour.
+    pub worst_s_mm: f64,
+    /// Whether they are expected to move that place by more than the noise of a reading.
+    pub worth_it: bool,
+}
+
+impl Place {
+    /// A chosen site with its reasons.
+    pub(super) fn of(site: &Site, choice: &Choice, rank: usize, prior: &Prior) -> Self {
+        Self {
+            s_mm: mm(site.s),
+            line: site.line,
+            wall: site.wall,
+            normal: site.normal.map(|v| -v),
+            what: reason::place(site),
+            why: reason::tells([&choice.before, &choice.after], prior),
+            rank,
+            gain: None,
+        }
+    }
 }
 
 /// One touch.
@@ -68,16 +102,12 @@ pub struct Plan {
     pub kept_off: BTreeMap<KeptOff, usize>,
     /// What the touches leave of every unknown.
     pub unknowns: Vec<Unknown>,
-    /// Standard deviation of the predicted wall, root mean square, mm: as the job states it, and after the touches.
+    /// Standard deviation of the wall, mm, before the touches and after them: of the predicted wall, root mean square, or,
+    /// of a plan of further places, the largest of the corrected wall.
     pub wall_sigma_mm: [f64; 2],
     /// What the user should know.
     pub warnings: Vec<String>,
 }
-
-/// Between two places, at least: the ball's radius and this much more, mm, so that they are two places of the wall.
-const APART: f64 = 1.0;
-/// Above the engaged depth, when neither user nor program says how high is safe, mm.
-const SAFE_ABOVE: f64 = 50.0;
 
 impl Plan {
     /// Ball's centre at the stand-off of a place, mm.
@@ -101,103 +131,26 @@ impl Plan {
 /// A job without probe, settings out of range, a ball without room (`V002`, `V003`), no place that may be touched
 /// (`V004`), and whatever is wrong with the program.
 pub fn plan(pass: &Pass, settings: &Settings, progress: &mut dyn FnMut(f64)) -> Result<Plan, Failure> {
-    settings.check()?;
-    let probe = pass.job.require_probe()?;
-    let shop = Shop::read(pass)?;
-    let heights = heights(pass, &probe, settings)?;
-    let ball = Ball { radius: mm(probe.ball_diameter) / 2.0, clearance: settings.clearance };
-    let free = settings.free_width.unwrap_or(2.0 * mm(pass.core.setup.radius));
-    if ball.width() > free + 1e-9 {
-        return Err(no_width(ball, free, settings).into());
-    }
+    let ground = Ground::of(pass, settings)?;
     let mut buffer = PathBuffer::default();
     let path = pass.sample(&mut buffer)?;
     let law = path.setup().law;
     let prior = pass.core.prior(law);
-    let (sites, kept_off) = candidates(pass, &path, &prior, ball, mm(probe.noise));
-    let kept_off = kept_off.iter().fold(BTreeMap::new(), |mut counts, reason| {
-        *counts.entry(*reason).or_insert(0) += 1;
-        counts
-    });
-    if sites.is_empty() {
-        return Err(no_place(&kept_off).into());
-    }
-    let tellings = tellings(&path, &prior, &sites, &heights, probe.noise, progress);
-    let chosen = choose(&sites, &tellings, settings.places as usize, ball.radius + APART, mm(path.length()));
-    let mut places: Vec<Place> = chosen
-        .choices
-        .iter()
-        .enumerate()
-        .map(|(rank, choice)| {
-            let site = &sites[choice.site];
-            Place {
-                s_mm: mm(site.s),
-                line: site.line,
-                wall: site.wall,
-                normal: site.normal.map(|v| -v),
-                what: reason::place(site),
-                why: reason::tells(choice, &prior),
-                rank,
-            }
-        })
-        .collect();
-    places.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
-    let safe_z_mm = safe_z(pass, settings, &shop)?;
+    let belief = Belief::stated(&prior);
+    let (sites, kept_off) = ground.sites(pass, &path, &belief)?;
+    let tellings = tellings(&path, &belief, &sites, &ground.heights, ground.probe.noise, progress);
+    let chosen = choose(&sites, &tellings, settings.places as usize, ground.apart(), mm(path.length()));
+    let reasoned = chosen.choices.iter().enumerate();
+    let places = reasoned.map(|(rank, choice)| Place::of(&sites[choice.site], choice, rank, &prior)).collect();
     let mut plan = Plan {
-        shop,
-        settings: settings.clone(),
-        ball_mm: 2.0 * ball.radius,
-        z_is_tip: probe.z_reference == truepath_core::job::ZReference::Tip,
-        safe_z_mm,
-        places,
-        heights,
         kept_off,
         unknowns: reason::unknowns(&chosen.known, &prior),
         wall_sigma_mm: chosen.wall_sigma,
-        warnings: pass.warnings.clone(),
+        ..ground.plan(pass, settings, places)
     };
     plan.warnings.extend(doubts(&plan, law));
     progress(1.0);
     Ok(plan)
-}
-
-/// Height of the moves between places: above the engaged depth, and no lower than the part's program ever moved.
-fn safe_z(pass: &Pass, settings: &Settings, shop: &Shop) -> Result<f64, InputError> {
-    let top = pass.core.contour.z.nm() as f64 / 1e6 + float(pass.core.setup.axial_depth);
-    let highest = shop.highest_nm.map_or(f64::NEG_INFINITY, |z| z as f64 / 1e6);
-    match settings.safe_z {
-        None => Ok((top + SAFE_ABOVE).max(highest)),
-        Some(z) if z > top => Ok(z),
-        Some(z) => Err(InputError::new(
-            "V001",
-            format!("--safe-z {z} is not above the wall, which ends at Z{top}"),
-            format!("a height above Z{top} and above every clamp"),
-            "give a higher one, or leave it out",
-        )),
-    }
-}
-
-fn no_width(ball: Ball, free: f64, settings: &Settings) -> InputError {
-    let (found, help) = if settings.free_width.is_some() {
-        (format!("--free-width {free}"), "use a smaller ball, or a smaller --clearance")
-    } else {
-        (
-            format!("the pass has cleared {free} mm before the wall, the cutter's diameter"),
-            "use a smaller ball or a smaller --clearance, or say with --free-width how much is free before the wall",
-        )
-    };
-    let expected = format!("{} mm: the ball of {} mm and its clearance", ball.width(), 2.0 * ball.radius);
-    InputError::new("V003", found, expected, help)
-}
-
-fn no_place(kept_off: &BTreeMap<KeptOff, usize>) -> InputError {
-    let reasons: Vec<String> = kept_off.iter().map(|(reason, n)| format!("{n} {}", reason.words())).collect();
-    InputError::new(
-        "V004",
-        format!("no place of the contour may be touched; of those looked at, {}", reasons.join(", ")),
-        "a place where wall and engagement are steady and the ball's way is free",
-        "use a smaller ball or a smaller --clearance, or probe by hand",
-    )
 }
 
 /// A plan that leaves the wall less certain than this, mm, and than this share of what the job states, is doubted.

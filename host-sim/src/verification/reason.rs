@@ -4,7 +4,6 @@ use truepath_core::identify::{Parameter, Prior};
 use truepath_core::units::Real;
 
 use super::candidates::{Form, Site};
-use super::choice::Choice;
 use super::knowledge::Knowledge;
 
 /// An unknown and what the plan leaves of its uncertainty.
@@ -74,9 +73,9 @@ fn facing(normal: [f64; 2]) -> String {
 
 /// What the touches there tell: `tells stiffness 100 -> 12 %, …`, the share of its uncertainty
 /// before and after.
-pub(super) fn tells(choice: &Choice, prior: &Prior) -> String {
+pub(super) fn tells([before, after]: [&Knowledge; 2], prior: &Prior) -> String {
     let mut told: Vec<(f64, String)> = open(prior)
-        .map(|(k, parameter)| (choice.before.remaining(k), choice.after.remaining(k), parameter))
+        .map(|(k, parameter)| (before.remaining(k), after.remaining(k), parameter))
         .filter(|(before, after, _)| 1.0 - after / before > TOLD)
         .map(|(before, after, parameter)| {
             let text = format!("{} {:.0} -> {:.0} %", words(parameter), 100.0 * before, 100.0 * after);

@@ -1,16 +1,17 @@
-//! What a touch would tell, by the model of the job.
+//! What a touch would tell, by the model at what is believed.
 //!
-//! The core's fit is run on readings that agree with its prior exactly: it settles at once and leaves the sensitivities
-//! of every reading to every unknown behind. They are those of the priors the job states; a machine far from them is
-//! probed at places that are a little less telling, never at wrong ones.
+//! Difference quotients of the predicted readings about the parameters believed: those the job states before anything
+//! is measured, those of the fit afterwards. A machine far from them is probed at places that are a little less telling,
+//! never at wrong ones.
 
 use truepath_core::cut::{ForceTable, Path, State};
 use truepath_core::geometry::{Direction, Vector};
-use truepath_core::identify::{Observation, Parameter, PredictionWorkspace, Prior, identify_observed, predict};
+use truepath_core::identify::{COUNT, Observation, Parameter, PredictionWorkspace, predict};
 use truepath_core::units::{Offset, Real};
 
 use crate::report::{float, mm};
 
+use super::belief::{Belief, of_measurement};
 use super::candidates::Site;
 use super::heights::Height;
 use super::knowledge::Row;
@@ -24,10 +25,13 @@ pub(super) struct Telling {
     pub(super) wall: Vec<Row>,
 }
 
+/// Step of the difference quotients, in standard deviations of what the job states.
+const DIFFERENCE: Real = Real::ratio(1, 32);
+
 /// The telling of every site, in their order. `progress` is told the share done, 0…1.
 pub(super) fn tellings(
     path: &Path,
-    prior: &Prior,
+    belief: &Belief,
     sites: &[Site],
     heights: &[Height],
     noise: Offset,
@@ -41,23 +45,57 @@ pub(super) fn tellings(
         let normal = Direction { x: real(site.normal[0]), y: real(site.normal[1]) };
         Observation::new(site.s, height, Offset::ZERO, noise, normal)
     };
-    let mut observations: Vec<Observation> =
+    let mut touches: Vec<Observation> =
         sites.iter().flat_map(|site| heights.iter().map(move |height| blank(site, height))).collect();
-    let uncorrected = |_| Vector::ZERO;
-    let table = ForceTable::new(prior.mean.coefficients.size_exponent);
-    predict(path, &table, &prior.mean, uncorrected, &mut observations, &mut workspace);
-    for observation in &mut observations {
-        observation.error = observation.predicted;
-    }
-    // Two linearisations of the thirteen that the longest fit would take.
-    let mut share = |permille: u16| progress((f64::from(permille) / 1000.0 * 13.0 / 2.0).min(1.0));
-    identify_observed(path, prior, &mut observations, uncorrected, &mut workspace, &mut share);
-    let telling = |touches: &[Observation]| {
-        let rows: Vec<Row> = touches.iter().map(|o| o.sensitivity.map(float)).collect();
-        let wall = touches.iter().zip(&rows).map(|(o, row)| wall_row(row, mm(o.deviation()))).collect();
-        Telling { rows, wall }
+    let mut readings = |touches: &mut [Observation], parameters: &_, table: &ForceTable| {
+        predict(path, table, parameters, |i| belief.commanded(path, i), touches, &mut workspace);
+        touches.iter().map(|o| o.predicted).collect::<Vec<_>>()
     };
-    observations.chunks(heights.len()).map(telling).collect()
+    let believed = belief.parameters();
+    let table = ForceTable::new(believed.coefficients.size_exponent);
+    let expected = readings(&mut touches, &believed, &table);
+    for (touch, expected) in touches.iter_mut().zip(&expected) {
+        touch.error = *expected;
+    }
+    let deviations: Vec<f64> = touches.iter().map(|o| mm(o.deviation())).collect();
+    let mut rows = vec![[0.0; COUNT]; touches.len()];
+    for (k, parameter) in Parameter::ALL.into_iter().enumerate() {
+        progress(k as f64 / COUNT as f64);
+        let sigma = float(belief.prior.sigma[k]);
+        if sigma == 0.0 {
+            continue;
+        }
+        if of_measurement(parameter) {
+            for ((row, touch), deviation) in rows.iter_mut().zip(&touches).zip(&deviations) {
+                row[k] = sigma / deviation * direct(parameter, touch);
+            }
+            continue;
+        }
+        let mut at = |by: Real| {
+            let moved = belief.displaced(k, by);
+            let exponent = moved.coefficients.size_exponent;
+            let other = (exponent != table.size_exponent()).then(|| ForceTable::new(exponent));
+            readings(&mut touches, &moved, other.as_ref().unwrap_or(&table))
+        };
+        let (above, below) = (at(DIFFERENCE), at(-DIFFERENCE));
+        for (((row, a), b), deviation) in rows.iter_mut().zip(&above).zip(&below).zip(&deviations) {
+            row[k] = mm(*a - *b) / (2.0 * float(DIFFERENCE)) / deviation;
+        }
+    }
+    let telling = |(rows, deviations): (&[Row], &[f64])| {
+        let wall = rows.iter().zip(deviations).map(|(row, deviation)| wall_row(row, *deviation)).collect();
+        Telling { rows: rows.to_vec(), wall }
+    };
+    rows.chunks(heights.len()).zip(deviations.chunks(heights.len())).map(telling).collect()
+}
+
+/// What a unit of an unknown of the measurement does to a reading.
+fn direct(parameter: Parameter, touch: &Observation) -> f64 {
+    match parameter {
+        Parameter::DatumX => -float(touch.normal.x),
+        Parameter::DatumY => -float(touch.normal.y),
+        _ => 1.0,
+    }
 }
 
 fn real(value: f64) -> Real {
@@ -66,8 +104,5 @@ fn real(value: f64) -> Real {
 
 /// Change of the wall: in mm, without what acts on the measurement alone.
 fn wall_row(row: &Row, deviation: f64) -> Row {
-    std::array::from_fn(|k| match Parameter::ALL[k] {
-        Parameter::Radius | Parameter::DatumX | Parameter::DatumY => 0.0,
-        _ => row[k] * deviation,
-    })
+    std::array::from_fn(|k| if of_measurement(Parameter::ALL[k]) { 0.0 } else { row[k] * deviation })
 }

@@ -56,3 +56,27 @@ fn a_wrong_choice_is_named_and_nothing_is_written() {
     assert!(call(&["--dialect", "grbl", "--probe-tool", "9"]).contains("grbl changes no tools"));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2, "job and program");
 }
+
+#[test]
+fn further_places_are_listed_without_a_control_and_written_for_one() {
+    let folder = part();
+    let call = |more: &[&str]| truepath(folder.path(), &[&["probe", "job.toml", "--next"], more].concat());
+    let refused = call(&[]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("--probe"));
+    let pass = super::parts::pass(POCKET, &[]);
+    let machine = toml::from_str(include_str!("../../demo/pocket/plant.toml")).unwrap();
+    let milled = truepath::workshop::mill(&pass, &machine, None).unwrap();
+    let probe = truepath::workshop::probe(&pass, &milled, &[12.0, 180.0], &[0.3, 0.8], 4.0).unwrap();
+    std::fs::write(folder.path().join("probe.txt"), probe).unwrap();
+    let measured = ["--probe", "probe.txt", "--points", "2", "--heights", "2"];
+    let words = call(&measured);
+    let words = String::from_utf8_lossy(&words.stdout).into_owned();
+    assert!(words.contains("corrected wall least certain at s =") && !words.contains("written to"), "{words}");
+    let json = call(&[&measured[..], &["--dialect", "grbl", "-o", "next.nc", "--json"]].concat());
+    let report: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    let gain = &report["points"][0]["gain"];
+    assert!(gain["max_sigma_after_mm"].as_f64() < gain["max_sigma_before_mm"].as_f64(), "{report}");
+    let program = std::fs::read_to_string(folder.path().join("next.nc")).unwrap();
+    assert_eq!(program.matches(";VERIFY").count() - 3, report["points"].as_array().unwrap().len(), "{program}");
+}

@@ -2,6 +2,7 @@
 
 mod command_line;
 mod control;
+mod further;
 mod linuxcnc_interpreter;
 mod parts;
 mod plans;

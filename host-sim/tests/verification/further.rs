@@ -1,0 +1,82 @@
+//! Further places, given what was measured.
+
+use truepath::command::correct::correct;
+use truepath::command::probe_next::next;
+use truepath::diagnostics::{Form, Source};
+use truepath::job::Route;
+use truepath::measurement::Measurement;
+use truepath::pass::Pass;
+use truepath::plant::{Machine, Milled};
+use truepath::verification::{Plan, Settings};
+use truepath::workshop;
+
+use super::parts::{HELIX, pass};
+
+const PLANT: &str = include_str!("../../demo/corner-helix/plant.toml");
+const HEIGHTS: [f64; 3] = [0.3, 0.6, 0.9];
+/// Straight walls, away from the corner at s = 45 … 52.9 mm.
+const STRAIGHT: [f64; 4] = [20.0, 30.0, 70.0, 85.0];
+
+/// The virtual machine with its first part on it.
+struct Shop {
+    pass: Pass,
+    machine: Machine,
+    milled: Milled,
+}
+
+impl Shop {
+    fn open() -> Self {
+        let (pass, machine) = (pass(HELIX, &[]), toml::from_str(PLANT).unwrap());
+        let milled = workshop::mill(&pass, &machine, None).unwrap();
+        Self { pass, machine, milled }
+    }
+    fn measured(&self, places: &[f64]) -> Measurement {
+        let text = workshop::probe(&self.pass, &self.milled, places, &HEIGHTS, 6.0).unwrap();
+        Measurement::read(&self.pass, &Source::new("probe.txt", text.into_bytes())).unwrap()
+    }
+    fn next(&self, places: &[f64], count: u32) -> Plan {
+        let settings = Settings { places: count, ..Settings::default() };
+        next(&self.pass, &self.measured(places), &settings, &mut |_| ())
+            .unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)))
+    }
+    /// Largest wall error of the part cut with the correction from these places, mm.
+    fn corrected(&self, places: &[f64]) -> f64 {
+        let done = correct(&self.pass, &self.measured(places), &[], &[Route::Program], &mut |_| ()).unwrap();
+        let text = done.program.unwrap();
+        workshop::mill_program(&self.pass, &self.machine, &text).unwrap().score().max_error_mm
+    }
+}
+
+#[test]
+fn with_straight_walls_known_the_corner_comes_next_and_touching_it_pays() {
+    let shop = Shop::open();
+    let plan = shop.next(&STRAIGHT, 3);
+    let first = plan.places.iter().find(|p| p.rank == 0).unwrap();
+    assert!(first.what.contains("inside corner"), "{first:?}");
+    let gain = first.gain.unwrap();
+    assert!((40.0..58.0).contains(&gain.worst_s_mm) && gain.worth_it, "{gain:?}");
+    assert!(gain.max_sigma_after_mm < 0.6 * gain.max_sigma_before_mm, "{gain:?}");
+
+    let further: Vec<f64> = plan.places.iter().map(|p| p.s_mm).collect();
+    let straight: Vec<f64> = [25.0, 77.0, 35.0].into_iter().take(further.len()).collect();
+    let with = |more: &[f64]| {
+        let mut places = [&STRAIGHT, more].concat();
+        places.sort_by(f64::total_cmp);
+        shop.corrected(&places)
+    };
+    let (before, corner, straight) = (with(&[]), with(&further), with(&straight));
+    assert!(corner < 0.6 * before && corner < 0.7 * straight, "{before}: corner {corner}, straight {straight}");
+}
+
+#[test]
+fn the_list_ends_where_touching_is_no_longer_worth_it() {
+    let shop = Shop::open();
+    let many = [20.0, 26.0, 32.0, 37.0, 46.0, 47.5, 50.0, 53.0, 56.0, 60.0, 66.0, 72.0, 78.0, 84.0];
+    let plan = shop.next(&many, 6);
+    assert_eq!(plan.places.len(), 1, "{:?}", plan.places);
+    assert!(!plan.places[0].gain.unwrap().worth_it);
+    assert!(plan.warnings.iter().any(|w| w.contains("not worth touching")), "{:?}", plan.warnings);
+    // Not where the ball was before.
+    let far = |p: f64| many.iter().all(|s| (s - p).abs() > 2.0);
+    assert!(plan.places.iter().all(|p| far(p.s_mm)), "{:?}", plan.places);
+}
