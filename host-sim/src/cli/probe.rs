@@ -12,6 +12,8 @@ use crate::report::json;
 use crate::verification::{Dialect, Settings};
 
 #[derive(Debug, Args)]
+#[group(id = "probe_arguments")]
+#[command(group = clap::ArgGroup::new("measured").multiple(true))]
 pub(super) struct Arguments {
     /// The job.
     job: PathBuf,
@@ -22,11 +24,14 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "FILE", required_unless_present = "next", requires = "dialect")]
     output: Option<PathBuf>,
     /// Further places, given what was measured: those after which the worst place of the corrected wall is most certain.
-    #[arg(long, requires = "probe")]
+    #[arg(long, requires = "measured")]
     next: bool,
-    /// What was measured on the part cut by the job's program.
-    #[arg(long, value_name = "FILE", requires = "next")]
+    /// What was measured on the part that will be touched again: cut by the job's program, or with the correction in DIR.
+    #[arg(long, value_name = "FILE", requires = "next", group = "measured")]
     probe: Option<PathBuf>,
+    /// Folder of correct or learn: touched is the part cut with the correction in it, its history is known.
+    #[arg(long, value_name = "DIR", requires = "next", group = "measured")]
+    from: Option<PathBuf>,
     /// Replace the file if it exists.
     #[arg(long)]
     force: bool,
@@ -91,7 +96,11 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
             feed_slow: arguments.feed_slow,
             probe_tool: arguments.probe_tool,
         },
-        measured: arguments.probe.as_deref().map(|probe| Evidence { probe, flags: arguments.probe_flags.flags() }),
+        measured: arguments.next.then(|| Evidence {
+            probe: arguments.probe.as_deref(),
+            flags: arguments.probe_flags.flags(),
+            from: arguments.from.as_deref(),
+        }),
     };
     let mut bar = terminal.progress("choosing places", 100);
     let report = probe(&options, &mut |share| bar.reached((100.0 * share) as u64))?;

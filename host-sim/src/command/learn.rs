@@ -115,7 +115,7 @@ fn refuse_other_laws(pass: &Pass) -> Result<(), InputError> {
 }
 
 /// The fit over parts takes every part as cut at the feeds of the program.
-fn refuse_feeds(pass: &Pass) -> Result<(), InputError> {
+pub(super) fn refuse_feeds(pass: &Pass) -> Result<(), InputError> {
     if pass.job.feed.is_none() {
         return Ok(());
     }
@@ -159,7 +159,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
 }
 
 /// Reads the history of a folder, and makes sure that the correction beside it is the one it tells of.
-fn history_in(folder: &FilePath) -> Result<History, InputError> {
+pub(super) fn history_in(folder: &FilePath) -> Result<History, InputError> {
     let place = folder.join(HISTORY);
     if !place.exists() {
         let found = format!("{} holds no {HISTORY}", folder.display());

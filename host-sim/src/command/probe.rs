@@ -26,13 +26,15 @@ pub struct Options<'a> {
     pub which: Which,
 }
 
-/// What was measured.
+/// What was measured: one of the two at least.
 #[derive(Clone, Debug)]
 pub struct Evidence<'a> {
-    /// The probe file of the part that will be touched again.
-    pub probe: &'a FilePath,
+    /// A probe file.
+    pub probe: Option<&'a FilePath>,
     /// What the command line says of it.
     pub flags: ProbeFlags,
+    /// A folder of `correct` or `learn`, with its history.
+    pub from: Option<&'a FilePath>,
 }
 
 /// A point of the program, for the list that is printed.
@@ -121,7 +123,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, F
     let pass = Pass::read(job)?;
     let plan = match &options.measured {
         None => plan(&pass, &options.settings, progress)?,
-        Some(measured) => probe_next::of_file(pass, measured.probe, &options.settings, progress)?,
+        Some(measured) => probe_next::of_files(pass, (measured.probe, measured.from), &options.settings, progress)?,
     };
     if let (Some((dialect, out)), Some(mut file)) = (options.program, file.take()) {
         let text = write(&plan, dialect, &log_name(out))?;

@@ -33,6 +33,7 @@ impl Facts {
             ("cut.axial_depth_mm", float(setup.axial_depth).to_string()),
             ("cut.spindle_rpm", float(setup.spindle_rpm).to_string()),
             ("cut.feed_mm_per_min", format!("{:08x}", truepath_core::checksum::crc32(feeds.join(" ").as_bytes()))),
+            ("feed", if pass.job.feed.is_some() { "scheduled" } else { "as programmed" }.to_owned()),
         ];
         Self(facts.map(|(key, value)| (key.to_owned(), value)).into())
     }

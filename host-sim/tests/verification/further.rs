@@ -1,9 +1,10 @@
 //! Further places, given what was measured.
 
 use truepath::command::correct::correct;
-use truepath::command::probe_next::next;
+use truepath::command::probe_next::{next, next_part};
 use truepath::diagnostics::{Form, Source};
 use truepath::job::Route;
+use truepath::learning::History;
 use truepath::measurement::Measurement;
 use truepath::pass::Pass;
 use truepath::plant::{Machine, Milled};
@@ -66,6 +67,32 @@ fn with_straight_walls_known_the_corner_comes_next_and_touching_it_pays() {
     };
     let (before, corner, straight) = (with(&[]), with(&further), with(&straight));
     assert!(corner < 0.6 * before && corner < 0.7 * straight, "{before}: corner {corner}, straight {straight}");
+}
+
+#[test]
+fn on_the_next_part_the_places_are_chosen_from_the_history_and_its_datum_is_open_again() {
+    let shop = Shop::open();
+    let measurement = shop.measured(&STRAIGHT);
+    let done = correct(&shop.pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
+    let history = History::first(&shop.pass, &measurement, &done).unwrap();
+    let settings = Settings { places: 2, ..Settings::default() };
+    let planned = |points: Option<&Measurement>| next_part(&shop.pass, &history, points, &settings, &mut |_| ());
+    let plan = planned(None).unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)));
+    let first = plan.places.iter().find(|p| p.rank == 0).unwrap();
+    assert!(first.what.contains("inside corner"), "{first:?}");
+    let same = shop.next(&STRAIGHT, 2);
+    let datum = |plan: &Plan| plan.unknowns.iter().find(|u| u.name == "datum_x").unwrap().remaining;
+    assert!(datum(&plan) > datum(&same) - 1e-6, "{} {}", datum(&plan), datum(&same));
+    // The points of the first part are not those of the second.
+    let refused = planned(Some(&measurement)).expect_err("known points").render(Form::Plain);
+    assert!(refused.contains("Q003"), "{refused}");
+    // Touched once, the second part is touched elsewhere.
+    let second = workshop::mill_program(&shop.pass, &shop.machine, done.program.as_deref().unwrap()).unwrap();
+    let text = workshop::probe(&shop.pass, &second, &[46.0, 48.5], &HEIGHTS, 6.0).unwrap();
+    let points = Measurement::read(&shop.pass, &Source::new("probe-2.txt", text.into_bytes())).unwrap();
+    let plan = planned(Some(&points)).unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)));
+    assert!(plan.wall_sigma_mm[0] < 0.5 * same.wall_sigma_mm[0], "{:?}", plan.wall_sigma_mm);
+    assert!(plan.places.iter().all(|p| (p.s_mm - 46.0).abs() > 2.0 && (p.s_mm - 48.5).abs() > 2.0));
 }
 
 #[test]
