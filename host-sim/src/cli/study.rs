@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::{Terminal, print};
-use crate::command::study::{Options, run as study};
+use crate::command::study::{Options, reference, run as study};
 use crate::diagnostics::Failure;
 use crate::report::json;
 use crate::study::export;
 use crate::study::id::{Axis, CaseId};
+use crate::study::pool;
+use crate::study::reference::words as words_of_goals;
 use crate::study::seeds::Set;
 use crate::study::summary::{Row, Summary};
 
@@ -40,6 +42,12 @@ pub(super) struct Arguments {
     /// So many wholly random machines instead of the seeds of a set.
     #[arg(long, value_name = "N", conflicts_with_all = ["set", "seeds", "axis"])]
     random: Option<u64>,
+    /// The reference goals instead: the papers' corner, --seeds noise seeds (200 are usual) for each.
+    #[arg(long, conflicts_with_all = ["set", "families", "axis", "random", "first"])]
+    reference: bool,
+    /// Only the first correction; nothing is learned from a second part.
+    #[arg(long)]
+    first: bool,
     /// Threads. [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -70,6 +78,9 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     }
     // clap has seen to it that one of the two is there.
     let output = arguments.output.as_deref().unwrap_or_else(|| Path::new("."));
+    if arguments.reference {
+        return goals(output, arguments, terminal);
+    }
     let set = match (arguments.random, arguments.set) {
         (Some(_), _) => Set::Random,
         (None, SetArgument::Tuning) => Set::Tuning,
@@ -86,6 +97,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         families: &arguments.families,
         seeds: arguments.random.unwrap_or(arguments.seeds),
         axis,
+        first_only: arguments.first,
         force: arguments.force,
         threads: arguments.threads,
     };
@@ -93,6 +105,17 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     let studied = study(&options, &mut |done, all| bar.reached(done * 1000 / all.max(1)))?;
     drop(bar);
     print(&if terminal.json() { json(&studied.summary)? } else { words(&studied.summary, output).into_bytes() })
+}
+
+/// The reference goals.
+fn goals(output: &Path, arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let mut bar = terminal.progress("studying", 1000);
+    let threads = arguments.threads.unwrap_or_else(pool::cores);
+    let reached = reference(arguments.seeds, threads, output, arguments.force, &mut |done, all| {
+        bar.reached(done * 1000 / all.max(1));
+    })?;
+    drop(bar);
+    print(&if terminal.json() { json(&reached)? } else { words_of_goals(&reached).into_bytes() })
 }
 
 /// One case in detail.

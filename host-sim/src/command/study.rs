@@ -11,6 +11,7 @@ use crate::study::id::{Axis, CaseId, Cell};
 use crate::study::ledger::{Ledger, program_key};
 use crate::study::outcome::Outcome;
 use crate::study::page::page;
+use crate::study::reference::{Reached, reference as goals};
 use crate::study::seeds::Set;
 use crate::study::summary::{Summary, summary};
 use crate::study::{carry, pool};
@@ -28,6 +29,8 @@ pub struct Options<'a> {
     pub seeds: u64,
     /// The grid, if one.
     pub axis: Option<Axis>,
+    /// Only the first correction.
+    pub first_only: bool,
     /// Drop earlier results.
     pub force: bool,
     /// Threads; all cores when `None`.
@@ -101,7 +104,8 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Stud
     let mut finished = all - left.len() as u64;
     progress(finished, all);
     let threads = options.threads.unwrap_or_else(pool::cores);
-    pool::each(&left, threads, carry::outcome, |outcome| {
+    let carried = |id: &CaseId| carry::outcome(id, options.first_only);
+    pool::each(&left, threads, carried, |outcome| {
         finished += 1;
         progress(finished, all);
         ledger.append(outcome)
@@ -118,4 +122,24 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Stud
     write("summary.json", &json(&summary)?)?;
     write("study.html", page(&summary, &outcomes)?.as_bytes())?;
     Ok(Studied { outcomes, summary })
+}
+
+/// The reference goals over `seeds` noise seeds; writes `reference.json`. `progress` is told (finished, of) runs.
+///
+/// # Errors
+/// `F003` for a folder that has results of an earlier run, unless `force`; outputs that cannot be written.
+pub fn reference(
+    seeds: u64,
+    threads: usize,
+    out: &FilePath,
+    force: bool,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<Vec<Reached>, Failure> {
+    let path = out.join("reference.json");
+    std::fs::create_dir_all(out).map_err(|e| InputError::unwritable(&path, &e))?;
+    let mut file = OutputFile::create(&path, force)?;
+    let reached = goals(seeds, threads, progress)?;
+    file.write_all(&json(&reached)?).map_err(|e| InputError::unwritable(&path, &e))?;
+    file.commit()?;
+    Ok(reached)
 }

@@ -41,12 +41,13 @@ pub struct Taught {
     pub after: Judged,
 }
 
-/// The outcome of a case, whatever happens in it.
-pub fn outcome(id: &CaseId) -> Outcome {
+/// The outcome of a case, whatever happens in it; with `first_only` nothing is learned from a second part.
+pub fn outcome(id: &CaseId, first_only: bool) -> Outcome {
     let work = || -> Result<Outcome, Failure> {
         let case = Case::draw(id)?;
         let mut outcome = described(&case);
         match first(&case, &mut outcome) {
+            Ok(_) if first_only => {}
             Ok(carried) => {
                 if let Err(failure) = second(&case, &carried, &mut outcome) {
                     outcome.learn_failure = one_line(&failure.to_string());

@@ -20,6 +20,7 @@ pub mod part;
 pub mod places;
 pub mod plots;
 pub mod pool;
+pub mod reference;
 pub mod seeds;
 pub mod statistics;
 pub mod summary;

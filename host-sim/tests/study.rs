@@ -1,0 +1,75 @@
+//! The study: distributions that do not depend on what is studied, results that survive an interruption, a page with
+//! everything on it.
+
+use truepath::command::study::{Options, cases, run};
+use truepath::study::case::Case;
+use truepath::study::families::FAMILIES;
+use truepath::study::id::{Axis, CaseId};
+use truepath::study::ledger::NAME;
+use truepath::study::seeds::Set;
+
+fn options<'a>(out: &'a std::path::Path, families: &'a [String]) -> Options<'a> {
+    Options { out, set: Set::Tuning, families, seeds: 1, axis: None, first_only: false, force: false, threads: Some(2) }
+}
+
+#[test]
+fn two_cases_go_the_whole_way_and_an_interrupted_study_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let families = ["corner-papers".to_owned(), "bore".to_owned()];
+    let asked = options(folder.path(), &families);
+    let studied = run(&asked, &mut |_, _| ()).expect("two cases");
+    for outcome in &studied.outcomes {
+        assert_eq!((outcome.failure.as_str(), outcome.learn_failure.as_str()), ("", ""), "{}", outcome.case);
+        assert!(outcome.before_mm.is_some_and(|b| b > 0.045), "{outcome:?}");
+        assert!(outcome.factor.is_some() && outcome.learned_factor.is_some() && outcome.coverage.is_some());
+    }
+    // Stopped while the second line was being written.
+    let table = folder.path().join(NAME);
+    let whole = std::fs::read(&table).expect("the table");
+    std::fs::write(&table, &whole[..whole.len() - 30]).expect("writable");
+    let mut steps = Vec::new();
+    let again = run(&asked, &mut |done, all| steps.push((done, all))).expect("the rest");
+    assert_eq!(steps, [(1, 2), (2, 2)], "one case was left to do");
+    let without_time = |outcomes: &[truepath::study::outcome::Outcome]| -> Vec<String> {
+        outcomes.iter().map(|o| format!("{} {:?} {:?}", o.case, o.after_mm, o.learned_mm)).collect()
+    };
+    assert_eq!(without_time(&again.outcomes), without_time(&studied.outcomes), "a case is the same every time");
+    let page = std::fs::read_to_string(folder.path().join("study.html")).expect("the page");
+    for name in families.iter().map(String::as_str).chain(["Where it stops working", "<svg"]) {
+        assert!(page.contains(name), "{name} is not on the page");
+    }
+}
+
+#[test]
+fn every_family_draws_cases_that_can_be_milled_and_touched() {
+    for family in FAMILIES {
+        let id = CaseId { family: family.name.to_owned(), seed: Set::Tuning.seeds().start, cell: None };
+        let case = Case::draw(&id).unwrap_or_else(|e| panic!("{id}: {e}"));
+        let error = case.before.score.max_error_mm;
+        assert!((0.03..0.75).contains(&error), "{id}: {error} mm before");
+        assert!(case.places_mm.len() >= 2, "{id}: {:?}", case.places_mm);
+        assert!(!case.more_mm.is_empty(), "{id}");
+        let touches = case.probe(1, &case.first, &case.places_mm).unwrap_or_else(|e| panic!("{id}: {e}"));
+        assert_eq!(touches.lines().count(), case.places_mm.len() * case.levels.len(), "{id}");
+        if ["pocket", "boss", "bore", "ellipse"].iter().any(|closed| family.name.starts_with(closed)) {
+            assert!(case.part.contour.closed(), "{id} is not closed");
+        }
+    }
+}
+
+#[test]
+fn no_two_sets_share_a_case_and_every_family_is_in_each() {
+    let nowhere = std::path::Path::new("");
+    let names = |set: Set, seeds: u64| -> Vec<String> {
+        let asked = Options { set, seeds, ..options(nowhere, &[]) };
+        cases(&asked).expect("cases").iter().map(ToString::to_string).collect()
+    };
+    let (tuning, test) = (names(Set::Tuning, 3), names(Set::Test, 3));
+    assert!(FAMILIES.len() >= 24);
+    assert_eq!(tuning.len(), 3 * FAMILIES.len());
+    assert!(tuning.iter().all(|name| !test.contains(name)));
+    let random = names(Set::Random, FAMILIES.len() as u64);
+    assert!(FAMILIES.iter().all(|family| random.iter().any(|name| name.starts_with(family.name))));
+    let grid = Options { axis: Some(Axis::Noise), ..options(nowhere, &[]) };
+    assert_eq!(cases(&grid).expect("cases").len(), FAMILIES.len() * Axis::Noise.values().len());
+}
