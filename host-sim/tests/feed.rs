@@ -123,6 +123,31 @@ fn inches_and_feeds_per_revolution_are_scheduled_in_their_own_numbers() {
 }
 
 #[test]
+fn the_feed_rises_only_where_the_job_says_so_and_a_closed_contour_has_no_jump_at_its_seam() {
+    let job = include_str!("../demo/pocket/job.toml").replace("feed_mm_per_min", "# feed_mm_per_min");
+    let program = include_str!("../demo/pocket/program.nc");
+    let machine: Machine = toml::from_str(include_str!("../demo/pocket/plant.toml")).unwrap();
+    let used = |highest: u16, limit: &str| {
+        let text = format!("{job}\n[feed]\nmin_percent = 50\nmax_percent = {highest}\n{limit}\n");
+        let job = shown(Job::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).map_err(Failure::from));
+        let pass = shown(Pass::new(job, Source::new("part.nc", program.as_bytes().to_vec())));
+        let milled = shown(workshop::mill(&pass, &machine, None));
+        let probe = shown(workshop::probe(&pass, &milled, &[45.0, 92.0, 145.0], &[0.3, 0.8], 4.0));
+        let measurement = shown(Measurement::read(&pass, &Source::new("probe.txt", probe.into_bytes())));
+        let done = shown(correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ()));
+        let blocks = shown(read_blocks(&Source::new("corrected.nc", done.program.unwrap()))).0;
+        let feeds = [blocks.first(), blocks.last()].map(|b| b.map_or(0, |b| b.feed.round_to_int()));
+        (done.summary.feed.unwrap(), feeds)
+    };
+    let (kept, _) = used(100, "");
+    assert_eq!(kept.used_percent[1], 100);
+    let limit_n = 1.2 * kept.limit_n;
+    let (raised, [first, last]) = used(130, &format!("max_force_n = {limit_n:.3}"));
+    assert!(raised.used_percent[1] > 110 && raised.max_force_after_n < 1.01 * limit_n.max(kept.max_force_after_n));
+    assert!(raised.time_after_s < kept.time_after_s && last * 5 < first * 6 && first * 5 < last * 6, "{first} {last}");
+}
+
+#[test]
 fn a_correction_beyond_the_clamp_comes_within_it_at_a_lower_feed() {
     let clamped = |feed: &str| {
         let mut pass = shown(pass(PROGRAM, feed));

@@ -12,6 +12,9 @@ pub fn largest_force(machine: &Loop, places: impl Iterator<Item = Offset>) -> f6
     places.map(|s| load.newtons(machine.path.index_at(s), 100)).fold(0.0, f64::max)
 }
 
+/// Equal walls are equally loaded but for rounding: the one that gives the limit must not slow the others down.
+const SLACK: f64 = 1.002;
+
 /// The load of a machine along its path at other feeds than those of the program.
 pub(super) struct Load<'a> {
     machine: &'a Loop<'a>,
@@ -31,7 +34,7 @@ impl<'a> Load<'a> {
     /// The largest percentage in the range whose force is within the limit; the lowest where none is.
     pub(super) fn allowed(&self, index: usize, wanted: &Wanted) -> u16 {
         let (state, feed) = (self.nominal(index), self.feed(index));
-        let fits = |percent: u16| self.at(&state, feed, percent) <= wanted.limit_n;
+        let fits = |percent: u16| self.at(&state, feed, percent) <= SLACK * wanted.limit_n;
         let [mut low, mut high] = wanted.percent;
         if fits(high) {
             return high;
