@@ -6,9 +6,11 @@
 use truepath_core::correct::commanded;
 use truepath_core::cut::{Path, State};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{Observation, PredictionWorkspace, predict};
+use truepath_core::identify::{Observation, Parameters, PredictionWorkspace, predict};
 
 use super::joint::{Joint, PartPoints};
+use super::kernel::Engagement;
+use super::residual::Residual;
 use crate::report::mm;
 
 /// Which places are held out.
@@ -29,6 +31,9 @@ pub struct Residuals {
     pub before_mm: f64,
     /// Of the updated model, which has not seen these places.
     pub after_mm: f64,
+    /// Of the updated model with the residual, when there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub after_with_residual_mm: Option<f64>,
 }
 
 impl Holdout {
@@ -55,25 +60,34 @@ impl Holdout {
     }
 
     /// What a model misses at the held-out places of the last part.
-    pub fn residual(&self, path: &Path, parts: &[PartPoints], model: &Joint) -> f64 {
+    pub fn residual(&self, path: &Path, parts: &[PartPoints], model: &Joint, beside: Option<&Residual>) -> f64 {
         let mut points = self.points.clone();
-        predicted(path, parts.last(), model, &mut points);
+        let Some(part) = parts.last() else { return 0.0 };
+        let states = predicted(path, part, model, &mut points);
+        let path = path.with_law(model.core.law);
+        let engagement = Engagement::of(&path, path.working().start, &states);
         let squares = points.chunk_by(|a, b| a.s == b.s).map(|place| {
             let sum: f64 = place.iter().map(|o| mm(o.error - o.predicted)).sum();
-            (sum / place.len() as f64).powi(2)
+            let feature = engagement.at(place[0].s, place[0].normal);
+            let more = beside.map_or(0.0, |residual| residual.at(&feature).0);
+            (sum / place.len() as f64 - more).powi(2)
         });
         let (sum, n) = squares.fold((0.0, 0.0), |(sum, n), square| (sum + square, n + 1.0));
         (sum / f64::max(n, 1.0)).sqrt()
     }
 }
 
-/// Predicts points of a part by a model, without a datum shift: that of another clamping is not known.
-fn predicted(path: &Path, part: Option<&PartPoints>, model: &Joint, points: &mut [Observation]) {
-    let needed = path.working().len() + 1;
-    let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
-    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
+/// Predicts points of a part by a model, without a datum shift: that of another clamping is not known. Returns the
+/// cutter's states along the path.
+fn predicted(path: &Path, part: &PartPoints, model: &Joint, points: &mut [Observation]) -> Vec<State> {
     let path = path.with_law(model.core.law);
-    let parameters = truepath_core::identify::Parameters { datum: Vector::ZERO, ..model.core.fit.parameters };
-    let nodes = part.map(|p| p.nodes.as_slice()).unwrap_or_default();
-    predict(&path, &model.core.table(), &parameters, |i| commanded(&path, nodes, i), points, &mut workspace);
+    let (working, table) = (path.working(), model.core.table());
+    let (mut states, mut displacements) = (vec![State::REST; working.len() + 1], vec![Vector::ZERO; working.len() + 1]);
+    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
+    let parameters = Parameters { datum: Vector::ZERO, ..model.core.fit.parameters };
+    let asked = |i: usize| commanded(&path, &part.nodes, i);
+    predict(&path, &table, &parameters, asked, points, &mut workspace);
+    states.truncate(working.len());
+    model.core.machine(&path, &table).run(working.start, &mut states, asked);
+    states
 }

@@ -14,6 +14,7 @@ use truepath_core::units::{Offset, Real, hypot_nm};
 use super::history::Part;
 use super::points::nm;
 use crate::pass::Pass;
+use crate::report::{float, mm};
 
 /// A part as the fit takes it.
 #[derive(Clone, Debug)]
@@ -35,6 +36,8 @@ pub struct Joint {
     pub core: job::Identified,
     /// The points of every part with predictions, weights and sensitivities.
     pub observations: Vec<Vec<Observation>>,
+    /// The datum of every part, prior standard deviations.
+    pub datums: Vec<[f64; 2]>,
 }
 
 /// Share of a cancelled deflection that the model may miss.
@@ -105,5 +108,9 @@ pub fn joint(
     };
     let mut rest = all.into_iter();
     let observations = parts.iter().map(|p| rest.by_ref().take(p.observations.len()).collect()).collect();
-    Joint { core: job::Identified { law, prior, fit }, observations }
+    let [.., sigma_x, sigma_y] = prior.sigma.map(float);
+    let shares = |d: Vector| [mm(d.x) / sigma_x.max(1e-9), mm(d.y) / sigma_y.max(1e-9)];
+    let last = [fit.parameters.datum];
+    let datums = earlier.iter().map(|part| part.datum(&prior)).chain(last).take(parts.len()).map(shares).collect();
+    Joint { core: job::Identified { law, prior, fit }, observations, datums }
 }

@@ -5,6 +5,7 @@
 //! | parts in their order: points, the correction each was cut with, what was promised | [`History`] |
 //! | what of job and program must be the same | [`Facts`] |
 //! | machine and material from all parts together | [`joint()`] |
+//! | what they show beside that model, smooth along the contour | [`Residual`] |
 //! | places left out of a first fit | `holdout` |
 //! | whether the newest part came out worse | `monitor` |
 //! | all of it, to the next correction | [`update()`] |
@@ -21,13 +22,17 @@
 //! | Q005 | input and output folder are the same |
 //! | Q006 | a law of correction that cannot learn |
 
+mod cholesky;
 mod facts;
 mod history;
 mod holdout;
 mod joint;
+mod kernel;
 mod monitor;
 mod nodes;
+mod places;
 mod points;
+mod residual;
 mod update;
 mod verdict;
 
@@ -38,5 +43,6 @@ pub use joint::{Joint, PartPoints, joint};
 pub use monitor::PartError;
 pub use nodes::Nodes;
 pub use points::Point;
+pub use residual::Residual;
 pub use update::{Update, update};
-pub use verdict::{Promise, Verdict};
+pub use verdict::{Beside, Promise, Verdict};

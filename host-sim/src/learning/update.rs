@@ -4,12 +4,14 @@ use truepath_core::correct::Node;
 use truepath_core::cut::Path;
 use truepath_core::units::Offset;
 
-use super::holdout::{self, Holdout};
+use super::holdout::{Holdout, Residuals};
 use super::joint::{Joint, PartPoints, joint};
 use super::monitor::Monitor;
-use super::verdict::{Promise, Verdict};
+use super::residual::Residual;
+use super::verdict::{Beside, Promise, Verdict};
 use crate::diagnostics::Failure;
 use crate::pass::Pass;
+use crate::report::mm;
 
 /// What follows for the next part.
 #[derive(Clone, Debug)]
@@ -40,18 +42,26 @@ pub fn update(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Update, Failure> {
     let before = joint(pass, path, &earlier, None, &mut |share| progress(0.3 * share));
+    let before_beside = Residual::of(path, &earlier, &before);
     let mut parts = earlier;
     parts.push(newest);
     let after = joint(pass, path, &parts, None, &mut |share| progress(0.3 + 0.3 * share));
+    let after_beside = Residual::of(path, &parts, &after);
     let holdout = Holdout::of(&parts).map(|held| {
         let less = held.without(&parts);
         let updated = joint(pass, path, &less, Some(after.core.law), &mut |share| progress(0.6 + 0.3 * share));
-        holdout::Residuals {
+        let beside = after_beside.as_ref().and_then(|_| Residual::of(path, &less, &updated));
+        Residuals {
             places: held.places.clone(),
-            before_mm: held.residual(path, &parts, &before),
-            after_mm: held.residual(path, &parts, &updated),
+            before_mm: held.residual(path, &parts, &before, before_beside.as_ref()),
+            after_mm: held.residual(path, &parts, &updated, None),
+            after_with_residual_mm: beside.map(|beside| held.residual(path, &parts, &updated, Some(&beside))),
         }
     });
+    // A residual that makes unseen places worse, beyond the noise of a reading, is not learned.
+    let noise = parts.last().map_or(0.0, |part| mm(part.noise));
+    let spoils = |h: &Residuals| h.after_with_residual_mm.is_some_and(|with| with > h.after_mm + noise);
+    let after_beside = after_beside.filter(|_| !holdout.as_ref().is_some_and(spoils));
     let monitor = Monitor::of(pass, path, &parts, &after);
     let promise = Promise::of(path, &monitor, promised);
     let all: Vec<_> = after.observations.iter().flatten().copied().collect();
@@ -63,9 +73,12 @@ pub fn update(
         let better = parts.get(monitor.better).map(|p| p.nodes.clone()).unwrap_or_default();
         if better.is_empty() { vec![Node::default(); path.count()] } else { better }
     });
-    let chosen = if rolled_back { before } else { after };
+    let (chosen, beside) = if rolled_back { (before, before_beside) } else { (after, after_beside) };
     let all: Vec<_> = chosen.observations.iter().flatten().copied().collect();
     chosen.core.check(&all).map_err(|error| pass.refused(&error))?;
-    let verdict = Verdict::of(&parts, &monitor, promise, holdout, rolled_back, fits);
-    Ok(Update { joint: chosen, residual: Vec::new(), residual_sigma: Vec::new(), kept, verdict })
+    let mut verdict = Verdict::of(&parts, &monitor, promise, holdout, rolled_back, fits);
+    let along = beside.map(|residual| (residual.amplitudes(), residual.along(path, &chosen)));
+    verdict.residual = along.as_ref().map(|(amplitudes, (mean, _))| Beside::of(*amplitudes, mean));
+    let (residual, residual_sigma) = along.map(|(_, along)| along).unwrap_or_default();
+    Ok(Update { joint: chosen, residual, residual_sigma, kept, verdict })
 }

@@ -24,6 +24,9 @@ pub struct Verdict {
     /// Places that a first fit has not seen; absent when fewer than four were touched.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holdout_residual_mm: Option<Residuals>,
+    /// What was learned beside the model; absent when the points fit the model within their noise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residual: Option<Beside>,
     /// Whether the next part goes back to the correction of an earlier one.
     pub rolled_back: bool,
     /// Why, and other remarks on the part.
@@ -42,6 +45,23 @@ pub struct Promise {
     pub within_two_sigma: usize,
     /// Places in all.
     pub places: usize,
+}
+
+/// The wall error that parts have shown beside the model.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Beside {
+    /// Largest magnitude along the contour, mm.
+    pub max_mm: f64,
+    /// Standard deviation of what holds around a place only, mm.
+    pub local_mm: f64,
+    /// Standard deviation of what holds wherever the cutter is engaged alike, mm.
+    pub keyed_mm: f64,
+}
+
+impl Beside {
+    pub(super) fn of([local_mm, keyed_mm]: [f64; 2], along: &[Offset]) -> Self {
+        Self { max_mm: mm(along.iter().map(|r| r.abs()).max().unwrap_or_default()), local_mm, keyed_mm }
+    }
 }
 
 impl Promise {
@@ -105,6 +125,7 @@ impl Verdict {
             earlier_parts,
             promise,
             holdout_residual_mm: holdout,
+            residual: None,
             rolled_back,
             remarks,
         }
