@@ -1,0 +1,78 @@
+//! A workshop for several parts: milled by the plant, probed, corrected, learned from.
+
+use std::path::Path;
+
+use truepath::command::correct::{Corrected, correct};
+use truepath::command::learn::{Learned, learn};
+use truepath::diagnostics::{Failure, Source};
+use truepath::job::{Job, Route};
+use truepath::learning::History;
+use truepath::measurement::Measurement;
+use truepath::pass::Pass;
+use truepath::plant::{Machine, Milled};
+use truepath::workshop;
+
+/// Heights at which every place is touched.
+pub const LEVELS: [f64; 3] = [0.1, 0.5, 0.9];
+
+/// A job and the machine it is cut on.
+pub struct Shop {
+    pub pass: Pass,
+    pub machine: Machine,
+    ball_mm: f64,
+}
+
+pub fn source(name: &str, text: &str) -> Source {
+    Source::new(name, text.as_bytes().to_vec())
+}
+
+impl Shop {
+    pub fn new(program: &str, job: &str, plant: &str) -> Self {
+        let job = Job::parse(source("job.toml", job), Path::new("")).unwrap();
+        let ball_mm = job.numbers.probe.unwrap().ball_diameter.nm() as f64 / 1e6;
+        let pass = Pass::new(job, source("program.nc", program)).unwrap();
+        Self { pass, machine: toml::from_str(plant).unwrap(), ball_mm }
+    }
+
+    /// Mills a part, uncorrected or with a correction.
+    pub fn mill(&self, corrected: Option<&Corrected>) -> Milled {
+        let text = corrected.map(|c| c.program.clone().unwrap());
+        let commanded = text.map(|text| workshop::commanded(&self.pass, &text).unwrap());
+        workshop::mill(&self.pass, &self.machine, commanded.as_deref()).unwrap()
+    }
+
+    /// Largest wall error of a part, mean over height, mm.
+    pub fn error(&self, corrected: Option<&Corrected>) -> f64 {
+        self.mill(corrected).score().max_error_mm
+    }
+
+    /// The probe file of a part; `noise` is the seed of the probe's chance.
+    pub fn probe(&self, corrected: Option<&Corrected>, places: &[f64], noise: u64) -> String {
+        let mut milled = self.mill(corrected);
+        milled.machine.seed = noise;
+        workshop::probe(&self.pass, &milled, places, &LEVELS, self.ball_mm).unwrap()
+    }
+
+    pub fn measured(&self, text: &str) -> Measurement {
+        Measurement::read(&self.pass, &source("probe.txt", text)).unwrap()
+    }
+
+    /// The first part: measured and corrected.
+    pub fn first(&self, places: &[f64]) -> (Corrected, History) {
+        let measurement = self.measured(&self.probe(None, places, 11));
+        let corrected = correct(&self.pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
+        let history = History::first(&self.pass, &measurement, &corrected).unwrap();
+        (corrected, history)
+    }
+
+    /// One more part, from a probe file.
+    pub fn learn(&self, history: &History, text: &str) -> Result<Learned, Failure> {
+        learn(&self.pass, history, &self.measured(text), &[], &[Route::Program], &mut |_| ())
+    }
+
+    /// One more part, cut with a correction.
+    pub fn next(&self, history: &History, corrected: &Corrected, places: &[f64]) -> Learned {
+        let noise = 20 + history.parts.len() as u64;
+        self.learn(history, &self.probe(Some(corrected), places, noise)).unwrap()
+    }
+}
