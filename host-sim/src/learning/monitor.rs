@@ -8,7 +8,7 @@
 //! before was touched at the same place, else as the model of all parts says. A worse part may hide behind places that
 //! were not touched before only as far as that model is wrong.
 
-use truepath_core::correct::{Profile, Target};
+use truepath_core::correct::{Law, Profile, Target};
 use truepath_core::cut::Path;
 use truepath_core::units::{Offset, Real};
 
@@ -67,10 +67,12 @@ impl Monitor {
         let path = path.with_law(joint.core.law);
         let table = joint.core.table();
         let machine = joint.core.machine(&path, &table);
-        let wanted = pass.job.numbers.design(truepath_core::correct::Law::Model);
+        let wanted = pass.job.numbers.design(Law::Model);
         let walls: Vec<Vec<Profile>> =
             parts.iter().map(|part| walls(&machine, wanted.band, &part.nodes, &[]).0).collect();
-        let target = |k: usize, s: Offset| aim(&path, &walls[k], wanted.target, s);
+        // A cutter smaller than stated leaves its difference on every wall.
+        let cutter = joint.core.fit.parameters.radius;
+        let target = |k: usize, s: Offset| aim(&path, &walls[k], wanted.target, s) + cutter;
         let places: Vec<Vec<Place>> = (0..parts.len()).map(|k| places(&parts[k], joint, k, &target)).collect();
         let each = |k: usize| PartError::of(parts[k].number, places[k].iter().map(|p| p.error));
         let newest = parts.len() - 1;

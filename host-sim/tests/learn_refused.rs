@@ -1,0 +1,196 @@
+//! `truepath learn` on files: what it writes, and everything that would apply a correction twice or to another part.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use truepath::command::{correct, learn};
+use truepath::diagnostics::{Failure, Source};
+use truepath::job::{Job, ProbeFlags, Which};
+use truepath::pass::Pass;
+use truepath::plant::Machine;
+use truepath::workshop;
+
+const DEMO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/demo/corner-helix");
+
+/// A folder with program, job, the probe files of two parts and the correction of the second, made once.
+static BENCH: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    for name in ["program.nc", "job.toml"] {
+        fs::copy(Path::new(DEMO).join(name), at(name)).unwrap();
+    }
+    let plant = fs::read_to_string(Path::new(DEMO).join("plant.toml")).unwrap();
+    let machine: Machine = toml::from_str(&plant).unwrap();
+    let pass = Pass::read(Job::read(&at("job.toml")).unwrap()).unwrap();
+    let probe = |commanded: Option<&[[f64; 2]]>, places: &[f64], name: &str| {
+        let milled = workshop::mill(&pass, &machine, commanded).unwrap();
+        fs::write(at(name), workshop::probe(&pass, &milled, places, &[0.1, 0.5, 0.9], 6.0).unwrap()).unwrap();
+    };
+    probe(None, &[20.0, 32.0, 68.0, 80.0], "part-1.txt");
+    let options = correct::Options {
+        job: &at("job.toml"),
+        probe: &at("part-1.txt"),
+        out: &at("first"),
+        force: false,
+        route: None,
+        first_pass: None,
+        probe_flags: ProbeFlags::default(),
+        which: Which::default(),
+    };
+    correct::run(&options, &mut |_| ()).unwrap();
+    let commanded = workshop::commanded(&pass, &fs::read(at("first/corrected.nc")).unwrap()).unwrap();
+    probe(Some(&commanded), &[21.0, 32.5, 49.0, 68.5, 80.5], "part-2.txt");
+    folder
+});
+
+/// A copy of the bench to spoil.
+fn copy() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_owned();
+    fs::create_dir(path.join("first")).unwrap();
+    for part in ["", "first"] {
+        for entry in fs::read_dir(BENCH.path().join(part)).unwrap().map(Result::unwrap) {
+            if entry.file_type().unwrap().is_file() {
+                fs::copy(entry.path(), path.join(part).join(entry.file_name())).unwrap();
+            }
+        }
+    }
+    (folder, path)
+}
+
+fn edit(file: &Path, from: &str, to: &str) {
+    let text = fs::read_to_string(file).unwrap();
+    assert!(text.contains(from), "{} has no {from}", file.display());
+    fs::write(file, text.replacen(from, to, 1)).unwrap();
+}
+
+fn run(folder: &Path, probe: &str, from: &str, out: &str) -> Result<learn::LearnSummary, Failure> {
+    let options = learn::Options {
+        job: &folder.join("job.toml"),
+        probe: &folder.join(probe),
+        from: &folder.join(from),
+        out: &folder.join(out),
+        force: false,
+        route: None,
+        probe_flags: ProbeFlags::default(),
+        which: Which::default(),
+    };
+    learn::run(&options, &mut |_| ())
+}
+
+/// Code and sentence of a refusal; nothing may have been written.
+fn refused(folder: &Path, probe: &str, from: &str) -> (String, String) {
+    let Err(Failure::Input(error)) = run(folder, probe, from, "second") else { panic!("not refused") };
+    assert!(!folder.join("second").exists(), "{error}");
+    (error.code().to_owned(), error.to_string())
+}
+
+#[test]
+fn a_whole_folder_is_written_and_the_next_part_goes_on_from_it() {
+    let (_guard, folder) = copy();
+    let summary = run(&folder, "part-2.txt", "first", "second").unwrap();
+    assert_eq!(summary.verdict.part, 2);
+    assert_eq!(summary.verdict.promise.places, 5);
+    let names = ["corrected.nc", "correction.csv", "points.csv", "correction.svg", "difference.txt", "probe-raw.txt"];
+    for name in names {
+        assert!(!fs::read(folder.join("second").join(name)).unwrap().is_empty(), "{name}");
+    }
+    let read = |name: &str| fs::read(folder.join("second").join(name)).unwrap();
+    let told: serde_json::Value = serde_json::from_slice(&read("summary.json")).unwrap();
+    assert_eq!(told["part"], 2);
+    assert_eq!(told["rolled_back"], false);
+    for key in ["max_error_before_mm", "measured_error_mm", "previous_error_mm", "promise", "holdout_residual_mm"] {
+        assert!(!told[key].is_null(), "{key}");
+    }
+    let history = Source::new("history.json", read("history.json"));
+    let history = truepath::learning::History::read(&history).unwrap();
+    assert_eq!((history.parts.len(), history.next_number()), (2, 3));
+    // The corrected program is made from the original one.
+    let text = String::from_utf8(read("corrected.nc")).unwrap();
+    assert_eq!(text.matches("(TRUEPATH CORRECTED").count(), 1);
+}
+
+#[test]
+fn a_folder_without_a_history_or_with_a_broken_one_is_refused() {
+    let (_guard, folder) = copy();
+    edit(&folder.join("first/history.json"), "\"version\":1", "\"version\":9");
+    assert_eq!(refused(&folder, "part-2.txt", "first").0, "Q001");
+    fs::write(folder.join("first/history.json"), "{").unwrap();
+    assert_eq!(refused(&folder, "part-2.txt", "first").0, "Q001");
+    fs::remove_file(folder.join("first/history.json")).unwrap();
+    let (code, text) = refused(&folder, "part-2.txt", "first");
+    assert_eq!(code, "Q001");
+    assert!(text.contains("holds no history.json"), "{text}");
+}
+
+#[test]
+fn a_history_of_another_program_or_cut_is_refused_with_both_values() {
+    let (_guard, folder) = copy();
+    edit(&folder.join("job.toml"), "teeth = 6", "teeth = 4");
+    let (code, text) = refused(&folder, "part-2.txt", "first");
+    assert_eq!(code, "Q002");
+    assert!(text.contains("tool.teeth is 4") && text.contains('6'), "{text}");
+    edit(&folder.join("job.toml"), "teeth = 4", "teeth = 6");
+    edit(&folder.join("program.nc"), "X90. Y30.", "X91. Y30.");
+    let (code, text) = refused(&folder, "part-2.txt", "first");
+    assert_eq!(code, "Q002");
+    assert!(text.contains("program.nc has the CRC-32"), "{text}");
+}
+
+#[test]
+fn priors_may_change_from_part_to_part() {
+    let (_guard, folder) = copy();
+    edit(&folder.join("job.toml"), "stiffness_x_n_per_mm = 880", "stiffness_x_n_per_mm = 1000");
+    assert!(run(&folder, "part-2.txt", "first", "second").is_ok());
+}
+
+#[test]
+fn the_points_of_a_part_that_is_known_are_refused_whatever_the_file_is_called() {
+    let (_guard, folder) = copy();
+    let (code, text) = refused(&folder, "part-1.txt", "first");
+    assert_eq!(code, "Q003");
+    assert!(text.contains("that of part 1"), "{text}");
+    // Another file of the same points.
+    let text = fs::read_to_string(folder.join("part-1.txt")).unwrap();
+    fs::write(folder.join("again.txt"), text.lines().rev().collect::<Vec<_>>().join("\n")).unwrap();
+    let (code, text) = refused(&folder, "again.txt", "first");
+    assert_eq!(code, "Q003");
+    assert!(text.contains("12 of 12 points are those of part 1"), "{text}");
+}
+
+#[test]
+fn learning_twice_from_one_part_is_refused() {
+    let (_guard, folder) = copy();
+    run(&folder, "part-2.txt", "first", "learned").unwrap();
+    let (code, text) = refused(&folder, "part-2.txt", "learned");
+    assert_eq!(code, "Q003");
+    assert!(text.contains("that of part 2") && text.contains("the points of part 3"), "{text}");
+}
+
+#[test]
+fn a_corrected_program_that_is_not_the_one_of_the_history_is_refused() {
+    let (_guard, folder) = copy();
+    edit(&folder.join("first/corrected.nc"), "M30", "M02");
+    let (code, text) = refused(&folder, "part-2.txt", "first");
+    assert_eq!(code, "Q004");
+    assert!(text.contains("corrected.nc has the CRC-32"), "{text}");
+    fs::remove_file(folder.join("first/corrected.nc")).unwrap();
+    assert_eq!(refused(&folder, "part-2.txt", "first").0, "Q004");
+}
+
+#[test]
+fn the_folder_learned_from_is_not_written_to() {
+    let (_guard, folder) = copy();
+    let Err(Failure::Input(error)) = run(&folder, "part-2.txt", "first", "./first") else { panic!("not refused") };
+    assert_eq!(error.code(), "Q005");
+}
+
+#[test]
+fn a_law_that_knows_no_second_part_is_refused() {
+    let (_guard, folder) = copy();
+    edit(&folder.join("job.toml"), "[correct]", "[correct]\nlaw = \"mirror\"");
+    let (code, text) = refused(&folder, "part-2.txt", "first");
+    assert_eq!(code, "Q006");
+    assert!(text.contains("job.toml") || text.contains("mirror"), "{text}");
+}
