@@ -9,7 +9,17 @@ use truepath::study::ledger::NAME;
 use truepath::study::seeds::Set;
 
 fn options<'a>(out: &'a std::path::Path, families: &'a [String]) -> Options<'a> {
-    Options { out, set: Set::Tuning, families, seeds: 1, axis: None, first_only: false, force: false, threads: Some(2) }
+    Options {
+        out,
+        set: Set::Tuning,
+        families,
+        seeds: 1,
+        axis: None,
+        first_only: false,
+        write: None,
+        force: false,
+        threads: Some(2),
+    }
 }
 
 #[test]

@@ -48,6 +48,9 @@ pub(super) struct Arguments {
     /// Only the first correction; nothing is learned from a second part.
     #[arg(long)]
     first: bool,
+    /// Put the tables into a Markdown file, between its two marks.
+    #[arg(long, value_name = "FILE.md")]
+    write: Option<PathBuf>,
     /// Threads. [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -98,6 +101,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         seeds: arguments.random.unwrap_or(arguments.seeds),
         axis,
         first_only: arguments.first,
+        write: arguments.write.as_deref(),
         force: arguments.force,
         threads: arguments.threads,
     };

@@ -3,18 +3,22 @@
 use std::io::Write;
 use std::path::Path as FilePath;
 
-use crate::diagnostics::{Failure, InputError};
+use crate::diagnostics::{Failure, InputError, Source};
 use crate::output::OutputFile;
 use crate::report::json;
 use crate::study::families::{FAMILIES, Family, family};
 use crate::study::id::{Axis, CaseId, Cell};
 use crate::study::ledger::{Ledger, program_key};
+use crate::study::markdown::{results, written_into};
 use crate::study::outcome::Outcome;
 use crate::study::page::page;
 use crate::study::reference::{Reached, reference as goals};
 use crate::study::seeds::Set;
 use crate::study::summary::{Summary, summary};
 use crate::study::{carry, pool};
+
+/// File of the reference goals.
+const GOALS: &str = "reference.json";
 
 /// What is studied.
 #[derive(Clone, Debug)]
@@ -31,6 +35,8 @@ pub struct Options<'a> {
     pub axis: Option<Axis>,
     /// Only the first correction.
     pub first_only: bool,
+    /// A Markdown file whose results are replaced.
+    pub write: Option<&'a FilePath>,
     /// Drop earlier results.
     pub force: bool,
     /// Threads; all cores when `None`.
@@ -121,6 +127,14 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Stud
     };
     write("summary.json", &json(&summary)?)?;
     write("study.html", page(&summary, &outcomes)?.as_bytes())?;
+    if let Some(path) = options.write {
+        let goals = std::fs::read(options.out.join(GOALS)).ok();
+        let reached: Vec<Reached> = goals.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
+        let text = written_into(&Source::read(path)?, &results(&summary, &reached))?;
+        let mut file = OutputFile::create(path, true)?;
+        file.write_all(text.as_bytes()).map_err(|e| InputError::unwritable(path, &e))?;
+        file.commit()?;
+    }
     Ok(Studied { outcomes, summary })
 }
 
@@ -135,7 +149,7 @@ pub fn reference(
     force: bool,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Vec<Reached>, Failure> {
-    let path = out.join("reference.json");
+    let path = out.join(GOALS);
     std::fs::create_dir_all(out).map_err(|e| InputError::unwritable(&path, &e))?;
     let mut file = OutputFile::create(&path, force)?;
     let reached = goals(seeds, threads, progress)?;

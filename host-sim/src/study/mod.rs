@@ -14,6 +14,7 @@ pub mod families;
 pub mod id;
 pub mod ledger;
 pub mod machine;
+pub mod markdown;
 pub mod outcome;
 pub mod page;
 pub mod part;

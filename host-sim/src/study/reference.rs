@@ -6,7 +6,7 @@
 
 use std::path::Path as FilePath;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::pool;
 use super::statistics::quantile;
@@ -65,10 +65,10 @@ pub const SETTINGS: &[Setting] = &[
 ];
 
 /// How one setting came out.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Reached {
     /// What is wrong in the job.
-    pub title: &'static str,
+    pub title: String,
     /// Places, mm along the contour.
     pub places_mm: Vec<f64>,
     /// Noise seeds carried through.
@@ -111,7 +111,7 @@ pub fn reference(seeds: u64, threads: usize, progress: &mut dyn FnMut(u64, u64))
             Ok(())
         })?;
         reached.push(Reached {
-            title: setting.title,
+            title: setting.title.to_owned(),
             places_mm: setting.places_mm.to_vec(),
             seeds: after.len(),
             failures: numbers.len() - after.len(),
