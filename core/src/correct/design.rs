@@ -2,11 +2,10 @@
 
 use super::node::{Node, commanded};
 use super::paper::PaperTransfer;
-use super::profile::{Band, Profile, Target, add_residual, profile};
+use super::profile::{Band, Profile, Target, add_residual, deepen, profile};
 use super::refine::{Update, refine, settle_ends};
-use crate::cut::{ForceTable, Loop, Passage, Path, State};
+use crate::cut::{Loop, Passage, Path, State};
 use crate::geometry::Vector;
-use crate::identify::{Fit, Prior};
 use crate::units::{Offset, Real};
 
 /// How the correction is made.
@@ -38,7 +37,7 @@ pub struct Design {
     pub target: Target,
     /// Heights that count.
     pub band: Band,
-    /// The deepest cut allowed at any height of the band.
+    /// The deepest cut allowed at any height of the engaged depth.
     pub max_gouge: Option<Offset>,
 }
 
@@ -160,7 +159,7 @@ pub fn design_observed(
     passage
 }
 
-fn copy(from: &[Node], to: &mut [Node]) {
+pub(super) fn copy(from: &[Node], to: &mut [Node]) {
     for (slot, node) in to.iter_mut().zip(from) {
         *slot = *node;
     }
@@ -174,9 +173,9 @@ fn permille(passes: u16, share: u16) -> u16 {
     (done / MOST).min(1000) as u16
 }
 
-/// One pass of the cutter with a correction: states and profiles of the workspace. `observe` is told the share of the
+/// One pass of the cutter with a correction: states and walls of the workspace. `observe` is told the share of the
 /// elastic loop that is done, ‰.
-fn pass(
+pub(super) fn pass(
     machine: &Loop,
     wanted: &Design,
     nodes: &[Node],
@@ -190,9 +189,18 @@ fn pass(
         observe(done.checked_div(working.len()).unwrap_or(0).min(1000) as u16);
         commanded(path, nodes, i)
     });
-    profile(machine, workspace.states, wanted.band, workspace.displacements, workspace.profiles);
-    add_residual(workspace.profiles, workspace.residual);
+    walls(machine, wanted, workspace);
     passage
+}
+
+/// Reads the walls off the states of the workspace.
+pub(super) fn walls(machine: &Loop, wanted: &Design, workspace: &mut DesignWorkspace) {
+    let (states, displacements) = (&*workspace.states, &mut *workspace.displacements);
+    profile(machine, states, wanted.band, displacements, workspace.profiles);
+    if wanted.max_gouge.is_some() || wanted.band != Band::WHOLE {
+        deepen(machine, states, wanted.band, displacements, workspace.profiles);
+    }
+    add_residual(workspace.profiles, workspace.residual);
 }
 
 /// −(mean deflection over the band): at the nominal engagement, or at that of the uncorrected cut (mirror).
@@ -229,46 +237,4 @@ fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorr
 fn worst(wanted: &Design, path: &Path, profiles: &[Profile]) -> Offset {
     let followed = profiles.iter().zip(path.samples().iter().skip(path.first())).filter(|(_, s)| !s.near_corner);
     followed.map(|(p, _)| p.aim(wanted.target, wanted.max_gouge).abs()).max().unwrap_or_default()
-}
-
-/// Standard deviation of the corrected wall error beside each sample, from the covariance of the fit.
-///
-/// The machine is displaced along each column of a square root of the covariance and cut again with the correction
-/// held; the squares add up. `workspace.profiles` must hold the corrected wall ([`design`] leaves it so) and is
-/// overwritten; `sigma` is as long as the contour's own samples.
-pub fn uncertainty(
-    machine: &Loop,
-    belief: (&Prior, &Fit),
-    wanted: &Design,
-    nodes: &[Node],
-    predicted: &[Predicted],
-    sigma: &mut [Offset],
-    workspace: &mut DesignWorkspace,
-) {
-    let (prior, fit) = belief;
-    let path = machine.path;
-    sigma.fill(Offset::ZERO);
-    let mut table = machine.table.clone();
-    for column in crate::identify::square_root(&fit.covariance) {
-        if column.iter().all(|v| v.abs() < Real::ratio(1, 1000)) {
-            continue;
-        }
-        let mut moved = fit.theta;
-        for (t, c) in moved.iter_mut().zip(&column) {
-            *t += *c;
-        }
-        let parameters = prior.at(&moved);
-        if parameters.coefficients.size_exponent != table.size_exponent() {
-            table = ForceTable::new(parameters.coefficients.size_exponent);
-        }
-        let displaced =
-            Loop { path, table: &table, coefficients: parameters.coefficients, compliance: parameters.compliance };
-        displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
-        profile(&displaced, workspace.states, wanted.band, workspace.displacements, workspace.profiles);
-        add_residual(workspace.profiles, workspace.residual);
-        for ((s, p), base) in sigma.iter_mut().zip(workspace.profiles.iter()).zip(predicted) {
-            let change = p.aim(wanted.target, None) - base.after.aim(wanted.target, None);
-            *s = crate::units::hypot_nm(*s, change);
-        }
-    }
 }

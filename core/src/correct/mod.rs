@@ -6,13 +6,17 @@
 //! the *predicted wall error*. P23 eqs. (8)–(12) and the first-order mirror are kept as named laws to compare with.
 
 mod design;
+mod guard;
 mod node;
 mod paper;
 mod profile;
 mod refine;
+mod uncertainty;
 
-pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design, design_observed, uncertainty};
+pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design, design_observed};
+pub use guard::{Guarded, guarded_design};
 pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, Profile, Target, add_residual, profile};
 pub use refine::Update;
+pub use uncertainty::uncertainty;

@@ -1,6 +1,6 @@
 //! The wall error over the height of the cut, and what of it a correction aims at.
 
-use crate::cut::{Envelope, Loop, State};
+use crate::cut::{Envelope, Loop, State, WallError};
 use crate::geometry::Vector;
 use crate::units::{Offset, Real};
 
@@ -41,9 +41,16 @@ pub struct Profile {
     /// For every height the sample whose cutter position made the wall, counted from the one beside it, within 16 bits: the
     /// cutter's positions half a radius away are some hundred samples off.
     made_by: [i16; HEIGHTS as usize],
+    /// How much deeper than `lowest` it is somewhere else in the engaged depth, nm.
+    beneath: u32,
+    /// Distance that the guard keeps from the deepest cut allowed, in tenths of a micrometre.
+    margin: u16,
     /// Whether a wall stands there; see [`Sample::on_wall`](crate::cut::Sample::on_wall).
     pub on_wall: bool,
 }
+
+/// Step of a [margin](Profile::margin).
+const MARGIN_STEP: i64 = 100;
 
 impl Band {
     /// The whole engaged depth.
@@ -57,7 +64,8 @@ impl Band {
 }
 
 impl Profile {
-    /// The error a target aims at. `max_gouge` wins over the target: the deepest height may not end deeper than it.
+    /// The error a target aims at. `max_gouge` wins over the target: no height of the engaged depth may end deeper than it,
+    /// and the [margin](Self::margin) stays free.
     pub fn aim(&self, target: Target, max_gouge: Option<Offset>) -> Offset {
         let wanted = match target {
             Target::Mean => self.mean,
@@ -65,9 +73,28 @@ impl Profile {
             Target::Minimax => Offset::from_nm(self.lowest.nm().saturating_add(self.highest.nm()) / 2),
         };
         match max_gouge {
-            Some(limit) => wanted.min(self.lowest + limit),
+            Some(limit) => wanted.min(self.deepest() - self.margin() + limit),
             None => wanted,
         }
+    }
+    /// The smallest error (deepest cut) at any height of the engaged depth that was looked at: of the band and at the tip;
+    /// under a guard also of what lies outside the band, and at the top.
+    pub fn deepest(&self) -> Offset {
+        self.lowest - Offset::from_nm(self.beneath.into())
+    }
+    /// The distance that the guard keeps from the deepest cut allowed. It stays when a profile is read anew.
+    pub fn margin(&self) -> Offset {
+        Offset::from_nm(i64::from(self.margin).saturating_mul(MARGIN_STEP))
+    }
+    /// Sets the margin: rounded up to 0.1 um, at most 6.5 mm.
+    pub(super) fn set_margin(&mut self, margin: Offset) {
+        let steps = margin.nm().max(0).saturating_add(MARGIN_STEP).saturating_sub(1).checked_div(MARGIN_STEP);
+        self.margin = u16::try_from(steps.unwrap_or(0)).unwrap_or(u16::MAX);
+    }
+    /// Takes note of the error at a height that may lie outside the band.
+    fn deepen(&mut self, error: Offset) {
+        let more = (self.lowest - error).nm();
+        self.beneath = self.beneath.max(u32::try_from(more.max(0)).unwrap_or(u32::MAX));
     }
     /// What is left over height when the target is met: the larger distance from it.
     pub fn form_error(&self, target: Target) -> Offset {
@@ -100,20 +127,16 @@ pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut
     let path = machine.path;
     let first = path.first();
     for (p, sample) in profiles.iter_mut().zip(path.samples().iter().skip(first)) {
-        *p = Profile { lowest: Offset::MAX, highest: -Offset::MAX, on_wall: sample.on_wall, ..Profile::default() };
+        let (margin, on_wall) = (p.margin, sample.on_wall);
+        *p = Profile { lowest: Offset::MAX, highest: -Offset::MAX, margin, on_wall, ..Profile::default() };
     }
     for k in 0..=HEIGHTS {
         let tip = k == HEIGHTS;
         let height = if tip { Real::ZERO } else { band.at(k) };
-        Envelope::displace(machine, states, height, displacements);
-        let envelope = Envelope::new(path, path.working().start, displacements);
-        let mut guess = first;
-        for (i, p) in profiles.iter_mut().enumerate() {
-            let index = first.saturating_add(i);
-            let Some(wall) = envelope.error(index, guess).filter(|_| p.on_wall) else { continue };
-            guess = wall.made_by.saturating_add(1);
+        read(machine, states, height, displacements, profiles, |index, p, wall| {
             if tip {
                 p.tip = wall.error;
+                p.deepen(wall.error);
             } else {
                 if let Some(slot) = p.made_by.get_mut(k as usize) {
                     let shift = (wall.made_by as i64).saturating_sub(index as i64);
@@ -123,12 +146,49 @@ pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut
                 p.lowest = p.lowest.min(wall.error);
                 p.highest = p.highest.max(wall.error);
             }
-        }
+        });
     }
     for p in profiles.iter_mut() {
         if !p.on_wall {
-            *p = Profile::default();
+            *p = Profile { margin: p.margin, ..Profile::default() };
         }
         p.mean = p.mean.scaled(Real::ratio(1, HEIGHTS));
+    }
+}
+
+/// Looks for the deepest cut at the heights of the engaged depth that [`profile`] left out: the top, and what lies outside
+/// the band.
+pub(super) fn deepen(
+    machine: &Loop,
+    states: &[State],
+    band: Band,
+    displacements: &mut [Vector],
+    profiles: &mut [Profile],
+) {
+    let outside = |h: &Real| *h < band.from || *h > band.to;
+    let heights = (0..HEIGHTS).map(|k| Band::WHOLE.at(k)).filter(outside);
+    for height in heights.chain([Real::ONE]) {
+        read(machine, states, height, displacements, profiles, |_, p, wall| p.deepen(wall.error));
+    }
+}
+
+/// Hands the wall error at a height to every profile where a wall stands, with the index of its sample.
+fn read(
+    machine: &Loop,
+    states: &[State],
+    height: Real,
+    displacements: &mut [Vector],
+    profiles: &mut [Profile],
+    mut take: impl FnMut(usize, &mut Profile, &WallError),
+) {
+    let path = machine.path;
+    Envelope::displace(machine, states, height, displacements);
+    let envelope = Envelope::new(path, path.working().start, displacements);
+    let mut guess = path.first();
+    for (i, p) in profiles.iter_mut().enumerate() {
+        let index = path.first().saturating_add(i);
+        let Some(wall) = envelope.error(index, guess).filter(|_| p.on_wall) else { continue };
+        guess = wall.made_by.saturating_add(1);
+        take(index, p, &wall);
     }
 }

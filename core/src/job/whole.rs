@@ -7,7 +7,7 @@ use super::workspace::room;
 use super::{
     Buffer, Counts, Identified, Job, JobError, Pass, Stage, Workspace, array, correction, identification, measure,
 };
-use crate::correct::{DesignStep, DesignWorkspace, Node, Profile, Target, design_observed};
+use crate::correct::{DesignStep, DesignWorkspace, Guarded, Node, Profile, Target, guarded_design};
 use crate::cut::{ForceTable, Path, WallLaw};
 use crate::identify::PredictionWorkspace;
 use crate::probe::Contact;
@@ -161,7 +161,9 @@ fn designed(
     let machine = identified.machine(path, &table);
     let wanted = pass.job.design(correction::law(pass, &machine, contacts));
     let (mut error_before, mut passes) = (Offset::ZERO, 0);
-    let passage = design_observed(&machine, &wanted, nodes, &mut [], lent, &mut |step| match step {
+    let belief = (&identified.prior, &identified.fit);
+    let mut made = Guarded { nodes, unguarded: &mut [], predicted: &mut [] };
+    let passage = guarded_design(&machine, belief, &wanted, &mut made, lent, &mut |step| match step {
         DesignStep::Uncorrected(walls) => error_before = worst(walls, wanted.target),
         DesignStep::Done { passes: done, permille } => {
             passes = done;
