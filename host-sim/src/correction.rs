@@ -2,8 +2,8 @@
 //! reports.
 
 use truepath_core::correct::{
-    Band, Design, DesignStep, DesignWorkspace, Law, Node, Predicted, Profile, Update, add_residual, commanded,
-    design_observed, profile, uncertainty,
+    Band, Design, DesignStep, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Update, add_residual, commanded,
+    guarded_design, profile, uncertainty,
 };
 use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
@@ -29,6 +29,8 @@ pub struct Identified {
 pub struct Correction {
     /// The correction.
     pub nodes: Vec<Node>,
+    /// What the target alone wants: the same where no guard forbids it.
+    pub unguarded: Vec<Node>,
     /// Predicted wall errors.
     pub predicted: Vec<Predicted>,
     /// Standard deviation of the predicted error after.
@@ -115,24 +117,16 @@ pub fn corrected(
 ) -> Result<Correction, Failure> {
     let path = machine.path;
     let wanted = pass.job.numbers.design(wish.law);
-    let (count, working) = (path.count(), path.working().len());
-    let mut states = vec![State::REST; working];
-    let mut displacements = vec![Vector::ZERO; working];
-    let mut profiles = vec![Profile::default(); count];
-    let mut updates = vec![Update::default(); count];
-    let mut best = vec![Node::default(); count];
-    let mut workspace = DesignWorkspace {
-        states: &mut states,
-        displacements: &mut displacements,
-        profiles: &mut profiles,
-        updates: &mut updates,
-        best: &mut best,
-        residual: wish.residual,
-    };
+    let count = path.count();
+    let mut buffers = Buffers::of(path);
+    let mut workspace = buffers.workspace(wish.residual);
     let mut nodes = vec![Node::default(); count];
+    let mut unguarded = nodes.clone();
     let mut predicted = vec![Predicted::default(); count];
     let mut sigma = vec![Offset::ZERO; count];
-    let passage = design_observed(machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |step| {
+    let belief = (identified.prior(), identified.fit());
+    let mut made = Guarded { nodes: &mut nodes, unguarded: &mut unguarded, predicted: &mut predicted };
+    let passage = guarded_design(machine, belief, &wanted, &mut made, &mut workspace, &mut |step| {
         if let DesignStep::Done { permille, .. } = step {
             progress(0.6 * f64::from(permille) / 1000.0);
         }
@@ -142,18 +136,54 @@ pub fn corrected(
         Some(kept) => {
             let (walls, passage) = walls(machine, wanted.band, kept, wish.residual);
             nodes.copy_from_slice(kept);
+            unguarded.copy_from_slice(kept);
             predicted.iter_mut().zip(walls).for_each(|(p, wall)| p.after = wall);
             passage
         }
     };
     job::check_clamp(&pass.job.numbers, path, &nodes).map_err(|error| pass.refused(&error))?;
-    let belief = (identified.prior(), identified.fit());
     uncertainty(machine, belief, &wanted, &nodes, &predicted, &mut sigma, &mut workspace);
     for (sigma, more) in sigma.iter_mut().zip(wish.residual_sigma) {
         *sigma = hypot_nm(*sigma, *more);
     }
     progress(1.0);
-    Ok(Correction { nodes, predicted, sigma, wanted, passage })
+    Ok(Correction { nodes, unguarded, predicted, sigma, wanted, passage })
+}
+
+/// Memory of a design.
+#[derive(Clone, Debug)]
+pub struct Buffers {
+    states: Vec<State>,
+    displacements: Vec<Vector>,
+    profiles: Vec<Profile>,
+    updates: Vec<Update>,
+    best: Vec<Node>,
+}
+
+impl Buffers {
+    /// For a path.
+    pub fn of(path: &Path) -> Self {
+        let (count, working) = (path.count(), path.working().len());
+        Self {
+            states: vec![State::REST; working],
+            displacements: vec![Vector::ZERO; working],
+            profiles: vec![Profile::default(); count],
+            updates: vec![Update::default(); count],
+            best: vec![Node::default(); count],
+        }
+    }
+
+    /// Lends it.
+    pub fn workspace<'a>(&'a mut self, residual: &'a [Offset]) -> DesignWorkspace<'a> {
+        DesignWorkspace {
+            states: &mut self.states,
+            displacements: &mut self.displacements,
+            profiles: &mut self.profiles,
+            updates: &mut self.updates,
+            best: &mut self.best,
+            residual,
+        }
+    }
 }
 
 /// The wall beside every sample of the contour that a machine leaves with a correction, empty for none.

@@ -4,6 +4,7 @@ pub mod bench;
 pub mod canon;
 pub mod cli;
 pub mod command;
+pub mod compare;
 pub mod correction;
 pub mod diagnostics;
 pub mod feature;

@@ -15,6 +15,9 @@ const BEFORE: RGBColor = RGBColor(213, 94, 0);
 const AFTER: RGBColor = RGBColor(0, 114, 178);
 const NOMINAL: RGBColor = RGBColor(60, 60, 60);
 const GREEN: RGBColor = RGBColor(0, 158, 115);
+/// Colours of many curves in one panel, the last one of the most important.
+pub const COLOURS: [RGBColor; 5] =
+    [RGBColor(60, 60, 60), RGBColor(230, 159, 0), RGBColor(204, 121, 167), BEFORE, AFTER];
 const FONT: &str = "sans-serif";
 
 type Panel<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -45,10 +48,12 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// Draws curves over arc length in one panel.
-fn draw(panel: &Panel, unit: &str, curves: &[Curve]) -> Result<(), Failure> {
+/// Draws curves over arc length in one panel, and behind them a band: (arc length in mm, from, to).
+fn draw(panel: &Panel, unit: &str, curves: &[Curve], band: &[(f64, f64, f64)]) -> Result<(), Failure> {
     let all = || curves.iter().flat_map(|c| c.points.iter()).filter(|p| p.1.is_finite());
+    let known = || band.iter().filter(|b| b.1.is_finite() && b.2.is_finite());
     let (low, high) = all().fold((0.0f64, 0.0f64), |(l, h), p| (l.min(p.1), h.max(p.1)));
+    let (low, high) = known().fold((low, high), |(l, h), b| (l.min(b.1), h.max(b.2)));
     let end = all().fold(0.0f64, |m, p| m.max(p.0));
     let margin = (high - low).max(1e-6) * 0.08;
     // Room above the curves for the legend.
@@ -69,6 +74,11 @@ fn draw(panel: &Panel, unit: &str, curves: &[Curve]) -> Result<(), Failure> {
         .axis_desc_style((FONT, 13))
         .draw()
         .map_err(failed)?;
+    for run in band.split(|b| !(b.1.is_finite() && b.2.is_finite())).filter(|run| !run.is_empty()) {
+        let there = run.iter().map(|b| (b.0, b.2));
+        let outline: Vec<(f64, f64)> = there.chain(run.iter().rev().map(|b| (b.0, b.1))).collect();
+        chart.draw_series([Polygon::new(outline, AFTER.mix(0.22))]).map_err(failed)?;
+    }
     for curve in curves {
         let colour = curve.colour;
         // A gap where the value is not known.
@@ -103,7 +113,7 @@ pub fn panels(title: &str, rows: &[(&str, Vec<Curve>)]) -> Result<Vec<u8>, Failu
         root.fill(&WHITE).map_err(failed)?;
         let page = root.titled(title, (FONT, 20)).map_err(failed)?;
         for (panel, (unit, curves)) in page.split_evenly((rows.len(), 1)).iter().zip(rows) {
-            draw(panel, unit, curves)?;
+            draw(panel, unit, curves, &[])?;
         }
         root.present().map_err(failed)?;
     }
@@ -137,11 +147,17 @@ pub fn trace(trace: &Trace) -> Result<Vec<u8>, Failure> {
 
 /// The wall of a part to scale, with its error magnified, and the error along the contour.
 ///
-/// `walls`: (name, error along the contour in mm, colour) on the samples of `points` = (nominal wall, inward normal).
+/// `curves` are errors along the contour, mm, and `band` lies behind them; `wall` is the nominal one, with the normal into
+/// the free side, at the arc lengths `s`.
 ///
 /// # Errors
 /// Internal, when it cannot be drawn.
-pub fn part(title: &str, s: &[f64], wall: &[([f64; 2], [f64; 2])], curves: &[Curve]) -> Result<Vec<u8>, Failure> {
+pub fn part(
+    title: &str,
+    (s, wall): &(Vec<f64>, Wall),
+    curves: &[Curve],
+    band: &[(f64, f64, f64)],
+) -> Result<Vec<u8>, Failure> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, (1000, 760)).into_drawing_area();
@@ -149,7 +165,7 @@ pub fn part(title: &str, s: &[f64], wall: &[([f64; 2], [f64; 2])], curves: &[Cur
         let page = root.titled(title, (FONT, 20)).map_err(failed)?;
         let (top, bottom) = page.split_vertically(470);
         draw_part(&top, s, wall, curves)?;
-        draw(&bottom, "wall error, mm", curves)?;
+        draw(&bottom, "wall error, mm", curves, band)?;
         root.present().map_err(failed)?;
     }
     Ok(text.into_bytes())
@@ -247,15 +263,19 @@ pub fn nominal_wall(pass: &Pass) -> (Vec<f64>, Wall) {
 /// # Errors
 /// Internal, when it cannot be drawn.
 pub fn correction(pass: &Pass, s_mm: &[f64], correction: &Correction) -> Result<Vec<u8>, Failure> {
-    let (s, wall) = nominal_wall(pass);
     let target = correction.wanted.target;
     let along = |f: &dyn Fn(usize) -> f64| s_mm.iter().enumerate().map(|(i, s)| (*s, f(i))).collect::<Vec<_>>();
     let before = along(&|i| mm(correction.predicted[i].before.aim(target, None)));
     let after = along(&|i| mm(correction.predicted[i].after.aim(target, None)));
+    let wide = |i: usize| 2.0 * mm(correction.sigma[i]);
+    let band: Vec<_> = after.iter().enumerate().map(|(i, (s, error))| (*s, error - wide(i), error + wide(i))).collect();
     part(
         "The wall as the model sees it",
-        &s,
-        &wall,
-        &[Curve::before("without correction", before), Curve::after("with correction", after)],
+        &nominal_wall(pass),
+        &[
+            Curve::before("without correction", before),
+            Curve::after("with correction, and two standard deviations to either side", after),
+        ],
+        &band,
     )
 }

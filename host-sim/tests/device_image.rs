@@ -82,6 +82,7 @@ fn the_image_of_the_device_is_that_of_the_host_byte_for_byte() {
         probed("corner-helix", &[], &[20.0, 32.0, 49.0, 68.0, 80.0], &heights),
         probed("corner-helix", &two_feeds, &[20.0, 32.0, 49.0, 68.0, 80.0], &heights),
         probed("pocket", &[], &pocket, &heights),
+        probed("pocket", &[("[probe]", &law("model"))], &pocket, &heights),
         probed("pocket", &[("[probe]", &law("mirror"))], &pocket, &heights),
         probed("pocket", &[("[probe]", &law("paper"))], &pocket, &heights),
         probed(

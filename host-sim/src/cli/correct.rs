@@ -81,7 +81,9 @@ pub(super) fn words(s: &CorrectSummary, output: &Path) -> String {
          largest wall error without correction  {:>8.4} mm\n\
          with correction, as the model sees it  {:>8.4} mm  ({factor:.0} times less)\n\
          what the points leave open (1 sigma)   {:>8.4} mm\n\
+         \x20 where the largest error is expected  {:>8.4} mm\n\
          left over the height, beyond X and Y   {:>8.4} mm\n\
+         deepest cut at any height              {:>8.4} mm\n\
          largest correction                     {:>8.4} mm\n\
          \n\
          identified                      value      sigma   before\n",
@@ -92,7 +94,9 @@ pub(super) fn words(s: &CorrectSummary, output: &Path) -> String {
         s.max_error_before_mm,
         s.max_error_after_mm,
         s.max_sigma_mm,
+        s.sigma_at_max_error_mm,
         s.axial_form_error_mm,
+        s.worst_gouge_mm,
         s.max_correction_mm,
     );
     for (name, p) in &s.identified {

@@ -4,6 +4,7 @@
 //! is wrong (command line included), 2 a fault of the program. `--json` makes both streams readable for machines.
 
 mod canon;
+mod compare;
 mod correct;
 mod demo;
 mod device;
@@ -59,6 +60,8 @@ enum Command {
     Probe(probe::Arguments),
     /// How accurate a milled wall is, from probe points alone.
     Inspect(inspect::Arguments),
+    /// What every law of correction leaves on the same machine, in one table.
+    Compare(compare::Arguments),
     /// From a probe file to the corrected program or the image for the coprocessor.
     Correct(correct::Arguments),
     /// From the probe file of a corrected part to the correction of the next one.
@@ -105,6 +108,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Simulate(arguments) => simulate::run(&arguments, terminal),
         Command::Probe(arguments) => probe::run(&arguments, terminal),
         Command::Inspect(arguments) => inspect::run(&arguments, terminal),
+        Command::Compare(arguments) => compare::run(&arguments, terminal),
         Command::Correct(arguments) => correct::run(&arguments, terminal),
         Command::Learn(arguments) => learn::run(&arguments, terminal),
         Command::Split(arguments) => split::run(&arguments, terminal),

@@ -160,6 +160,7 @@ pub(super) fn design(
     warnings.extend(doubts(pass, &identified, &correction, &machine));
     warnings.extend(feeds.doubts(mm(correction.sigma.iter().copied().max().unwrap_or_default())));
     let mut summary = correct_summary(pass, &identified, &correction, remarks.set_aside, warnings);
+    summary.place(&path, &correction);
     summary.feed = feeds.summary;
     let (mut program, mut image, mut other_images) = (None, None, Vec::new());
     let mut levels = Levels::default();

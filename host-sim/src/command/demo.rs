@@ -178,7 +178,6 @@ fn picture(
     (first, before): (&Milled, &Score),
     (second, after): (&Milled, &Score),
 ) -> Result<Vec<u8>, Failure> {
-    let (s, wall) = plot::nominal_wall(pass);
     // The ends, where the cutter plunges and lifts, are not judged.
     let trim = (0.8 * first.cut.radius_mm).max(6.0);
     let length = crate::report::mm(pass.core.contour.length);
@@ -191,5 +190,5 @@ fn picture(
     let name = |text: &str, score: &Score| format!("{text}: largest error {:.3} mm", score.max_error_mm);
     let (first_name, second_name) = (name("first part", before), name("corrected part", after));
     let curves = [plot::Curve::before(&first_name, along(first)), plot::Curve::after(&second_name, along(second))];
-    plot::part(story.title, &s, &wall, &curves)
+    plot::part(story.title, &plot::nominal_wall(pass), &curves, &[])
 }

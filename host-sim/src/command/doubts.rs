@@ -1,6 +1,5 @@
 //! What the user of a correction should doubt: points that do not fit, corners, backlash, gouges, uncertainty.
 
-use truepath_core::correct::Law;
 use truepath_core::cut::Loop;
 use truepath_core::identify::Parameter;
 use truepath_core::probe::Contact;
@@ -9,7 +8,7 @@ use truepath_core::units::Offset;
 use crate::correction::{Correction, Identified};
 use crate::pass::Pass;
 use crate::program::Difference;
-use crate::report::mm;
+use crate::report::{guard_summary, mm};
 
 /// What the user should doubt.
 pub(super) fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
@@ -40,14 +39,26 @@ pub(super) fn doubts(pass: &Pass, identified: &Identified, correction: &Correcti
             correction.predicted.iter().map(|p| mm(p.after.mean.abs())).fold(0.0, f64::max)
         ));
     }
-    if let Some(limit) = correction.wanted.max_gouge {
-        let deepest = correction.predicted.iter().map(|p| -p.after.lowest).max().unwrap_or_default();
-        if deepest > limit + Offset::from_um(1) {
+    if let Some(guard) = guard_summary(machine.path, correction) {
+        if !guard.heeded && guard.deepest_mm > guard.max_gouge_mm {
             out.push(format!(
-                "max_gouge_mm = {} is not kept: {:.4} mm are predicted{}",
-                mm(limit),
-                mm(deepest),
-                if correction.wanted.law == Law::Model { "" } else { " (only law = \"model\" heeds it)" }
+                "max_gouge_mm = {} is not kept: {:.4} mm are predicted (only law = \"model\" heeds it)",
+                guard.max_gouge_mm, guard.deepest_mm
+            ));
+        } else if guard.deepest_with_confidence_mm > guard.max_gouge_mm + 0.001 {
+            out.push(format!(
+                "max_gouge_mm = {} is not kept with two standard deviations to spare: up to {:.4} mm may be cut too deep, {:.4} mm are predicted",
+                guard.max_gouge_mm, guard.deepest_with_confidence_mm, guard.deepest_mm
+            ));
+        }
+        if let Some(most) = guard.places.iter().max_by(|a, b| a.moved_mm().total_cmp(&b.moved_mm())) {
+            out.push(format!(
+                "max_gouge_mm = {} holds the cutter back at {} places, most at s = {:.2} mm: the target wants {:.4} mm towards the wall, {:.4} mm are allowed",
+                guard.max_gouge_mm,
+                guard.places.len(),
+                most.at_s_mm,
+                most.wanted_mm,
+                most.allowed_mm
             ));
         }
     }

@@ -1,5 +1,6 @@
 //! What the commands do, apart from how they are called (`cli`) and printed.
 
+pub mod compare;
 pub mod correct;
 pub mod demo;
 pub mod device;

@@ -1,14 +1,19 @@
 //! What the commands write: tables (CSV), the summary (JSON), the corrected path for the program and for the image.
 
+mod compare;
+mod guard;
 mod path;
 mod points;
 mod summary;
 mod tables;
 
+pub use compare::{compare_csv, walls_csv};
+pub use guard::{GuardSummary, HeldBack, guard_summary};
 pub use path::{block_edits, carried_edits};
 pub use points::points_csv;
 pub use summary::{
-    CorrectSummary, InspectSummary, Parameter, SimulateSummary, correct_summary, inspect_summary, simulate_summary,
+    CorrectSummary, InspectSummary, Parameter, SimulateSummary, correct_summary, inspect_summary, law_name,
+    simulate_summary,
 };
 pub use tables::{Trace, TraceRow, correction_csv, trace, trace_csv};
 
