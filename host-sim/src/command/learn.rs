@@ -10,7 +10,7 @@ use super::correct::{Corrected, FILES, HISTORY, Remarks, design, write};
 use crate::correction::{Identified, Wish};
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::job::{Job, ProbeFlags, Route, Which};
-use crate::learning::{History, Part, PartPoints, Update, Verdict, update};
+use crate::learning::{History, MOST_PARTS, Part, PartPoints, Update, Verdict, update};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
@@ -95,6 +95,9 @@ pub fn learn(
     let wish = Wish { law: Law::Model, residual: &residual, residual_sigma: &residual_sigma, kept: kept.as_deref() };
     let mut texts = remarks.to_vec();
     texts.extend_from_slice(verdict.remarks());
+    if let Some(oldest) = history.parts.first().filter(|_| history.parts.len() >= MOST_PARTS) {
+        texts.push(format!("part {} is dropped from the history, which keeps {MOST_PARTS} parts", oldest.number));
+    }
     let texts = Remarks::of(measurement, &texts);
     let later = &mut |share| progress(0.5 + 0.5 * share);
     let corrected = design(pass, &sampled, identified, &wish, texts, routes, later)?;
