@@ -87,9 +87,9 @@ pub fn learn(
     };
     let parts: Vec<PartPoints> = history.parts.iter().filter(|p| !p.set_aside).map(of).collect::<Result<_, _>>()?;
     let newest = of(&part)?;
-    let Update { joint, residual, residual_sigma, kept, verdict } =
+    let Update { joint, residual, residual_sigma, kept, set_aside, verdict } =
         update(pass, &sampled, parts, newest, &history.next.promised(), &mut |share| progress(0.5 * share))?;
-    part.set_aside = verdict.rolled_back;
+    part.set_aside = set_aside;
     let observations = joint.observations.last().cloned().unwrap_or_default();
     let identified = Identified { core: joint.core, observations };
     let wish = Wish { law: Law::Model, residual: &residual, residual_sigma: &residual_sigma, kept: kept.as_deref() };

@@ -23,8 +23,10 @@ pub struct Update {
     pub residual: Vec<Offset>,
     /// Its standard deviation.
     pub residual_sigma: Vec<Offset>,
-    /// The earlier correction to go back to, when this part came out worse.
+    /// The correction to use again, when this part came out worse or nothing explains it.
     pub kept: Option<Vec<Node>>,
+    /// Whether fits leave the part out from now on.
+    pub set_aside: bool,
     /// How the part came out.
     pub verdict: Verdict,
 }
@@ -69,15 +71,17 @@ pub fn update(
     let fits = after.core.check(&all).is_ok();
     // A part that came out worse is explained when points that the fit has not seen are predicted.
     let explained = fits && holdout.as_ref().is_some_and(|h| h.after_mm * 2.0 < monitor.now.rms_mm);
-    let rolled_back = !fits || (monitor.is_worse() && !explained);
-    let kept = rolled_back.then(|| {
-        let better = parts.get(monitor.better).map(|p| p.nodes.clone()).unwrap_or_default();
-        if better.is_empty() { vec![Node::default(); path.count()] } else { better }
+    let set_aside = !fits || (monitor.is_worse() && !explained);
+    // A part that no model explains beside the others may still have come out better: its correction is then kept.
+    let again = if monitor.is_worse() { monitor.better } else { parts.len().saturating_sub(1) };
+    let kept = set_aside.then(|| {
+        let again = parts.get(again).map(|p| p.nodes.clone()).unwrap_or_default();
+        if again.is_empty() { vec![Node::default(); path.count()] } else { again }
     });
-    let (chosen, beside) = if rolled_back { (before, before_beside) } else { (after, after_beside) };
+    let (chosen, beside) = if set_aside { (before, before_beside) } else { (after, after_beside) };
     let all: Vec<_> = chosen.observations.iter().flatten().copied().collect();
     chosen.core.check(&all).map_err(|error| pass.refused(&error))?;
-    let mut verdict = Verdict::of(&parts, &monitor, promise, holdout, rolled_back, fits);
+    let mut verdict = Verdict::of(&parts, &monitor, promise, holdout, set_aside.then_some(again), fits);
     let (mut residual, mut residual_sigma) = (vec![Offset::ZERO; path.count()], vec![Offset::ZERO; path.count()]);
     if let Some(beside) = beside {
         (residual, residual_sigma) = beside.along(path, &chosen);
@@ -86,7 +90,7 @@ pub fn update(
     let (cutter, cutter_sigma) = smaller_cutter(&chosen);
     residual.iter_mut().for_each(|r| *r += cutter);
     residual_sigma.iter_mut().for_each(|s| *s = hypot_nm(*s, cutter_sigma));
-    Ok(Update { joint: chosen, residual, residual_sigma, kept, verdict })
+    Ok(Update { joint: chosen, residual, residual_sigma, kept, set_aside, verdict })
 }
 
 /// What a cutter smaller than stated leaves on every wall, with its standard deviation. The first correction takes it for a fault

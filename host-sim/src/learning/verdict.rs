@@ -86,13 +86,14 @@ impl Verdict {
         monitor: &Monitor,
         promise: Promise,
         holdout: Option<Residuals>,
-        rolled_back: bool,
+        again: Option<usize>,
         fits: bool,
     ) -> Self {
         let (now, before) = (monitor.now, monitor.before);
         let mut remarks = Vec::new();
-        if rolled_back {
-            let better = parts.get(monitor.better).map_or(0, |p| p.number);
+        let rolled_back = again.is_some_and(|again| again + 1 < parts.len());
+        if let Some(again) = again {
+            let better = parts.get(again).map_or(0, |p| p.number);
             let why = if fits {
                 format!(
                     "it came out worse ({:.4} mm after {:.4} mm, rms at its places) and the updated model does not foretell the places it was not shown",
@@ -102,7 +103,7 @@ impl Verdict {
                 "most points contradict those of the parts before".to_owned()
             };
             remarks.push(format!(
-                "part {} is set aside and the correction of part {better} is used again: {why}; look at clamping, datum, cutter and probe before the next part",
+                "part {} is set aside and the correction that part {better} was cut with is used again: {why}; look at clamping, datum, cutter and probe before the next part",
                 now.part
             ));
         } else if monitor.is_worse() {
