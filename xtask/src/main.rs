@@ -86,6 +86,9 @@ enum Task {
         /// Measure how fast programs are read instead, beside the crate gcode and LinuxCNC.
         #[arg(long, conflicts_with = "count")]
         reading: bool,
+        /// Measure how long contours of 10,000 lines and of five metres take instead.
+        #[arg(long, conflicts_with_all = ["count", "reading"])]
+        long: bool,
         /// Write the table into docs/measure.md.
         #[arg(long)]
         write: bool,
@@ -150,6 +153,9 @@ fn main() -> ExitCode {
         Task::Bench { count: true, write, .. } => report.run(Step::new("bench --count", || bench::count(write))),
         Task::Bench { reading: true, write, .. } => {
             report.run(Step::new("bench --reading", || bench::reading::measure(write)))
+        }
+        Task::Bench { long: true, write, .. } => {
+            report.run(Step::new("bench --long", || bench::long::measure(write)))
         }
         Task::Bench { no_run, write, arguments, .. } => {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))

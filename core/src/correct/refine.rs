@@ -33,10 +33,30 @@ pub(super) fn refine(path: &Path, wanted: &Design, nodes: &mut [Node], profiles:
         }
     }
     fill_gaps(updates);
+    if wanted.max_gouge.is_some() {
+        // Where the guard begins, neighbours are asked for different things, and single positions would run away.
+        (0..SMOOTHED).for_each(|_| smooth(updates));
+    }
     let samples = path.samples().iter().skip(path.first());
     for ((node, update), sample) in nodes.iter_mut().zip(updates.iter()).zip(samples) {
         // The refinement follows the chip: it comes from the change of load along the path.
         node.chip = node.chip + sample.normal.times(update.mean());
+    }
+}
+
+/// Times that updates are smoothed under a guard: over about the length on which a circle leaves its tangent by a micrometre.
+const SMOOTHED: usize = 3;
+
+/// Every update becomes half of itself and a quarter of either neighbour; at the ends nothing comes from beyond.
+fn smooth(updates: &mut [Update]) {
+    let mut before: Option<Offset> = None;
+    for at in 0..updates.len() {
+        let behind = updates.get(at.saturating_add(1)).map(Update::mean);
+        let Some(slot) = updates.get_mut(at) else { break };
+        let own = slot.mean();
+        let sum = own + own + before.unwrap_or(own) + behind.unwrap_or(own);
+        *slot = Update { sum: sum.scaled(Real::ratio(1, 4)), count: 1 };
+        before = Some(own);
     }
 }
 

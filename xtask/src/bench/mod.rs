@@ -3,6 +3,7 @@
 //! Time (criterion) depends on the machine and what else runs on it; instructions (callgrind) are those of an x86-64
 //! release build and are the same on every repeat. Neither is a number of cycles on a microcontroller.
 
+pub mod long;
 pub mod reading;
 pub mod table;
 
