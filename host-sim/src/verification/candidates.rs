@@ -66,12 +66,16 @@ pub(super) struct Site {
     pub(super) normal: Xy,
     pub(super) form: Form,
     pub(super) line: u32,
+    /// What a touch a tenth of a millimetre beside the place would read otherwise, where the load is not steady.
+    pub(super) unsteady: Offset,
 }
 
 /// Distance between places looked at: a fraction of the contour, at least the second number, mm.
 const SPACING: (f64, f64) = (1.0 / 240.0, 0.5);
 /// How far along the wall a touch may lie from where it is meant to, mm.
 const ALONG: Offset = Offset::from_um(500);
+/// How far along the wall a touch is taken to lie from where it is meant to, where the load is not steady, mm.
+const BESIDE: f64 = 0.1;
 /// Change of the engaged angle over twice [`ALONG`] from which it is abrupt, degrees.
 const ABRUPT_DEG: f64 = 2.5;
 /// Change of the deflection along the normal over twice [`ALONG`] from which it is abrupt, share of the largest one.
@@ -80,13 +84,13 @@ const ABRUPT_SHARE: f64 = 0.04;
 /// coordinates and facets make.
 const CUT_AWAY: f64 = 0.02;
 
-/// Sorts the places of a pass.
+/// Sorts the places of a pass. `unsteady` ones are kept off, or taken with what they are worth.
 pub(super) fn candidates(
     pass: &Pass,
     path: &Path,
     belief: &Belief,
     ball: Ball,
-    noise: f64,
+    (noise, unsteady): (f64, bool),
 ) -> (Vec<Site>, Vec<KeptOff>) {
     let samples = &path.samples()[path.first()..path.first() + path.count()];
     let radius = mm(path.setup().radius);
@@ -116,13 +120,13 @@ pub(super) fn candidates(
         let (before, after) = (path.index_at(sample.s - ALONG), path.index_at(sample.s + ALONG));
         let turn = float(state(after).engaged - state(before).engaged).abs().to_degrees();
         let normal = [float(sample.normal.x), float(sample.normal.y)];
+        let change = (deflection(after) - deflection(before)).abs();
+        let is_unsteady = turn > ABRUPT_DEG || change > abrupt;
         let verdict = match walls[index - path.first()] {
             _ if mm(sample.s) < first || mm(sample.s) > last => Err(KeptOff::End),
             None => Err(KeptOff::NoWall),
             Some(_) if sample.near_corner => Err(KeptOff::SharpCorner),
-            Some(_) if turn > ABRUPT_DEG || (deflection(after) - deflection(before)).abs() > abrupt => {
-                Err(KeptOff::Unsteady)
-            }
+            Some(_) if is_unsteady && !unsteady => Err(KeptOff::Unsteady),
             Some(wall) if !ball.is_free(wall, normal, &standing) => Err(KeptOff::Unproved),
             Some(wall) => Ok(wall),
         };
@@ -130,7 +134,10 @@ pub(super) fn candidates(
             Err(reason) => kept_off.push(reason),
             Ok(wall) => {
                 let block = &pass.blocks[sample.block as usize];
-                sites.push(Site { s: sample.s, wall, normal, form: form(pass, block, radius), line: block.line });
+                let beside = if is_unsteady { change * BESIDE / (2.0 * mm(ALONG)) } else { 0.0 };
+                let unsteady = Offset::from_nm((beside * 1e6).round() as i64);
+                let form = form(pass, block, radius);
+                sites.push(Site { s: sample.s, wall, normal, form, line: block.line, unsteady });
             }
         }
     }

@@ -51,7 +51,7 @@ impl Ground {
         Ok(Self { shop, probe, heights, ball, safe_z_mm })
     }
 
-    /// The places that may be touched, and how many may not, by reason.
+    /// The places that may be touched, `unsteady` ones too or not, and how many may not, by reason.
     ///
     /// # Errors
     /// `V004` without any.
@@ -60,8 +60,9 @@ impl Ground {
         pass: &Pass,
         path: &Path,
         belief: &Belief,
+        unsteady: bool,
     ) -> Result<(Vec<Site>, BTreeMap<KeptOff, usize>), InputError> {
-        let (sites, kept_off) = candidates(pass, path, belief, self.ball, mm(self.probe.noise));
+        let (sites, kept_off) = candidates(pass, path, belief, self.ball, (mm(self.probe.noise), unsteady));
         let mut counts = BTreeMap::new();
         for reason in kept_off {
             *counts.entry(reason).or_insert(0) += 1;

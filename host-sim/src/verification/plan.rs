@@ -137,7 +137,7 @@ pub fn plan(pass: &Pass, settings: &Settings, progress: &mut dyn FnMut(f64)) -> 
     let law = path.setup().law;
     let prior = pass.core.prior(law);
     let belief = Belief::stated(&prior);
-    let (sites, kept_off) = ground.sites(pass, &path, &belief)?;
+    let (sites, kept_off) = ground.sites(pass, &path, &belief, false)?;
     let tellings = tellings(&path, &belief, &sites, &ground.heights, ground.probe.noise, progress);
     let chosen = choose(&sites, &tellings, settings.places as usize, ground.apart(), mm(path.length()));
     let reasoned = chosen.choices.iter().enumerate();

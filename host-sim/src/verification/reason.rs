@@ -1,7 +1,7 @@
 //! Why a place is touched, in words.
 
 use truepath_core::identify::{Parameter, Prior};
-use truepath_core::units::Real;
+use truepath_core::units::{Offset, Real};
 
 use super::candidates::{Form, Site};
 use super::knowledge::Knowledge;
@@ -62,7 +62,8 @@ pub(super) fn place(site: &Site) -> String {
         Form::InsideArc(r) => format!("inside corner, wall radius {:.3} mm", r),
         Form::OutsideArc(r) => format!("outside corner, wall radius {:.3} mm", r),
     };
-    format!("{form}, facing {}", facing(site.normal))
+    let steady = if site.unsteady == Offset::ZERO { "" } else { ", where the load changes" };
+    format!("{form}, facing {}{steady}", facing(site.normal))
 }
 
 /// Where a wall looks, from its normal towards the material: along the axes it has more than 10° of.

@@ -7,7 +7,7 @@
 use truepath_core::cut::{ForceTable, Path, State};
 use truepath_core::geometry::{Direction, Vector};
 use truepath_core::identify::{COUNT, Observation, Parameter, PredictionWorkspace, predict};
-use truepath_core::units::{Offset, Real};
+use truepath_core::units::{Offset, Real, hypot_nm};
 
 use crate::report::{float, mm};
 
@@ -43,7 +43,7 @@ pub(super) fn tellings(
     let blank = |site: &Site, height: &Height| {
         let height = Real::from_bits((height.fraction * 4_294_967_296.0) as i64);
         let normal = Direction { x: real(site.normal[0]), y: real(site.normal[1]) };
-        Observation::new(site.s, height, Offset::ZERO, noise, normal)
+        Observation::new(site.s, height, Offset::ZERO, hypot_nm(noise, site.unsteady), normal)
     };
     let mut touches: Vec<Observation> =
         sites.iter().flat_map(|site| heights.iter().map(move |height| blank(site, height))).collect();
