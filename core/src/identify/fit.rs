@@ -1,21 +1,23 @@
 //! The fit: Gauss–Newton with priors and a robust loss, over one part or several.
 
+use super::loss;
 use super::observation::{Observation, PredictionWorkspace, predict};
 use super::outcome::Fit;
 use super::parameters::{COUNT, Parameter, Parameters, Prior};
 use super::part::EarlierPart;
 use super::solve::Information;
+use super::spread;
 use crate::cut::{ForceTable, Path};
 use crate::geometry::Vector;
 use crate::units::{Offset, Real};
 
 /// Gauss–Newton steps at most.
 const MAX_STEPS: u32 = 12;
-/// Residual, in standard deviations, from which a point loses weight (Huber's constant).
-const HUBER: Real = Real::ratio(25, 10);
 /// Residual, in standard deviations, from which a point is of something else: where at most a quarter of the points are,
 /// the fit goes on without them.
 const WILD: Real = Real::from_int(25);
+/// Times the spread of the points is found anew.
+const SPREADS: usize = 4;
 /// Step of the difference quotients, in prior standard deviations.
 const DIFFERENCE: Real = Real::ratio(1, 32);
 
@@ -101,19 +103,32 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
             *part = EarlierPart::new(part.points);
         }
         let mut points = Points { earlier, observations, workspace };
-        let (information, cost, mut steps) = self.settle(&mut table, &mut theta, Real::MAX, &mut points, observe);
+        spread::set(points.observations, Real::ONE);
+        let (mut information, mut cost, mut steps) =
+            self.settle(&mut table, &mut theta, Real::MAX, &mut points, observe);
+        let quiet = &mut |_| ();
+        // How far the points spread about the model is found from themselves, and weighs them.
+        let mut factor = Real::ONE;
+        for _ in 0..SPREADS {
+            let found = spread::found(points.observations, &information.covariance());
+            if (found - factor).abs() < factor * Real::ratio(1, 20) {
+                break;
+            }
+            factor = found;
+            spread::set(points.observations, factor);
+            let (again, its_cost, more) = self.settle(&mut table, &mut theta, Real::MAX, &mut points, quiet);
+            (information, cost, steps) = (again, its_cost, steps.saturating_add(more));
+        }
         let taken_out = points.earlier.iter().fold(Real::ZERO, |sum, part| sum + part.eliminated.log2_determinant());
         let ln_determinant = (information.log2_determinant() + taken_out) * Real::ratio(693_147_181, 1_000_000_000);
-        let evidence = -((cost + ln_determinant) * Real::HALF);
-        let mut covariance = information.covariance();
+        let evidence = -((cost + ln_determinant + spread::cost(points.observations, factor)) * Real::HALF);
         // A few points far off are of something else than this wall: they pull no more.
         let wild = points.observations.iter().filter(|o| o.residual().abs() > WILD).count();
         if wild > 0 && wild.saturating_mul(4) <= points.observations.len() {
-            let quiet = &mut |_| ();
-            let (information, _, more) = self.settle(&mut table, &mut theta, WILD, &mut points, quiet);
-            covariance = information.covariance();
-            steps = steps.saturating_add(more);
+            let (again, _, more) = self.settle(&mut table, &mut theta, WILD, &mut points, quiet);
+            (information, steps) = (again, steps.saturating_add(more));
         }
+        let covariance = information.covariance();
         let outliers = points.observations.iter().filter(|o| o.weight < Real::ratio(3, 10)).count();
         Fit { parameters: prior.at(&theta), theta, covariance, cost, steps, outliers, evidence }
     }
@@ -196,15 +211,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         let datums = points.earlier.iter().flat_map(|part| &part.trial);
         let mut cost = theta.iter().chain(datums).fold(Real::ZERO, |sum, t| sum + *t * *t);
         for o in points.observations.iter_mut() {
-            let residual = o.residual().abs();
-            // Huber: quadratic near zero, linear in the tails, level beyond the gate.
-            (o.weight, cost) = if residual <= HUBER {
-                (Real::ONE, cost + residual * residual)
-            } else if residual > gate {
-                (Real::ZERO, cost + HUBER * (gate + gate - HUBER))
-            } else {
-                (HUBER / residual, cost + HUBER * (residual + residual - HUBER))
-            };
+            cost += loss::weigh(o, gate);
         }
         cost
     }

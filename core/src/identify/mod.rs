@@ -7,11 +7,13 @@
 
 mod fit;
 mod law;
+mod loss;
 mod observation;
 mod outcome;
 mod parameters;
 mod part;
 mod solve;
+mod spread;
 
 pub use fit::{identify, identify_observed, identify_parts};
 pub use law::{identify_law, identify_law_observed, identify_law_parts};

@@ -24,6 +24,8 @@ pub struct Observation {
     pub(super) base: Offset,
     /// Weight given by the robust loss, 0…1.
     pub weight: Real,
+    /// Factor on the deviation of the points of a fit, found by it; 1 before.
+    pub spread: Real,
     /// Sensitivities: change of the predicted error per prior standard deviation, in standard deviations of the point.
     pub sensitivity: [Real; COUNT],
 }
@@ -40,6 +42,7 @@ impl Observation {
             predicted: Offset::ZERO,
             base: Offset::ZERO,
             weight: Real::ONE,
+            spread: Real::ONE,
             sensitivity: [Real::ZERO; COUNT],
         }
     }
@@ -51,7 +54,7 @@ const MODEL_SHARE: Real = Real::ratio(1, 100);
 impl Observation {
     /// Standard deviation of measured − predicted at the right parameters: probe noise and what the model may miss.
     pub fn deviation(&self) -> Offset {
-        hypot_nm(self.noise, self.error.scaled(MODEL_SHARE)).max(Offset::from_nm(1))
+        hypot_nm(self.noise, self.error.scaled(MODEL_SHARE)).scaled(self.spread).max(Offset::from_nm(1))
     }
     /// Measured − predicted, in standard deviations.
     pub fn residual(&self) -> Real {

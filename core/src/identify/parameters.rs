@@ -99,7 +99,8 @@ pub struct Parameters {
 pub struct Prior {
     /// Expected parameters.
     pub mean: Parameters,
-    /// Standard deviations in the unit of [`Prior::value`]; 0 holds a parameter.
+    /// Standard deviations in the unit of [`Prior::value`]; 0 holds a parameter. Those of difference and cross compliance
+    /// hold for the expected mean compliance and grow with it.
     pub sigma: [Real; COUNT],
 }
 
@@ -157,7 +158,11 @@ impl Prior {
         }
         let [mean, difference, cross, ratio, level, edge_ratio, bend, size, radius, dx, dy] = values;
         let stated = self.mean.coefficients;
-        let least = self.mean.compliance.mean * Real::ratio(1, 50);
+        let expected = self.mean.compliance.mean;
+        let mean = mean.max(expected * Real::ratio(1, 50));
+        // A machine twice as soft is taken to be so in every direction.
+        let share = mean / expected;
+        let (difference, cross) = (difference * share, cross * share);
         let largest_exponent = Real::HALF;
         let (edge_level, edge_ratio) = (level.max(Real::ZERO), edge_ratio.max(Real::ZERO));
         Parameters {
@@ -170,7 +175,7 @@ impl Prior {
             },
             edge_level,
             edge_ratio,
-            compliance: positive(mean.max(least), difference, cross, bend.max(-Real::HALF)),
+            compliance: positive(mean, difference, cross, bend.max(-Real::HALF)),
             radius: Offset::from_mm(radius),
             datum: Vector { x: Offset::from_mm(dx), y: Offset::from_mm(dy) },
         }

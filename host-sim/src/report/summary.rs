@@ -156,9 +156,10 @@ fn parameters(identified: &Identified) -> BTreeMap<&'static str, Parameter> {
     let each = identify::Parameter::ALL.iter().enumerate().filter(|(i, _)| identified.prior().sigma[*i] != Real::ZERO);
     each.map(|(i, parameter)| {
         let (prior_sigma, remaining) = (float(identified.prior().sigma[i]), float(identified.fit().remaining(i)));
+        let grown = if is_share(*parameter) { float(values[0]) / float(prior[0]) } else { 1.0 };
         let value = Parameter {
             value: float(values[i]),
-            sigma: prior_sigma * remaining,
+            sigma: prior_sigma * remaining * grown,
             prior: float(prior[i]),
             prior_sigma,
             unit: parameter.unit(),
@@ -167,6 +168,11 @@ fn parameters(identified: &Identified) -> BTreeMap<&'static str, Parameter> {
         (parameter.name(), value)
     })
     .collect()
+}
+
+/// Whether the standard deviation of a parameter grows with the mean compliance.
+const fn is_share(parameter: identify::Parameter) -> bool {
+    matches!(parameter, identify::Parameter::ComplianceDifference | identify::Parameter::ComplianceCross)
 }
 
 /// Name of a law of correction.
