@@ -28,6 +28,7 @@ static BENCH: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
         fs::write(at(name), workshop::probe(&pass, &milled, places, &[0.1, 0.5, 0.9], 6.0).unwrap()).unwrap();
     };
     probe(None, &[20.0, 32.0, 68.0, 80.0], "part-1.txt");
+    probe(None, &[21.0, 32.5, 49.0, 68.5, 80.5], "uncorrected.txt");
     let options = correct::Options {
         job: &at("job.toml"),
         probe: &at("part-1.txt"),
@@ -193,4 +194,52 @@ fn a_law_that_knows_no_second_part_is_refused() {
     let (code, text) = refused(&folder, "part-2.txt", "first");
     assert_eq!(code, "Q006");
     assert!(text.contains("job.toml") || text.contains("mirror"), "{text}");
+}
+
+#[test]
+fn the_points_of_a_part_cut_without_the_correction_are_refused_so_that_it_is_not_added_once_more() {
+    let (_guard, folder) = copy();
+    let (code, text) = refused(&folder, "uncorrected.txt", "first");
+    assert_eq!(code, "Q007");
+    assert!(text.contains("the points of part 2"), "{text}");
+}
+
+#[test]
+fn a_history_that_was_changed_or_is_cut_short_is_refused() {
+    let (_guard, folder) = copy();
+    let file = folder.join("first/history.json");
+    let whole = fs::read(&file).unwrap();
+    let text = String::from_utf8(whole.clone()).unwrap();
+    assert!(serde_json::from_str::<serde_json::Value>(&text).is_ok());
+    edit(&file, "\"number\":1", "\"number\":2");
+    let (code, text) = refused(&folder, "part-2.txt", "first");
+    assert_eq!(code, "Q001");
+    assert!(text.contains("was changed, or is not whole"), "{text}");
+    for length in [0, 1, 10, 22, whole.len() / 2, whole.len() - 1] {
+        fs::write(&file, &whole[..length]).unwrap();
+        assert_eq!(refused(&folder, "part-2.txt", "first").0, "Q001", "{length} bytes");
+    }
+    fs::write(&file, &whole).unwrap();
+    assert!(run(&folder, "part-2.txt", "first", "second").is_ok());
+}
+
+#[test]
+fn a_worse_part_whose_points_contradict_each_other_takes_the_correction_back() {
+    let (_guard, folder) = copy();
+    run(&folder, "part-2.txt", "first", "learned").unwrap();
+    let moved = |(k, line): (usize, &str)| {
+        let mut numbers: Vec<f64> = line.split_whitespace().map(|word| word.parse().unwrap()).collect();
+        numbers[0] += if k % 2 == 0 { -0.15 } else { 0.15 };
+        numbers[1] += if k % 3 == 0 { -0.12 } else { 0.12 };
+        numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
+    };
+    let text = fs::read_to_string(folder.join("part-2.txt")).unwrap();
+    fs::write(folder.join("part-3.txt"), text.lines().enumerate().map(moved).collect::<Vec<_>>().join("\n")).unwrap();
+    let summary = run(&folder, "part-3.txt", "learned", "third").unwrap();
+    assert!(summary.verdict.rolled_back, "{:?}", summary.verdict);
+    let [used, before] =
+        ["third", "first"].map(|name| fs::read_to_string(folder.join(name).join("corrected.nc")).unwrap());
+    // All but the checksums of the probe file in the mark.
+    let moves = |text: &str| text.lines().filter(|line| !line.starts_with('(')).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(moves(&used), moves(&before));
 }

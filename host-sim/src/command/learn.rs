@@ -62,7 +62,7 @@ pub struct LearnSummary {
 /// Learns from the part that was cut with the history's correction, in memory, for one or both routes.
 ///
 /// # Errors
-/// A history of another cut, a measurement it already holds, and what [`correct`](super::correct::correct) refuses.
+/// A history of another cut, a measurement it already holds or of a part without its correction, and what [`correct`](super::correct::correct) refuses.
 pub fn learn(
     pass: &Pass,
     history: &History,
@@ -146,7 +146,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
     let remarks = measurement.remarks(&file);
     let routes = [options.route.unwrap_or(pass.job.route)];
     let done = learn(&pass, &history, &measurement, &remarks, &routes, progress).map_err(|failure| match failure {
-        Failure::Input(error) if error.code() == "Q003" => error.in_file(options.probe).into(),
+        Failure::Input(error) if matches!(error.code(), "Q003" | "Q007") => error.in_file(options.probe).into(),
         Failure::Input(error) if error.code() == "Q002" && error.line_column().is_none() => {
             error.in_file(&options.from.join(HISTORY)).into()
         }

@@ -98,7 +98,7 @@ impl History {
     /// Reads the file.
     ///
     /// # Errors
-    /// `Q001` when it is not a history of this version.
+    /// `Q001` when it is not a history of this version, or was changed after it was written.
     pub fn read(file: &Source) -> Result<Self, InputError> {
         let help =
             "name a folder that truepath correct or truepath learn has written; if the file was changed, correct again";
@@ -106,13 +106,17 @@ impl History {
             InputError::new("Q001", found, format!("a history of version {VERSION}"), help)
                 .in_file(file.name().as_ref())
         };
-        let history: Self = serde_json::from_slice(file.bytes())
+        let body = unsealed(file.bytes()).map_err(|why| wrong(format!("{} {why}", file.name())))?;
+        let history: Self = serde_json::from_slice(&body)
             .map_err(|error| wrong(format!("{} is not a history ({error})", file.name())))?;
         if history.version != VERSION {
             return Err(wrong(format!("{} is a history of version {}", file.name(), history.version)));
         }
         if history.parts.is_empty() || history.parts.len() > MOST_PARTS {
             return Err(wrong(format!("{} holds {} parts", file.name(), history.parts.len())));
+        }
+        if let Some(part) = history.parts.iter().find(|part| !part.is_sound()) {
+            return Err(wrong(format!("part {} of {} holds impossible numbers", part.number, file.name())));
         }
         Ok(history)
     }
@@ -122,9 +126,8 @@ impl History {
     /// # Errors
     /// Internal, when it cannot be written.
     pub fn text(&self) -> Result<Vec<u8>, Failure> {
-        let mut text = serde_json::to_vec(self).map_err(|e| Failure::Internal(format!("JSON: {e}")))?;
-        text.push(b'\n');
-        Ok(text)
+        let body = serde_json::to_vec(self).map_err(|e| Failure::Internal(format!("JSON: {e}")))?;
+        Ok(sealed(&body))
     }
 
     /// The number of the part that is cut next.
@@ -175,6 +178,14 @@ impl Part {
     }
 }
 
+impl Part {
+    /// Whether noise and points can be those of a probe.
+    fn is_sound(&self) -> bool {
+        let noise = self.noise_mm > 0.0 && self.noise_mm <= 1.0;
+        noise && !self.points.is_empty() && self.points.iter().all(Point::is_sound)
+    }
+}
+
 impl Next {
     fn of(corrected: &Corrected) -> Self {
         let Correction { nodes, predicted, sigma, wanted, .. } = &corrected.correction;
@@ -195,4 +206,25 @@ impl Next {
         let nm = Offset::from_nm;
         sums(&self.predicted_nm).into_iter().zip(sums(&self.sigma_nm)).map(|(e, s)| (nm(e), nm(s))).collect()
     }
+}
+
+/// What a history begins with: its own checksum, that of all bytes behind it.
+const SEAL: &[u8] = b"{\"crc32\":\"";
+
+/// A JSON object with its checksum as the first entry.
+fn sealed(body: &[u8]) -> Vec<u8> {
+    let rest = [body.strip_prefix(b"{").unwrap_or(body), b"\n"].concat();
+    let seal = format!("{:08x}\",", crc32(&rest));
+    [SEAL, seal.as_bytes(), &rest].concat()
+}
+
+/// The JSON object without its checksum; what is wrong with that otherwise.
+fn unsealed(text: &[u8]) -> Result<Vec<u8>, String> {
+    let none = || "does not begin with its checksum".to_owned();
+    let (seal, rest) = text.strip_prefix(SEAL).and_then(|text| text.split_at_checked(10)).ok_or_else(none)?;
+    let crc = format!("{:08x}\",", crc32(rest));
+    if crc.as_bytes() != seal {
+        return Err("was changed, or is not whole: its checksum differs".to_owned());
+    }
+    Ok([b"{", rest].concat())
 }

@@ -61,20 +61,30 @@ impl Holdout {
 
     /// What a model misses at the held-out places of the last part.
     pub fn residual(&self, path: &Path, parts: &[PartPoints], model: &Joint, beside: Option<&Residual>) -> f64 {
-        let mut points = self.points.clone();
-        let Some(part) = parts.last() else { return 0.0 };
-        let states = predicted(path, part, model, &mut points);
-        let path = path.with_law(model.core.law);
-        let engagement = Engagement::of(&path, path.working().start, &states);
-        let squares = points.chunk_by(|a, b| a.s == b.s).map(|place| {
-            let sum: f64 = place.iter().map(|o| mm(o.error - o.predicted)).sum();
-            let feature = engagement.at(place[0].s, place[0].normal);
-            let more = beside.map_or(0.0, |residual| residual.at(&feature).0);
-            (sum / place.len() as f64 - more).powi(2)
-        });
-        let (sum, n) = squares.fold((0.0, 0.0), |(sum, n), square| (sum + square, n + 1.0));
-        (sum / f64::max(n, 1.0)).sqrt()
+        parts.last().map_or(0.0, |part| missed(path, part, &self.points, model, beside))
     }
+}
+
+/// What a model, with what is known beside it, misses at points of a part: root mean square over the places, mm.
+pub(super) fn missed(
+    path: &Path,
+    part: &PartPoints,
+    points: &[Observation],
+    model: &Joint,
+    beside: Option<&Residual>,
+) -> f64 {
+    let mut points = points.to_vec();
+    let states = predicted(path, part, model, &mut points);
+    let path = path.with_law(model.core.law);
+    let engagement = Engagement::of(&path, path.working().start, &states);
+    let squares = points.chunk_by(|a, b| a.s == b.s).map(|place| {
+        let sum: f64 = place.iter().map(|o| mm(o.error - o.predicted)).sum();
+        let feature = engagement.at(place[0].s, place[0].normal);
+        let more = beside.map_or(0.0, |residual| residual.at(&feature).0);
+        (sum / place.len() as f64 - more).powi(2)
+    });
+    let (sum, n) = squares.fold((0.0, 0.0), |(sum, n), square| (sum + square, n + 1.0));
+    (sum / f64::max(n, 1.0)).sqrt()
 }
 
 /// Predicts points of a part by a model, without a datum shift: that of another clamping is not known. Returns the

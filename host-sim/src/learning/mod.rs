@@ -7,6 +7,7 @@
 //! | machine and material from all parts together | [`joint()`] |
 //! | what they show beside that model, smooth along the contour | [`Residual`] |
 //! | places left out of a first fit | `holdout` |
+//! | whether the newest part was cut with its correction at all | `uncorrected` |
 //! | whether the newest part came out worse | `monitor` |
 //! | all of it, to the next correction | [`update()`] |
 //!
@@ -21,6 +22,7 @@
 //! | Q004 | a corrected program or image that is not the one of the history |
 //! | Q005 | input and output folder are the same |
 //! | Q006 | a law of correction that cannot learn |
+//! | Q007 | points of a part that no correction was applied to |
 
 mod cholesky;
 mod facts;
@@ -33,6 +35,7 @@ mod nodes;
 mod places;
 mod points;
 mod residual;
+mod uncorrected;
 mod update;
 mod verdict;
 

@@ -36,6 +36,15 @@ impl Point {
         let [x, y] = self.normal.map(real);
         Observation::new(nm(self.s_mm), real(self.height), nm(self.error_mm), noise, Direction { x, y })
     }
+
+    /// Whether it can be one: on a contour, within the engaged depth, with a normal of one.
+    pub(super) fn is_sound(&self) -> bool {
+        let [x, y] = self.normal;
+        (-1e5..=1e7).contains(&self.s_mm)
+            && (-0.5..=1.5).contains(&self.height)
+            && self.error_mm.abs() <= 100.0
+            && (0.9..=1.1).contains(&x.hypot(y))
+    }
 }
 
 /// A length of a history, to the nanometre.

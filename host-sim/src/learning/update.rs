@@ -9,10 +9,11 @@ use super::holdout::{Holdout, Residuals};
 use super::joint::{Joint, PartPoints, joint};
 use super::monitor::Monitor;
 use super::residual::Residual;
+use super::uncorrected::refuse_uncorrected;
 use super::verdict::{Beside, Promise, Verdict};
 use crate::diagnostics::Failure;
 use crate::pass::Pass;
-use crate::report::mm;
+use crate::report::{float, mm};
 
 /// What follows for the next part.
 #[derive(Clone, Debug)]
@@ -31,11 +32,14 @@ pub struct Update {
     pub verdict: Verdict,
 }
 
+/// Weight of a point that fits.
+const FITTING: f64 = 0.3;
+
 /// Learns from the newest part, beside the earlier ones. `promised` is the predicted error of its correction with the
 /// standard deviation, beside every sample. `progress` is told the share done.
 ///
 /// # Errors
-/// Points most of which do not fit, in the first part as well.
+/// Points of a part that no correction was applied to, and points most of which do not fit, in the first part as well.
 pub fn update(
     pass: &Pass,
     path: &Path,
@@ -46,6 +50,7 @@ pub fn update(
 ) -> Result<Update, Failure> {
     let before = joint(pass, path, &earlier, None, &mut |share| progress(0.3 * share));
     let before_beside = Residual::of(path, &earlier, &before);
+    refuse_uncorrected(path, &newest, &before, before_beside.as_ref())?;
     let mut parts = earlier;
     parts.push(newest);
     let after = joint(pass, path, &parts, None, &mut |share| progress(0.3 + 0.3 * share));
@@ -69,8 +74,11 @@ pub fn update(
     let promise = Promise::of(path, &monitor, promised);
     let all: Vec<_> = after.observations.iter().flatten().copied().collect();
     let fits = after.core.check(&all).is_ok();
-    // A part that came out worse is explained when points that the fit has not seen are predicted.
-    let explained = fits && holdout.as_ref().is_some_and(|h| h.after_mm * 2.0 < monitor.now.rms_mm);
+    // A part that came out worse is explained when most of its own points fit, and those that the fit has not seen are
+    // predicted.
+    let own = after.observations.last().map_or(&[][..], Vec::as_slice);
+    let own_fit = 2 * own.iter().filter(|o| float(o.weight) < FITTING).count() <= own.len();
+    let explained = fits && own_fit && holdout.as_ref().is_some_and(|h| h.after_mm * 2.0 < monitor.now.rms_mm);
     let set_aside = !fits || (monitor.is_worse() && !explained);
     // A part that no model explains beside the others may still have come out better: its correction is then kept.
     let again = if monitor.is_worse() { monitor.better } else { parts.len().saturating_sub(1) };
