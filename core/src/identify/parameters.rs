@@ -2,7 +2,7 @@
 
 use crate::cut::{Coefficients, Compliance, WallLaw};
 use crate::geometry::Vector;
-use crate::units::{Offset, Real};
+use crate::units::{Offset, Real, exp2, log2};
 
 /// Number of parameters.
 pub const COUNT: usize = 11;
@@ -20,7 +20,7 @@ pub enum Parameter {
     RadialRatio,
     /// Level of both edge coefficients over what was stated: wear raises them together.
     EdgeLevel,
-    /// Radial over tangential edge coefficient, over what was stated.
+    /// Radial over tangential edge coefficient.
     EdgeRatio,
     /// Bending of the cutter over the engaged depth.
     Bend,
@@ -67,6 +67,11 @@ impl Parameter {
         }
     }
 
+    /// Whether it is positive and believed in by factors.
+    pub const fn is_factor(self) -> bool {
+        matches!(self, Self::Compliance | Self::RadialRatio | Self::EdgeLevel | Self::EdgeRatio)
+    }
+
     /// The unit of its value in reports.
     pub const fn unit(self) -> &'static str {
         match self {
@@ -86,7 +91,7 @@ pub struct Parameters {
     pub compliance: Compliance,
     /// Level of the edge coefficients over those stated (already contained in `coefficients`).
     pub edge_level: Real,
-    /// Their ratio, radial over tangential, over that stated (already contained in `coefficients`).
+    /// Their ratio, radial over tangential (already contained in `coefficients`).
     pub edge_ratio: Real,
     /// Constant offset of the probed wall towards material left: cutter smaller or ball larger than stated.
     pub radius: Offset,
@@ -95,54 +100,113 @@ pub struct Parameters {
 }
 
 /// What is believed before probing: values, and one standard deviation of each.
+///
+/// Quantities that are positive are believed in by factors: their logarithm is Gaussian, so that half and twice as stiff
+/// are equally likely. Difference and cross term of the compliance go with its mean, which they are a share of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Prior {
     /// Expected parameters.
     pub mean: Parameters,
-    /// Standard deviations in the unit of [`Prior::value`]; 0 holds a parameter. Those of difference and cross compliance
-    /// hold for the expected mean compliance and grow with it.
+    /// Standard deviations: of the natural logarithm for compliance, radial ratio, edge level and edge ratio, as a share
+    /// of the compliance for difference and cross term, in the unit of the value for the others. 0 holds a parameter.
     pub sigma: [Real; COUNT],
+}
+
+/// What is known of a ratio of two coefficients of whatever metal: its median, and one standard deviation of its logarithm.
+struct Population {
+    median: Real,
+    spread: Real,
+}
+
+/// Radial over tangential chip coefficient: 0.15…0.6 in nearly all published tables (A12 ch. 2; steels, aluminium, titanium).
+const RADIAL_RATIO: Population = Population { median: Real::ratio(32, 100), spread: Real::ratio(35, 100) };
+/// Radial over tangential edge coefficient: 0.5…2.5; the same sources.
+const EDGE_RATIO: Population = Population { median: Real::ratio(115, 100), spread: Real::ratio(40, 100) };
+/// One standard deviation of the logarithm of a ratio of two coefficients as a user or a table states them: each of them
+/// ±30 % (coefficients of one nominal alloy spread twofold).
+const STATED: Real = Real::ratio(40, 100);
+/// 1/ln 2
+const FRAC_1_LN_2: Real = Real::ratio(1_442_695_041, 1_000_000_000);
+
+impl Population {
+    /// The stated ratio and the population, each by its weight: the expected ratio and the spread of its logarithm.
+    fn joined(&self, stated: Real) -> (Real, Real) {
+        if stated <= Real::ZERO {
+            return (self.median, self.spread);
+        }
+        let weigh = |spread: Real| Real::ONE / (spread * spread);
+        let (of_stated, of_all) = (weigh(STATED), weigh(self.spread));
+        let sum = of_stated + of_all;
+        let logarithm = Real::dot(log2(stated), of_stated / sum, log2(self.median), of_all / sum);
+        (exp2(logarithm), (Real::ONE / sum).sqrt())
+    }
+}
+
+/// e to the power `x`.
+fn exp(x: Real) -> Real {
+    exp2(x * FRAC_1_LN_2)
 }
 
 impl Prior {
     /// A prior of usual width around what the user stated.
     ///
-    /// Widths: a stiffness is rarely known to better than a factor of two and x may differ from y by as much; cross
-    /// compliance is a tenth of the direct one; radial ratio ±40 %; edge coefficients ±60 % together (coefficients of
-    /// one nominal alloy spread twofold) and ±25 % against each other; size exponent 0.15 ± 0.12 (Kienzle exponents
-    /// of steels and aluminium); bending 0.1 ± 0.12. The mean law of P23 is linear in the chip, knows no height and
-    /// describes the machine by two stiffnesses: it has neither size exponent nor bending and hardly a cross term.
+    /// Widths: a stiffness is rarely known to better than a factor of 1.6, x differs from y by as much; a cross
+    /// compliance of a fifth of the direct one is not unusual. The two ratios of coefficients are what was stated joined
+    /// with what metals have in common; the level of the edge coefficients is known to a factor of 1.6. Size exponent
+    /// 0.15 ± 0.1 (Kienzle exponents of steels and aluminium); bending 0.12 ± 0.1. The mean law of P23 is linear in the
+    /// chip, knows no height and describes the machine by two stiffnesses: it has neither size exponent nor bending and
+    /// hardly a cross term.
     pub fn around(coefficients: Coefficients, compliance: Compliance, law: WallLaw) -> Self {
         let helical = law == WallLaw::Helical;
         let or_zero = |v: Real| if helical { v } else { Real::ZERO };
         let percent = |v: i64| Real::ratio(v, 100);
         let size_exponent = or_zero(percent(15));
-        let bend = or_zero(compliance.bend.max(percent(10)));
+        let bend = or_zero(compliance.bend.max(percent(12)));
+        let (radial_ratio, radial_spread) = RADIAL_RATIO.joined(coefficients.krc / coefficients.ktc);
+        let has_level = coefficients.kte != Real::ZERO || coefficients.kre != Real::ZERO;
+        // A ratio to nothing is not a ratio: then the level alone is found.
+        let has_ratio = coefficients.kte != Real::ZERO && coefficients.kre != Real::ZERO;
+        let (edge_ratio, edge_spread) =
+            if has_ratio { EDGE_RATIO.joined(coefficients.kre / coefficients.kte) } else { (Real::ONE, Real::ZERO) };
+        let kre = if has_ratio { coefficients.kte * edge_ratio } else { coefficients.kre };
         let mean = Parameters {
-            coefficients: Coefficients { size_exponent, ..coefficients },
+            coefficients: Coefficients { krc: coefficients.ktc * radial_ratio, kre, size_exponent, ..coefficients },
             compliance: Compliance { bend, ..compliance },
             edge_level: Real::ONE,
-            edge_ratio: Real::ONE,
+            edge_ratio,
             radius: Offset::ZERO,
             datum: Vector::ZERO,
         };
-        let has_edge = coefficients.kte != Real::ZERO || coefficients.kre != Real::ZERO;
-        let edge = |v: Real| if has_edge { v } else { Real::ZERO };
-        let scale = compliance.mean;
         let sigma = [
-            scale * percent(50),
-            scale * percent(50),
-            scale * percent(if helical { 10 } else { 2 }),
-            coefficients.krc / coefficients.ktc * percent(40),
-            edge(percent(60)),
-            edge(percent(25)),
-            or_zero(percent(12)),
-            or_zero(percent(12)),
+            percent(50),
+            percent(30),
+            percent(if helical { 20 } else { 2 }),
+            radial_spread,
+            if has_level { percent(50) } else { Real::ZERO },
+            edge_spread,
+            or_zero(percent(10)),
+            or_zero(percent(10)),
             Real::ratio(2, 1000),
             Real::ratio(15, 10_000),
             Real::ratio(15, 10_000),
         ];
         Self { mean, sigma }
+    }
+
+    /// One standard deviation in the unit of [`Parameters::values`], about some parameters.
+    pub fn deviations(&self, about: &Parameters) -> [Real; COUNT] {
+        let mut deviations = self.sigma;
+        let values = about.values();
+        for ((deviation, parameter), value) in deviations.iter_mut().zip(Parameter::ALL).zip(values) {
+            match parameter {
+                Parameter::ComplianceDifference | Parameter::ComplianceCross => {
+                    *deviation = *deviation * about.compliance.mean;
+                }
+                _ if parameter.is_factor() => *deviation = *deviation * value,
+                _ => {}
+            }
+        }
+        deviations
     }
 
     /// Expected values in the order of the fit.
@@ -152,35 +216,42 @@ impl Prior {
 
     /// The parameters at `theta` standard deviations from the expected values, kept physical.
     pub fn at(&self, theta: &[Real; COUNT]) -> Parameters {
-        let mut values = self.value();
-        for ((v, t), s) in values.iter_mut().zip(theta).zip(&self.sigma) {
-            *v += *t * *s;
+        let mut moved = *theta;
+        for ((t, s), parameter) in moved.iter_mut().zip(&self.sigma).zip(Parameter::ALL) {
+            *t = *t * *s;
+            if parameter.is_factor() {
+                // No quantity is a thousandfold of what was believed; the fit may ask for it on its way.
+                *t = exp((*t).max(-FURTHEST).min(FURTHEST));
+            }
         }
-        let [mean, difference, cross, ratio, level, edge_ratio, bend, size, radius, dx, dy] = values;
-        let stated = self.mean.coefficients;
-        let expected = self.mean.compliance.mean;
-        let mean = mean.max(expected * Real::ratio(1, 50));
-        // A machine twice as soft is taken to be so in every direction.
-        let share = mean / expected;
-        let (difference, cross) = (difference * share, cross * share);
+        let [mean, difference, cross, radial, level, ratio, bend, size, radius, dx, dy] = moved;
+        let (k, c) = (&self.mean.coefficients, &self.mean.compliance);
+        let mean = c.mean * mean;
         let largest_exponent = Real::HALF;
-        let (edge_level, edge_ratio) = (level.max(Real::ZERO), edge_ratio.max(Real::ZERO));
         Parameters {
             coefficients: Coefficients {
-                ktc: stated.ktc,
-                krc: (ratio * stated.ktc).max(Real::ZERO),
-                kte: stated.kte * edge_level,
-                kre: stated.kre * edge_level * edge_ratio,
-                size_exponent: size.max(Real::ZERO).min(largest_exponent),
+                ktc: k.ktc,
+                krc: k.krc * radial,
+                kte: k.kte * level,
+                kre: k.kre * level * ratio,
+                size_exponent: (k.size_exponent + size).max(Real::ZERO).min(largest_exponent),
             },
-            edge_level,
-            edge_ratio,
-            compliance: positive(mean, difference, cross, bend.max(-Real::HALF)),
+            edge_level: self.mean.edge_level * level,
+            edge_ratio: self.mean.edge_ratio * ratio,
+            compliance: positive(
+                mean,
+                mean * (c.difference / c.mean + difference),
+                mean * (c.cross / c.mean + cross),
+                (c.bend + bend).max(-Real::HALF),
+            ),
             radius: Offset::from_mm(radius),
             datum: Vector { x: Offset::from_mm(dx), y: Offset::from_mm(dy) },
         }
     }
 }
+
+/// The natural logarithm of the farthest factor from what was believed.
+const FURTHEST: Real = Real::from_int(5);
 
 /// A compliance that yields to every force: |difference| and cross term below 95 % of what would make it rigid or
 /// negative in some direction.
