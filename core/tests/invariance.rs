@@ -96,6 +96,7 @@ fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, 
         table: &table,
         coefficients: fit.parameters.coefficients,
         compliance: fit.parameters.compliance,
+        undersize: fit.parameters.undersize,
     };
     (fit, designed(&machine))
 }

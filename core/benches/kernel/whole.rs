@@ -122,6 +122,7 @@ pub fn design(part: Part) -> Work {
             table: &table,
             coefficients: parameters.coefficients,
             compliance: parameters.compliance,
+            undersize: parameters.undersize,
         };
         black_box(correct::design(&machine, &wanted, &mut nodes, &mut predicted, &mut lent.design()));
     })

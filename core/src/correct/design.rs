@@ -229,7 +229,8 @@ fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorr
         }
         let mean = |v: Vector| -v.scaled(Real::ratio(1, heights));
         let chip = mean(chip);
-        *node = Node { chip, edge: mean(whole) - chip };
+        let normal = path.samples().get(index).map_or(Vector::ZERO, |s| s.normal.times(machine.undersize));
+        *node = Node { chip, edge: mean(whole) - chip + normal };
     }
 }
 

@@ -101,6 +101,15 @@ impl Profile {
         let zero = self.aim(target, None);
         (self.highest - zero).max(zero - self.lowest)
     }
+    /// Moves the wall, where there is one, by the same at every height.
+    fn shift(&mut self, by: Offset) {
+        if self.on_wall {
+            self.mean += by;
+            self.lowest += by;
+            self.highest += by;
+            self.tip += by;
+        }
+    }
     /// The samples, counted along the contour, whose cutter positions made the wall beside sample `index`, one for
     /// every height.
     pub fn makers(&self, index: usize) -> impl Iterator<Item = usize> + '_ {
@@ -111,11 +120,8 @@ impl Profile {
 
 /// Adds the wall error that parts have shown beside the model: the same at every height.
 pub fn add_residual(profiles: &mut [Profile], residual: &[Offset]) {
-    for (p, more) in profiles.iter_mut().zip(residual).filter(|(p, _)| p.on_wall) {
-        p.mean += *more;
-        p.lowest += *more;
-        p.highest += *more;
-        p.tip += *more;
+    for (p, more) in profiles.iter_mut().zip(residual) {
+        p.shift(*more);
     }
 }
 
@@ -153,6 +159,7 @@ pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut
             *p = Profile { margin: p.margin, ..Profile::default() };
         }
         p.mean = p.mean.scaled(Real::ratio(1, HEIGHTS));
+        p.shift(machine.undersize);
     }
 }
 

@@ -58,7 +58,7 @@ pub(super) fn spread(
             table.tabulate(parameters.coefficients.size_exponent);
         }
         let displaced =
-            Loop { path, table: &table, coefficients: parameters.coefficients, compliance: parameters.compliance };
+            Loop { path, table: &table, coefficients: parameters.coefficients, compliance: parameters.compliance, undersize: parameters.undersize };
         displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
         walls(&displaced, wanted, workspace);
         workspace.profiles.iter().enumerate().for_each(|(index, wall)| take(index, wall));

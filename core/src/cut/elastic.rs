@@ -40,6 +40,9 @@ pub struct Loop<'a> {
     pub coefficients: Coefficients,
     /// Compliance of machine and cutter.
     pub compliance: Compliance,
+    /// How much smaller than stated the cutter makes the wall (worn; negative: runout), the same everywhere. It moves the
+    /// wall; engagement and force do not feel it.
+    pub undersize: Offset,
 }
 
 /// Summary of a run of the loop.

@@ -231,7 +231,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         for (k, (parameter, sigma)) in Parameter::ALL.iter().zip(&self.prior.sigma).enumerate() {
             observe(k);
             let direct = |o: &Observation| match parameter {
-                Parameter::Radius => Some(Real::ONE),
+                Parameter::Undersize => Some(Real::ONE),
                 Parameter::DatumX => Some(-o.normal.x),
                 Parameter::DatumY => Some(-o.normal.y),
                 _ => None,

@@ -105,7 +105,7 @@ pub fn predict(
     observations: &mut [Observation],
     workspace: &mut PredictionWorkspace,
 ) {
-    let machine = Loop { path, table, coefficients: parameters.coefficients, compliance: parameters.compliance };
+    let machine = Loop { path, table, coefficients: parameters.coefficients, compliance: parameters.compliance, undersize: parameters.undersize };
     let working = path.working();
     let mut place: Option<(Offset, usize, usize)> = None;
     for observation in observations.iter_mut() {
@@ -127,7 +127,7 @@ pub fn predict(
         Envelope::displace(&machine, states, observation.height, displacements);
         let wall = wall_at(path, from, displacements, observation.s);
         // A datum that moved towards the wall makes the wall look cut deeper by its share along the normal.
-        observation.predicted = wall + parameters.radius - parameters.datum.along(observation.normal);
+        observation.predicted = wall + parameters.undersize - parameters.datum.along(observation.normal);
     }
 }
 

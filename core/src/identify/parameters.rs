@@ -26,8 +26,8 @@ pub enum Parameter {
     Bend,
     /// Size exponent of the chip.
     SizeExponent,
-    /// Cutter or ball radius: a constant offset of every point.
-    Radius,
+    /// How much smaller than stated the cutter is: worn, measured wrong, or larger by its runout.
+    Undersize,
     /// Shift of the datum along x between cut and probe.
     DatumX,
     /// Shift of the datum along y between cut and probe.
@@ -45,7 +45,7 @@ impl Parameter {
         Self::EdgeRatio,
         Self::Bend,
         Self::SizeExponent,
-        Self::Radius,
+        Self::Undersize,
         Self::DatumX,
         Self::DatumY,
     ];
@@ -61,7 +61,7 @@ impl Parameter {
             Self::EdgeRatio => "edge_ratio",
             Self::Bend => "bend",
             Self::SizeExponent => "size_exponent",
-            Self::Radius => "radius_offset",
+            Self::Undersize => "undersize",
             Self::DatumX => "datum_x",
             Self::DatumY => "datum_y",
         }
@@ -77,7 +77,7 @@ impl Parameter {
         match self {
             Self::Compliance | Self::ComplianceDifference | Self::ComplianceCross => "um/N",
             Self::RadialRatio | Self::EdgeLevel | Self::EdgeRatio | Self::Bend | Self::SizeExponent => "1",
-            Self::Radius | Self::DatumX | Self::DatumY => "mm",
+            Self::Undersize | Self::DatumX | Self::DatumY => "mm",
         }
     }
 }
@@ -93,8 +93,8 @@ pub struct Parameters {
     pub edge_level: Real,
     /// Their ratio, radial over tangential (already contained in `coefficients`).
     pub edge_ratio: Real,
-    /// Constant offset of the probed wall towards material left: cutter smaller or ball larger than stated.
-    pub radius: Offset,
+    /// How much farther out than stated the cutter leaves the wall: smaller than stated, or larger (negative) by its runout.
+    pub undersize: Offset,
     /// Shift of the probed frame against the cut one.
     pub datum: Vector,
 }
@@ -127,6 +127,9 @@ const EDGE_RATIO: Population = Population { median: Real::ratio(115, 100), sprea
 const STATED: Real = Real::ratio(40, 100);
 /// 1/ln 2
 const FRAC_1_LN_2: Real = Real::ratio(1_442_695_041, 1_000_000_000);
+
+/// One standard deviation of what a cutter is smaller or, by its runout, larger than stated, µm.
+const UNDERSIZE_UM: i64 = 4;
 
 impl Population {
     /// The stated ratio and the population, each by its weight: the expected ratio and the spread of its logarithm.
@@ -174,7 +177,7 @@ impl Prior {
             compliance: Compliance { bend, ..compliance },
             edge_level: Real::ONE,
             edge_ratio,
-            radius: Offset::ZERO,
+            undersize: Offset::ZERO,
             datum: Vector::ZERO,
         };
         let sigma = [
@@ -186,7 +189,7 @@ impl Prior {
             edge_spread,
             or_zero(percent(10)),
             or_zero(percent(10)),
-            Real::ratio(2, 1000),
+            Real::ratio(UNDERSIZE_UM, 1000),
             Real::ratio(15, 10_000),
             Real::ratio(15, 10_000),
         ];
@@ -244,7 +247,7 @@ impl Prior {
                 mean * (c.cross / c.mean + cross),
                 (c.bend + bend).max(-Real::HALF),
             ),
-            radius: Offset::from_mm(radius),
+            undersize: Offset::from_mm(radius),
             datum: Vector { x: Offset::from_mm(dx), y: Offset::from_mm(dy) },
         }
     }
@@ -276,7 +279,7 @@ impl Parameters {
             self.edge_ratio,
             c.bend,
             k.size_exponent,
-            self.radius.mm(),
+            self.undersize.mm(),
             self.datum.x.mm(),
             self.datum.y.mm(),
         ]

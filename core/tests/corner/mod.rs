@@ -81,5 +81,5 @@ pub fn wall_errors(machine: &Loop, states: &[State], heights: i64) -> Vec<f64> {
     sums
 }
 pub fn machine<'a>(path: &'a Path<'a>, table: &'a ForceTable, compliance: Compliance) -> Loop<'a> {
-    Loop { path, table, coefficients: coefficients(), compliance }
+    Loop { path, table, coefficients: coefficients(), compliance, undersize: Offset::ZERO }
 }

@@ -40,5 +40,5 @@ impl<'a> Belief<'a> {
 
 /// Whether an unknown acts on the measurement alone, and not on the wall.
 pub(super) const fn of_measurement(parameter: Parameter) -> bool {
-    matches!(parameter, Parameter::Radius | Parameter::DatumX | Parameter::DatumY)
+    matches!(parameter, Parameter::DatumX | Parameter::DatumY)
 }

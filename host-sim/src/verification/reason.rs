@@ -34,7 +34,7 @@ const fn words(parameter: Parameter) -> &'static str {
         Parameter::EdgeRatio => "ratio of the edge forces",
         Parameter::Bend => "bending over height",
         Parameter::SizeExponent => "size exponent of the chip",
-        Parameter::Radius => "radius of cutter and ball",
+        Parameter::Undersize => "radius of the cutter",
         Parameter::DatumX => "datum shift in X",
         Parameter::DatumY => "datum shift in Y",
     }
