@@ -70,9 +70,7 @@ impl Monitor {
         let wanted = pass.job.numbers.design(Law::Model);
         let walls: Vec<Vec<Profile>> =
             parts.iter().map(|part| walls(&machine, wanted.band, &part.nodes, &[]).0).collect();
-        // A cutter smaller than stated leaves its difference on every wall.
-        let cutter = joint.core.fit.parameters.radius;
-        let target = |k: usize, s: Offset| aim(&path, &walls[k], wanted.target, s) + cutter;
+        let target = |k: usize, s: Offset| aim(&path, &walls[k], wanted.target, s);
         let places: Vec<Vec<Place>> = (0..parts.len()).map(|k| places(&parts[k], joint, k, &target)).collect();
         let each = |k: usize| PartError::of(parts[k].number, places[k].iter().map(|p| p.error));
         let newest = parts.len() - 1;

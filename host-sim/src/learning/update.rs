@@ -2,8 +2,7 @@
 
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
-use truepath_core::identify::Parameter;
-use truepath_core::units::{Offset, hypot_nm};
+use truepath_core::units::Offset;
 
 use super::holdout::{Holdout, Residuals};
 use super::joint::{Joint, PartPoints, joint};
@@ -90,22 +89,8 @@ pub fn update(
     let all: Vec<_> = chosen.observations.iter().flatten().copied().collect();
     chosen.core.check(&all).map_err(|error| pass.refused(&error))?;
     let mut verdict = Verdict::of(&parts, &monitor, promise, holdout, set_aside.then_some(again), fits);
-    let (mut residual, mut residual_sigma) = (vec![Offset::ZERO; path.count()], vec![Offset::ZERO; path.count()]);
-    if let Some(beside) = beside {
-        (residual, residual_sigma) = beside.along(path, &chosen);
-        verdict.residual = Some(Beside::of(beside.amplitudes(), &residual));
-    }
-    let (cutter, cutter_sigma) = smaller_cutter(&chosen);
-    residual.iter_mut().for_each(|r| *r += cutter);
-    residual_sigma.iter_mut().for_each(|s| *s = hypot_nm(*s, cutter_sigma));
+    let along = beside.map(|residual| (residual.amplitudes(), residual.along(path, &chosen)));
+    verdict.residual = along.as_ref().map(|(amplitudes, (mean, _))| Beside::of(*amplitudes, mean));
+    let (residual, residual_sigma) = along.map(|(_, along)| along).unwrap_or_default();
     Ok(Update { joint: chosen, residual, residual_sigma, kept, set_aside, verdict })
-}
-
-/// What a cutter smaller than stated leaves on every wall, with its standard deviation. The first correction takes it for a fault
-/// of the probe as well as of the cutter; a part that was corrected and still shows it leaves it to be cut away.
-fn smaller_cutter(joint: &Joint) -> (Offset, Offset) {
-    let (fit, prior) = (&joint.core.fit, &joint.core.prior);
-    let at = Parameter::ALL.iter().position(|p| *p == Parameter::Radius).unwrap_or(0);
-    let sigma = prior.sigma.get(at).copied().unwrap_or_default() * fit.remaining(at);
-    (fit.parameters.radius, Offset::from_mm(sigma))
 }
