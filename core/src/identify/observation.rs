@@ -105,7 +105,13 @@ pub fn predict(
     observations: &mut [Observation],
     workspace: &mut PredictionWorkspace,
 ) {
-    let machine = Loop { path, table, coefficients: parameters.coefficients, compliance: parameters.compliance, undersize: parameters.undersize };
+    let machine = Loop {
+        path,
+        table,
+        coefficients: parameters.coefficients,
+        compliance: parameters.compliance,
+        undersize: parameters.undersize,
+    };
     let working = path.working();
     let mut place: Option<(Offset, usize, usize)> = None;
     for observation in observations.iter_mut() {

@@ -67,6 +67,12 @@ impl Identified {
     /// The identified machine on a path.
     pub const fn machine<'a>(&self, path: &'a Path<'a>, table: &'a ForceTable) -> Loop<'a> {
         let parameters = &self.fit.parameters;
-        Loop { path, table, coefficients: parameters.coefficients, compliance: parameters.compliance, undersize: parameters.undersize }
+        Loop {
+            path,
+            table,
+            coefficients: parameters.coefficients,
+            compliance: parameters.compliance,
+            undersize: parameters.undersize,
+        }
     }
 }

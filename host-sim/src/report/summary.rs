@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use truepath_core::cut::WallLaw;
+use truepath_core::cut::{Path, WallLaw};
 use truepath_core::identify;
 use truepath_core::probe::Contact;
 use truepath_core::units::{Offset, Real};
@@ -41,12 +41,19 @@ pub struct CorrectSummary {
     pub max_error_before_mm: f64,
     /// Largest predicted wall error with it, mm.
     pub max_error_after_mm: f64,
+    /// Where that is, mm along the contour.
+    pub max_error_after_s_mm: f64,
+    /// Standard deviation of the error there, mm.
+    pub sigma_at_max_error_mm: f64,
     /// Largest standard deviation of the error after, mm: what the points leave open.
     pub max_sigma_mm: f64,
-    /// What no XY correction can remove: the largest deviation over the height from the target, mm.
+    /// What no XY correction can remove: the largest deviation from the target over the heights of the band, mm.
     pub axial_form_error_mm: f64,
-    /// Deepest predicted gouge at any height, mm (positive).
+    /// Deepest predicted gouge at any height of the engaged depth, mm (positive).
     pub worst_gouge_mm: f64,
+    /// What the gouge guard allowed of what the target wants; absent without `max_gouge_mm`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub guard: Option<super::GuardSummary>,
     /// Largest correction along an axis, mm.
     pub max_correction_mm: f64,
     /// The law of the correction.
@@ -109,9 +116,12 @@ pub fn correct_summary(
         version: 1,
         max_error_before_mm: largest(predicted.iter().map(|p| p.before.aim(target, None).abs())),
         max_error_after_mm: largest(predicted.iter().map(|p| p.after.aim(target, None).abs())),
+        max_error_after_s_mm: 0.0,
+        sigma_at_max_error_mm: 0.0,
         max_sigma_mm: largest(correction.sigma.iter().copied()),
         axial_form_error_mm: largest(predicted.iter().map(|p| p.after.form_error(target))),
-        worst_gouge_mm: largest(predicted.iter().map(|p| -p.after.lowest)).max(0.0),
+        worst_gouge_mm: largest(predicted.iter().map(|p| -p.after.deepest())).max(0.0),
+        guard: None,
         max_correction_mm: largest(correction.nodes.iter().map(|n| n.total().x.abs().max(n.total().y.abs()))),
         law: law_name(&correction.wanted.law),
         wall_law: wall_law_name(identified.law()),
@@ -126,6 +136,18 @@ pub fn correct_summary(
         program: None,
         feed: None,
         warnings,
+    }
+}
+
+impl CorrectSummary {
+    /// Adds what depends on where along the contour a wall lies.
+    pub fn place(&mut self, path: &Path, correction: &Correction) {
+        let errors = correction.predicted.iter().map(|p| p.after.aim(correction.wanted.target, None).abs());
+        if let Some((at, _)) = errors.enumerate().max_by_key(|(_, error)| *error) {
+            self.max_error_after_s_mm = path.samples().get(path.first() + at).map_or(0.0, |sample| mm(sample.s));
+            self.sigma_at_max_error_mm = correction.sigma.get(at).map_or(0.0, |sigma| mm(*sigma));
+        }
+        self.guard = super::guard_summary(path, correction);
     }
 }
 

@@ -148,8 +148,13 @@ pub(super) fn candidates(
 fn states(path: &Path, belief: &Belief) -> Vec<State> {
     let parameters = belief.parameters();
     let table = ForceTable::new(parameters.coefficients.size_exponent);
-    let machine =
-        Loop { path, table: &table, coefficients: parameters.coefficients, compliance: parameters.compliance, undersize: parameters.undersize };
+    let machine = Loop {
+        path,
+        table: &table,
+        coefficients: parameters.coefficients,
+        compliance: parameters.compliance,
+        undersize: parameters.undersize,
+    };
     let working = path.working();
     let mut states = vec![State::REST; working.len()];
     machine.run(working.start, &mut states, |i| belief.commanded(path, i));

@@ -65,8 +65,13 @@ impl Goal {
 /// The target quantity beside every sample when a machine of these parameters cuts with the correction.
 fn wall(path: &Path, belief: &Belief, parameters: &Parameters, wanted: &Design) -> Vec<Offset> {
     let table = ForceTable::new(parameters.coefficients.size_exponent);
-    let machine =
-        Loop { path, table: &table, coefficients: parameters.coefficients, compliance: parameters.compliance, undersize: parameters.undersize };
+    let machine = Loop {
+        path,
+        table: &table,
+        coefficients: parameters.coefficients,
+        compliance: parameters.compliance,
+        undersize: parameters.undersize,
+    };
     let working = path.working();
     let mut states = vec![State::REST; working.len()];
     machine.run(working.start, &mut states, |i| belief.commanded(path, i));
