@@ -13,8 +13,8 @@ use truepath_core::job::{
 use truepath_core::units::{Offset, Real};
 
 /// Checksums of the images, which hold on every machine and in every build.
-const CORNER_CRC: u32 = 0xfed8_9522;
-const POCKET_CRC: u32 = 0x9f44_65e0;
+const CORNER_CRC: u32 = 0xf892_bc72;
+const POCKET_CRC: u32 = 0x0dc6_93f4;
 
 #[test]
 fn corner_and_pocket_give_the_same_image_on_every_machine() {
@@ -29,11 +29,12 @@ fn corner_and_pocket_give_the_same_image_on_every_machine() {
 
 #[test]
 fn the_summary_says_what_the_points_tell_about_the_machine() {
-    // The corner was milled on a machine of 1150 N/mm, 344.31/1147.7 radial: with the 1200 N/mm² stated it seems stiffer.
+    // The corner was milled on a machine of 1150 N/mm, 344.31/1147.7 radial: with the 1200 N/mm² stated it seems stiffer,
+    // and a little more so because two points leave the radial ratio to what metals have in common, 0.305.
     let (made, _) = made(&corner()).unwrap();
     let expected = Real::ratio(1150 * 12_000, 11_477);
     for stiffness in [made.stiffness_x, made.stiffness_y] {
-        assert!((stiffness - expected).abs() < Real::from_int(40), "{stiffness:?}");
+        assert!((stiffness - expected).abs() < Real::from_int(60), "{stiffness:?}");
     }
     assert_eq!(made.points, 2);
     // 0.29 mm of error become less than a micrometre; the correction is a little larger than the error.
