@@ -7,6 +7,7 @@ use super::parameters::{COUNT, Parameter, Parameters, Prior};
 use super::part::EarlierPart;
 use super::solve::Information;
 use super::spread;
+use super::tails;
 use crate::cut::{ForceTable, Path};
 use crate::geometry::Vector;
 use crate::units::{Offset, Real};
@@ -209,7 +210,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         renew(table, &parameters);
         self.predict(table, &parameters, points);
         let datums = points.earlier.iter().flat_map(|part| &part.trial);
-        let mut cost = theta.iter().chain(datums).fold(Real::ZERO, |sum, t| sum + *t * *t);
+        let mut cost = datums.fold(tails::cost(theta), |sum, t| sum + *t * *t);
         for o in points.observations.iter_mut() {
             cost += loss::weigh(o, gate);
         }
@@ -268,7 +269,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
                 }
             }
         }
-        let mut information = Information::prior(theta);
+        let mut information = Information::prior(theta, &tails::weights(theta));
         let mut rest = &*points.observations;
         for part in points.earlier.iter_mut() {
             let (own, others) = rest.split_at(part.points.min(rest.len()));

@@ -14,6 +14,7 @@ mod parameters;
 mod part;
 mod solve;
 mod spread;
+mod tails;
 
 pub use fit::{identify, identify_observed, identify_parts};
 pub use law::{identify_law, identify_law_observed, identify_law_parts};

@@ -128,8 +128,8 @@ const STATED: Real = Real::ratio(40, 100);
 /// 1/ln 2
 const FRAC_1_LN_2: Real = Real::ratio(1_442_695_041, 1_000_000_000);
 
-/// One standard deviation of what a cutter is smaller or, by its runout, larger than stated, µm.
-const UNDERSIZE_UM: i64 = 4;
+/// What a cutter is smaller or, by its runout, larger than stated, µm: the scale of a distribution with long tails.
+const UNDERSIZE_UM: i64 = 2;
 
 impl Population {
     /// The stated ratio and the population, each by its weight: the expected ratio and the spread of its logarithm.
@@ -153,12 +153,12 @@ fn exp(x: Real) -> Real {
 impl Prior {
     /// A prior of usual width around what the user stated.
     ///
-    /// Widths: a stiffness is rarely known to better than a factor of 1.6, x differs from y by as much; a cross
-    /// compliance of a fifth of the direct one is not unusual. The two ratios of coefficients are what was stated joined
-    /// with what metals have in common; the level of the edge coefficients is known to a factor of 1.6. Size exponent
-    /// 0.15 ± 0.1 (Kienzle exponents of steels and aluminium); bending 0.12 ± 0.1. The mean law of P23 is linear in the
-    /// chip, knows no height and describes the machine by two stiffnesses: it has neither size exponent nor bending and
-    /// hardly a cross term.
+    /// Widths: a stiffness is rarely known to better than a factor of 1.6, x differs from y by a third; a cross
+    /// compliance is a tenth of the direct one or, on a few machines, much more (long tails, as for the undersize). The
+    /// two ratios of coefficients are what was stated joined with what metals have in common; the level of the edge
+    /// coefficients is known to a factor of 1.6. Size exponent 0.15 ± 0.1 (Kienzle exponents of steels and aluminium);
+    /// bending 0.12 ± 0.1. The mean law of P23 is linear in the chip, knows no height and describes the machine by two
+    /// stiffnesses: it has neither size exponent nor bending and hardly a cross term.
     pub fn around(coefficients: Coefficients, compliance: Compliance, law: WallLaw) -> Self {
         let helical = law == WallLaw::Helical;
         let or_zero = |v: Real| if helical { v } else { Real::ZERO };
@@ -182,8 +182,8 @@ impl Prior {
         };
         let sigma = [
             percent(50),
-            percent(30),
-            percent(if helical { 20 } else { 2 }),
+            percent(35),
+            percent(if helical { 8 } else { 2 }),
             radial_spread,
             if has_level { percent(50) } else { Real::ZERO },
             edge_spread,

@@ -13,6 +13,9 @@ use crate::units::{Real, log2};
 /// A square matrix of the fit.
 pub type Matrix = [[Real; COUNT]; COUNT];
 
+/// Least information about a parameter: a sixteenth of that of a Gaussian prior.
+const LEAST: Real = Real::ratio(1, 16);
+
 /// Scalars eliminated one by one; the remaining two form the vector.
 pub(super) const SCALARS: usize = COUNT - 2;
 
@@ -24,13 +27,13 @@ pub struct Information {
 }
 
 impl Information {
-    /// The prior alone, at `theta` standard deviations from its centre.
-    pub fn prior(theta: &[Real; COUNT]) -> Self {
+    /// The prior alone, at `theta` standard deviations from its centre, to which it draws by the weights.
+    pub fn prior(theta: &[Real; COUNT], weights: &[Real; COUNT]) -> Self {
         let mut matrix = [[Real::ZERO; COUNT]; COUNT];
         let mut gradient = [Real::ZERO; COUNT];
         for i in 0..COUNT {
-            matrix[i][i] = Real::ONE;
-            gradient[i] = -theta[i];
+            matrix[i][i] = weights[i];
+            gradient[i] = -(weights[i] * theta[i]);
         }
         Self { matrix, gradient }
     }
@@ -111,8 +114,8 @@ impl Factor {
         let mut lower = [[Real::ZERO; COUNT]; COUNT];
         let mut diagonal = [Real::ONE; COUNT];
         for k in 0..SCALARS {
-            // Information is at least that of the prior; rounding may not take it lower.
-            let d = rest[k][k].max(Real::HALF);
+            // Information is at least that of the prior; rounding may not take it to nothing.
+            let d = rest[k][k].max(LEAST);
             diagonal[k] = d;
             for i in k + 1..COUNT {
                 lower[i][k] = rest[i][k] / d;
@@ -127,10 +130,10 @@ impl Factor {
             // Column k is finished; its own row is not read again.
         }
         let (a, b) = (SCALARS, SCALARS + 1);
-        diagonal[a] = rest[a][a].max(Real::HALF);
-        diagonal[b] = rest[b][b].max(Real::HALF);
+        diagonal[a] = rest[a][a].max(LEAST);
+        diagonal[b] = rest[b][b].max(LEAST);
         let corner = rest[a][b];
-        let determinant = Real::dot(diagonal[a], diagonal[b], -corner, corner).max(Real::HALF);
+        let determinant = Real::dot(diagonal[a], diagonal[b], -corner, corner).max(LEAST);
         Self { lower, diagonal, corner, determinant }
     }
 

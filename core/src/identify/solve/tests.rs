@@ -12,7 +12,7 @@ fn observations(seed: &[i32]) -> std::vec::Vec<([Real; COUNT], Real)> {
 proptest! {
     #[test]
     fn the_step_solves_the_normal_equations(seed in prop::collection::vec(-30_000i32..30_000, (COUNT + 1) * 14)) {
-        let mut info = Information::prior(&[Real::ZERO; COUNT]);
+        let mut info = Information::prior(&[Real::ZERO; COUNT], &[Real::ONE; COUNT]);
         for (row, residual) in observations(&seed) {
             info.add(&row, residual, Real::ONE);
         }
@@ -29,7 +29,7 @@ proptest! {
     ) {
         let rows = observations(&seed);
         let mut part = Information::of_part([Real::HALF, -Real::ONE]);
-        let mut whole = Information::prior(&[Real::ZERO; COUNT]);
+        let mut whole = Information::prior(&[Real::ZERO; COUNT], &[Real::ONE; COUNT]);
         for (row, residual) in &rows[..6] {
             part.add(row, *residual, Real::ONE);
         }
@@ -65,7 +65,7 @@ proptest! {
             (t[1], t[2], t[SCALARS], t[SCALARS + 1]) = (-r[1], -r[2], -r[SCALARS + 1], r[SCALARS]);
             t
         };
-        let (mut part, mut whole) = (Information::of_part([Real::HALF, Real::ONE]), Information::prior(&[Real::ZERO; COUNT]));
+        let (mut part, mut whole) = (Information::of_part([Real::HALF, Real::ONE]), Information::prior(&[Real::ZERO; COUNT], &[Real::ONE; COUNT]));
         let (mut turned_part, mut turned) = (Information::of_part([-Real::ONE, Real::HALF]), whole);
         for (k, (row, residual)) in observations(&seed).iter().enumerate() {
             let (one, other) = if k < 7 { (&mut part, &mut turned_part) } else { (&mut whole, &mut turned) };
@@ -93,7 +93,7 @@ proptest! {
             t[SCALARS + 1] = r[SCALARS];
             t
         };
-        let mut info = Information::prior(&[Real::ZERO; COUNT]);
+        let mut info = Information::prior(&[Real::ZERO; COUNT], &[Real::ONE; COUNT]);
         let mut turned = info;
         for (row, residual) in observations(&seed) {
             info.add(&row, residual, Real::HALF);
