@@ -108,6 +108,13 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         let (mut information, mut cost, mut steps) =
             self.settle(&mut table, &mut theta, Real::MAX, &mut points, observe);
         let quiet = &mut |_| ();
+        // A few points far off are of something else than this wall: they pull no more, and say nothing of the noise.
+        let wild = points.observations.iter().filter(|o| o.residual().abs() > WILD).count();
+        let gate = if wild.saturating_mul(4) <= points.observations.len() { WILD } else { Real::MAX };
+        if wild > 0 && gate == WILD {
+            let (again, its_cost, more) = self.settle(&mut table, &mut theta, gate, &mut points, quiet);
+            (information, cost, steps) = (again, its_cost, steps.saturating_add(more));
+        }
         // How far the points spread about the model is found from themselves, and weighs them.
         let mut factor = Real::ONE;
         for _ in 0..SPREADS {
@@ -117,18 +124,12 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
             }
             factor = found;
             spread::set(points.observations, factor);
-            let (again, its_cost, more) = self.settle(&mut table, &mut theta, Real::MAX, &mut points, quiet);
+            let (again, its_cost, more) = self.settle(&mut table, &mut theta, gate, &mut points, quiet);
             (information, cost, steps) = (again, its_cost, steps.saturating_add(more));
         }
         let taken_out = points.earlier.iter().fold(Real::ZERO, |sum, part| sum + part.eliminated.log2_determinant());
         let ln_determinant = (information.log2_determinant() + taken_out) * Real::ratio(693_147_181, 1_000_000_000);
         let evidence = -((cost + ln_determinant + spread::cost(points.observations, factor)) * Real::HALF);
-        // A few points far off are of something else than this wall: they pull no more.
-        let wild = points.observations.iter().filter(|o| o.residual().abs() > WILD).count();
-        if wild > 0 && wild.saturating_mul(4) <= points.observations.len() {
-            let (again, _, more) = self.settle(&mut table, &mut theta, WILD, &mut points, quiet);
-            (information, steps) = (again, steps.saturating_add(more));
-        }
         let covariance = information.covariance();
         let outliers = points.observations.iter().filter(|o| o.weight < Real::ratio(3, 10)).count();
         Fit { parameters: prior.at(&theta), theta, covariance, cost, steps, outliers, evidence }
