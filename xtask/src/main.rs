@@ -154,9 +154,7 @@ fn main() -> ExitCode {
         Task::Bench { reading: true, write, .. } => {
             report.run(Step::new("bench --reading", || bench::reading::measure(write)))
         }
-        Task::Bench { long: true, write, .. } => {
-            report.run(Step::new("bench --long", || bench::long::measure(write)))
-        }
+        Task::Bench { long: true, write, .. } => report.run(Step::new("bench --long", || bench::long::measure(write))),
         Task::Bench { no_run, write, arguments, .. } => {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))
         }

@@ -38,6 +38,7 @@ pub(super) fn weights(theta: &[Real; COUNT]) -> [Real; COUNT] {
 }
 
 #[cfg(test)]
+#[expect(clippy::indexing_slicing, reason = "tests index what they have made")]
 mod tests {
     use super::*;
 

@@ -63,7 +63,13 @@ pub fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<Trace, Failu
     let path = pass.sample(&mut buffer)?;
     let prior = pass.core.prior(pass.core.setup.law).mean;
     let table = ForceTable::new(prior.coefficients.size_exponent);
-    let machine = Loop { path: &path, table: &table, coefficients: prior.coefficients, compliance: prior.compliance, undersize: prior.undersize };
+    let machine = Loop {
+        path: &path,
+        table: &table,
+        coefficients: prior.coefficients,
+        compliance: prior.compliance,
+        undersize: prior.undersize,
+    };
     let mut states = vec![State::REST; path.working().len()];
     let passage = machine.run(path.working().start, &mut states, |_| Vector::ZERO);
     if passage.unsettled > 0 {
