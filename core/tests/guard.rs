@@ -2,8 +2,8 @@
 mod corner;
 use corner::*;
 use truepath_core::correct::{
-    Band, Design, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Target, Update, design, guarded_design,
-    uncertainty,
+    Band, Damped, Design, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Target, Update, design,
+    guarded_design, uncertainty,
 };
 use truepath_core::cut::*;
 use truepath_core::geometry::Vector;
@@ -22,16 +22,22 @@ struct Made {
     nodes: Vec<Node>,
     unguarded: Vec<Node>,
     predicted: Vec<Predicted>,
+    damped: Option<Damped>,
     sigma: Vec<Offset>,
 }
 
 fn case() -> Case {
+    probed(&[20, 60, 85])
+}
+
+/// Probed at three heights of these places, mm along the contour.
+fn probed(places: &[i32]) -> Case {
     let path = path(&corner(), &setup(WallLaw::Helical), 250);
     let compliance = Compliance::from_stiffness(real(3000.0), real(3000.0));
     let stated = Coefficients { kte: real(10.0), kre: real(10.0), ..coefficients() };
     let prior = Prior::around(stated, compliance, WallLaw::Helical);
     let mut observations = Vec::new();
-    for (s, height) in [20, 60, 85].into_iter().flat_map(|s| [10, 50, 90].map(|h| (s, h))) {
+    for (s, height) in places.iter().flat_map(|s| [10, 50, 90].map(|h| (*s, h))) {
         let s = Offset::from_mm(Real::from_int(s));
         let normal = path.samples()[path.index_at(s)].normal;
         observations.push(Observation::new(s, Real::ratio(height, 100), Offset::ZERO, Offset::from_um(3), normal));
@@ -70,14 +76,17 @@ impl Case {
         let (mut unguarded, mut predicted) = (nodes.clone(), vec![Predicted::default(); n]);
         let mut sigma = vec![Offset::ZERO; n];
         let belief = (&self.prior, &self.fit);
+        let mut damped = None;
         if guarded {
-            let mut made = Guarded { nodes: &mut nodes, unguarded: &mut unguarded, predicted: &mut predicted };
+            let mut made =
+                Guarded { nodes: &mut nodes, unguarded: &mut unguarded, predicted: &mut predicted, damped: None };
             guarded_design(&machine, belief, wanted, &mut made, &mut workspace, &mut |_| ());
+            damped = made.damped;
         } else {
             design(&machine, wanted, &mut nodes, &mut predicted, &mut workspace);
         }
         uncertainty(&machine, belief, wanted, &nodes, &predicted, &mut sigma, &mut workspace);
-        Made { nodes, unguarded, predicted, sigma }
+        Made { nodes, unguarded, predicted, damped, sigma }
     }
 }
 
@@ -129,4 +138,27 @@ fn the_guard_looks_beyond_the_band_of_the_target() {
     assert!(below(&free) > Offset::from_um(20), "{}", below(&free).nm());
     assert!(deepest(&free) > Offset::from_um(40), "{}", deepest(&free).nm());
     assert!(deepest(&guarded) < Offset::from_um(21), "{}", deepest(&guarded).nm());
+}
+
+#[test]
+fn a_wall_that_is_known_is_corrected_by_the_whole_and_one_that_is_not_by_a_share() {
+    let known = case().made(&Case::wanted(None), true);
+    assert_eq!(known.damped, None);
+    // Both on one wall: across the other anything may be.
+    let case = probed(&[85, 88]);
+    let (made, whole) = (case.made(&Case::wanted(None), true), case.made(&Case::wanted(None), false));
+    let damped = made.damped.expect("the first wall is hardly known");
+    assert!(damped.least < Real::ratio(9, 10), "{:?}", damped);
+    let first = (made.nodes[100].total().x.nm(), whole.nodes[100].total().x.nm());
+    assert!(first.0.abs() * 10 < first.1.abs() * 9, "{first:?}");
+    // More is applied to the wall that was probed, and no step lies between.
+    let last = made.nodes.len() - 20;
+    let second = (made.nodes[last].total().y.nm(), whole.nodes[last].total().y.nm());
+    assert!((second.0 * first.1).abs() > (second.1 * first.0).abs(), "{first:?} {second:?}");
+    for (pair, plain) in made.nodes.windows(2).zip(whole.nodes.windows(2)) {
+        let change = |pair: &[Node]| (pair[1].total() - pair[0].total()).x.nm().abs();
+        assert!(change(pair) <= change(plain) + 1_000, "{} {}", change(pair), change(plain));
+    }
+    // What is reported is the wall of what is commanded.
+    assert!(made.predicted[100].after.mean.abs() > Offset::from_um(2));
 }

@@ -2,8 +2,8 @@
 //! reports.
 
 use truepath_core::correct::{
-    Band, Design, DesignStep, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Update, add_residual, commanded,
-    guarded_design, profile, uncertainty,
+    Band, Damped, Design, DesignStep, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Update, add_residual,
+    commanded, guarded_design, profile, uncertainty,
 };
 use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
@@ -35,6 +35,8 @@ pub struct Correction {
     pub predicted: Vec<Predicted>,
     /// Standard deviation of the predicted error after.
     pub sigma: Vec<Offset>,
+    /// Where only a share of it is applied, if anywhere.
+    pub damped: Option<Damped>,
     /// What it was designed for.
     pub wanted: Design,
     /// How the elastic loop fared.
@@ -125,12 +127,13 @@ pub fn corrected(
     let mut predicted = vec![Predicted::default(); count];
     let mut sigma = vec![Offset::ZERO; count];
     let belief = (identified.prior(), identified.fit());
-    let mut made = Guarded { nodes: &mut nodes, unguarded: &mut unguarded, predicted: &mut predicted };
+    let mut made = Guarded { nodes: &mut nodes, unguarded: &mut unguarded, predicted: &mut predicted, damped: None };
     let passage = guarded_design(machine, belief, &wanted, &mut made, &mut workspace, &mut |step| {
         if let DesignStep::Done { permille, .. } = step {
             progress(0.6 * f64::from(permille) / 1000.0);
         }
     });
+    let damped = made.damped.filter(|_| wish.kept.is_none());
     let passage = match wish.kept {
         None => passage,
         Some(kept) => {
@@ -147,7 +150,7 @@ pub fn corrected(
         *sigma = hypot_nm(*sigma, *more);
     }
     progress(1.0);
-    Ok(Correction { nodes, unguarded, predicted, sigma, wanted, passage })
+    Ok(Correction { nodes, unguarded, predicted, sigma, damped, wanted, passage })
 }
 
 /// Memory of a design.

@@ -149,8 +149,9 @@ pub fn design_observed(
         }
         refine(path, wanted, nodes, workspace.profiles, workspace.updates);
     }
+    // Also where the last was the best: it has been refined since, but not cut.
+    copy(workspace.best, nodes);
     if !is_best {
-        copy(workspace.best, nodes);
         passage = pass(nodes, workspace, observe);
     }
     for (p, after) in predicted.iter_mut().zip(workspace.profiles.iter()) {
@@ -235,7 +236,7 @@ fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorr
 }
 
 /// The largest error the target sees, away from sharp inside corners, where the correction is held.
-fn worst(wanted: &Design, path: &Path, profiles: &[Profile]) -> Offset {
+pub(super) fn worst(wanted: &Design, path: &Path, profiles: &[Profile]) -> Offset {
     let followed = profiles.iter().zip(path.samples().iter().skip(path.first())).filter(|(_, s)| !s.near_corner);
     followed.map(|(p, _)| p.aim(wanted.target, wanted.max_gouge).abs()).max().unwrap_or_default()
 }

@@ -7,9 +7,10 @@
 //! these have changed. What a design leaves of it is taken back at the places. Limits: the standard deviation is that of the fit's parameters; a sharp inside corner, where the
 //! correction is held, is not guarded; the laws kept for comparison know no guard.
 
-use super::design::{Design, DesignStep, DesignWorkspace, Law, Predicted, copy, design_observed, pass};
+use super::design::{Design, DesignStep, DesignWorkspace, Law, Predicted, copy, design_observed, pass, worst};
 use super::node::Node;
 use super::profile::Profile;
+use super::prudence::{Damped, damp};
 use super::refine::settle_ends;
 use super::uncertainty::spread;
 use crate::cut::{Loop, Passage};
@@ -35,10 +36,13 @@ pub struct Guarded<'a> {
     pub unguarded: &'a mut [Node],
     /// Predicted walls; as long as `nodes`, or empty.
     pub predicted: &'a mut [Predicted],
+    /// Where only a share of it is applied, if anywhere; set by the design.
+    pub damped: Option<Damped>,
 }
 
 /// As [`design_observed`], under the guard of the design. Without guard the two are the same. On return
-/// `workspace.profiles` holds the corrected wall and the margins the guard has kept.
+/// `workspace.profiles` holds the corrected wall and the margins the guard has kept. By [`Law::Model`] a wall that is known
+/// too badly is corrected in part; what the guard forbids, it forbids of that as well.
 pub fn guarded_design(
     machine: &Loop,
     belief: (&Prior, &Fit),
@@ -52,8 +56,12 @@ pub fn guarded_design(
     let designs = if limit.is_some() { ROUNDS.saturating_add(1) } else { 1 };
     let (mut done, mut round) = (0u16, 0u16);
     // Passes and shares of one design among those of all.
+    let mut uncorrected = Offset::ZERO;
     let mut tell = |round: u16, before: u16, done: &mut u16, step: DesignStep<'_>| match step {
-        DesignStep::Uncorrected(walls) if round == 0 => observe(DesignStep::Uncorrected(walls)),
+        DesignStep::Uncorrected(walls) if round == 0 => {
+            uncorrected = worst(&free, machine.path, walls);
+            observe(DesignStep::Uncorrected(walls));
+        }
         DesignStep::Uncorrected(_) => (),
         DesignStep::Done { passes, permille } => {
             *done = before.saturating_add(passes);
@@ -66,8 +74,9 @@ pub fn guarded_design(
         tell(0, 0, &mut done, step);
     });
     copy(made.nodes, made.unguarded);
-    let Some(limit) = limit else { return passage };
-    while round < ROUNDS {
+    while let Some(limit) = limit
+        && round < ROUNDS
+    {
         round = round.saturating_add(1);
         margins(machine, belief, wanted, made.nodes, workspace);
         // The walls of the correction itself, beside the margins.
@@ -80,7 +89,14 @@ pub fn guarded_design(
             tell(round, before, &mut done, step);
         });
     }
+    made.damped = None;
+    if wanted.law == Law::Model {
+        let both = [&mut *made.nodes, &mut *made.unguarded];
+        made.damped = damp(machine, belief, wanted, uncorrected, both, workspace);
+        passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+    }
     for _ in 0..LIFTS {
+        let Some(limit) = limit else { break };
         if workspace.profiles.iter().all(|p| missed(p, limit) == Offset::ZERO) {
             break;
         }

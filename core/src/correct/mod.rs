@@ -10,6 +10,7 @@ mod guard;
 mod node;
 mod paper;
 mod profile;
+mod prudence;
 mod refine;
 mod uncertainty;
 
@@ -18,5 +19,6 @@ pub use guard::{Guarded, guarded_design};
 pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, Profile, Target, add_residual, profile};
+pub use prudence::Damped;
 pub use refine::Update;
 pub use uncertainty::uncertainty;

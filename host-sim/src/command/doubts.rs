@@ -8,7 +8,7 @@ use truepath_core::units::Offset;
 use crate::correction::{Correction, Identified};
 use crate::pass::Pass;
 use crate::program::Difference;
-use crate::report::{guard_summary, mm};
+use crate::report::{damped_summary, guard_summary, mm};
 
 /// What the user should doubt.
 pub(super) fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
@@ -72,7 +72,9 @@ pub(super) fn doubts(pass: &Pass, identified: &Identified, correction: &Correcti
     }
     let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
     let sigma = correction.sigma.iter().copied().max().unwrap_or_default();
-    if sigma.nm() * 8 > peak.nm() {
+    if let Some(damped) = damped_summary(machine.path, correction) {
+        out.push(damped.text());
+    } else if sigma.nm() * 8 > peak.nm() {
         out.push(format!(
             "the points leave the corrected wall uncertain by {:.4} mm (one sigma); probe more places, best in the corners",
             mm(sigma)

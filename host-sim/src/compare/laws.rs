@@ -91,7 +91,8 @@ fn model(pass: &Pass, machine: &Loop, identified: &Identified, progress: &mut dy
     let wanted = pass.job.numbers.design(Law::Model);
     let mut buffers = Buffers::of(machine.path);
     let mut nodes = vec![Node::default(); machine.path.count()];
-    let mut made = Guarded { nodes: &mut nodes, unguarded: &mut [], predicted: &mut [] as &mut [Predicted] };
+    let mut made =
+        Guarded { nodes: &mut nodes, unguarded: &mut [], predicted: &mut [] as &mut [Predicted], damped: None };
     let belief = (identified.prior(), identified.fit());
     guarded_design(machine, belief, &wanted, &mut made, &mut buffers.workspace(&[]), &mut |step| {
         if let DesignStep::Done { permille, .. } = step {

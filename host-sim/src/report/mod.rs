@@ -1,6 +1,7 @@
 //! What the commands write: tables (CSV), the summary (JSON), the corrected path for the program and for the image.
 
 mod compare;
+mod damped;
 mod guard;
 mod path;
 mod points;
@@ -8,6 +9,7 @@ mod summary;
 mod tables;
 
 pub use compare::{compare_csv, walls_csv};
+pub use damped::{DampedSummary, damped_summary};
 pub use guard::{GuardSummary, HeldBack, guard_summary};
 pub use path::{block_edits, carried_edits};
 pub use points::points_csv;

@@ -54,6 +54,8 @@ pub struct CorrectSummary {
     /// What the gouge guard allowed of what the target wants; absent without `max_gouge_mm`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub guard: Option<super::GuardSummary>,
+    /// Where the points say too little for the whole correction; null where all of it is applied.
+    pub damped: Option<super::DampedSummary>,
     /// Largest correction along an axis, mm.
     pub max_correction_mm: f64,
     /// The law of the correction.
@@ -122,6 +124,7 @@ pub fn correct_summary(
         axial_form_error_mm: largest(predicted.iter().map(|p| p.after.form_error(target))),
         worst_gouge_mm: largest(predicted.iter().map(|p| -p.after.deepest())).max(0.0),
         guard: None,
+        damped: None,
         max_correction_mm: largest(correction.nodes.iter().map(|n| n.total().x.abs().max(n.total().y.abs()))),
         law: law_name(&correction.wanted.law),
         wall_law: wall_law_name(identified.law()),
@@ -148,6 +151,7 @@ impl CorrectSummary {
             self.sigma_at_max_error_mm = correction.sigma.get(at).map_or(0.0, |sigma| mm(*sigma));
         }
         self.guard = super::guard_summary(path, correction);
+        self.damped = super::damped_summary(path, correction);
     }
 }
 

@@ -1,0 +1,117 @@
+//! Prudence: where the points say too little about the wall, only a share of its correction is applied.
+//!
+//! A correction of `d` makes a wall worse whose true error is less than `d/2`: where the error is known to a quarter of
+//! itself that takes two standard deviations, where it is known to no more than its own size it often comes so. Every
+//! sample is therefore corrected by the share `(B/3σ)²`, at most by all of it: `B` is the largest error of the uncorrected
+//! wall, `σ` the standard deviation of the wall beside the sample. `B` stands for the whole part, so that a wall whose own
+//! error is small is still corrected as long as it is known well beside the largest. The three is from random machines:
+//! below it most corrections by the whole came out several times better, and damping them costs more than it saves; the
+//! square leaves a wall alone that is known hardly at all. Limits: `σ` is that of the fit's parameters, not of what the model
+//! lacks; a share makes the wall better with more certainty, but by less.
+
+use super::design::{Design, DesignWorkspace};
+use super::node::Node;
+use super::profile::Profile;
+use super::refine::settle_ends;
+use super::uncertainty::spread;
+use crate::cut::Loop;
+use crate::geometry::Vector;
+use crate::identify::{Fit, Prior};
+use crate::units::{Offset, Real, hypot_nm};
+
+/// Standard deviations of the wall that the largest error has to outweigh for a whole correction.
+const SIGMAS: i64 = 3;
+/// How much less these may become from sample to sample: a correction of the size of the largest error then changes by at
+/// most twice that, and no step remains in the path.
+const SLOPE: Offset = Offset::from_nm(500);
+
+/// Where a correction is applied in part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Damped {
+    /// The least share of it that is applied, 0…1.
+    pub least: Real,
+    /// Standard deviation of the wall there.
+    pub sigma: Offset,
+    /// First sample of the stretch around that place, counted along the contour.
+    pub from: usize,
+    /// Its last sample.
+    pub to: usize,
+}
+
+/// Damps a correction, and the one without guard beside it, where the walls of `workspace.profiles`, which it leaves, are
+/// known badly beside the largest error of the uncorrected wall. The workspace is overwritten.
+pub(super) fn damp(
+    machine: &Loop,
+    belief: (&Prior, &Fit),
+    wanted: &Design,
+    uncorrected: Offset,
+    [nodes, unguarded]: [&mut [Node]; 2],
+    workspace: &mut DesignWorkspace,
+) -> Option<Damped> {
+    let aimed = |wall: &Profile| wall.aim(wanted.target, None);
+    // After a design the best correction is of no use: its place holds (aimed error, its standard deviation).
+    let best = core::mem::take(&mut workspace.best);
+    for (slot, wall) in best.iter_mut().zip(workspace.profiles.iter()) {
+        *slot = Node { chip: Vector { x: aimed(wall), y: Offset::ZERO }, edge: Vector::ZERO };
+    }
+    spread(machine, belief, wanted, nodes, workspace, &mut |index, wall| {
+        if let Some(slot) = best.get_mut(index) {
+            slot.chip.y = hypot_nm(slot.chip.y, aimed(wall) - slot.chip.x);
+        }
+    });
+    let samples = machine.path.samples().iter().skip(machine.path.first());
+    for (slot, sample) in best.iter_mut().zip(samples) {
+        // Around a sharp inside corner the correction is held.
+        let sigma = if sample.near_corner { Offset::ZERO } else { slot.chip.y };
+        slot.chip = Vector { x: sigma.scaled(Real::ratio(SIGMAS, 1)), y: sigma };
+    }
+    envelope(best, machine.path.is_closed());
+    let damped = stretch(best, uncorrected);
+    if damped.is_some() {
+        for nodes in [nodes, unguarded] {
+            for (node, slot) in nodes.iter_mut().zip(best.iter()) {
+                let share = share(slot, uncorrected);
+                *node = Node { chip: node.chip.scaled(share), edge: node.edge.scaled(share) };
+            }
+            settle_ends(machine.path, nodes);
+        }
+    }
+    workspace.best = best;
+    damped
+}
+
+/// The least curve above that falls by no more than the slope, either way, and around a closed contour.
+fn envelope(slots: &mut [Node], closed: bool) {
+    let carry = |carried: Offset, slot: &mut Node| {
+        slot.chip.x = slot.chip.x.max(carried - SLOPE);
+        slot.chip.x
+    };
+    let (mut ahead, mut back) = (Offset::ZERO, Offset::ZERO);
+    for _ in 0..=usize::from(closed) {
+        ahead = slots.iter_mut().fold(ahead, carry);
+        back = slots.iter_mut().rev().fold(back, carry);
+    }
+}
+
+/// The share of a correction that is applied.
+fn share(slot: &Node, uncorrected: Offset) -> Real {
+    if slot.chip.x <= uncorrected {
+        return Real::ONE;
+    }
+    let known = uncorrected.over(slot.chip.x);
+    known * known
+}
+
+/// The stretch around the place where least is applied, if it is not everything.
+fn stretch(slots: &[Node], uncorrected: Offset) -> Option<Damped> {
+    let partly = |slot: &&Node| slot.chip.x > uncorrected;
+    let (at, worst) = slots.iter().enumerate().filter(|(_, slot)| partly(slot)).max_by_key(|(_, slot)| slot.chip.x)?;
+    let before = slots.iter().take(at).rev().take_while(partly).count();
+    let behind = slots.iter().skip(at).take_while(partly).count();
+    Some(Damped {
+        least: share(worst, uncorrected),
+        sigma: worst.chip.y,
+        from: at.saturating_sub(before),
+        to: at.saturating_add(behind).saturating_sub(1),
+    })
+}
