@@ -36,7 +36,7 @@ fn corrected(pass: &Pass, probe: &str) -> Corrected {
 fn largest(pass: &Pass, program: Option<&[u8]>) -> f64 {
     let machine: Machine = toml::from_str(PLANT).unwrap();
     let commanded = program.map(|text| shown(workshop::commanded(pass, text)));
-    let part = shown(workshop::mill(pass, &machine, commanded.as_ref()));
+    let part = shown(workshop::mill(pass, &machine, commanded.as_deref()));
     let judged = part.path.s_mm.iter().map(|s| *s > TRIM && *s < part.path.length_mm - TRIM);
     let errors = part.mean_errors().into_iter().zip(judged).filter(|(e, judged)| *judged && e.is_finite());
     errors.fold(0.0, |most: f64, (e, _)| most.max(e.abs()))
