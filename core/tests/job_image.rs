@@ -228,7 +228,9 @@ fn what_job_program_and_measurement_lack_is_named() {
     assert_eq!(error(&|p| p.probe = b"1 2 3\n").code(), "M003");
     assert_eq!(error(&|p| p.probe = b"3 -0.97 40 0 0 0 0 0 0\n").code(), "M015");
     assert_eq!(error(&|p| p.job.wall = Some(truepath_core::geometry::Side::Left)).code(), "M016");
-    assert_eq!(error(&|p| p.job.correct.clamp = um(5)).code(), "J017");
+    let mut clamped = corner();
+    clamped.job.correct.clamp = um(5);
+    assert_eq!(made(&clamped).map(|m| m.0).unwrap_err().code(), "J017");
     let no_speed = |p: &mut Part| {
         p.job.cut.spindle_rpm = None;
         p.program = b"G21 G90\nG0 X0 Y0\nG1 Z-4 F300\nG1 X8\nM30\n";

@@ -47,7 +47,7 @@ fn a_bore_touched_on_one_side_is_damped_and_hardly_worse_than_before() {
     let pass = pass();
     let few = corrected(&pass, PROBE);
     let damped = few.summary.damped.expect("the other side is not known");
-    assert!(damped.least_share < 0.3 && damped.from_s_mm < damped.to_s_mm, "{damped:?}");
+    assert!(damped.least_share < 0.6 && damped.from_s_mm < damped.to_s_mm, "{damped:?}");
     let said = few.summary.warnings.iter().filter(|w| w.contains("of the correction is applied")).count();
     assert_eq!(said, 1, "{:?}", few.summary.warnings);
     let (before, after) = (largest(&pass, None), largest(&pass, few.program.as_deref()));

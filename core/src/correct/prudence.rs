@@ -2,12 +2,13 @@
 //!
 //! A correction of `d` makes a wall worse whose true error is less than `d/2`: where the error is known to a quarter of
 //! itself that takes two standard deviations, where it is known to no more than its own size it often comes so. Every
-//! sample is therefore corrected by the share `(B/3σ)²`, at most by all of it: `B` is the largest error of the uncorrected
-//! wall, `σ` the standard deviation of the wall beside the sample. `B` stands for the whole part, so that a wall whose own
-//! error is small is still corrected as long as it is known well beside the largest. The three is from random machines:
-//! below it most corrections by the whole came out several times better, and damping them costs more than it saves; the
-//! square leaves a wall alone that is known hardly at all. Limits: `σ` is that of the fit's parameters, not of what the model
-//! lacks; a share makes the wall better with more certainty, but by less.
+//! sample is therefore corrected by the share `(B/σ − 1)/2`, between nothing and all of it: `B` is the largest error of
+//! the uncorrected wall, `σ` the standard deviation of the wall beside the sample. `B` stands for the whole part, so that
+//! a wall whose own error is small is still corrected as long as it is known well beside the largest. The ends are from
+//! random machines: where `B` is more than 3σ, most corrections by the whole came out several times better, and damping
+//! them costs more than it saves; a wall that is known to no better than the largest error is left alone. Limits: `σ` is
+//! that of the fit's parameters, not of what the model lacks; a share makes the wall better with more certainty, but by
+//! less.
 
 use super::design::{Design, DesignWorkspace};
 use super::node::Node;
@@ -20,7 +21,7 @@ use crate::identify::{Fit, Prior};
 use crate::units::{Offset, Real, hypot_nm};
 
 /// Standard deviations of the wall that the largest error has to outweigh for a whole correction.
-const SIGMAS: i64 = 3;
+const SIGMAS: i32 = 3;
 /// How much less these may become from sample to sample: a correction of the size of the largest error then changes by at
 /// most twice that, and no step remains in the path.
 const SLOPE: Offset = Offset::from_nm(500);
@@ -63,7 +64,7 @@ pub(super) fn damp(
     for (slot, sample) in best.iter_mut().zip(samples) {
         // Around a sharp inside corner the correction is held.
         let sigma = if sample.near_corner { Offset::ZERO } else { slot.chip.y };
-        slot.chip = Vector { x: sigma.scaled(Real::ratio(SIGMAS, 1)), y: sigma };
+        slot.chip = Vector { x: sigma.scaled(Real::from_int(SIGMAS)), y: sigma };
     }
     envelope(best, machine.path.is_closed());
     let damped = stretch(best, uncorrected);
@@ -98,8 +99,8 @@ fn share(slot: &Node, uncorrected: Offset) -> Real {
     if slot.chip.x <= uncorrected {
         return Real::ONE;
     }
-    let known = uncorrected.over(slot.chip.x);
-    known * known
+    let known = uncorrected.over(slot.chip.x) * Real::from_int(SIGMAS);
+    ((known - Real::ONE) * Real::HALF).max(Real::ZERO)
 }
 
 /// The stretch around the place where least is applied, if it is not everything.
