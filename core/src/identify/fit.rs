@@ -89,6 +89,7 @@ struct Points<'p, 'w> {
 }
 
 impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
+    #[inline(never)]
     fn fit(
         &self,
         earlier: &mut [EarlierPart],

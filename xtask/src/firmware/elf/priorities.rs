@@ -61,8 +61,11 @@ const NUCLEO_H743: &[Level] = &[
 const WAKER: &[&str] = &["embassy_executor::raw::waker::"];
 /// Closures that are told how far an on-board correction is, outermost first.
 const TOLD: &[&str] = &["Work>::run::{closure#0}>::{closure#2}", "Work>::run::{closure#0}>::{closure#3}"];
-const TOLD_OF_A_LAW: &[&str] = &["identified::{closure#0}>::{closure#0}::{closure#0}", TOLD[0], TOLD[1]];
-const FIT: &str = "identify_observed::<truepath_core::job::identification::identified::{closure#0}>::{closure#";
+/// Of one of the fits under both wall laws.
+const LAW: &str = "identified::{closure#0}>::{closure#0}>::{closure#0}::{closure#0}";
+const FIT: &str = ">::settle::{closure#";
+/// Of a design: under the guard, and of the whole.
+const DESIGN: &[&str] = &["guarded_design::{closure#", "whole::designed::{closure#0}"];
 
 pub const INDIRECT: &[Indirect] = &[
     ("interrupts::config_executor", &["__config_task_task_inner_function::{closure#0}>>::poll"]),
@@ -95,9 +98,13 @@ pub const INDIRECT: &[Indirect] = &[
     ("uart::Receiving>::on_received", WAKER),
     ("background::run", WAKER),
     (">::linearise", &[FIT]),
-    (FIT, TOLD_OF_A_LAW),
-    (TOLD_OF_A_LAW[0], TOLD),
-    ("design_observed", TOLD),
+    (FIT, &[">::fit::{closure#0}", LAW, TOLD[0], TOLD[1]]),
+    (LAW, TOLD),
+    ("correct::design::pass", &["design_observed::{closure#0}"]),
+    ("design_observed", DESIGN),
+    (DESIGN[0], &[DESIGN[1]]),
+    (DESIGN[1], TOLD),
+    ("uncertainty::spread", &["guard::margins::{closure#", "prudence::damp::{closure#"]),
     // A device has no library of other programs.
     ("flow::program::Program>::file", &[]),
 ];
