@@ -93,12 +93,12 @@ fn the_guard_holds_on_a_machine_it_does_not_know_and_reports_what_it_costs() {
     let deepest = |part: &Milled| errors(part, &levels).iter().flatten().copied().fold(f64::MAX, f64::min);
     let (free, ungarded) = milled("");
     assert!(free.summary.guard.is_none());
-    assert!(deepest(&ungarded) < -0.06, "{}", deepest(&ungarded));
-    let (held, guarded) = milled("max_gouge_mm = 0.03");
-    assert!(deepest(&guarded) > -0.03, "{}", deepest(&guarded));
+    assert!(deepest(&ungarded) < -0.03, "{}", deepest(&ungarded));
+    let (held, guarded) = milled("max_gouge_mm = 0.02");
+    assert!(deepest(&guarded) > -0.02, "{}", deepest(&guarded));
     let guard = held.summary.guard.unwrap();
-    assert!(guard.heeded && (guard.max_gouge_mm, guard.confidence_sigmas) == (0.03, 2));
-    assert!(guard.deepest_with_confidence_mm < 0.0305, "{guard:?}");
+    assert!(guard.heeded && (guard.max_gouge_mm, guard.confidence_sigmas) == (0.02, 3));
+    assert!(guard.deepest_with_confidence_mm < 0.0205, "{guard:?}");
     assert!(guard.deepest_mm < guard.deepest_with_confidence_mm, "{guard:?}");
     assert!(guard.moved_mm > 0.02 && !guard.places.is_empty(), "{guard:?}");
     let worst = guard.places.iter().find(|p| p.moved_mm() == guard.moved_mm).unwrap();

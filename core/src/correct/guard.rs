@@ -1,9 +1,9 @@
 //! The gouge guard: what a part may lose at most, whatever the target asks for.
 //!
 //! The target says where the wall should lie; the guard forbids a correction with which it may end deeper than
-//! `max_gouge` at any height of the engaged depth. May: the deepest height, predicted, less two of its standard
+//! `max_gouge` at any height of the engaged depth. May: the deepest height, predicted, less three of its standard
 //! deviations. These follow from the fit and the correction, so the contour is first designed without guard; where that
-//! goes too deep it is designed again with two standard deviations kept free beside every sample, and once more when
+//! goes too deep it is designed again with three standard deviations kept free beside every sample, and once more when
 //! these have changed. What a design leaves of it is taken back at the places. Limits: the standard deviation is that of the fit's parameters; a sharp inside corner, where the
 //! correction is held, is not guarded; the laws kept for comparison know no guard.
 
@@ -18,6 +18,8 @@ use crate::geometry::Vector;
 use crate::identify::{Fit, Prior};
 use crate::units::{Offset, Real, hypot_nm};
 
+/// Standard deviations kept free: the guard holds for the worst place of a whole contour, where two are often used up.
+pub const GUARD_SIGMAS: i32 = 3;
 /// Designs under a guard at most, after the one without.
 const ROUNDS: u16 = 2;
 /// A guard missed by more than this is designed again; less is taken back on the spot.
@@ -143,7 +145,7 @@ fn lift(machine: &Loop, limit: Offset, nodes: &mut [Node], workspace: &mut Desig
     settle_ends(machine.path, nodes);
 }
 
-/// Sets the margin of every wall to two standard deviations of its deepest height.
+/// Sets the margin of every wall to [`GUARD_SIGMAS`] standard deviations of its deepest height.
 fn margins(machine: &Loop, belief: (&Prior, &Fit), wanted: &Design, nodes: &[Node], workspace: &mut DesignWorkspace) {
     pass(machine, wanted, nodes, workspace, &mut |_| ());
     // Between two designs the best correction is of no use: its place holds (deepest, its standard deviation).
@@ -157,7 +159,7 @@ fn margins(machine: &Loop, belief: (&Prior, &Fit), wanted: &Design, nodes: &[Nod
         }
     });
     for (wall, slot) in workspace.profiles.iter_mut().zip(best.iter()) {
-        wall.set_margin(slot.chip.y + slot.chip.y);
+        wall.set_margin(slot.chip.y.scaled(Real::from_int(GUARD_SIGMAS)));
     }
     workspace.best = best;
 }

@@ -15,7 +15,7 @@ mod refine;
 mod uncertainty;
 
 pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design, design_observed};
-pub use guard::{Guarded, guarded_design};
+pub use guard::{GUARD_SIGMAS, Guarded, guarded_design};
 pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, Profile, Target, add_residual, profile};

@@ -47,7 +47,7 @@ pub(super) fn doubts(pass: &Pass, identified: &Identified, correction: &Correcti
             ));
         } else if guard.deepest_with_confidence_mm > guard.max_gouge_mm + 0.001 {
             out.push(format!(
-                "max_gouge_mm = {} is not kept with two standard deviations to spare: up to {:.4} mm may be cut too deep, {:.4} mm are predicted",
+                "max_gouge_mm = {} is not kept with three standard deviations to spare: up to {:.4} mm may be cut too deep, {:.4} mm are predicted",
                 guard.max_gouge_mm, guard.deepest_with_confidence_mm, guard.deepest_mm
             ));
         }

@@ -60,7 +60,7 @@ pub fn guard_summary(path: &Path, correction: &Correction) -> Option<GuardSummar
     let places = places(path, correction);
     Some(GuardSummary {
         max_gouge_mm: mm(max_gouge),
-        confidence_sigmas: 2,
+        confidence_sigmas: truepath_core::correct::GUARD_SIGMAS.unsigned_abs(),
         heeded: correction.wanted.law == Law::Model,
         deepest_mm: mm(walls().map(|wall| -wall.deepest()).max().unwrap_or_default()).max(0.0),
         deepest_with_confidence_mm: mm(walls().map(|wall| wall.margin() - wall.deepest()).max().unwrap_or_default())
