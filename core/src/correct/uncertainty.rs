@@ -10,7 +10,7 @@ use crate::units::{Offset, Real};
 /// Standard deviation of the corrected wall error beside each sample, from the covariance of the fit.
 ///
 /// The machine is displaced along each column of a square root of the covariance and cut again with the correction
-/// held; the squares add up. `workspace.profiles` must hold the corrected wall ([`design`] leaves it so) and is
+/// held; the squares add up. `workspace.profiles` must hold the corrected wall ([`design`](super::design::design) leaves it so) and is
 /// overwritten; `sigma` is as long as the contour's own samples.
 pub fn uncertainty(
     machine: &Loop,

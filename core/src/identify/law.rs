@@ -26,7 +26,7 @@ pub fn identify_law(
     identify_law_observed(path, around, observations, commanded, workspace, &mut |_| ())
 }
 
-/// As [`identify_law`], observed as [`identify_observed`].
+/// As [`identify_law`], observed as [`identify_observed`](super::identify_observed).
 pub fn identify_law_observed(
     path: &Path,
     around: impl Fn(WallLaw) -> Prior,
