@@ -14,6 +14,7 @@ pub mod job;
 pub mod learning;
 pub mod library;
 pub mod measurement;
+pub mod multiaxis;
 pub mod output;
 pub mod pass;
 pub mod plant;

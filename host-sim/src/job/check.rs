@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 use std::path::Path;
 
-use toml::de::DeTable;
 use truepath_core::gcode::{Dialect, PointlessLength};
 use truepath_core::geometry::Side;
 use truepath_core::job::{Cut, Force, ForceModel, Machine};
@@ -18,7 +17,7 @@ use super::check_tool::{reach, tool};
 use super::document::{Section, Spans};
 use super::limits::Limits;
 use super::material::MATERIALS;
-use super::{Decimal, Job, Which};
+use super::{Decimal, Job, Which, notation};
 use crate::diagnostics::{InputError, Source};
 
 /// Names of the controls a program may be written for.
@@ -36,20 +35,10 @@ const DECIMALS: [(&str, PointlessLength); 2] =
 
 /// Reads the whole job.
 pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
-    let text = std::str::from_utf8(source.bytes()).map_err(|error| {
-        let at = error.valid_up_to();
-        InputError::new(
-            "J002",
-            "the job file holds a byte that is not UTF-8",
-            "a text in UTF-8",
-            "save the file as UTF-8",
-        )
-        .at(&source, at..at + 1)
-    })?;
-    let table = DeTable::parse(text).map_err(|error| syntax_error(&source, &error))?;
+    let table = notation::parse(&source, "the job file")?;
     let spans = RefCell::new(Spans::new());
     let root = Section::root(&source, &table, &spans);
-    version(&source, &root)?;
+    notation::version(&source, &root)?;
     let program = root.text("program")?.ok_or_else(|| root.missing("program", "the file name of a G-code program"))?;
     if program.0.is_empty() {
         return Err(root.out_of_range(
@@ -105,40 +94,6 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         spans: spans.into_inner(),
         source: source.clone(),
     })
-}
-
-fn syntax_error(source: &Source, error: &toml::de::Error) -> InputError {
-    let span = error.span().unwrap_or(0..0);
-    let message = error.message().lines().next().unwrap_or("unreadable");
-    let (reason, expected) = match message.split_once(", expected ") {
-        _ if message.starts_with("duplicate") => ("this key is given twice", "every key once"),
-        Some((reason, expected)) => (reason, expected),
-        None => (message, "key = value, [table] or # comment"),
-    };
-    let around = source.bytes().get(span.start.saturating_sub(1)..=span.start).unwrap_or_default();
-    let help = match around {
-        [digit, b','] if digit.is_ascii_digit() => "write a decimal point, not a comma",
-        _ => "correct the line; https://toml.io shows the notation",
-    };
-    InputError::new("J002", format!("the job file is not TOML here: {reason}"), expected, help).at(source, span)
-}
-
-fn version(source: &Source, root: &Section<'_>) -> Result<(), InputError> {
-    let Some(value) = root.value("version") else {
-        return Err(root.missing("version", "version = 1"));
-    };
-    let number = root.number_in(&value, Limits::within("0", "1000000", ""))?;
-    if number.as_whole() == Some(1) {
-        return Ok(());
-    }
-    let found = format!("version is {}", source.excerpt(value.span.clone()));
-    Err(InputError::new(
-        "J010",
-        found,
-        "1, the only version there is",
-        "write version = 1, or use the program the file was made for",
-    )
-    .at(source, value.span))
 }
 
 fn cut(section: &Section<'_>) -> Result<Cut, InputError> {

@@ -63,6 +63,10 @@ impl Decimal {
     pub fn as_real(self) -> Real {
         Real::narrow(div_rounded(self.0 << Real::FRACTION_BITS, 10i128.pow(18)))
     }
+    /// As a binary number, for models in `f64`.
+    pub fn as_f64(self) -> f64 {
+        self.0 as f64 / 1e18
+    }
     /// As a whole number; `None` when it is not one.
     pub fn as_whole(self) -> Option<i64> {
         let one = 10i128.pow(18);

@@ -16,10 +16,10 @@ use super::limits::Limits;
 use crate::diagnostics::{InputError, Source};
 
 /// Where the value of a key stands; keys are written with their table, `tool.diameter_mm`.
-pub(super) type Spans = BTreeMap<String, Range<usize>>;
+pub(crate) type Spans = BTreeMap<String, Range<usize>>;
 
 /// One table of the file.
-pub(super) struct Section<'d> {
+pub(crate) struct Section<'d> {
     source: &'d Source,
     name: &'static str,
     span: Range<usize>,
@@ -29,14 +29,14 @@ pub(super) struct Section<'d> {
 }
 
 /// A value with its place.
-pub(super) struct Value<'d> {
-    pub(super) path: String,
-    pub(super) span: Range<usize>,
-    pub(super) raw: &'d DeValue<'d>,
+pub(crate) struct Value<'d> {
+    pub(crate) path: String,
+    pub(crate) span: Range<usize>,
+    pub(crate) raw: &'d DeValue<'d>,
 }
 
 impl<'d> Section<'d> {
-    pub(super) fn root(source: &'d Source, table: &'d Spanned<DeTable<'d>>, spans: &'d RefCell<Spans>) -> Self {
+    pub(crate) fn root(source: &'d Source, table: &'d Spanned<DeTable<'d>>, spans: &'d RefCell<Spans>) -> Self {
         Self { source, name: "", span: 0..0, table: table.get_ref(), asked: RefCell::default(), spans }
     }
 
@@ -45,7 +45,7 @@ impl<'d> Section<'d> {
     }
 
     /// The value of a key, if it is there.
-    pub(super) fn value(&self, key: &'static str) -> Option<Value<'d>> {
+    pub(crate) fn value(&self, key: &'static str) -> Option<Value<'d>> {
         self.asked.borrow_mut().push(key);
         let value = self.table.get(key)?;
         let path = self.path(key);
@@ -54,7 +54,7 @@ impl<'d> Section<'d> {
     }
 
     /// A sub-table, if it is there.
-    pub(super) fn section(&self, key: &'static str) -> Result<Option<Section<'d>>, InputError> {
+    pub(crate) fn section(&self, key: &'static str) -> Result<Option<Section<'d>>, InputError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let Some(table) = value.raw.as_table() else {
             return Err(self.wrong_type(&value, "a table", &format!("write it as [{key}] with one key a line")));
@@ -70,7 +70,7 @@ impl<'d> Section<'d> {
     }
 
     /// The tables of a list written as `[[key]]`, in order.
-    pub(super) fn sections(&self, key: &'static str) -> Result<Vec<Section<'d>>, InputError> {
+    pub(crate) fn sections(&self, key: &'static str) -> Result<Vec<Section<'d>>, InputError> {
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
         let help = format!("write every one of them as [[{key}]] with one key a line");
         let Some(list) = value.raw.as_array() else { return Err(self.wrong_type(&value, "a list of tables", &help)) };
@@ -85,7 +85,7 @@ impl<'d> Section<'d> {
     }
 
     /// A sub-table that must be there; `needs` lists what belongs in it.
-    pub(super) fn required_section(&self, key: &'static str, needs: &str) -> Result<Section<'d>, InputError> {
+    pub(crate) fn required_section(&self, key: &'static str, needs: &str) -> Result<Section<'d>, InputError> {
         match self.section(key)? {
             Some(section) => Ok(section),
             None => Err(self.missing_or_misspelt(
@@ -99,17 +99,17 @@ impl<'d> Section<'d> {
     }
 
     /// A number within limits, if the key is there.
-    pub(super) fn number(&self, key: &'static str, limits: Limits) -> Result<Option<Decimal>, InputError> {
+    pub(crate) fn number(&self, key: &'static str, limits: Limits) -> Result<Option<Decimal>, InputError> {
         self.value(key).map(|value| self.number_in(&value, limits)).transpose()
     }
 
     /// A number within limits that must be there.
-    pub(super) fn required_number(&self, key: &'static str, limits: Limits) -> Result<Decimal, InputError> {
+    pub(crate) fn required_number(&self, key: &'static str, limits: Limits) -> Result<Decimal, InputError> {
         self.number(key, limits)?.ok_or_else(|| self.missing(key, &format!("a number, {}", limits.phrase())))
     }
 
     /// The number a value holds.
-    pub(super) fn number_in(&self, value: &Value<'_>, limits: Limits) -> Result<Decimal, InputError> {
+    pub(crate) fn number_in(&self, value: &Value<'_>, limits: Limits) -> Result<Decimal, InputError> {
         let text = match value.raw {
             DeValue::Integer(i) if i.radix() == 10 => i.as_str().to_owned(),
             DeValue::Float(f) => f.as_str().to_owned(),
@@ -134,7 +134,7 @@ impl<'d> Section<'d> {
     }
 
     /// A whole number within limits, if the key is there.
-    pub(super) fn whole<T: TryFrom<i64>>(
+    pub(crate) fn whole<T: TryFrom<i64>>(
         &self,
         key: &'static str,
         limits: Limits,
@@ -147,7 +147,7 @@ impl<'d> Section<'d> {
     }
 
     /// A text, if the key is there.
-    pub(super) fn text(&self, key: &'static str) -> Result<Option<(&'d str, Value<'d>)>, InputError> {
+    pub(crate) fn text(&self, key: &'static str) -> Result<Option<(&'d str, Value<'d>)>, InputError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.raw.as_str() {
             Some(text) => Ok(Some((text, value))),
@@ -156,7 +156,7 @@ impl<'d> Section<'d> {
     }
 
     /// One of a list of names, if the key is there.
-    pub(super) fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Result<Option<T>, InputError> {
+    pub(crate) fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Result<Option<T>, InputError> {
         let Some((text, value)) = self.text(key)? else { return Ok(None) };
         match choices.iter().find(|(name, _)| *name == text) {
             Some((_, choice)) => Ok(Some(*choice)),
@@ -173,18 +173,18 @@ impl<'d> Section<'d> {
     }
 
     /// An error at a value that is well formed but not allowed.
-    pub(super) fn out_of_range(&self, value: &Value<'_>, expected: &str, help: &str) -> InputError {
+    pub(crate) fn out_of_range(&self, value: &Value<'_>, expected: &str, help: &str) -> InputError {
         let found = format!("{} is {}", value.path, self.source.excerpt(value.span.clone()));
         InputError::new("J006", found, expected, help).at(self.source, value.span.clone())
     }
 
     /// An error at a value that another one excludes.
-    pub(super) fn contradiction(&self, value: &Value<'_>, found: &str, expected: &str, help: &str) -> InputError {
+    pub(crate) fn contradiction(&self, value: &Value<'_>, found: &str, expected: &str, help: &str) -> InputError {
         InputError::new("J008", found, expected, help).at(self.source, value.span.clone())
     }
 
     /// An error at a value of the wrong type.
-    pub(super) fn wrong_type(&self, value: &Value<'_>, expected: &str, help: &str) -> InputError {
+    pub(crate) fn wrong_type(&self, value: &Value<'_>, expected: &str, help: &str) -> InputError {
         let article = match value.raw.type_str() {
             kind @ ("integer" | "array") => format!("an {kind}"),
             "string" => "a text".to_owned(),
@@ -196,7 +196,7 @@ impl<'d> Section<'d> {
     }
 
     /// The error of a key that must be there.
-    pub(super) fn missing(&self, key: &'static str, expected: &str) -> InputError {
+    pub(crate) fn missing(&self, key: &'static str, expected: &str) -> InputError {
         let place =
             if self.name.is_empty() { "at the top of the file".to_owned() } else { format!("under [{}]", self.name) };
         self.missing_or_misspelt(
@@ -229,7 +229,7 @@ impl<'d> Section<'d> {
     ///
     /// # Errors
     /// `J003` at the first key nobody asked for.
-    pub(super) fn close(&self) -> Result<(), InputError> {
+    pub(crate) fn close(&self) -> Result<(), InputError> {
         let asked = self.asked.borrow();
         let unknown =
             self.table.keys().filter(|key| !asked.contains(&key.get_ref().as_ref())).min_by_key(|key| key.span().start);
@@ -250,7 +250,7 @@ impl<'d> Section<'d> {
     }
 
     /// The text of the file at a span.
-    pub(super) fn text_at(&self, span: Range<usize>) -> String {
+    pub(crate) fn text_at(&self, span: Range<usize>) -> String {
         self.source.excerpt(span)
     }
 

@@ -4,7 +4,7 @@ use super::decimal::Decimal;
 
 /// A closed or half-open range of a quantity. The bounds are decimal text, so that they mean what they say.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
+pub(crate) struct Limits {
     low: &'static str,
     high: &'static str,
     above: bool,
@@ -13,14 +13,14 @@ pub(super) struct Limits {
 
 impl Limits {
     /// `low ≤ value ≤ high`.
-    pub(super) const fn within(low: &'static str, high: &'static str, unit: &'static str) -> Self {
+    pub(crate) const fn within(low: &'static str, high: &'static str, unit: &'static str) -> Self {
         Self { low, high, above: false, unit }
     }
     /// `low < value ≤ high`.
-    pub(super) const fn above(low: &'static str, high: &'static str, unit: &'static str) -> Self {
+    pub(crate) const fn above(low: &'static str, high: &'static str, unit: &'static str) -> Self {
         Self { low, high, above: true, unit }
     }
-    pub(super) fn admits(self, value: Decimal) -> bool {
+    pub(crate) fn admits(self, value: Decimal) -> bool {
         // Bounds are literals of this crate; one that is no number admits nothing and fails every test.
         let bound = |text| Decimal::parse(text);
         let (Some(low), Some(high)) = (bound(self.low), bound(self.high)) else {
@@ -29,7 +29,7 @@ impl Limits {
         value <= high && if self.above { value > low } else { value >= low }
     }
     /// "0.1 to 100 mm", "above 0, up to 100 mm".
-    pub(super) fn phrase(self) -> String {
+    pub(crate) fn phrase(self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
         if self.above {
             format!("above {}, up to {}{unit}", self.low, self.high)

@@ -28,9 +28,10 @@ mod check_probe;
 mod check_stock;
 mod check_tool;
 mod decimal;
-mod document;
-mod limits;
+pub(crate) mod document;
+pub(crate) mod limits;
 mod material;
+pub(crate) mod notation;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};

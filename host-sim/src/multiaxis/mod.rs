@@ -1,0 +1,17 @@
+//! Five axes: the error a simultaneous move makes because its joints, not its tool, move in straight lines.
+//!
+//! Source: Tian, "Optimization Method of Process Parameters for Multi-axis NC Machining of Complex Surfaces" (T),
+//! repaired where it is wrong; every module says where. [`machine`] is the chain of joints, [`kinematics`] its forward and
+//! inverse transformation, [`chord`] the error of one move, [`division`] the locations inserted against it.
+//!
+//! Limits: a host tool in `f64`; nothing of it runs on the device.
+
+pub mod chord;
+pub mod division;
+pub mod kinematics;
+pub mod machine;
+
+pub use chord::{ChordError, chord_error, chord_estimate};
+pub use division::{Division, DivisionError, Rule, divide};
+pub use kinematics::{Joints, Pose};
+pub use machine::Machine;
