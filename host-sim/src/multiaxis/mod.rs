@@ -2,16 +2,20 @@
 //!
 //! Source: Tian, "Optimization Method of Process Parameters for Multi-axis NC Machining of Complex Surfaces" (T),
 //! repaired where it is wrong; every module says where. [`machine`] is the chain of joints, [`kinematics`] its forward and
-//! inverse transformation, [`chord`] the error of one move, [`division`] the locations inserted against it.
+//! inverse transformation, [`chord`] the error of one move, [`division`] the locations inserted against it, [`singular`]
+//! the neighbourhood of the pole, [`ball`] the contact point of a ball end, [`statistics`] the figures before and after.
 //!
 //! Limits: a host tool in `f64`; nothing of it runs on the device.
 
+pub mod ball;
 pub mod chord;
 pub mod division;
 pub mod kinematics;
 pub mod machine;
+pub mod singular;
+pub mod statistics;
 
 pub use chord::{ChordError, chord_error, chord_estimate};
-pub use division::{Division, DivisionError, Rule, divide};
+pub use division::{Division, DivisionError, Insertion, Rule, divide, insert};
 pub use kinematics::{Joints, Pose};
 pub use machine::Machine;

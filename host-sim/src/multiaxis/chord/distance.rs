@@ -5,7 +5,7 @@ use super::super::kinematics::{Course, Jet};
 use super::certified::{Curve, Sample};
 
 /// The distance of a course from the segment between its ends.
-pub(in super::super) struct FromChord<'c> {
+pub(super) struct FromChord<'c> {
     course: &'c Course,
     start: Vector,
     /// Unit vector of the chord; zero when it has no length.
@@ -14,7 +14,7 @@ pub(in super::super) struct FromChord<'c> {
 }
 
 impl<'c> FromChord<'c> {
-    pub(in super::super) fn new(course: &'c Course) -> Self {
+    pub(super) fn new(course: &'c Course) -> Self {
         let start = course.place(0.0);
         let chord = sub(course.place(1.0), start);
         let length = norm(chord);

@@ -18,7 +18,8 @@ mod distance;
 use super::Machine;
 use super::kinematics::vector::{Vector, add_scaled, dot, norm, sub};
 use super::kinematics::{Course, Joints};
-use certified::{largest, stays_within};
+use certified::stays_within;
+pub(super) use certified::{Curve, Sample, largest};
 use distance::FromChord;
 
 /// The chord error of a move, mm.

@@ -14,12 +14,14 @@
 //!
 //! Limits: at most [`MOST_PIECES`] pieces a move; tolerances the rounding of `f64` cannot resolve are an error.
 
+mod insert;
 mod rules;
 mod span;
 
 use super::Machine;
 use super::kinematics::Joints;
-pub(super) use span::Span;
+pub use insert::{Insertion, Orientation, insert};
+use span::Span;
 
 /// Pieces of one move, at most.
 pub const MOST_PIECES: usize = 10_000;

@@ -7,7 +7,7 @@ use super::super::kinematics::vector::{Vector, add_scaled, sub};
 
 /// A move and its chord.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Span<'m> {
+pub(super) struct Span<'m> {
     machine: &'m Machine,
     from: Joints,
     to: Joints,
@@ -17,7 +17,7 @@ pub(in super::super) struct Span<'m> {
 }
 
 impl<'m> Span<'m> {
-    pub(in super::super) fn new(machine: &'m Machine, from: &Joints, to: &Joints, tolerance_mm: f64) -> Self {
+    pub(super) fn new(machine: &'m Machine, from: &Joints, to: &Joints, tolerance_mm: f64) -> Self {
         let start = machine.counted(from);
         let chord = sub(machine.counted(to), start);
         Self { machine, from: *from, to: *to, start, chord, tolerance_mm }
@@ -29,14 +29,18 @@ impl<'m> Span<'m> {
     }
 
     /// The joints at the parameter `s`: counted point on the chord, rotary words linear.
-    pub(in super::super) fn joints(&self, s: f64) -> Joints {
+    pub(super) fn joints(&self, s: f64) -> Joints {
         if s <= 0.0 {
             return self.from;
         }
         if s >= 1.0 {
             return self.to;
         }
-        let rotary = self.from.towards(&self.to, s).rotary;
+        self.place(s, self.from.towards(&self.to, s).rotary)
+    }
+
+    /// The joints that put the counted point on the chord at `s` with other rotary words.
+    pub(super) fn place(&self, s: f64, rotary: [f64; 2]) -> Joints {
         self.machine.inverse_counted(add_scaled(self.start, self.chord, s), rotary)
     }
 

@@ -23,8 +23,10 @@
 //! Limits: ideal geometry (axes parallel to X, Y, Z; no 45° nutating heads), two rotary axes about different letters.
 
 mod read;
+mod travel;
 
 use super::kinematics::vector::Vector;
+pub use travel::Beyond;
 
 /// Which side the rotary axes are on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
