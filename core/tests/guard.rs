@@ -61,8 +61,7 @@ impl Case {
     fn made(&self, wanted: &Design, guarded: bool) -> Made {
         let parameters = &self.fit.parameters;
         let table = ForceTable::new(parameters.coefficients.size_exponent);
-        let (coefficients, compliance) = (parameters.coefficients, parameters.compliance);
-        let machine = Loop { path: &self.path, table: &table, coefficients, compliance, undersize: Offset::ZERO };
+        let machine = parameters.machine(&self.path, &table);
         let (n, w) = (self.path.count(), self.path.working().len());
         let mut workspace = DesignWorkspace {
             states: &mut vec![State::REST; w],

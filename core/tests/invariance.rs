@@ -91,13 +91,7 @@ fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, 
     let mut lent = PredictionWorkspace { states: &mut s, displacements: &mut d };
     let fit = identify(&path, &prior, &mut observations, |_| Vector::ZERO, &mut lent);
     let table = ForceTable::new(fit.parameters.coefficients.size_exponent);
-    let machine = Loop {
-        path: &path,
-        table: &table,
-        coefficients: fit.parameters.coefficients,
-        compliance: fit.parameters.compliance,
-        undersize: fit.parameters.undersize,
-    };
+    let machine = fit.parameters.machine(&path, &table);
     (fit, designed(&machine))
 }
 

@@ -5,7 +5,7 @@ use super::corner::{coefficients, corner as papers_corner, path, real, setup};
 use super::part;
 use std::hint::black_box;
 use truepath_core::correct::{self, Band, Design, DesignWorkspace, Law, Node, Predicted, Profile, Target, Update};
-use truepath_core::cut::{Coefficients, Compliance, ForceTable, Loop, Path, State, WallLaw};
+use truepath_core::cut::{Coefficients, Compliance, ForceTable, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{self as fit, Observation, PredictionWorkspace, Prior};
 use truepath_core::units::{Offset, Real};
@@ -117,13 +117,7 @@ pub fn design(part: Part) -> Work {
     let mut nodes = vec![Node::default(); part.path.count()];
     let mut predicted = vec![Predicted::default(); part.path.count()];
     Box::new(move || {
-        let machine = Loop {
-            path: &part.path,
-            table: &table,
-            coefficients: parameters.coefficients,
-            compliance: parameters.compliance,
-            undersize: parameters.undersize,
-        };
+        let machine = parameters.machine(&part.path, &table);
         black_box(correct::design(&machine, &wanted, &mut nodes, &mut predicted, &mut lent.design()));
     })
 }

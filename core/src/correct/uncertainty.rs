@@ -57,13 +57,7 @@ pub(super) fn spread(
         if parameters.coefficients.size_exponent != table.size_exponent() {
             table.tabulate(parameters.coefficients.size_exponent);
         }
-        let displaced = Loop {
-            path,
-            table: &table,
-            coefficients: parameters.coefficients,
-            compliance: parameters.compliance,
-            undersize: parameters.undersize,
-        };
+        let displaced = parameters.machine(path, &table);
         displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
         walls(&displaced, wanted, workspace);
         workspace.profiles.iter().enumerate().for_each(|(index, wall)| take(index, wall));

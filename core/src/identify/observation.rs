@@ -1,7 +1,7 @@
 //! What was probed, and what the model says the probe should have found there.
 
 use super::parameters::{COUNT, Parameters};
-use crate::cut::{Envelope, ForceTable, Loop, Path, State};
+use crate::cut::{Envelope, ForceTable, Path, State};
 use crate::geometry::{Direction, Vector};
 use crate::units::{Offset, Real, hypot_nm};
 
@@ -105,13 +105,7 @@ pub fn predict(
     observations: &mut [Observation],
     workspace: &mut PredictionWorkspace,
 ) {
-    let machine = Loop {
-        path,
-        table,
-        coefficients: parameters.coefficients,
-        compliance: parameters.compliance,
-        undersize: parameters.undersize,
-    };
+    let machine = parameters.machine(path, table);
     let working = path.working();
     let mut place: Option<(Offset, usize, usize)> = None;
     for observation in observations.iter_mut() {

@@ -1,6 +1,6 @@
 //! What is identified, and what is believed about it beforehand.
 
-use crate::cut::{Coefficients, Compliance, WallLaw};
+use crate::cut::{Coefficients, Compliance, ForceTable, Loop, Path, WallLaw};
 use crate::geometry::Vector;
 use crate::units::{Offset, Real, exp2, log2};
 
@@ -267,6 +267,12 @@ fn positive(mean: Real, difference: Real, cross: Real, bend: Real) -> Compliance
 }
 
 impl Parameters {
+    /// The machine of these parameters at work on a path. The table is that of their size exponent.
+    pub const fn machine<'a>(&self, path: &'a Path<'a>, table: &'a ForceTable) -> Loop<'a> {
+        let Self { coefficients, compliance, undersize, .. } = *self;
+        Loop { path, table, coefficients, compliance, undersize }
+    }
+
     /// Values in the order of the fit; units by [`Parameter::unit`].
     pub fn values(&self) -> [Real; COUNT] {
         let (k, c) = (&self.coefficients, &self.compliance);

@@ -66,13 +66,6 @@ impl Identified {
 
     /// The identified machine on a path.
     pub const fn machine<'a>(&self, path: &'a Path<'a>, table: &'a ForceTable) -> Loop<'a> {
-        let parameters = &self.fit.parameters;
-        Loop {
-            path,
-            table,
-            coefficients: parameters.coefficients,
-            compliance: parameters.compliance,
-            undersize: parameters.undersize,
-        }
+        self.fit.parameters.machine(path, table)
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path as FilePath;
 
 use truepath_core::correct::{Band, Profile, profile};
-use truepath_core::cut::{ForceTable, Loop, State};
+use truepath_core::cut::{ForceTable, State};
 use truepath_core::geometry::Vector;
 
 use crate::diagnostics::{Failure, InputError, Source};
@@ -63,13 +63,7 @@ pub fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<Trace, Failu
     let path = pass.sample(&mut buffer)?;
     let prior = pass.core.prior(pass.core.setup.law).mean;
     let table = ForceTable::new(prior.coefficients.size_exponent);
-    let machine = Loop {
-        path: &path,
-        table: &table,
-        coefficients: prior.coefficients,
-        compliance: prior.compliance,
-        undersize: prior.undersize,
-    };
+    let machine = prior.machine(&path, &table);
     let mut states = vec![State::REST; path.working().len()];
     let passage = machine.run(path.working().start, &mut states, |_| Vector::ZERO);
     if passage.unsettled > 0 {

@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use truepath_core::cut::{ForceTable, Loop, Path, Sample, State};
+use truepath_core::cut::{ForceTable, Path, Sample, State};
 use truepath_core::geometry::{Point, Shape};
 use truepath_core::units::{Offset, Real};
 
@@ -148,13 +148,7 @@ pub(super) fn candidates(
 fn states(path: &Path, belief: &Belief) -> Vec<State> {
     let parameters = belief.parameters();
     let table = ForceTable::new(parameters.coefficients.size_exponent);
-    let machine = Loop {
-        path,
-        table: &table,
-        coefficients: parameters.coefficients,
-        compliance: parameters.compliance,
-        undersize: parameters.undersize,
-    };
+    let machine = parameters.machine(path, &table);
     let working = path.working();
     let mut states = vec![State::REST; working.len()];
     machine.run(working.start, &mut states, |i| belief.commanded(path, i));

@@ -5,7 +5,7 @@
 //! to the corrected wall; with the covariance of the unknowns it gives its standard deviation there.
 
 use truepath_core::correct::{Design, Node, Profile, profile};
-use truepath_core::cut::{ForceTable, Loop, Path, State};
+use truepath_core::cut::{ForceTable, Path, State};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{COUNT, Parameter, Parameters};
 use truepath_core::units::{Offset, Real};
@@ -65,13 +65,7 @@ impl Goal {
 /// The target quantity beside every sample when a machine of these parameters cuts with the correction.
 fn wall(path: &Path, belief: &Belief, parameters: &Parameters, wanted: &Design) -> Vec<Offset> {
     let table = ForceTable::new(parameters.coefficients.size_exponent);
-    let machine = Loop {
-        path,
-        table: &table,
-        coefficients: parameters.coefficients,
-        compliance: parameters.compliance,
-        undersize: parameters.undersize,
-    };
+    let machine = parameters.machine(path, &table);
     let working = path.working();
     let mut states = vec![State::REST; working.len()];
     machine.run(working.start, &mut states, |i| belief.commanded(path, i));
