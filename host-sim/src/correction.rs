@@ -3,7 +3,7 @@
 
 use truepath_core::correct::{
     Band, Damped, Design, DesignStep, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Update, add_residual,
-    commanded, guarded_design, profile, uncertainty,
+    commanded, guarded_design, guarded_given, profile,
 };
 use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
@@ -95,7 +95,7 @@ pub struct Wish<'a> {
     pub residual: &'a [Offset],
     /// Its standard deviation, the same way.
     pub residual_sigma: &'a [Offset],
-    /// A correction that is kept as it is instead of a new one.
+    /// A correction that is used again instead of a new one, as far as the guard allows.
     pub kept: Option<&'a [Node]>,
 }
 
@@ -127,25 +127,23 @@ pub fn corrected(
     let mut predicted = vec![Predicted::default(); count];
     let mut sigma = vec![Offset::ZERO; count];
     let belief = (identified.prior(), identified.fit());
-    let mut made = Guarded { nodes: &mut nodes, unguarded: &mut unguarded, predicted: &mut predicted, damped: None };
-    let passage = guarded_design(machine, belief, &wanted, &mut made, &mut workspace, &mut |step| {
-        if let DesignStep::Done { permille, .. } = step {
-            progress(0.6 * f64::from(permille) / 1000.0);
-        }
-    });
-    let damped = made.damped.filter(|_| wish.kept.is_none());
-    let passage = match wish.kept {
-        None => passage,
-        Some(kept) => {
-            let (walls, passage) = walls(machine, wanted.band, kept, wish.residual);
-            nodes.copy_from_slice(kept);
-            unguarded.copy_from_slice(kept);
-            predicted.iter_mut().zip(walls).for_each(|(p, wall)| p.after = wall);
-            passage
-        }
+    let mut made = Guarded {
+        nodes: &mut nodes,
+        unguarded: &mut unguarded,
+        predicted: &mut predicted,
+        sigma: &mut sigma,
+        damped: None,
     };
+    let passage = match wish.kept {
+        Some(kept) => guarded_given(machine, belief, &wanted, kept, &mut made, &mut workspace),
+        None => guarded_design(machine, belief, &wanted, &mut made, &mut workspace, &mut |step| {
+            if let DesignStep::Done { permille, .. } = step {
+                progress(0.9 * f64::from(permille) / 1000.0);
+            }
+        }),
+    };
+    let damped = made.damped;
     job::check_clamp(&pass.job.numbers, path, &nodes).map_err(|error| pass.refused(&error))?;
-    uncertainty(machine, belief, &wanted, &nodes, &predicted, &mut sigma, &mut workspace);
     for (sigma, more) in sigma.iter_mut().zip(wish.residual_sigma) {
         *sigma = hypot_nm(*sigma, *more);
     }

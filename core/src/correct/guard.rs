@@ -12,11 +12,10 @@ use super::node::Node;
 use super::profile::Profile;
 use super::prudence::{Damped, damp};
 use super::refine::settle_ends;
-use super::uncertainty::spread;
+use super::uncertainty::{deviations, of_aim, of_deepest};
 use crate::cut::{Loop, Passage};
-use crate::geometry::Vector;
 use crate::identify::{Fit, Prior};
-use crate::units::{Offset, Real, hypot_nm};
+use crate::units::{Offset, Real};
 
 /// Standard deviations kept free: the guard holds for the worst place of a whole contour, where two are often used up.
 pub const GUARD_SIGMAS: i32 = 3;
@@ -38,6 +37,8 @@ pub struct Guarded<'a> {
     pub unguarded: &'a mut [Node],
     /// Predicted walls; as long as `nodes`, or empty.
     pub predicted: &'a mut [Predicted],
+    /// Standard deviation of the error the target aims at, with the correction; as long as `nodes`, or empty.
+    pub sigma: &'a mut [Offset],
     /// Where only a share of it is applied, if anywhere; set by the design.
     pub damped: Option<Damped>,
 }
@@ -53,7 +54,7 @@ pub fn guarded_design(
     workspace: &mut DesignWorkspace,
     observe: &mut dyn FnMut(DesignStep<'_>),
 ) -> Passage {
-    let limit = wanted.max_gouge.filter(|_| wanted.law == Law::Model);
+    let limit = limit(wanted);
     let free = Design { max_gouge: None, ..*wanted };
     let designs = if limit.is_some() { ROUNDS.saturating_add(1) } else { 1 };
     let (mut done, mut round) = (0u16, 0u16);
@@ -76,11 +77,17 @@ pub fn guarded_design(
         tell(0, 0, &mut done, step);
     });
     copy(made.nodes, made.unguarded);
+    // Whether the place of the best correction holds the deviations of the one there is.
+    let mut known = false;
     while let Some(limit) = limit
         && round < ROUNDS
     {
         round = round.saturating_add(1);
+        if round == 1 {
+            pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+        }
         margins(machine, belief, wanted, made.nodes, workspace);
+        known = true;
         // The walls of the correction itself, beside the margins.
         passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
         if workspace.profiles.iter().all(|p| missed(p, limit) <= MISSED) {
@@ -90,25 +97,94 @@ pub fn guarded_design(
         passage = design_observed(machine, wanted, made.nodes, made.predicted, workspace, &mut |step| {
             tell(round, before, &mut done, step);
         });
+        known = false;
     }
     made.damped = None;
     if wanted.law == Law::Model {
+        let cut_anew = !known;
+        if cut_anew {
+            deviations(machine, belief, wanted, made.nodes, workspace);
+        }
+        hand_out(workspace.best, made.sigma);
         let both = [&mut *made.nodes, &mut *made.unguarded];
-        made.damped = damp(machine, belief, wanted, uncorrected, both, workspace);
-        passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+        made.damped = damp(machine.path, uncorrected, both, workspace.best);
+        known = made.damped.is_none();
+        if cut_anew || !known {
+            passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+        }
     }
+    finish(machine, belief, wanted, (known, passage), made, workspace)
+}
+
+/// A correction that is given instead of designed, under the guard of `wanted` as the fit knows the machine now: where
+/// it would go too deep it is taken back. On return as after [`guarded_design`]; the target alone wants what was given.
+pub fn guarded_given(
+    machine: &Loop,
+    belief: (&Prior, &Fit),
+    wanted: &Design,
+    given: &[Node],
+    made: &mut Guarded<'_>,
+    workspace: &mut DesignWorkspace,
+) -> Passage {
+    made.damped = None;
+    workspace.profiles.fill(Profile::default());
+    made.nodes.fill(Node::default());
+    pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+    for (p, before) in made.predicted.iter_mut().zip(workspace.profiles.iter()) {
+        p.before = *before;
+    }
+    copy(given, made.nodes);
+    copy(given, made.unguarded);
+    let passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+    let known = limit(wanted).is_some();
+    if known {
+        margins(machine, belief, wanted, made.nodes, workspace);
+        hand_out(workspace.best, made.sigma);
+        pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+    }
+    finish(machine, belief, wanted, (known, passage), made, workspace)
+}
+
+/// The guard of a design: other laws than the model's heed none.
+fn limit(wanted: &Design) -> Option<Offset> {
+    wanted.max_gouge.filter(|_| wanted.law == Law::Model)
+}
+
+/// Takes back what the guard forbids of the correction whose walls the workspace holds, and says what remains.
+/// Its standard deviations may be known already.
+fn finish(
+    machine: &Loop,
+    belief: (&Prior, &Fit),
+    wanted: &Design,
+    (mut known, mut passage): (bool, Passage),
+    made: &mut Guarded<'_>,
+    workspace: &mut DesignWorkspace,
+) -> Passage {
     for _ in 0..LIFTS {
-        let Some(limit) = limit else { break };
+        let Some(limit) = limit(wanted) else { break };
         if workspace.profiles.iter().all(|p| missed(p, limit) == Offset::ZERO) {
             break;
         }
         lift(machine, limit, made.nodes, workspace);
         passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+        known = false;
     }
     for (p, wall) in made.predicted.iter_mut().zip(workspace.profiles.iter()) {
         p.after = *wall;
     }
+    if !known && !made.sigma.is_empty() {
+        deviations(machine, belief, wanted, made.nodes, workspace);
+        hand_out(workspace.best, made.sigma);
+        passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
+    }
     passage
+}
+
+/// Hands out the deviations of the aimed error.
+fn hand_out(slots: &[Node], sigma: &mut [Offset]) {
+    for (sigma, slot) in sigma.iter_mut().zip(slots) {
+        *sigma = of_aim(slot);
+    }
 }
 
 /// By how much a wall lies deeper than the guard and its margin allow.
@@ -145,21 +221,11 @@ fn lift(machine: &Loop, limit: Offset, nodes: &mut [Node], workspace: &mut Desig
     settle_ends(machine.path, nodes);
 }
 
-/// Sets the margin of every wall to [`GUARD_SIGMAS`] standard deviations of its deepest height.
+/// Sets the margin of every wall to [`GUARD_SIGMAS`] standard deviations of its deepest height. The workspace holds the
+/// walls of the correction before, and its [`deviations`] afterwards.
 fn margins(machine: &Loop, belief: (&Prior, &Fit), wanted: &Design, nodes: &[Node], workspace: &mut DesignWorkspace) {
-    pass(machine, wanted, nodes, workspace, &mut |_| ());
-    // Between two designs the best correction is of no use: its place holds (deepest, its standard deviation).
-    let best = core::mem::take(&mut workspace.best);
-    for (slot, wall) in best.iter_mut().zip(workspace.profiles.iter()) {
-        *slot = Node { chip: Vector { x: wall.deepest(), y: Offset::ZERO }, edge: Vector::ZERO };
+    deviations(machine, belief, wanted, nodes, workspace);
+    for (wall, slot) in workspace.profiles.iter_mut().zip(workspace.best.iter()) {
+        wall.set_margin(of_deepest(slot).scaled(Real::from_int(GUARD_SIGMAS)));
     }
-    spread(machine, belief, wanted, nodes, workspace, &mut |index, wall| {
-        if let Some(slot) = best.get_mut(index) {
-            slot.chip.y = hypot_nm(slot.chip.y, wall.deepest() - slot.chip.x);
-        }
-    });
-    for (wall, slot) in workspace.profiles.iter_mut().zip(best.iter()) {
-        wall.set_margin(slot.chip.y.scaled(Real::from_int(GUARD_SIGMAS)));
-    }
-    workspace.best = best;
 }

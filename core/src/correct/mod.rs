@@ -15,10 +15,9 @@ mod refine;
 mod uncertainty;
 
 pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design, design_observed};
-pub use guard::{GUARD_SIGMAS, Guarded, guarded_design};
+pub use guard::{GUARD_SIGMAS, Guarded, guarded_design, guarded_given};
 pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, Profile, Target, add_residual, profile};
 pub use prudence::Damped;
 pub use refine::Update;
-pub use uncertainty::uncertainty;

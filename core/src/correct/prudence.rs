@@ -10,15 +10,12 @@
 //! that of the fit's parameters, not of what the model lacks; a share makes the wall better with more certainty, but by
 //! less.
 
-use super::design::{Design, DesignWorkspace};
 use super::node::Node;
-use super::profile::Profile;
 use super::refine::settle_ends;
-use super::uncertainty::spread;
-use crate::cut::Loop;
+use super::uncertainty::of_aim;
+use crate::cut::Path;
 use crate::geometry::Vector;
-use crate::identify::{Fit, Prior};
-use crate::units::{Offset, Real, hypot_nm};
+use crate::units::{Offset, Real};
 
 /// Standard deviations of the wall that the largest error has to outweigh for a whole correction.
 const SIGMAS: i32 = 3;
@@ -39,45 +36,31 @@ pub struct Damped {
     pub to: usize,
 }
 
-/// Damps a correction, and the one without guard beside it, where the walls of `workspace.profiles`, which it leaves, are
-/// known badly beside the largest error of the uncorrected wall. The workspace is overwritten.
+/// Damps a correction, and the one without guard beside it, where its wall is known badly beside the largest error of the
+/// uncorrected wall. `slots` hold the [`deviations`](super::uncertainty::deviations) of the wall and are overwritten.
 pub(super) fn damp(
-    machine: &Loop,
-    belief: (&Prior, &Fit),
-    wanted: &Design,
+    path: &Path,
     uncorrected: Offset,
     [nodes, unguarded]: [&mut [Node]; 2],
-    workspace: &mut DesignWorkspace,
+    slots: &mut [Node],
 ) -> Option<Damped> {
-    let aimed = |wall: &Profile| wall.aim(wanted.target, None);
-    // After a design the best correction is of no use: its place holds (aimed error, its standard deviation).
-    let best = core::mem::take(&mut workspace.best);
-    for (slot, wall) in best.iter_mut().zip(workspace.profiles.iter()) {
-        *slot = Node { chip: Vector { x: aimed(wall), y: Offset::ZERO }, edge: Vector::ZERO };
-    }
-    spread(machine, belief, wanted, nodes, workspace, &mut |index, wall| {
-        if let Some(slot) = best.get_mut(index) {
-            slot.chip.y = hypot_nm(slot.chip.y, aimed(wall) - slot.chip.x);
-        }
-    });
-    let samples = machine.path.samples().iter().skip(machine.path.first());
-    for (slot, sample) in best.iter_mut().zip(samples) {
+    let samples = path.samples().iter().skip(path.first());
+    for (slot, sample) in slots.iter_mut().zip(samples) {
         // Around a sharp inside corner the correction is held.
-        let sigma = if sample.near_corner { Offset::ZERO } else { slot.chip.y };
+        let sigma = if sample.near_corner { Offset::ZERO } else { of_aim(slot) };
         slot.chip = Vector { x: sigma.scaled(Real::from_int(SIGMAS)), y: sigma };
     }
-    envelope(best, machine.path.is_closed());
-    let damped = stretch(best, uncorrected);
+    envelope(slots, path.is_closed());
+    let damped = stretch(slots, uncorrected);
     if damped.is_some() {
         for nodes in [nodes, unguarded] {
-            for (node, slot) in nodes.iter_mut().zip(best.iter()) {
+            for (node, slot) in nodes.iter_mut().zip(slots.iter()) {
                 let share = share(slot, uncorrected);
                 *node = Node { chip: node.chip.scaled(share), edge: node.edge.scaled(share) };
             }
-            settle_ends(machine.path, nodes);
+            settle_ends(path, nodes);
         }
     }
-    workspace.best = best;
     damped
 }
 

@@ -162,7 +162,7 @@ fn designed(
     let wanted = pass.job.design(correction::law(pass, &machine, contacts));
     let (mut error_before, mut passes) = (Offset::ZERO, 0);
     let belief = (&identified.prior, &identified.fit);
-    let mut made = Guarded { nodes, unguarded: &mut [], predicted: &mut [], damped: None };
+    let mut made = Guarded { nodes, unguarded: &mut [], predicted: &mut [], sigma: &mut [], damped: None };
     let passage = guarded_design(&machine, belief, &wanted, &mut made, lent, &mut |step| match step {
         DesignStep::Uncorrected(walls) => error_before = worst(walls, wanted.target),
         DesignStep::Done { passes: done, permille } => {

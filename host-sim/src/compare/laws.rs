@@ -1,6 +1,6 @@
 //! The corrections that are compared.
 
-use truepath_core::correct::{DesignStep, Guarded, Law, Node, Predicted, design_observed, guarded_design};
+use truepath_core::correct::{DesignStep, Guarded, Law, Node, design_observed, guarded_design};
 use truepath_core::cut::Loop;
 use truepath_core::geometry::Vector;
 use truepath_core::job::{self, LawName};
@@ -91,8 +91,7 @@ fn model(pass: &Pass, machine: &Loop, identified: &Identified, progress: &mut dy
     let wanted = pass.job.numbers.design(Law::Model);
     let mut buffers = Buffers::of(machine.path);
     let mut nodes = vec![Node::default(); machine.path.count()];
-    let mut made =
-        Guarded { nodes: &mut nodes, unguarded: &mut [], predicted: &mut [] as &mut [Predicted], damped: None };
+    let mut made = Guarded { nodes: &mut nodes, unguarded: &mut [], predicted: &mut [], sigma: &mut [], damped: None };
     let belief = (identified.prior(), identified.fit());
     guarded_design(machine, belief, &wanted, &mut made, &mut buffers.workspace(&[]), &mut |step| {
         if let DesignStep::Done { permille, .. } = step {
