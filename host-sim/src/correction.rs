@@ -37,6 +37,8 @@ pub struct Correction {
     pub sigma: Vec<Offset>,
     /// Where only a share of it is applied, if anywhere.
     pub damped: Option<Damped>,
+    /// Whether it was used before; `unguarded` is then what it was.
+    pub used_again: bool,
     /// What it was designed for.
     pub wanted: Design,
     /// How the elastic loop fared.
@@ -148,7 +150,8 @@ pub fn corrected(
         *sigma = hypot_nm(*sigma, *more);
     }
     progress(1.0);
-    Ok(Correction { nodes, unguarded, predicted, sigma, damped, wanted, passage })
+    let used_again = wish.kept.is_some();
+    Ok(Correction { nodes, unguarded, predicted, sigma, damped, used_again, wanted, passage })
 }
 
 /// Memory of a design.

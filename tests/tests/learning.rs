@@ -3,7 +3,7 @@
 
 mod learning_support;
 
-use learning_support::Shop;
+use learning_support::{Shop, moved};
 
 macro_rules! demo {
     ($part:literal, $file:literal) => {
@@ -152,15 +152,4 @@ fn what_is_learned_turns_with_the_part_to_the_last_bit() {
     for ((x, y), turned) in one.into_iter().zip(other) {
         assert_eq!((-y, x), turned);
     }
-}
-
-/// A probe file whose points are moved.
-fn moved(text: &str, motion: impl Fn(f64, f64) -> (f64, f64)) -> String {
-    let line = |line: &str| {
-        let mut words = line.split(' ');
-        let mut next = || words.next().unwrap().parse::<f64>().unwrap();
-        let (x, y) = motion(next(), next());
-        format!("{x:.6} {y:.6} {}\n", words.collect::<Vec<_>>().join(" "))
-    };
-    text.lines().map(line).collect()
 }

@@ -83,8 +83,8 @@ fn words(s: &LearnSummary) -> String {
             held.after_mm
         );
     }
-    if v.rolled_back {
-        text += "  rolled back: the next part is cut with the better correction of an earlier one\n";
+    if let Some(again) = v.used_again.filter(|_| v.rolled_back) {
+        text += &format!("  rolled back: {}\n", again.words());
     }
     text + &format!("\ncorrection of part {}\n", v.part.saturating_add(1))
 }

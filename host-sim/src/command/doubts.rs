@@ -53,10 +53,11 @@ pub(super) fn doubts(pass: &Pass, identified: &Identified, correction: &Correcti
         }
         if let Some(most) = guard.places.iter().max_by(|a, b| a.moved_mm().total_cmp(&b.moved_mm())) {
             out.push(format!(
-                "max_gouge_mm = {} holds the cutter back at {} places, most at s = {:.2} mm: the target wants {:.4} mm towards the wall, {:.4} mm are allowed",
+                "max_gouge_mm = {} holds the cutter back at {} places, most at s = {:.2} mm: {} {:.4} mm towards the wall, {:.4} mm are allowed",
                 guard.max_gouge_mm,
                 guard.places.len(),
                 most.at_s_mm,
+                if correction.used_again { "the correction that is used again goes" } else { "the target wants" },
                 most.wanted_mm,
                 most.allowed_mm
             ));

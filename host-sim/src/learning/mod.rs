@@ -48,4 +48,4 @@ pub use nodes::Nodes;
 pub use points::Point;
 pub use residual::Residual;
 pub use update::{Update, update};
-pub use verdict::{Beside, Promise, Verdict};
+pub use verdict::{Beside, Promise, UsedAgain, Verdict};

@@ -1,5 +1,6 @@
 //! The verdict on a measured part: how it came out, whether that was foreseen, what was made of it.
 
+use truepath_core::correct::Node;
 use truepath_core::cut::Path;
 use truepath_core::units::Offset;
 
@@ -27,11 +28,23 @@ pub struct Verdict {
     /// What was learned beside the model; absent when the points fit the model within their noise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub residual: Option<Beside>,
-    /// Whether the next part goes back to the correction of an earlier one.
+    /// Whether the next part goes back to what an earlier one was cut with.
     pub rolled_back: bool,
+    /// What is used again instead of a new correction; absent when the correction is a new one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub used_again: Option<UsedAgain>,
     /// Why, and other remarks on the part.
     #[serde(skip)]
     remarks: Vec<String>,
+}
+
+/// What a part was cut with and the next one is cut with again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct UsedAgain {
+    /// Number of the part.
+    pub part: u32,
+    /// Whether that was a correction: the first part is cut with none.
+    pub corrected: bool,
 }
 
 /// A prediction held against the measurement.
@@ -64,6 +77,21 @@ impl Beside {
     }
 }
 
+impl UsedAgain {
+    fn of(part: &PartPoints) -> Self {
+        Self { part: part.number, corrected: part.nodes.iter().any(|node| *node != Node::default()) }
+    }
+
+    /// What the next part is cut with.
+    pub fn words(&self) -> String {
+        if self.corrected {
+            format!("the correction that part {} was cut with is used again", self.part)
+        } else {
+            format!("the next part is cut without correction, as part {} was: along the path of the program", self.part)
+        }
+    }
+}
+
 impl Promise {
     /// `promised` has the predicted error and its standard deviation beside every sample of the contour.
     pub fn of(path: &Path, monitor: &Monitor, promised: &[(Offset, Offset)]) -> Self {
@@ -92,8 +120,8 @@ impl Verdict {
         let (now, before) = (monitor.now, monitor.before);
         let mut remarks = Vec::new();
         let rolled_back = again.is_some_and(|again| again + 1 < parts.len());
-        if let Some(again) = again {
-            let better = parts.get(again).map_or(0, |p| p.number);
+        let used_again = again.and_then(|again| parts.get(again)).map(UsedAgain::of);
+        if let Some(used) = used_again {
             let why = if fits {
                 format!(
                     "it came out worse ({:.4} mm after {:.4} mm, rms at its places) and the updated model does not foretell the places it was not shown",
@@ -103,8 +131,9 @@ impl Verdict {
                 "most points contradict those of the parts before".to_owned()
             };
             remarks.push(format!(
-                "part {} is set aside and the correction that part {better} was cut with is used again: {why}; look at clamping, datum, cutter and probe before the next part",
-                now.part
+                "part {} is set aside and {}: {why}; look at clamping, datum, cutter and probe before the next part",
+                now.part,
+                used.words()
             ));
         } else if monitor.is_worse() {
             remarks.push(format!(
@@ -128,6 +157,7 @@ impl Verdict {
             holdout_residual_mm: holdout,
             residual: None,
             rolled_back,
+            used_again,
             remarks,
         }
     }

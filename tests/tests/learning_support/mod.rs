@@ -76,3 +76,14 @@ impl Shop {
         self.learn(history, &self.probe(Some(corrected), places, noise)).unwrap()
     }
 }
+
+/// A probe file whose points are moved.
+pub fn moved(text: &str, motion: impl Fn(f64, f64) -> (f64, f64)) -> String {
+    let line = |line: &str| {
+        let mut words = line.split(' ');
+        let mut next = || words.next().unwrap().parse::<f64>().unwrap();
+        let (x, y) = motion(next(), next());
+        format!("{x:.6} {y:.6} {}\n", words.collect::<Vec<_>>().join(" "))
+    };
+    text.lines().map(line).collect()
+}
