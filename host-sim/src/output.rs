@@ -123,6 +123,16 @@ impl OutputFolder {
         file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|e| failed(&e))
     }
 
+    /// Opens one of the owned files to be written piece by piece, for tables too large for memory.
+    ///
+    /// # Errors
+    /// As [`OutputFolder::write`].
+    pub fn stream(&self, name: &str) -> Result<BufWriter<fs::File>, InputError> {
+        self.write(name, b"")?;
+        let opened = fs::File::options().append(true).open(self.staged.path().join(name));
+        opened.map(BufWriter::new).map_err(|e| InputError::unwritable(&self.target.join(name), &e))
+    }
+
     /// Puts the finished files in their place.
     ///
     /// # Errors

@@ -47,7 +47,7 @@ pub(super) struct Arguments {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum FileUnits {
+pub(super) enum FileUnits {
     Mm,
     Inch,
 }
@@ -62,7 +62,7 @@ impl From<FileUnits> for Units {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Pointless {
+pub(super) enum Pointless {
     Calculator,
     Least,
 }
@@ -77,7 +77,7 @@ impl From<Pointless> for PointlessLength {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Control {
+pub(super) enum Control {
     Linuxcnc,
     Fanuc,
     Haas,

@@ -12,6 +12,7 @@ mod hil;
 mod image;
 mod inspect;
 mod learn;
+mod multiaxis;
 mod probe;
 mod probe_flags;
 mod replay;
@@ -70,6 +71,8 @@ enum Command {
     Split(split::Arguments),
     /// How well the method does on virtual machines of all kinds, and where it stops working.
     Study(study::Arguments),
+    /// The chord error of a five-axis program, and a program in which locations are inserted against it.
+    Multiaxis(multiaxis::Arguments),
     /// Recorded setpoints through the device's own code.
     Replay(replay::Arguments),
     /// A correction image as text.
@@ -113,6 +116,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Learn(arguments) => learn::run(&arguments, terminal),
         Command::Split(arguments) => split::run(&arguments, terminal),
         Command::Study(arguments) => study::run(&arguments, terminal),
+        Command::Multiaxis(arguments) => multiaxis::run(&arguments, terminal),
         Command::Replay(arguments) => replay::run(&arguments, terminal),
         Command::Image(arguments) => image::run(&arguments, terminal),
         Command::Hil(arguments) => hil::run(&arguments, terminal),

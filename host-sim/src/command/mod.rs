@@ -11,6 +11,7 @@ pub mod hil;
 pub mod inspect;
 pub mod learn;
 mod levels;
+pub mod multiaxis;
 pub mod probe;
 pub mod probe_next;
 pub mod second_pass;

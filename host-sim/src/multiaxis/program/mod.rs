@@ -1,0 +1,44 @@
+//! Five-axis programs: read, measured and rewritten, line by line.
+//!
+//! | step | where |
+//! |---|---|
+//! | bytes → lines → words | `lines.rs`, `block.rs`, with the lexer of the core |
+//! | words → exact coordinates and modes | `quantity.rs`, `codes.rs`, `state.rs`, `apply.rs`, `motion.rs` |
+//! | a move → its error and its pieces, as they are written | `split.rs`, `digits.rs` |
+//! | pieces → lines | `writer.rs` |
+//! | one pass, and what it found | `run.rs`, `report.rs`, `spread.rs`, `profile.rs`, `notes.rs`, `reason.rs` |
+//! | programs with loops, calls and computed places | `unroll.rs` |
+//!
+//! Two rules. Nothing is silently wrong: a move with a rotary axis that cannot be checked has a [`Reason`], and where
+//! the program does not say where an axis stands it is unknown. And nothing is changed that need not be: only the lines
+//! of moves that err too much are replaced, every other byte of the program stays.
+
+mod apply;
+mod block;
+mod codes;
+mod digits;
+mod lines;
+mod motion;
+mod notes;
+mod picture;
+mod profile;
+mod quantity;
+mod reason;
+mod refusal;
+mod report;
+mod run;
+mod split;
+mod spread;
+mod state;
+mod step;
+mod writer;
+
+pub use digits::Digits;
+pub use picture::picture;
+pub use profile::Profile;
+pub use reason::Reason;
+pub use report::{Left, LeftMove, MoveRow, Places, Report};
+pub use run::{CentrePoint, Outcome, PassError, Settings, Sinks, run};
+pub use split::Splitter;
+pub use spread::SpreadSummary;
+pub use state::Reading;

@@ -1,0 +1,82 @@
+//! The chord error along the program, before and after, on a logarithmic scale with the tolerance (SVG).
+
+use plotters::prelude::*;
+
+use super::profile::{Peak, Profile};
+use crate::diagnostics::Failure;
+
+const BEFORE: RGBColor = RGBColor(213, 94, 0);
+const AFTER: RGBColor = RGBColor(0, 114, 178);
+const ALLOWED: RGBColor = RGBColor(60, 60, 60);
+const FONT: &str = "sans-serif";
+/// Errors below this share of the tolerance are drawn at it.
+const FLOOR: f64 = 1e-3;
+
+fn failed(error: impl std::fmt::Display) -> Failure {
+    Failure::Internal(format!("a picture cannot be drawn: {error}"))
+}
+
+/// Draws the profile of a program.
+///
+/// # Errors
+/// Internal, when it cannot be drawn.
+pub fn picture(profile: &Profile, tolerance: f64) -> Result<Vec<u8>, Failure> {
+    let stretches: Vec<(f64, Peak)> = profile.stretches().collect();
+    let width = profile.width() as f64;
+    let end = stretches.last().map_or(1.0, |s| s.0 + width);
+    let top = stretches.iter().fold(tolerance, |m, s| m.max(s.1.0)) * 4.0;
+    let bottom = tolerance * FLOOR;
+    let mut text = String::new();
+    {
+        let root = SVGBackend::with_string(&mut text, (900, 420)).into_drawing_area();
+        root.fill(&WHITE).map_err(failed)?;
+        let mut chart = ChartBuilder::on(&root)
+            .caption("Chord error along the program", (FONT, 20))
+            .margin(10)
+            .x_label_area_size(40)
+            .y_label_area_size(70)
+            .build_cartesian_2d(1.0..end.max(2.0), (bottom..top).log_scale())
+            .map_err(failed)?;
+        let moves = if width > 1.0 { format!("five-axis move, largest of every {width}") } else { "five-axis move".into() };
+        chart
+            .configure_mesh()
+            .light_line_style(WHITE)
+            .bold_line_style(RGBColor(225, 225, 225))
+            .x_desc(moves)
+            .y_desc("chord error, mm")
+            .x_label_formatter(&|v| format!("{v:.0}"))
+            .y_label_formatter(&|v| format!("{v}"))
+            .label_style((FONT, 13))
+            .axis_desc_style((FONT, 13))
+            .draw()
+            .map_err(failed)?;
+        let curves: [(&str, RGBColor, fn(&Peak) -> f64); 2] =
+            [("as programmed", BEFORE, |p| p.0), ("with inserted points", AFTER, |p| p.1)];
+        for (name, colour, value) in curves {
+            let steps = stretches.iter().flat_map(|(at, peak)| {
+                let error = value(peak).max(bottom);
+                [(*at, error), (at + width, error)]
+            });
+            chart
+                .draw_series(LineSeries::new(steps, colour.stroke_width(1)))
+                .map_err(failed)?
+                .label(name)
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(3)));
+        }
+        chart
+            .draw_series(DashedLineSeries::new([(1.0, tolerance), (end, tolerance)], 6, 4, ALLOWED.stroke_width(2)))
+            .map_err(failed)?
+            .label(format!("tolerance {tolerance} mm"))
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], ALLOWED.stroke_width(2)));
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(200, 200, 200))
+            .label_font((FONT, 13))
+            .draw()
+            .map_err(failed)?;
+        root.present().map_err(failed)?;
+    }
+    Ok(text.into_bytes())
+}
