@@ -12,6 +12,7 @@ use crate::diagnostics::Failure;
 use crate::multiaxis::Rule;
 use crate::multiaxis::machine::Coordinates;
 use crate::multiaxis::program::{CentrePoint, Digits};
+use crate::multiaxis::statistics::Figures;
 use crate::report::json;
 
 #[derive(Debug, Args)]
@@ -133,11 +134,19 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     print(&if terminal.json() { json(&summary)? } else { words(&summary).into_bytes() })
 }
 
+/// A figure of the table.
+type Figure = fn(&Figures) -> f64;
+
 fn words(s: &MultiaxisSummary) -> String {
-    let xyz = if s.coordinates == "tip" { "places of the tool tip" } else { "positions of the joints" };
+    let xyz = match (s.tip_moves, s.moves) {
+        (0, 0) if s.coordinates == "tip" => "places of the tool tip",
+        (0, _) => "positions of the joints",
+        (tips, all) if tips == all => "places of the tool tip",
+        _ => "positions of the joints, and of the tool tip under centre point codes",
+    };
     let mut text = format!("{}; X, Y, Z are {xyz}; tolerance {} mm\n\n", s.machine, s.tolerance_mm);
     text += "chord error, mm         before       after\n";
-    let rows: [(&str, fn(&crate::multiaxis::program::SpreadSummary) -> f64); 4] = [
+    let rows: [(&str, Figure); 4] = [
         ("maximum", |v| v.maximum_mm),
         ("minimum", |v| v.minimum_mm),
         ("mean", |v| v.mean_mm),
@@ -146,7 +155,7 @@ fn words(s: &MultiaxisSummary) -> String {
     for (name, value) in rows {
         text += &format!("{name:<20} {:>9.5} {:>11.5}\n", value(&s.before), value(&s.after));
     }
-    text += &format!("{:<20} {:>9} {:>11}\n\n", "moves", s.before.moves, s.after.moves);
+    text += &format!("{:<20} {:>9} {:>11}\n\n", "moves", s.before.count, s.after.count);
     text += &format!(
         "{} of {} five-axis moves rewritten, {} points inserted\n",
         s.moves_rewritten, s.moves, s.points_inserted

@@ -9,9 +9,10 @@ use truepath_core::gcode::{Dialect, PointlessLength, Units};
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::multiaxis::machine::{Coordinates, Kind, Letter};
 use crate::multiaxis::program::{
-    CentrePoint, Digits, Left, Outcome, PassError, Places, Reading, Report, Settings, Sinks, Splitter, SpreadSummary,
-    picture, run as pass,
+    CentrePoint, Digits, Left, Outcome, PassError, Places, Reading, Report, Settings, Sinks, Splitter, picture,
+    run as pass,
 };
+use crate::multiaxis::statistics::Figures;
 use crate::multiaxis::{Machine, Rule};
 use crate::output::{OutputFile, OutputFolder};
 use crate::report::json;
@@ -63,8 +64,10 @@ pub struct MultiaxisSummary {
     pub version: u32,
     /// `table-table A C`.
     pub machine: String,
-    /// What XYZ are: `joints` or `tip`.
+    /// What XYZ are: `joints` or `tip`; those of `tip_moves` moves are the tip's in any case.
     pub coordinates: &'static str,
+    /// Moves whose XYZ are places of the tool tip.
+    pub tip_moves: u64,
     /// Largest chord error allowed, mm.
     pub tolerance_mm: f64,
     /// Lines read.
@@ -82,11 +85,13 @@ pub struct MultiaxisSummary {
     /// Locations inserted.
     pub points_inserted: u64,
     /// Chord errors of the moves read.
-    pub before: SpreadSummary,
+    pub before: Figures,
     /// Chord errors of the moves written.
-    pub after: SpreadSummary,
+    pub after: Figures,
     /// Moves near a pole of the machine, and their lines.
     pub singular: Places,
+    /// Moves whose tool axis leaves the great circle by more than `orientation_tolerance_deg`, and cannot follow it.
+    pub orientation: Places,
     /// Moves that stay although they may err too much, and why.
     pub left: Left,
     /// What the user should know.
@@ -160,7 +165,12 @@ fn check_tolerance(tolerance_mm: f64) -> Result<(), InputError> {
         return Ok(());
     }
     let found = format!("the tolerance is {tolerance_mm} mm");
-    Err(InputError::new("A010", found, "a length above 0, at most 1000 mm", "give --tolerance 0.005, or what the part needs"))
+    Err(InputError::new(
+        "A010",
+        found,
+        "a length above 0, at most 1000 mm",
+        "give --tolerance 0.005, or what the part needs",
+    ))
 }
 
 fn settings<'m>(options: &Options, machine: &'m Machine) -> Settings<'m> {
@@ -189,7 +199,8 @@ fn settings<'m>(options: &Options, machine: &'m Machine) -> Settings<'m> {
 fn steered(options: &Options, line: u32) -> InputError {
     let found = format!("line {line} steers the program or computes a place");
     let expected = "a program whose blocks are executed in the order of the text, with numbers";
-    InputError::new("A011", found, expected, "let the control or the postprocessor write it out").in_file(options.program)
+    InputError::new("A011", found, expected, "let the control or the postprocessor write it out")
+        .in_file(options.program)
 }
 
 fn unwritable(path: Option<&FilePath>, error: io::Error) -> InputError {
@@ -203,22 +214,24 @@ fn summary(options: &Options, machine: &Machine, settings: &Settings, report: &R
         Kind::HeadHead => "head-head",
     };
     let [first, second] = machine.rotary().map(|axis| axis.letter.name());
-    let before = report.before.summary();
+    let before = report.before.figures();
     MultiaxisSummary {
         version: 1,
         machine: format!("{kind} {first} {second}"),
         coordinates: if settings.coordinates == Coordinates::Tip { "tip" } else { "joints" },
+        tip_moves: report.tips,
         tolerance_mm: options.tolerance_mm,
         lines: report.lines,
-        moves: before.moves,
+        moves: before.count,
         straight_moves: report.straight,
         rotary_moves: report.rotary_alone,
         full_interpolation_moves: report.full_interpolation,
         moves_rewritten: report.divided,
         points_inserted: report.inserted,
         before,
-        after: report.after.summary(),
+        after: report.after.figures(),
         singular: report.singular.clone(),
+        orientation: report.orientation.clone(),
         left: report.left.clone(),
         warnings: warnings(options, report),
     }

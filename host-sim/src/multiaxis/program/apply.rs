@@ -128,7 +128,8 @@ impl State {
                 self.forget(0..3);
             }
             Meaning::WorkOffset => {
-                let number = if matches!(tenths, 541 | 1540) { block.word(b'P').and_then(Word::whole) } else { Some(0) };
+                let number =
+                    if matches!(tenths, 541 | 1540) { block.word(b'P').and_then(Word::whole) } else { Some(0) };
                 self.select_offset(tenths, number, line);
             }
             Meaning::Table => {

@@ -69,12 +69,9 @@ impl Block {
             let span = token.span();
             let range = span.start..span.end();
             match token {
-                Token::Word(word) => self.push(Word {
-                    letter: word.letter,
-                    value: word.value,
-                    start: span.start,
-                    end: span.end(),
-                }),
+                Token::Word(word) => {
+                    self.push(Word { letter: word.letter, value: word.value, start: span.start, end: span.end() })
+                }
                 Token::BlockDelete { .. } => self.block_delete = Some(range),
                 Token::Percent(_) => self.percent = true,
                 Token::Control(_) => self.control = Some(range),

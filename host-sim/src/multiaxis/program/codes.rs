@@ -124,7 +124,7 @@ pub const fn meaning(tenths: u16, dialect: Dialect) -> Meaning {
         710 if dialect.has_metric_g71() => M::Units(Units::Millimetres),
         280 | 300 | 530 | 531 => M::Elsewhere,
         400 => M::Compensation(false),
-        410..=419 | 420..=429 => M::Compensation(true),
+        410..=429 => M::Compensation(true),
         430..=433 | 440 | 490 => M::ToolLength,
         434 | 435 | 2340 => M::CentrePoint,
         520 => M::Local,

@@ -6,8 +6,7 @@
 //! | words → exact coordinates and modes | `quantity.rs`, `codes.rs`, `state.rs`, `apply.rs`, `motion.rs` |
 //! | a move → its error and its pieces, as they are written | `split.rs`, `digits.rs` |
 //! | pieces → lines | `writer.rs` |
-//! | one pass, and what it found | `run.rs`, `report.rs`, `spread.rs`, `profile.rs`, `notes.rs`, `reason.rs` |
-//! | programs with loops, calls and computed places | `unroll.rs` |
+//! | one pass, and what it found | `run.rs`, `report.rs`, `profile.rs`, `picture.rs`, `notes.rs`, `reason.rs` |
 //!
 //! Two rules. Nothing is silently wrong: a move with a rotary axis that cannot be checked has a [`Reason`], and where
 //! the program does not say where an axis stands it is unknown. And nothing is changed that need not be: only the lines
@@ -28,7 +27,6 @@ mod refusal;
 mod report;
 mod run;
 mod split;
-mod spread;
 mod state;
 mod step;
 mod writer;
@@ -40,5 +38,4 @@ pub use reason::Reason;
 pub use report::{Left, LeftMove, MoveRow, Places, Report};
 pub use run::{CentrePoint, Outcome, PassError, Settings, Sinks, run};
 pub use split::Splitter;
-pub use spread::SpreadSummary;
 pub use state::Reading;

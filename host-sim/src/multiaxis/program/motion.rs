@@ -19,7 +19,11 @@ impl State {
         if shot.elsewhere {
             let turning = (3..6).any(|axis| block.axis(axis).is_some());
             let named: Vec<usize> = (0..6).filter(|&axis| block.axis(axis).is_some()).collect();
-            if named.is_empty() { self.forget(0..6) } else { self.forget(named) }
+            if named.is_empty() {
+                self.forget(0..6)
+            } else {
+                self.forget(named)
+            }
             let cuts = turning && self.cuts();
             return Ok(if cuts { Step::Unchecked(Reason::Elsewhere) } else { Step::Nothing });
         }
@@ -63,10 +67,10 @@ impl State {
 
     fn destination(&self, block: &Block, text: &[u8], reading: &Reading) -> Result<Place, Trouble> {
         let mut to = self.at;
-        for axis in 0..6 {
+        for (axis, to) in to.iter_mut().enumerate() {
             let Some(word) = block.axis(axis) else { continue };
             let value = self.value(word, axis, text, reading.decimal).ok_or(Trouble::TooFar(*word))?;
-            to[axis] = match (self.absolute, self.at[axis]) {
+            *to = match (self.absolute, self.at[axis]) {
                 (true, _) => Some(value),
                 (false, None) => None,
                 (false, Some(at)) => Some(at.plus(value, self.scale(axis)).ok_or(Trouble::TooFar(*word))?),
@@ -101,6 +105,6 @@ impl State {
             Err(axis) => return Step::Unchecked(unknown(axis)),
         };
         self.frame.get_or_insert(self.work);
-        Step::Move(Move { from, to, start, end, travels })
+        Step::Move(Box::new(Move { from, to, start, end, travels }))
     }
 }

@@ -30,7 +30,10 @@ impl fmt::Display for Note {
             Self::UnknownCode(tenths) => {
                 let (whole, tenth) = (tenths / 10, tenths % 10);
                 let code = if tenth == 0 { format!("G{whole}") } else { format!("G{whole}.{tenth}") };
-                write!(f, "{code} is not known here; it is passed on, and the axes of its block count as unknown behind it")
+                write!(
+                    f,
+                    "{code} is not known here; it is passed on, and the axes of its block count as unknown behind it"
+                )
             }
             Self::CentrePoint => f.write_str("the program switches on tool centre point control"),
             Self::RotaryAlone => f.write_str(

@@ -37,7 +37,8 @@ pub fn picture(profile: &Profile, tolerance: f64) -> Result<Vec<u8>, Failure> {
             .y_label_area_size(70)
             .build_cartesian_2d(1.0..end.max(2.0), (bottom..top).log_scale())
             .map_err(failed)?;
-        let moves = if width > 1.0 { format!("five-axis move, largest of every {width}") } else { "five-axis move".into() };
+        let moves =
+            if width > 1.0 { format!("five-axis move, largest of every {width}") } else { "five-axis move".into() };
         chart
             .configure_mesh()
             .light_line_style(WHITE)
@@ -50,11 +51,10 @@ pub fn picture(profile: &Profile, tolerance: f64) -> Result<Vec<u8>, Failure> {
             .axis_desc_style((FONT, 13))
             .draw()
             .map_err(failed)?;
-        let curves: [(&str, RGBColor, fn(&Peak) -> f64); 2] =
-            [("as programmed", BEFORE, |p| p.0), ("with inserted points", AFTER, |p| p.1)];
-        for (name, colour, value) in curves {
+        let curves = [("as programmed", BEFORE, true), ("with inserted points", AFTER, false)];
+        for (name, colour, first) in curves {
             let steps = stretches.iter().flat_map(|(at, peak)| {
-                let error = value(peak).max(bottom);
+                let error = if first { peak.0 } else { peak.1 }.max(bottom);
                 [(*at, error), (at + width, error)]
             });
             chart

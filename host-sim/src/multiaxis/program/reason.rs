@@ -23,6 +23,8 @@ pub enum Reason {
     Offsets(u32),
     /// Since this line another tool is in the spindle, and the machine file has one length.
     Tool(u32),
+    /// A location to be inserted lies beyond the travel of this axis.
+    Travel(char),
     /// A corner word.
     Corner,
     /// It needs more pieces than allowed.
@@ -50,6 +52,7 @@ impl fmt::Display for Reason {
             Self::Tool(line) => {
                 write!(f, "since line {line} another tool is in the spindle than the machine file's")
             }
+            Self::Travel(axis) => write!(f, "a point to be inserted lies beyond the travel of {axis}"),
             Self::Corner => f.write_str("its corner is rounded"),
             Self::Pieces => f.write_str("it needs more pieces than --max-pieces allows"),
             Self::Digits => f.write_str("it cannot be divided within the tolerance with the digits written"),

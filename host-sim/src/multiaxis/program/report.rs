@@ -7,7 +7,8 @@ use super::profile::Profile;
 use super::reason::Reason;
 use super::run::Settings;
 use super::split::Plan;
-use super::spread::Spread;
+use crate::multiaxis::singular::Class;
+use crate::multiaxis::statistics::Deviations;
 
 /// A move of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -20,6 +21,8 @@ pub struct MoveRow {
     pub pieces: usize,
     /// The largest chord error of a piece, mm.
     pub error_after_mm: f64,
+    /// How it stands to the pole of the machine.
+    pub passage: Class,
 }
 
 /// Lines kept of a kind of place; beyond them only the number grows.
@@ -94,15 +97,19 @@ pub struct Report {
     /// Locations inserted.
     pub inserted: u64,
     /// Errors of the moves read.
-    pub before: Spread,
+    pub before: Deviations,
     /// Errors of the moves written.
-    pub after: Spread,
+    pub after: Deviations,
     /// Errors along the program.
     pub profile: Profile,
     /// Moves left although they may err too much.
     pub left: Left,
-    /// Moves near a pole of the machine.
+    /// Moves near a pole of the machine, or from one branch of its kinematics to the other.
     pub singular: Places,
+    /// Moves whose tool axis leaves the great circle by more than the machine file allows, and cannot follow it.
+    pub orientation: Places,
+    /// Moves whose XYZ are the tip.
+    pub tips: u64,
     /// What to look at.
     pub notes: Notes,
     /// Largest error allowed, mm.
@@ -121,11 +128,13 @@ impl Report {
             full_interpolation: 0,
             divided: 0,
             inserted: 0,
-            before: Spread::default(),
-            after: Spread::default(),
+            before: Deviations::default(),
+            after: Deviations::default(),
             profile: Profile::default(),
             left: Left::default(),
             singular: Places::default(),
+            orientation: Places::default(),
+            tips: 0,
             notes: Notes::default(),
             tolerance: settings.splitter.tolerance,
         }
@@ -133,9 +142,15 @@ impl Report {
 
     /// Adds a checked move.
     pub fn add(&mut self, row: &MoveRow, plan: &Plan) {
-        self.before.add(row.error_before_mm);
-        plan.after.iter().for_each(|error| self.after.add(*error));
+        self.before.push(row.error_before_mm);
+        plan.after.iter().for_each(|error| self.after.push(*error));
         self.profile.add(row.error_before_mm, row.error_after_mm);
+        if matches!(row.passage, Class::NearPole | Class::BranchChange) {
+            self.singular.add(row.line);
+        }
+        if plan.cannot_follow {
+            self.orientation.add(row.line);
+        }
         self.divided += u64::from(row.pieces > 1);
         self.inserted += plan.inserted.len() as u64;
     }

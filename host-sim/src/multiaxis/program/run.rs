@@ -12,7 +12,7 @@ use super::notes::Note;
 use super::reason::Reason;
 use super::refusal::At;
 use super::report::{MoveRow, Report};
-use super::split::{Plan, Splitter};
+use super::split::{Plan, Splitter, Writing};
 use super::state::{Reading, State};
 use super::step::{Move, Step};
 use super::writer::{Original, write};
@@ -248,20 +248,21 @@ impl Pass<'_, '_> {
             self.report.notes.add(Note::RotaryAlone, line.number);
             return Ok(());
         }
-        let (units, own) = (self.state.units, self.state.decimals);
-        let plan = self.settings.splitter.plan(moved, coordinates, units, own);
+        let writing = Writing { coordinates, units: self.state.units, own: self.state.decimals };
+        let plan = self.settings.splitter.plan(moved, writing);
         let number = self.origin_of(line.number);
         if let Some(reason) = plan.refused {
             self.report.leave(number, reason, Some(plan.before));
         }
-        self.record(number, moved, coordinates, &plan)?;
+        self.report.tips += u64::from(coordinates == Coordinates::Tip);
+        self.record(number, &plan)?;
         if !plan.inserted.is_empty() {
             let original = Original {
                 number: line.number,
                 text: &line.text,
                 block,
                 end: if self.ending.is_empty() { b"\n" } else { self.ending },
-                units,
+                units: writing.units,
                 absolute: self.state.absolute,
                 feed_mode: self.state.feed_mode,
                 dialect: self.settings.reading.dialect,
@@ -271,23 +272,15 @@ impl Pass<'_, '_> {
         Ok(())
     }
 
-    fn record(
-        &mut self,
-        number: u32,
-        moved: &Move,
-        coordinates: Coordinates,
-        plan: &Plan,
-    ) -> Result<(), PassError> {
+    fn record(&mut self, number: u32, plan: &Plan) -> Result<(), PassError> {
         let row = MoveRow {
             line: number,
             error_before_mm: plan.before,
             pieces: plan.after.len(),
             error_after_mm: plan.after.iter().fold(0.0f64, |m, e| m.max(*e)),
+            passage: plan.passage,
         };
         self.report.add(&row, plan);
-        if self.settings.splitter.is_singular(moved, coordinates) {
-            self.report.singular.add(number);
-        }
         (self.sinks.row)(&row)?;
         Ok(())
     }

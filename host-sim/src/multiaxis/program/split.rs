@@ -1,6 +1,6 @@
 //! From a move to the locations that are inserted in it, as they will be written.
 //!
-//! The division itself (how many pieces, where) is [`divide`](crate::multiaxis::divide); here its locations are rounded
+//! The division itself (how many pieces, where) is [`insert`](crate::multiaxis::insert); here its locations are rounded
 //! to the digits of the program, and what the rounded ones do is proved again: the error of a piece is the certified
 //! error from its own chord and how far its ends lie from the programmed one. When rounding has used up the tolerance,
 //! the move is divided once more with a tighter one.
@@ -12,8 +12,10 @@ use super::quantity::{Quantity, Scale};
 use super::reason::Reason;
 use super::state::Place;
 use super::step::Move;
+use crate::multiaxis::division::Orientation;
 use crate::multiaxis::machine::Coordinates;
-use crate::multiaxis::{DivisionError, Joints, Machine, Rule, chord_error, divide};
+use crate::multiaxis::singular::{Class, passage};
+use crate::multiaxis::{DivisionError, Joints, Machine, Rule, chord_error, insert};
 
 /// How moves are divided.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +32,17 @@ pub struct Splitter<'m> {
     pub digits: Digits,
 }
 
+/// What the words of a move are measured in.
+#[derive(Clone, Copy, Debug)]
+pub struct Writing {
+    /// What XYZ are.
+    pub coordinates: Coordinates,
+    /// Their unit.
+    pub units: Units,
+    /// The most decimals the program writes, of lengths and of angles.
+    pub own: [u8; 2],
+}
+
 /// What becomes of a move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -41,6 +54,10 @@ pub struct Plan {
     pub shares: Vec<f64>,
     /// The chord error of each piece from the programmed chord, mm.
     pub after: Vec<f64>,
+    /// How it stands to the pole.
+    pub passage: Class,
+    /// Whether the tool axis leaves the great circle too far, and cannot follow it.
+    pub cannot_follow: bool,
     /// Why it is not divided although it errs too much.
     pub refused: Option<Reason>,
 }
@@ -49,45 +66,50 @@ pub struct Plan {
 const TRIES: [f64; 5] = [1.0, 0.97, 0.9, 0.7, 0.4];
 
 impl Splitter<'_> {
-    /// Whether the digits can keep the tolerance at all.
-    pub fn digits_suffice(&self, units: Units, own: [u8; 2]) -> bool {
-        4.0 * self.digits.displacement(Scale::of_axis(0, units), own) <= self.tolerance
-    }
-
-    /// Plans a move whose XYZ are `coordinates`, written in `units`, in a program whose words have `own` decimals.
-    pub fn plan(&self, moved: &Move, coordinates: Coordinates, units: Units, own: [u8; 2]) -> Plan {
-        let (from, to) = (self.joints(&moved.start, coordinates), self.joints(&moved.end, coordinates));
+    /// Plans a move.
+    pub fn plan(&self, moved: &Move, writing: Writing) -> Plan {
+        let (from, to) = (self.joints(&moved.start, writing), self.joints(&moved.end, writing));
         let error = chord_error(self.machine, &from, &to);
+        let passage = passage(self.machine, &from, &to);
         let mut plan = Plan {
             before: error.exact,
             inserted: Vec::new(),
             shares: vec![1.0],
             after: vec![error.exact],
+            passage: passage.class,
+            cannot_follow: false,
             refused: None,
         };
-        if error.bound <= self.tolerance {
+        let follows = self.machine.orientation_tolerance().is_none_or(|most| passage.orientation_error <= most);
+        if error.bound <= self.tolerance && follows {
             return plan;
         }
-        let margin = self.digits.displacement(Scale::of_axis(0, units), own);
+        let margin = self.digits.displacement(Scale::of_axis(0, writing.units), writing.own);
         for share in TRIES {
-            let division = match divide(self.machine, &from, &to, (self.tolerance - margin) * share, self.rule) {
-                Ok(division) => division,
+            let insertion = match insert(self.machine, &from, &to, (self.tolerance - margin) * share, self.rule) {
+                Ok(insertion) => insertion,
                 Err(DivisionError::TooManyPieces) => {
                     plan.refused = Some(Reason::Pieces);
                     return plan;
                 }
                 Err(_) => break,
             };
-            if division.pieces() > self.max_pieces {
+            plan.cannot_follow = insertion.orientation == Orientation::CannotFollow;
+            if insertion.inserted.is_empty() && error.bound <= self.tolerance {
+                return plan;
+            }
+            if insertion.inserted.len() >= self.max_pieces {
                 plan.refused = Some(Reason::Pieces);
                 return plan;
             }
-            let knots: Vec<f64> = division.inserted.iter().map(|&(s, _)| s).collect();
-            let Some(written) = self.written(moved, (&from, &to), &knots, coordinates, units, own) else { break };
-            if written.1.iter().all(|error| *error <= self.tolerance) {
-                let ends = knots.iter().copied().chain([1.0]);
-                plan.shares = ends.scan(0.0, |last, s| Some(s - std::mem::replace(last, s))).collect();
-                (plan.inserted, plan.after) = written;
+            if let Some(beyond) = insertion.inserted.iter().find_map(|joints| self.machine.beyond(joints)) {
+                plan.refused = Some(Reason::Travel(beyond.letter));
+                return plan;
+            }
+            let Some((places, errors)) = self.written(moved, (&from, &to), &insertion.inserted, writing) else { break };
+            if errors.iter().all(|error| *error <= self.tolerance) {
+                plan.shares = self.shares((&from, &to), &insertion.inserted);
+                (plan.inserted, plan.after) = (places, errors);
                 return plan;
             }
         }
@@ -95,65 +117,43 @@ impl Splitter<'_> {
         plan
     }
 
-    /// Whether a move passes a pole of the machine nearer than its file allows.
-    pub fn is_singular(&self, moved: &Move, coordinates: Coordinates) -> bool {
-        let (from, to) = (self.joints(&moved.start, coordinates), self.joints(&moved.end, coordinates));
-        [from, to].iter().any(|j| self.machine.from_pole(self.machine.axis(j.rotary)) < self.machine.pole())
-    }
-
     /// The joints of a place in the frame of the machine file.
-    fn joints(&self, frame: &[f64; 6], coordinates: Coordinates) -> Joints {
+    fn joints(&self, frame: &[f64; 6], writing: Writing) -> Joints {
         let [x, y, z, ..] = *frame;
         let rotary = self.machine.rotary().map(|axis| frame[3 + axis.letter.index()]);
         let joints = Joints::from_degrees([x, y, z], rotary);
-        match coordinates {
+        match writing.coordinates {
             Coordinates::Joints => joints,
             Coordinates::Tip => self.machine.inverse([x, y, z], joints.rotary),
         }
     }
 
-    /// The rounded locations at the parameters `knots` of the chord, and the error of each piece.
+    /// The share of each piece: in the length of the chord, or equal ones when it has none.
+    fn shares(&self, (from, to): (&Joints, &Joints), inserted: &[Joints]) -> Vec<f64> {
+        let ends = [self.machine.counted(from), self.machine.counted(to)];
+        let length = distance(ends[0], ends[1]);
+        let count = inserted.len() + 1;
+        if length < 1e-6 {
+            return vec![1.0 / count as f64; count];
+        }
+        let along = inserted.iter().map(|joints| distance(ends[0], self.machine.counted(joints)) / length);
+        along.chain([1.0]).scan(0.0, |last, s| Some(s - std::mem::replace(last, s))).collect()
+    }
+
+    /// The rounded locations, and the error of each piece.
     fn written(
         &self,
         moved: &Move,
         (from, to): (&Joints, &Joints),
-        knots: &[f64],
-        coordinates: Coordinates,
-        units: Units,
-        own: [u8; 2],
+        inserted: &[Joints],
+        writing: Writing,
     ) -> Option<(Vec<Place>, Vec<f64>)> {
-        let chord = [self.machine.counted(from), self.machine.counted(to)];
-        let at = |s: f64| std::array::from_fn(|i| chord[0][i] + s * (chord[1][i] - chord[0][i]));
-        let (mut places, mut errors) = (Vec::with_capacity(knots.len()), Vec::with_capacity(knots.len() + 1));
+        let (mut places, mut errors) = (Vec::with_capacity(inserted.len()), Vec::with_capacity(inserted.len() + 1));
         let (mut last, mut last_off) = (*from, 0.0f64);
-        for &s in knots {
-            let point: [f64; 3] = at(s);
-            let mut place = moved.from;
-            let mut frame = moved.start;
-            for axis in self.machine.rotary() {
-                let axis = 3 + axis.letter.index();
-                let shift = moved.start[axis] - moved.from[axis]?.value();
-                let between = moved.start[axis] + s * (moved.end[axis] - moved.start[axis]) - shift;
-                let decimals = self.digits.of(Scale::Degrees, own);
-                let angle = Quantity::nearest(between, Scale::Degrees)?.with_decimals(decimals, Scale::Degrees);
-                place[axis] = Some(angle);
-                frame[axis] = angle.value() + shift;
-            }
-            let rotary = self.machine.rotary().map(|axis| frame[3 + axis.letter.index()].to_radians());
-            let joints = self.machine.inverse_counted(point, rotary);
-            let xyz = match coordinates {
-                Coordinates::Joints => joints.xyz,
-                Coordinates::Tip => self.machine.forward(&joints).tip,
-            };
-            for axis in 0..3 {
-                let shift = moved.start[axis] - moved.from[axis]?.value();
-                let scale = Scale::of_axis(axis, units);
-                let length = Quantity::nearest(xyz[axis] - shift, scale)?;
-                let length = length.with_decimals(self.digits.of(scale, own), scale);
-                place[axis] = Some(length);
-                frame[axis] = length.value() + shift;
-            }
-            let joints = self.joints(&frame, coordinates);
+        for joints in inserted {
+            let point = self.machine.counted(joints);
+            let (place, frame) = self.rounded(moved, joints, point, writing)?;
+            let joints = self.joints(&frame, writing);
             let off = distance(self.machine.counted(&joints), point);
             errors.push(chord_error(self.machine, &last, &joints).bound + last_off.max(off));
             (last, last_off) = (joints, off);
@@ -161,6 +161,35 @@ impl Splitter<'_> {
         }
         errors.push(chord_error(self.machine, &last, to).bound + last_off);
         Some((places, errors))
+    }
+
+    /// A location as it is written, and where that is in the frame of the machine file: the angles are rounded, and the
+    /// lengths follow from the rounded angles.
+    fn rounded(&self, moved: &Move, joints: &Joints, point: [f64; 3], writing: Writing) -> Option<(Place, [f64; 6])> {
+        let (mut place, mut frame) = (moved.from, moved.start);
+        let shift = |axis: usize| Some(moved.start[axis] - moved.from[axis]?.value());
+        for (axis, angle) in self.machine.rotary().iter().zip(joints.rotary_deg()) {
+            let axis = 3 + axis.letter.index();
+            let decimals = self.digits.of(Scale::Degrees, writing.own);
+            let angle =
+                Quantity::nearest(angle - shift(axis)?, Scale::Degrees)?.with_decimals(decimals, Scale::Degrees);
+            place[axis] = Some(angle);
+            frame[axis] = angle.value() + shift(axis)?;
+        }
+        let rotary = self.machine.rotary().map(|axis| frame[3 + axis.letter.index()].to_radians());
+        let joints = self.machine.inverse_counted(point, rotary);
+        let xyz = match writing.coordinates {
+            Coordinates::Joints => joints.xyz,
+            Coordinates::Tip => self.machine.forward(&joints).tip,
+        };
+        for axis in 0..3 {
+            let scale = Scale::of_axis(axis, writing.units);
+            let decimals = self.digits.of(scale, writing.own);
+            let length = Quantity::nearest(xyz[axis] - shift(axis)?, scale)?.with_decimals(decimals, scale);
+            place[axis] = Some(length);
+            frame[axis] = length.value() + shift(axis)?;
+        }
+        Some((place, frame))
     }
 }
 

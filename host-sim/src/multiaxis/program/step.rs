@@ -14,7 +14,7 @@ pub enum Step {
     /// A G1 of X, Y, Z alone: straight by itself.
     Straight,
     /// A G1 that turns a rotary axis.
-    Move(Move),
+    Move(Box<Move>),
     /// One that cannot be checked.
     Unchecked(Reason),
     /// The order of the lines is not that of the text, or a place is an expression: bytes of the line.

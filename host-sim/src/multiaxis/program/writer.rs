@@ -152,10 +152,12 @@ fn inverse_time(original: &Original<'_>, word: &Word, plan: &Plan, piece: usize)
     let times = if equal { format!("{pieces}.0") } else { number(1.0 / share) };
     match word.value {
         None => [b"[", written.trim_ascii(), b"*", times.as_bytes(), b"]"].concat(),
-        Some(feed) if equal => match feed.mantissa().checked_mul(pieces as i64).and_then(|m| Decimal::new(m, feed.decimals())) {
-            Some(product) => exact(product).into_bytes(),
-            None => number(feed.value() * pieces as f64).into_bytes(),
-        },
+        Some(feed) if equal => {
+            match feed.mantissa().checked_mul(pieces as i64).and_then(|m| Decimal::new(m, feed.decimals())) {
+                Some(product) => exact(product).into_bytes(),
+                None => number(feed.value() * pieces as f64).into_bytes(),
+            }
+        }
         Some(feed) => number(feed.value() / share).into_bytes(),
     }
 }
