@@ -89,6 +89,9 @@ enum Task {
         /// Measure how long contours of 10,000 lines and of five metres take instead.
         #[arg(long, conflicts_with_all = ["count", "reading"])]
         long: bool,
+        /// Measure how fast five-axis moves are measured and divided instead.
+        #[arg(long, conflicts_with_all = ["count", "reading", "long"])]
+        multiaxis: bool,
         /// Write the table into docs/measure.md.
         #[arg(long)]
         write: bool,
@@ -155,6 +158,9 @@ fn main() -> ExitCode {
             report.run(Step::new("bench --reading", || bench::reading::measure(write)))
         }
         Task::Bench { long: true, write, .. } => report.run(Step::new("bench --long", || bench::long::measure(write))),
+        Task::Bench { multiaxis: true, write, .. } => {
+            report.run(Step::new("bench --multiaxis", || bench::multiaxis::measure(write)))
+        }
         Task::Bench { no_run, write, arguments, .. } => {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))
         }

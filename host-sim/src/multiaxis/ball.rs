@@ -78,7 +78,7 @@ impl BallEnd {
     pub fn contact(&self, pose: &Pose, normal: Vector) -> Option<Contact> {
         let normal = unit(normal)?;
         let polar = angle(pose.axis, normal);
-        if !(polar <= FRAC_PI_2 + 1e-12) {
+        if polar.is_nan() || polar > FRAC_PI_2 + 1e-12 {
             return None;
         }
         let centre = add_scaled(pose.tip, pose.axis, self.radius_mm);

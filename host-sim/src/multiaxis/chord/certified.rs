@@ -4,8 +4,8 @@
 //! within h²/8·M of the straight line between the piece's ends, M a bound on its second derivative there; so its distance
 //! is at most the larger of the ends' distances plus h²/8·M. The piece with the largest such bound is halved until the
 //! bound meets the largest distance found (branch and bound). Several local maxima, plateaus and loops are all the same
-//! to it. Near a maximum the bound closes in by a factor of four a halving, so that a handful of pieces a halving
-//! remains, and some 30 evaluations give six digits.
+//! to it. Near a maximum the bound closes in by a factor of four a halving or better, so that a handful of pieces a
+//! halving remains, and some ten to thirty evaluations give six digits.
 //!
 //! Limits: at most [`MOST_PIECES`] pieces; then the bound is what is proved by then, larger than need be but true.
 
@@ -33,8 +33,8 @@ pub(in super::super) trait Curve {
     fn distance(&self, place: Vector) -> f64;
     /// Place and derivatives at a parameter 0…1.
     fn jet(&self, t: f64) -> Jet;
-    /// Bound on that part of the second derivative over a piece which can add to the distance.
-    fn bend(&self, piece: &Sample<'_>) -> f64;
+    /// Bound on the distance over a piece, whose ends' larger distance is `ends`.
+    fn ceiling(&self, piece: &Sample<'_>, ends: f64) -> f64;
     /// Bound on the second derivative over the whole way.
     fn steepest_bend(&self) -> f64;
     /// Rounding error of a distance.
@@ -117,8 +117,7 @@ impl<'c, C: Curve> Search<'c, C> {
             self.best = (here, middle_t);
         }
         let ends = self.curve.distance(from.1).max(self.curve.distance(to.1));
-        let bend = self.curve.bend(&Sample { from: from.1, to: to.1, middle: &middle, half });
-        let bound = ends + half * half / 2.0 * bend;
+        let bound = self.curve.ceiling(&Sample { from: from.1, to: to.1, middle: &middle, half }, ends);
         // What is not a number proves nothing.
         let known = bound.is_finite() && here.is_finite();
         let bound = if known { bound.max(here) } else { f64::INFINITY };
@@ -133,7 +132,7 @@ impl<'c, C: Curve> Search<'c, C> {
         }
         let Some(piece) = self.open.pop() else { return false };
         let middle = (piece.from.0 + piece.to.0) / 2.0;
-        if !(piece.from.0 < middle && middle < piece.to.0) || !piece.bound.is_finite() {
+        if !(piece.from.0 < middle && middle < piece.to.0 && piece.bound.is_finite()) {
             self.closed = self.closed.max(piece.bound);
             return piece.bound.is_finite();
         }
@@ -144,7 +143,7 @@ impl<'c, C: Curve> Search<'c, C> {
 
     /// Vertex of the parabola through three near places, while that finds a larger distance: more digits of the place.
     fn polish(&mut self) {
-        for _ in 0..8 {
+        for _ in 0..4 {
             let (value, t) = self.best;
             let (low, high) = ((t - 1e-3).max(0.0), (t + 1e-3).min(1.0));
             let at = |t: f64| self.curve.distance(self.curve.jet(t).place);

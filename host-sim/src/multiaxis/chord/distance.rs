@@ -26,6 +26,37 @@ impl<'c> FromChord<'c> {
         let along = dot(v, self.along);
         (along, norm(add_scaled(v, self.along, -along)))
     }
+
+    fn across(&self, v: Vector) -> Vector {
+        add_scaled(v, self.along, -dot(v, self.along))
+    }
+
+    /// Whether the foot of the point stays on the chord over a piece.
+    fn keeps_beside(&self, piece: &Sample<'_>, along_second: f64, slip: f64) -> bool {
+        let (a, b) = (dot(sub(piece.from, self.start), self.along), dot(sub(piece.to, self.start), self.along));
+        let rounding = self.course.rounding();
+        let inside = |lowest: f64, highest: f64| lowest >= -rounding && highest <= self.length + rounding;
+        let slowest = dot(piece.middle.first, self.along) - piece.half * (along_second + slip / 2.0);
+        let sag = piece.half * piece.half / 2.0 * (along_second + slip);
+        (slowest > 0.0 && inside(a, b)) || inside(a.min(b) - sag, a.max(b) + sag)
+    }
+
+    /// Largest length of the second Taylor polynomial across the chord: exact in the direction of its middle, bounded
+    /// perpendicular to it.
+    fn parabola(&self, piece: &Sample<'_>) -> f64 {
+        let middle = self.across(sub(piece.middle.place, self.start));
+        let Some(out) = unit(middle) else { return f64::INFINITY };
+        let (first, second) = (self.across(piece.middle.first), self.across(piece.middle.second));
+        let half = piece.half;
+        let (level, slope, curve) = (norm(middle), dot(first, out), dot(second, out) / 2.0);
+        let end = level + half * half * curve;
+        let mut highest = (end + half * slope).abs().max((end - half * slope).abs());
+        if slope.abs() < 2.0 * half * curve.abs() {
+            highest = highest.max((level - slope * slope / (4.0 * curve)).abs());
+        }
+        let aside = |v: Vector| norm(add_scaled(v, out, -dot(v, out)));
+        highest.hypot(half * aside(first) + half * half / 2.0 * aside(second))
+    }
 }
 
 impl Curve for FromChord<'_> {
@@ -39,20 +70,19 @@ impl Curve for FromChord<'_> {
         self.course.jet(t)
     }
 
-    /// Where the point cannot be beyond an end of the chord, only its acceleration across the chord counts.
-    fn bend(&self, piece: &Sample<'_>) -> f64 {
+    /// Where the point cannot be beyond an end of the chord, only its way across the chord counts: the lesser of the
+    /// bound by its acceleration and of its parabola with the remainder of Taylor's theorem.
+    fn ceiling(&self, piece: &Sample<'_>, ends: f64) -> f64 {
         let bounds = self.course.bounds();
-        let half = piece.half;
+        let (half, slip) = (piece.half, piece.half * bounds.third);
         let (along_second, across_second) = self.split(piece.middle.second);
-        let slip = half * bounds.third;
-        let whole = (norm(piece.middle.second) + slip).min(bounds.second);
-        let (a, b) = (dot(sub(piece.from, self.start), self.along), dot(sub(piece.to, self.start), self.along));
-        let sag = half * half / 2.0 * (along_second.abs() + slip).min(bounds.second);
-        let slowest = dot(piece.middle.first, self.along) - half * (along_second.abs() + slip / 2.0);
-        let rounding = self.rounding();
-        let inside = |lowest: f64, highest: f64| lowest >= -rounding && highest <= self.length + rounding;
-        let monotone = slowest > 0.0 && inside(a, b);
-        if monotone || inside(a.min(b) - sag, a.max(b) + sag) { (across_second + slip).min(whole) } else { whole }
+        let by = |second: f64| ends + half * half / 2.0 * second;
+        let whole = by((norm(piece.middle.second) + slip).min(bounds.second));
+        if self.keeps_beside(piece, along_second.abs(), slip) {
+            by(across_second + slip).min(self.parabola(piece) + half * half * slip / 6.0).min(whole)
+        } else {
+            whole
+        }
     }
 
     fn steepest_bend(&self) -> f64 {

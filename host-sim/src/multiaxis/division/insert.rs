@@ -4,7 +4,7 @@
 //! orientation error stays what it is and is reported. With one ([`Machine::orientation_tolerance`]) a move that exceeds
 //! it gets locations on the great circle first, each piece of which is then divided for the chord.
 
-use super::{DivisionError, MOST_PIECES, Rule, Span, divide};
+use super::{DivisionError, MOST_PIECES, Rule, Span, divide, divide_known};
 use crate::multiaxis::Machine;
 use crate::multiaxis::chord::{ChordError, chord_error};
 use crate::multiaxis::kinematics::Joints;
@@ -64,6 +64,12 @@ pub fn insert(
         (Some(_), Some(_)) => Orientation::Followed,
         (Some(_), None) => Orientation::CannotFollow,
     };
+    if orientation != Orientation::Followed {
+        let division = divide_known(machine, from, to, tolerance_mm, rule, before.bound)?;
+        let inserted = division.inserted.into_iter().map(|(_, joints)| joints).collect();
+        let orientation_after = passage.orientation_error;
+        return Ok(Insertion { inserted, before, after: division.after, passage, orientation, orientation_after });
+    }
     let span = Span::new(machine, from, to, tolerance_mm);
     let guides = guided.unwrap_or_default().into_iter().map(|(s, rotary)| span.place(s, rotary));
     let mut inserted = Vec::new();

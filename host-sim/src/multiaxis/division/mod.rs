@@ -19,6 +19,7 @@ mod rules;
 mod span;
 
 use super::Machine;
+use super::chord::chord_error;
 use super::kinematics::Joints;
 pub use insert::{Insertion, Orientation, insert};
 use span::Span;
@@ -90,12 +91,23 @@ pub fn divide(
     if !(from.is_finite() && to.is_finite()) {
         return Err(DivisionError::NotFinite);
     }
+    divide_known(machine, from, to, tolerance_mm, rule, chord_error(machine, from, to).bound)
+}
+
+/// The same for a move whose certified error is known.
+fn divide_known(
+    machine: &Machine,
+    from: &Joints,
+    to: &Joints,
+    tolerance_mm: f64,
+    rule: Rule,
+    before: f64,
+) -> Result<Division, DivisionError> {
     if !(tolerance_mm > 0.0 && tolerance_mm.is_finite()) {
         return Err(DivisionError::Tolerance(tolerance_mm));
     }
     let span = Span::new(machine, from, to, tolerance_mm);
-    let before = span.error(0.0, 1.0);
-    if before <= tolerance_mm && span.fits(0.0, 1.0) {
+    if before <= tolerance_mm {
         let rule = if rule == Rule::Fewest { Rule::Equal } else { rule };
         return Ok(Division { rule, inserted: Vec::new(), before, after: before });
     }

@@ -9,7 +9,7 @@ const NARROWEST: f64 = 1e-9;
 /// Equal pieces: ⌈√(ε/tolerance)⌉, and more until all fit.
 pub(super) fn equal(span: &Span<'_>, error: f64) -> Result<Vec<f64>, DivisionError> {
     let guess = (error / span.tolerance_mm()).sqrt().ceil();
-    if !(guess <= MOST_PIECES as f64) {
+    if guess.is_nan() || guess > MOST_PIECES as f64 {
         return Err(DivisionError::TooManyPieces);
     }
     let mut pieces = (guess as usize).max(2);

@@ -199,7 +199,7 @@ impl Machine {
         }
         let ball = tool.ball_radius_mm.unwrap_or(0.0);
         let lengths = rotary.iter().flat_map(|axis| axis.point_mm).chain([tool.length_mm, ball, tool.helix_deg]);
-        if lengths.into_iter().any(|length| !(length.abs() <= LONGEST_MM)) {
+        if lengths.into_iter().any(|length| length.is_nan() || length.abs() > LONGEST_MM) {
             return Err(MachineError::Length);
         }
         if tool.counted == Counted::BallCentre && tool.ball_radius_mm.is_none() {

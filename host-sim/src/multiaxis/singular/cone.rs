@@ -53,9 +53,10 @@ impl Curve for FromArc<'_> {
         self.course.jet(t)
     }
 
-    fn bend(&self, piece: &Sample<'_>) -> f64 {
+    fn ceiling(&self, piece: &Sample<'_>, ends: f64) -> f64 {
         let bounds = self.course.bounds();
-        (norm(piece.middle.second) + piece.half * bounds.third).min(bounds.second)
+        let bend = (norm(piece.middle.second) + piece.half * bounds.third).min(bounds.second);
+        ends + piece.half * piece.half / 2.0 * bend
     }
 
     fn steepest_bend(&self) -> f64 {

@@ -57,8 +57,8 @@ pub struct Passage {
     pub branches: [Branch; 2],
 }
 
-/// Slack of the certified orientation error, in sines of angles.
-const SLACK: f64 = 1e-8;
+/// Slack of the certified orientation error, in sines of angles, and relative to it.
+const SLACK: [f64; 2] = [1e-7, 1e-4];
 
 /// The passage of the linear joint move `from` → `to`.
 pub fn passage(machine: &Machine, from: &Joints, to: &Joints) -> Passage {
@@ -93,7 +93,7 @@ pub(super) fn orientation_error(machine: &Machine, from: &Joints, to: &Joints) -
     }
     let course = Course::of_axis(machine, from, to);
     let arc = FromArc::new(&course);
-    let largest = largest(&arc, SLACK, 1e-6);
+    let largest = largest(&arc, SLACK[0], SLACK[1]);
     // Beyond a right angle the distance says no more than that.
     let error = if largest.bound < 1.0 { largest.bound.asin() } else { arc.angle(course.place(largest.at)) };
     (error, largest.at)
