@@ -63,3 +63,38 @@ fn divisions_have_the_printed_numbers_of_pieces() {
         assert!(pieces(Rule::Fewest) <= equal);
     }
 }
+
+/// The table of docs/multiaxis.md.
+#[test]
+fn longest_pieces_and_fewest_are_as_the_document_says() {
+    let machine = table(Letter::A, Letter::C);
+    let [from, to] = ends(&machine, POINTS, ANGLES);
+    for (tolerance, printed) in [(0.05, 2), (0.01, 5), (0.005, 7), (0.001, 14)] {
+        for rule in [Rule::Longest, Rule::Fewest] {
+            let pieces = divide(&machine, &from, &to, tolerance, rule).expect("a division").pieces();
+            assert_eq!(pieces, printed, "{rule:?} {tolerance}");
+        }
+    }
+}
+
+/// The other table: the closed form, and what the usual sagitta makes of the same moves.
+#[test]
+fn the_closed_form_is_near_where_the_usual_sagitta_is_not() {
+    for (from, to, degrees, closed, usual) in [
+        ([100.0, -1.0], [100.0, 1.0], 2.0, "0.032685", "0.015230"),
+        ([100.0, -2.5], [100.0, 2.5], 5.0, "0.204306", "0.095178"),
+        ([100.0, -2.5], [100.0, 2.5], -5.0, "0.013860", "0.095178"),
+        ([0.0, -5.0], [0.0, 5.0], 5.0, "0.218166", "0.000000"),
+    ] {
+        let middle = f64::hypot((from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0);
+        let sagitta = middle * (1.0 - (f64::to_radians(degrees) / 2.0).cos());
+        let (machine, [start, end]) = turned(from, to, degrees);
+        let error = chord_error(&machine, &start, &end);
+        assert_eq!((format!("{:.6}", error.estimate), format!("{sagitta:.6}")), (closed.into(), usual.into()));
+        assert!((error.estimate - error.exact).abs() < 1e-3 * error.exact, "{error:?}");
+        // The formula of the plane: Δθ²ρ − 2Δθ·JΔp across the chord, which runs along y.
+        let (turn, chord) = (f64::to_radians(degrees), to[1] - from[1]);
+        let plane = (turn * turn * from[0] + 2.0 * turn * chord).abs() / 8.0;
+        assert!((plane - error.estimate).abs() < 5e-3 * error.exact, "{plane} {error:?}");
+    }
+}
