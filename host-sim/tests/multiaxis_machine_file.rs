@@ -1,5 +1,7 @@
 //! Machine files: every kind is read, and whatever is wrong is named with its place.
 
+mod multiaxis_machines;
+
 use truepath::diagnostics::Source;
 use truepath::multiaxis::Joints;
 use truepath::multiaxis::machine::{Coordinates, Counted, Kind, Letter, Machine, Sense, Side};
@@ -89,4 +91,35 @@ fn whatever_is_wrong_is_named_with_its_place() {
     }
     let error = Machine::from_toml(&Source::new("m.toml", b"version = 1\n\xff".to_vec())).expect_err("a byte");
     assert_eq!((error.code(), error.line_column()), ("J002", Some((2, 1))));
+}
+
+/// Bytes changed, removed, doubled: an error or a machine, never a panic; and every error has a code and a help.
+#[test]
+fn damaged_files_end_in_an_error_or_a_machine() {
+    let whole = "version = 1\nkind = \"head-head\"\npole_deg = 3\n[[rotary]]\naxis = \"C\"\npoint_mm = [1, -2.5, 140]\n\
+                 limits_deg = [-95, 95]\n[[rotary]]\naxis = \"B\"\nturns = \"left-hand\"\n[tool]\nlength_mm = 85.5\n\
+                 ball_radius_mm = 4\ncounts = \"centre\"\n[travel]\nx_mm = [-400, 400]\n";
+    let bytes = b"0123456789.-+e_\"[]{}=,#\n\r\t \\'nainfxyABC\xff\x00";
+    let mut draw = multiaxis_machines::Draw::new(51);
+    let mut machines = 0;
+    for _ in 0..3_000 {
+        let mut text = whole.as_bytes().to_vec();
+        for _ in 0..1 + (draw.unit() * 3.0) as usize {
+            let at = (draw.unit() * text.len() as f64) as usize;
+            let byte = bytes[(draw.unit() * bytes.len() as f64) as usize];
+            match (draw.unit() * 3.0) as usize {
+                0 => text[at] = byte,
+                1 => drop(text.remove(at)),
+                _ => text.insert(at, byte),
+            }
+        }
+        match Machine::from_toml(&Source::new("m.toml", text)) {
+            Ok(machine) => {
+                machines += 1;
+                assert!(machine.forward(&Joints { xyz: [1.0; 3], rotary: [0.5; 2] }).tip.iter().all(|x| x.is_finite()));
+            }
+            Err(error) => assert!(error.code().starts_with('J') && error.line_column().is_some(), "{error}"),
+        }
+    }
+    assert!((100..2_900).contains(&machines), "{machines}");
 }
