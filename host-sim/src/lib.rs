@@ -1,6 +1,7 @@
 #![doc = include_str!("../../README.md")]
 
 pub mod bench;
+pub mod bore;
 pub mod canon;
 pub mod cli;
 pub mod command;

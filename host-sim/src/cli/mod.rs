@@ -3,6 +3,8 @@
 //! Data goes to standard output or to the files named by `-o`, talk to standard error. Exit codes: 0 done, 1 the input
 //! is wrong (command line included), 2 a fault of the program. `--json` makes both streams readable for machines.
 
+mod bore;
+mod bore_text;
 mod canon;
 mod compare;
 mod correct;
@@ -81,6 +83,8 @@ enum Command {
     Hil(hil::Arguments),
     /// A coprocessor over its configuration link.
     Device(device::Arguments),
+    /// Waviness, roughness and roundness of a bore milled by a circling cutter.
+    Bore(bore::Arguments),
     /// Canonical moves of a program, in the text format of LinuxCNC's `rs274 -g`.
     Canon(canon::Arguments),
 }
@@ -121,6 +125,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Image(arguments) => image::run(&arguments, terminal),
         Command::Hil(arguments) => hil::run(&arguments, terminal),
         Command::Device(arguments) => device::run(&arguments, terminal),
+        Command::Bore(arguments) => bore::run(&arguments, terminal),
         Command::Canon(arguments) => canon::run(&arguments, terminal),
     }
 }

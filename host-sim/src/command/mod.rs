@@ -1,5 +1,9 @@
 //! What the commands do, apart from how they are called (`cli`) and printed.
 
+pub mod bore;
+mod bore_error;
+mod bore_files;
+mod bore_summary;
 pub mod compare;
 pub mod correct;
 pub mod demo;

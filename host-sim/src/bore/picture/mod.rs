@@ -1,0 +1,51 @@
+//! Pictures of a bore (SVG): circular plot, profile diagram, dependences, wall over the depth.
+//!
+//! Colours are those of Okabe and Ito, distinguishable by colour-blind readers and in grey.
+
+mod circular;
+mod dependence;
+mod diagram;
+mod wall;
+
+pub use circular::circular;
+pub use dependence::{runout, teeth};
+pub use diagram::diagram;
+pub use wall::{Patch, wall};
+
+use plotters::style::RGBColor;
+
+use crate::diagnostics::Failure;
+
+const FONT: &str = "sans-serif";
+const DARK: RGBColor = RGBColor(60, 60, 60);
+const LIGHT: RGBColor = RGBColor(225, 225, 225);
+const BLUE: RGBColor = RGBColor(0, 114, 178);
+const ORANGE: RGBColor = RGBColor(213, 94, 0);
+/// Of teeth, by turns.
+const TEETH: [RGBColor; 6] =
+    [BLUE, RGBColor(230, 159, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167), ORANGE, RGBColor(86, 180, 233)];
+
+fn failed(error: impl std::fmt::Display) -> Failure {
+    Failure::Internal(format!("a picture cannot be drawn: {error}"))
+}
+
+/// The largest of 1, 2, 5, 10, … that is not above a number.
+fn round_below(number: f64) -> f64 {
+    if !(number > 0.0 && number.is_finite()) {
+        return 1.0;
+    }
+    let decade = 10f64.powf(number.log10().floor());
+    [5.0, 2.0, 1.0].into_iter().map(|m| m * decade).find(|m| *m <= number).unwrap_or(decade)
+}
+
+/// A length with a unit a reader takes in at a glance.
+fn length(mm: f64) -> String {
+    if mm.abs() >= 0.1 { format!("{} mm", short(mm)) } else { format!("{} µm", short(mm * 1e3)) }
+}
+
+/// Three significant digits, without trailing zeros.
+fn short(number: f64) -> String {
+    let digits = if number == 0.0 { 0 } else { (2 - number.abs().log10().floor() as i32).clamp(0, 6) as usize };
+    let text = format!("{number:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}

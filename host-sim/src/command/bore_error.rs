@@ -1,0 +1,31 @@
+//! Refusals of a bore as errors of the command line.
+
+use crate::bore::Refusal;
+use crate::diagnostics::{Failure, InputError};
+
+/// The error with its code, what was expected and what to do.
+pub(super) fn refused(refusal: &Refusal) -> Failure {
+    let (code, expected, help) = match refusal {
+        Refusal::Range { unit, low, high, .. } => {
+            let gap = if unit.is_empty() || *unit == "°" { "" } else { " " };
+            ("B001", format!("{low} to {high}{gap}{unit}"), "correct the number")
+        }
+        Refusal::NoRelativeTurn => {
+            ("B002", "a cutter that turns against its path".to_owned(), "check --rpm and --feed")
+        }
+        Refusal::Apart { .. } => (
+            "B003",
+            "passes of every tooth that meet".to_owned(),
+            "lower the feed, raise the speed, or mill conventionally",
+        ),
+        Refusal::Passes { limit, .. } => (
+            "B004",
+            format!("at most {limit}"),
+            "use fewer laps, or a higher feed: the height of the waviness falls with the square of the feed",
+        ),
+        Refusal::Comparisons { limit, .. } => ("B005", format!("at most {limit:.0e}"), "use fewer laps, or no runout"),
+        Refusal::OutOfReach { .. } => ("B006", "a height within reach".to_owned(), "name a smaller height"),
+        Refusal::Unfinished => return Failure::Internal(refusal.to_string()),
+    };
+    InputError::new(code, refusal.to_string(), expected, help).into()
+}
