@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use truepath_core::probe::{
-    Columns, DecimalSign, Format, Frame, Given, Layout, LengthUnit, PointKind, Reading, Separator, read,
+    Columns, CutWith, DecimalSign, Format, Frame, Given, Layout, LengthUnit, PointKind, Reading, Separator, read,
 };
 use truepath_core::units::Offset;
 
@@ -27,6 +27,7 @@ fn given(format: Format, layout: Layout) -> Given {
         program_unit: LengthUnit::Millimetre,
         program_crc: 0x23D6_C628,
         ball_diameter: Offset::from_um(6_000),
+        cut_with: CutWith::Nothing,
     }
 }
 

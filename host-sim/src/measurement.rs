@@ -7,13 +7,16 @@ use truepath_core::job;
 use truepath_core::probe::{Contact, Reading, Rejected};
 use truepath_core::units::{Offset, Position, Real};
 
-use crate::diagnostics::{Failure, Source};
+use crate::diagnostics::{Failure, InputError, Source};
 use crate::feature::Plan;
 use crate::pass::Pass;
 use crate::refusal::why;
 
 /// Readings kept at most.
 const LARGEST_FILE: usize = 1 << 20;
+/// Points that machine and material are identified from at most: the fit cuts the contour around every place some hundred
+/// times, which takes a minute for as many. A tenth of them says all that the model has room for.
+pub const MOST_POINTS: usize = 2_000;
 
 /// A reading set aside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +40,8 @@ pub struct Measurement {
     pub noise: Offset,
     /// CRC-32 of the file.
     pub crc: u32,
+    /// Its name.
+    pub file: String,
 }
 
 impl Measurement {
@@ -59,7 +64,8 @@ impl Measurement {
             .map_err(|error| pass.refused_of(file, &error))?;
         contacts.truncate(used);
         rejected.sort_by_key(|aside| aside.line);
-        Ok(Self { contacts, rejected, noise: probe.noise, crc: crc32(file.bytes()) })
+        let (crc, file) = (crc32(file.bytes()), file.name().to_owned());
+        Ok(Self { contacts, rejected, noise: probe.noise, crc, file })
     }
 
     /// Reads a probe file that may be of any depth of the pass's feature: the one with most readings on its wall is
@@ -92,8 +98,14 @@ impl Measurement {
     /// The contacts as observations for the fit.
     ///
     /// # Errors
-    /// Internal, when there is no room for them.
+    /// `M040` for more than [`MOST_POINTS`].
     pub fn observations(&self) -> Result<Vec<Observation>, Failure> {
+        if self.contacts.len() > MOST_POINTS {
+            let found = format!("{} holds {} points on the wall", self.file, self.contacts.len());
+            let expected = format!("at most {MOST_POINTS} to identify machine and material from");
+            let help = "keep every n-th reading of a scan: some places on each wall and in every corner, each at several heights, tell all there is; truepath inspect takes the whole file";
+            return Err(InputError::new("M040", found, expected, help).in_file(self.file.as_ref()).into());
+        }
         let blank = Observation::new(Offset::ZERO, Real::ZERO, Offset::ZERO, Offset::ZERO, Direction::X);
         let mut observations = vec![blank; self.contacts.len()];
         job::observations(&self.contacts, self.noise, &mut observations)

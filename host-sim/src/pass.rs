@@ -9,6 +9,7 @@ use truepath_core::gcode::{
 };
 use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::job::{self, JobError};
+use truepath_core::probe::CutWith;
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
@@ -164,6 +165,13 @@ impl Pass {
         pass.map_or([&[], &[]], |pass| [&pass.leads[0], &pass.leads[1]])
     }
 
+    /// The same pass, whose measured parts have to be cut with a correction.
+    #[must_use]
+    pub const fn cut_with(mut self, correction: CutWith) -> Self {
+        self.core.cut_with = correction;
+        self
+    }
+
     /// The same feature at another level.
     ///
     /// # Errors
@@ -171,7 +179,7 @@ impl Pass {
     pub fn at_level(&self, number: u32) -> Result<Self, Failure> {
         let mut job = self.job.clone();
         job.which.pass = Some(number);
-        Self::new(job, self.program.clone())
+        Ok(Self::new(job, self.program.clone())?.cut_with(self.core.cut_with))
     }
 
     /// One of the passes of the same feature, spring passes included. `wall` is the side of its own travel; `None` where

@@ -243,3 +243,38 @@ fn a_worse_part_whose_points_contradict_each_other_takes_the_correction_back() {
     let moves = |text: &str| text.lines().filter(|line| !line.starts_with('(')).map(str::to_owned).collect::<Vec<_>>();
     assert_eq!(moves(&used), moves(&before));
 }
+
+#[test]
+fn a_correction_is_not_replaced_by_one_made_from_the_part_that_was_cut_with_it() {
+    let (_guard, folder) = copy();
+    let again = |probe: &str, out: &str| {
+        let options = correct::Options {
+            job: &folder.join("job.toml"),
+            probe: &folder.join(probe),
+            out: &folder.join(out),
+            force: true,
+            route: None,
+            first_pass: None,
+            probe_flags: ProbeFlags::default(),
+            which: Which::default(),
+        };
+        correct::run(&options, &mut |_| ())
+    };
+    let before = fs::read(folder.join("first/corrected.nc")).unwrap();
+    let refused = |probe: &str, out: &str| {
+        let Err(Failure::Input(error)) = again(probe, out) else { panic!("not refused") };
+        assert_eq!(error.code(), "Q008");
+        error.to_string()
+    };
+    let text = refused("part-2.txt", "first");
+    assert!(text.contains("mm (rms) from the wall of the correction"), "{text}");
+    assert_eq!(fs::read(folder.join("first/corrected.nc")).unwrap(), before);
+    // Known by name, once it was learned from.
+    run(&folder, "part-2.txt", "first", "second").unwrap();
+    let text = refused("part-2.txt", "second");
+    assert!(text.contains("that of part 2"), "{text}");
+    // The part that the program itself has cut may be corrected again, from the same points or from new ones.
+    for probe in ["part-1.txt", "uncorrected.txt"] {
+        again(probe, "first").unwrap();
+    }
+}

@@ -181,3 +181,19 @@ fn surface_points_given_as_ball_centres_are_named() {
     };
     assert_eq!(error.code(), "M013");
 }
+
+#[test]
+fn a_scan_of_more_points_than_a_fit_takes_is_refused_by_name_and_inspected_all_the_same() {
+    let scan = |points: usize| -> String {
+        (0..points).map(|k| line(27.09, 45.0 + 20.0 * k as f64 / points as f64, -10.0)).collect()
+    };
+    let pass = pass(&[], PROGRAM);
+    let most = truepath::measurement::MOST_POINTS;
+    assert_eq!(read(&pass, &scan(most)).unwrap().observations().unwrap().len(), most);
+    let larger = read(&pass, &scan(most + 1)).unwrap();
+    assert_eq!(larger.contacts.len(), most + 1);
+    let text = larger.observations().unwrap_err().render(Form::Plain);
+    for part in ["M040", "probe.txt", "2001 points", "at most 2000", "every n-th"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}

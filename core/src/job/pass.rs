@@ -9,7 +9,7 @@ use crate::gcode::{
 use crate::geometry::{Block, Contour, Point};
 use crate::identify::Prior;
 use crate::image::Binding;
-use crate::probe::{Given, LengthUnit};
+use crate::probe::{CutWith, Given, LengthUnit};
 use crate::units::{Offset, Real};
 
 /// Largest distance between the samples of a path.
@@ -26,6 +26,8 @@ pub struct Pass {
     pub program_crc: u32,
     /// The cut; its law is helical unless the job says mean.
     pub setup: CutSetup,
+    /// The correction that measured parts have to be cut with: none, unless the caller says another.
+    pub cut_with: CutWith,
 }
 
 impl Pass {
@@ -52,7 +54,7 @@ impl Pass {
                 return Err(JobError::NoFeed { line: block.line });
             }
         }
-        Ok(Self { job: *job, contour, program_crc: program_crc(program), setup })
+        Ok(Self { job: *job, contour, program_crc: program_crc(program), setup, cut_with: CutWith::Nothing })
     }
 
     /// What an image of this pass belongs to. `feature` and `pass` are those of the job's part of the program; both are 1 in
@@ -157,6 +159,7 @@ impl Pass {
             },
             program_crc: self.program_crc,
             ball_diameter: probe.ball_diameter,
+            cut_with: self.cut_with,
         }
     }
 }

@@ -6,10 +6,12 @@
 //! in its wiki ("Grbl v1.1 Interface").
 //!
 //! The answer to `$#` repeats the last touch behind `[TLO:…]`; that line is not a reading. Two touches in succession at
-//! one place are an approach and a measurement: the last one counts. Everything else in the log is talk.
+//! one place are an approach and a measurement: the last one counts. A sender may show `;VERIFY PROGRAM HEX` and
+//! `;VERIFY CORRECTION HEX` of the verification program (see [`Heading`]). Everything else in the log is talk.
 
 use super::error::{ProbeError, ProbeErrorKind};
 use super::format::{Given, LengthUnit};
+use super::heading::Heading;
 use super::number::{Number, Signs};
 use super::reading::{Outcome, Reading, Sink};
 use super::row::position;
@@ -29,7 +31,11 @@ pub(super) fn read(file: &[u8], given: &Given, sink: &mut Sink) -> Result<(), Pr
     let unit = Reports::of(file)?;
     let mut origin = None;
     let mut behind_tool_length = false;
+    let mut heading = Heading::new(given);
     for line in Lines::new(file) {
+        if let Some(text) = verified(line.text) {
+            heading.note(text, &line)?;
+        }
         let Some((text, touch)) = touch(&line) else {
             if !line.text.trim_ascii().is_empty() {
                 behind_tool_length = report(line.text, "TLO").is_some();
@@ -56,6 +62,15 @@ pub(super) fn read(file: &[u8], given: &Given, sink: &mut Sink) -> Result<(), Pr
         sink.push(reading, &line)?;
     }
     Ok(())
+}
+
+/// What a verification program says of the part in a comment that a sender shows.
+fn verified(text: &[u8]) -> Option<&[u8]> {
+    const MARK: &[u8] = b";VERIFY ";
+    let at = text.windows(MARK.len()).position(|w| w.eq_ignore_ascii_case(MARK))?;
+    let text = text.get(at.saturating_add(MARK.len())..)?.trim_ascii();
+    let named = |name: &[u8]| text.get(..name.len()).is_some_and(|key| key.eq_ignore_ascii_case(name));
+    (named(b"PROGRAM ") || named(b"CORRECTION ")).then_some(text)
 }
 
 fn is_same_place(a: [Position; 3], b: [Position; 3]) -> bool {

@@ -50,6 +50,16 @@ pub enum ProbeErrorKind {
         /// CRC-32 of the program of the job.
         job: u32,
     },
+    /// The file is of a part that was cut with a correction.
+    CutCorrected {
+        /// CRC-32 of the correction.
+        file: u32,
+    },
+    /// The file is of a part that was cut with another correction.
+    CorrectionDiffers {
+        /// CRC-32 of that correction.
+        file: u32,
+    },
     /// The ball of the file is not that of the job.
     BallDiffers {
         /// Diameter in the file.
@@ -147,6 +157,8 @@ impl ProbeErrorKind {
             Self::NumbersDiffer { .. } => "M035",
             Self::NoNormal => "M036",
             Self::UnitDiffers => "M037",
+            Self::CutCorrected { .. } => "M038",
+            Self::CorrectionDiffers { .. } => "M039",
         }
     }
     /// What to do about it.
@@ -171,6 +183,10 @@ impl ProbeErrorKind {
             Self::ProgramDiffers { .. } => {
                 "give the file measured on the part cut with this program, or make the verification program anew"
             }
+            Self::CutCorrected { .. } => {
+                "give the points of a part that the program itself has cut; for the next part learn from this one with truepath learn, and name the folder of its correction with --from"
+            }
+            Self::CorrectionDiffers { .. } => "name the folder of the correction that the part was cut with",
             Self::BallDiffers { .. } => {
                 "correct ball_diameter_mm in [probe]: it is a diameter; R of G801 is a radius, half of it; 25.4 times off is a file in the other unit"
             }
@@ -209,6 +225,12 @@ impl fmt::Display for ProbeErrorKind {
             Self::PointsLost { said, found } => write!(f, "{found} points stand in the file; expected {said}"),
             Self::ProgramDiffers { file, job } => {
                 write!(f, "the file is of a part cut with program {file:08x}; expected program {job:08x}")
+            }
+            Self::CutCorrected { file } => {
+                write!(f, "the file is of a part cut with correction {file:08x}; expected one cut without correction")
+            }
+            Self::CorrectionDiffers { file } => {
+                write!(f, "the file is of a part cut with correction {file:08x}; expected the one of this folder")
             }
             Self::BallDiffers { file, job } => {
                 write!(f, "the ball has a diameter of ")?;

@@ -133,6 +133,18 @@ pub struct Layout {
     pub unit: LengthUnit,
 }
 
+/// What the caller wants of a measured part: which correction it was cut with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CutWith {
+    /// None: what follows is added to no other correction. A file that names one is refused.
+    #[default]
+    Nothing,
+    /// Any, or none.
+    Anything,
+    /// The one with this CRC-32 of its program, or this of its image. A file that names another one is refused.
+    Correction([Option<u32>; 2]),
+}
+
 /// What is known about a file before it is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Given {
@@ -148,6 +160,8 @@ pub struct Given {
     pub program_crc: u32,
     /// Diameter of the probe's ball.
     pub ball_diameter: Offset,
+    /// The correction that the part has to be cut with.
+    pub cut_with: CutWith,
 }
 
 impl Given {

@@ -1,10 +1,11 @@
-//! What a verification program writes before and after its points: which program, unit, ball, how many points.
+//! What a verification program writes before and after its points: which program, correction, unit, ball, how many
+//! points.
 //!
-//! `program HEX`, `unit mm|inch`, `ball D`, `points N`, `end N`, in any case; other words are remarks. The ball is in the
+//! `program HEX`, `correction HEX` (of a part cut with that file), `unit mm|inch`, `ball D`, `points N`, `end N`, in any case; other words are remarks. The ball is in the
 //! unit stated before it.
 
 use super::error::{ProbeError, ProbeErrorKind};
-use super::format::{Given, LengthUnit};
+use super::format::{CutWith, Given, LengthUnit};
 use super::number::{Number, Signs};
 use crate::gcode::Line;
 use crate::units::Offset;
@@ -44,11 +45,18 @@ impl<'g> Heading<'g> {
             |expected| value.and_then(|v| Number::parse(v, Signs::POINT).ok()).ok_or_else(|| malformed(expected));
         if is("program") {
             // A remark such as "program finished" is not a check sum.
-            let digits = value.filter(|v| v.len() == 8).and_then(|v| core::str::from_utf8(v).ok());
-            let file = digits.and_then(|v| u32::from_str_radix(v, 16).ok());
-            let file = file.ok_or_else(|| malformed("`program` with 8 hexadecimal digits"))?;
+            let file = value.and_then(check_sum).ok_or_else(|| malformed("`program` with 8 hexadecimal digits"))?;
             if file != self.given.program_crc {
                 return Err(fails(ProbeErrorKind::ProgramDiffers { file, job: self.given.program_crc }));
+            }
+        } else if is("correction") {
+            let file = value.and_then(check_sum).ok_or_else(|| malformed("`correction` with 8 hexadecimal digits"))?;
+            match self.given.cut_with {
+                CutWith::Nothing => return Err(fails(ProbeErrorKind::CutCorrected { file })),
+                CutWith::Correction(known) if !known.contains(&Some(file)) => {
+                    return Err(fails(ProbeErrorKind::CorrectionDiffers { file }));
+                }
+                CutWith::Anything | CutWith::Correction(_) => {}
             }
         } else if is("unit") {
             let value = value.unwrap_or_default();
@@ -85,4 +93,10 @@ impl<'g> Heading<'g> {
         }
         Ok(false)
     }
+}
+
+/// Eight hexadecimal digits.
+fn check_sum(text: &[u8]) -> Option<u32> {
+    let digits = core::str::from_utf8(text).ok().filter(|digits| digits.len() == 8)?;
+    u32::from_str_radix(digits, 16).ok()
 }

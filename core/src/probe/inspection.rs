@@ -27,7 +27,7 @@ use crate::units::Offset;
 /// Lines of posts that say nothing about points.
 const REMARKS: [&str; 9] =
     ["RESULTSFILE", "DOCUMENTID", "MODELVERSION", "TIMESTAMP", "TOOLPATHID", "TOOLPATH", "G330", "G331", "G802"];
-const HEADINGS: [&str; 4] = ["PROGRAM", "UNIT", "BALL", "POINTS"];
+const HEADINGS: [&str; 5] = ["PROGRAM", "CORRECTION", "UNIT", "BALL", "POINTS"];
 
 /// A nominal point that waits for its measured one.
 struct Nominal<'a> {

@@ -29,7 +29,7 @@ mod words;
 
 pub use contact::{Contact, Contacts, Rejected, Setting};
 pub use error::{ProbeError, ProbeErrorKind};
-pub use format::{Columns, DecimalSign, Format, Frame, Given, Layout, LengthUnit, PointKind, Separator};
+pub use format::{Columns, CutWith, DecimalSign, Format, Frame, Given, Layout, LengthUnit, PointKind, Separator};
 pub use read::read;
 pub use reading::{Outcome, Reading};
 pub use suspect::{Suspicion, suspect};

@@ -9,6 +9,7 @@ use truepath_core::job;
 use super::doubts::{doubts, kinked, misread};
 use super::feeds;
 use super::levels::{self, Levels};
+use super::replaced::refuse_replacing;
 use super::second_pass;
 use crate::correction::{Correction, Identified, Wish, corrected, identified};
 use crate::diagnostics::{Failure, Source};
@@ -226,6 +227,9 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
         }
     };
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
+    if first.is_none() {
+        refuse_replacing(options.out, options.probe, &pass, &measurement)?;
+    }
     let route = options.route.unwrap_or(pass.job.route);
     let mut remarks = measurement.remarks(&file);
     if first.is_none() && first_pass_of(pass.program.bytes()).is_some() {

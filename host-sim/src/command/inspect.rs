@@ -2,6 +2,8 @@
 
 use std::path::Path as FilePath;
 
+use truepath_core::probe::CutWith;
+
 use super::doubts::misread;
 use crate::diagnostics::{Failure, Source};
 use crate::job::{Job, ProbeFlags, Which};
@@ -64,7 +66,8 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let mut job = Job::read(options.job)?;
     job.override_probe(&options.probe_flags)?;
     job.which = options.which.clone();
-    let pass = Pass::read(job)?;
+    // What a part was cut with does not matter for how far its wall is off.
+    let pass = Pass::read(job)?.cut_with(CutWith::Anything);
     let file = Source::read(options.probe)?;
     let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
     let mut warnings = pass.warnings.clone();

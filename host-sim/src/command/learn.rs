@@ -139,7 +139,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
     job.which = options.which.clone();
     let pass = Pass::read(job)?;
     let level = history.facts.level().filter(|_| options.which.pass.is_none() && pass.plan.is_some());
-    let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass);
+    let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
     let file = Source::read(options.probe)?;
     let measurement = Measurement::read(&pass, &file)?;
     let folder = OutputFolder::create(options.out, options.force, FILES)?;

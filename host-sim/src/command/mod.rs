@@ -18,6 +18,7 @@ mod levels;
 pub mod multiaxis;
 pub mod probe;
 pub mod probe_next;
+mod replaced;
 pub mod second_pass;
 pub mod simulate;
 pub mod split;

@@ -17,7 +17,7 @@ use super::learn::{history_in, refuse_feeds};
 use crate::correction::{Identified, Wish, corrected, identified};
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::job::Route;
-use crate::learning::{History, Part, PartPoints, joint};
+use crate::learning::{History, Part, PartPoints, Residual, joint, refuse_uncorrected};
 use crate::measurement::Measurement;
 use crate::pass::{Pass, PathBuffer};
 use crate::report::mm;
@@ -46,9 +46,16 @@ pub(super) fn of_files(
     };
     let history = history_in(folder)?;
     let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
-    let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass);
+    let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
     let measurement = file.as_ref().map(|file| Measurement::read(&pass, file)).transpose()?;
-    let mut plan = next_part(&pass, &history, measurement.as_ref(), settings, progress)?;
+    let mut plan = next_part(&pass, &history, measurement.as_ref(), settings, progress).map_err(|failure| {
+        match (failure, probe) {
+            (Failure::Input(error), Some(probe)) if matches!(error.code(), "Q003" | "Q007") => {
+                error.in_file(probe).into()
+            }
+            (failure, _) => failure,
+        }
+    })?;
     plan.warnings.extend(measurement.iter().zip(&file).flat_map(|(m, file)| m.remarks(file)));
     Ok(plan)
 }
@@ -87,7 +94,8 @@ pub fn next(
 /// `progress` is told the share done, 0…1.
 ///
 /// # Errors
-/// A history of another cut, points it already holds or that do not fit, and as [`plan_next`].
+/// A history of another cut, points it already holds, of a part without its correction or that do not fit, and as
+/// [`plan_next`].
 pub fn next_part(
     pass: &Pass,
     history: &History,
@@ -108,7 +116,11 @@ pub fn next_part(
     let points: Option<Vec<PartPoints>> = parts.iter().map(|part| PartPoints::of(part, &sampled)).collect();
     let nodes = history.next.correction.nodes().filter(|nodes| nodes.len() == sampled.count());
     let (Some(points), Some(nodes)) = (points, nodes) else { return Err(other_contour(&sampled).into()) };
-    let joint = joint(pass, &sampled, &points, None, &mut |share| progress(0.5 * share));
+    if let (true, Some((newest, earlier @ [_, ..]))) = (measurement.is_some(), points.split_last()) {
+        let before = joint(pass, &sampled, earlier, None, &mut |share| progress(0.2 * share));
+        refuse_uncorrected(&sampled, newest, &before, Residual::of(&sampled, earlier, &before).as_ref())?;
+    }
+    let joint = joint(pass, &sampled, &points, None, &mut |share| progress(0.2 + 0.3 * share));
     let observations: Vec<_> = joint.observations.into_iter().flatten().collect();
     joint.core.check(&observations).map_err(|error| pass.refused(&error))?;
     let known = Identified { core: joint.core, observations };
@@ -118,7 +130,8 @@ pub fn next_part(
     let is_next = measurement.is_none();
     let measured =
         Measured { identified: &known, path: &path, nodes: &nodes, is_next, goal: &goal, touched_mm: &touched };
-    plan_next(pass, settings, &measured, &mut |share| progress(0.7 + 0.3 * share))
+    let plan = plan_next(pass, settings, &measured, &mut |share| progress(0.7 + 0.3 * share))?;
+    Ok(Plan { correction: history.correction(), ..plan })
 }
 
 fn goal(pass: &Pass, path: &Path, known: &Identified, nodes: &[Node], progress: &mut dyn FnMut(f64)) -> Goal {

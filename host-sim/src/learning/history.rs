@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use truepath_core::checksum::crc32;
+use truepath_core::probe::CutWith;
 use truepath_core::units::Offset;
 
 use super::facts::Facts;
@@ -133,6 +134,22 @@ impl History {
     /// The number of the part that is cut next.
     pub fn next_number(&self) -> u32 {
         self.parts.last().map_or(1, |part| part.number.saturating_add(1))
+    }
+
+    /// CRC-32 of the files that hold the correction of the next part.
+    fn written(&self) -> impl Iterator<Item = u32> + '_ {
+        self.next.files.iter().filter_map(|file| u32::from_str_radix(&file.crc32, 16).ok())
+    }
+
+    /// The correction that the next part has to be cut with, as a probe file names it.
+    pub fn cut_with(&self) -> CutWith {
+        let mut written = self.written();
+        CutWith::Correction([written.next(), written.next()])
+    }
+
+    /// The same, as a verification program for that part names it.
+    pub fn correction(&self) -> Option<u32> {
+        self.written().next()
     }
 
     /// Refuses a measurement that the history already holds.

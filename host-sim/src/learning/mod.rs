@@ -7,7 +7,7 @@
 //! | machine and material from all parts together | [`joint()`] |
 //! | what they show beside that model, smooth along the contour | [`Residual`] |
 //! | places left out of a first fit | `holdout` |
-//! | whether the newest part was cut with its correction at all | `uncorrected` |
+//! | whether a part was cut with the correction it is said to be cut with, if any | `uncorrected` |
 //! | whether the newest part came out worse | `monitor` |
 //! | all of it, to the next correction | [`update()`] |
 //!
@@ -23,6 +23,7 @@
 //! | Q005 | input and output folder are the same |
 //! | Q006 | a law of correction that cannot learn |
 //! | Q007 | points of a part that no correction was applied to |
+//! | Q008 | points of a part that a correction was applied to, where none is expected |
 
 mod cholesky;
 mod facts;
@@ -47,5 +48,6 @@ pub use monitor::PartError;
 pub use nodes::Nodes;
 pub use points::Point;
 pub use residual::Residual;
+pub(crate) use uncorrected::{refuse_corrected, refuse_uncorrected};
 pub use update::{Update, update};
 pub use verdict::{Beside, Promise, UsedAgain, Verdict};

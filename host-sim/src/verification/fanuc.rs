@@ -83,6 +83,9 @@ pub(super) fn open(page: &mut Page, plan: &Plan, n: Notation) {
     page.line("POPEN");
     page.line("DPRNT[START]");
     page.line(format!("DPRNT[PROGRAM*{:08X}]", plan.shop.crc));
+    if let Some(correction) = plan.correction {
+        page.line(format!("DPRNT[CORRECTION*{correction:08X}]"));
+    }
     page.line(format!("DPRNT[UNIT*{}]", n.unit_name().to_uppercase()));
     page.line(format!("DPRNT[BALL*{}]", n.number(plan.ball_mm)));
     page.line(format!("DPRNT[POINTS*{}]", plan.places.len() * plan.heights.len()));

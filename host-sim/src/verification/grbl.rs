@@ -55,6 +55,9 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     page.line("M0");
     page.line(format!("G0 Z{}", n.number(plan.safe_z_mm)));
     page.line(format!(";VERIFY PROGRAM {:08x}", plan.shop.crc));
+    if let Some(correction) = plan.correction {
+        page.line(format!(";VERIFY CORRECTION {correction:08x}"));
+    }
     page.line(format!(";VERIFY POINTS {count}"));
     walk(&mut page, plan, n, &Grbl { n });
     page.line(format!(";VERIFY END {count}"));

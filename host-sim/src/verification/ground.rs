@@ -80,6 +80,7 @@ impl Ground {
         places.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
         Plan {
             shop: self.shop,
+            correction: None,
             settings: settings.clone(),
             ball_mm: 2.0 * self.ball.radius,
             z_is_tip: self.probe.z_reference == truepath_core::job::ZReference::Tip,

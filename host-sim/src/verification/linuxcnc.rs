@@ -59,13 +59,11 @@ pub(super) fn write(plan: &Plan, log: &str) -> Result<String, InputError> {
     }
     page.line(format!("G0 Z{}", n.number(plan.safe_z_mm)));
     page.line(format!("(LOGOPEN,{log})"));
-    for line in [
-        "truepath probe log 1".to_owned(),
-        format!("program {:08x}", plan.shop.crc),
-        format!("unit {}", n.unit_name()),
-        format!("ball {}", n.number(plan.ball_mm)),
-        format!("points {count}"),
-    ] {
+    let correction = plan.correction.map(|crc| format!("correction {crc:08x}"));
+    let first = ["truepath probe log 1".to_owned(), format!("program {:08x}", plan.shop.crc)];
+    let rest =
+        [format!("unit {}", n.unit_name()), format!("ball {}", n.number(plan.ball_mm)), format!("points {count}")];
+    for line in first.into_iter().chain(correction).chain(rest) {
         page.line(format!("(LOG,# {line})"));
     }
     walk(&mut page, plan, n, &LinuxCnc { n });

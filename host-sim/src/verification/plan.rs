@@ -86,6 +86,8 @@ pub struct Touch<'p> {
 pub struct Plan {
     /// What the part's program says.
     pub shop: Shop,
+    /// CRC-32 of the correction that the touched part is cut with; `None` where it is cut with none, or nothing is said.
+    pub correction: Option<u32>,
     /// The choices it was made with.
     pub settings: Settings,
     /// Diameter of the ball, mm.

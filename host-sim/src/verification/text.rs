@@ -80,6 +80,9 @@ impl Page {
         let unit = Notation::of(plan, 3);
         self.comment(&format!("truepath verification program, {control}"));
         self.comment(&format!("part program {}, CRC32 {:08X}", shop.program, shop.crc));
+        if let Some(correction) = plan.correction {
+            self.comment(&format!("for the part cut with the correction of CRC32 {correction:08X}"));
+        }
         self.comment(&format!(
             "points {touches}, places {}, heights {}, ball {} {}",
             plan.places.len(),

@@ -8,8 +8,9 @@ use truepath::learning::History;
 use truepath::measurement::Measurement;
 use truepath::pass::Pass;
 use truepath::plant::{Machine, Milled};
-use truepath::verification::{Plan, Settings};
+use truepath::verification::{Dialect, Plan, Settings, write};
 use truepath::workshop;
+use truepath_core::checksum::crc32;
 
 use super::parts::{HELIX, pass};
 
@@ -86,6 +87,22 @@ fn on_the_next_part_the_places_are_chosen_from_the_history_and_its_datum_is_open
     // The points of the first part are not those of the second.
     let refused = planned(Some(&measurement)).expect_err("known points").render(Form::Plain);
     assert!(refused.contains("Q003"), "{refused}");
+    // Nor are those of a part that the program itself has cut.
+    let other =
+        planned(Some(&shop.measured(&[22.0, 33.0, 47.0, 72.0]))).expect_err("no correction").render(Form::Plain);
+    assert!(other.contains("Q007"), "{other}");
+    // The program names the correction whose part it touches, so that its results are taken for no other part.
+    let crc = format!("{:08x}", crc32(done.program.as_deref().unwrap()));
+    assert_eq!(plan.correction.map(|crc| format!("{crc:08x}")), Some(crc.clone()));
+    for (dialect, line) in [
+        (Dialect::Linuxcnc, format!("(LOG,# correction {crc})")),
+        (Dialect::Grbl, format!(";VERIFY CORRECTION {crc}")),
+        (Dialect::Fanuc, format!("DPRNT[CORRECTION*{}]", crc.to_uppercase())),
+        (Dialect::Haas, format!("DPRNT[CORRECTION*{}]", crc.to_uppercase())),
+    ] {
+        assert!(write(&plan, dialect, "log.txt").unwrap().lines().any(|l| l == line), "{dialect:?}");
+        assert!(!write(&same, dialect, "log.txt").unwrap().contains(&crc), "{dialect:?}");
+    }
     // Touched once, the second part is touched elsewhere.
     let second = workshop::mill_program(&shop.pass, &shop.machine, done.program.as_deref().unwrap()).unwrap();
     let text = workshop::probe(&shop.pass, &second, &[46.0, 48.5], &HEIGHTS, 6.0).unwrap();
