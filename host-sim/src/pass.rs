@@ -9,7 +9,6 @@ use truepath_core::gcode::{
 };
 use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::job::{self, JobError};
-use truepath_core::probe::CutWith;
 use truepath_core::units::Offset;
 
 use crate::diagnostics::{Failure, InputError, Source};
@@ -167,7 +166,7 @@ impl Pass {
 
     /// The same pass, whose measured parts have to be cut with a correction.
     #[must_use]
-    pub const fn cut_with(mut self, correction: CutWith) -> Self {
+    pub const fn cut_with(mut self, correction: truepath_core::probe::CutWith) -> Self {
         self.core.cut_with = correction;
         self
     }
