@@ -66,9 +66,11 @@ fn command(joints: &[Joints]) -> Option<f64> {
     let machine = "version = 1\nkind = \"table-table\"\n[[rotary]]\naxis = \"A\"\n[[rotary]]\naxis = \"C\"\n";
     std::fs::write(file("m.toml"), machine).ok()?;
     let mut text = String::from("G21 G90 G94\nF1500\n");
-    for joints in joints {
+    for (i, joints) in joints.iter().enumerate() {
         let ([x, y, z], [a, c]) = (joints.xyz, joints.rotary_deg());
-        writeln!(text, "G1 X{x:.4} Y{y:.4} Z{z:.4} A{a:.4} C{c:.4}").ok()?;
+        // The control is taken to the start first.
+        let code = if i == 0 { "G0" } else { "G1" };
+        writeln!(text, "{code} X{x:.4} Y{y:.4} Z{z:.4} A{a:.4} C{c:.4}").ok()?;
     }
     text.push_str("M2\n");
     std::fs::write(file("in.ngc"), text).ok()?;
