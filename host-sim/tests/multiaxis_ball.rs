@@ -5,7 +5,7 @@ mod multiaxis_machines;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use multiaxis_machines::{Draw, types};
-use truepath::multiaxis::ball::BallEnd;
+use truepath::multiaxis::ball::{BallEnd, Contacts};
 use truepath::multiaxis::kinematics::vector::{Vector, add_scaled, angle, norm, sub, unit};
 use truepath::multiaxis::machine::{Counted, Machine, Tool};
 use truepath::multiaxis::{Joints, Pose, chord_error};
@@ -114,5 +114,28 @@ fn the_centre_of_the_ball_stands_where_the_tip_swings() {
         assert!(norm(sub(machine.counted(&from), machine.counted(&to))) < 1e-9);
         assert!(norm(sub(tips[0], add_scaled(centre, machine.axis(from.rotary), -5.0))) < 1e-9);
         assert!(chord_error(&machine, &from, &to).exact < 1e-4);
+    }
+}
+
+#[test]
+fn the_span_of_contacts_is_that_of_its_positions() {
+    let axes = *Draw::new(33).machine(types()[0]).rotary();
+    let tool = Tool { length_mm: 0.0, ball_radius_mm: Some(4.0), helix_deg: 30.0, counted: Counted::Tip };
+    let machine = Machine::new(axes, tool).expect("a machine");
+    let normal = machine.axis([0.0; 2]);
+    let mut contacts = Contacts::new(&machine, normal).expect("a ball and a normal");
+    assert_eq!(contacts.span(), None);
+    let words = [[0.0, 0.0], [0.3, 0.1], [-0.7, 0.4], [3.0, 0.0]];
+    let polar = words.map(|rotary| angle(machine.axis(rotary), normal).to_degrees());
+    words.iter().for_each(|&rotary| contacts.add(&machine, &Joints { xyz: [0.0; 3], rotary }));
+    let span = contacts.span().expect("contacts");
+    let touching = polar.iter().filter(|&&polar| polar <= 90.0).count() as u64;
+    assert_eq!((span.places, span.on_shank), (touching, 4 - touching));
+    assert!(touching == 3, "the last one lies on its back: {polar:?}");
+    let most = polar[..3].iter().fold(0.0f64, |a, &b| a.max(b));
+    assert!(span.polar_deg[0] == 0.0 && (span.polar_deg[1] - most).abs() < 1e-9);
+    assert!((span.cutting_radius_mm[1] - 4.0 * most.to_radians().sin()).abs() < 1e-9);
+    for normal in [[0.0; 3], [f64::NAN, 0.0, 1.0]] {
+        assert!(Contacts::new(&machine, normal).is_none());
     }
 }

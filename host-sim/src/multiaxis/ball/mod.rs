@@ -10,11 +10,14 @@
 //!
 //! Limits: the ball only, θ up to 90°; above that the shank touches, and there is no contact point.
 
+mod contacts;
+
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::kinematics::Pose;
 use super::kinematics::vector::{Vector, add_scaled, angle, unit};
 use super::machine::Machine;
+pub use contacts::{ContactSpan, Contacts};
 
 /// A ball end.
 #[derive(Clone, Copy, Debug, PartialEq)]
