@@ -20,6 +20,7 @@ pub mod output;
 pub mod pass;
 pub mod plant;
 pub mod plot;
+pub mod pocket;
 pub mod program;
 pub mod refusal;
 pub mod replay;

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::{Terminal, print, probe_flags, which};
+use super::{Terminal, pocket, print, probe_flags, which};
 use crate::command::correct::{Options, run as correct};
+use crate::command::pocket as compensation;
 use crate::diagnostics::Failure;
 use crate::feature::listing;
 use crate::job::Route;
@@ -17,8 +18,11 @@ pub(super) struct Arguments {
     /// The job.
     job: PathBuf,
     /// What the probe measured on the part cut by the job's program.
-    #[arg(long, value_name = "FILE")]
-    probe: PathBuf,
+    #[arg(long, value_name = "FILE", required_unless_present = "no_probe")]
+    probe: Option<PathBuf>,
+    /// From tool and material data alone: the same as truepath pocket.
+    #[arg(long, conflicts_with_all = ["probe", "route", "first_pass"])]
+    no_probe: bool,
     /// Folder for the corrected program (or image), tables, summary and picture.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -53,9 +57,20 @@ impl From<RouteArgument> for Route {
 }
 
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let Some(probe) = &arguments.probe else {
+        let options = compensation::Options {
+            job: &arguments.job,
+            out: &arguments.output,
+            force: arguments.force,
+            tolerance_mm: None,
+            per_section: None,
+            which: arguments.which.which(),
+        };
+        return pocket::compensate(&options, terminal);
+    };
     let options = Options {
         job: &arguments.job,
-        probe: &arguments.probe,
+        probe,
         out: &arguments.output,
         force: arguments.force,
         route: arguments.route.map(Route::from),

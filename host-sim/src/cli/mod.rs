@@ -15,6 +15,7 @@ mod image;
 mod inspect;
 mod learn;
 mod multiaxis;
+mod pocket;
 mod probe;
 mod probe_flags;
 mod replay;
@@ -71,6 +72,8 @@ enum Command {
     Learn(learn::Arguments),
     /// For a single part: a program that cuts half of the allowance, to be probed before the second half.
     Split(split::Arguments),
+    /// A whole pocket, finishing pass or slot, compensated from tool and material data alone, section by section.
+    Pocket(pocket::Arguments),
     /// How well the method does on virtual machines of all kinds, and where it stops working.
     Study(study::Arguments),
     /// The chord error of a five-axis program, and a program in which locations are inserted against it.
@@ -119,6 +122,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Correct(arguments) => correct::run(&arguments, terminal),
         Command::Learn(arguments) => learn::run(&arguments, terminal),
         Command::Split(arguments) => split::run(&arguments, terminal),
+        Command::Pocket(arguments) => pocket::run(&arguments, terminal),
         Command::Study(arguments) => study::run(&arguments, terminal),
         Command::Multiaxis(arguments) => multiaxis::run(&arguments, terminal),
         Command::Replay(arguments) => replay::run(&arguments, terminal),

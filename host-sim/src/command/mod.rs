@@ -16,6 +16,7 @@ pub mod inspect;
 pub mod learn;
 mod levels;
 pub mod multiaxis;
+pub mod pocket;
 pub mod probe;
 pub mod probe_next;
 mod replaced;

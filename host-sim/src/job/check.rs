@@ -11,6 +11,7 @@ use truepath_core::units::{Offset, Real};
 use super::check_correct::correct;
 use super::check_feature::features;
 use super::check_feed::feed;
+use super::check_pocket::pocket;
 use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
 use super::check_tool::{reach, tool};
@@ -19,6 +20,10 @@ use super::limits::Limits;
 use super::material::MATERIALS;
 use super::{Decimal, Job, Which, notation};
 use crate::diagnostics::{InputError, Source};
+use crate::pocket::Mode;
+
+/// The stiffest machine a job can state; where none is stated only the cutter bends.
+const RIGID: Machine = Machine { stiffness_x: Real::from_int(1_000_000), stiffness_y: Real::from_int(1_000_000) };
 
 /// Names of the controls a program may be written for.
 const DIALECTS: [(&str, Dialect); 5] = [
@@ -51,15 +56,23 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     let dialect = root.choice("dialect", &DIALECTS)?.unwrap_or_default();
     let decimal = root.choice("decimal", &DECIMALS)?.unwrap_or_default();
     let tool_section = root.required_section("tool", "diameter_mm, teeth and helix_deg")?;
-    let tool = tool(&source, &tool_section)?;
+    let (tool, shank) = tool(&source, &tool_section)?;
     let features = features(&source, &root, tool.diameter)?;
-    let stock = stock(&root.required_section("stock", "allowance_mm")?, tool.diameter)?;
+    let pocket = root.section("pocket")?.map(|section| pocket(&section)).transpose()?;
+    let stock = match root.section("stock")? {
+        // A slot is cut at full immersion: there is no allowance to state.
+        None if pocket.is_some_and(|p| p.mode == Mode::Slot) => Stock::of_a_slot(tool.diameter),
+        _ => stock(&root.required_section("stock", "allowance_mm")?, tool.diameter)?,
+    };
     let cut = cut(&root.required_section("cut", "axial_depth_mm")?)?;
     reach(&source, &tool_section, &tool, &cut)?;
     let force = force(&source, &root.required_section("force", "the four coefficients, or material = \"steel-40\"")?)?;
-    let (machine, backlash) =
-        machine(&root.required_section("machine", "stiffness_x_n_per_mm and stiffness_y_n_per_mm")?)?;
     let probe = root.section("probe")?.map(|section| probe(&source, &section)).transpose()?;
+    let (machine, backlash) = match root.section("machine")? {
+        // Without a probe a pocket may be compensated for the cutter alone.
+        None if pocket.is_some() && probe.is_none() => (RIGID, [Offset::ZERO; 2]),
+        _ => machine(&root.required_section("machine", "stiffness_x_n_per_mm and stiffness_y_n_per_mm")?)?,
+    };
     let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
     let feed = feed(root.section("feed")?.as_ref())?;
     root.close()?;
@@ -88,6 +101,8 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         max_kink_deg: writing.max_kink_deg,
         route: writing.route,
         feed,
+        pocket,
+        shank,
         surface,
         features,
         which: Which::default(),

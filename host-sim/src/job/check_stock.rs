@@ -16,6 +16,13 @@ pub(super) struct Stock {
     pub(super) surface: Option<String>,
 }
 
+impl Stock {
+    /// Before a slot: the whole of the cutter is in the material, half of it towards either wall.
+    pub(super) const fn of_a_slot(diameter: Offset) -> Self {
+        Self { allowance: Offset::from_nm(diameter.nm() / 2), surface: None }
+    }
+}
+
 /// What the table says.
 pub(super) fn stock(section: &Section<'_>, diameter: Offset) -> Result<Stock, InputError> {
     let limits = Limits::above("0", "100", "mm");

@@ -5,6 +5,7 @@ use truepath_core::job::{Compensation, Cut, Stickout, Tool};
 
 use super::Decimal;
 use super::check::text_of;
+use super::check_shank::{Shank, shank, within_stickout};
 use super::document::Section;
 use super::limits::Limits;
 use crate::diagnostics::{InputError, Source};
@@ -12,8 +13,8 @@ use crate::diagnostics::{InputError, Source};
 /// Where numbers of tools and their offsets come from.
 const TABLE: &str = "take the number from the tool table of the control";
 
-/// What the table says.
-pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, InputError> {
+/// What the table says of the cutter, and of its shape as a beam.
+pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<(Tool, Shank), InputError> {
     let diameter = section.required_number("diameter_mm", Limits::within("0.1", "100", "mm"))?.as_mm();
     let measured = section.value("measured_diameter_mm");
     let measured_diameter = match &measured {
@@ -57,8 +58,11 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, Input
     };
     let choices = [("centre", Compensation::Centre), ("radius", Compensation::Radius)];
     let compensation = section.choice("compensation", &choices)?.unwrap_or_default();
+    let shank = shank(section)?;
     section.close()?;
-    Ok(Tool { diameter, measured_diameter, teeth, helix_deg, cantilever, number, offset_number, compensation })
+    let tool = Tool { diameter, measured_diameter, teeth, helix_deg, cantilever, number, offset_number, compensation };
+    within_stickout(section, &tool, &shank)?;
+    Ok((tool, shank))
 }
 
 /// The cutter must stick out at least as far as it cuts deep.

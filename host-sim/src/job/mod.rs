@@ -24,7 +24,9 @@ mod check;
 mod check_correct;
 mod check_feature;
 mod check_feed;
+mod check_pocket;
 mod check_probe;
+mod check_shank;
 mod check_stock;
 mod check_tool;
 mod decimal;
@@ -45,7 +47,9 @@ use crate::surface::Surface;
 pub(crate) use check_feature::is_id;
 pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
 pub use check_feed::{FeedTable, ForceLimit};
+pub use check_pocket::PocketTable;
 pub use check_probe::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
+pub use check_shank::Shank;
 pub use decimal::Decimal;
 pub use material::{MATERIALS, Material};
 
@@ -68,6 +72,10 @@ pub struct Job {
     pub route: Route,
     /// How far the feeds along the contour may be changed; `None` leaves every F word.
     pub feed: Option<FeedTable>,
+    /// What `truepath pocket` cuts; `None` without `[pocket]`.
+    pub pocket: Option<PocketTable>,
+    /// The cutter's shape as a beam, beside stick-out and material.
+    pub shank: Shank,
     /// The actual surface of the stock, as a path that can be opened; its allowance follows from it.
     pub surface: Option<PathBuf>,
     /// The `[[feature]]` tables.

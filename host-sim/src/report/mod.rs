@@ -18,6 +18,7 @@ pub use summary::{
     simulate_summary,
 };
 pub use tables::{Trace, TraceRow, correction_csv, trace, trace_csv};
+pub(crate) use tables::{rounded, table};
 
 use truepath_core::units::{Offset, Real};
 

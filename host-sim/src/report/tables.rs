@@ -68,7 +68,7 @@ pub fn trace(machine: &Loop, states: &[State], errors_mm: &[f64]) -> Trace {
     .collect()
 }
 
-pub(super) fn table<T: serde::Serialize>(rows: impl IntoIterator<Item = T>) -> Result<Vec<u8>, Failure> {
+pub(crate) fn table<T: serde::Serialize>(rows: impl IntoIterator<Item = T>) -> Result<Vec<u8>, Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.serialize(row).map_err(|e| Failure::Internal(format!("a table cannot be written: {e}")))?;
@@ -77,7 +77,7 @@ pub(super) fn table<T: serde::Serialize>(rows: impl IntoIterator<Item = T>) -> R
 }
 
 /// Nanometres and nanoradians are enough for any reader.
-pub(super) fn rounded(v: f64, digits: i32) -> f64 {
+pub(crate) fn rounded(v: f64, digits: i32) -> f64 {
     let scale = 10f64.powi(digits);
     (v * scale).round() / scale
 }

@@ -1,0 +1,180 @@
+//! `pocket`: the compensated path of a whole pocket from tool and material data alone.
+
+use std::path::Path as FilePath;
+
+use truepath_core::checksum::crc32;
+use truepath_core::correct::Node;
+use truepath_core::cut::Path;
+use truepath_core::geometry::{Side, Vector};
+use truepath_core::units::Offset;
+
+use super::levels;
+use crate::diagnostics::Failure;
+use crate::job::{Job, PocketTable, Which};
+use crate::output::OutputFolder;
+use crate::pass::{Pass, PathBuffer, read_blocks};
+use crate::pocket::{
+    Designed, Machine, Mode, PerSection, PocketError, PocketSummary, Process, Told, Wanted, before_after,
+    correction_csv, design, edits, finishing, pocket_summary, section_rows, sections_csv, sensitivity, slotting,
+};
+use crate::program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
+use crate::report::{block_edits, json, mm};
+
+/// Files this command may write.
+const FILES: &[&str] =
+    &["corrected.nc", "difference.txt", "correction.csv", "sections.csv", "summary.json", "before-after.svg"];
+
+/// What is compensated.
+#[derive(Clone, Debug)]
+pub struct Options<'a> {
+    /// The job.
+    pub job: &'a FilePath,
+    /// Output folder.
+    pub out: &'a FilePath,
+    /// Replace existing files.
+    pub force: bool,
+    /// `--tolerance`, over that of the job, mm.
+    pub tolerance_mm: Option<f64>,
+    /// `--per-section`, over that of the job.
+    pub per_section: Option<PerSection>,
+    /// Which cut of the program.
+    pub which: Which,
+}
+
+/// A compensated pocket in memory.
+#[derive(Debug)]
+struct Made {
+    told: Told,
+    edits: Vec<BlockEdit>,
+    correction: Vec<u8>,
+    picture: Vec<u8>,
+}
+
+/// Compensates a pocket and writes the outputs.
+///
+/// # Errors
+/// Whatever is wrong with job or program, a cutter too soft for the cut, outputs that cannot be written.
+pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PocketSummary, Failure> {
+    let mut job = Job::read(options.job)?;
+    job.which = options.which.clone();
+    let mut table = job.pocket.unwrap_or_default();
+    table.per_section = options.per_section.unwrap_or(table.per_section);
+    if let Some(tolerance) = options.tolerance_mm {
+        table.tolerance = checked(tolerance).map_err(|e| e.failure(&job))?;
+    }
+    if table.mode == Mode::Slot && job.numbers.wall.is_none() {
+        // A slot has a wall on either side: the right one is called near, unless the program names one.
+        let named = read_blocks(&job.read_program()?).ok().and_then(|(_, contour)| contour.wall);
+        job.numbers.wall = named.or(Some(Side::Right));
+    }
+    let machine = Machine::of(&job).map_err(|e| e.failure(&job))?;
+    let pass = Pass::read(job)?;
+    let folder = OutputFolder::create(options.out, options.force, FILES)?;
+    let mut warnings = pass.warnings.clone();
+    let refused = |error: PocketError| error.failure(&pass.job);
+    let made = match table.mode {
+        Mode::Wall => {
+            let mut buffer = PathBuffer::default();
+            let path = pass.sample(&mut buffer)?;
+            let process = finishing(&pass, &path).map_err(refused)?;
+            let closed = path.is_closed();
+            make(&pass, &process, (&table, closed), &mut warnings, progress, |designed, warnings| {
+                wall_edits(&pass, &path, designed, warnings)
+            })?
+        }
+        Mode::Slot => {
+            let process = slotting(&pass).map_err(refused)?;
+            if pass.plan.as_ref().is_some_and(|plan| plan.passes.len() > 1) {
+                warnings.push("only the depth that was asked for is compensated, see --pass".to_owned());
+            }
+            make(&pass, &process, (&table, false), &mut warnings, progress, |designed, _| {
+                Ok(edits(process.stations(), &designed.vectors))
+            })?
+        }
+    };
+    let written = if made.told.designed.shifted.contains(&true) {
+        Some(corrected_program(&pass, &made.edits)?)
+    } else {
+        warnings.push("every section is within the band: the program stays as it is, and none is written".to_owned());
+        None
+    };
+    let difference = written.as_ref().map(|written| written.difference.clone());
+    let summary = pocket_summary(&pass, &table, &machine, &made.told, difference, warnings);
+    if let Some(written) = &written {
+        folder.write("corrected.nc", &written.text)?;
+        let text = written.difference.text(pass.program.name());
+        folder.write("difference.txt", text.as_bytes())?;
+    }
+    folder.write("correction.csv", &made.correction)?;
+    folder.write("sections.csv", &sections_csv(&made.told.rows)?)?;
+    folder.write("summary.json", &json(&summary)?)?;
+    folder.write("before-after.svg", &made.picture)?;
+    folder.commit()?;
+    progress(1.0);
+    Ok(summary)
+}
+
+fn checked(tolerance_mm: f64) -> Result<Offset, PocketError> {
+    let tolerance = Offset::from_nm((tolerance_mm.clamp(0.0, 2.0) * 1e6).round() as i64);
+    if tolerance_mm.is_nan() || tolerance_mm > 1.0 || tolerance <= Offset::ZERO {
+        return Err(PocketError::Tolerance(tolerance_mm));
+    }
+    Ok(tolerance)
+}
+
+fn make(
+    pass: &Pass,
+    process: &dyn Process,
+    (table, closed): (&PocketTable, bool),
+    warnings: &mut Vec<String>,
+    progress: &mut dyn FnMut(f64),
+    edits: impl FnOnce(&Designed, &mut Vec<String>) -> Result<Vec<BlockEdit>, Failure>,
+) -> Result<Made, Failure> {
+    let refused = |error: PocketError| error.failure(&pass.job);
+    let tolerance_mm = mm(table.tolerance);
+    let clamp_mm = mm(pass.job.numbers.correct.clamp);
+    let wanted = Wanted { tolerance_mm, per_section: table.per_section, clamp_mm, closed };
+    let designed = design(process, &wanted, &mut |share| progress(0.8 * share)).map_err(refused)?;
+    let sensitivity = sensitivity(process, &designed, tolerance_mm).map_err(refused)?;
+    progress(0.9);
+    let edits = edits(&designed, warnings)?;
+    let stations = process.stations();
+    Ok(Made {
+        edits,
+        correction: correction_csv(stations, &designed)?,
+        picture: before_after(stations, &designed, table.mode, tolerance_mm)?,
+        told: Told { rows: section_rows(stations, &designed, table.mode, tolerance_mm), sensitivity, designed },
+    })
+}
+
+/// The shifted path of a finishing pass at every depth it stands for.
+fn wall_edits(
+    pass: &Pass,
+    path: &Path,
+    designed: &Designed,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<BlockEdit>, Failure> {
+    let nm = |v: f64| Offset::from_nm((v * 1e6).round() as i64);
+    let node = |v: &[f64; 2]| Node { chip: Vector::ZERO, edge: Vector { x: nm(v[0]), y: nm(v[1]) } };
+    let nodes: Vec<Node> = designed.vectors.iter().map(node).collect();
+    let mut edits = Vec::new();
+    let mut levels = levels::each(pass, path, |_, pass, path| {
+        edits.extend(block_edits(pass, path, &nodes, None));
+        Ok(())
+    })?;
+    warnings.append(&mut levels.left);
+    Ok(edits)
+}
+
+fn corrected_program(pass: &Pass, edits: &[BlockEdit]) -> Result<Rewritten, Failure> {
+    let options = RewriteOptions {
+        tolerance: pass.job.tolerance,
+        max_arc_radius: pass.job.max_arc_radius,
+        max_kink_deg: pass.job.max_kink_deg,
+        program: pass.job.numbers.program_options(),
+        origin: Origin { job: Some(crc32(pass.job.source().bytes())), probe: None },
+        notes: vec!["FROM TOOL AND MATERIAL DATA ALONE, NOT FROM A PROBE".to_owned()],
+        ..RewriteOptions::default()
+    };
+    rewrite_program(&pass.program, edits, &options)
+}
