@@ -27,6 +27,7 @@ pub fn finishing<'a>(pass: &Pass, path: &'a Path<'a>) -> Result<Wall<'a>, Pocket
 /// A cutter that is not described, a path that is too long, a cutter too soft for it.
 pub fn slotting(pass: &Pass) -> Result<Slot, PocketError> {
     let machine = Machine::of(&pass.job)?;
-    let stations = slot_stations(&pass.path_contour(), pass.core.setup.wall, pass.core.step())?;
+    let stations =
+        slot_stations(&pass.path_contour(), (pass.core.setup.wall, pass.core.setup.radius), pass.core.step())?;
     Slot::new(stations, pass.core.setup, pass.core.coefficients(), machine)
 }

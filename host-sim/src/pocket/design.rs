@@ -61,12 +61,15 @@ pub(super) fn worst(section: &Section, cut: &[Cutting]) -> f64 {
 pub fn design(process: &dyn Process, wanted: &Wanted, progress: &mut dyn FnMut(f64)) -> Result<Designed, PocketError> {
     let stations = process.stations();
     let still = vec![[0.0; 2]; stations.len()];
-    let before = process.cut(&still, 1.0)?;
     let limit_mm = process.limit_mm();
-    if let Some((cut, station)) = before.iter().zip(stations).find(|(c, _)| c.deflection_mm.abs() >= limit_mm) {
-        let deflection_mm = cut.deflection_mm.abs();
-        return Err(PocketError::TooSoft { deflection_mm, limit_mm, s_mm: station.s_mm });
+    let intended = (0..stations.len()).map(|i| (process.intended_mm(i).abs(), stations[i].s_mm));
+    match intended.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((deflection_mm, s_mm)) if deflection_mm >= limit_mm => {
+            return Err(PocketError::TooSoft { deflection_mm, limit_mm, s_mm });
+        }
+        _ => {}
     }
+    let before = process.cut(&still, 1.0)?;
     let sections = sections(stations, process.nominal());
     let decided = |s: &Section| s.kind != Kind::Sharp && worst(s, &before) > wanted.tolerance_mm;
     let shifted: Vec<bool> = sections.iter().map(decided).collect();

@@ -72,4 +72,7 @@ pub trait Process {
     fn cut(&self, shifts: &[[f64; 2]], force: f64) -> Result<Vec<Cutting>, PocketError>;
     /// What a deflection must stay below, mm.
     fn limit_mm(&self) -> f64;
+    /// Deflection along the normal at a station under the cut that the program intends, mm. The real one is smaller where
+    /// the cutter yields, and says nothing of a cutter that cannot stand the cut.
+    fn intended_mm(&self, station: usize) -> f64;
 }

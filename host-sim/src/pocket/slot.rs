@@ -259,6 +259,13 @@ impl Process for Slot {
         mm(self.setup.radius)
     }
 
+    fn intended_mm(&self, station: usize) -> f64 {
+        let [n, t] = self.mean(&[[0.0, PI]], self.stations[station].feed_mm_per_min);
+        let [fx, fy] = in_xy(&self.stations[station], [n, t]);
+        let [cx, cy] = self.machine.mean();
+        (cx * fx).hypot(cy * fy)
+    }
+
     fn cut(&self, shifts: &[[f64; 2]], force: f64) -> Result<Vec<Cutting>, PocketError> {
         let states = self.march(shifts, force)?;
         let [near, far] = self.walls(&states, shifts, force);

@@ -33,6 +33,9 @@ pub struct Station {
 /// Samples of a slot's path: with 0.1 mm apart, 40 m.
 pub const MOST_STATIONS: usize = 400_000;
 
+/// How far from a sharp corner the shift of the wall is held, radii: as the core does on a finishing pass.
+const HELD: f64 = 1.2;
+
 /// Coordinates in mm.
 pub fn coordinates(p: Point) -> [f64; 2] {
     [p.x.nm() as f64 / 1e6, p.y.nm() as f64 / 1e6]
@@ -53,7 +56,11 @@ pub const fn is_arc(block: &Block) -> bool {
 ///
 /// # Errors
 /// [`PocketError::TooLong`].
-pub fn slot_stations(contour: &Contour, near: Side, step: Offset) -> Result<Vec<Station>, PocketError> {
+pub fn slot_stations(
+    contour: &Contour,
+    (near, radius): (Side, Offset),
+    step: Offset,
+) -> Result<Vec<Station>, PocketError> {
     let step = step.nm().max(1);
     let pieces = |block: &Block| (block.curve.length().nm() + step - 1).checked_div(step).unwrap_or(1).max(1);
     let needed: usize = contour.blocks().iter().map(|block| pieces(block) as usize + 2).sum();
@@ -83,5 +90,22 @@ pub fn slot_stations(contour: &Contour, near: Side, step: Offset) -> Result<Vec<
         }
         before = Some(block.curve.end_heading());
     }
+    hold(&mut stations, HELD * mm(radius));
     Ok(stations)
+}
+
+/// Marks the stations around sharp corners.
+fn hold(stations: &mut [Station], reach: f64) {
+    let sharp = |i: usize| {
+        let (a, b) = (&stations[i - 1], &stations[i]);
+        a.point == b.point && a.heading[0] * b.heading[0] + a.heading[1] * b.heading[1] < 1.0 - 1e-9
+    };
+    let corners: Vec<usize> = (1..stations.len()).filter(|i| sharp(*i)).collect();
+    for corner in corners {
+        let at = stations[corner].s_mm;
+        let (before, behind) = stations.split_at_mut(corner);
+        let near = |s: &&mut Station| (s.s_mm - at).abs() <= reach;
+        before.iter_mut().rev().take_while(near).for_each(|s| s.held = true);
+        behind.iter_mut().take_while(near).for_each(|s| s.held = true);
+    }
 }

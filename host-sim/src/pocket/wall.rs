@@ -113,6 +113,13 @@ impl Process for Wall<'_> {
         mm(self.path.setup().allowance)
     }
 
+    fn intended_mm(&self, station: usize) -> f64 {
+        let feed = self.path.setup().feed_per_tooth(real(self.stations[station].feed_mm_per_min));
+        let state = self.machine(1.0).nominal(self.path.first() + station, self.coefficients.chip_scale(feed));
+        let normal = self.stations[station].normal;
+        mm(state.displacement.x) * normal[0] + mm(state.displacement.y) * normal[1]
+    }
+
     fn cut(&self, shifts: &[[f64; 2]], force: f64) -> Result<Vec<Cutting>, PocketError> {
         let machine = self.machine(force);
         let path = self.path;
