@@ -57,7 +57,7 @@ fn draw(panel: &Panel, unit: &str, curves: &[Curve], band: &[(f64, f64, f64)]) -
     let end = all().fold(0.0f64, |m, p| m.max(p.0));
     let margin = (high - low).max(1e-6) * 0.08;
     // Room above the curves for the legend.
-    let headroom = (high - low).max(1e-6) * (0.08 + 0.17 * curves.len() as f64);
+    let headroom = (high - low).max(1e-6) * (0.14 + 0.2 * curves.len() as f64);
     let mut chart = ChartBuilder::on(panel)
         .margin(8)
         .x_label_area_size(34)
