@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_load_at_the_tip_of_a_uniform_beam_deflects_it_by_pl3_over_3ei() {
-        for length in [12.0, 45.0, 60.0, 123.4] {
+        for length in [12.0f64, 45.0, 60.0, 123.4] {
             let exact = length.powi(3) / (3.0 * STIFF);
             let found = uniform(length).deflection(0.0, Load::At(0.0));
             assert!((found / exact - 1.0).abs() < 1e-12, "{length}: {found} {exact}");
