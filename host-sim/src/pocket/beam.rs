@@ -113,7 +113,7 @@ mod tests {
         let length = 60.0;
         let tip = uniform(length).deflection(0.0, Load::At(0.0));
         let mut seen = Vec::new();
-        for depth in [10.0, 15.0, 20.0, 25.0] {
+        for depth in [10.0, 15.0, 20.0, 22.5] {
             let u = 1.0 - depth / (2.0 * length);
             let ratio = uniform(length).deflection(0.0, Load::At(depth / 2.0)) / tip;
             assert!((ratio / (u * u * (3.0 - u) / 2.0) - 1.0).abs() < 1e-12);
@@ -122,8 +122,8 @@ mod tests {
             assert!(spread > ratio && spread < 1.02 * ratio, "{depth}: {spread} {ratio}");
             seen.push(ratio);
         }
-        // 0.88 at b/L = 1/6, 0.72 at 5/12.
-        assert!((seen[0] - 0.8776).abs() < 1e-4 && (seen[3] - 0.7229).abs() < 3e-3, "{seen:?}");
+        // 0.88 at b/L = 1/6, 0.72 at 3/8.
+        assert!((seen[0] - 0.8753).abs() < 1e-4 && (seen[3] - 0.7221).abs() < 1e-4, "{seen:?}");
     }
 
     #[test]
@@ -204,11 +204,11 @@ mod tests {
         }
         // The clamp takes the first two unknowns out.
         for i in 2..n {
-            for row in i + 1..n.min(i + 4) {
-                let share = k[row][i] / k[i][i];
-                for j in i..n.min(i + 4) {
-                    k[row][j] -= share * k[i][j];
-                }
+            let (above, below) = k.split_at_mut(i + 1);
+            let pivot = &above[i];
+            for (row, other) in (i + 1..n.min(i + 4)).zip(below) {
+                let share = other[i] / pivot[i];
+                other.iter_mut().zip(pivot).for_each(|(a, b)| *a -= share * b);
                 f[row] -= share * f[i];
             }
         }
