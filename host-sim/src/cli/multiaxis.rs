@@ -49,6 +49,9 @@ pub(super) struct Arguments {
     /// Write the program although some moves cannot be checked or divided; they are left as they are.
     #[arg(long)]
     partial: bool,
+    /// Write a program with loops, calls or computed places out plainly, so that it can be rewritten.
+    #[arg(long)]
+    unroll: bool,
     /// The control the program is written for.
     #[arg(long, value_enum, default_value_t = Control::Linuxcnc)]
     dialect: Control,
@@ -110,6 +113,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         report: arguments.report.as_deref(),
         force: arguments.force,
         partial: arguments.partial,
+        unroll: arguments.unroll,
         coordinates: arguments.xyz.map(|meaning| match meaning {
             Meaning::Joints => Coordinates::Joints,
             Meaning::Tip => Coordinates::Tip,

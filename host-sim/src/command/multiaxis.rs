@@ -1,7 +1,9 @@
 //! `multiaxis`: the chord error of a five-axis program, and the program in which no move exceeds a tolerance.
 
+mod summary;
+
 use std::fs::File;
-use std::io::{self, BufReader, Write};
+use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path as FilePath;
 
 use truepath_core::gcode::{Dialect, PointlessLength, Units};
@@ -9,16 +11,21 @@ use truepath_core::gcode::{Dialect, PointlessLength, Units};
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::multiaxis::machine::{Coordinates, Kind, Letter};
 use crate::multiaxis::program::{
-    CentrePoint, Digits, Left, Outcome, PassError, Places, Reading, Report, Settings, Sinks, Splitter, picture,
-    run as pass,
+    CentrePoint, Digits, Outcome, PassError, Reading, Report, Settings, Sinks, Splitter, UnrollOptions, picture,
+    run as pass, unroll,
 };
-use crate::multiaxis::statistics::Figures;
 use crate::multiaxis::{Machine, Rule};
 use crate::output::{OutputFile, OutputFolder};
 use crate::report::json;
 
+pub use summary::MultiaxisSummary;
+use summary::summary;
+
 /// Files of `--report`.
 const FILES: &[&str] = &["moves.csv", "summary.json", "errors.svg"];
+
+/// Bytes of a program with loops, calls or computed places, which is held in memory.
+const LARGEST_STEERED: u64 = 64 << 20;
 
 /// What is asked.
 #[derive(Clone, Debug)]
@@ -41,6 +48,8 @@ pub struct Options<'a> {
     pub force: bool,
     /// Write the program although some moves cannot be checked or divided.
     pub partial: bool,
+    /// Write a program with loops, calls or computed places out plainly.
+    pub unroll: bool,
     /// What XYZ are, when the machine file does not say it.
     pub coordinates: Option<Coordinates>,
     /// What the control does under tool centre point codes.
@@ -57,47 +66,6 @@ pub struct Options<'a> {
     pub skip_block_delete: bool,
 }
 
-/// What was found and done.
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct MultiaxisSummary {
-    /// Version of this summary.
-    pub version: u32,
-    /// `table-table A C`.
-    pub machine: String,
-    /// What XYZ are: `joints` or `tip`; those of `tip_moves` moves are the tip's in any case.
-    pub coordinates: &'static str,
-    /// Moves whose XYZ are places of the tool tip.
-    pub tip_moves: u64,
-    /// Largest chord error allowed, mm.
-    pub tolerance_mm: f64,
-    /// Lines read.
-    pub lines: u64,
-    /// Five-axis moves whose error was computed.
-    pub moves: u64,
-    /// G1 moves of X, Y, Z alone.
-    pub straight_moves: u64,
-    /// G1 moves of rotary axes alone.
-    pub rotary_moves: u64,
-    /// Five-axis moves under full tool centre point control.
-    pub full_interpolation_moves: u64,
-    /// Moves that were divided.
-    pub moves_rewritten: u64,
-    /// Locations inserted.
-    pub points_inserted: u64,
-    /// Chord errors of the moves read.
-    pub before: Figures,
-    /// Chord errors of the moves written.
-    pub after: Figures,
-    /// Moves near a pole of the machine, and their lines.
-    pub singular: Places,
-    /// Moves whose tool axis leaves the great circle by more than `orientation_tolerance_deg`, and cannot follow it.
-    pub orientation: Places,
-    /// Moves that stay although they may err too much, and why.
-    pub left: Left,
-    /// What the user should know.
-    pub warnings: Vec<String>,
-}
-
 /// Measures a program and rewrites it. `progress` is told the bytes read.
 ///
 /// # Errors
@@ -112,29 +80,123 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(u64)) -> Result<Multiaxis
         let error = io::Error::new(io::ErrorKind::IsADirectory, "is a directory");
         return Err(InputError::unreadable(options.program, &error).into());
     }
+    let name = options.program.display().to_string();
+    let input = BufReader::with_capacity(1 << 16, file);
+    match attempt(options, &settings, input, &name, None, true, progress)? {
+        Attempt::Done(found) => finish(options, &machine, &settings, found, None),
+        Attempt::Steered(line) => steered(options, &machine, &settings, line, progress),
+    }
+}
+
+/// A pass that came to its end, and what it wrote.
+struct Found {
+    report: Report,
+    out: Option<OutputFile>,
+    folder: Option<OutputFolder>,
+}
+
+enum Attempt {
+    Done(Box<Found>),
+    Steered(u32),
+}
+
+/// One pass; the text goes to the output when `writes`.
+fn attempt(
+    options: &Options,
+    settings: &Settings<'_>,
+    input: impl BufRead,
+    name: &str,
+    origin: Option<&[u32]>,
+    writes: bool,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Attempt, Failure> {
     let mut out = options.out.map(|path| OutputFile::create(path, options.force)).transpose()?;
     let folder = options.report.map(|path| OutputFolder::create(path, options.force, FILES)).transpose()?;
     let mut table = folder.as_ref().map(|f| f.stream("moves.csv")).transpose()?.map(csv::Writer::from_writer);
     let mut nowhere = io::sink();
-    let name = options.program.display().to_string();
     let sinks = Sinks {
-        text: out.as_mut().map_or(&mut nowhere as &mut dyn Write, |file| file),
+        text: out.as_mut().filter(|_| writes).map_or(&mut nowhere as &mut dyn Write, |file| file),
         row: &mut |row| match &mut table {
             Some(table) => table.serialize(row).map_err(|e| unwritable(options.report, e.into())),
             None => Ok(()),
         },
         progress,
     };
-    let outcome = pass(BufReader::with_capacity(1 << 16, file), &name, &settings, None, sinks);
-    let report = match outcome {
-        Ok(Outcome::Done(report)) => report,
-        Ok(Outcome::Steered(line)) => return Err(steered(options, line).into()),
+    let report = match pass(input, name, settings, origin, sinks) {
+        Ok(Outcome::Done(report)) => *report,
+        Ok(Outcome::Steered(line)) => return Ok(Attempt::Steered(line)),
         Err(PassError::Input(error)) => return Err(error.into()),
         Err(PassError::Read(error)) => return Err(InputError::unreadable(options.program, &error).into()),
         Err(PassError::Write(error)) => return Err(unwritable(options.out, error).into()),
     };
+    if let Some(mut table) = table {
+        table.flush().map_err(|e| unwritable(options.report, e))?;
+    }
+    Ok(Attempt::Done(Box::new(Found { report, out, folder })))
+}
+
+/// A program that line `line` steers: it is executed and written out, and measured as it runs.
+fn steered(
+    options: &Options,
+    machine: &Machine,
+    settings: &Settings<'_>,
+    line: u32,
+    progress: &mut dyn FnMut(u64),
+) -> Result<MultiaxisSummary, Failure> {
+    let bytes = std::fs::metadata(options.program).map_or(0, |m| m.len());
+    if bytes > LARGEST_STEERED {
+        let found = format!("line {line} steers the program or computes a place, and the file has {bytes} bytes");
+        let expected = format!("at most {LARGEST_STEERED} bytes of such a program");
+        let help = "divide the program into plain files, which may be of any size";
+        return Err(InputError::new("A011", found, expected, help).in_file(options.program).into());
+    }
+    let source = Source::read(options.program)?;
+    let plain = unroll(
+        &source,
+        UnrollOptions {
+            dialect: options.dialect,
+            decimal: options.decimal,
+            units: options.units,
+            skip_block_delete: options.skip_block_delete,
+        },
+    )?;
+    let name = format!("{} (written out)", options.program.display());
+    let found =
+        attempt(options, settings, plain.text.as_slice(), &name, Some(&plain.origin), options.unroll, progress)?;
+    let Attempt::Done(mut found) = found else {
+        return Err(Failure::Internal("a program written out is not plain".to_owned()));
+    };
+    if options.unroll {
+        return finish(options, machine, settings, found, Some(line));
+    }
+    // Its own text can only stay as it is.
+    if let (Some(worst), Some(_), false) = (found.report.worst, &found.out, options.partial) {
+        let found = format!(
+            "line {}: the move leaves its chord by {:.4} mm, and line {line} steers the program or computes a place",
+            worst.0, worst.1
+        );
+        let help = "add --unroll to have the program written out plainly, or --partial to leave it as it is";
+        let expected = "a program whose lines can be rewritten in place";
+        return Err(InputError::new("A011", found, expected, help).in_file(options.program).into());
+    }
+    if let Some(out) = &mut found.out {
+        out.write_all(source.bytes()).map_err(|e| unwritable(options.out, e))?;
+    }
+    found.report.stays();
+    finish(options, machine, settings, found, Some(line))
+}
+
+/// Judges what was found and puts the outputs in their place.
+fn finish(
+    options: &Options,
+    machine: &Machine,
+    settings: &Settings<'_>,
+    found: Box<Found>,
+    steered: Option<u32>,
+) -> Result<MultiaxisSummary, Failure> {
+    let Found { report, out, folder } = *found;
     if report.blocks == 0 {
-        let found = format!("{name} has no block");
+        let found = format!("{} has no block", options.program.display());
         let help = "check that this is a program of G1 moves";
         return Err(InputError::new("A008", found, "a program", help).in_file(options.program).into());
     }
@@ -145,9 +207,16 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(u64)) -> Result<Multiaxis
         let help = "correct it, or add --partial to leave such moves as they are";
         return Err(InputError::new("A009", found, expected, help).in_file(options.program).into());
     }
-    let summary = summary(options, &machine, &settings, &report);
-    if let Some(mut table) = table {
-        table.flush().map_err(|e| unwritable(options.report, e))?;
+    let mut summary = summary(options, machine, settings, &report);
+    if let Some(line) = steered {
+        let name = options.program.display();
+        let done = match (options.unroll, report.worst) {
+            (true, _) => "it is written out plainly",
+            (false, None) => "it is within the tolerance and stays as it is",
+            (false, Some(_)) => "it stays as it is, and does not keep the tolerance",
+        };
+        let what = "loops, calls or computed places: it was executed, and measured as it runs";
+        summary.warnings.insert(0, format!("{name}:{line}: {what}; {done}"));
     }
     if let Some(folder) = folder {
         folder.write("summary.json", &json(&summary)?)?;
@@ -196,67 +265,6 @@ fn settings<'m>(options: &Options, machine: &'m Machine) -> Settings<'m> {
     }
 }
 
-fn steered(options: &Options, line: u32) -> InputError {
-    let found = format!("line {line} steers the program or computes a place");
-    let expected = "a program whose blocks are executed in the order of the text, with numbers";
-    InputError::new("A011", found, expected, "let the control or the postprocessor write it out")
-        .in_file(options.program)
-}
-
 fn unwritable(path: Option<&FilePath>, error: io::Error) -> InputError {
     InputError::unwritable(path.unwrap_or(FilePath::new("the output")), &error)
-}
-
-fn summary(options: &Options, machine: &Machine, settings: &Settings, report: &Report) -> MultiaxisSummary {
-    let kind = match machine.kind() {
-        Kind::TableTable => "table-table",
-        Kind::TableHead => "table-head",
-        Kind::HeadHead => "head-head",
-    };
-    let [first, second] = machine.rotary().map(|axis| axis.letter.name());
-    let before = report.before.figures();
-    MultiaxisSummary {
-        version: 1,
-        machine: format!("{kind} {first} {second}"),
-        coordinates: if settings.coordinates == Coordinates::Tip { "tip" } else { "joints" },
-        tip_moves: report.tips,
-        tolerance_mm: options.tolerance_mm,
-        lines: report.lines,
-        moves: before.count,
-        straight_moves: report.straight,
-        rotary_moves: report.rotary_alone,
-        full_interpolation_moves: report.full_interpolation,
-        moves_rewritten: report.divided,
-        points_inserted: report.inserted,
-        before,
-        after: report.after.figures(),
-        singular: report.singular.clone(),
-        orientation: report.orientation.clone(),
-        left: report.left.clone(),
-        warnings: warnings(options, report),
-    }
-}
-
-fn warnings(options: &Options, report: &Report) -> Vec<String> {
-    let name = options.program.display();
-    let mut all: Vec<String> = Vec::new();
-    for (note, line, count) in report.notes.iter() {
-        let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
-        all.push(format!("{name}:{line}: {note}{more}"));
-    }
-    if report.full_interpolation > 0 {
-        all.push(format!(
-            "{} five-axis moves are under tool centre point control, which keeps the tip on its chord: nothing to divide; \
-             if the control transforms only the ends of blocks, say --tcp ends",
-            report.full_interpolation
-        ));
-    }
-    for left in report.left.moves.iter().take(10) {
-        let error = left.error_mm.map_or_else(String::new, |e| format!(" (chord error {e:.4} mm)"));
-        all.push(format!("{name}:{}: left as it is: {}{error}", left.line, left.reason));
-    }
-    if report.left.count > 10 {
-        all.push(format!("{} more moves are left as they are", report.left.count - 10));
-    }
-    all
 }

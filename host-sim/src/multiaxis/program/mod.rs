@@ -6,7 +6,8 @@
 //! | words → exact coordinates and modes | `quantity.rs`, `codes.rs`, `state.rs`, `apply.rs`, `motion.rs` |
 //! | a move → its error and its pieces, as they are written | `split.rs`, `digits.rs` |
 //! | pieces → lines | `writer.rs` |
-//! | one pass, and what it found | `run.rs`, `report.rs`, `profile.rs`, `picture.rs`, `notes.rs`, `reason.rs` |
+//! | one pass, and what it found | `run.rs`, `settings.rs`, `report.rs`, `profile.rs`, `picture.rs`, `notes.rs`, `reason.rs` |
+//! | programs with loops, calls and computed places | `unroll.rs`, `calls.rs`, with the interpreter of the core |
 //!
 //! Two rules. Nothing is silently wrong: a move with a rotary axis that cannot be checked has a [`Reason`], and where
 //! the program does not say where an axis stands it is unknown. And nothing is changed that need not be: only the lines
@@ -14,6 +15,7 @@
 
 mod apply;
 mod block;
+mod calls;
 mod codes;
 mod digits;
 mod lines;
@@ -26,9 +28,11 @@ mod reason;
 mod refusal;
 mod report;
 mod run;
+mod settings;
 mod split;
 mod state;
 mod step;
+mod unroll;
 mod writer;
 
 pub use digits::Digits;
@@ -36,6 +40,8 @@ pub use picture::picture;
 pub use profile::Profile;
 pub use reason::Reason;
 pub use report::{Left, LeftMove, MoveRow, Places, Report};
-pub use run::{CentrePoint, Outcome, PassError, Settings, Sinks, run};
+pub use run::run;
+pub use settings::{CentrePoint, Outcome, PassError, Settings, Sinks};
 pub use split::Splitter;
 pub use state::Reading;
+pub use unroll::{UnrollOptions, Unrolled, unroll};

@@ -64,6 +64,10 @@ impl Quantity {
         let parts = rounded(i128::from(number.mantissa()).checked_mul(scale.parts())?, power);
         (parts.abs() <= scale.farthest()).then_some(Self(parts))
     }
+    /// Millionths of a millimetre or of a degree.
+    pub const fn of_millionths(count: i64) -> Self {
+        Self(count as i128 * (PARTS / 1_000_000))
+    }
     /// The nearest to a number of millimetres or degrees; `None` when it is not finite or beyond the farthest.
     pub fn nearest(value: f64, scale: Scale) -> Option<Self> {
         let parts = (value * PARTS as f64).round();

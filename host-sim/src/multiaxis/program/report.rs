@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::notes::Notes;
 use super::profile::Profile;
 use super::reason::Reason;
-use super::run::Settings;
+use super::settings::Settings;
 use super::split::Plan;
 use crate::multiaxis::singular::Class;
 use crate::multiaxis::statistics::Deviations;
@@ -112,6 +112,8 @@ pub struct Report {
     pub tips: u64,
     /// What to look at.
     pub notes: Notes,
+    /// Line and error of the move that errs most, when that is more than allowed.
+    pub worst: Option<(u32, f64)>,
     /// Largest error allowed, mm.
     pub tolerance: f64,
 }
@@ -136,12 +138,16 @@ impl Report {
             orientation: Places::default(),
             tips: 0,
             notes: Notes::default(),
+            worst: None,
             tolerance: settings.splitter.tolerance,
         }
     }
 
     /// Adds a checked move.
     pub fn add(&mut self, row: &MoveRow, plan: &Plan) {
+        if row.error_before_mm > self.tolerance && self.worst.is_none_or(|worst| row.error_before_mm > worst.1) {
+            self.worst = Some((row.line, row.error_before_mm));
+        }
         self.before.push(row.error_before_mm);
         plan.after.iter().for_each(|error| self.after.push(*error));
         self.profile.add(row.error_before_mm, row.error_after_mm);
@@ -153,5 +159,10 @@ impl Report {
         }
         self.divided += u64::from(row.pieces > 1);
         self.inserted += plan.inserted.len() as u64;
+    }
+
+    /// The program was not rewritten after all.
+    pub fn stays(&mut self) {
+        (self.after, self.divided, self.inserted) = (self.before, 0, 0);
     }
 }

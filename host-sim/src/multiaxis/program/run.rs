@@ -2,9 +2,7 @@
 //!
 //! Memory does not grow with the program: one line, the state of the control, statistics and a profile of fixed size.
 
-use std::io::{self, BufRead, Write};
-
-use truepath_core::gcode::Units;
+use std::io::BufRead;
 
 use super::block::Block;
 use super::lines::{Line, LineError, LineReader};
@@ -12,72 +10,12 @@ use super::notes::Note;
 use super::reason::Reason;
 use super::refusal::At;
 use super::report::{MoveRow, Report};
-use super::split::{Plan, Splitter, Writing};
-use super::state::{Reading, State};
+use super::settings::{CentrePoint, Outcome, PassError, Settings, Sinks};
+use super::split::{Plan, Writing};
+use super::state::State;
 use super::step::{Move, Step};
 use super::writer::{Original, write};
-use crate::diagnostics::InputError;
 use crate::multiaxis::machine::Coordinates;
-
-/// What the control does while it keeps the tool's tip (G43.4, G43.5, G234, LinuxCNC's M428).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CentrePoint {
-    /// It transforms every interpolated point: the tip stays on the chord, there is nothing to divide.
-    Full,
-    /// It transforms the ends of blocks only and moves the joints linearly between them.
-    Ends,
-}
-
-/// How a program is worked on.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings<'m> {
-    /// How its words are read.
-    pub reading: Reading,
-    /// The unit until G20 or G21.
-    pub units: Units,
-    /// What XYZ are while no centre point code is in force.
-    pub coordinates: Coordinates,
-    /// What such a code does.
-    pub centre_point: CentrePoint,
-    /// How moves are divided.
-    pub splitter: Splitter<'m>,
-}
-
-/// How a pass ended.
-#[derive(Debug)]
-pub enum Outcome {
-    /// The program was read to its end.
-    Done(Box<Report>),
-    /// This line steers the program, or computes a place: reading it line by line is not enough.
-    Steered(u32),
-}
-
-/// Why it did not.
-#[derive(Debug)]
-pub enum PassError {
-    /// The program is wrong.
-    Input(InputError),
-    /// It cannot be read.
-    Read(io::Error),
-    /// The result cannot be written.
-    Write(io::Error),
-}
-
-impl From<InputError> for PassError {
-    fn from(error: InputError) -> Self {
-        Self::Input(error)
-    }
-}
-
-/// Where the results of a pass go.
-pub struct Sinks<'s> {
-    /// The rewritten program.
-    pub text: &'s mut dyn Write,
-    /// One row a move.
-    pub row: &'s mut dyn FnMut(&MoveRow) -> Result<(), InputError>,
-    /// Told the bytes read, now and then.
-    pub progress: &'s mut dyn FnMut(u64),
-}
 
 /// Lines between two tellings of the progress.
 const TELL_EVERY: u32 = 2048;
@@ -258,7 +196,7 @@ impl Pass<'_, '_> {
         self.record(number, &plan)?;
         if !plan.inserted.is_empty() {
             let original = Original {
-                number: line.number,
+                number,
                 text: &line.text,
                 block,
                 end: if self.ending.is_empty() { b"\n" } else { self.ending },

@@ -1,0 +1,104 @@
+//! What `multiaxis` tells of a program: the figures before and after, and what the user should know.
+
+use crate::multiaxis::Machine;
+use crate::multiaxis::machine::{Coordinates, Kind};
+use crate::multiaxis::program::{Left, Places, Report, Settings};
+use crate::multiaxis::statistics::Figures;
+
+use super::Options;
+
+/// What was found and done.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct MultiaxisSummary {
+    /// Version of this summary.
+    pub version: u32,
+    /// `table-table A C`.
+    pub machine: String,
+    /// What XYZ are: `joints` or `tip`; those of `tip_moves` moves are the tip's in any case.
+    pub coordinates: &'static str,
+    /// Moves whose XYZ are places of the tool tip.
+    pub tip_moves: u64,
+    /// Largest chord error allowed, mm.
+    pub tolerance_mm: f64,
+    /// Lines read.
+    pub lines: u64,
+    /// Five-axis moves whose error was computed.
+    pub moves: u64,
+    /// G1 moves of X, Y, Z alone.
+    pub straight_moves: u64,
+    /// G1 moves of rotary axes alone.
+    pub rotary_moves: u64,
+    /// Five-axis moves under full tool centre point control.
+    pub full_interpolation_moves: u64,
+    /// Moves that were divided.
+    pub moves_rewritten: u64,
+    /// Locations inserted.
+    pub points_inserted: u64,
+    /// Chord errors of the moves read.
+    pub before: Figures,
+    /// Chord errors of the moves written.
+    pub after: Figures,
+    /// Moves near a pole of the machine, and their lines.
+    pub singular: Places,
+    /// Moves whose tool axis leaves the great circle by more than `orientation_tolerance_deg`, and cannot follow it.
+    pub orientation: Places,
+    /// Moves that stay although they may err too much, and why.
+    pub left: Left,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// What is told of a pass.
+pub(super) fn summary(options: &Options, machine: &Machine, settings: &Settings, report: &Report) -> MultiaxisSummary {
+    let kind = match machine.kind() {
+        Kind::TableTable => "table-table",
+        Kind::TableHead => "table-head",
+        Kind::HeadHead => "head-head",
+    };
+    let [first, second] = machine.rotary().map(|axis| axis.letter.name());
+    let before = report.before.figures();
+    MultiaxisSummary {
+        version: 1,
+        machine: format!("{kind} {first} {second}"),
+        coordinates: if settings.coordinates == Coordinates::Tip { "tip" } else { "joints" },
+        tip_moves: report.tips,
+        tolerance_mm: options.tolerance_mm,
+        lines: report.lines,
+        moves: before.count,
+        straight_moves: report.straight,
+        rotary_moves: report.rotary_alone,
+        full_interpolation_moves: report.full_interpolation,
+        moves_rewritten: report.divided,
+        points_inserted: report.inserted,
+        before,
+        after: report.after.figures(),
+        singular: report.singular.clone(),
+        orientation: report.orientation.clone(),
+        left: report.left.clone(),
+        warnings: warnings(options, report),
+    }
+}
+
+fn warnings(options: &Options, report: &Report) -> Vec<String> {
+    let name = options.program.display();
+    let mut all: Vec<String> = Vec::new();
+    for (note, line, count) in report.notes.iter() {
+        let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
+        all.push(format!("{name}:{line}: {note}{more}"));
+    }
+    if report.full_interpolation > 0 {
+        all.push(format!(
+            "{} five-axis moves are under tool centre point control, which keeps the tip on its chord: nothing to divide; \
+             if the control transforms only the ends of blocks, say --tcp ends",
+            report.full_interpolation
+        ));
+    }
+    for left in report.left.moves.iter().take(10) {
+        let error = left.error_mm.map_or_else(String::new, |e| format!(" (chord error {e:.4} mm)"));
+        all.push(format!("{name}:{}: left as it is: {}{error}", left.line, left.reason));
+    }
+    if report.left.count > 10 {
+        all.push(format!("{} more moves are left as they are", report.left.count - 10));
+    }
+    all
+}
