@@ -81,12 +81,8 @@ fn the_page_prints_what_the_command_prints() {
 
 #[test]
 fn the_rewritten_examples_keep_to_the_chords_of_the_examples() {
-    let trunnion =
-        Independent { axes: [(3, false, [0.0, 0.0, -40.0], 1.0), (5, false, [0.0; 3], 1.0)], length: 0.0 };
-    let fork = Independent {
-        axes: [(3, true, [0.0, 0.0, 60.0], 1.0), (4, true, [0.0, 0.0, 60.0], 1.0)],
-        length: 90.0,
-    };
+    let trunnion = Independent { axes: [(3, false, [0.0, 0.0, -40.0], 1.0), (5, false, [0.0; 3], 1.0)], length: 0.0 };
+    let fork = Independent { axes: [(3, true, [0.0, 0.0, 60.0], 1.0), (4, true, [0.0, 0.0, 60.0], 1.0)], length: 90.0 };
     let out = tempfile::tempdir().unwrap();
     for ((name, file, ..), machine) in CASES.into_iter().zip([trunnion, fork]) {
         let original = std::fs::read_to_string(root().join(format!("examples/multiaxis/{name}.nc"))).unwrap();

@@ -166,11 +166,19 @@ fn words(s: &MultiaxisSummary) -> String {
     );
     if s.singular.count > 0 {
         let lines: Vec<String> = s.singular.lines.iter().take(12).map(u32::to_string).collect();
-        let more = if s.singular.count > 12 { ", …" } else { "" };
-        text += &format!("{} moves near a pole of the machine: lines {}{more}\n", s.singular.count, lines.join(", "));
+        let more = if s.singular.lines.len() > 12 { ", …" } else { "" };
+        let (moves, word) = (counted(s.singular.count, "move"), if lines.len() == 1 { "line" } else { "lines" });
+        text += &format!("{moves} near a pole of the machine or across it: {word} {}{more}\n", lines.join(", "));
+    }
+    if s.orientation.count > 0 {
+        text += &format!("{} whose tool axis cannot keep to the great circle\n", counted(s.orientation.count, "move"));
     }
     if s.left.count > 0 {
-        text += &format!("{} moves left as they are\n", s.left.count);
+        text += &format!("{} not brought within the tolerance\n", counted(s.left.count, "move"));
     }
     text
+}
+
+fn counted(count: u64, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }

@@ -6,6 +6,7 @@
 mod corpus;
 mod document;
 mod expected;
+mod five_axis;
 mod mend;
 mod outcome;
 mod rule;
@@ -35,6 +36,7 @@ pub fn check(write: bool) -> Outcome {
         install(&[PACKAGE])?;
     }
     run(cargo().args(["build", "--package", "truepath", "--bin", "truepath"]))?;
+    five_axis::check()?;
     let programs = corpus::programs()?;
     let verdicts = judge(&programs)?;
     let version = read(program("dpkg-query").args(["-W", "-f", "${Version}", PACKAGE]))?;

@@ -9,7 +9,7 @@ const BEFORE: RGBColor = RGBColor(213, 94, 0);
 const AFTER: RGBColor = RGBColor(0, 114, 178);
 const ALLOWED: RGBColor = RGBColor(60, 60, 60);
 const FONT: &str = "sans-serif";
-/// Errors below this share of the tolerance are drawn at it.
+/// Errors below this share of the tolerance are drawn at the bottom.
 const FLOOR: f64 = 1e-3;
 
 fn failed(error: impl std::fmt::Display) -> Failure {
@@ -24,8 +24,11 @@ pub fn picture(profile: &Profile, tolerance: f64) -> Result<Vec<u8>, Failure> {
     let stretches: Vec<(f64, Peak)> = profile.stretches().collect();
     let width = profile.width() as f64;
     let end = stretches.last().map_or(1.0, |s| s.0 + width);
-    let top = stretches.iter().fold(tolerance, |m, s| m.max(s.1.0)) * 4.0;
-    let bottom = tolerance * FLOOR;
+    let greatest = stretches.iter().fold(tolerance, |m, s| m.max(s.1.0));
+    let least = stretches.iter().map(|s| s.1.1).filter(|e| *e > 0.0).fold(tolerance, f64::min);
+    let bottom = least.clamp(tolerance * FLOOR, tolerance / 3.0) / 2.0;
+    // Room above the curves for the legend.
+    let top = greatest * (greatest / bottom).powf(0.35);
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, (900, 420)).into_drawing_area();
