@@ -130,18 +130,19 @@ impl Writer {
     /// Appends a move with the words of the axes that the block names or that change.
     pub(super) fn moved(&mut self, code: &str, event: &Event<'_>, to: Axes, behind: &str) {
         let mut line = code.to_owned();
-        for axis in 0..3 {
-            let Some(at) = to.get(axis).map(Position::nm) else { continue };
-            if self.linear[axis] != Some(at) || self.block.axis(axis).is_some() {
-                line += &format!(" {}{}", char::from(AXES[axis]), length(at, event.modal.units));
-            }
-            self.linear[axis] = Some(at);
-        }
-        for axis in 0..3 {
-            let at = event.modal.auxiliary[axis];
-            if std::mem::replace(&mut self.rotary[axis], at) != at || self.block.axis(axis + 3).is_some() {
-                let degrees = Quantity::of_millionths(at).text(Scale::Degrees);
-                line += &format!(" {}{degrees}", char::from(AXES[axis + 3]));
+        for (axis, letter) in AXES.into_iter().map(char::from).enumerate() {
+            let number = if axis < 3 {
+                let Some(at) = to.get(axis).map(Position::nm) else { continue };
+                let stays = self.linear[axis].replace(at) == Some(at);
+                (!stays || self.block.axis(axis).is_some()).then(|| length(at, event.modal.units))
+            } else {
+                let at = event.modal.auxiliary[axis - 3];
+                let stays = std::mem::replace(&mut self.rotary[axis - 3], at) == at;
+                let degrees = || Quantity::of_millionths(at).text(Scale::Degrees);
+                (!stays || self.block.axis(axis).is_some()).then(degrees)
+            };
+            if let Some(number) = number {
+                line += &format!(" {letter}{number}");
             }
         }
         line += behind;
