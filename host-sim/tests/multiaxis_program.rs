@@ -67,7 +67,7 @@ fn only_the_lines_of_divided_moves_change() {
     assert_eq!(after[6 + inserted + 1..], before[7..]);
     let first = after[6];
     assert!(first.starts_with("N4 X") && first.ends_with("M8 (the cut)"), "{first}");
-    assert!(after[7].ends_with(&format!("(line 7: {} pieces)", inserted + 1)), "{}", after[7]);
+    assert!(after[7].ends_with(&format!("(LINE 7 IN {} PIECES)", inserted + 1)), "{}", after[7]);
     assert!(
         after[6 + inserted].contains("X40.0 Y1.0") && after[6 + inserted].contains("C20.0"),
         "{}",
@@ -190,7 +190,7 @@ fn a_program_with_a_loop_is_measured_as_it_runs_and_written_out_on_request() {
     for x in [10.0, 20.0, 30.0, 40.0] {
         assert!(moves.iter().any(|m| m.to == [x, x / 10.0, 0.0, 0.0, 0.0, x / 2.0]), "{x}\n{text}");
     }
-    assert!(text.contains("(line 6:"), "pieces name the line they come from\n{text}");
+    assert!(text.contains("(LINE 6 IN "), "pieces name the line they come from\n{text}");
     // Within the tolerance it stays as it is.
     let coarse = Case::new(&program);
     let output = coarse.run(&["--tolerance", "50"]);

@@ -1,101 +1,150 @@
-//! 100,000 random moves over all machine types: after insertion the chord error never exceeds the tolerance, and there are
-//! never more points than midpoint halving inserts.
-//!
-//! The tool's way is sampled densely with the matrices of the second formulation, not with the code under test.
+//! Random five-axis programs: nothing panics, what is passed on is passed on whole, and a second pass changes nothing.
 
-mod multiaxis_machines;
+use proptest::prelude::*;
 
-use multiaxis_machines::{Draw, from_segment, place_by_matrices, types};
-use truepath::multiaxis::{Joints, Machine, Rule, chord_error, divide};
+use truepath::diagnostics::Source;
+use truepath::multiaxis::program::{
+    CentrePoint, Digits, Outcome, Reading, Report, Settings, Sinks, Splitter, UnrollOptions, run, unroll,
+};
+use truepath::multiaxis::{Machine, Rule};
+use truepath_core::gcode::{Dialect, PointlessLength, Units};
 
-/// Moves in all; threads share them.
-const MOVES: u64 = 100_000;
-/// Samples of every piece.
-const SAMPLES: u32 = 64;
-/// Rounding of the sampled distance, mm: positions of some hundred mm, and the ends of long turns.
-const ROUNDING: f64 = 1e-9;
+const MACHINE: &str = "version = 1\nkind = \"table-table\"\n[[rotary]]\naxis = \"A\"\npoint_mm = [0.0, 0.0, -30.0]\n\
+                       [[rotary]]\naxis = \"C\"\n";
 
-/// Largest sampled distance of a joint move from the chord between its ends.
-fn sampled(machine: &Machine, from: &Joints, to: &Joints, samples: u32) -> f64 {
-    let height = machine.counted_height_mm();
-    let place = |joints: &Joints| place_by_matrices(machine, joints, height);
-    let (a, b) = (place(from), place(to));
-    let distance = |i| from_segment(place(&from.towards(to, f64::from(i) / f64::from(samples))), a, b);
-    (1..samples).map(distance).fold(0.0, f64::max)
-}
-
-/// Moves, pieces of the fewest, pieces of midpoint halving, moves on which the fewest are fewer.
-type Tally = [u64; 4];
-
-fn check(seed: u64) -> Tally {
-    let mut draw = Draw::new(seed);
-    let kinds = types();
-    let mut tally = [0; 4];
-    for i in 0..MOVES / 100 {
-        let kind = kinds[(seed * 7 + i) as usize % kinds.len()];
-        let machine = draw.machine(kind);
-        let [from, to] = draw.ends(&machine);
-        let tolerance = draw.decades(0.001, 0.1);
-        let context = || format!("{machine:?} {from:?} {to:?} {tolerance}");
-        let division =
-            divide(&machine, &from, &to, tolerance, Rule::Fewest).unwrap_or_else(|e| panic!("{e} {}", context()));
-        let halved = divide(&machine, &from, &to, tolerance, Rule::Midpoint).expect("midpoint halving");
-        assert!(division.pieces() <= halved.pieces(), "{}", context());
-        assert!(division.after <= tolerance, "{}", context());
-        let mut last = from;
-        let (start, end) = (machine.counted(&from), machine.counted(&to));
-        for joints in division.inserted.iter().map(|(_, joints)| joints).chain([&to]) {
-            let error = sampled(&machine, &last, joints, SAMPLES);
-            assert!(error <= tolerance + ROUNDING, "{error} > {tolerance}: {}", context());
-            assert!(from_segment(machine.counted(joints), start, end) <= ROUNDING, "off the chord: {}", context());
-            last = *joints;
-        }
-        tally[0] += 1;
-        tally[1] += division.pieces() as u64;
-        tally[2] += halved.pieces() as u64;
-        tally[3] += u64::from(division.pieces() < halved.pieces());
-    }
-    tally
-}
-
-#[test]
-fn after_insertion_no_random_move_exceeds_its_tolerance_and_none_has_more_points_than_midpoint_halving() {
-    let next = std::sync::atomic::AtomicU64::new(0);
-    let work = || {
-        let mut sum = [0; 4];
-        loop {
-            let seed = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-            if seed >= 100 {
-                return sum;
-            }
-            let tally = check(seed);
-            (0..4).for_each(|i| sum[i] += tally[i]);
-        }
+/// A pass: the report and the text; `None` when the program is refused or steered.
+fn pass(text: &[u8], coordinates: truepath::multiaxis::machine::Coordinates) -> Option<(Report, Vec<u8>)> {
+    let machine = Machine::from_toml(&Source::new("m.toml", MACHINE.into())).expect("a machine");
+    let settings = Settings {
+        reading: Reading {
+            dialect: Dialect::Linuxcnc,
+            decimal: PointlessLength::Calculator,
+            rotary: [true, false, true],
+            one_tool: false,
+            skip_block_delete: false,
+        },
+        units: Units::Millimetres,
+        coordinates,
+        centre_point: CentrePoint::Ends,
+        splitter: Splitter {
+            machine: &machine,
+            tolerance: 0.01,
+            rule: Rule::Fewest,
+            max_pieces: 1000,
+            digits: Digits::default(),
+        },
     };
-    let threads = std::thread::available_parallelism().map_or(2, usize::from).min(8);
-    let tallies: Vec<Tally> = std::thread::scope(|scope| {
-        let started: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        started.into_iter().map(|thread| thread.join().unwrap_or_else(|e| std::panic::resume_unwind(e))).collect()
-    });
-    let total: Tally = std::array::from_fn(|i| tallies.iter().map(|tally| tally[i]).sum());
-    println!("moves, pieces, pieces halved, moves with fewer: {total:?}");
-    assert_eq!(total[0], MOVES);
-    assert!(total[3] > MOVES / 10, "halving is beaten often: {total:?}");
+    let mut out = Vec::new();
+    let sinks = Sinks { text: &mut out, row: &mut |_| Ok(()), progress: &mut |_| () };
+    match run(text, "in.nc", &settings, None, sinks) {
+        Ok(Outcome::Done(report)) => Some((*report, out)),
+        _ => None,
+    }
 }
 
-#[test]
-fn the_certified_maximum_is_the_sampled_one_and_its_bound_is_never_passed() {
-    let mut draw = Draw::new(1_000);
-    let kinds = types();
-    for i in 0..5_000 {
-        let machine = draw.machine(kinds[i % kinds.len()]);
-        let [from, to] = draw.ends(&machine);
-        let error = chord_error(&machine, &from, &to);
-        let sample = sampled(&machine, &from, &to, 500);
-        assert!(sample <= error.bound + ROUNDING, "{sample} {error:?} {machine:?} {from:?} {to:?}");
-        // Between samples the way bends on by no more than an eighth of its second derivative times the step squared.
-        let gap = 1e-3 * error.exact + 1e-7;
-        assert!(error.exact <= sample + gap, "{sample} {error:?} {machine:?} {from:?} {to:?}");
-        assert!(error.bound - error.exact <= 1.1e-7 + 1e-5 * error.exact, "{error:?}");
+fn number() -> impl Strategy<Value = String> {
+    prop_oneof![
+        (-80_000i32..80_000).prop_map(|n| format!("{:.3}", f64::from(n) / 1000.0)),
+        (-90i32..90).prop_map(|n| n.to_string()),
+        (-9_999i32..9_999).prop_map(|n| format!("{:.5}", f64::from(n) / 1000.0)),
+    ]
+}
+
+/// A line of words that mostly make sense together.
+fn line() -> impl Strategy<Value = String> {
+    let code = prop::sample::select(vec![
+        "",
+        "",
+        "",
+        "",
+        "G1",
+        "g1",
+        "G0",
+        "G90",
+        "G91",
+        "G20",
+        "G21",
+        "G93",
+        "G94",
+        "G54",
+        "G55",
+        "G92",
+        "G92.1",
+        "G52",
+        "G43 H1",
+        "G49",
+        "G41",
+        "G40",
+        "G28",
+        "G53",
+        "M428",
+        "M429",
+        "G68.2",
+        "G69",
+        "G2",
+        "G80",
+        "M6 T1",
+        "G4 P1",
+        "G61",
+        "#1=5",
+        "/",
+        "(remark)",
+        "G10 L2 P1",
+        "M0",
+        "G81 R1",
+        "G17",
+        "G999",
+    ]);
+    let words = prop::collection::vec((prop::sample::select(vec!["X", "Y", "Z", "A", "C"]), number()), 0..6);
+    let feed = prop::sample::select(vec!["", "F100", " F0.5", "F#1"]);
+    (code, words, feed).prop_map(|(code, words, feed)| {
+        let mut line = code.to_owned();
+        let mut seen = String::new();
+        for (letter, number) in words {
+            if !seen.contains(letter) {
+                line += &format!(" {letter}{number}");
+                seen += letter;
+            }
+        }
+        format!("{line} {feed}")
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn a_second_pass_over_a_rewritten_program_changes_nothing(
+        lines in prop::collection::vec(line(), 1..14),
+        ending in prop::sample::select(vec!["\n", "\r\n", "\r"]),
+        tip: bool,
+    ) {
+        use truepath::multiaxis::machine::Coordinates;
+        let text = format!("G21 G90 G94 F200{ending}G0 X1 Y2 Z3 A4 C5{ending}{}", lines.join(ending));
+        let coordinates = if tip { Coordinates::Tip } else { Coordinates::Joints };
+        if let Some((report, first)) = pass(text.as_bytes(), coordinates) {
+            let (again, second) = pass(&first, coordinates).expect("what is written is read");
+            prop_assert_eq!(again.inserted, 0);
+            prop_assert_eq!(again.left.count, report.left.count);
+            prop_assert_eq!(&second, &first);
+            if report.inserted == 0 {
+                prop_assert_eq!(first, text.into_bytes());
+            }
+        }
+    }
+
+    #[test]
+    fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..400), text in "[XYZACGMF0-9. #\\[\\]%/\n()<>=o-]{0,200}") {
+        use truepath::multiaxis::machine::Coordinates;
+        for input in [bytes.as_slice(), text.as_bytes()] {
+            let _ = pass(input, Coordinates::Joints);
+            let options = UnrollOptions {
+                dialect: Dialect::Linuxcnc,
+                decimal: PointlessLength::Calculator,
+                units: Units::Millimetres,
+                skip_block_delete: false,
+            };
+            let _ = unroll(&Source::new("in.nc", input.to_vec()), options);
+        }
     }
 }

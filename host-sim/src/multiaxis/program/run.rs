@@ -7,7 +7,6 @@ use std::io::BufRead;
 use super::block::Block;
 use super::lines::{Line, LineError, LineReader};
 use super::notes::Note;
-use super::reason::Reason;
 use super::refusal::At;
 use super::report::{MoveRow, Report};
 use super::settings::{CentrePoint, Outcome, PassError, Settings, Sinks};
@@ -146,7 +145,7 @@ impl Pass<'_, '_> {
             return Ok(true);
         }
         self.begun = true;
-        let number = line.number;
+        let number = self.origin_of(line.number);
         if block.block_delete.is_some() {
             self.report.notes.add(Note::BlockDelete, number);
         }
@@ -169,7 +168,7 @@ impl Pass<'_, '_> {
             Step::Straight => self.report.straight += 1,
             Step::Steered(_) => return Ok(true),
             Step::Move(_) | Step::Unchecked(_) if full => self.report.full_interpolation += 1,
-            Step::Unchecked(reason) => self.report.leave(self.origin_of(number), reason, None),
+            Step::Unchecked(reason) => self.report.left.add(number, reason, None),
             Step::Move(moved) => self.divide(block, line, &moved)?,
         }
         Ok(false)
@@ -183,14 +182,14 @@ impl Pass<'_, '_> {
         let coordinates = if self.state.centre_point { Coordinates::Tip } else { self.settings.coordinates };
         if !moved.travels && coordinates == Coordinates::Joints {
             self.report.rotary_alone += 1;
-            self.report.notes.add(Note::RotaryAlone, line.number);
+            self.report.notes.add(Note::RotaryAlone, self.origin_of(line.number));
             return Ok(());
         }
         let writing = Writing { coordinates, units: self.state.units, own: self.state.decimals };
         let plan = self.settings.splitter.plan(moved, writing);
         let number = self.origin_of(line.number);
         if let Some(reason) = plan.refused {
-            self.report.leave(number, reason, Some(plan.before));
+            self.report.left.add(number, reason, Some(plan.before));
         }
         self.report.tips += u64::from(coordinates == Coordinates::Tip);
         self.record(number, &plan)?;
@@ -221,12 +220,5 @@ impl Pass<'_, '_> {
         self.report.add(&row, plan);
         (self.sinks.row)(&row)?;
         Ok(())
-    }
-}
-
-impl Report {
-    /// Notes a move that stays as it is.
-    fn leave(&mut self, line: u32, reason: Reason, error: Option<f64>) {
-        self.left.add(line, reason, error);
     }
 }

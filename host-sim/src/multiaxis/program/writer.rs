@@ -80,7 +80,7 @@ pub fn write(original: &Original<'_>, moved: &Move, plan: &Plan, out: &mut Vec<u
             }
         }
         if k == 1 {
-            out.extend_from_slice(format!(" (line {}: {pieces} pieces)", original.number).as_bytes());
+            out.extend_from_slice(format!(" (LINE {} IN {pieces} PIECES)", original.number).as_bytes());
         }
     }
 }
