@@ -33,6 +33,7 @@ fn pass(text: &[u8], coordinates: truepath::multiaxis::machine::Coordinates) -> 
             max_pieces: 1000,
             digits: Digits::default(),
         },
+        normal: None,
     };
     let mut out = Vec::new();
     let sinks = Sinks { text: &mut out, row: &mut |_| Ok(()), progress: &mut |_| () };

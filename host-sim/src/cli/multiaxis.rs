@@ -64,9 +64,21 @@ pub(super) struct Arguments {
     /// Skip blocks that begin with `/`.
     #[arg(long)]
     skip_block_delete: bool,
+    /// Normal of the surface that is cut, out of the part: tells where the ball end touches it.
+    #[arg(long, value_name = "X,Y,Z", value_parser = normal, allow_hyphen_values = true)]
+    normal: Option<[f64; 3]>,
     /// Replace existing files.
     #[arg(long)]
     force: bool,
+}
+
+/// Three numbers with commas between them.
+fn normal(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Vec<f64> = text.split(',').map_while(|part| part.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if numbers.iter().all(|n| n.is_finite()) && text.split(',').count() == 3 => Ok([x, y, z]),
+        _ => Err("expected three numbers, for instance 0,0,1".to_owned()),
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -127,6 +139,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         decimal: PointlessLength::from(arguments.decimal),
         units: Units::from(arguments.units),
         skip_block_delete: arguments.skip_block_delete,
+        normal: arguments.normal,
     };
     let bytes = std::fs::metadata(&arguments.file).map_or(0, |m| m.len());
     let mut bar = terminal.progress("dividing", bytes);
@@ -172,6 +185,18 @@ fn words(s: &MultiaxisSummary) -> String {
     }
     if s.orientation.count > 0 {
         text += &format!("{} whose tool axis cannot keep to the great circle\n", counted(s.orientation.count, "move"));
+    }
+    if let Some(contact) = &s.contact {
+        let span = |[low, high]: [f64; 2], digits| format!("{low:.digits$} to {high:.digits$}");
+        text += &format!(
+            "ball end on the surface: {} degrees from its tip, cutting radius {} mm, lag of the edge {} degrees\n",
+            span(contact.polar_deg, 2),
+            span(contact.cutting_radius_mm, 3),
+            span(contact.lag_deg, 2)
+        );
+        if contact.on_shank > 0 {
+            text += &format!("{} where the shank would touch it\n", counted(contact.on_shank, "place"));
+        }
     }
     if s.left.count > 0 {
         text += &format!("{} not brought within the tolerance\n", counted(s.left.count, "move"));

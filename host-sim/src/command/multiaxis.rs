@@ -9,6 +9,7 @@ use std::path::Path as FilePath;
 use truepath_core::gcode::{Dialect, PointlessLength, Units};
 
 use crate::diagnostics::{Failure, InputError, Source};
+use crate::multiaxis::ball::Contacts;
 use crate::multiaxis::machine::{Coordinates, Kind, Letter};
 use crate::multiaxis::program::{
     CentrePoint, Digits, Outcome, PassError, Reading, Report, Settings, Sinks, Splitter, UnrollOptions, picture,
@@ -64,6 +65,8 @@ pub struct Options<'a> {
     pub units: Units,
     /// Blocks with `/` are left out.
     pub skip_block_delete: bool,
+    /// Normal of the surface that is cut, out of the part, when the contact point of the ball end is wanted.
+    pub normal: Option<[f64; 3]>,
 }
 
 /// Measures a program and rewrites it. `progress` is told the bytes read.
@@ -74,6 +77,7 @@ pub struct Options<'a> {
 pub fn run(options: &Options, progress: &mut dyn FnMut(u64)) -> Result<MultiaxisSummary, Failure> {
     check_tolerance(options.tolerance_mm)?;
     let machine = Machine::from_toml(&Source::read(options.machine)?)?;
+    check_normal(options, &machine)?;
     let settings = settings(options, &machine);
     let file = File::open(options.program).map_err(|e| InputError::unreadable(options.program, &e))?;
     if options.program.is_dir() {
@@ -242,6 +246,24 @@ fn check_tolerance(tolerance_mm: f64) -> Result<(), InputError> {
     ))
 }
 
+/// A surface is of use to a ball end only.
+fn check_normal(options: &Options, machine: &Machine) -> Result<(), InputError> {
+    let Some(normal) = options.normal else { return Ok(()) };
+    if Contacts::new(machine, normal).is_some() {
+        return Ok(());
+    }
+    let (found, expected, help) = if machine.tool().ball_radius_mm.is_none() {
+        (
+            "a surface is named, but the machine file has no ball end",
+            "[tool] ball_radius_mm",
+            "add it, or leave out --normal",
+        )
+    } else {
+        ("the normal has no direction", "three numbers that are not all zero", "give --normal 0,0,1 for a floor")
+    };
+    Err(InputError::new("A014", found, expected, help).in_file(options.machine))
+}
+
 fn settings<'m>(options: &Options, machine: &'m Machine) -> Settings<'m> {
     let has = |letter| machine.place_of(letter).is_some();
     Settings {
@@ -262,6 +284,7 @@ fn settings<'m>(options: &Options, machine: &'m Machine) -> Settings<'m> {
             max_pieces: options.max_pieces,
             digits: options.digits,
         },
+        normal: options.normal,
     }
 }
 

@@ -1,6 +1,7 @@
 //! What `multiaxis` tells of a program: the figures before and after, and what the user should know.
 
 use crate::multiaxis::Machine;
+use crate::multiaxis::ball::{ContactSpan, Contacts};
 use crate::multiaxis::machine::{Coordinates, Kind};
 use crate::multiaxis::program::{Left, Places, Report, Settings};
 use crate::multiaxis::statistics::Figures;
@@ -42,6 +43,8 @@ pub struct MultiaxisSummary {
     pub singular: Places,
     /// Moves whose tool axis leaves the great circle by more than `orientation_tolerance_deg`, and cannot follow it.
     pub orientation: Places,
+    /// Where the ball end touches the surface named by `--normal`, at the ends of the five-axis moves.
+    pub contact: Option<ContactSpan>,
     /// Moves that stay although they may err too much, and why.
     pub left: Left,
     /// What the user should know.
@@ -74,6 +77,7 @@ pub(super) fn summary(options: &Options, machine: &Machine, settings: &Settings,
         after: report.after.figures(),
         singular: report.singular.clone(),
         orientation: report.orientation.clone(),
+        contact: report.contacts.as_ref().and_then(Contacts::span),
         left: report.left.clone(),
         warnings: warnings(options, report),
     }

@@ -7,6 +7,7 @@ use super::profile::Profile;
 use super::reason::Reason;
 use super::settings::Settings;
 use super::split::Plan;
+use crate::multiaxis::ball::Contacts;
 use crate::multiaxis::singular::Class;
 use crate::multiaxis::statistics::Deviations;
 
@@ -110,6 +111,8 @@ pub struct Report {
     pub orientation: Places,
     /// Moves whose XYZ are the tip.
     pub tips: u64,
+    /// Where the ball end touches the named surface.
+    pub contacts: Option<Contacts>,
     /// What to look at.
     pub notes: Notes,
     /// Line and error of the move that errs most, when that is more than allowed.
@@ -137,6 +140,7 @@ impl Report {
             singular: Places::default(),
             orientation: Places::default(),
             tips: 0,
+            contacts: settings.normal.and_then(|normal| Contacts::new(settings.splitter.machine, normal)),
             notes: Notes::default(),
             worst: None,
             tolerance: settings.splitter.tolerance,

@@ -187,6 +187,10 @@ impl Pass<'_, '_> {
         }
         let writing = Writing { coordinates, units: self.state.units, own: self.state.decimals };
         let plan = self.settings.splitter.plan(moved, writing);
+        if let Some(contacts) = &mut self.report.contacts {
+            let splitter = &self.settings.splitter;
+            splitter.ends(moved, writing).iter().for_each(|joints| contacts.add(splitter.machine, joints));
+        }
         let number = self.origin_of(line.number);
         if let Some(reason) = plan.refused {
             self.report.left.add(number, reason, Some(plan.before));

@@ -32,6 +32,8 @@ pub struct Settings<'m> {
     pub centre_point: CentrePoint,
     /// How moves are divided.
     pub splitter: Splitter<'m>,
+    /// The surface whose contact point is followed, if one is named: its normal out of the part.
+    pub normal: Option<[f64; 3]>,
 }
 
 /// How a pass ended.

@@ -66,9 +66,14 @@ pub struct Plan {
 const TRIES: [f64; 5] = [1.0, 0.97, 0.9, 0.7, 0.4];
 
 impl Splitter<'_> {
+    /// The joints at both ends of a move.
+    pub(super) fn ends(&self, moved: &Move, writing: Writing) -> [Joints; 2] {
+        [self.joints(&moved.start, writing), self.joints(&moved.end, writing)]
+    }
+
     /// Plans a move.
     pub fn plan(&self, moved: &Move, writing: Writing) -> Plan {
-        let (from, to) = (self.joints(&moved.start, writing), self.joints(&moved.end, writing));
+        let [from, to] = self.ends(moved, writing);
         let error = chord_error(self.machine, &from, &to);
         let passage = passage(self.machine, &from, &to);
         let mut plan = Plan {
