@@ -1,6 +1,7 @@
 //! What the height of the waviness depends on: number of teeth, feed, runout, direction, helix.
 
-use super::depth::{cutting_teeth, generatrix_wavelength};
+use super::depth::generatrix_wavelength;
+use super::envelope::Steady;
 use super::refusal::Refusal;
 use super::setup::{Setup, cusp_formula};
 
@@ -20,7 +21,7 @@ pub struct TeethRow {
 }
 
 fn height(setup: &Setup) -> Option<f64> {
-    setup.profile(0.0).ok().map(|profile| profile.height())
+    setup.steady(0.0).ok().map(|steady| steady.height_mm)
 }
 
 /// Heights for 1…`most` teeth that run true, everything else unchanged.
@@ -74,14 +75,15 @@ pub struct RunoutRow {
     pub largest_radius_mm: f64,
 }
 
-/// Heights for a runout from none to what leaves one tooth cutting, and for the given one. `progress` is told the share done.
+/// Heights for a runout from none to what leaves one tooth cutting, and for the given one; what has no wall is left
+/// out. `progress` is told the share done.
 ///
 /// # Errors
 /// [`Refusal`].
 pub fn on_runout(setup: &Setup, progress: &mut dyn FnMut(f64)) -> Result<Vec<RunoutRow>, Refusal> {
     let single = Setup { cutter: super::motion::Cutter { teeth: 1, runout_mm: 0.0, ..setup.cutter }, ..*setup };
     // Runout matters against what one tooth alone would leave.
-    let scale = single.profile(0.0)?.height();
+    let scale = single.steady(0.0)?.height_mm;
     let mut amounts: Vec<f64> = (0..=24).map(|n| scale * 1.2 * f64::from(n * n) / 576.0).collect();
     amounts.push(setup.cutter.runout_mm);
     amounts.retain(|a| *a <= setup.cutter.radius_mm / 2.0);
@@ -91,9 +93,9 @@ pub fn on_runout(setup: &Setup, progress: &mut dyn FnMut(f64)) -> Result<Vec<Run
     for (n, runout_mm) in amounts.iter().copied().enumerate() {
         let mut with = *setup;
         with.cutter.runout_mm = runout_mm;
-        let profile = with.profile(0.0)?;
-        let (height_mm, largest_radius_mm) = (profile.height(), profile.passes.highest());
-        rows.push(RunoutRow { runout_mm, height_mm, cutting_teeth: cutting_teeth(&profile), largest_radius_mm });
+        if let Ok(Steady { height_mm, cutting_teeth, highest_mm }) = with.steady(0.0) {
+            rows.push(RunoutRow { runout_mm, height_mm, cutting_teeth, largest_radius_mm: highest_mm });
+        }
         progress((n + 1) as f64 / amounts.len() as f64);
     }
     Ok(rows)

@@ -63,27 +63,17 @@ pub fn levels(setup: &Setup, depth_mm: f64, count: usize) -> Result<Vec<Level>, 
     Refusal::unless_in("depth", "mm", depth_mm, 0.0, 1e4)?;
     let level = |n: usize| {
         let z_mm = depth_mm * n as f64 / (count.max(2) - 1) as f64;
-        let profile = setup.profile(z_mm)?;
-        let motion = profile.passes.motion;
+        let (motion, steady) = (setup.motion()?, setup.steady(z_mm)?);
         Ok(Level {
             z_mm,
             turned_deg: (motion.advance() * setup.cutter.lag(z_mm, &motion)).to_degrees(),
-            height_mm: profile.height(),
-            smallest_radius_mm: profile.lowest(),
-            largest_radius_mm: profile.passes.highest(),
-            cutting_teeth: cutting_teeth(&profile),
+            height_mm: steady.height_mm,
+            smallest_radius_mm: steady.highest_mm - steady.height_mm,
+            largest_radius_mm: steady.highest_mm,
+            cutting_teeth: steady.cutting_teeth,
         })
     };
     (0..count).map(level).collect()
-}
-
-/// How many teeth of a profile leave a mark.
-pub fn cutting_teeth(profile: &super::envelope::Profile) -> usize {
-    let mut cuts = vec![false; profile.passes.teeth.len()];
-    for stretch in &profile.stretches {
-        cuts[profile.passes.passes[stretch.pass].tooth] = true;
-    }
-    cuts.into_iter().filter(|c| *c).count()
 }
 
 /// Radius of the wall over heights (outer) and rays (inner).

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use super::passes::{Pass, Passes, around};
 use super::refusal::Refusal;
-use super::takeover::takeover;
+use super::sweep::Round;
 
 /// A stretch of wall left by one pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +24,11 @@ pub struct Stretch {
     pub crest: f64,
 }
 
+/// The most steps of comparison for one profile.
+pub const MAX_STEPS: u64 = 20_000_000;
+/// The most for what repeats.
+const STEADY_STEPS: u64 = 1_000_000;
+
 /// The profile of one height of the bore.
 #[derive(Clone, Debug)]
 pub struct Profile {
@@ -37,31 +42,18 @@ impl Profile {
     /// The profile that passes leave.
     ///
     /// # Errors
-    /// [`Refusal::Unfinished`] when a bound of the search is met.
+    /// [`Refusal::Comparisons`] when passes of unequal edges take more than [`MAX_STEPS`] steps to compare.
     pub fn of(passes: Passes) -> Result<Self, Refusal> {
         // The longest edge leads where it points at the wall.
         let start = passes.passes.iter().position(|p| p.arc == passes.longest).ok_or(Refusal::Unfinished)? as i64;
-        let round = Round { passes: &passes };
-        round.check_work()?;
-        let last = start + round.count();
-        let mut stretches = Vec::with_capacity(passes.passes.len());
-        let (mut leader, mut from) = (start, round.crest(start));
-        for _ in 0..8 * passes.passes.len() + 16 {
-            let (to, next) = round.next_leader(leader, from);
-            if to > from || leader == start {
-                let pass = round.pass(leader);
-                stretches.push(Stretch { from, to, pass, crest: round.crest(leader) });
-            }
-            if next == last {
-                // The first stretch began at its crest; its beginning has now been found one turn later.
-                if let Some(first) = stretches.first_mut() {
-                    first.from = to - TAU;
-                }
-                return Ok(Self { passes, stretches });
-            }
-            (leader, from) = (next, to);
+        let last = start + passes.passes.len() as i64;
+        let mut stretches = Round::new(&passes, MAX_STEPS).sweep(start, last)?;
+        // The first stretch begins at its crest; its beginning has now been found one turn later.
+        let end = stretches.last().map_or(0.0, |s| s.to);
+        if let Some(first) = stretches.first_mut() {
+            first.from = end - TAU;
         }
-        Err(Refusal::Unfinished)
+        Ok(Self { passes, stretches })
     }
     /// Radius of the wall on the ray φ, mm, and the pass that cut it.
     pub fn at(&self, phi: f64) -> (f64, &Pass) {
@@ -81,12 +73,7 @@ impl Profile {
     }
     /// Largest height of the profile, mm: what Urinov 2020 calls waviness; exact, about the centre of the path.
     pub fn height(&self) -> f64 {
-        let longest = self.passes.arcs[self.passes.longest].edge;
-        let below = |s: &Stretch| {
-            let arc = self.passes.arc(&self.passes.passes[s.pass]);
-            longest - arc.edge + arc.below_crest(s.to - s.crest)
-        };
-        self.stretches.iter().map(below).fold(0.0, f64::max)
+        height(&self.passes, &self.stretches)
     }
     /// Smallest radius of the wall, mm.
     pub fn lowest(&self) -> f64 {
@@ -94,64 +81,57 @@ impl Profile {
     }
 }
 
-/// The passes round and round: index `i + count` is pass `i` one turn later.
-struct Round<'a> {
-    passes: &'a Passes,
+fn height(passes: &Passes, stretches: &[Stretch]) -> f64 {
+    let longest = passes.arcs[passes.longest].edge;
+    let below = |s: &Stretch| {
+        let arc = passes.arc(&passes.passes[s.pass]);
+        longest - arc.edge + arc.below_crest(s.to - s.crest)
+    };
+    stretches.iter().map(below).fold(0.0, f64::max)
 }
 
-/// The most comparisons of two passes for one profile.
-pub const MAX_COMPARISONS: f64 = 2e7;
+/// What repeats with every turn of the cutter, away from where the cut begins and ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steady {
+    /// Height of the profile, mm.
+    pub height_mm: f64,
+    /// Teeth that leave a mark.
+    pub cutting_teeth: usize,
+    /// Largest radius of the wall, mm.
+    pub highest_mm: f64,
+}
 
-impl Round<'_> {
-    fn count(&self) -> i64 {
-        self.passes.passes.len() as i64
-    }
-    fn pass(&self, index: i64) -> usize {
-        index.rem_euclid(self.count()) as usize
-    }
-    fn crest(&self, index: i64) -> f64 {
-        self.passes.passes[self.pass(index)].crest + TAU * index.div_euclid(self.count()) as f64
-    }
-    /// Passes of unequal edges are compared with all within reach: that may be many only with many laps.
-    fn check_work(&self) -> Result<(), Refusal> {
-        let passes = self.passes.passes.len() as f64;
-        let found = passes * passes * (3.0 * self.passes.reach / TAU).min(1.0);
-        if self.passes.arcs.len() > 1 && found > MAX_COMPARISONS {
-            return Err(Refusal::Comparisons { found, limit: MAX_COMPARISONS });
-        }
-        Ok(())
-    }
-    /// Who takes the lead from `leader` behind `from`, and where.
-    fn next_leader(&self, leader: i64, from: f64) -> (f64, i64) {
-        if self.passes.arcs.len() == 1 {
-            return (0.5 * (self.crest(leader) + self.crest(leader + 1)), leader + 1);
-        }
-        let (own, reach) = (self.crest(leader), self.passes.reach);
-        let arc = |index: i64| self.passes.arc(&self.passes.passes[self.pass(index)]);
-        let mut best = (own + reach, None);
-        let forward =
-            (leader + 1..=leader + self.count()).take_while(|j| self.crest(*j) <= own + 2.0 * reach * (1.0 + 1e-9));
-        let back = (leader - self.count()..leader).rev().take_while(|j| self.crest(*j) >= from - reach);
-        for j in forward.chain(back) {
-            let other = self.crest(j);
-            let found = if self.passes.passes[self.pass(j)].arc == self.passes.passes[self.pass(leader)].arc {
-                (other > own).then(|| (0.5 * (own + other)).max(from))
-            } else {
-                // Outside its reach a pass leads nowhere.
-                let (low, high) = (from.max(other - reach), best.0.min(other + reach));
-                takeover((arc(leader), own), (arc(j), other), low, high)
-            };
-            if let Some(place) = found.filter(|place| *place < best.0 || best.1.is_none()) {
-                best = (place.min(best.0), Some(j));
-            }
-        }
-        // At its reach some other pass is at least as far out; rounding may hide which, so take the farthest.
-        let farthest = || {
-            let wall = |j: &i64| arc(*j).wall(best.0 - self.crest(*j)).0;
-            let near =
-                (leader + 1..=leader + self.count()).take_while(|j| self.crest(*j) <= own + 2.0 * reach * (1.0 + 1e-9));
-            near.max_by(|a, b| wall(a).total_cmp(&wall(b))).unwrap_or(leader + 1)
+impl Steady {
+    /// From one turn of the cutter when there is one lap, from the whole circle when there are more.
+    ///
+    /// # Errors
+    /// As [`Profile::of`].
+    pub fn of(passes: Passes, one_lap: bool) -> Result<Self, Refusal> {
+        let (passes, stretches) = if one_lap {
+            let from = 2.0 * passes.motion.spacing();
+            let of = |p: &Pass, after: f64| p.arc == passes.longest && p.crest >= after;
+            let start = passes.passes.iter().position(|p| of(p, from)).ok_or(Refusal::Unfinished)?;
+            let tooth = passes.passes[start].tooth;
+            let next = passes.passes[start + 1..].iter().position(|p| p.tooth == tooth).ok_or(Refusal::Unfinished)?;
+            let stretches = Round::new(&passes, STEADY_STEPS).sweep(start as i64, (start + 1 + next) as i64)?;
+            (passes, stretches)
+        } else {
+            let profile = Profile::of(passes)?;
+            (profile.passes, profile.stretches)
         };
-        (best.0, best.1.unwrap_or_else(farthest))
+        Ok(Self {
+            height_mm: height(&passes, &stretches),
+            cutting_teeth: cutting_teeth(&passes, &stretches),
+            highest_mm: passes.highest(),
+        })
     }
+}
+
+/// How many teeth leave a mark.
+pub fn cutting_teeth(passes: &Passes, stretches: &[Stretch]) -> usize {
+    let mut cuts = vec![false; passes.teeth.len()];
+    for stretch in stretches {
+        cuts[passes.passes[stretch.pass].tooth] = true;
+    }
+    cuts.into_iter().filter(|c| *c).count()
 }

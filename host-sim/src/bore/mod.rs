@@ -22,6 +22,7 @@ pub mod picture;
 mod refusal;
 pub mod roots;
 pub mod setup;
+mod sweep;
 pub mod tables;
 pub mod takeover;
 pub mod texture;

@@ -40,12 +40,10 @@ pub enum Refusal {
         limit: usize,
     },
     /// More comparisons of passes than the limit.
-    #[error("{found:.1e} comparisons of passes with unequal edges")]
+    #[error("comparing passes of unequal edges takes more than {limit} steps")]
     Comparisons {
-        /// How many there would be.
-        found: f64,
         /// How many are allowed.
-        limit: f64,
+        limit: u64,
     },
     /// No feed gives the wanted waviness.
     #[error(

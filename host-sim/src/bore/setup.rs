@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::envelope::Profile;
+use super::envelope::{Profile, Steady};
 use super::motion::{Cutter, Motion};
 use super::passes::Passes;
 use super::refusal::Refusal;
@@ -81,6 +81,13 @@ impl Setup {
     /// [`Refusal`].
     pub fn profile(&self, z_mm: f64) -> Result<Profile, Refusal> {
         Profile::of(self.passes(z_mm)?)
+    }
+    /// What repeats in it.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub fn steady(&self, z_mm: f64) -> Result<Steady, Refusal> {
+        Steady::of(self.passes(z_mm)?, self.laps.is_none())
     }
 }
 

@@ -14,8 +14,7 @@
 use std::f64::consts::TAU;
 
 use super::circle::{Reference, residuals, span};
-use super::depth::cutting_teeth;
-use super::envelope::Profile;
+use super::envelope::{Profile, cutting_teeth};
 use super::filter::{Closed, passed};
 use super::passes::around;
 use super::refusal::Refusal;
@@ -164,7 +163,7 @@ fn marks_per_revolution(profile: &Profile) -> f64 {
         let mean = TAU / profile.stretches.len() as f64;
         return profile.stretches.iter().filter(|s| s.to - s.from > 1e-3 * mean).count() as f64;
     }
-    cutting_teeth(profile) as f64 * TAU / profile.passes.motion.spacing()
+    cutting_teeth(&profile.passes, &profile.stretches) as f64 * TAU / profile.passes.motion.spacing()
 }
 
 fn root_mean_square(values: &[f64]) -> f64 {

@@ -4,7 +4,7 @@
 //! `k`: a closed form. With runout the height lies between that of one tooth of the longest radius and that of N such teeth;
 //! these two bracket the feed, and the height rises with the feed in between. Whatever is found is put through the envelope again.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use super::refusal::Refusal;
 use super::setup::Setup;
@@ -18,8 +18,9 @@ const ACCURACY: f64 = 1e-9;
 /// [`Refusal::OutOfReach`] when no feed gives that height; others when the setup has faults of its own.
 pub fn feed_for(setup: &Setup, wanted_mm: f64) -> Result<Setup, Refusal> {
     Refusal::unless_in("wanted waviness", "mm", wanted_mm, 1e-9, 2.0 * setup.cutter.radius_mm)?;
-    // Any feed will do to know the teeth.
-    let mut trial = Setup { laps: None, feed_mm_per_min: 1.0, ..*setup };
+    // Any feed will do to know the teeth: a turn of the cutter moves the centre by a ten-thousandth of a lap.
+    let slow = 1e-4 * setup.rpm.abs() * TAU * setup.feed_radius();
+    let mut trial = Setup { laps: None, feed_mm_per_min: slow.clamp(1e-6, 1e6), ..*setup };
     let motion = trial.motion()?;
     let teeth = trial.cutter.at(0.0, &motion);
     let longest = teeth.iter().fold(0.0, |m: f64, t| m.max(t.radius_mm));
@@ -33,7 +34,7 @@ pub fn feed_for(setup: &Setup, wanted_mm: f64) -> Result<Setup, Refusal> {
     let slow = if setup.cutter.runout_mm == 0.0 { fast } else { feed(1).ok_or_else(out_of_reach)? };
     let mut height = |feed: f64| {
         trial.feed_mm_per_min = feed;
-        trial.profile(0.0).map(|profile| profile.height() - wanted_mm)
+        trial.steady(0.0).map(|steady| steady.height_mm - wanted_mm)
     };
     let found = if slow == fast { fast } else { crossing(&mut height, slow, fast)? };
     let miss = height(found).map_err(|e| match e {
@@ -65,6 +66,11 @@ fn equal_advance(path: f64, edge: f64, teeth: u32, height: f64, conventional: bo
 /// Where a rising function crosses zero between two places (Illinois' regula falsi).
 fn crossing(value: &mut impl FnMut(f64) -> Result<f64, Refusal>, low: f64, high: f64) -> Result<f64, Refusal> {
     let (mut a, mut b) = (low, high);
+    // Beyond the feed at which passes part the height counts as boundless.
+    let mut value = |at: f64| match value(at) {
+        Err(Refusal::Apart { .. } | Refusal::Range { .. }) => Ok(f64::INFINITY),
+        other => other,
+    };
     let (mut at_a, mut at_b) = (value(a)?, value(b)?);
     for _ in 0..60 {
         if at_a >= 0.0 || (b - a) <= ACCURACY * 1e-3 * b {
@@ -94,9 +100,9 @@ fn largest(setup: &Setup) -> f64 {
     let mut best = 0.0;
     for _ in 0..60 {
         let feed = (low * high).sqrt();
-        match (Setup { laps: None, feed_mm_per_min: feed, ..*setup }).profile(0.0) {
-            Ok(profile) => {
-                best = profile.height();
+        match (Setup { laps: None, feed_mm_per_min: feed, ..*setup }).steady(0.0) {
+            Ok(steady) => {
+                best = steady.height_mm;
                 low = feed;
             }
             // Too slow for the limit of passes is still a wall.

@@ -7,7 +7,7 @@ use super::bore_files::{FILES, write};
 pub use super::bore_summary::{BoreSummary, Roots, Wanted};
 use crate::bore::dependence::{self, TeethRow};
 use crate::bore::depth;
-use crate::bore::envelope::Profile;
+use crate::bore::envelope::{Profile, cutting_teeth};
 use crate::bore::roots::roots;
 use crate::bore::setup::{Setup, cusp_formula};
 use crate::bore::texture::{Cutoffs, texture};
@@ -91,7 +91,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<BoreSumma
         laps: profile.passes.laps,
         smallest_radius_mm: profile.lowest(),
         largest_radius_mm: profile.passes.highest(),
-        cutting_teeth: depth::cutting_teeth(&profile),
+        cutting_teeth: cutting_teeth(&profile.passes, &profile.stretches),
         cusp_formula_mm: cusp_formula(&motion, setup.cutter.radius_mm, setup.cutter.teeth),
         parameters,
         wanted,
@@ -144,10 +144,10 @@ fn warnings(setup: &Setup, profile: &Profile) -> Vec<String> {
             passes.laps
         ));
     }
-    let cutting = depth::cutting_teeth(profile);
+    let cutting = cutting_teeth(passes, &profile.stretches);
     if cutting < passes.teeth.len() {
         said.push(format!(
-            "with {} µm of runout {cutting} of {} teeth leave marks on the wall at the tip",
+            "with {:.3} µm of runout {cutting} of {} teeth cut to the wall at the tip",
             setup.cutter.runout_mm * 1e3,
             passes.teeth.len()
         ));

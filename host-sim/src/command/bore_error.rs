@@ -23,7 +23,11 @@ pub(super) fn refused(refusal: &Refusal) -> Failure {
             format!("at most {limit}"),
             "use fewer laps, or a higher feed: the height of the waviness falls with the square of the feed",
         ),
-        Refusal::Comparisons { limit, .. } => ("B005", format!("at most {limit:.0e}"), "use fewer laps, or no runout"),
+        Refusal::Comparisons { limit } => (
+            "B005",
+            format!("at most {limit} steps"),
+            "use fewer laps, no runout, or a feed farther from where passes part",
+        ),
         Refusal::OutOfReach { .. } => ("B006", "a height within reach".to_owned(), "name a smaller height"),
         Refusal::Unfinished => return Failure::Internal(refusal.to_string()),
     };

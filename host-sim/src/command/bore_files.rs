@@ -75,8 +75,8 @@ fn patch(setup: &Setup, profile: &Profile, depth_mm: f64) -> Result<Grid, Failur
     let (half, highest) = (1.5 * motion.spacing(), profile.passes.highest());
     let middle = std::f64::consts::FRAC_PI_2;
     let steps = |count: usize| (0..=count).map(move |n| n as f64 / count as f64);
-    let z_mm: Vec<f64> = steps(160).map(|s| s * depth_mm).collect();
-    let rays: Vec<f64> = steps(120).map(|s| middle + half * (2.0 * s - 1.0)).collect();
+    let z_mm: Vec<f64> = steps(72).map(|s| s * depth_mm).collect();
+    let rays: Vec<f64> = steps(96).map(|s| middle + half * (2.0 * s - 1.0)).collect();
     let radii = depth::surface(setup, &z_mm, &rays).map_err(|e| refused(&e))?;
     let largest = radii.iter().flatten().copied().fold(f64::MIN, f64::max);
     let along = rays.iter().map(|phi| (phi - middle) * highest).collect();

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use truepath::bore::Refusal;
 use truepath::bore::depth::{generatrix_wavelength, levels};
-use truepath::bore::envelope::Profile;
+use truepath::bore::envelope::{Profile, cutting_teeth};
 use truepath::bore::motion::{Cutter, Motion};
 use truepath::bore::passes::Passes;
 use truepath::bore::setup::Setup;
@@ -48,7 +48,7 @@ fn a_cutter_with_much_runout_mills_with_one_tooth() {
     let single = Cutter::plain(10.5, 1).at(0.0, &motion);
     let alone = Profile::of(Passes::new(motion, single, None).expect("a wall")).expect("closes");
     assert!((profile.height() - alone.height()).abs() < 1e-9, "{} {}", profile.height(), alone.height());
-    assert_eq!(truepath::bore::depth::cutting_teeth(&profile), 1);
+    assert_eq!(cutting_teeth(&profile.passes, &profile.stretches), 1);
     // And a runout of a nanometre is none.
     with.cutter.runout_mm = 1e-6;
     assert!(

@@ -104,6 +104,35 @@ proptest! {
     }
 
     #[test]
+    fn one_turn_of_the_cutter_holds_the_height_of_the_whole_circle(setup in random_setup()) {
+        let setup = Setup { laps: None, ..setup };
+        let (steady, whole) = (setup.steady(1.0).expect("a wall"), setup.profile(1.0).expect("a wall").height());
+        prop_assert!((steady.height_mm - whole).abs() < 1e-9 * (1.0 + whole), "{steady:?} {whole}");
+    }
+
+    #[test]
+    fn any_numbers_end_in_a_wall_or_a_refusal(
+        sizes in prop::array::uniform3(-4.0..5.0f64), ratio in -5.0..0.5f64, teeth in 0u32..66,
+        tilt in prop::array::uniform4(-86.0..86.0f64), laps in prop::option::of(0.9..8.0f64), climb in prop::bool::ANY,
+    ) {
+        let [hole, cutter, speed] = sizes.map(|e| 10f64.powf(e));
+        let rpm = if climb { -speed } else { speed };
+        let (hole_mm, radius_mm) = (hole.max(cutter * 1.01), cutter);
+        let cutter = Cutter {
+            radius_mm, teeth, helix_deg: tilt[0], runout_mm: radius_mm * (tilt[1] / 40.0).max(0.0).powi(4) / 80.0,
+            runout_deg: tilt[2], phase_deg: tilt[3],
+        };
+        let feed_mm_per_min = 10f64.powf(ratio) * speed * TAU * (hole_mm - radius_mm);
+        let setup = Setup { hole_mm, cutter, feed_mm_per_min, feed_at: FeedAt::Wall, rpm, laps };
+        if let Ok(profile) = setup.profile(2.0) {
+            let height = profile.height();
+            prop_assert!(height >= 0.0 && profile.lowest() > 0.0 && profile.passes.highest() < 2.0 * hole_mm, "{height}");
+            let radius = profile.at(1.0).0;
+            prop_assert!(radius >= profile.lowest() * (1.0 - 1e-12) && radius <= profile.passes.highest());
+        }
+    }
+
+    #[test]
     fn no_ray_lies_below_the_lowest_crest_and_one_reaches_it(setup in random_setup()) {
         let profile = setup.profile(0.0).expect("a wall");
         let sampled = (0..5000).map(|n| profile.at(TAU * f64::from(n) / 5000.0).0);

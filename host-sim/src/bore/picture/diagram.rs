@@ -5,13 +5,16 @@ use std::f64::consts::TAU;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::{BLUE, DARK, FONT, LIGHT, TEETH, failed};
+use super::{BLUE, DARK, FINE, FONT, LIGHT, TEETH, failed, shown};
 use crate::bore::envelope::Profile;
+use crate::bore::passes::Pass;
 use crate::diagnostics::Failure;
 
 /// Marks in the enlarged part: this many turns of the cutter.
 const TURNS: f64 = 3.0;
 const POINTS: usize = 1600;
+/// Width and height as shown.
+const SHOWN: (i32, i32) = (1000, 700);
 
 type Panel<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -22,15 +25,16 @@ type Panel<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub fn diagram(title: &str, profile: &Profile) -> Result<Vec<u8>, Failure> {
     let mut text = String::new();
     {
-        let root = SVGBackend::with_string(&mut text, (1000, 700)).into_drawing_area();
+        let root =
+            SVGBackend::with_string(&mut text, ((FINE * SHOWN.0) as u32, (FINE * SHOWN.1) as u32)).into_drawing_area();
         root.fill(&WHITE).map_err(failed)?;
-        let page = root.titled(title, (FONT, 18)).map_err(failed)?;
-        let (top, bottom) = page.split_vertically(300);
+        let page = root.titled(title, (FONT, FINE * 18)).map_err(failed)?;
+        let (top, bottom) = page.split_vertically(FINE * 300);
         whole(&top, profile)?;
         enlarged(&bottom, profile)?;
         root.present().map_err(failed)?;
     }
-    Ok(text.into_bytes())
+    Ok(shown(text, SHOWN))
 }
 
 /// Deviation from the deepest circle, µm.
@@ -41,10 +45,10 @@ fn deviation(profile: &Profile, radius: f64) -> f64 {
 fn whole(panel: &Panel, profile: &Profile) -> Result<(), Failure> {
     let depth = profile.height() * 1e3;
     let mut chart = ChartBuilder::on(panel)
-        .caption("all round", (FONT, 14))
-        .margin(8)
-        .x_label_area_size(36)
-        .y_label_area_size(70)
+        .caption("all round", (FONT, FINE * 14))
+        .margin(FINE * 8)
+        .x_label_area_size(FINE * 36)
+        .y_label_area_size(FINE * 70)
         .build_cartesian_2d(0.0..360.0, (-1.12 * depth)..(0.12 * depth))
         .map_err(failed)?;
     mesh(&mut chart, "angle along the travel, degrees")?;
@@ -60,7 +64,7 @@ fn whole(panel: &Panel, profile: &Profile) -> Result<(), Failure> {
     }
     let shifted = |turn: f64| points.iter().map(move |(x, y)| (x + turn, *y)).filter(|p| (0.0..=360.0).contains(&p.0));
     for turn in [-360.0, 0.0, 360.0] {
-        chart.draw_series(LineSeries::new(shifted(turn), BLUE.stroke_width(1))).map_err(failed)?;
+        chart.draw_series(LineSeries::new(shifted(turn), BLUE.stroke_width(FINE as u32))).map_err(failed)?;
     }
     Ok(())
 }
@@ -73,35 +77,43 @@ fn enlarged(panel: &Panel, profile: &Profile) -> Result<(), Failure> {
     let high = passes.highest();
     let x = |phi: f64| (phi - middle) * high;
     let mut chart = ChartBuilder::on(panel)
-        .caption("near 90°: profile (dark) and the curves of the teeth that leave it", (FONT, 14))
-        .margin(8)
-        .x_label_area_size(36)
-        .y_label_area_size(70)
+        .caption("near 90°: profile (dark) and the curves of the teeth that leave it", (FONT, FINE * 14))
+        .margin(FINE * 8)
+        .x_label_area_size(FINE * 36)
+        .y_label_area_size(FINE * 70)
         .build_cartesian_2d(x(middle - half)..x(middle + half), (-2.2 * depth)..(0.7 * depth))
         .map_err(failed)?;
     mesh(&mut chart, "along the wall, mm")?;
-    let mut named = vec![false; passes.teeth.len()];
-    for pass in passes.passes.iter().filter(|p| (p.crest - middle).abs() < half + passes.reach) {
-        let (arc, colour) = (passes.arc(pass), TEETH[pass.tooth % TEETH.len()]);
+    for tooth in 0..passes.teeth.len() {
+        let (arc, colour) = (&passes.arcs[passes.arc_of[tooth]], TEETH[tooth % TEETH.len()]);
         let reach = (1.6 * passes.reach).min(arc.half_width());
-        let curve = (0..=120).map(|n| pass.crest + reach * (f64::from(n) / 60.0 - 1.0));
-        let curve = curve.map(|phi| (x(phi), deviation(profile, arc.wall(phi - pass.crest).0)));
-        let inside: Vec<_> = curve.filter(|p| (p.0 / high).abs() <= half && p.1 >= -2.2 * depth).collect();
-        let series = chart.draw_series(LineSeries::new(inside, colour.stroke_width(1))).map_err(failed)?;
-        if !std::mem::replace(&mut named[pass.tooth], true) && passes.teeth.len() <= 12 {
-            let legend = move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(3));
-            series.label(format!("tooth {}", pass.tooth + 1)).legend(legend);
+        let mut named = false;
+        let near = |p: &&Pass| p.tooth == tooth && (p.crest - middle).abs() < half + 1.6 * passes.reach;
+        for pass in passes.passes.iter().filter(near) {
+            let curve = (0..=120).map(|n| pass.crest + reach * (f64::from(n) / 60.0 - 1.0));
+            let curve = curve.map(|phi| (x(phi), deviation(profile, arc.wall(phi - pass.crest).0)));
+            let inside: Vec<_> = curve.filter(|p| (p.0 / high).abs() <= half && p.1 >= -2.2 * depth).collect();
+            let seen = !inside.is_empty();
+            let series =
+                chart.draw_series(LineSeries::new(inside, colour.stroke_width(FINE as u32))).map_err(failed)?;
+            if seen && !std::mem::replace(&mut named, true) && passes.teeth.len() <= 12 {
+                let legend =
+                    move |(x, y)| PathElement::new([(x, y), (x + FINE * 18, y)], colour.stroke_width(3 * FINE as u32));
+                series.label(format!("tooth {}", tooth + 1)).legend(legend);
+            }
         }
     }
     let phis = (0..=POINTS).map(|n| middle + half * (2.0 * n as f64 / POINTS as f64 - 1.0));
     let line = phis.map(|phi| (x(phi), deviation(profile, profile.at(phi).0)));
-    chart.draw_series(LineSeries::new(line, DARK.stroke_width(2))).map_err(failed)?;
+    chart.draw_series(LineSeries::new(line, DARK.stroke_width(2 * FINE as u32))).map_err(failed)?;
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::UpperRight)
         .background_style(WHITE.mix(0.85))
-        .border_style(LIGHT)
-        .label_font((FONT, 13))
+        .border_style(LIGHT.stroke_width(FINE as u32))
+        .margin(FINE as u32 * 10)
+        .legend_area_size(FINE as u32 * 30)
+        .label_font((FONT, FINE * 13))
         .draw()
         .map_err(failed)
 }
@@ -116,11 +128,13 @@ fn mesh(chart: &mut Chart, x: &str) -> Result<(), Failure> {
     chart
         .configure_mesh()
         .light_line_style(WHITE)
-        .bold_line_style(LIGHT)
+        .bold_line_style(LIGHT.stroke_width(FINE as u32))
+        .axis_style(DARK.stroke_width(FINE as u32))
+        .set_all_tick_mark_size(FINE * 5)
         .x_desc(x)
         .y_desc("radius − largest radius, µm")
-        .label_style((FONT, 13))
-        .axis_desc_style((FONT, 13))
+        .label_style((FONT, FINE * 13))
+        .axis_desc_style((FONT, FINE * 13))
         .draw()
         .map_err(failed)
 }

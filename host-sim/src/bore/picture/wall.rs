@@ -6,6 +6,9 @@ use plotters::prelude::*;
 use super::{BLUE, FONT, LIGHT, failed};
 use crate::diagnostics::Failure;
 
+/// Shades between the deepest and the highest place.
+const SHADES: usize = 24;
+
 /// A piece of wall: heights (outer) over places along it.
 #[derive(Clone, Debug)]
 pub struct Patch<'a> {
@@ -63,18 +66,22 @@ fn map(panel: &DrawingArea<SVGBackend, Shift>, patch: &Patch) -> Result<(), Fail
         .axis_desc_style((FONT, 13))
         .draw()
         .map_err(failed)?;
-    let shade = |deviation: f64| {
-        let share = (deviation / lowest).clamp(0.0, 1.0);
+    let shade = |level: usize| {
+        let share = level as f64 / SHADES as f64;
         let mix = |dark: f64, light: f64| (dark + (light - dark) * share).round() as u8;
         RGBColor(mix(0.0, 245.0), mix(60.0, 240.0), mix(110.0, 215.0)).filled()
     };
+    let level = |mean: f64| ((mean / lowest).clamp(0.0, 1.0) * SHADES as f64).round() as usize;
     for (rows, z) in patch.deviation_mm.windows(2).zip(patch.z_mm.windows(2)) {
-        let cells = patch.along_mm.windows(2).zip(rows[0].windows(2).zip(rows[1].windows(2)));
-        let cells = cells.map(|(x, (low, high))| {
-            let mean = (low[0] + low[1] + high[0] + high[1]) / 4.0;
-            Rectangle::new([(x[0], z[0]), (x[1], z[1])], shade(mean))
+        let means =
+            rows[0].windows(2).zip(rows[1].windows(2)).map(|(low, high)| (low[0] + low[1] + high[0] + high[1]) / 4.0);
+        let cells: Vec<(usize, &[f64])> = means.map(level).zip(patch.along_mm.windows(2)).collect();
+        // Neighbours of one shade are one rectangle: a picture of a third of the size.
+        let runs = cells.chunk_by(|a, b| a.0 == b.0).filter_map(|run| {
+            let (first, last) = (run.first()?, run.last()?);
+            Some(Rectangle::new([(first.1[0], z[0]), (last.1[1], z[1])], shade(first.0)))
         });
-        chart.draw_series(cells).map_err(failed)?;
+        chart.draw_series(runs).map_err(failed)?;
     }
     Ok(())
 }
