@@ -204,6 +204,10 @@ fn a_slot_with_square_corners_keeps_its_path_in_one_piece() {
     let summary = summary(desk.path(), &[]);
     let least = sections(&summary, "sharp").iter().map(|s| number(&s["engaged_min_deg"])).fold(f64::MAX, f64::min);
     assert!(least < 110.0, "{least}");
+    // What is left there is not passed over in silence.
+    let left = number(&summary["max_error_sharp_mm"]);
+    assert_eq!(summary["in_band"] == true, left <= 0.02, "{left}");
+    assert!(left > 0.001, "{left}");
     let points: Vec<[f64; 2]> = rows(desk.path()).iter().map(|row| [row[1] + row[3], row[2] + row[4]]).collect();
     let steps = points.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]));
     assert!(steps.fold(0.0, f64::max) < 0.12);

@@ -90,6 +90,9 @@ fn words(s: &PocketSummary) -> String {
         s.max_error_before_mm,
         s.max_error_after_mm
     );
+    if s.max_error_sharp_mm > 0.0 {
+        text += &format!("  (corners without an arc apart: {:.4} mm remain there)\n", s.max_error_sharp_mm);
+    }
     for case in &s.sensitivity {
         let out = match case.sections_out {
             0 => "all sections within the band".to_owned(),

@@ -62,7 +62,9 @@ pub struct PocketSummary {
     pub max_error_before_mm: f64,
     /// Largest error after.
     pub max_error_after_mm: f64,
-    /// Whether every judged section is within the band after.
+    /// Largest error after at sharp corners, which no shift follows, mm; 0 without any.
+    pub max_error_sharp_mm: f64,
+    /// Whether every section is within the band after, sharp corners included.
     pub in_band: bool,
     /// The same with other force coefficients.
     pub sensitivity: Vec<Sensitivity>,
@@ -103,8 +105,17 @@ pub fn pocket_summary(
     for row in judged().filter(|row| !row.in_band_after) {
         warnings.push(format!("{} is not within the band after: {}", row.section, row.reason));
     }
+    let sharp = made.rows.iter().filter(|row| row.kind == Kind::Sharp);
+    let left = |row: &SectionRow| row.error_after_mm.abs().max(row.far_error_after_mm.unwrap_or(0.0).abs());
+    let max_error_sharp_mm = sharp.map(left).fold(0.0, f64::max);
+    if max_error_sharp_mm > mm(table.tolerance) {
+        warnings.push(format!(
+            "{max_error_sharp_mm:.4} mm remain at corners without an arc: give the path an arc there, however small"
+        ));
+    }
     let tool = &machine.tool;
     PocketSummary {
+        max_error_sharp_mm,
         version: 1,
         mode: table.mode,
         milling: milling_name(pass.core.setup.milling),
@@ -125,7 +136,7 @@ pub fn pocket_summary(
         sections_shifted: made.designed.shifted.iter().filter(|s| **s).count(),
         max_error_before_mm: largest(|row| [row.error_before_mm, row.far_error_before_mm.unwrap_or(0.0)]),
         max_error_after_mm: largest(|row| [row.error_after_mm, row.far_error_after_mm.unwrap_or(0.0)]),
-        in_band: judged().all(|row| row.in_band_after),
+        in_band: made.rows.iter().all(|row| row.in_band_after),
         sections: made.rows.clone(),
         sensitivity: made.sensitivity.clone(),
         passes: made.designed.passes,

@@ -8,7 +8,8 @@
 //! counts: the compliance goes with the fourth power, so 0.75 instead of 0.8 is 29 %. `core_ratio` in the job is for a
 //! cutter whose core is known.
 //!
-//! Young's modulus: 215 kN/mm² for high-speed steel, 600 kN/mm² for cemented carbide (6 to 10 % cobalt: 580…650).
+//! Young's modulus: 215 kN/mm² for high-speed steel, 600 kN/mm² for cemented carbide, as in the model of the device. Others
+//! reckon with 200 and 580; a maker's own value goes into `modulus_kn_per_mm2`.
 
 use truepath_core::cut::ToolMaterial;
 
