@@ -269,6 +269,9 @@ fn a_correction_is_not_replaced_by_one_made_from_the_part_that_was_cut_with_it()
     let text = refused("part-2.txt", "first");
     assert!(text.contains("mm (rms) from the wall of the correction"), "{text}");
     assert_eq!(fs::read(folder.join("first/corrected.nc")).unwrap(), before);
+    // In a folder of its own nothing is known of it; it is only likely.
+    let doubted = |probe: &str, out: &str| again(probe, out).unwrap().warnings.iter().any(|w| w.starts_with("Q008"));
+    assert!(doubted("part-2.txt", "other") && !doubted("uncorrected.txt", "plain"));
     // Known by name, once it was learned from.
     run(&folder, "part-2.txt", "first", "second").unwrap();
     let text = refused("part-2.txt", "second");

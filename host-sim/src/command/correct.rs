@@ -6,7 +6,7 @@ use truepath_core::checksum::crc32;
 use truepath_core::cut::Path;
 use truepath_core::job;
 
-use super::doubts::{doubts, kinked, misread};
+use super::doubts::{cut_corrected, doubts, kinked, misread};
 use super::feeds;
 use super::levels::{self, Levels};
 use super::replaced::refuse_replacing;
@@ -107,7 +107,9 @@ pub fn correct(
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let law = job::law(&pass.core, &identified.machine(&path, &table), &measurement.contacts);
-    design(pass, &sampled, identified, &Wish::of(law), remarks, routes, progress)
+    let mut done = design(pass, &sampled, identified, &Wish::of(law), remarks, routes, progress)?;
+    done.summary.warnings.extend(cut_corrected(&done.identified, &done.correction));
+    Ok(done)
 }
 
 /// What a measurement leaves to be said.

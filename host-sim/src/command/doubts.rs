@@ -87,6 +87,22 @@ pub(super) fn doubts(pass: &Pass, identified: &Identified, correction: &Correcti
     out
 }
 
+/// A correction that a part was cut with takes off nearly the same everywhere: the fit finds a cutter that is too large.
+pub(super) fn cut_corrected(identified: &Identified, correction: &Correction) -> Option<String> {
+    let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
+    let undersize = identified.fit().parameters.undersize;
+    let is_far = Parameter::ALL
+        .iter()
+        .zip(&identified.fit().theta)
+        .any(|(parameter, theta)| *parameter == Parameter::Undersize && crate::report::float(*theta) < -2.5);
+    (is_far && undersize.nm() * -4 > peak.nm()).then(|| {
+        format!(
+            "Q008: the points look like those of a part that was cut with a correction, as if the cutter were {:.3} mm larger in radius: if it was, do not use this correction, which would take the place of that one, but learn from the part with truepath learn --from its folder",
+            mm(-undersize)
+        )
+    })
+}
+
 /// What the points of a pass may be of instead: a wall milled twice, or the first of two passes.
 pub(super) fn misread(measured: &Pass, first_pass: bool, contacts: &[Contact]) -> Vec<String> {
     let mut out = Vec::new();
