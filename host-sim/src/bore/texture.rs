@@ -96,8 +96,15 @@ pub struct Texture {
 /// # Errors
 /// [`Refusal::Range`] for cut-offs that are out of range: λc from 0.001 mm to the circumference, 1 to 100 000 undulations.
 pub fn texture(profile: &Profile, cutoffs: &Cutoffs) -> Result<Texture, Refusal> {
+    // Before the profile is sampled as finely as they ask for.
+    check(cutoffs, TAU * profile.passes.highest())?;
     let finest = cutoffs.upr.max(TAU * profile.passes.highest() / cutoffs.lambda_c_mm);
     evaluate(profile, &Closed::of(profile, finest), cutoffs)
+}
+
+fn check(cutoffs: &Cutoffs, circumference: f64) -> Result<(), Refusal> {
+    Refusal::unless_in("cut-off λc", "mm", cutoffs.lambda_c_mm, 1e-3, circumference)?;
+    Refusal::unless_in("roundness cut-off", "undulations per revolution", cutoffs.upr, 1.0, 1e5)
 }
 
 /// The same with the samples given.
@@ -106,8 +113,7 @@ pub fn texture(profile: &Profile, cutoffs: &Cutoffs) -> Result<Texture, Refusal>
 /// As [`texture`].
 pub fn evaluate(profile: &Profile, closed: &Closed, cutoffs: &Cutoffs) -> Result<Texture, Refusal> {
     let circumference = closed.circumference();
-    Refusal::unless_in("cut-off λc", "mm", cutoffs.lambda_c_mm, 1e-3, circumference)?;
-    Refusal::unless_in("roundness cut-off", "undulations per revolution", cutoffs.upr, 1.0, 1e5)?;
+    check(cutoffs, circumference)?;
     let lambda_c_upr = closed.undulations(cutoffs.lambda_c_mm);
     let long = closed.below(lambda_c_upr);
     let short: Vec<f64> = closed.deviations.iter().zip(&long).map(|(d, w)| d - w).collect();

@@ -17,9 +17,10 @@ pub(super) fn words(s: &BoreSummary) -> String {
         s.rpm.abs(),
         s.feed_per_tooth_mm,
     );
-    let mut line = |name: &str, value: f64, what: &str| text += &format!("{name:<6} {value:>11.6} mm  {what}\n");
-    line("Pt", p.pt, "height of the waviness: the whole profile, unfiltered");
-    line("Wt", p.wt, &format!("waviness longer than λc = {} mm", p.lambda_c_mm));
+    let mut line = |name: &str, value: f64, what: &str| text += &format!("{name:<9} {value:>11.6} mm  {what}\n");
+    line("waviness", s.waviness_mm, "height of the highest crest between marks, unfiltered");
+    line("Pt", p.pt, "the same under its ISO name: height of the whole profile");
+    line("Wt", p.wt, &format!("waves longer than λc = {} mm only", p.lambda_c_mm));
     line("Rz", p.rz, &format!("roughness shorter than λc, mean of {} sections", p.sections));
     line("Ra", p.ra, "");
     line(
@@ -28,7 +29,7 @@ pub(super) fn words(s: &BoreSummary) -> String {
         &format!("roundness, least-squares circle, below {} undulations per revolution", p.roundness_upr),
     );
     text += &format!(
-        "       MZCI {:.6}, MICI {:.6}, MCCI {:.6} mm; RONp {:.6}, RONv {:.6}, RONq {:.6} mm\n",
+        "          MZCI {:.6}, MICI {:.6}, MCCI {:.6} mm; RONp {:.6}, RONv {:.6}, RONq {:.6} mm\n",
         p.ront_mzci, p.ront_mici, p.ront_mcci, p.ronp, p.ronv, p.ronq
     );
     let kind = match p.marks.fall_under {

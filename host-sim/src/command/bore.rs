@@ -89,6 +89,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<BoreSumma
         omega1_rad_per_s: motion.omega1,
         omega2_rad_per_s: motion.omega2,
         laps: profile.passes.laps,
+        waviness_mm: profile.height(),
         smallest_radius_mm: profile.lowest(),
         largest_radius_mm: profile.passes.highest(),
         cutting_teeth: cutting_teeth(&profile.passes, &profile.stretches),

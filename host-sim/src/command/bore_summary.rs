@@ -41,6 +41,8 @@ pub struct BoreSummary {
     pub omega2_rad_per_s: f64,
     /// Laps of the centre.
     pub laps: f64,
+    /// Height of the waviness of the unfiltered envelope, mm: what Urinov 2020 calls waviness. The same as Pt.
+    pub waviness_mm: f64,
     /// Smallest radius of the wall, mm.
     pub smallest_radius_mm: f64,
     /// Largest radius, mm.

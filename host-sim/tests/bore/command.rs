@@ -34,6 +34,10 @@ fn the_paper_s_case_comes_out_of_the_command_line_with_all_digits() {
     let summary = json(&done.stdout);
     let number = |path: &str| summary.pointer(path).and_then(serde_json::Value::as_f64).expect("a number");
     assert_eq!(format!("{:.6}", number("/parameters/Pt_mm")), "0.307885");
+    assert_eq!(format!("{:.6}", number("/waviness_mm")), "0.307885");
+    let words = truepath(&PAPER, folder.path());
+    let words = String::from_utf8_lossy(&words.stdout).into_owned();
+    assert!(words.contains("waviness     0.307885 mm"), "{words}");
     assert_eq!(format!("{:.4}", number("/roots/radius_mm")), "89.9275");
     assert_eq!((number("/roots/on_ray"), number("/roots/opposite")), (9.0, 7.0));
     assert!((number("/omega1_rad_per_s") - 0.1).abs() < 1e-15 && (number("/omega2_rad_per_s") - 10.0).abs() < 1e-12);

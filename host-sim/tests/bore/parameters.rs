@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use truepath::bore::filter::Closed;
+use truepath::bore::setup::Setup;
 use truepath::bore::texture::{Cutoffs, evaluate, texture};
 
 use super::setup;
@@ -38,4 +39,29 @@ fn parameters_do_not_depend_on_the_sampling() {
         assert!((x - y).abs() < 2e-3 * a.pt, "{x} {y}");
     }
     assert_eq!(a.pt, b.pt);
+}
+
+#[test]
+fn filtered_parameters_are_those_of_a_gaussian_filter_in_space() {
+    // Independent: 40 000 samples, the weighting function of ISO 16610-21 summed over 5 λc, mean line by least squares.
+    let t = texture(&setup(1).profile(0.0).expect("a wall"), &Cutoffs::default()).expect("in range");
+    for (found, other) in [
+        (t.wt, 0.28186),
+        (t.ra, 0.001_515_1),
+        (t.rq, 0.003_404_86),
+        (t.ront, 0.016_446),
+        (t.ronp, 0.008_222),
+        (t.ronv, 0.008_224),
+        (t.ronq, 0.005_813_9),
+    ] {
+        assert!((found / other - 1.0).abs() < 1e-3, "{found} {other}");
+    }
+}
+
+#[test]
+fn waviness_without_its_circle_can_be_higher_than_the_whole_profile() {
+    // At 95 rev/min the marks do not close after a lap: the circle lies aside of the centre of the path.
+    let profile = Setup { rpm: 95.0, ..setup(1) }.profile(0.0).expect("a wall");
+    let fine = texture(&profile, &Cutoffs { lambda_c_mm: 0.02, upr: 50.0 }).expect("in range");
+    assert!(fine.wt > fine.pt && fine.wt < 1.03 * fine.pt, "{fine:?}");
 }
