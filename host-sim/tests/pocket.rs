@@ -291,14 +291,3 @@ fn materials_are_listed_with_their_sources() {
     let named = |row: &Value| row["source"].as_str().is_some_and(|s| s.len() > 10);
     assert!(rows.as_array().is_some_and(|rows| rows.len() >= 7 && rows.iter().all(named)), "{rows}");
 }
-
-#[test]
-fn the_coefficients_of_the_papers_case_follow_from_its_strength() {
-    // Shear strength of 469 MPa by von Mises, Merchant's shear angle 45° − (β − α)/2 with rake α 10° and friction β 30°.
-    let shear = 469.0 / 3f64.sqrt();
-    let difference = 20f64.to_radians();
-    let angle = std::f64::consts::FRAC_PI_4 - difference / 2.0;
-    let common = shear / (angle.sin() * (angle + difference).cos());
-    let [ktc, krc] = [common * difference.cos(), common * difference.sin()];
-    assert!((ktc - 774.0).abs() < 1.0 && (krc - 282.0).abs() < 1.0, "{ktc} {krc}");
-}

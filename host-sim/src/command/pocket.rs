@@ -71,6 +71,9 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PocketSum
     let pass = Pass::read(job)?;
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
     let mut warnings = pass.warnings.clone();
+    if table.mode == Mode::Slot && pass.job.gives("stock.allowance_mm") {
+        warnings.push("[stock] is not used: a slot is cut at full immersion".to_owned());
+    }
     let refused = |error: PocketError| error.failure(&pass.job);
     let made = match table.mode {
         Mode::Wall => {

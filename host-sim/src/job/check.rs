@@ -65,7 +65,7 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         _ => stock(&root.required_section("stock", "allowance_mm")?, tool.diameter)?,
     };
     let cut = cut(&root.required_section("cut", "axial_depth_mm")?)?;
-    reach(&source, &tool_section, &tool, &cut)?;
+    reach(&source, &tool_section, (&tool, &shank), &cut)?;
     let force = force(&source, &root.required_section("force", "the four coefficients, or material = \"steel-40\"")?)?;
     let probe = root.section("probe")?.map(|section| probe(&source, &section)).transpose()?;
     let (machine, backlash) = match root.section("machine")? {

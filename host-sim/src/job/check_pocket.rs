@@ -13,7 +13,7 @@ use crate::pocket::{Mode, PerSection};
 pub struct PocketTable {
     /// A finishing pass along a wall, or a slot.
     pub mode: Mode,
-    /// Half of the width of the band the walls may lie in, above 0, up to 1 mm.
+    /// Half of the width of the band the walls may lie in, 0.000001 to 1 mm.
     pub tolerance: Offset,
     /// How a section is shifted.
     pub per_section: PerSection,
@@ -30,7 +30,7 @@ const WAYS: [(&str, PerSection); 2] = [("profile", PerSection::Profile), ("const
 /// Reads the table.
 pub(super) fn pocket(section: &Section<'_>) -> Result<PocketTable, InputError> {
     let mode = section.choice("mode", &MODES)?.unwrap_or(Mode::Wall);
-    let tolerance = section.number("tolerance_mm", Limits::above("0", "1", "mm"))?;
+    let tolerance = section.number("tolerance_mm", Limits::within("0.000001", "1", "mm"))?;
     let per_section = section.choice("per_section", &WAYS)?.unwrap_or(PerSection::Profile);
     section.close()?;
     let tolerance = tolerance.map_or(DEFAULT_TOLERANCE, Decimal::as_mm);

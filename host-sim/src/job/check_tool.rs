@@ -65,8 +65,20 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<(Tool, Shan
     Ok((tool, shank))
 }
 
-/// The cutter must stick out at least as far as it cuts deep.
-pub(super) fn reach(source: &Source, section: &Section<'_>, tool: &Tool, cut: &Cut) -> Result<(), InputError> {
+/// The cutter must stick out, and have flutes, at least as far as it cuts deep.
+pub(super) fn reach(
+    source: &Source,
+    section: &Section<'_>,
+    (tool, shank): (&Tool, &Shank),
+    cut: &Cut,
+) -> Result<(), InputError> {
+    if let (Some(length), Some(value)) = (shank.flute_length, section.value("flute_length_mm"))
+        && length < cut.axial_depth
+    {
+        let expected = format!("at least cut.axial_depth_mm, {} mm", text_of(cut.axial_depth));
+        let help = "flutes shorter than the cut is deep do not cut at its top: correct one of them";
+        return Err(section.contradiction(&value, "the flutes are shorter than the cut is deep", &expected, help));
+    }
     match (tool.cantilever, section.value("stickout_mm")) {
         (Some(c), Some(value)) if c.length < cut.axial_depth => {
             let expected = format!("at least cut.axial_depth_mm, {} mm", text_of(cut.axial_depth));

@@ -35,6 +35,8 @@ pub struct Wanted {
 pub struct Designed {
     /// The sections.
     pub sections: Vec<Section>,
+    /// How they are shifted.
+    pub per_section: PerSection,
     /// Which of them are shifted.
     pub shifted: Vec<bool>,
     /// Shift towards the near wall, mm.
@@ -79,6 +81,7 @@ pub fn design(process: &dyn Process, wanted: &Wanted, progress: &mut dyn FnMut(f
         after: before.clone(),
         before,
         sections,
+        per_section: wanted.per_section,
         shifted,
         passes: 1,
     };

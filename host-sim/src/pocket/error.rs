@@ -5,7 +5,7 @@
 //! | D001 | the job has no cutter that can bend: `stickout_mm` and `material` are missing |
 //! | D002 | the deflection is larger than what there is to cut |
 //! | D003 | the elastic loop does not settle |
-//! | D004 | a tolerance that is not above 0 |
+//! | D004 | a tolerance out of 0.000001 to 1 mm |
 //! | D005 | the path is too long for the slot's memory of where it has been |
 //! | D006 | the shift is beyond the clamp of the job |
 
@@ -81,7 +81,7 @@ impl PocketError {
             Self::Tolerance(value) => (
                 "D004",
                 format!("the tolerance is {value} mm"),
-                "a number above 0, up to 1 mm".to_owned(),
+                "0.000001 to 1 mm".to_owned(),
                 "give --tolerance or tolerance_mm in [pocket] as half of the width of the band the wall may lie in",
                 "pocket.tolerance_mm",
             ),

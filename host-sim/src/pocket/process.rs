@@ -35,8 +35,8 @@ pub struct Cutting {
     pub tip_mm: f64,
     /// What the correction aims at; a slot has two walls.
     pub walls: Walls,
-    /// Smallest and largest error over the heights, of all walls, mm.
-    pub range_mm: [f64; 2],
+    /// Largest difference between the errors of two heights of one wall, mm; NaN where there is none.
+    pub height_mm: f64,
 }
 
 impl Walls {

@@ -3,6 +3,7 @@
 use super::design::{Designed, worst};
 use super::process::{Cutting, Mode};
 use super::section::{Kind, Section};
+use super::shift::PerSection;
 use super::station::Station;
 use crate::diagnostics::Failure;
 use crate::report::{rounded, table};
@@ -46,9 +47,10 @@ pub struct SectionRow {
     pub far_error_after_mm: Option<f64>,
     /// Whether the errors after are within the band.
     pub in_band_after: bool,
-    /// Largest difference between two heights of a wall after, mm: no shift in X and Y removes it.
+    /// Largest difference between two heights of one wall after, mm: no shift in X and Y removes it.
     pub height_error_mm: f64,
-    /// How much narrower than the cutter the slot is, mm; no shift changes it.
+    /// How much narrower than the cutter the slot is, mm, in the middle of the values along the section; no shift changes
+    /// it.
     pub narrower_mm: Option<f64>,
     /// What was done and why.
     pub reason: String,
@@ -56,6 +58,13 @@ pub struct SectionRow {
 
 fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.filter(|v| v.is_finite()).fold(0.0, |m: f64, v| if v.abs() > m.abs() { v } else { m })
+}
+
+/// The value in the middle; 0 where there is none.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut known: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+    known.sort_by(f64::total_cmp);
+    known.get(known.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The rows of a compensated pocket.
@@ -85,7 +94,7 @@ fn row(
     let inside = |cut: &[Cutting]| worst(section, cut) <= tolerance_mm;
     let [in_band_before, in_band_after] = [inside(&designed.before), inside(&designed.after)];
     let force: f64 = before.iter().map(|c| c.force_n[0].hypot(c.force_n[1])).sum::<f64>() / before.len() as f64;
-    let narrower = (mode == Mode::Slot).then(|| largest(after.iter().map(|c| c.walls.narrow())));
+    let narrower = (mode == Mode::Slot).then(|| median(before.iter().map(|c| c.walls.narrow())));
     let row = SectionRow {
         section: section.name.clone(),
         kind: section.kind,
@@ -105,15 +114,15 @@ fn row(
         error_after_mm: rounded(near(after), 6),
         far_error_after_mm: far(after).map(|v| rounded(v, 6)),
         in_band_after,
-        height_error_mm: rounded(largest(after.iter().map(|c| c.range_mm[1] - c.range_mm[0])), 6),
+        height_error_mm: rounded(largest(after.iter().map(|c| c.height_mm)), 6),
         narrower_mm: narrower.map(|v| rounded(v, 6)),
         reason: String::new(),
     };
-    SectionRow { reason: reason(&row, tolerance_mm), ..row }
+    SectionRow { reason: reason(&row, tolerance_mm, designed.per_section), ..row }
 }
 
 /// What was done with a section, and why.
-fn reason(row: &SectionRow, tolerance_mm: f64) -> String {
+fn reason(row: &SectionRow, tolerance_mm: f64, per_section: PerSection) -> String {
     let narrow = row.narrower_mm.map_or(0.0, |v| 0.5 * v.abs());
     match (row.kind, row.shifted, row.in_band_after) {
         (Kind::Sharp, _, _) => {
@@ -128,6 +137,10 @@ fn reason(row: &SectionRow, tolerance_mm: f64) -> String {
                 "out of the band: shifted; the slot is {:.4} mm off in width, which no shift corrects",
                 2.0 * narrow
             )
+        }
+        (_, true, false) if per_section == PerSection::Constant => {
+            "out of the band: shifted, but one value is not enough for its change: per_section = \"profile\" follows it"
+                .to_owned()
         }
         (_, true, false) => "out of the band: shifted, but the cutter cannot follow the change within it".to_owned(),
     }

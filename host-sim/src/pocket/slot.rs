@@ -270,14 +270,17 @@ impl Process for Slot {
         let states = self.march(shifts, force)?;
         let [near, far] = self.walls(&states, shifts, force);
         let [mean, tip] = [self.machine.mean(), self.machine.at(0.0)];
-        let finite = |v: &f64| v.is_finite();
+        // NaN where there is no wall; `max` takes the other one.
+        let height = |rows: &[Vec<f64>], i: usize| {
+            let finite = || rows.iter().map(|row| row[i]).filter(|e| e.is_finite());
+            finite().fold(f64::NAN, f64::max) - finite().fold(f64::NAN, f64::min)
+        };
         let over = |rows: &[Vec<f64>], i: usize| rows.iter().map(|row| row[i]).sum::<f64>() / HEIGHTS as f64;
         Ok(states
             .iter()
             .zip(&self.stations)
             .enumerate()
             .map(|(i, (state, station))| {
-                let all = || near.iter().chain(&far).map(|row| row[i]).filter(finite);
                 let [dx, dy] = state.displaced;
                 Cutting {
                     engaged_rad: angle(&state.arcs),
@@ -285,7 +288,7 @@ impl Process for Slot {
                     deflection_mm: dx * station.normal[0] + dy * station.normal[1],
                     tip_mm: (dx * tip[0] / mean[0]).hypot(dy * tip[1] / mean[1]),
                     walls: Walls { near: over(&near, i), far: over(&far, i) },
-                    range_mm: [all().fold(f64::NAN, f64::min), all().fold(f64::NAN, f64::max)],
+                    height_mm: height(&near, i).max(height(&far, i)),
                 }
             })
             .collect())

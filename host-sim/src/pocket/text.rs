@@ -14,9 +14,11 @@ pub fn sections_text(rows: &[SectionRow]) -> String {
         let (low, high) = (format!("{a:.digits$}"), format!("{b:.digits$}"));
         if low == high { low } else { format!("{low}…{high}") }
     };
+    // Nothing left has no sign.
+    let error = |v: f64| format!("{v:+.4}").replace("-0.0000", "+0.0000");
     let errors = |near: f64, far: Option<f64>| match far {
-        Some(far) => format!("{near:+.4} / {far:+.4}"),
-        None => format!("{near:+.4}"),
+        Some(far) => format!("{} / {}", error(near), error(far)),
+        None => error(near),
     };
     let yes = |inside: bool| if inside { "yes" } else { "no" };
     for row in rows {

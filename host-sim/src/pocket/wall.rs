@@ -156,7 +156,7 @@ impl Process for Wall<'_> {
                     deflection_mm: dx * station.normal[0] + dy * station.normal[1],
                     tip_mm: dx.hypot(dy) * (1.0 + bend) / mean_factor,
                     walls: Walls { near: known(mm(profile.aim(self.wanted.target, None))), far: f64::NAN },
-                    range_mm: [known(mm(profile.lowest)), known(mm(profile.highest.max(profile.tip)))],
+                    height_mm: known(mm(profile.highest.max(profile.tip)) - mm(profile.lowest)),
                 }
             })
             .collect())
