@@ -1,7 +1,8 @@
 //! Output files and folders: written whole or not at all, and never over something without being told to.
 //!
 //! Everything is first written beside its target, in a file or folder with a name of its own, and moved into place
-//! when it is complete: a command that fails or is stopped leaves the target as it was. Replacing files in an existing
+//! when it is complete: a command that fails or is stopped leaves the target as it was. Missing folders above a target
+//! are made, and taken away again when nothing came to lie in them. Replacing files in an existing
 //! folder (`--force`) takes one rename a file; when one of them fails the others are put back. Only a power failure
 //! between two renames can leave a mixture, and then the replaced files are still in the temporary folder.
 
@@ -20,6 +21,7 @@ pub struct OutputFile {
     target: PathBuf,
     force: bool,
     file: BufWriter<NamedTempFile>,
+    _parents: Parents,
 }
 
 impl OutputFile {
@@ -38,11 +40,12 @@ impl OutputFile {
             .in_file(target));
         }
         refuse_existing(target, force)?;
+        let parents = Parents::make(target)?;
         let file = plain_mode(&mut tempfile::Builder::new(), 0o666)
             .prefix(".truepath-")
             .tempfile_in(folder_of(target))
             .map_err(|e| InputError::unwritable(target, &e))?;
-        Ok(Self { target: target.to_owned(), force, file: BufWriter::new(file) })
+        Ok(Self { target: target.to_owned(), force, file: BufWriter::new(file), _parents: parents })
     }
 
     /// Puts the finished file in its place.
@@ -77,6 +80,33 @@ pub struct OutputFolder {
     target: PathBuf,
     owned: Vec<&'static str>,
     staged: TempDir,
+    // After `staged`, which lies in them and goes first.
+    _parents: Parents,
+}
+
+/// Folders that were made so that a target can lie in them. Dropped, those go that have stayed empty: a command that
+/// fails leaves no folder behind.
+#[derive(Debug)]
+struct Parents(Vec<PathBuf>);
+
+impl Parents {
+    /// Makes the folders above a target that are missing.
+    fn make(target: &Path) -> Result<Self, InputError> {
+        let folder = folder_of(target);
+        let missing = folder.ancestors().take_while(|a| !a.as_os_str().is_empty() && !a.exists());
+        let parents = Self(missing.map(Path::to_owned).collect());
+        fs::create_dir_all(folder).map_err(|e| InputError::unwritable(target, &e))?;
+        Ok(parents)
+    }
+}
+
+impl Drop for Parents {
+    fn drop(&mut self) {
+        for folder in &self.0 {
+            // Refused for one that is not empty, which is as it should be.
+            let _ = fs::remove_dir(folder);
+        }
+    }
 }
 
 impl OutputFolder {
@@ -103,11 +133,12 @@ impl OutputFolder {
             let help = "name another folder, or add --force to replace the files of the same names";
             return Err(InputError::new("F003", found, "a new or an empty folder", help).in_file(target));
         }
+        let parents = Parents::make(target)?;
         let staged = plain_mode(&mut tempfile::Builder::new(), 0o777)
             .prefix(".truepath-")
             .tempdir_in(folder_of(target))
             .map_err(|e| InputError::unwritable(target, &e))?;
-        Ok(Self { target: target.to_owned(), owned: owned.to_vec(), staged })
+        Ok(Self { target: target.to_owned(), owned: owned.to_vec(), staged, _parents: parents })
     }
 
     /// Writes one of the owned files.

@@ -111,14 +111,32 @@ fn a_failed_replacement_puts_everything_back() {
 }
 
 #[test]
+fn missing_folders_above_a_target_are_made_and_go_again_when_nothing_is_written() {
+    let place = tempfile::tempdir().expect("a folder");
+    let lost = place.path().join("new/one/part");
+    let folder = OutputFolder::create(&lost, false, &OWNED).expect("a folder");
+    folder.write("corrected.nc", b"half").expect("written");
+    drop(folder);
+    drop(OutputFile::create(&place.path().join("other/out.csv"), false).expect("a file"));
+    assert_eq!(names(place.path()), [""; 0]);
+
+    let folder = OutputFolder::create(&lost, false, &OWNED).expect("a folder");
+    folder.write("corrected.nc", b"new").expect("written");
+    folder.commit().expect("committed");
+    write_file(&place.path().join("new/two/out.csv"), false, b"rows").expect("written");
+    assert_eq!(names(&lost), ["corrected.nc"]);
+    assert_eq!(read(&place.path().join("new/two/out.csv")), "rows");
+}
+
+#[test]
 fn impossible_targets_are_named() {
     let place = tempfile::tempdir().expect("a folder");
     let file = place.path().join("file");
     fs::write(&file, "").expect("a file");
     assert_eq!(OutputFolder::create(&file, true, &OWNED).expect_err("a file").code(), "F003");
     assert_eq!(OutputFile::create(place.path(), true).expect_err("a folder").code(), "F003");
-    let lost = place.path().join("no/such/folder/out.csv");
-    assert_eq!(write_file(&lost, false, b"").expect_err("no folder").code(), "F002");
+    let lost = file.join("out.csv");
+    assert_eq!(write_file(&lost, false, b"").expect_err("a file is no folder").code(), "F002");
     let folder = OutputFolder::create(&place.path().join("out"), false, &OWNED).expect("a folder");
     assert_eq!(folder.write("other.nc", b"").expect_err("not its name").code(), "F002");
 }
