@@ -12,7 +12,7 @@ use crate::diagnostics::{Failure, InputError, Source};
 use crate::multiaxis::ball::Contacts;
 use crate::multiaxis::machine::{Coordinates, Kind, Letter};
 use crate::multiaxis::program::{
-    CentrePoint, Digits, Outcome, PassError, Reading, Report, Settings, Sinks, Splitter, UnrollOptions, picture,
+    At, CentrePoint, Digits, Outcome, PassError, Reading, Report, Settings, Sinks, Splitter, UnrollOptions, picture,
     run as pass, unroll,
 };
 use crate::multiaxis::{Machine, Rule};
@@ -176,12 +176,12 @@ fn steered(
     // Its own text can only stay as it is.
     if let (Some(worst), Some(_), false) = (found.report.worst, &found.out, options.partial) {
         let found = format!(
-            "line {}: the move leaves its chord by {:.4} mm, and line {line} steers the program or computes a place",
-            worst.0, worst.1
+            "the move leaves its chord by {:.4} mm, and line {line} steers the program or computes a place",
+            worst.1
         );
         let help = "add --unroll to have the program written out plainly, or --partial to leave it as it is";
         let expected = "a program whose lines can be rewritten in place";
-        return Err(InputError::new("A011", found, expected, help).in_file(options.program).into());
+        return Err(At::error_in(options.program, worst.0, "A011", [&found, expected, help]).into());
     }
     if let Some(out) = &mut found.out {
         out.write_all(source.bytes()).map_err(|e| unwritable(options.out, e))?;
@@ -206,10 +206,10 @@ fn finish(
     }
     if let (Some(first), Some(_), false) = (report.left.moves.first(), &out, options.partial) {
         let many = report.left.count;
-        let found = format!("line {}: the move cannot be brought within the tolerance: {}", first.line, first.reason);
+        let found = format!("the move cannot be brought within the tolerance: {}", first.reason);
         let expected = format!("five-axis moves that can all be checked and divided ({many} cannot)");
         let help = "correct it, or add --partial to leave such moves as they are";
-        return Err(InputError::new("A009", found, expected, help).in_file(options.program).into());
+        return Err(At::error_in(options.program, first.line, "A009", [&found, &expected, help]).into());
     }
     let mut summary = summary(options, machine, settings, &report);
     if let Some(line) = steered {

@@ -23,7 +23,7 @@ pub(super) struct OneShot {
     pub names: Option<Meaning>,
     /// A code that is not known.
     pub unknown: bool,
-    /// G10 writes an offset.
+    /// G10 writes an offset, or G43.1 and G43.2 of LinuxCNC a tool's: the axis words move nothing.
     pub table: bool,
 }
 
@@ -93,6 +93,7 @@ impl State {
                 }
                 Some(code @ 428..=430) if reading.dialect == Dialect::Linuxcnc => {
                     self.centre_point = code == 428;
+                    self.switched = self.centre_point;
                     self.transforms[Transform::Kinematics as usize] = (code == 430).then_some(line);
                     self.forget(0..3);
                 }
@@ -117,19 +118,29 @@ impl State {
                 }
                 self.feed_mode = mode;
             }
-            Meaning::Compensation(on) => self.compensation = on.then_some(line),
+            Meaning::Compensation(on) => {
+                // The tool stands beside the programmed place until a word of G90 leads it there.
+                if !on && self.compensation.is_some() {
+                    self.forget(0..3);
+                }
+                self.compensation = on.then_some(line);
+            }
             Meaning::ToolLength => {
                 let whole = self.centre_point || !matches!(tenths, 430 | 440 | 490);
                 self.forget(if whole { 0..3 } else { 2..3 });
-                self.centre_point &= tenths != 490;
+                // One modal group: G43 ends G43.4 as G49 does. Switched kinematics are not of it.
+                self.centre_point &= self.switched || !matches!(tenths, 430 | 440 | 490);
+                shot.table |= matches!(tenths, 431 | 432) && reading.dialect == Dialect::Linuxcnc;
             }
             Meaning::CentrePoint => {
                 self.centre_point = true;
                 self.forget(0..3);
             }
             Meaning::WorkOffset => {
-                let number =
-                    if matches!(tenths, 541 | 1540) { block.word(b'P').and_then(Word::whole) } else { Some(0) };
+                let row = block.word(b'P');
+                // G54 P1 is G54.1 P1.
+                let tenths = if tenths == 540 && row.is_some() { 541 } else { tenths };
+                let number = if matches!(tenths, 541 | 1540) { row.and_then(Word::whole) } else { Some(0) };
                 self.select_offset(tenths, number, line);
             }
             Meaning::Table => {
@@ -177,10 +188,7 @@ impl State {
         for axis in 0..6 {
             let in_frame = add(self.at[axis], self.local[axis]);
             let local = match how {
-                Meaning::NameOff(true) => {
-                    self.aside[axis] = self.local[axis];
-                    Some(Quantity::ZERO)
-                }
+                Meaning::NameOff(true) => Some(Quantity::ZERO),
                 Meaning::NameOff(false) => self.aside[axis],
                 _ => {
                     let Some(word) = block.axis(axis) else { continue };
@@ -195,9 +203,15 @@ impl State {
                 _ if unknown_name => block.axis(axis).and_then(|w| self.value(w, axis, text, reading.decimal)),
                 _ => None,
             };
-            if unknown_name {
+            if local.is_none() {
                 self.named_unknown = Some(line);
             }
+        }
+        // G92.2 leaves the numbers for G92.3, G92.1 does not.
+        if how != Meaning::NameOff(true) {
+            self.aside = self.local;
+        } else if block.words.iter().any(|w| w.tenths() == Some(921)) {
+            self.aside = [Some(Quantity::ZERO); 6];
         }
         Ok(())
     }

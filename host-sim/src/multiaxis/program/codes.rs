@@ -34,7 +34,7 @@ pub enum Transform {
     Scaling,
     /// G51.1 … G50.1.
     Mirror,
-    /// G68, G68.2 … G69.
+    /// G68, G68.2 … G69; G268 … G269.
     Rotation,
     /// G12.1, G112 … G13.1, G113.
     PolarInterpolation,
@@ -42,10 +42,12 @@ pub enum Transform {
     Cylinder,
     /// M430: kinematics of the user's own.
     Kinematics,
+    /// G54.2, G54.4, G254 … G255: offsets that turn with the table.
+    TurningOffset,
 }
 
 /// Number of [`Transform`]s.
-pub const TRANSFORMS: usize = 7;
+pub const TRANSFORMS: usize = 8;
 
 /// What a code does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,6 +120,11 @@ pub const fn meaning(tenths: u16, dialect: Dialect) -> Meaning {
         121 | 1120 => M::Transform(Transform::PolarInterpolation, true),
         131 | 1130 => M::Transform(Transform::PolarInterpolation, false),
         71 | 1070 => M::Transform(Transform::Cylinder, true),
+        // Offsets that turn with the table: G54.2 and G54.4 of Fanuc, G254 and G268 of Haas.
+        542 | 544 | 2540 => M::Transform(Transform::TurningOffset, true),
+        2550 => M::Transform(Transform::TurningOffset, false),
+        2680 => M::Transform(Transform::Rotation, true),
+        2690 => M::Transform(Transform::Rotation, false),
         200 => M::Units(Units::Inches),
         210 => M::Units(Units::Millimetres),
         700 if dialect.has_metric_g71() => M::Units(Units::Inches),
@@ -128,7 +135,7 @@ pub const fn meaning(tenths: u16, dialect: Dialect) -> Meaning {
         430..=433 | 440 | 490 => M::ToolLength,
         434 | 435 | 2340 => M::CentrePoint,
         520 => M::Local,
-        540..=549 | 550 | 560 | 570 | 580 | 590..=593 | 1540 => M::WorkOffset,
+        540 | 541 | 550 | 560 | 570 | 580 | 590..=593 | 1540 => M::WorkOffset,
         650 | 660 | 661 => M::Macro,
         900 => M::Absolute(true),
         910 => M::Absolute(false),

@@ -35,6 +35,10 @@ impl Digits {
         };
         least.max(own).min(9)
     }
+    /// The farthest that the rounding of both rotary words can turn the tool axis, rad.
+    pub fn turn(self, own: [u8; 2]) -> f64 {
+        10f64.powi(-i32::from(self.of(Scale::Degrees, own))).to_radians()
+    }
     /// The farthest that the rounding of X, Y and Z can move the counted point, mm.
     pub fn displacement(self, scale: Scale, own: [u8; 2]) -> f64 {
         let step = 10f64.powi(-i32::from(self.of(scale, own)));

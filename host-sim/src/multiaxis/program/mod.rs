@@ -39,6 +39,7 @@ pub use digits::Digits;
 pub use picture::picture;
 pub use profile::Profile;
 pub use reason::Reason;
+pub use refusal::At;
 pub use report::{Left, LeftMove, MoveRow, Places, Report};
 pub use run::run;
 pub use settings::{CentrePoint, Outcome, PassError, Settings, Sinks};

@@ -3,11 +3,14 @@
 //! A program may be larger than memory, so the text an error points into is its line alone, with as many empty lines
 //! in front as the file has.
 
+use std::fs::File;
+use std::io::BufReader;
 use std::ops::Range;
+use std::path::Path;
 
 use truepath_core::gcode::GcodeError;
 
-use super::lines::LONGEST;
+use super::lines::{LONGEST, Line, LineReader};
 use super::quantity::FARTHEST;
 use super::step::Trouble;
 use crate::diagnostics::{InputError, Source};
@@ -35,6 +38,22 @@ impl At<'_> {
     pub fn error(&self, code: &str, found: String, expected: &str, help: &str, span: Range<usize>) -> InputError {
         let (source, before) = self.source();
         InputError::new(code, found, expected, help).at(&source, before + span.start..before + span.end)
+    }
+
+    /// The same for a whole line of a file, which is read once more; without its text when that is no longer there.
+    pub fn error_in(path: &Path, number: u32, code: &str, [found, expected, help]: [&str; 3]) -> InputError {
+        let mut line = Line::default();
+        let file = File::open(path).map(BufReader::new);
+        if let Ok(mut reader) = file.map(LineReader::new) {
+            while reader.number() < number && matches!(reader.next(&mut line), Ok(true)) {}
+        }
+        if line.number != number || line.text.is_empty() {
+            return InputError::new(code, format!("line {number}: {found}"), expected, help).in_file(path);
+        }
+        let blanks = line.text.iter().take_while(|b| b.is_ascii_whitespace()).count();
+        let name = path.display().to_string();
+        let at = At { name: &name, number, text: &line.text };
+        at.error(code, found.to_owned(), expected, help, blanks..line.text.len())
     }
 
     /// What the lexer does not understand.

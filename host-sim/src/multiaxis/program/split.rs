@@ -89,9 +89,15 @@ impl Splitter<'_> {
         if error.bound <= self.tolerance && follows {
             return plan;
         }
+        // Rounded angles turn the ends of a piece, and its great circle with them.
+        let guided = self.machine.orientation_tolerance().map(|most| {
+            let turned = 2.0 * self.digits.turn(writing.own);
+            most - turned.min(most / 2.0)
+        });
+        let machine = self.machine.clone().with_orientation_tolerance(guided.filter(|_| !follows));
         let margin = self.digits.displacement(Scale::of_axis(0, writing.units), writing.own);
         for share in TRIES {
-            let insertion = match insert(self.machine, &from, &to, (self.tolerance - margin) * share, self.rule) {
+            let insertion = match insert(&machine, &from, &to, (self.tolerance - margin) * share, self.rule) {
                 Ok(insertion) => insertion,
                 Err(DivisionError::TooManyPieces) => {
                     plan.refused = Some(Reason::Pieces);
@@ -100,7 +106,7 @@ impl Splitter<'_> {
                 Err(_) => break,
             };
             plan.cannot_follow = insertion.orientation == Orientation::CannotFollow;
-            if insertion.inserted.is_empty() && error.bound <= self.tolerance {
+            if error.bound <= self.tolerance && (plan.cannot_follow || insertion.inserted.is_empty()) {
                 return plan;
             }
             if insertion.inserted.len() >= self.max_pieces {
@@ -133,16 +139,24 @@ impl Splitter<'_> {
         }
     }
 
-    /// The share of each piece: in the length of the chord, or equal ones when it has none.
+    /// The share of each piece: in the length of the chord, or in the turn when it has none.
     fn shares(&self, (from, to): (&Joints, &Joints), inserted: &[Joints]) -> Vec<f64> {
-        let ends = [self.machine.counted(from), self.machine.counted(to)];
-        let length = distance(ends[0], ends[1]);
-        let count = inserted.len() + 1;
-        if length < 1e-6 {
-            return vec![1.0 / count as f64; count];
-        }
-        let along = inserted.iter().map(|joints| distance(ends[0], self.machine.counted(joints)) / length);
-        along.chain([1.0]).scan(0.0, |last, s| Some(s - std::mem::replace(last, s))).collect()
+        let turns = distance(self.machine.counted(from), self.machine.counted(to)) < 1e-6;
+        let mut last = from;
+        let lengths: Vec<f64> = inserted
+            .iter()
+            .chain([to])
+            .map(|joints| {
+                let before = std::mem::replace(&mut last, joints);
+                if turns {
+                    (joints.rotary[0] - before.rotary[0]).abs() + (joints.rotary[1] - before.rotary[1]).abs()
+                } else {
+                    distance(self.machine.counted(before), self.machine.counted(joints))
+                }
+            })
+            .collect();
+        let whole: f64 = lengths.iter().sum();
+        lengths.iter().map(|length| length / whole).collect()
     }
 
     /// The rounded locations, and the error of each piece.

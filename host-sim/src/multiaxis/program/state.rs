@@ -45,12 +45,14 @@ pub struct State {
     pub at: Place,
     /// G92 or G52 in force.
     pub local: Place,
-    /// What G92.2 has put aside.
+    /// What G92.3 takes up again; not known until G92 or G92.1, since controls keep it when they are off.
     pub(super) aside: Place,
     /// The line of G41 or G42 in force.
     pub compensation: Option<u32>,
     /// Whether G43.4, G43.5, G234 or M428 is in force.
     pub centre_point: bool,
+    /// Whether it is M428, which G49 does not end.
+    pub(super) switched: bool,
     /// The lines of the transforms in force.
     pub transforms: [Option<u32>; TRANSFORMS],
     /// The work offset in force: its code in tenths, and P.
@@ -86,7 +88,8 @@ impl State {
             feed_given: false,
             at: [None; 6],
             local: [Some(Quantity::ZERO); 6],
-            aside: [Some(Quantity::ZERO); 6],
+            aside: [None; 6],
+            switched: false,
             compensation: None,
             centre_point: false,
             transforms: [None; TRANSFORMS],

@@ -3,9 +3,9 @@
 //! The first of them is the line itself with other numbers behind its axis letters: N word, modal codes, F, S, T, M
 //! codes, comment, letter case and blanks stay where they are. Axes that the line leaves out but that do not stand still
 //! any more follow the last axis word. The further lines have the axis words only; the last of them is where the line
-//! went. To the last line go the words that act when the move is done: M0, M1, M2, M30, M60 and G9. A line with `/` is
-//! replaced by lines with `/`, since it is switched off as a whole. Under G93 every line gets the F of its share: the
-//! pieces together take the time of the move.
+//! went. To the last line go the words that act when the move is done: M0, M1, M2, M30, M60 and G9, and M5 and M9 except
+//! for LinuxCNC and Mach. A line with `/` is replaced by lines with `/`, since it is switched off as a whole. Under G93
+//! every line gets the F of its share: the pieces together take the time of the move.
 
 use truepath_core::gcode::Decimal;
 
@@ -179,7 +179,12 @@ fn number(value: f64) -> String {
 /// Words that act when the move is done.
 fn is_late(word: &Word, dialect: Dialect) -> bool {
     match word.letter {
-        b'M' => matches!(word.whole(), Some(0 | 1 | 2 | 30 | 60 | 99)),
+        b'M' => match word.whole() {
+            Some(0 | 1 | 2 | 30 | 60 | 99) => true,
+            // LinuxCNC and Mach stop spindle and coolant before the move of the block (NIST 6556, table 8).
+            Some(5 | 9) => !matches!(dialect, Dialect::Linuxcnc | Dialect::Mach),
+            _ => false,
+        },
         b'G' => word.tenths().is_some_and(|t| meaning(t, dialect) == Meaning::ExactStop),
         _ => false,
     }
