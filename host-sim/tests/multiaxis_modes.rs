@@ -133,3 +133,31 @@ fn led_along_the_great_circle_the_rounded_words_need_no_second_run() {
     assert!(feeds(&first).len() > 20, "{first}");
     assert_eq!(first, second);
 }
+
+#[test]
+fn a_reference_run_of_rotary_axes_does_not_cut() {
+    let program = format!("{START}G1 X1 F500\nG91 G28 Z0\nG28 A0 C0\nM30\n");
+    assert_eq!(run(&TRUNNION, &program, &[]), Ok(program.clone()));
+    refused("G1 X1 F500\nG28 A0\nG0 X0 Y0 Z0\n", &[], 6);
+}
+
+#[test]
+fn written_out_a_move_of_a_subprogram_keeps_its_line() {
+    let program = format!("{START}M98 P2\nM30\nO2\nG1 X40 Y1 C20\nM99\n");
+    let text = run(&TRUNNION, &program, &["--dialect", "fanuc", "--unroll"]).unwrap();
+    assert!(text.contains("(LINE 6 IN "), "{text}");
+    let stays = run(&TRUNNION, &program, &["--dialect", "fanuc"]);
+    assert_eq!(stays, Err(("A011".to_owned(), 6, 1)));
+}
+
+#[test]
+fn an_increment_from_a_place_not_said_is_not_written_out() {
+    let steered = "#1=1\nG90 G1 X[#1] F500\nM2\n";
+    for before in ["G91 G0 A5\n", "G90 G0 A5 C5\nG55\nG91 G0 A5\n", "G90 G0 A5 C5\nG28 A0\nG91 G0 A5\n"] {
+        let found = run(&TRUNNION, &format!("G21\nG0 X0 Y0 Z0\n{before}{steered}"), &["--unroll"]);
+        let line = 2 + before.lines().count() as u64;
+        assert_eq!(found.map_err(|e| (e.0, e.1)), Err(("A012".to_owned(), line)), "{before}");
+    }
+    let known = format!("G21\nG0 X0 Y0 Z0\nG90 G0 A5 C5\nG91 G0 A5\n{steered}");
+    assert!(run(&TRUNNION, &known, &["--unroll"]).unwrap().contains("G0 A10.0"));
+}

@@ -19,6 +19,8 @@ pub(super) struct OneShot {
     pub dwell: bool,
     /// G28, G30, G53.
     pub elsewhere: bool,
+    /// G53, which may cut; G28 and G30 never do.
+    pub machine: bool,
     /// G92 or G52.
     pub names: Option<Meaning>,
     /// A code that is not known.
@@ -151,7 +153,10 @@ impl State {
                 }
             }
             how @ (Meaning::Local | Meaning::Name | Meaning::NameOff(_)) => shot.names = Some(how),
-            Meaning::Elsewhere => shot.elsewhere = true,
+            Meaning::Elsewhere => {
+                shot.elsewhere = true;
+                shot.machine |= tenths == 530;
+            }
             Meaning::Dwell => shot.dwell = true,
             Meaning::Transform(which, on) => {
                 self.transforms[which as usize] = on.then_some(line);

@@ -55,24 +55,24 @@ impl Writer {
                 let code = if side == Side::Right { "G41" } else { "G42" };
                 offset_number.map_or_else(|| code.to_owned(), |d| format!("{code} D{d}"))
             }
-            Canon::WorkOffset(system) => work_offset(system),
+            Canon::WorkOffset(system) => {
+                self.placed = [false; 3];
+                work_offset(system)
+            }
             Canon::Shift(_) => return Err(Refused("G92, G52 or G10")),
             Canon::ToolEntry { .. } => return Err(Refused("G10")),
             Canon::PathControl(control) => path_control(control, units),
             Canon::Dwell(time) => format!("G4 P{}", decimal(time.value())),
             Canon::Traverse { to, .. } => {
-                self.moved("G0", event, to, "");
-                return Ok(());
+                return self.moved("G0", event, to, "");
             }
             Canon::Feed { to, .. } => {
-                self.moved("G1", event, to, "");
-                return Ok(());
+                return self.moved("G1", event, to, "");
             }
             Canon::Arc { from, to, centre, counter_clockwise, turns, .. } => {
                 let Some(start) = from.point() else { return Err(Refused("an arc from an unknown place")) };
                 let centre = offsets(centre, start, ['I', 'J'], units);
-                self.moved(arc(counter_clockwise), event, to, &(centre + &full_turns(turns)));
-                return Ok(());
+                return self.moved(arc(counter_clockwise), event, to, &(centre + &full_turns(turns)));
             }
             Canon::PlaneArc { plane, from, to, centre, counter_clockwise, turns, .. } => {
                 let [first, second, _] = plane.axes();
@@ -81,8 +81,7 @@ impl Writer {
                 };
                 let letters = [first, second].map(|axis| ['I', 'J', 'K'][axis]);
                 let centre = offsets(centre, Point { x, y }, letters, units);
-                self.moved(arc(counter_clockwise), event, to, &(centre + &full_turns(turns)));
-                return Ok(());
+                return self.moved(arc(counter_clockwise), event, to, &(centre + &full_turns(turns)));
             }
             Canon::Spline { .. } => return Err(Refused("a spline")),
             Canon::Probe { .. } => return Err(Refused("a probing move")),
@@ -99,6 +98,10 @@ impl Writer {
 
     /// G28, G30, G53 with the words of their block, which then are the only ones.
     fn verbatim(&mut self, event: &Event<'_>) -> Result<(), Refused> {
+        let whole = !self.block.names_axes();
+        for (axis, placed) in self.placed.iter_mut().enumerate() {
+            *placed &= !whole && self.block.axis(3 + axis).is_none();
+        }
         let known = |letter: u8| matches!(letter, b'G' | b'X'..=b'Z' | b'A'..=b'C');
         let mut line = if event.modal.absolute { String::new() } else { "G91".to_owned() };
         for word in &self.block.words {

@@ -24,7 +24,7 @@ impl State {
             } else {
                 self.forget(named)
             }
-            let cuts = turning && self.cuts();
+            let cuts = turning && shot.machine && self.cuts();
             return Ok(if cuts { Step::Unchecked(Reason::Elsewhere) } else { Step::Nothing });
         }
         if shot.dwell || shot.table || !block.names_axes() {

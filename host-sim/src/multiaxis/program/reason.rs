@@ -17,7 +17,7 @@ pub enum Reason {
     Arc,
     /// A spline, a cycle, tapping or probing with a rotary axis.
     Curve,
-    /// G53 or G28 with a rotary axis, at a feed.
+    /// G53 with a rotary axis, at a feed.
     Elsewhere,
     /// Since this line another work offset is in force, or one was written.
     Offsets(u32),

@@ -85,6 +85,8 @@ pub(super) struct Writer {
     pub(super) block: Block,
     /// A, B, C as written last.
     rotary: [i64; 3],
+    /// Which of them a word of G90 has placed: from elsewhere an increment cannot be written as a place.
+    pub(super) placed: [bool; 3],
     /// X, Y, Z as written last, nm.
     linear: [Option<i64>; 3],
     /// Line, jumps and file of the block read last.
@@ -98,6 +100,7 @@ impl Writer {
             out: Unrolled::default(),
             block: Block::default(),
             rotary: [0; 3],
+            placed: [false; 3],
             linear: [None; 3],
             read: None,
             line: 1,
@@ -107,7 +110,8 @@ impl Writer {
     }
 
     fn event(&mut self, event: &Event<'_>) -> Result<(), Refused> {
-        self.line = if event.source.file == 0 && event.source.depth == 0 { event.source.line } else { self.line };
+        // In another file than the program: the last line of the program itself.
+        self.line = if event.source.file == 0 { event.source.line } else { self.line };
         let place = (event.source.line, event.source.jumps, event.source.file);
         if self.read.replace(place) != Some(place) {
             let text = event.source.block.of(event.text);
@@ -128,7 +132,17 @@ impl Writer {
     }
 
     /// Appends a move with the words of the axes that the block names or that change.
-    pub(super) fn moved(&mut self, code: &str, event: &Event<'_>, to: Axes, behind: &str) {
+    ///
+    /// # Errors
+    /// An increment of a rotary axis whose place the program has not said.
+    pub(super) fn moved(&mut self, code: &str, event: &Event<'_>, to: Axes, behind: &str) -> Result<(), Refused> {
+        for (axis, placed) in self.placed.iter_mut().enumerate() {
+            let named = self.block.axis(3 + axis).is_some();
+            *placed |= named && event.modal.absolute;
+            if named && !*placed {
+                return Err(Refused("an increment of a rotary axis whose place has not been said in G90"));
+            }
+        }
         let mut line = code.to_owned();
         for (axis, letter) in AXES.into_iter().map(char::from).enumerate() {
             let number = if axis < 3 {
@@ -153,6 +167,7 @@ impl Writer {
             line += &format!(" F{}", decimal(feed.bits() as f64 / 4_294_967_296.0));
         }
         self.push(line.as_bytes());
+        Ok(())
     }
 }
 
