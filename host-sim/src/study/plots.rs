@@ -6,18 +6,12 @@
 use plotters::prelude::*;
 
 use crate::diagnostics::Failure;
+use crate::plot::style::{AFTER as LEARNED, BEFORE as FIRST, FONT, failed};
 
-const FIRST: RGBColor = RGBColor(213, 94, 0);
-const LEARNED: RGBColor = RGBColor(0, 114, 178);
 const GREY: RGBColor = RGBColor(120, 120, 120);
-const FONT: &str = "sans-serif";
 
 /// Range of factors shown; beyond it dots lie on the edge.
 const FACTORS: std::ops::Range<f64> = 0.5..200.0;
-
-fn failed(error: impl std::fmt::Display) -> Failure {
-    Failure::Internal(format!("a picture cannot be drawn: {error}"))
-}
 
 /// Factors of a group of cases.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::{BLUE, DARK, FONT, LIGHT, ORANGE, TEETH, failed, short};
+use super::{BLUE, DARK, FONT, LIGHT, ORANGE, TEETH, failed, legend, short};
 use crate::bore::dependence::{RunoutRow, TeethRow, exponent};
 use crate::diagnostics::Failure;
 
@@ -52,7 +52,7 @@ pub fn teeth(title: &str, rows: &[TeethRow]) -> Result<Vec<u8>, Failure> {
                 .label(name)
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(3)));
         }
-        legend(&mut chart)?;
+        legend(&mut chart, 1)?;
         root.present().map_err(failed)?;
     }
     Ok(text.into_bytes())
@@ -103,23 +103,8 @@ pub fn runout(title: &str, rows: &[RunoutRow]) -> Result<Vec<u8>, Failure> {
                 })
                 .legend(move |(x, y)| Circle::new((x + 9, y), 4, colour.filled()));
         }
-        legend(&mut chart)?;
+        legend(&mut chart, 1)?;
         root.present().map_err(failed)?;
     }
     Ok(text.into_bytes())
-}
-
-fn legend<'a, 'b: 'a, X, Y>(chart: &mut ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>) -> Result<(), Failure>
-where
-    X: plotters::coord::ranged1d::Ranged,
-    Y: plotters::coord::ranged1d::Ranged,
-{
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(LIGHT)
-        .label_font((FONT, 13))
-        .draw()
-        .map_err(failed)
 }

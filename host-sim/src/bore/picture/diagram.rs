@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::{BLUE, DARK, FINE, FONT, LIGHT, TEETH, failed, shown};
+use super::{BLUE, DARK, FINE, FONT, LIGHT, TEETH, failed, legend, shown};
 use crate::bore::envelope::Profile;
 use crate::bore::passes::Pass;
 use crate::diagnostics::Failure;
@@ -106,16 +106,7 @@ fn enlarged(panel: &Panel, profile: &Profile) -> Result<(), Failure> {
     let phis = (0..=POINTS).map(|n| middle + half * (2.0 * n as f64 / POINTS as f64 - 1.0));
     let line = phis.map(|phi| (x(phi), deviation(profile, profile.at(phi).0)));
     chart.draw_series(LineSeries::new(line, DARK.stroke_width(2 * FINE as u32))).map_err(failed)?;
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(LIGHT.stroke_width(FINE as u32))
-        .margin(FINE as u32 * 10)
-        .legend_area_size(FINE as u32 * 30)
-        .label_font((FONT, FINE * 13))
-        .draw()
-        .map_err(failed)
+    legend(&mut chart, FINE)
 }
 
 type Chart<'a, 'b> = ChartContext<

@@ -1,6 +1,4 @@
 //! Pictures of a bore (SVG): circular plot, profile diagram, dependences, wall over the depth.
-//!
-//! Colours are those of Okabe and Ito, distinguishable by colour-blind readers and in grey.
 
 mod circular;
 mod dependence;
@@ -14,20 +12,11 @@ pub use wall::{Patch, wall};
 
 use plotters::style::RGBColor;
 
-use crate::diagnostics::Failure;
+use crate::plot::style::{AFTER as BLUE, BEFORE as ORANGE, DARK, FONT, LIGHT, failed, legend};
 
-const FONT: &str = "sans-serif";
-const DARK: RGBColor = RGBColor(60, 60, 60);
-const LIGHT: RGBColor = RGBColor(225, 225, 225);
-const BLUE: RGBColor = RGBColor(0, 114, 178);
-const ORANGE: RGBColor = RGBColor(213, 94, 0);
 /// Of teeth, by turns.
 const TEETH: [RGBColor; 6] =
     [BLUE, RGBColor(230, 159, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167), ORANGE, RGBColor(86, 180, 233)];
-
-fn failed(error: impl std::fmt::Display) -> Failure {
-    Failure::Internal(format!("a picture cannot be drawn: {error}"))
-}
 
 /// The largest of 1, 2, 5, 10, … that is not above a number.
 fn round_below(number: f64) -> f64 {

@@ -4,17 +4,10 @@ use plotters::prelude::*;
 
 use super::profile::{Peak, Profile};
 use crate::diagnostics::Failure;
+use crate::plot::style::{AFTER, BEFORE, DARK, FONT, LIGHT, failed, legend};
 
-const BEFORE: RGBColor = RGBColor(213, 94, 0);
-const AFTER: RGBColor = RGBColor(0, 114, 178);
-const ALLOWED: RGBColor = RGBColor(60, 60, 60);
-const FONT: &str = "sans-serif";
 /// Errors below this share of the tolerance are drawn at the bottom.
 const FLOOR: f64 = 1e-3;
-
-fn failed(error: impl std::fmt::Display) -> Failure {
-    Failure::Internal(format!("a picture cannot be drawn: {error}"))
-}
 
 /// Draws the profile of a program.
 ///
@@ -45,7 +38,7 @@ pub fn picture(profile: &Profile, tolerance: f64) -> Result<Vec<u8>, Failure> {
         chart
             .configure_mesh()
             .light_line_style(WHITE)
-            .bold_line_style(RGBColor(225, 225, 225))
+            .bold_line_style(LIGHT)
             .x_desc(moves)
             .y_desc("chord error, mm")
             .x_label_formatter(&|v| format!("{v:.0}"))
@@ -67,18 +60,11 @@ pub fn picture(profile: &Profile, tolerance: f64) -> Result<Vec<u8>, Failure> {
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(3)));
         }
         chart
-            .draw_series(DashedLineSeries::new([(1.0, tolerance), (end, tolerance)], 6, 4, ALLOWED.stroke_width(2)))
+            .draw_series(DashedLineSeries::new([(1.0, tolerance), (end, tolerance)], 6, 4, DARK.stroke_width(2)))
             .map_err(failed)?
             .label(format!("tolerance {tolerance} mm"))
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], ALLOWED.stroke_width(2)));
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.85))
-            .border_style(RGBColor(200, 200, 200))
-            .label_font((FONT, 13))
-            .draw()
-            .map_err(failed)?;
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], DARK.stroke_width(2)));
+        legend(&mut chart, 1)?;
         root.present().map_err(failed)?;
     }
     Ok(text.into_bytes())

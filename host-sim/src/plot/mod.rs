@@ -1,6 +1,6 @@
 //! Pictures (SVG): the traces of a pass along the contour, and the wall before and after its correction.
-//!
-//! Colours are those of Okabe and Ito, distinguishable by colour-blind readers and in grey.
+
+pub(crate) mod style;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -9,22 +9,15 @@ use crate::correction::Correction;
 use crate::diagnostics::Failure;
 use crate::pass::Pass;
 use crate::report::{Trace, mm};
+use style::{AFTER, BEFORE, DARK, FONT, LIGHT, failed, legend};
 use truepath_core::geometry::Side;
 
-const BEFORE: RGBColor = RGBColor(213, 94, 0);
-const AFTER: RGBColor = RGBColor(0, 114, 178);
-const NOMINAL: RGBColor = RGBColor(60, 60, 60);
 const GREEN: RGBColor = RGBColor(0, 158, 115);
 /// Colours of many curves in one panel, the last one of the most important.
 pub const COLOURS: [RGBColor; 5] =
     [RGBColor(60, 60, 60), RGBColor(230, 159, 0), RGBColor(204, 121, 167), BEFORE, AFTER];
-const FONT: &str = "sans-serif";
 
 type Panel<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-fn failed(error: impl std::fmt::Display) -> Failure {
-    Failure::Internal(format!("a picture cannot be drawn: {error}"))
-}
 
 /// A named curve over arc length.
 #[derive(Clone, Debug)]
@@ -67,7 +60,7 @@ fn draw(panel: &Panel, unit: &str, curves: &[Curve], band: &[(f64, f64, f64)]) -
     chart
         .configure_mesh()
         .light_line_style(WHITE)
-        .bold_line_style(RGBColor(225, 225, 225))
+        .bold_line_style(LIGHT)
         .x_desc("along the contour, mm")
         .y_desc(unit)
         .label_style((FONT, 13))
@@ -91,14 +84,7 @@ fn draw(panel: &Panel, unit: &str, curves: &[Curve], band: &[(f64, f64, f64)]) -
             .label(curve.name)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(3)));
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(200, 200, 200))
-        .label_font((FONT, 13))
-        .draw()
-        .map_err(failed)
+    legend(&mut chart, 1)
 }
 
 /// A page of panels over arc length, one above the other: (unit, curves).
@@ -130,11 +116,11 @@ pub fn trace(trace: &Trace) -> Result<Vec<u8>, Failure> {
     panels(
         "One pass along the contour",
         &[
-            ("engagement, degrees", vec![curve("engagement angle", NOMINAL, |r| r.arc_deg)]),
+            ("engagement, degrees", vec![curve("engagement angle", DARK, |r| r.arc_deg)]),
             (
                 "mean force, N",
                 vec![
-                    curve("magnitude", NOMINAL, |r| r.force_n),
+                    curve("magnitude", DARK, |r| r.force_n),
                     curve("Fx", BEFORE, |r| r.fx_n),
                     curve("Fy", AFTER, |r| r.fy_n),
                 ],
@@ -207,7 +193,7 @@ fn draw_part(panel: &Panel, s: &[f64], wall: &[([f64; 2], [f64; 2])], curves: &[
         .draw()
         .map_err(failed)?;
     let nominal: Vec<(f64, f64)> = wall.iter().map(|(p, _)| (p[0], p[1])).collect();
-    chart.draw_series(LineSeries::new(nominal, NOMINAL.stroke_width(2))).map_err(failed)?;
+    chart.draw_series(LineSeries::new(nominal, DARK.stroke_width(2))).map_err(failed)?;
     for curve in curves {
         let colour = curve.colour;
         let shifted = s.iter().zip(wall).map(|(s, (p, inward))| {
