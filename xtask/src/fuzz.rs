@@ -2,7 +2,7 @@
 //!
 //! The targets are a workspace of their own (`fuzz/`), built with the counters of LLVM's sancov and linked to libFuzzer;
 //! that takes a stable compiler and a C++ compiler, no nightly. A corpus begins with the programs, probe files, jobs and
-//! images of the tests and grows under the target directory. What once failed lies in `fuzz/regressions/TARGET` and is
+//! images of the tests and examples and grows under the target directory. What once failed lies in `fuzz/regressions/TARGET` and is
 //! run first.
 
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ struct Target {
     longest: u32,
 }
 
-const TARGETS: [Target; 4] = [
+const TARGETS: [Target; 5] = [
     Target {
         name: "program",
         seeds: &[
@@ -35,6 +35,11 @@ const TARGETS: [Target; 4] = [
         longest: 2_000,
     },
     Target { name: "job", seeds: &[("host-sim/demo", &["toml"]), ("host-sim/tests", &["toml"])], longest: 3_000 },
+    Target {
+        name: "five_axis",
+        seeds: &[("examples/multiaxis", &["nc", "toml"]), ("fuzz/seeds/five_axis", &["nc"])],
+        longest: 2_000,
+    },
     Target { name: "image", seeds: &[("fuzz/seeds/image", &["tpi"])], longest: 1_000 },
 ];
 
