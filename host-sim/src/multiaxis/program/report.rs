@@ -34,7 +34,7 @@ pub const LISTED: usize = 100;
 pub struct Places {
     /// How many.
     pub count: u64,
-    /// The first [`LISTED`] lines, each once.
+    /// The first `LISTED` lines, each once.
     pub lines: Vec<u32>,
 }
 
@@ -64,7 +64,7 @@ pub struct LeftMove {
 pub struct Left {
     /// How many.
     pub count: u64,
-    /// The first [`LISTED`].
+    /// The first `LISTED`.
     pub moves: Vec<LeftMove>,
 }
 
