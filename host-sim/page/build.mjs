@@ -1,0 +1,27 @@
+// Bundles src/ into one self-contained file, dist/report.html, with an empty place for the data.
+import { readFile, mkdir, writeFile } from "node:fs/promises";
+import { build } from "esbuild";
+
+const script = await build({
+  entryPoints: ["src/main.ts"],
+  bundle: true,
+  minify: true,
+  format: "iife",
+  target: "es2021",
+  charset: "ascii",
+  legalComments: "none",
+  write: false,
+});
+const style = await build({ entryPoints: ["src/page.css"], bundle: true, minify: true, write: false });
+const page = await readFile("src/page.html", "utf8");
+const code = script.outputFiles[0].text.trim();
+const css = style.outputFiles[0].text.trim();
+if (/<\/script|<!--/i.test(code) || /<\/style/i.test(css)) throw new Error("the bundle would end its own element");
+const licence = "uPlot 1.6.32, Copyright (c) 2022 Leon Sorokin, MIT licence";
+const html = page
+  .replace("/*style*/", () => css)
+  .replace("/*script*/", () => `/* ${licence} */${code}`);
+if (html.split('id="truepath-data">null</script>').length !== 2) throw new Error("the place for the data must occur once");
+await mkdir("dist", { recursive: true });
+await writeFile("dist/report.html", html.endsWith("\n") ? html : `${html}\n`);
+console.log(`dist/report.html: ${(html.length / 1024).toFixed(0)} KiB`);

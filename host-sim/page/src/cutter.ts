@@ -1,0 +1,114 @@
+/** The moving layer of a scene: cutter, engaged arc, force, uncut stock, the place under the pointer. */
+
+import type { Picture } from "./draw";
+import type { Palette } from "./palette";
+import type { View } from "./view";
+
+type Context = CanvasRenderingContext2D;
+
+/** Linear between two samples. */
+export function between(values: ArrayLike<number>, place: number): number {
+  const i = Math.floor(place);
+  const j = Math.min(i + 1, values.length - 1);
+  return values[i] + (values[j] - values[i]) * (place - i);
+}
+
+export function drawMoving(c: Context, view: View, picture: Picture, colours: Palette, place: number, largestForce: number, hovered: number | null): void {
+  c.clearRect(0, 0, view.width, view.height);
+  const { model, pass } = picture;
+  if (!model) return;
+  if (hovered !== null) mark(c, view, picture, colours, hovered);
+  if (!pass || picture.hidden.has("cutter")) return;
+  const m = picture.magnify;
+  const dx = pass.deviation ? between(pass.deviation.x, place) * m : 0;
+  const dy = pass.deviation ? between(pass.deviation.y, place) * m : 0;
+  const px = view.px(between(model.x.values, place) + dx);
+  const py = view.py(between(model.y.values, place) + dy);
+  const radius = model.radius * view.scale;
+  const normal = Math.atan2(between(model.ny, place), between(model.nx, place));
+  if (radius < 20000) {
+    c.beginPath();
+    c.arc(px, py, radius, 0, 2 * Math.PI);
+    c.fillStyle = colours.cutter;
+    c.fill();
+    c.strokeStyle = colours.ink;
+    c.lineWidth = 1.25;
+    c.stroke();
+    const arc = pass.series.arc_deg;
+    if (arc) {
+      const end = normal + model.turn * between(arc.values, place) * (Math.PI / 180);
+      c.beginPath();
+      c.moveTo(px, py);
+      c.arc(px, py, radius, -normal, -end, model.turn > 0);
+      c.closePath();
+      c.fillStyle = colours.first;
+      c.globalAlpha = 0.3;
+      c.fill();
+      c.globalAlpha = 1;
+      c.beginPath();
+      c.arc(px, py, radius, -normal, -end, model.turn > 0);
+      c.strokeStyle = colours.first;
+      c.lineWidth = 5;
+      c.stroke();
+    }
+  }
+  cross(c, px, py, colours.ink);
+  const { fx_n: fx, fy_n: fy } = pass.series;
+  if (fx && fy && largestForce > 0 && !picture.hidden.has("force")) {
+    const size = Math.max(50, Math.min(110, radius * 1.4)) / largestForce;
+    arrow(c, px, py, px + between(fx.values, place) * size, py - between(fy.values, place) * size, colours.ink);
+  }
+}
+
+function cross(c: Context, px: number, py: number, colour: string): void {
+  c.beginPath();
+  c.moveTo(px - 6, py);
+  c.lineTo(px + 6, py);
+  c.moveTo(px, py - 6);
+  c.lineTo(px, py + 6);
+  c.strokeStyle = colour;
+  c.lineWidth = 1;
+  c.stroke();
+}
+
+function arrow(c: Context, ax: number, ay: number, bx: number, by: number, colour: string): void {
+  const size = Math.hypot(bx - ax, by - ay);
+  if (size < 2) return;
+  const ux = (bx - ax) / size;
+  const uy = (by - ay) / size;
+  const head = Math.min(9, size);
+  c.strokeStyle = colour;
+  c.fillStyle = colour;
+  c.lineWidth = 2;
+  c.beginPath();
+  c.moveTo(ax, ay);
+  c.lineTo(bx - ux * head * 0.8, by - uy * head * 0.8);
+  c.stroke();
+  c.beginPath();
+  c.moveTo(bx, by);
+  c.lineTo(bx - ux * head - uy * head * 0.4, by - uy * head + ux * head * 0.4);
+  c.lineTo(bx - ux * head + uy * head * 0.4, by - uy * head - ux * head * 0.4);
+  c.closePath();
+  c.fill();
+}
+
+function mark(c: Context, view: View, picture: Picture, colours: Palette, index: number): void {
+  const { model, wall } = picture;
+  if (!model) return;
+  const ax = view.px(model.x.values[index]);
+  const ay = view.py(model.y.values[index]);
+  c.strokeStyle = colours.ink;
+  c.fillStyle = colours.ink;
+  c.lineWidth = 1;
+  c.beginPath();
+  c.arc(ax, ay, 3.5, 0, 2 * Math.PI);
+  c.fill();
+  if (!wall) return;
+  c.beginPath();
+  c.moveTo(ax, ay);
+  c.lineTo(view.px(wall.x[index]), view.py(wall.y[index]));
+  c.stroke();
+  c.beginPath();
+  c.arc(view.px(wall.x[index]), view.py(wall.y[index]), 3.5, 0, 2 * Math.PI);
+  c.fill();
+}

@@ -1,0 +1,121 @@
+/**
+ * The data of a report, as the program writes them into the page.
+ *
+ * Lengths in millimetres, angles in degrees, forces in newtons. Material left on the wall is a positive
+ * error. Every column is optional: a command sends what it has, the page shows what it gets.
+ */
+
+/** Whole numbers, little-endian 32 bit in base64; value = (offset + number) / 10^decimals. −2^31: no value. */
+export interface Column {
+  decimals: number;
+  /** Added to every number; for coordinates beyond 32 bit. */
+  offset?: number;
+  data: string;
+}
+
+export interface Polyline {
+  x_mm: Column;
+  y_mm: Column;
+}
+
+/** One pass along the contour, one entry per sample. */
+export interface PassColumns {
+  /** What this pass is: "uncorrected, cut by the virtual machine", "predicted". */
+  label?: string;
+  error_mm?: Column;
+  sigma_mm?: Column;
+  arc_deg?: Column;
+  chip_area_mm2?: Column;
+  force_n?: Column;
+  fx_n?: Column;
+  fy_n?: Column;
+  dx_mm?: Column;
+  dy_mm?: Column;
+  feed_mm_per_min?: Column;
+}
+
+export interface ContourColumns {
+  s_mm: Column;
+  /** Centre of the cutter as programmed. */
+  x_mm: Column;
+  y_mm: Column;
+  /** Unit normal from the centre into the wall; otherwise from the direction of travel and `job.wall`. */
+  nx?: Column;
+  ny?: Column;
+  correction_x_mm?: Column;
+  correction_y_mm?: Column;
+  before?: PassColumns;
+  after?: PassColumns;
+}
+
+/** Wall error over the height: node after node, in each every height. */
+export interface Heights {
+  /** Heights above the tip of the cutter. */
+  z_mm: number[];
+  /** A node is every `stride`-th sample of the contour; the last node holds until the end. */
+  stride: number;
+  before?: Column;
+  after?: Column;
+}
+
+export interface ProbePoint {
+  line?: number;
+  status: "used" | "aside";
+  reason?: string;
+  s_mm?: number;
+  /** The touched place of the wall, compensated for the ball. */
+  x_mm: number;
+  y_mm: number;
+  /** Height above the tip of the cutter. */
+  z_mm?: number;
+  nx: number;
+  ny: number;
+  error_mm: number;
+}
+
+export interface Parameter {
+  name: string;
+  value: number;
+  sigma: number;
+  prior?: number;
+  prior_sigma?: number;
+  unit: string;
+  observable: boolean;
+}
+
+export interface Result {
+  name: string;
+  value: number;
+  decimals: number;
+  unit: string;
+  note?: string;
+}
+
+export interface Report {
+  version: 1;
+  kind: "simulate" | "correct" | "learn" | "inspect";
+  title: string;
+  /** Program of this page, such as "truepath 1.0.0". */
+  by?: string;
+  program?: { name: string; crc32?: string };
+  job?: {
+    wall?: "left" | "right";
+    milling?: "climb" | "conventional";
+    material?: string;
+    tool?: { number?: number; diameter_mm: number; teeth?: number; helix_deg?: number; stickout_mm?: number };
+    cut?: { axial_depth_mm?: number; feed_mm_per_min?: number; spindle_rpm?: number };
+    stock?: { allowance_mm?: number };
+    /** Anything else worth a line. */
+    facts?: { name: string; value: string }[];
+  };
+  contour?: ContourColumns;
+  /** Finished wall and surface before this pass; otherwise from the contour, tool and allowance. */
+  outlines?: { wall?: Polyline[]; stock?: Polyline[] };
+  heights?: Heights;
+  points?: ProbePoint[];
+  parameters?: Parameter[];
+  results?: Result[];
+  tolerance_mm?: number;
+  verdict?: { state: "pass" | "fail" | "open"; text: string };
+  warnings?: string[];
+}

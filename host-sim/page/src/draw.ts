@@ -1,0 +1,266 @@
+/** The still layer of a scene: grid, part, stock, paths, error band, probe points. */
+
+import type { ProbePoint } from "./data";
+import { signed } from "./format";
+import type { Model, Pass } from "./model";
+import type { Line } from "./outline";
+import type { Palette } from "./palette";
+import { roundStep, type View } from "./view";
+
+export interface Picture {
+  model: Model | null;
+  pass: Pass | null;
+  error: Float64Array | undefined;
+  wall: Line | null;
+  stock: Line | null;
+  outlines: { wall: Line[]; stock: Line[] };
+  points: ProbePoint[];
+  magnify: number;
+  tolerance: number;
+  hidden: Set<string>;
+  picked: number | null;
+}
+
+type Context = CanvasRenderingContext2D;
+const MARGIN = 60;
+
+export function drawStill(c: Context, view: View, picture: Picture, colours: Palette): void {
+  c.fillStyle = colours.ground;
+  c.fillRect(0, 0, view.width, view.height);
+  grid(c, view, colours);
+  const { model } = picture;
+  c.lineJoin = "round";
+  if (model && picture.wall) {
+    const indices = levelFor(model, view);
+    const wall = picture.wall;
+    const depth = Math.max(model.radius * 0.35, 1);
+    const beyond = shifted(wall, model, depth);
+    strip(c, view, indices, wall, beyond, colours.part);
+    if (!picture.hidden.has("stock") && picture.stock) {
+      strip(c, view, indices, picture.stock, wall, colours.stock);
+      path(c, view, indices, picture.stock, colours.quiet, 1, [5, 4]);
+    }
+    if (!picture.hidden.has("band") && picture.error) band(c, view, indices, model, wall, picture, colours);
+    path(c, view, indices, wall, colours.ink, 1.75);
+    if (!picture.hidden.has("nominal")) path(c, view, indices, { x: model.x.values, y: model.y.values }, colours.quiet, 1, [8, 3, 2, 3]);
+    const { correction } = model;
+    if (!picture.hidden.has("commanded") && correction && picture.pass?.name === "after") {
+      path(c, view, indices, moved(model, correction.x.values, correction.y.values, picture.magnify), colours.second, 1.5, [4, 3]);
+    }
+    const deviation = picture.pass?.deviation;
+    if (!picture.hidden.has("actual") && deviation && picture.pass) {
+      const colour = picture.pass.name === "after" ? colours.after : colours.before;
+      path(c, view, indices, moved(model, deviation.x, deviation.y, picture.magnify), colour, 1.5);
+    }
+  }
+  for (const line of picture.outlines.stock) path(c, view, allOf(line), line, colours.quiet, 1, [5, 4]);
+  for (const line of picture.outlines.wall) path(c, view, allOf(line), line, colours.ink, 1.75);
+  if (!picture.hidden.has("points")) points(c, view, picture, colours);
+}
+
+/** The coarsest level whose samples lie no more than a pixel apart. */
+export function levelFor(model: Model, view: View): Uint32Array {
+  let level = 0;
+  const spacing = (view.scale * model.length) / model.count;
+  while (level + 1 < model.levels.length && spacing * 4 ** (level + 1) <= 1) level++;
+  return model.levels[level];
+}
+
+function allOf(line: Line): Uint32Array {
+  return Uint32Array.from({ length: line.x.length }, (_, i) => i);
+}
+
+function shifted(line: Line, model: Model, distance: number): Line {
+  return { x: line.x.map((v, i) => v + distance * model.nx[i]), y: line.y.map((v, i) => v + distance * model.ny[i]) };
+}
+
+function moved(model: Model, dx: Float64Array, dy: Float64Array, factor: number): Line {
+  return { x: model.x.values.map((v, i) => v + factor * dx[i]), y: model.y.values.map((v, i) => v + factor * dy[i]) };
+}
+
+function near(view: View, px: number, py: number): boolean {
+  return px > -MARGIN && py > -MARGIN && px < view.width + MARGIN && py < view.height + MARGIN;
+}
+
+/** Whether a straight piece may be seen. */
+function touches(view: View, ax: number, ay: number, bx: number, by: number): boolean {
+  return Math.max(ax, bx) > -MARGIN && Math.max(ay, by) > -MARGIN && Math.min(ax, bx) < view.width + MARGIN
+    && Math.min(ay, by) < view.height + MARGIN;
+}
+
+export function path(c: Context, view: View, indices: Uint32Array, line: Line, colour: string, width: number, dash: number[] = []): void {
+  c.beginPath();
+  let open = false;
+  let ax = NaN;
+  let ay = NaN;
+  for (const i of indices) {
+    const bx = view.px(line.x[i]);
+    const by = view.py(line.y[i]);
+    if (Number.isFinite(ax) && Number.isFinite(bx) && touches(view, ax, ay, bx, by)) {
+      if (!open) c.moveTo(ax, ay);
+      c.lineTo(bx, by);
+      open = true;
+    } else {
+      open = false;
+    }
+    ax = bx;
+    ay = by;
+  }
+  c.strokeStyle = colour;
+  c.lineWidth = width;
+  c.setLineDash(dash);
+  c.stroke();
+  c.setLineDash([]);
+}
+
+export function strip(c: Context, view: View, indices: Uint32Array, one: Line, other: Line, colour: string): void {
+  c.fillStyle = colour;
+  c.beginPath();
+  for (let k = 1; k < indices.length; k++) quad(c, view, one, other, indices[k - 1], indices[k]);
+  c.fill("nonzero");
+}
+
+/** Always in the same sense, so that overlapping pieces do not cancel. */
+function quad(c: Context, view: View, one: Line, other: Line, i: number, j: number): void {
+  const ax = view.px(one.x[i]), ay = view.py(one.y[i]), bx = view.px(one.x[j]), by = view.py(one.y[j]);
+  const dx = view.px(other.x[i]), dy = view.py(other.y[i]), ex = view.px(other.x[j]), ey = view.py(other.y[j]);
+  if (!touches(view, ax, ay, bx, by) && !near(view, dx, dy)) return;
+  const area = (bx - ax) * (dy - ay) - (by - ay) * (dx - ax);
+  c.moveTo(ax, ay);
+  if (area >= 0) {
+    c.lineTo(bx, by);
+    c.lineTo(ex, ey);
+    c.lineTo(dx, dy);
+  } else {
+    c.lineTo(dx, dy);
+    c.lineTo(ex, ey);
+    c.lineTo(bx, by);
+  }
+  c.closePath();
+}
+
+function band(c: Context, view: View, indices: Uint32Array, model: Model, wall: Line, picture: Picture, colours: Palette): void {
+  const error = picture.error as Float64Array;
+  const edge = {
+    x: wall.x.map((v, i) => v - picture.magnify * error[i] * model.nx[i]),
+    y: wall.y.map((v, i) => v - picture.magnify * error[i] * model.ny[i]),
+  };
+  const kinds: [string, (e: number) => boolean][] = [
+    [colours.within, (e) => Math.abs(e) <= picture.tolerance],
+    [colours.left, (e) => e > picture.tolerance],
+    [colours.gouge, (e) => e < -picture.tolerance],
+  ];
+  for (const [colour, holds] of kinds) {
+    const rim = new Path2D();
+    c.fillStyle = colour;
+    c.globalAlpha = 0.5;
+    c.beginPath();
+    for (let k = 1; k < indices.length; k++) {
+      const i = indices[k - 1];
+      const j = indices[k];
+      if (!holds(error[j])) continue;
+      quad(c, view, wall, edge, i, j);
+      const ax = view.px(edge.x[i]), ay = view.py(edge.y[i]), bx = view.px(edge.x[j]), by = view.py(edge.y[j]);
+      if (touches(view, ax, ay, bx, by)) {
+        rim.moveTo(ax, ay);
+        rim.lineTo(bx, by);
+      }
+    }
+    c.fill("nonzero");
+    c.globalAlpha = 1;
+    c.strokeStyle = colour;
+    c.lineWidth = 1.75;
+    c.stroke(rim);
+  }
+}
+
+function points(c: Context, view: View, picture: Picture, colours: Palette): void {
+  const boxes: [number, number, number, number][] = [];
+  picture.points.forEach((point, index) => {
+    const wx = point.x_mm + point.error_mm * point.nx;
+    const wy = point.y_mm + point.error_mm * point.ny;
+    const ax = view.px(wx);
+    const ay = view.py(wy);
+    if (!near(view, ax, ay)) return;
+    const bx = view.px(wx - picture.magnify * point.error_mm * point.nx);
+    const by = view.py(wy - picture.magnify * point.error_mm * point.ny);
+    const colour = point.status === "used" ? colours.ink : colours.quiet;
+    const outward = 14;
+    c.strokeStyle = colour;
+    c.lineWidth = 1;
+    c.beginPath();
+    c.moveTo(ax + point.nx * outward, ay - point.ny * outward);
+    c.lineTo(bx, by);
+    c.stroke();
+    c.fillStyle = colours.ground;
+    c.lineWidth = index === picture.picked ? 3 : 1.5;
+    c.beginPath();
+    if (point.status === "used") {
+      c.arc(bx, by, 4, 0, 2 * Math.PI);
+      c.fill();
+    } else {
+      c.moveTo(bx - 4, by - 4);
+      c.lineTo(bx + 4, by + 4);
+      c.moveTo(bx + 4, by - 4);
+      c.lineTo(bx - 4, by + 4);
+    }
+    c.stroke();
+    label(c, view, boxes, ax + point.nx * (outward + 4), ay - point.ny * (outward + 4), point, colours);
+  });
+}
+
+function label(c: Context, view: View, boxes: [number, number, number, number][], x: number, y: number, point: ProbePoint, colours: Palette): void {
+  const text = signed(point.error_mm, 3);
+  c.font = `11px ${colours.font}`;
+  const wide = c.measureText(text).width;
+  const left = Math.abs(point.nx) < 0.5 ? x - wide / 2 : point.nx > 0 ? x : x - wide;
+  const top = Math.abs(point.nx) < 0.5 ? (point.ny > 0 ? y - 12 : y) : y - 6;
+  if (left < 2 || top < 2 || left + wide > view.width - 2 || top + 12 > view.height - 2) return;
+  if (boxes.some(([l, t, w]) => left < l + w + 3 && l < left + wide + 3 && top < t + 12 && t < top + 12)) return;
+  boxes.push([left, top, wide, 12]);
+  c.fillStyle = colours.ground;
+  c.globalAlpha = 0.85;
+  c.fillRect(left - 2, top - 1, wide + 4, 14);
+  c.globalAlpha = 1;
+  c.fillStyle = point.status === "used" ? colours.ink : colours.quiet;
+  c.textBaseline = "top";
+  c.fillText(text, left, top + 1);
+}
+
+function grid(c: Context, view: View, colours: Palette): void {
+  const step = roundStep(70 / view.scale);
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const x0 = Math.ceil(view.mmX(0) / step);
+  const x1 = Math.floor(view.mmX(view.width) / step);
+  const y0 = Math.ceil(view.mmY(view.height) / step);
+  const y1 = Math.floor(view.mmY(0) / step);
+  c.strokeStyle = colours.grid;
+  c.lineWidth = 1;
+  c.beginPath();
+  for (let k = x0; k <= x1; k++) {
+    const px = Math.round(view.px(k * step)) + 0.5;
+    c.moveTo(px, 0);
+    c.lineTo(px, view.height);
+  }
+  for (let k = y0; k <= y1; k++) {
+    const py = Math.round(view.py(k * step)) + 0.5;
+    c.moveTo(0, py);
+    c.lineTo(view.width, py);
+  }
+  c.stroke();
+  c.fillStyle = colours.quiet;
+  c.font = `11px ${colours.font}`;
+  c.textBaseline = "bottom";
+  const number = (v: number) => v.toFixed(decimals).replace(/^-(?=0(\.0*)?$)/, "").replace("-", "−");
+  for (let k = x0; k <= x1; k++) {
+    const px = view.px(k * step);
+    if (px > 46 && px < view.width - 30) c.fillText(number(k * step), px + 3, view.height - 2);
+  }
+  for (let k = y0; k <= y1; k++) {
+    const py = view.py(k * step);
+    if (py < view.height - 22 && py > 26) c.fillText(number(k * step), 3, py - 1);
+  }
+  c.fillText("X mm", view.width - 28, view.height - 2);
+  c.textBaseline = "top";
+  c.fillText("Y mm", 3, 3);
+}

@@ -1,0 +1,183 @@
+/**
+ * The contour as arrays: what the scene and the traces draw.
+ *
+ * Normals point from the centre of the cutter into the wall. Deviations are those of the centre from the
+ * programmed path, so that wall error = −(deviation · normal) where the model is exact.
+ */
+
+import type { ContourColumns, PassColumns, Report } from "./data";
+import { decode, type Series } from "./decode";
+
+export type PassName = "before" | "after";
+
+export type Quantity =
+  | "error_mm" | "sigma_mm" | "arc_deg" | "chip_area_mm2" | "force_n" | "fx_n" | "fy_n" | "dx_mm" | "dy_mm"
+  | "feed_mm_per_min";
+
+const QUANTITIES: Quantity[] = [
+  "error_mm", "sigma_mm", "arc_deg", "chip_area_mm2", "force_n", "fx_n", "fy_n", "dx_mm", "dy_mm", "feed_mm_per_min",
+];
+
+export class Pass {
+  readonly series: Partial<Record<Quantity, Series>> = {};
+  /** Deviation of the centre from the programmed path; absent without deflections. */
+  readonly deviation?: { x: Float64Array; y: Float64Array };
+
+  constructor(readonly name: PassName, columns: PassColumns, length: number, correction?: { x: Series; y: Series }) {
+    this.label = columns.label ?? (name === "before" ? "before the correction" : "after the correction");
+    for (const quantity of QUANTITIES) {
+      const column = columns[quantity];
+      if (column) this.series[quantity] = decode(column, `${name}.${quantity}`, length);
+    }
+    const { dx_mm: dx, dy_mm: dy } = this.series;
+    if (dx && dy) {
+      const add = (d: Series, c?: Series) => (name === "after" && c ? d.values.map((v, i) => v + c.values[i]) : d.values);
+      this.deviation = { x: add(dx, correction?.x), y: add(dy, correction?.y) };
+    }
+  }
+
+  readonly label: string;
+}
+
+export class Model {
+  readonly count: number;
+  readonly s: Series;
+  readonly x: Series;
+  readonly y: Series;
+  readonly nx: Float64Array;
+  readonly ny: Float64Array;
+  readonly correction?: { x: Series; y: Series };
+  readonly passes: Partial<Record<PassName, Pass>> = {};
+  /** Seconds from the start of the contour, at the feed of the pass, else of the job, else 20 s in all. */
+  readonly time: Float64Array;
+  readonly radius: number;
+  /** +1: the wall is right of the direction of travel; then the engaged arc lies counter-clockwise of the normal. */
+  readonly turn: number;
+  /** Indices of samples, coarser from level to level; each keeps the largest error of its block of four. */
+  readonly levels: Uint32Array[];
+  private readonly heightErrors: Partial<Record<PassName, Float64Array[]>> = {};
+
+  constructor(readonly report: Report, columns: ContourColumns) {
+    this.s = decode(columns.s_mm, "s_mm");
+    const count = this.s.values.length;
+    if (count < 2) throw new Error("s_mm: a contour has at least two samples");
+    this.count = count;
+    this.x = decode(columns.x_mm, "x_mm", count);
+    this.y = decode(columns.y_mm, "y_mm", count);
+    const { correction_x_mm: cx, correction_y_mm: cy } = columns;
+    if (cx && cy) this.correction = { x: decode(cx, "correction_x_mm", count), y: decode(cy, "correction_y_mm", count) };
+    for (const name of ["before", "after"] as const) {
+      const pass = columns[name];
+      if (pass) this.passes[name] = new Pass(name, pass, count, this.correction);
+    }
+    this.radius = (report.job?.tool?.diameter_mm ?? 0) / 2;
+    this.turn = report.job?.wall === "left" ? -1 : 1;
+    if (columns.nx && columns.ny) {
+      this.nx = decode(columns.nx, "nx", count).values;
+      this.ny = decode(columns.ny, "ny", count).values;
+    } else {
+      [this.nx, this.ny] = this.normals();
+    }
+    this.time = this.times();
+    this.levels = this.coarser();
+    this.readHeights();
+  }
+
+  get length(): number {
+    return this.s.values[this.count - 1] - this.s.values[0];
+  }
+
+  /** Error of a pass: the mean over the height, or at one height. */
+  error(name: PassName, height: number | null): Float64Array | undefined {
+    const pass = this.passes[name];
+    if (height === null) return pass?.series.error_mm?.values;
+    return this.heightErrors[name]?.[height];
+  }
+
+  /** The sample at or before an arc length. */
+  indexAt(s: number): number {
+    const values = this.s.values;
+    let low = 0;
+    let high = this.count - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (values[middle] <= s) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+
+  /** The sample nearest to an arc length. */
+  nearest(s: number): number {
+    const i = this.indexAt(s);
+    const next = Math.min(i + 1, this.count - 1);
+    return Math.abs(this.s.values[next] - s) < Math.abs(this.s.values[i] - s) ? next : i;
+  }
+
+  private normals(): [Float64Array, Float64Array] {
+    const nx = new Float64Array(this.count);
+    const ny = new Float64Array(this.count);
+    for (let i = 0; i < this.count; i++) {
+      const a = Math.max(0, i - 1);
+      const b = Math.min(this.count - 1, i + 1);
+      const tx = this.x.values[b] - this.x.values[a];
+      const ty = this.y.values[b] - this.y.values[a];
+      const size = Math.hypot(tx, ty) || 1;
+      nx[i] = (this.turn * ty) / size;
+      ny[i] = (-this.turn * tx) / size;
+    }
+    return [nx, ny];
+  }
+
+  private times(): Float64Array {
+    const feeds = (this.passes.after ?? this.passes.before)?.series.feed_mm_per_min?.values;
+    const overall = this.report.job?.cut?.feed_mm_per_min ?? (this.length / 20) * 60;
+    const time = new Float64Array(this.count);
+    for (let i = 1; i < this.count; i++) {
+      const feed = feeds && feeds[i] > 0 ? feeds[i] : overall;
+      time[i] = time[i - 1] + ((this.s.values[i] - this.s.values[i - 1]) / feed) * 60;
+    }
+    return time;
+  }
+
+  private coarser(): Uint32Array[] {
+    const errors = [this.passes.before, this.passes.after].map((pass) => pass?.series.error_mm?.values);
+    const size = (i: number) => Math.max(...errors.map((e) => (e && Number.isFinite(e[i]) ? Math.abs(e[i]) : 0)));
+    const sizes = Float64Array.from({ length: this.count }, (_, i) => size(i));
+    const levels = [Uint32Array.from({ length: this.count }, (_, i) => i)];
+    while (levels[levels.length - 1].length > 512) {
+      const fine = levels[levels.length - 1];
+      const picked = [0];
+      for (let start = 1; start < fine.length - 1; start += 4) {
+        let best = start;
+        for (let k = start + 1; k < Math.min(start + 4, fine.length - 1); k++) if (sizes[fine[k]] > sizes[fine[best]]) best = k;
+        picked.push(fine[best]);
+      }
+      picked.push(fine[fine.length - 1]);
+      levels.push(Uint32Array.from(picked));
+    }
+    return levels;
+  }
+
+  private readHeights(): void {
+    const heights = this.report.heights;
+    if (!heights || heights.z_mm.length === 0 || !(heights.stride >= 1)) return;
+    const rows = heights.z_mm.length;
+    for (const name of ["before", "after"] as const) {
+      const column = heights[name];
+      if (!column) continue;
+      const { values } = decode(column, `heights.${name}`);
+      const nodes = Math.floor(values.length / rows);
+      this.heightErrors[name] = heights.z_mm.map((_, row) => {
+        const error = new Float64Array(this.count);
+        for (let i = 0; i < this.count; i++) {
+          const place = Math.min(i / heights.stride, nodes - 1);
+          const node = Math.floor(place);
+          const next = Math.min(node + 1, nodes - 1);
+          error[i] = values[node * rows + row] * (1 - place + node) + values[next * rows + row] * (place - node);
+        }
+        return error;
+      });
+    }
+  }
+}

@@ -1,0 +1,250 @@
+/** The oscilloscope: traces over arc length, in step with the cutter. */
+
+import uPlot from "uplot";
+import { between } from "./cutter";
+import type { Series } from "./decode";
+import { fixed } from "./format";
+import type { Model, PassName, Quantity } from "./model";
+import type { Palette } from "./palette";
+import type { State } from "./state";
+
+interface Curve { name: string; series: Series; colour: string; dash?: number[]; faint?: boolean; width?: number }
+interface Panel { title: string; unit: string; curves: Curve[]; sigma?: { error: Series; sigma: Series; colour: string }; tolerance?: number }
+
+interface Shown { plot: uPlot; panel: Panel; head: HTMLElement; values: HTMLElement[]; playhead: HTMLElement }
+
+export interface TraceEvents {
+  range(range: [number, number] | null): void;
+  hover(index: number | null): void;
+  pick(index: number): void;
+}
+
+export class Traces {
+  private shown: Shown[] = [];
+  private quiet = false;
+
+  constructor(private readonly element: HTMLElement, private readonly model: Model, private readonly events: TraceEvents) {}
+
+  /** Builds all panels anew: other colours, another pass, another height. */
+  rebuild(state: State, colours: Palette, height: number): void {
+    for (const { plot } of this.shown) plot.destroy();
+    this.element.replaceChildren();
+    const panels = panelsOf(this.model, state, colours);
+    this.shown = panels.map((panel, index) => this.build(panel, state, colours, height, index === panels.length - 1));
+    this.place(state.place);
+  }
+
+  resize(height: number): void {
+    const last = this.shown.length - 1;
+    this.shown.forEach(({ plot }, i) => plot.setSize({ width: this.width(), height: height + (i === last ? 26 : 0) }));
+  }
+
+  /** Moves the playheads and the figures beside the titles. */
+  place(place: number): void {
+    const s = between(this.model.s.values, place);
+    for (const { plot, panel, values, playhead } of this.shown) {
+      const px = plot.valToPos(s, "x");
+      const inside = px >= 0 && px <= plot.over.clientWidth;
+      playhead.style.display = inside ? "" : "none";
+      playhead.style.transform = `translateX(${px.toFixed(2)}px)`;
+      panel.curves.forEach((curve, i) => {
+        const text = fixed(curve.series.values[Math.round(place)], curve.series.decimals);
+        if (values[i].textContent !== text) values[i].textContent = text;
+      });
+    }
+  }
+
+  zoom(range: [number, number] | null): void {
+    const s = this.model.s.values;
+    const [min, max] = range ?? [s[0], s[s.length - 1]];
+    this.quiet = true;
+    for (const { plot } of this.shown) plot.setScale("x", { min, max });
+    this.quiet = false;
+  }
+
+  get count(): number {
+    return this.shown.length;
+  }
+
+  private width(): number {
+    return Math.max(200, this.element.clientWidth);
+  }
+
+  private build(panel: Panel, state: State, colours: Palette, height: number, last: boolean): Shown {
+    const box = document.createElement("div");
+    box.className = "trace";
+    const head = document.createElement("div");
+    head.className = "trace-head";
+    const title = document.createElement("h3");
+    title.textContent = panel.title;
+    const unit = document.createElement("span");
+    unit.className = "unit";
+    unit.textContent = panel.unit;
+    head.append(title, unit);
+    const values = panel.curves.map((curve) => {
+      const entry = document.createElement("span");
+      entry.className = "entry";
+      const key = document.createElement("i");
+      key.style.borderTopColor = curve.colour;
+      if (curve.dash) key.style.borderTopStyle = "dashed";
+      const name = document.createElement("span");
+      name.textContent = curve.name;
+      const value = document.createElement("b");
+      entry.append(key, name, value);
+      head.append(entry);
+      return value;
+    });
+    box.append(head);
+    this.element.append(box);
+    const plot = new uPlot(this.options(panel, state, colours, height, last), data(this.model, panel), box);
+    plot.root.setAttribute("aria-hidden", "true");
+    const playhead = document.createElement("div");
+    playhead.className = "playhead";
+    plot.over.append(playhead);
+    this.pointer(plot);
+    return { plot, panel, head, values, playhead };
+  }
+
+  private pointer(plot: uPlot): void {
+    let down = 0;
+    plot.over.addEventListener("mousedown", (event) => { down = event.clientX; });
+    plot.over.addEventListener("mouseup", (event) => {
+      if (Math.abs(event.clientX - down) < 3 && plot.cursor.idx != null) this.events.pick(plot.cursor.idx);
+    });
+    plot.over.addEventListener("mousemove", () => this.events.hover(plot.cursor.idx ?? null));
+    plot.over.addEventListener("mouseleave", () => this.events.hover(null));
+    plot.over.addEventListener("dblclick", () => this.events.range(null));
+  }
+
+  private options(panel: Panel, state: State, colours: Palette, height: number, last: boolean): uPlot.Options {
+    const s = this.model.s.values;
+    const [min, max] = state.range ?? [s[0], s[s.length - 1]];
+    const font = `11px ${colours.font}`;
+    const axis = { stroke: colours.quiet, font, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false } };
+    const series: uPlot.Series[] = [{}];
+    for (const curve of panel.curves) {
+      series.push({
+        stroke: curve.colour, width: curve.width ?? 1.5, dash: curve.dash, alpha: curve.faint ? 0.55 : 1,
+        points: { show: false },
+      });
+    }
+    const bands: uPlot.Band[] = [];
+    if (panel.sigma) {
+      const n = series.length;
+      series.push({ stroke: "transparent", width: 0, points: { show: false } }, { stroke: "transparent", width: 0, points: { show: false } });
+      bands.push({ series: [n, n + 1], fill: `${panel.sigma.colour}40` });
+    }
+    return {
+      width: this.width(),
+      height: height + (last ? 26 : 0),
+      padding: [4, 8, last ? 0 : 4, 0],
+      series,
+      bands,
+      legend: { show: false },
+      cursor: {
+        sync: { key: "traces", setSeries: false },
+        drag: { x: true, y: false, setScale: true },
+        points: { show: false },
+        y: false,
+      },
+      scales: { x: { time: false, min, max, range: (_plot, a, b) => [a, b] }, y: { range: (_plot, a, b) => around(a, b, panel.tolerance) } },
+      axes: [
+        { ...axis, show: last, size: 30, gap: 2, values: (_plot, ticks) => ticks.map((t) => label(t)) },
+        { ...axis, size: 54, gap: 4, space: 24, values: (_plot, ticks) => ticks.map((t) => label(t)) },
+      ],
+      hooks: {
+        setScale: [(plot, key) => {
+          if (key !== "x" || this.quiet) return;
+          const { min: from, max: to } = plot.scales.x;
+          if (from != null && to != null) this.events.range([from, to]);
+        }],
+        drawAxes: [(plot) => lines(plot, panel, colours)],
+      },
+    };
+  }
+}
+
+function label(tick: number): string {
+  return String(Number(tick.toPrecision(6))).replace("-", "−");
+}
+
+/** Zero and the tolerance. */
+function lines(plot: uPlot, panel: Panel, colours: Palette): void {
+  const levels = panel.tolerance ? [0, panel.tolerance, -panel.tolerance] : [0];
+  const { left, top, width, height } = plot.bbox;
+  for (const level of levels) {
+    const y = plot.valToPos(level, "y", true);
+    if (!(y >= top && y <= top + height)) continue;
+    plot.ctx.save();
+    plot.ctx.strokeStyle = level === 0 ? colours.quiet : colours.within;
+    plot.ctx.lineWidth = window.devicePixelRatio || 1;
+    plot.ctx.setLineDash(level === 0 ? [] : [6, 4]);
+    plot.ctx.beginPath();
+    plot.ctx.moveTo(left, y);
+    plot.ctx.lineTo(left + width, y);
+    plot.ctx.stroke();
+    plot.ctx.restore();
+  }
+}
+
+function around(min: number | null, max: number | null, tolerance = 0): [number, number] {
+  let low = Math.min(min ?? 0, 0, -tolerance * 1.3);
+  let high = Math.max(max ?? 0, 0, tolerance * 1.3);
+  if (high - low < 1e-9) high = low + 1;
+  const room = (high - low) * 0.06;
+  if (high > 0) high += room;
+  if (low < 0) low -= room;
+  return [low, high];
+}
+
+function data(model: Model, panel: Panel): uPlot.AlignedData {
+  const columns: (Float64Array | number[])[] = [model.s.values, ...panel.curves.map((curve) => curve.series.values)];
+  if (panel.sigma) {
+    const { error, sigma } = panel.sigma;
+    columns.push(error.values.map((v, i) => v + 2 * sigma.values[i]), error.values.map((v, i) => v - 2 * sigma.values[i]));
+  }
+  return columns as uPlot.AlignedData;
+}
+
+function panelsOf(model: Model, state: State, colours: Palette): Panel[] {
+  const { before, after } = model.passes;
+  const chosen: PassName = state.shown === "both" ? "after" : state.shown;
+  const selected = model.passes[chosen] ?? before ?? after;
+  const both = (quantity: Quantity, height: number | null = null): Curve[] => (["before", "after"] as const).flatMap((name) => {
+    const series = model.passes[name]?.series[quantity];
+    const error = height === null ? undefined : model.error(name, height);
+    if (!series && !error) return [];
+    return [{
+      name, series: error ? { values: error, decimals: series?.decimals ?? 6 } : (series as Series), colour: colours[name],
+      faint: state.shown !== "both" && state.shown !== name,
+    }];
+  });
+  const components = (x: Quantity, y: Quantity, names: [string, string]): Curve[] => {
+    const [sx, sy] = [selected?.series[x], selected?.series[y]];
+    return [
+      ...(sx ? [{ name: names[0], series: sx, colour: colours.first, width: 1.25 }] : []),
+      ...(sy ? [{ name: names[1], series: sy, colour: colours.second, width: 1.25 }] : []),
+    ];
+  };
+  const suffix = before && after ? ` (${chosen})` : "";
+  const errors = both("error_mm", state.height);
+  const bounded = selected?.series.sigma_mm && selected.series.error_mm && state.height === null
+    ? { error: selected.series.error_mm, sigma: selected.series.sigma_mm, colour: colours[selected.name] } : undefined;
+  const correction = model.correction
+    ? [{ name: "x", series: model.correction.x, colour: colours.first }, { name: "y", series: model.correction.y, colour: colours.second }] : [];
+  const z = state.height === null ? "" : ` at ${fixed(model.report.heights?.z_mm[state.height], 2)} mm height`;
+  const panels: Panel[] = [
+    { title: `Wall error${z}`, unit: bounded ? "mm, ±2σ" : "mm", curves: errors, sigma: bounded, tolerance: model.report.tolerance_mm },
+    { title: "Correction", unit: "mm", curves: correction },
+    { title: `Deflection${suffix}`, unit: "mm", curves: components("dx_mm", "dy_mm", ["x", "y"]) },
+    { title: `Force${suffix}`, unit: "N", curves: force(selected?.series.force_n, components("fx_n", "fy_n", ["x", "y"]), colours) },
+    { title: "Engagement arc", unit: "°", curves: both("arc_deg") },
+    { title: "Chip area", unit: "mm²", curves: both("chip_area_mm2") },
+    { title: "Feed", unit: "mm/min", curves: both("feed_mm_per_min") },
+  ];
+  return panels.filter((panel) => panel.curves.length > 0);
+}
+
+function force(total: Series | undefined, parts: Curve[], colours: Palette): Curve[] {
+  return total ? [{ name: "F", series: total, colour: colours.ink, width: 1.75 }, ...parts] : parts;
+}
