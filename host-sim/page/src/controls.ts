@@ -1,0 +1,114 @@
+/** The bars: what is shown, how large, at which height; and the transport of the cutter. */
+
+import { el } from "./dom";
+import { fixed } from "./format";
+import type { Model } from "./model";
+import type { Player } from "./player";
+import type { Shown, Store } from "./state";
+import { placeText } from "./readout";
+
+const FACTORS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000];
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
+
+/** The factor that draws an error of this size about 6 % as large as the part. */
+export function fittingFactor(largest: number, size: number): number {
+  if (!(largest > 0)) return 100;
+  const wanted = (0.06 * size) / largest;
+  return [...FACTORS].reverse().find((f) => f <= wanted) ?? 1;
+}
+
+export interface SceneActions { zoomIn(): void; zoomOut(): void; whole(): void }
+
+export interface Layer { id: string; name: string; key: string }
+
+export function sceneBar(model: Model | null, store: Store, actions: SceneActions, layers: Layer[]): HTMLElement {
+  const bar = el("div", { class: "bar", role: "group", "aria-label": "Picture" });
+  const { before, after } = model?.passes ?? {};
+  if (before && after) bar.append(segments(store));
+  const factor = el("select", { id: "magnify" }, ...FACTORS.map((f) => el("option", { value: String(f) }, `${f} ×`)));
+  factor.value = String(store.state.magnify);
+  factor.addEventListener("change", () => store.set({ magnify: Number(factor.value) }));
+  store.onChange((changed) => { if (changed.has("magnify")) factor.value = String(store.state.magnify); });
+  bar.append(el("label", { class: "field" }, "error drawn", factor));
+  const heights = model?.report.heights;
+  if (heights && heights.z_mm.length > 0) bar.append(heightSlider(heights.z_mm, store));
+  const details = el("details", { class: "layers" }, el("summary", {}, "layers"));
+  const list = el("div", { class: "layer-list" });
+  for (const { id, name, key } of layers) {
+    const box = el("input", { type: "checkbox" });
+    box.checked = !store.state.hidden.has(id);
+    box.addEventListener("change", () => {
+      const hidden = new Set(store.state.hidden);
+      if (box.checked) hidden.delete(id);
+      else hidden.add(id);
+      store.set({ hidden });
+    });
+    list.append(el("label", {}, box, el("i", { class: `key ${key}` }), name));
+  }
+  details.append(list);
+  bar.append(details);
+  const zoom = el("div", { class: "buttons" });
+  for (const [text, name, run] of [["+", "Zoom in", actions.zoomIn], ["−", "Zoom out", actions.zoomOut], ["whole", "Show everything", actions.whole]] as const) {
+    const button = el("button", { type: "button", "aria-label": name, title: name }, text);
+    button.addEventListener("click", run);
+    zoom.append(button);
+  }
+  bar.append(zoom);
+  return bar;
+}
+
+function segments(store: Store): HTMLElement {
+  const group = el("div", { class: "segments", role: "radiogroup", "aria-label": "Pass shown" });
+  for (const [value, name] of [["before", "before"], ["after", "after"], ["both", "side by side"]] as [Shown, string][]) {
+    const input = el("input", { type: "radio", name: "shown", id: `shown-${value}`, value });
+    input.checked = store.state.shown === value;
+    input.addEventListener("change", () => store.set({ shown: value }));
+    store.onChange(() => { input.checked = store.state.shown === value; });
+    group.append(input, el("label", { for: `shown-${value}` }, name));
+  }
+  return group;
+}
+
+function heightSlider(z: number[], store: Store): HTMLElement {
+  const input = el("input", { type: "range", id: "height", min: "0", max: String(z.length), step: "1", value: "0" });
+  const output = el("output", { for: "height" });
+  const show = () => {
+    const { height } = store.state;
+    const text = height === null ? "mean" : `${fixed(z[height], 2)} mm`;
+    output.textContent = text;
+    input.setAttribute("aria-valuetext", height === null ? "mean over the height" : `${text} above the tip`);
+    input.value = String(height === null ? 0 : height + 1);
+  };
+  input.addEventListener("input", () => store.set({ height: input.value === "0" ? null : Number(input.value) - 1 }));
+  store.onChange((changed) => { if (changed.has("height")) show(); });
+  show();
+  return el("label", { class: "field" }, "height", input, output);
+}
+
+export function transport(model: Model, store: Store, player: Player): HTMLElement {
+  const play = el("button", { type: "button", id: "play", class: "play" });
+  const scrub = el("input", { type: "range", id: "scrub", min: "0", max: String(model.count - 1), step: "1", "aria-label": "Place of the cutter" });
+  const at = el("output", { class: "time", for: "scrub" });
+  const speed = el("select", { id: "speed" }, ...SPEEDS.map((v) => el("option", { value: String(v) }, `${v} ×`)));
+  speed.value = String(store.state.speed);
+  play.addEventListener("click", () => player.toggle());
+  scrub.addEventListener("input", () => store.set({ place: Number(scrub.value), playing: false }));
+  speed.addEventListener("change", () => store.set({ speed: Number(speed.value) }));
+  const end = model.time[model.count - 1];
+  const show = () => {
+    const { place, playing } = store.state;
+    const text = playing ? "Pause" : "Play";
+    if (play.dataset.state !== text) {
+      play.dataset.state = text;
+      play.setAttribute("aria-label", `${text} the cutter`);
+      play.textContent = playing ? "❚❚" : "▶";
+    }
+    const index = Math.round(place);
+    if (scrub.value !== String(index)) scrub.value = String(index);
+    if (!playing) scrub.setAttribute("aria-valuetext", placeText(model, index));
+    at.textContent = `s ${fixed(model.s.values[index], 1)} mm · t ${fixed(player.timeOf(place), 2)} / ${fixed(end, 2)} s`;
+  };
+  store.onChange((changed) => { if (changed.has("place") || changed.has("playing")) show(); });
+  show();
+  return el("div", { class: "transport", role: "group", "aria-label": "Cutter" }, play, scrub, at, el("label", { class: "field" }, "speed", speed));
+}

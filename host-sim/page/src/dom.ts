@@ -1,0 +1,26 @@
+/** Elements in one call. */
+
+type Child = Node | string | null | undefined;
+
+export function el<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Record<string, string> = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  for (const child of children) if (child !== null && child !== undefined) element.append(child);
+  return element;
+}
+
+/** A titled block of the page; its heading names it. */
+export function card(id: string, title: string, ...children: Child[]): HTMLElement {
+  return el("section", { class: "card", id, "aria-labelledby": `${id}-title` }, el("h2", { id: `${id}-title` }, title), ...children);
+}
+
+/** A table that scrolls within itself on a narrow screen. */
+export function table(name: string, heads: string[], rows: (Child | [Child, string])[][], text = 0): HTMLElement {
+  const head = el("tr", {}, ...heads.map((title, i) => el("th", { scope: "col", class: i <= text ? "text" : "number" }, title)));
+  const body = rows.map((row) => el("tr", {}, ...row.map((cell, i) => {
+    const [content, kind] = Array.isArray(cell) ? cell : [cell, i <= text ? "text" : "number"];
+    return i === 0 ? el("th", { scope: "row", class: kind }, content) : el("td", { class: kind }, content);
+  })));
+  const element = el("table", {}, el("thead", {}, head), el("tbody", {}, ...body));
+  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": name }, element);
+}

@@ -1,0 +1,152 @@
+/** Puts the page together from the data in it. */
+
+import { fittingFactor, sceneBar, transport, type Layer } from "./controls";
+import { readReport } from "./decode";
+import type { Report } from "./data";
+import { el } from "./dom";
+import { Model } from "./model";
+import { palette } from "./palette";
+import { head, job, parameters, points, results } from "./panels";
+import { Player } from "./player";
+import { placeText, Readout } from "./readout";
+import { Stage } from "./stage";
+import { Store } from "./state";
+import { themeButton } from "./theme";
+import { Traces } from "./traces";
+import { printing } from "./printing";
+
+function start(): void {
+  const main = document.getElementById("main") as HTMLElement;
+  try {
+    const report = readReport(document.getElementById("truepath-data"));
+    show(report, main);
+  } catch (problem) {
+    main.append(el("p", { class: "problem", role: "alert" }, problem instanceof Error ? problem.message : String(problem)));
+    document.getElementById("top")?.append(el("h1", {}, "Truepath report"));
+  }
+  document.documentElement.dataset.firstPicture = performance.now().toFixed(0);
+}
+
+function largest(values: ArrayLike<number> | undefined): number {
+  let most = 0;
+  for (let i = 0; values && i < values.length; i++) if (Math.abs(values[i]) > most) most = Math.abs(values[i]);
+  return most;
+}
+
+function layersOf(report: Report, model: Model | null): Layer[] {
+  const { before, after } = model?.passes ?? {};
+  const all: [Layer, unknown][] = [
+    [{ id: "band", name: "error of the wall: left, cut too deep, within tolerance", key: "band" }, before ?? after],
+    [{ id: "nominal", name: "nominal path", key: "nominal" }, model],
+    [{ id: "commanded", name: "commanded path (after)", key: "commanded" }, model?.correction],
+    [{ id: "actual", name: "actual path", key: "actual" }, before?.deviation ?? after?.deviation],
+    [{ id: "stock", name: "stock before this pass", key: "stock" }, report.job?.stock?.allowance_mm ?? report.outlines?.stock],
+    [{ id: "points", name: "probe points with normal and deviation, mm", key: "points" }, report.points?.length],
+    [{ id: "cutter", name: "cutter and engaged arc", key: "cutter" }, before ?? after],
+    [{ id: "force", name: "force", key: "force" }, before?.series.fx_n ?? after?.series.fx_n],
+  ];
+  return all.filter(([, there]) => there !== undefined && there !== null && there !== 0).map(([layer]) => layer);
+}
+
+function show(report: Report, main: HTMLElement): void {
+  document.title = `${report.title} – Truepath`;
+  const model = report.contour ? new Model(report, report.contour) : null;
+  const { before, after } = model?.passes ?? {};
+  const errors = [largest(before?.series.error_mm?.values), largest(after?.series.error_mm?.values),
+    largest(report.points?.map((p) => p.error_mm))];
+  const store = new Store({
+    shown: before ? "before" : "after", magnify: 1, height: null, place: 0, playing: false, speed: 1, range: null, hidden: new Set(),
+  });
+  let colours = palette();
+  const stage = new Stage(report, model, store, colours, (index) => readout?.show(index ?? Math.round(store.state.place)));
+  const { x0, x1, y0, y1 } = stage.whole;
+  store.state.magnify = fittingFactor(Math.max(...errors), Math.min(x1 - x0, y1 - y0));
+
+  const player = model && (before || after) ? new Player(model, store) : null;
+  const readout = player && model ? new Readout(model) : null;
+  const live = document.getElementById("live") as HTMLElement;
+  const tracesBox = el("section", { class: "traces", "aria-label": "Traces over arc length" });
+  const traces = model && player ? new Traces(tracesBox, model, {
+    range: (range) => store.set({ range }),
+    hover: (index) => { stage.mark(index); readout?.show(index ?? Math.round(store.state.place)); },
+    pick: (index) => store.set({ place: index, playing: false }),
+  }) : null;
+
+  const recolour = () => {
+    colours = palette();
+    stage.recolour(colours);
+    traces?.rebuild(store.state, colours, traceHeight());
+  };
+  const print = el("button", { type: "button" }, "print");
+  print.addEventListener("click", () => window.print());
+  document.getElementById("top")?.append(...head(report, el("div", { class: "buttons tools" }, themeButton(recolour), print)));
+
+  const bar = sceneBar(model, store, {
+    zoomIn: () => { stage.view.zoom(1.5); stage.still(); },
+    zoomOut: () => { stage.view.zoom(1 / 1.5); stage.still(); },
+    whole: () => { stage.view.fit(); stage.still(); store.set({ range: null }); },
+  }, layersOf(report, model));
+  const picture = el("section", { class: "picture", "aria-label": "Contour" }, bar, stage.element, player && model ? transport(model, store, player) : null);
+  const work = el("div", { class: traces ? "work" : "work alone" }, picture, traces ? tracesBox : null);
+  const below = el("div", { class: "below" }, readout?.element,
+    report.parameters?.length ? parameters(report.parameters) : null, job(report),
+    report.points?.length ? points(report.points, (index) => {
+      if (before && store.state.shown === "after") store.set({ shown: "before" });
+      stage.showPoint(index);
+      picture.scrollIntoView({ block: "nearest" });
+    }) : null);
+  const figures = results(report);
+  main.append(...(figures ? [figures] : []), work, below);
+
+  const traceHeight = () => {
+    const room = work.clientWidth > 900 ? (picture.clientHeight - 26) / Math.max(1, traces?.count || expected(model)) - 20 : 84;
+    return Math.max(52, Math.min(150, Math.floor(room)));
+  };
+  stage.onToggle = () => player?.toggle();
+  store.onChange((changed) => {
+    if (changed.has("shown")) stage.layout();
+    if (changed.has("magnify") || changed.has("hidden") || changed.has("height")) stage.still();
+    if (changed.has("shown") || changed.has("height")) traces?.rebuild(store.state, colours, traceHeight());
+    if (changed.has("range")) traces?.zoom(store.state.range);
+    if (changed.has("range") || changed.has("place")) traces?.place(store.state.place);
+    if (changed.has("place")) {
+      stage.moving();
+      readout?.show(Math.round(store.state.place));
+    }
+    if (model && (changed.has("place") || changed.has("playing")) && !store.state.playing) announce(live, model, store.state.place);
+  });
+  stage.layout();
+  traces?.rebuild(store.state, colours, traceHeight());
+  readout?.show(0);
+  let width = 0;
+  new ResizeObserver(() => {
+    if (document.documentElement.dataset.printing || Math.abs(work.clientWidth - width) < 1) return;
+    width = work.clientWidth;
+    stage.layout();
+    traces?.resize(traceHeight());
+    traces?.place(store.state.place);
+  }).observe(work);
+  printing(stage, store, traces, recolour, Boolean(before && after));
+}
+
+/** Panels that a model will have, before they are built. */
+function expected(model: Model | null): number {
+  const series = model?.passes.before?.series ?? model?.passes.after?.series ?? {};
+  return (model?.correction ? 1 : 0) + ["error_mm", "dx_mm", "force_n", "arc_deg", "chip_area_mm2", "feed_mm_per_min"].filter((q) => q in series).length;
+}
+
+let pending = 0;
+
+function announce(live: HTMLElement, model: Model, place: number): void {
+  clearTimeout(pending);
+  pending = window.setTimeout(() => {
+    const index = Math.round(place);
+    const errors = (["before", "after"] as const).flatMap((name) => {
+      const error = model.passes[name]?.series.error_mm;
+      return error ? [`error ${name} ${error.values[index].toFixed(4)} mm`] : [];
+    });
+    live.textContent = [placeText(model, index), ...errors].join("; ");
+  }, 400);
+}
+
+start();

@@ -1,0 +1,77 @@
+/** The blocks in words and figures: head, results, job, parameters, probe points, warnings. */
+
+import type { Parameter, ProbePoint, Report } from "./data";
+import { card, el, table } from "./dom";
+import { decimalsFor, fixed, NO_VALUE, signed, withUnit } from "./format";
+
+const KINDS = { simulate: "simulated pass", correct: "correction", learn: "correction of the next part", inspect: "inspection" };
+
+export function head(report: Report, tools: HTMLElement): Node[] {
+  const source = [
+    KINDS[report.kind], report.program?.name,
+    report.program?.crc32 ? `CRC-32 ${report.program.crc32}` : undefined, report.by,
+  ].filter((v) => v !== undefined).join(" · ");
+  return [el("div", { class: "title" }, el("h1", {}, report.title), el("p", { class: "source" }, source)), warnings(report), tools];
+}
+
+function warnings(report: Report): HTMLElement {
+  const list = report.warnings ?? [];
+  if (list.length === 0) return el("p", { class: "warnings none" }, "no warnings");
+  return el("details", { class: "warnings" },
+    el("summary", {}, list.length === 1 ? "1 warning" : `${list.length} warnings`),
+    el("ul", {}, ...list.map((text) => el("li", {}, text))));
+}
+
+export function results(report: Report): HTMLElement | null {
+  const { verdict, results: list = [], tolerance_mm: tolerance } = report;
+  const entries = list.map((r) => el("div", { class: "result" },
+    el("dt", {}, r.name), el("dd", {}, withUnit(fixed(r.value, r.decimals), r.unit)), r.note ? el("dd", { class: "note" }, r.note) : null));
+  if (tolerance !== undefined) entries.unshift(el("div", { class: "result" }, el("dt", {}, "tolerance"), el("dd", {}, `±${fixed(tolerance, 4)} mm`)));
+  if (entries.length === 0 && !verdict) return null;
+  const words = { pass: "within tolerance", fail: "out of tolerance", open: "not decided" };
+  const stamp = verdict ? el("p", { class: `verdict ${verdict.state}` }, el("strong", {}, words[verdict.state]), el("span", {}, verdict.text)) : null;
+  return el("section", { class: "results", "aria-label": "Results" }, stamp, el("dl", {}, ...entries));
+}
+
+export function job(report: Report): HTMLElement | null {
+  const { tool, cut, stock, wall, milling, material, facts } = report.job ?? {};
+  const rows: [string, string | undefined][] = [
+    ["tool", tool && [tool.number ? `T${tool.number}` : "", `⌀ ${tool.diameter_mm} mm`, tool.teeth ? `${tool.teeth} teeth` : "",
+      tool.helix_deg !== undefined ? `helix ${tool.helix_deg}°` : ""].filter(Boolean).join(", ")],
+    ["stick-out", tool?.stickout_mm !== undefined ? `${tool.stickout_mm} mm` : undefined],
+    ["axial depth", cut?.axial_depth_mm !== undefined ? `${cut.axial_depth_mm} mm` : undefined],
+    ["feed", cut?.feed_mm_per_min !== undefined ? `${cut.feed_mm_per_min} mm/min` : undefined],
+    ["spindle", cut?.spindle_rpm !== undefined ? `${cut.spindle_rpm} 1/min` : undefined],
+    ["allowance", stock?.allowance_mm !== undefined ? `${stock.allowance_mm} mm` : undefined],
+    ["wall", wall && `${wall} of travel`],
+    ["milling", milling], ["material", material],
+    ...(facts ?? []).map((f): [string, string] => [f.name, f.value]),
+  ];
+  const known = rows.filter((row): row is [string, string] => row[1] !== undefined);
+  if (known.length === 0) return null;
+  return card("job", "Job", el("dl", { class: "facts" }, ...known.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)])));
+}
+
+export function parameters(list: Parameter[]): HTMLElement {
+  const rows = list.map((p) => {
+    const decimals = decimalsFor(p.sigma);
+    const prior = p.prior === undefined ? NO_VALUE : `${fixed(p.prior, decimals)} ± ${fixed(p.prior_sigma, decimals)}`;
+    return [p.name.replaceAll("_", " "), fixed(p.value, decimals), `± ${fixed(p.sigma, decimals)}`, prior,
+      [p.unit === "1" ? "–" : p.unit.replace("um", "µm"), "text"] as [string, string],
+      [el("span", { class: p.observable ? "yes" : "no" }, p.observable ? "yes" : "no"), "text"] as [HTMLElement, string]];
+  });
+  return card("parameters", "Identified",
+    table("Identified parameters", ["parameter", "value", "σ", "believed before", "unit", "decided by the points"], rows));
+}
+
+export function points(list: ProbePoint[], show: (index: number) => void): HTMLElement {
+  const used = list.filter((p) => p.status === "used").length;
+  const rows = list.map((p, index) => {
+    const button = el("button", { type: "button", class: "link", "aria-label": `Show probe point ${p.line ?? index + 1} in the picture` }, String(p.line ?? index + 1));
+    button.addEventListener("click", () => show(index));
+    return [button, fixed(p.s_mm, 3), fixed(p.x_mm, 4), fixed(p.y_mm, 4), fixed(p.z_mm, 2), fixed(p.nx, 3), fixed(p.ny, 3),
+      signed(p.error_mm, 4), [p.status === "used" ? "used" : `set aside${p.reason ? `: ${p.reason}` : ""}`, "text"] as [string, string]];
+  });
+  return card("points", `Probe points: ${list.length}, used ${used}, set aside ${list.length - used}`,
+    table("Probe points", ["line", "s mm", "X mm", "Y mm", "height mm", "normal x", "normal y", "deviation mm", "status"], rows));
+}

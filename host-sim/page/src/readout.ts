@@ -1,0 +1,90 @@
+/** The figures at one sample of the contour: the table beside the scene and the flag at the pointer. */
+
+import { el } from "./dom";
+import { fixed, NO_VALUE, signed } from "./format";
+import type { Model, Quantity } from "./model";
+
+const ROWS: [Quantity, string, string][] = [
+  ["error_mm", "wall error", "mm"], ["sigma_mm", "σ of it", "mm"], ["arc_deg", "engagement arc", "°"], ["chip_area_mm2", "chip area", "mm²"],
+  ["force_n", "force", "N"], ["fx_n", "force x", "N"], ["fy_n", "force y", "N"], ["dx_mm", "deflection x", "mm"],
+  ["dy_mm", "deflection y", "mm"], ["feed_mm_per_min", "feed", "mm/min"],
+];
+
+function row(quantity: Quantity, values: (number | undefined)[], decimals: number): string[] {
+  const write = quantity === "sigma_mm" || quantity === "force_n" || quantity.startsWith("arc") || quantity.startsWith("chip") || quantity.startsWith("feed") ? fixed : signed;
+  return values.map((value) => write(value, decimals));
+}
+
+export class Readout {
+  readonly element: HTMLElement;
+  private readonly place: HTMLElement;
+  private readonly cells: [Quantity | "cx" | "cy", HTMLElement[]][] = [];
+
+  constructor(private readonly model: Model) {
+    const names = (["before", "after"] as const).filter((n) => model.passes[n]);
+    const body = el("tbody");
+    const add = (key: Quantity | "cx" | "cy", title: string, unit: string, count: number) => {
+      const cells = Array.from({ length: count }, () => el("td", { class: "number" }));
+      if (count === 1 && names.length === 2) cells[0].colSpan = 2;
+      body.append(el("tr", {}, el("th", { scope: "row", class: "text" }, title), ...cells, el("td", { class: "text unit" }, unit)));
+      this.cells.push([key, cells]);
+    };
+    for (const [quantity, title, unit] of ROWS) {
+      if (names.some((n) => model.passes[n]?.series[quantity])) add(quantity, title, unit, names.length);
+    }
+    if (model.correction) {
+      add("cx", "correction x", "mm", 1);
+      add("cy", "correction y", "mm", 1);
+    }
+    this.place = el("p", { class: "at" });
+    const heads = [el("th", { scope: "col", class: "text" }, "quantity"), ...names.map((n) => el("th", { scope: "col", class: `number ${n}` }, n)),
+      el("th", { scope: "col", class: "text" }, "unit")];
+    this.element = el("section", { class: "card", id: "readout", "aria-labelledby": "readout-title" },
+      el("h2", { id: "readout-title" }, "At the cutter"), this.place,
+      el("table", {}, el("thead", {}, el("tr", {}, ...heads)), body));
+  }
+
+  show(index: number): void {
+    const { model } = this;
+    const names = (["before", "after"] as const).filter((n) => model.passes[n]);
+    this.place.textContent = placeText(model, index);
+    for (const [key, cells] of this.cells) {
+      if (key === "cx" || key === "cy") {
+        const series = key === "cx" ? model.correction?.x : model.correction?.y;
+        cells[0].textContent = signed(series?.values[index], series?.decimals ?? 0);
+        continue;
+      }
+      names.forEach((name, k) => {
+        const series = model.passes[name]?.series[key];
+        cells[k].textContent = series ? row(key, [series.values[index]], series.decimals)[0] : NO_VALUE;
+      });
+    }
+  }
+}
+
+export function placeText(model: Model, index: number): string {
+  return `s ${fixed(model.s.values[index], model.s.decimals)} mm, X ${fixed(model.x.values[index], model.x.decimals)} mm, Y ${fixed(model.y.values[index], model.y.decimals)} mm`;
+}
+
+/** Lines of the flag: name, value with unit. */
+export function flagLines(model: Model, index: number, height: number | null): [string, string][] {
+  const lines: [string, string][] = [
+    ["s", `${fixed(model.s.values[index], model.s.decimals)} mm`],
+    ["X, Y", `${fixed(model.x.values[index], model.x.decimals)}, ${fixed(model.y.values[index], model.y.decimals)} mm`],
+  ];
+  for (const name of ["before", "after"] as const) {
+    const pass = model.passes[name];
+    if (!pass) continue;
+    const error = model.error(name, height);
+    if (error) lines.push([`error ${name}`, `${signed(error[index], pass.series.error_mm?.decimals ?? 6)} mm`]);
+    const { sigma_mm: sigma, force_n: force, arc_deg: arc } = pass.series;
+    if (sigma) lines.push(["± σ", `${fixed(sigma.values[index], sigma.decimals)} mm`]);
+    if (force) lines.push([`force ${name}`, `${fixed(force.values[index], force.decimals)} N`]);
+    if (arc && name === "before") lines.push(["arc", `${fixed(arc.values[index], arc.decimals)}°`]);
+  }
+  if (model.correction) {
+    const { x, y } = model.correction;
+    lines.push(["correction x, y", `${signed(x.values[index], x.decimals)}, ${signed(y.values[index], y.decimals)} mm`]);
+  }
+  return lines;
+}

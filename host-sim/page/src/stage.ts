@@ -1,0 +1,227 @@
+/** The scenes together: one or two of them in one view, what is hovered, the legend. */
+
+import { between } from "./cutter";
+import type { ProbePoint, Report } from "./data";
+import { el } from "./dom";
+import { levelFor, type Picture } from "./draw";
+import { fixed, signed } from "./format";
+import type { Model, PassName } from "./model";
+import { boxOf, offsetOf, outline, type Line } from "./outline";
+import type { Palette } from "./palette";
+import { flagLines } from "./readout";
+import { Scene } from "./scene";
+import type { Store } from "./state";
+import { View, type Box } from "./view";
+
+const REACH = 40;
+
+export class Stage {
+  readonly element = el("div", { class: "scenes" });
+  readonly view: View;
+  private readonly scenes: { name: PassName; scene: Scene }[];
+  private readonly flag = el("div", { class: "flag", "aria-hidden": "true" });
+  private readonly wall: Line | null;
+  private readonly stock: Line | null;
+  private readonly outlines: { wall: Line[]; stock: Line[] };
+  private readonly points: ProbePoint[];
+  private readonly largestForce: number;
+  private hovered: number | null = null;
+  private picked: number | null = null;
+  readonly whole: Box;
+
+  constructor(private readonly report: Report, readonly model: Model | null, private readonly store: Store, private colours: Palette,
+    private readonly hoverChanged: (index: number | null) => void) {
+    const given = { wall: outline(report.outlines?.wall, "wall") ?? [], stock: outline(report.outlines?.stock, "stock") ?? [] };
+    this.outlines = given;
+    this.wall = model ? offsetOf(model, model.radius) : null;
+    const allowance = report.job?.stock?.allowance_mm;
+    this.stock = model && allowance !== undefined && given.stock.length === 0 ? offsetOf(model, model.radius - allowance) : null;
+    if (model) this.outlines = { wall: [], stock: given.stock };
+    this.points = report.points ?? [];
+    const touched = { x: Float64Array.from(this.points, (p) => p.x_mm), y: Float64Array.from(this.points, (p) => p.y_mm) };
+    const path = model ? [{ x: model.x.values, y: model.y.values }, this.wall as Line] : [];
+    this.whole = boxOf([...path, ...given.wall, ...given.stock, touched], Math.max(1, (model?.radius ?? 0) * 0.4));
+    this.view = new View(this.whole);
+    const forces = (["before", "after"] as const).map((n) => model?.passes[n]?.series.force_n?.values).filter((v) => v !== undefined);
+    this.largestForce = forces.reduce((most, values) => values.reduce((m, v) => (v > m ? v : m), most), 0);
+    const names: PassName[] = (["before", "after"] as const).filter((n) => model?.passes[n]);
+    this.scenes = (names.length ? names : (["before"] as PassName[])).map((name) => ({ name, scene: this.scene(name) }));
+    this.element.append(...this.scenes.map(({ scene }) => scene.element), this.flag);
+  }
+
+  private scene(name: PassName): Scene {
+    const label = model(this.model) ? `Contour ${name} the correction, to scale, errors enlarged` : "Wall and probe points";
+    return new Scene(this.view, {
+      view: () => this.still(),
+      hover: (scene, px, py) => this.hover(scene, px, py),
+      leave: () => this.hoverAt(null),
+      pick: (px, py) => { const index = this.nearest(px, py); if (index !== null) this.store.set({ place: index, playing: false }); },
+      step: (samples) => this.step(samples),
+      toggle: () => this.onToggle(),
+    }, label);
+  }
+
+  onToggle: () => void = () => undefined;
+
+  private step(samples: number): void {
+    if (!this.model) return;
+    const last = this.model.count - 1;
+    const place = Number.isNaN(samples) ? 0 : Math.min(last, Math.max(0, Math.round(this.store.state.place) + samples));
+    this.store.set({ place, playing: false });
+  }
+
+  recolour(colours: Palette): void {
+    this.colours = colours;
+    this.still();
+  }
+
+  /** After a change of size or of what is shown. */
+  layout(ratio?: number): void {
+    const { shown } = this.store.state;
+    for (const { name, scene } of this.scenes) scene.element.hidden = shown !== "both" && this.scenes.length > 1 && name !== shown;
+    this.element.classList.toggle("double", shown === "both" && this.scenes.length > 1);
+    for (const { scene } of this.visible()) scene.measure(ratio);
+    this.still();
+  }
+
+  /** Everything that does not move. */
+  still(): void {
+    for (const { name, scene } of this.visible()) {
+      const picture = this.picture(name);
+      scene.caption.textContent = this.caption(name);
+      scene.drawStill(picture, this.colours);
+      this.moveOne(name, scene);
+    }
+  }
+
+  /** The cutter and the place hovered over. */
+  moving(): void {
+    for (const { name, scene } of this.visible()) this.moveOne(name, scene);
+  }
+
+  /** Marks a sample from elsewhere. */
+  mark(index: number | null): void {
+    this.hovered = index;
+    this.moving();
+  }
+
+  /** Shows a probe point large. */
+  showPoint(index: number): void {
+    const point = this.points[index];
+    this.picked = index;
+    const half = Math.max(3, (this.model?.radius ?? 5) * 0.8);
+    this.view.show({ x0: point.x_mm - half, x1: point.x_mm + half, y0: point.y_mm - half, y1: point.y_mm + half });
+    this.still();
+  }
+
+  private moveOne(name: PassName, scene: Scene): void {
+    scene.drawMoving(this.picture(name), this.colours, this.store.state.place, this.largestForce, this.hovered);
+  }
+
+  private visible(): { name: PassName; scene: Scene }[] {
+    return this.scenes.filter(({ scene }) => !scene.element.hidden);
+  }
+
+  private caption(name: PassName): string {
+    const { magnify, height } = this.store.state;
+    const pass = this.model?.passes[name];
+    const z = height === null ? "" : `, ${fixed(this.report.heights?.z_mm[height], 2)} mm above the tip`;
+    return `${pass ? `${name}: ${pass.label}` : "wall and probe points"}${z}; to scale, errors and deviations ${magnify} ×`;
+  }
+
+  private picture(name: PassName): Picture {
+    const { magnify, height, hidden } = this.store.state;
+    return {
+      model: this.model, pass: this.model?.passes[name] ?? null, error: this.model?.error(name, height),
+      wall: this.wall, stock: this.stock, outlines: this.outlines,
+      points: name === "before" || this.scenes.length === 1 ? this.points : [],
+      magnify, tolerance: this.report.tolerance_mm ?? 0, hidden, picked: this.picked,
+    };
+  }
+
+  /** The sample whose path or wall is nearest, within reach of the pointer. */
+  nearest(px: number, py: number): number | null {
+    const { model, wall, view } = this;
+    if (!model || !wall) return null;
+    const x = view.mmX(px);
+    const y = view.mmY(py);
+    let best: number | null = null;
+    let least = (REACH / view.scale) ** 2;
+    const look = (i: number) => {
+      const path = (model.x.values[i] - x) ** 2 + (model.y.values[i] - y) ** 2;
+      const edge = (wall.x[i] - x) ** 2 + (wall.y[i] - y) ** 2;
+      const distance = Math.min(path, edge);
+      if (distance < least) {
+        least = distance;
+        best = i;
+      }
+    };
+    levelFor(model, view).length === model.count ? range(model.count, look) : levelFor(model, view).forEach(look);
+    return best;
+  }
+
+  private hover(scene: Scene, px: number, py: number): void {
+    const point = this.pointAt(px, py, scene);
+    if (point !== null) {
+      const p = this.points[point];
+      this.hoverAt(null);
+      this.show(scene, px, py, [
+        ["probe point", String(p.line ?? point + 1)], ["deviation", `${signed(p.error_mm, 6)} mm`],
+        ["X, Y", `${fixed(p.x_mm, 6)}, ${fixed(p.y_mm, 6)} mm`], ["normal", `${fixed(p.nx, 3)}, ${fixed(p.ny, 3)}`],
+        ...(p.z_mm === undefined ? [] : [["height", `${fixed(p.z_mm, 2)} mm`] as [string, string]]),
+        ["status", p.status === "used" ? "used" : `set aside ${p.reason ?? ""}`],
+      ]);
+      return;
+    }
+    const index = this.nearest(px, py);
+    this.hoverAt(index);
+    if (index !== null && this.model) this.show(scene, px, py, flagLines(this.model, index, this.store.state.height));
+  }
+
+  private pointAt(px: number, py: number, scene: Scene): number | null {
+    const name = this.scenes.find((s) => s.scene === scene)?.name;
+    if (this.scenes.length > 1 && name !== "before" || this.store.state.hidden.has("points")) return null;
+    const { magnify } = this.store.state;
+    let best: number | null = null;
+    let least = 9;
+    this.points.forEach((p, i) => {
+      const x = this.view.px(p.x_mm + (1 - magnify) * p.error_mm * p.nx);
+      const y = this.view.py(p.y_mm + (1 - magnify) * p.error_mm * p.ny);
+      const distance = Math.hypot(x - px, y - py);
+      if (distance < least) [least, best] = [distance, i];
+    });
+    return best;
+  }
+
+  private hoverAt(index: number | null): void {
+    this.flag.classList.remove("shown");
+    if (index === this.hovered) return;
+    this.hovered = index;
+    this.moving();
+    this.hoverChanged(index);
+  }
+
+  private show(scene: Scene, px: number, py: number, lines: [string, string][]): void {
+    this.flag.replaceChildren(...lines.flatMap(([name, value]) => [el("span", {}, name), el("b", {}, value)]));
+    this.flag.classList.add("shown");
+    const left = scene.stage.offsetLeft + px;
+    const top = scene.stage.offsetTop + py;
+    const { offsetWidth: wide, offsetHeight: high } = this.flag;
+    const x = left + 16 + wide > this.element.clientWidth ? Math.max(0, left - wide - 16) : left + 16;
+    const y = top + 16 + high > this.element.clientHeight ? Math.max(0, top - high - 16) : top + 16;
+    this.flag.style.transform = `translate(${x}px, ${y}px)`;
+  }
+
+  /** Arc length that the view shows of the cutter's neighbourhood, for tests and for the traces. */
+  placeNow(): number {
+    return this.model ? between(this.model.s.values, this.store.state.place) : 0;
+  }
+}
+
+function model(value: Model | null): value is Model {
+  return value !== null;
+}
+
+function range(count: number, look: (i: number) => void): void {
+  for (let i = 0; i < count; i++) look(i);
+}

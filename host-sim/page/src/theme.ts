@@ -1,0 +1,24 @@
+/** Light and dark: as the system says, until the reader chooses. */
+
+import { el } from "./dom";
+
+export type Theme = "light" | "dark";
+
+export function current(): Theme {
+  const chosen = document.documentElement.dataset.theme;
+  if (chosen === "light" || chosen === "dark") return chosen;
+  return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+}
+
+export function themeButton(changed: () => void): HTMLElement {
+  const button = el("button", { type: "button", id: "theme" });
+  const show = () => { button.textContent = current() === "dark" ? "light" : "dark"; button.setAttribute("aria-label", `Switch to ${button.textContent} colours`); };
+  button.addEventListener("click", () => {
+    document.documentElement.dataset.theme = current() === "dark" ? "light" : "dark";
+    show();
+    changed();
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { show(); changed(); });
+  show();
+  return button;
+}
