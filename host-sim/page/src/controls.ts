@@ -19,9 +19,10 @@ export function fittingFactor(largest: number, size: number): number {
 
 export interface SceneActions { zoomIn(): void; zoomOut(): void; whole(): void }
 
-export interface Layer { id: string; name: string; key: string }
+/** A layer with the signs that belong to it: class of the key, name. */
+export interface Layer { id: string; keys: [string, string][] }
 
-export function sceneBar(model: Model | null, store: Store, actions: SceneActions, layers: Layer[]): HTMLElement {
+export function sceneBar(model: Model | null, store: Store, actions: SceneActions): HTMLElement {
   const bar = el("div", { class: "bar", role: "group", "aria-label": "Picture" });
   const { before, after } = model?.passes ?? {};
   if (before && after) bar.append(segments(store));
@@ -32,21 +33,6 @@ export function sceneBar(model: Model | null, store: Store, actions: SceneAction
   bar.append(el("label", { class: "field" }, "error drawn", factor));
   const heights = model?.report.heights;
   if (heights && heights.z_mm.length > 0) bar.append(heightSlider(heights.z_mm, store));
-  const details = el("details", { class: "layers" }, el("summary", {}, "layers"));
-  const list = el("div", { class: "layer-list" });
-  for (const { id, name, key } of layers) {
-    const box = el("input", { type: "checkbox" });
-    box.checked = !store.state.hidden.has(id);
-    box.addEventListener("change", () => {
-      const hidden = new Set(store.state.hidden);
-      if (box.checked) hidden.delete(id);
-      else hidden.add(id);
-      store.set({ hidden });
-    });
-    list.append(el("label", {}, box, el("i", { class: `key ${key}` }), name));
-  }
-  details.append(list);
-  bar.append(details);
   const zoom = el("div", { class: "buttons" });
   for (const [text, name, run] of [["+", "Zoom in", actions.zoomIn], ["−", "Zoom out", actions.zoomOut], ["whole", "Show everything", actions.whole]] as const) {
     const button = el("button", { type: "button", "aria-label": name, title: name }, text);
@@ -55,6 +41,23 @@ export function sceneBar(model: Model | null, store: Store, actions: SceneAction
   }
   bar.append(zoom);
   return bar;
+}
+
+/** What the lines and colours are; each can be hidden. */
+export function legend(store: Store, layers: Layer[]): HTMLElement {
+  const list = el("div", { class: "legend", role: "group", "aria-label": "Layers of the picture" });
+  for (const { id, keys } of layers) {
+    const box = el("input", { type: "checkbox", id: `layer-${id}` });
+    box.checked = !store.state.hidden.has(id);
+    box.addEventListener("change", () => {
+      const hidden = new Set(store.state.hidden);
+      if (box.checked) hidden.delete(id);
+      else hidden.add(id);
+      store.set({ hidden });
+    });
+    list.append(el("label", {}, box, ...keys.flatMap(([key, name]) => [el("i", { class: `key ${key}` }), el("span", {}, name)])));
+  }
+  return list;
 }
 
 function segments(store: Store): HTMLElement {

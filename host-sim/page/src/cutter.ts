@@ -1,6 +1,6 @@
 /** The moving layer of a scene: cutter, engaged arc, force, uncut stock, the place under the pointer. */
 
-import type { Picture } from "./draw";
+import { levelFor, strip, type Picture } from "./draw";
 import type { Palette } from "./palette";
 import type { View } from "./view";
 
@@ -14,9 +14,12 @@ export function between(values: ArrayLike<number>, place: number): number {
 }
 
 export function drawMoving(c: Context, view: View, picture: Picture, colours: Palette, place: number, largestForce: number, hovered: number | null): void {
-  c.clearRect(0, 0, view.width, view.height);
   const { model, pass } = picture;
   if (!model) return;
+  if (picture.stock && picture.wall && !picture.hidden.has("stock")) {
+    const ahead = pass ? levelFor(model, view).filter((i) => i >= place) : levelFor(model, view);
+    strip(c, view, ahead, picture.stock, picture.wall, colours.stock);
+  }
   if (hovered !== null) mark(c, view, picture, colours, hovered);
   if (!pass || picture.hidden.has("cutter")) return;
   const m = picture.magnify;

@@ -14,13 +14,12 @@ export function card(id: string, title: string, ...children: Child[]): HTMLEleme
   return el("section", { class: "card", id, "aria-labelledby": `${id}-title` }, el("h2", { id: `${id}-title` }, title), ...children);
 }
 
-/** A table that scrolls within itself on a narrow screen. */
-export function table(name: string, heads: string[], rows: (Child | [Child, string])[][], text = 0): HTMLElement {
-  const head = el("tr", {}, ...heads.map((title, i) => el("th", { scope: "col", class: i <= text ? "text" : "number" }, title)));
-  const body = rows.map((row) => el("tr", {}, ...row.map((cell, i) => {
-    const [content, kind] = Array.isArray(cell) ? cell : [cell, i <= text ? "text" : "number"];
-    return i === 0 ? el("th", { scope: "row", class: kind }, content) : el("td", { class: kind }, content);
-  })));
+/** A table that scrolls within itself on a narrow screen; `text` are the columns of words. */
+export function table(name: string, heads: string[], rows: Child[][], text: number[] = [0]): HTMLElement {
+  const kind = (i: number) => (text.includes(i) ? "text" : "number");
+  const head = el("tr", {}, ...heads.map((title, i) => el("th", { scope: "col", class: kind(i) }, title)));
+  const body = rows.map((row) => el("tr", {}, ...row.map((cell, i) => (
+    i === 0 ? el("th", { scope: "row", class: kind(i) }, cell) : el("td", { class: kind(i) }, cell)))));
   const element = el("table", {}, el("thead", {}, head), el("tbody", {}, ...body));
   return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": name }, element);
 }

@@ -37,7 +37,6 @@ export function drawStill(c: Context, view: View, picture: Picture, colours: Pal
     const beyond = shifted(wall, model, depth);
     strip(c, view, indices, wall, beyond, colours.part);
     if (!picture.hidden.has("stock") && picture.stock) {
-      strip(c, view, indices, picture.stock, wall, colours.stock);
       path(c, view, indices, picture.stock, colours.quiet, 1, [5, 4]);
     }
     if (!picture.hidden.has("band") && picture.error) band(c, view, indices, model, wall, picture, colours);

@@ -1,6 +1,6 @@
 /** Puts the page together from the data in it. */
 
-import { fittingFactor, sceneBar, transport, type Layer } from "./controls";
+import { fittingFactor, legend, sceneBar, transport, type Layer } from "./controls";
 import { readReport } from "./decode";
 import type { Report } from "./data";
 import { el } from "./dom";
@@ -35,15 +35,19 @@ function largest(values: ArrayLike<number> | undefined): number {
 
 function layersOf(report: Report, model: Model | null): Layer[] {
   const { before, after } = model?.passes ?? {};
+  const errors: [string, string][] = [["left", "material left"], ["gouge", "cut too deep"]];
+  if (report.tolerance_mm) errors.push(["within", "within tolerance"]);
+  const paths: [string, string][] = [...(before?.deviation ? [["before", "actual path before"] as [string, string]] : []),
+    ...(after?.deviation ? [["after", "actual path after"] as [string, string]] : [])];
   const all: [Layer, unknown][] = [
-    [{ id: "band", name: "error of the wall: left, cut too deep, within tolerance", key: "band" }, before ?? after],
-    [{ id: "nominal", name: "nominal path", key: "nominal" }, model],
-    [{ id: "commanded", name: "commanded path (after)", key: "commanded" }, model?.correction],
-    [{ id: "actual", name: "actual path", key: "actual" }, before?.deviation ?? after?.deviation],
-    [{ id: "stock", name: "stock before this pass", key: "stock" }, report.job?.stock?.allowance_mm ?? report.outlines?.stock],
-    [{ id: "points", name: "probe points with normal and deviation, mm", key: "points" }, report.points?.length],
-    [{ id: "cutter", name: "cutter and engaged arc", key: "cutter" }, before ?? after],
-    [{ id: "force", name: "force", key: "force" }, before?.series.fx_n ?? after?.series.fx_n],
+    [{ id: "band", keys: errors }, before ?? after],
+    [{ id: "nominal", keys: [["nominal", "nominal path"]] }, model],
+    [{ id: "commanded", keys: [["commanded", "commanded path"]] }, after && model?.correction],
+    [{ id: "actual", keys: paths }, paths.length],
+    [{ id: "stock", keys: [["stock", "stock"]] }, report.job?.stock?.allowance_mm ?? report.outlines?.stock],
+    [{ id: "points", keys: [["points", "probe point, normal, deviation mm"]] }, report.points?.length],
+    [{ id: "cutter", keys: [["cutter", "cutter, engaged arc"]] }, before ?? after],
+    [{ id: "force", keys: [["force", "force"]] }, before?.series.fx_n ?? after?.series.fx_n],
   ];
   return all.filter(([, there]) => there !== undefined && there !== null && there !== 0).map(([layer]) => layer);
 }
@@ -85,8 +89,9 @@ function show(report: Report, main: HTMLElement): void {
     zoomIn: () => { stage.view.zoom(1.5); stage.still(); },
     zoomOut: () => { stage.view.zoom(1 / 1.5); stage.still(); },
     whole: () => { stage.view.fit(); stage.still(); store.set({ range: null }); },
-  }, layersOf(report, model));
-  const picture = el("section", { class: "picture", "aria-label": "Contour" }, bar, stage.element, player && model ? transport(model, store, player) : null);
+  });
+  const picture = el("section", { class: "picture", "aria-label": "Contour" }, bar, stage.element,
+    legend(store, layersOf(report, model)), player && model ? transport(model, store, player) : null);
   const work = el("div", { class: traces ? "work" : "work alone" }, picture, traces ? tracesBox : null);
   const below = el("div", { class: "below" }, readout?.element,
     report.parameters?.length ? parameters(report.parameters) : null, job(report),
@@ -99,7 +104,7 @@ function show(report: Report, main: HTMLElement): void {
   main.append(...(figures ? [figures] : []), work, below);
 
   const traceHeight = () => {
-    const room = work.clientWidth > 900 ? (picture.clientHeight - 26) / Math.max(1, traces?.count || expected(model)) - 20 : 84;
+    const room = work.clientWidth > 900 ? (picture.clientHeight - 34) / Math.max(1, traces?.count || expected(model)) - 20 : 84;
     return Math.max(52, Math.min(150, Math.floor(room)));
   };
   stage.onToggle = () => player?.toggle();

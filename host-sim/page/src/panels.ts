@@ -57,11 +57,11 @@ export function parameters(list: Parameter[]): HTMLElement {
     const decimals = decimalsFor(p.sigma);
     const prior = p.prior === undefined ? NO_VALUE : `${fixed(p.prior, decimals)} ± ${fixed(p.prior_sigma, decimals)}`;
     return [p.name.replaceAll("_", " "), fixed(p.value, decimals), `± ${fixed(p.sigma, decimals)}`, prior,
-      [p.unit === "1" ? "–" : p.unit.replace("um", "µm"), "text"] as [string, string],
-      [el("span", { class: p.observable ? "yes" : "no" }, p.observable ? "yes" : "no"), "text"] as [HTMLElement, string]];
+      p.unit === "1" ? NO_VALUE : p.unit.replace("um", "µm"),
+      el("span", { class: p.observable ? "yes" : "no" }, p.observable ? "yes" : "no")];
   });
   return card("parameters", "Identified",
-    table("Identified parameters", ["parameter", "value", "σ", "believed before", "unit", "decided by the points"], rows));
+    table("Identified parameters", ["parameter", "value", "σ", "believed before", "unit", "decided by points"], rows, [0, 4, 5]));
 }
 
 export function points(list: ProbePoint[], show: (index: number) => void): HTMLElement {
@@ -70,8 +70,8 @@ export function points(list: ProbePoint[], show: (index: number) => void): HTMLE
     const button = el("button", { type: "button", class: "link", "aria-label": `Show probe point ${p.line ?? index + 1} in the picture` }, String(p.line ?? index + 1));
     button.addEventListener("click", () => show(index));
     return [button, fixed(p.s_mm, 3), fixed(p.x_mm, 4), fixed(p.y_mm, 4), fixed(p.z_mm, 2), fixed(p.nx, 3), fixed(p.ny, 3),
-      signed(p.error_mm, 4), [p.status === "used" ? "used" : `set aside${p.reason ? `: ${p.reason}` : ""}`, "text"] as [string, string]];
+      signed(p.error_mm, 4), p.status === "used" ? "used" : `set aside${p.reason ? `: ${p.reason}` : ""}`];
   });
   return card("points", `Probe points: ${list.length}, used ${used}, set aside ${list.length - used}`,
-    table("Probe points", ["line", "s mm", "X mm", "Y mm", "height mm", "normal x", "normal y", "deviation mm", "status"], rows));
+    table("Probe points", ["line", "s mm", "X mm", "Y mm", "height mm", "normal x", "normal y", "deviation mm", "status"], rows, [0, 8]));
 }

@@ -13,11 +13,12 @@ export function printing(stage: Stage, store: Store, traces: Traces | null, reco
     root.dataset.theme = "light";
     root.dataset.printing = "yes";
     store.set({ playing: false, range: null, ...(both ? { shown: "both" } : {}) });
+    for (const details of document.querySelectorAll<HTMLDetailsElement>("details.warnings")) details.open = true;
     stage.view.fit();
     stage.layout(3);
     recolour();
-    traces?.resize(74);
-    traces?.place(store.state.place);
+    traces?.resize(Math.floor(440 / Math.max(5, traces.count)) - 20);
+    stage.layout(3);
   });
   window.addEventListener("afterprint", () => {
     if (!kept) return;

@@ -26,6 +26,7 @@ export class Scene {
   private readonly frame = document.createElement("div");
   private readonly fingers = new Map<number, { x: number; y: number }>();
   private ratio = 1;
+  private paper = false;
 
   constructor(readonly view: View, private readonly events: SceneEvents, name: string) {
     this.element = document.createElement("figure");
@@ -46,9 +47,11 @@ export class Scene {
   }
 
   /** Matches the canvases to their place on the page; a given ratio is for paper. */
-  measure(ratio = window.devicePixelRatio || 1): void {
+  measure(paper?: number): void {
     const { clientWidth, clientHeight } = this.stage;
+    const ratio = paper ?? (window.devicePixelRatio || 1);
     this.ratio = ratio;
+    this.paper = paper !== undefined;
     for (const canvas of [this.still, this.moving]) {
       canvas.width = Math.max(1, Math.round(clientWidth * ratio));
       canvas.height = Math.max(1, Math.round(clientHeight * ratio));
@@ -63,7 +66,10 @@ export class Scene {
   }
 
   drawMoving(picture: Picture, colours: Palette, place: number, largestForce: number, hovered: number | null): void {
-    drawMoving(this.context(this.moving), this.view, picture, colours, place, largestForce, hovered);
+    // On paper canvases are replayed as strokes, and clearing one would take away what lies below it.
+    const context = this.context(this.paper ? this.still : this.moving);
+    if (!this.paper) context.clearRect(0, 0, this.view.width, this.view.height);
+    drawMoving(context, this.view, picture, colours, place, largestForce, hovered);
   }
 
   private context(canvas: HTMLCanvasElement): CanvasRenderingContext2D {

@@ -76,11 +76,11 @@ export class Stage {
   }
 
   /** After a change of size or of what is shown. */
-  layout(ratio?: number): void {
+  layout(paper?: number): void {
     const { shown } = this.store.state;
     for (const { name, scene } of this.scenes) scene.element.hidden = shown !== "both" && this.scenes.length > 1 && name !== shown;
     this.element.classList.toggle("double", shown === "both" && this.scenes.length > 1);
-    for (const { scene } of this.visible()) scene.measure(ratio);
+    for (const { scene } of this.visible()) scene.measure(paper);
     this.still();
   }
 

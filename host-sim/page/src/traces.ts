@@ -137,7 +137,7 @@ export class Traces {
     return {
       width: this.width(),
       height: height + (last ? 26 : 0),
-      padding: [4, 8, last ? 0 : 4, 0],
+      padding: [7, 8, last ? 0 : 5, 0],
       series,
       bands,
       legend: { show: false },
@@ -150,7 +150,7 @@ export class Traces {
       scales: { x: { time: false, min, max, range: (_plot, a, b) => [a, b] }, y: { range: (_plot, a, b) => around(a, b, panel.tolerance) } },
       axes: [
         { ...axis, show: last, size: 30, gap: 2, values: (_plot, ticks) => ticks.map((t) => label(t)) },
-        { ...axis, size: 54, gap: 4, space: 24, values: (_plot, ticks) => ticks.map((t) => label(t)) },
+        { ...axis, size: 54, gap: 4, space: 16, values: (_plot, ticks) => ticks.map((t) => label(t)) },
       ],
       hooks: {
         setScale: [(plot, key) => {

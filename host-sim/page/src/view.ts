@@ -2,6 +2,9 @@
 
 export interface Box { x0: number; y0: number; x1: number; y1: number }
 
+/** Pixels kept free at every side of the whole: room for figures. */
+const EDGE = 44;
+
 export class View {
   width = 1;
   height = 1;
@@ -56,10 +59,10 @@ export class View {
   }
 
   private scaleFor(box: Box): number {
-    const margin = 0.94;
+    const room = (size: number) => Math.max(size * 0.5, size - 2 * EDGE);
     const wide = Math.max(box.x1 - box.x0, 1e-3);
     const high = Math.max(box.y1 - box.y0, 1e-3);
-    return margin * Math.min(this.width / wide, this.height / high);
+    return Math.min(room(this.width) / wide, room(this.height) / high);
   }
 
   /** From a quarter of the whole to a pixel a hundredth of a micrometre. */
