@@ -17,7 +17,7 @@ export function fittingFactor(largest: number, size: number): number {
   return [...FACTORS].reverse().find((f) => f <= wanted) ?? 1;
 }
 
-export interface SceneActions { zoomIn(): void; zoomOut(): void; whole(): void }
+export interface SceneActions { zoomIn(): void; zoomOut(): void; whole(): void; fragment(): void }
 
 /** A layer with the signs that belong to it: class of the key, name. */
 export interface Layer { id: string; keys: [string, string][] }
@@ -34,8 +34,13 @@ export function sceneBar(model: Model | null, store: Store, actions: SceneAction
   const heights = model?.report.heights;
   if (heights && heights.z_mm.length > 0) bar.append(heightSlider(heights.z_mm, store));
   const zoom = el("div", { class: "buttons" });
+  const fragment = el("button", { type: "button", title: "Show in the picture what the traces show" }, "fragment");
+  fragment.hidden = true;
+  fragment.addEventListener("click", actions.fragment);
+  store.onChange((changed) => { if (changed.has("range")) fragment.hidden = store.state.range === null; });
+  zoom.append(fragment);
   for (const [text, name, run] of [["+", "Zoom in", actions.zoomIn], ["−", "Zoom out", actions.zoomOut], ["whole", "Show everything", actions.whole]] as const) {
-    const button = el("button", { type: "button", "aria-label": name, title: name }, text);
+    const button = el("button", { type: "button", ...(text === "whole" ? {} : { "aria-label": name }), title: name }, text);
     button.addEventListener("click", run);
     zoom.append(button);
   }

@@ -253,13 +253,13 @@ function grid(c: Context, view: View, colours: Palette): void {
   const number = (v: number) => v.toFixed(decimals).replace(/^-(?=0(\.0*)?$)/, "").replace("-", "−");
   for (let k = x0; k <= x1; k++) {
     const px = view.px(k * step);
-    if (px > 46 && px < view.width - 30) c.fillText(number(k * step), px + 3, view.height - 2);
+    if (px > 46 && px < view.width - 70) c.fillText(number(k * step), px + 3, view.height - 2);
   }
   for (let k = y0; k <= y1; k++) {
     const py = view.py(k * step);
     if (py < view.height - 22 && py > 26) c.fillText(number(k * step), 3, py - 1);
   }
-  c.fillText("X mm", view.width - 28, view.height - 2);
+  c.fillText("X mm", view.width - 32, view.height - 2);
   c.textBaseline = "top";
   c.fillText("Y mm", 3, 3);
 }

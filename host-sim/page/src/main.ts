@@ -88,8 +88,10 @@ function show(report: Report, main: HTMLElement): void {
   const bar = sceneBar(model, store, {
     zoomIn: () => { stage.view.zoom(1.5); stage.still(); },
     zoomOut: () => { stage.view.zoom(1 / 1.5); stage.still(); },
+    fragment: () => { if (store.state.range) stage.showRange(store.state.range); },
     whole: () => { stage.view.fit(); stage.still(); store.set({ range: null }); },
   });
+  const seen = model || report.points?.length || report.outlines?.wall?.length || report.outlines?.stock?.length;
   const picture = el("section", { class: "picture", "aria-label": "Contour" }, bar, stage.element,
     legend(store, layersOf(report, model)), player && model ? transport(model, store, player) : null);
   const work = el("div", { class: traces ? "work" : "work alone" }, picture, traces ? tracesBox : null);
@@ -100,6 +102,7 @@ function show(report: Report, main: HTMLElement): void {
       stage.showPoint(index);
       picture.scrollIntoView({ block: "nearest" });
     }) : null);
+  picture.hidden = !seen;
   const figures = results(report);
   main.append(...(figures ? [figures] : []), work, below);
 

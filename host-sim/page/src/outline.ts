@@ -30,5 +30,5 @@ export function boxOf(lines: Line[], margin: number): Box {
       box.y1 = Math.max(box.y1, y[i] + margin);
     }
   }
-  return box;
+  return Number.isFinite(box.x0 + box.x1 + box.y0 + box.y1) ? box : { x0: 0, y0: 0, x1: 1, y1: 1 };
 }

@@ -1,6 +1,5 @@
 /** The scenes together: one or two of them in one view, what is hovered, the legend. */
 
-import { between } from "./cutter";
 import type { ProbePoint, Report } from "./data";
 import { el } from "./dom";
 import { levelFor, type Picture } from "./draw";
@@ -50,7 +49,7 @@ export class Stage {
   }
 
   private scene(name: PassName): Scene {
-    const label = model(this.model) ? `Contour ${name} the correction, to scale, errors enlarged` : "Wall and probe points";
+    const label = this.model ? `Contour ${name} the correction, to scale, errors enlarged` : "Wall and probe points";
     return new Scene(this.view, {
       view: () => this.still(),
       hover: (scene, px, py) => this.hover(scene, px, py),
@@ -114,6 +113,16 @@ export class Stage {
     this.still();
   }
 
+  /** Shows a stretch of the contour as large as it goes. */
+  showRange([from, to]: [number, number]): void {
+    if (!this.model || !this.wall) return;
+    const first = this.model.indexAt(from);
+    const last = this.model.nearest(to) + 1;
+    const cut = (line: Line): Line => ({ x: line.x.slice(first, last), y: line.y.slice(first, last) });
+    this.view.show(boxOf([cut(this.wall), cut({ x: this.model.x.values, y: this.model.y.values })], 0));
+    this.still();
+  }
+
   private moveOne(name: PassName, scene: Scene): void {
     scene.drawMoving(this.picture(name), this.colours, this.store.state.place, this.largestForce, this.hovered);
   }
@@ -126,7 +135,7 @@ export class Stage {
     const { magnify, height } = this.store.state;
     const pass = this.model?.passes[name];
     const z = height === null ? "" : `, ${fixed(this.report.heights?.z_mm[height], 2)} mm above the tip`;
-    return `${pass ? `${name}: ${pass.label}` : "wall and probe points"}${z}; to scale, errors and deviations ${magnify} ×`;
+    return `${pass ? `${name}: ${pass.label}` : "wall and probe points"}${z}; errors ${magnify} ×`;
   }
 
   private picture(name: PassName): Picture {
@@ -156,7 +165,7 @@ export class Stage {
         best = i;
       }
     };
-    levelFor(model, view).length === model.count ? range(model.count, look) : levelFor(model, view).forEach(look);
+    levelFor(model, view).forEach(look);
     return best;
   }
 
@@ -211,17 +220,4 @@ export class Stage {
     const y = top + 16 + high > this.element.clientHeight ? Math.max(0, top - high - 16) : top + 16;
     this.flag.style.transform = `translate(${x}px, ${y}px)`;
   }
-
-  /** Arc length that the view shows of the cutter's neighbourhood, for tests and for the traces. */
-  placeNow(): number {
-    return this.model ? between(this.model.s.values, this.store.state.place) : 0;
-  }
-}
-
-function model(value: Model | null): value is Model {
-  return value !== null;
-}
-
-function range(count: number, look: (i: number) => void): void {
-  for (let i = 0; i < count; i++) look(i);
 }

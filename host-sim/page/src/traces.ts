@@ -75,7 +75,7 @@ export class Traces {
     box.className = "trace";
     const head = document.createElement("div");
     head.className = "trace-head";
-    const title = document.createElement("h3");
+    const title = document.createElement("h2");
     title.textContent = panel.title;
     const unit = document.createElement("span");
     unit.className = "unit";

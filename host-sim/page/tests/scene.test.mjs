@@ -1,0 +1,199 @@
+// The picture under pointer, wheel, fingers and keys; cutter, passes, layers, heights, traces.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { column } from "../samples/convert.mjs";
+import { launch, onPage, open, out, sample, write } from "./browser.mjs";
+
+let browser;
+before(async () => { browser = await launch(); });
+after(() => browser.close());
+
+const view = async (page) => (await page.locator(".stage:visible").first().getAttribute("data-view")).split(" ").map(Number);
+const place = (page) => page.inputValue("#scrub").then(Number);
+const still = (page) => page.locator(".stage:visible canvas").first().evaluate((canvas) => canvas.toDataURL());
+const pocket = async () => open(browser, await write("pocket", await sample("pocket")));
+
+test("play moves the cutter at the speed of the machine, pause holds it, scrubbing puts it elsewhere", async () => {
+  const { page, close } = await pocket();
+  const moving = () => page.locator(".stage:visible canvas").nth(1).evaluate((canvas) => canvas.toDataURL());
+  const first = await moving();
+  await page.click("#play");
+  await page.waitForTimeout(1500);
+  await page.click("#play");
+  const at = await place(page);
+  // 600 mm/min and a sample every 0.1 mm: 100 samples a second.
+  assert.ok(at > 100 && at < 220, `${at}`);
+  assert.notEqual(await moving(), first);
+  await page.waitForTimeout(200);
+  assert.equal(await place(page), at);
+  await page.fill("#scrub", "900");
+  assert.match(await page.locator("#readout .at").textContent(), /^s 89\.9/);
+  await page.locator(".playhead").first().waitFor();
+  await close();
+});
+
+test("the end of the contour stops the cutter, and play begins anew", async () => {
+  const { page, close } = await pocket();
+  await page.selectOption("#speed", "10");
+  await page.fill("#scrub", "1900");
+  await page.click("#play");
+  await page.waitForFunction(() => document.querySelector("#play").textContent === "▶");
+  assert.equal(await place(page), 1932);
+  await page.click("#play");
+  await page.waitForTimeout(200);
+  assert.ok(await place(page) < 1000);
+  await close();
+});
+
+test("the wheel zooms about the pointer, dragging moves, 0 shows everything", async () => {
+  const { page, close } = await pocket();
+  const [cx, cy, scale] = await view(page);
+  const at = await onPage(page, 26, 16);
+  await page.mouse.move(at.x, at.y);
+  for (let k = 0; k < 3; k++) await page.mouse.wheel(0, -200);
+  await page.waitForFunction((whole) => Number(document.querySelector(".stage").dataset.view.split(" ")[2]) > 2.5 * whole, scale);
+  const zoomed = await view(page);
+  assert.ok(zoomed[2] > 2 * scale);
+  const again = await onPage(page, 26, 16);
+  assert.ok(Math.hypot(again.x - at.x, again.y - at.y) < 2, "the place under the pointer stays");
+  await page.mouse.down();
+  await page.mouse.move(at.x + 50, at.y + 20, { steps: 3 });
+  await page.mouse.up();
+  const moved = await view(page);
+  assert.ok(Math.abs((zoomed[0] - moved[0]) * moved[2] - 50) < 1 && Math.abs((moved[1] - zoomed[1]) * moved[2] - 20) < 1);
+  await page.locator(".stage:visible").focus();
+  await page.keyboard.press("0");
+  assert.deepEqual(await view(page), [cx, cy, scale]);
+  await close();
+});
+
+test("keys zoom, move and step; a frame with Shift zooms to what it holds", async () => {
+  const { page, close } = await pocket();
+  const [cx, cy, scale] = await view(page);
+  await page.locator(".stage:visible").focus();
+  await page.keyboard.press("+");
+  assert.ok(Math.abs((await view(page))[2] / scale - 1.25) < 1e-9);
+  await page.keyboard.press("-");
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowUp");
+  const moved = await view(page);
+  assert.ok(moved[0] > cx && moved[1] > cy);
+  await page.keyboard.press(".");
+  await page.keyboard.press(".");
+  await page.keyboard.press(",");
+  assert.equal(await place(page), 1);
+  await page.keyboard.press("End");
+  assert.equal(await place(page), 1932);
+  await page.keyboard.press("0");
+  const a = await onPage(page, 20, 20);
+  const b = await onPage(page, 32, 10);
+  await page.keyboard.down("Shift");
+  await page.mouse.move(a.x, a.y);
+  await page.mouse.down();
+  await page.mouse.move(b.x, b.y, { steps: 3 });
+  await page.mouse.up();
+  await page.keyboard.up("Shift");
+  const framed = await view(page);
+  assert.ok(Math.abs(framed[0] - 26) < 0.1 && Math.abs(framed[1] - 15) < 0.1 && framed[2] > 2 * scale);
+  await close();
+});
+
+test("two fingers zoom", async () => {
+  const { page, close } = await pocket();
+  const [, , scale] = await view(page);
+  await page.locator(".stage:visible").evaluate((stage) => {
+    stage.setPointerCapture = () => undefined;
+    const box = stage.getBoundingClientRect();
+    const fire = (type, id, x) => stage.dispatchEvent(new PointerEvent(type, { pointerId: id, pointerType: "touch", clientX: box.left + x, clientY: box.top + 200, bubbles: true }));
+    fire("pointerdown", 1, 200);
+    fire("pointerdown", 2, 300);
+    fire("pointermove", 2, 400);
+    fire("pointerup", 1, 200);
+    fire("pointerup", 2, 400);
+  });
+  assert.ok(Math.abs((await view(page))[2] / scale - 2) < 1e-6);
+  await close();
+});
+
+test("before, after and side by side show different passes in one view", async () => {
+  const { page, close } = await pocket();
+  const before = await still(page);
+  await page.click('label[for="shown-after"]');
+  assert.notEqual(await still(page), before);
+  await page.click('label[for="shown-both"]');
+  assert.equal(await page.locator(".stage:visible").count(), 2);
+  await page.locator(".stage:visible").nth(1).focus();
+  await page.keyboard.press("+");
+  const views = await page.locator(".stage:visible").evaluateAll((all) => all.map((stage) => stage.dataset.view));
+  assert.equal(views[0], views[1]);
+  await page.screenshot({ path: `${out}pocket-side-by-side.png` });
+  await close();
+});
+
+test("the magnification and every layer change the picture", async () => {
+  const { page, close } = await pocket();
+  await page.click('label[for="shown-after"]');
+  let last = await still(page);
+  await page.selectOption("#magnify", "100");
+  assert.notEqual(await still(page), last);
+  for (const layer of ["band", "nominal", "commanded", "actual", "stock"]) {
+    last = await still(page);
+    await page.uncheck(`#layer-${layer}`);
+    assert.notEqual(await still(page), last, layer);
+  }
+  await close();
+});
+
+test("a stretch drawn in a trace is shown in all of them, and in the picture on demand", async () => {
+  const { page, close } = await pocket();
+  const [, , scale] = await view(page);
+  const box = await page.locator(".u-over").nth(2).boundingBox();
+  await page.mouse.move(box.x + box.width * 0.3, box.y + 10);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.4, box.y + 12, { steps: 4 });
+  await page.mouse.up();
+  await page.getByRole("button", { name: "fragment" }).click();
+  assert.ok((await view(page))[2] > 1.5 * scale);
+  await page.mouse.click(box.x + box.width * 0.5, box.y + 10);
+  // The middle of 30 % … 40 % of 193.1 mm.
+  assert.match(await page.locator("#readout .at").textContent(), /^s 67\.\d/);
+  await page.getByRole("button", { name: "whole" }).click();
+  assert.ok(Math.abs((await view(page))[2] - scale) < 1e-9);
+  await close();
+});
+
+test("the height slider shows the error at the height it names", async () => {
+  const data = await sample("pocket");
+  // Made up for the test: a wall that leans, 10 µm at the tip and −10 µm at the top.
+  const nodes = 194;
+  data.heights = {
+    z_mm: [0, 6, 12], stride: 10,
+    before: column(Array.from({ length: nodes }, () => ["0.010", "0.000", "-0.010"]).flat()),
+  };
+  const { page, complaints, close } = await open(browser, await write("heights", data));
+  const at = await onPage(page, 12, -20);
+  const error = async () => {
+    await page.mouse.move(at.x + 1, at.y);
+    await page.mouse.move(at.x, at.y);
+    const names = await page.locator(".flag.shown span").allTextContents();
+    return (await page.locator(".flag.shown b").allTextContents())[names.indexOf("error before")];
+  };
+  const mean = await error();
+  for (const [value, text] of [["1", "+0.010000 mm"], ["2", "0.000000 mm"], ["3", "−0.010000 mm"]]) {
+    await page.fill("#height", value);
+    assert.equal(await error(), text);
+  }
+  await page.fill("#height", "0");
+  assert.equal(await error(), mean);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("a probe point chosen in the table is shown large", async () => {
+  const { page, close } = await pocket();
+  const [, , scale] = await view(page);
+  await page.getByRole("button", { name: "Show probe point 10 in the picture" }).click();
+  const [x, y, large] = await view(page);
+  assert.ok(Math.hypot(x + 34.926, y + 0.2) < 0.01 && large > 2 * scale);
+  await close();
+});
