@@ -87,7 +87,7 @@ function touches(view: View, ax: number, ay: number, bx: number, by: number): bo
     && Math.min(ay, by) < view.height + MARGIN;
 }
 
-export function path(c: Context, view: View, indices: Uint32Array, line: Line, colour: string, width: number, dash: number[] = []): void {
+export function path(c: Context, view: View, indices: Uint32Array, line: Line, colour: string, width: number, dash: number[] = [], holds: (i: number) => boolean = () => true): void {
   c.beginPath();
   let open = false;
   let ax = NaN;
@@ -95,7 +95,7 @@ export function path(c: Context, view: View, indices: Uint32Array, line: Line, c
   for (const i of indices) {
     const bx = view.px(line.x[i]);
     const by = view.py(line.y[i]);
-    if (Number.isFinite(ax) && Number.isFinite(bx) && touches(view, ax, ay, bx, by)) {
+    if (holds(i) && Number.isFinite(ax) && Number.isFinite(bx) && touches(view, ax, ay, bx, by)) {
       if (!open) c.moveTo(ax, ay);
       c.lineTo(bx, by);
       open = true;
@@ -114,28 +114,34 @@ export function path(c: Context, view: View, indices: Uint32Array, line: Line, c
 
 export function strip(c: Context, view: View, indices: Uint32Array, one: Line, other: Line, colour: string): void {
   c.fillStyle = colour;
-  c.beginPath();
-  for (let k = 1; k < indices.length; k++) quad(c, view, one, other, indices[k - 1], indices[k]);
-  c.fill("nonzero");
+  ribbon(c, view, indices, one, other, () => true);
 }
 
-/** Always in the same sense, so that overlapping pieces do not cancel. */
-function quad(c: Context, view: View, one: Line, other: Line, i: number, j: number): void {
-  const ax = view.px(one.x[i]), ay = view.py(one.y[i]), bx = view.px(one.x[j]), by = view.py(one.y[j]);
-  const dx = view.px(other.x[i]), dy = view.py(other.y[i]), ex = view.px(other.x[j]), ey = view.py(other.y[j]);
-  if (!touches(view, ax, ay, bx, by) && !near(view, dx, dy)) return;
-  const area = (bx - ax) * (dy - ay) - (by - ay) * (dx - ax);
-  c.moveTo(ax, ay);
-  if (area >= 0) {
-    c.lineTo(bx, by);
-    c.lineTo(ex, ey);
-    c.lineTo(dx, dy);
-  } else {
-    c.lineTo(dx, dy);
-    c.lineTo(ex, ey);
-    c.lineTo(bx, by);
+/** Fills between two lines, in pieces of so many samples: one outline of thousands is slow to fill. */
+const PIECE = 128;
+
+function ribbon(c: Context, view: View, indices: Uint32Array, one: Line, other: Line, holds: (i: number) => boolean): void {
+  let run: number[] = [];
+  const fill = () => {
+    if (run.length > 1) {
+      c.beginPath();
+      for (const i of run) c.lineTo(view.px(one.x[i]), view.py(one.y[i]));
+      for (const i of run.reverse()) c.lineTo(view.px(other.x[i]), view.py(other.y[i]));
+      c.fill("nonzero");
+    }
+    run = [];
+  };
+  for (let k = 1; k < indices.length; k++) {
+    const i = indices[k - 1];
+    const j = indices[k];
+    const seen = touches(view, view.px(one.x[i]), view.py(one.y[i]), view.px(one.x[j]), view.py(one.y[j]))
+      || near(view, view.px(other.x[i]), view.py(other.y[i]));
+    if (!seen || !holds(j) || run.length > PIECE) fill();
+    if (!seen || !holds(j)) continue;
+    if (run.length === 0) run.push(i);
+    run.push(j);
   }
-  c.closePath();
+  fill();
 }
 
 function band(c: Context, view: View, indices: Uint32Array, model: Model, wall: Line, picture: Picture, colours: Palette): void {
@@ -150,26 +156,11 @@ function band(c: Context, view: View, indices: Uint32Array, model: Model, wall: 
     [colours.gouge, (e) => e < -picture.tolerance],
   ];
   for (const [colour, holds] of kinds) {
-    const rim = new Path2D();
     c.fillStyle = colour;
     c.globalAlpha = 0.5;
-    c.beginPath();
-    for (let k = 1; k < indices.length; k++) {
-      const i = indices[k - 1];
-      const j = indices[k];
-      if (!holds(error[j])) continue;
-      quad(c, view, wall, edge, i, j);
-      const ax = view.px(edge.x[i]), ay = view.py(edge.y[i]), bx = view.px(edge.x[j]), by = view.py(edge.y[j]);
-      if (touches(view, ax, ay, bx, by)) {
-        rim.moveTo(ax, ay);
-        rim.lineTo(bx, by);
-      }
-    }
-    c.fill("nonzero");
+    ribbon(c, view, indices, wall, edge, (i) => holds(error[i]));
     c.globalAlpha = 1;
-    c.strokeStyle = colour;
-    c.lineWidth = 1.75;
-    c.stroke(rim);
+    path(c, view, indices, edge, colour, 1.75, [], (i) => holds(error[i]));
   }
 }
 
@@ -191,7 +182,7 @@ function points(c: Context, view: View, picture: Picture, colours: Palette): voi
     c.moveTo(ax + point.nx * outward, ay - point.ny * outward);
     c.lineTo(bx, by);
     c.stroke();
-    c.fillStyle = colours.ground;
+    c.fillStyle = fillOf(point, picture.tolerance, colours);
     c.lineWidth = index === picture.picked ? 3 : 1.5;
     c.beginPath();
     if (point.status === "used") {
@@ -206,6 +197,12 @@ function points(c: Context, view: View, picture: Picture, colours: Palette): voi
     c.stroke();
     label(c, view, boxes, ax + point.nx * (outward + 4), ay - point.ny * (outward + 4), point, colours);
   });
+}
+
+/** As the band: left, too deep, within; plain without a tolerance. */
+function fillOf(point: ProbePoint, tolerance: number, colours: Palette): string {
+  if (!(tolerance > 0)) return colours.ground;
+  return Math.abs(point.error_mm) <= tolerance ? colours.within : point.error_mm > 0 ? colours.left : colours.gouge;
 }
 
 function label(c: Context, view: View, boxes: [number, number, number, number][], x: number, y: number, point: ProbePoint, colours: Palette): void {

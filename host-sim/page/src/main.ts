@@ -97,7 +97,7 @@ function show(report: Report, main: HTMLElement): void {
   const work = el("div", { class: traces ? "work" : "work alone" }, picture, traces ? tracesBox : null);
   const below = el("div", { class: "below" }, readout?.element,
     report.parameters?.length ? parameters(report.parameters) : null, job(report),
-    report.points?.length ? points(report.points, (index) => {
+    report.points?.length ? points(report.points, report.tolerance_mm, (index) => {
       if (before && store.state.shown === "after") store.set({ shown: "before" });
       stage.showPoint(index);
       picture.scrollIntoView({ block: "nearest" });
@@ -110,16 +110,20 @@ function show(report: Report, main: HTMLElement): void {
     const room = work.clientWidth > 900 ? (picture.clientHeight - 34) / Math.max(1, traces?.count || expected(model)) - 20 : 84;
     return Math.max(52, Math.min(150, Math.floor(room)));
   };
+  let written = 0;
   stage.onToggle = () => player?.toggle();
   store.onChange((changed) => {
     if (changed.has("shown")) stage.layout();
     if (changed.has("magnify") || changed.has("hidden") || changed.has("height")) stage.still();
     if (changed.has("shown") || changed.has("height")) traces?.rebuild(store.state, colours, traceHeight());
     if (changed.has("range")) traces?.zoom(store.state.range);
-    if (changed.has("range") || changed.has("place")) traces?.place(store.state.place);
-    if (changed.has("place")) {
+    // Nobody reads figures that change sixty times a second.
+    const figures = !store.state.playing || performance.now() - written > 100;
+    if (figures) written = performance.now();
+    if (changed.has("range") || changed.has("place") || changed.has("playing")) traces?.place(store.state.place, figures);
+    if (changed.has("place") || changed.has("playing")) {
       stage.moving();
-      readout?.show(Math.round(store.state.place));
+      if (figures) readout?.show(Math.round(store.state.place));
     }
     if (model && (changed.has("place") || changed.has("playing")) && !store.state.playing) announce(live, model, store.state.place);
   });

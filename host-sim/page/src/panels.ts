@@ -64,14 +64,19 @@ export function parameters(list: Parameter[]): HTMLElement {
     table("Identified parameters", ["parameter", "value", "σ", "believed before", "unit", "decided by points"], rows, [0, 4, 5]));
 }
 
-export function points(list: ProbePoint[], show: (index: number) => void): HTMLElement {
+function place(error: number, tolerance: number): string {
+  return Math.abs(error) <= tolerance ? "in" : error > 0 ? "left" : "too deep";
+}
+
+export function points(list: ProbePoint[], tolerance: number | undefined, show: (index: number) => void): HTMLElement {
   const used = list.filter((p) => p.status === "used").length;
   const rows = list.map((p, index) => {
     const button = el("button", { type: "button", class: "link", "aria-label": `Show probe point ${p.line ?? index + 1} in the picture` }, String(p.line ?? index + 1));
     button.addEventListener("click", () => show(index));
     return [button, fixed(p.s_mm, 3), fixed(p.x_mm, 4), fixed(p.y_mm, 4), fixed(p.z_mm, 2), fixed(p.nx, 3), fixed(p.ny, 3),
-      signed(p.error_mm, 4), p.status === "used" ? "used" : `set aside${p.reason ? `: ${p.reason}` : ""}`];
+      signed(p.error_mm, 4), ...(tolerance === undefined ? [] : [place(p.error_mm, tolerance)]), p.status === "used" ? "used" : `set aside${p.reason ? `: ${p.reason}` : ""}`];
   });
   return card("points", `Probe points: ${list.length}, used ${used}, set aside ${list.length - used}`,
-    table("Probe points", ["line", "s mm", "X mm", "Y mm", "height mm", "normal x", "normal y", "deviation mm", "status"], rows, [0, 8]));
+    table("Probe points", ["line", "s mm", "X mm", "Y mm", "height mm", "normal x", "normal y", "deviation mm", ...(tolerance === undefined ? [] : [`in ±${fixed(tolerance, 4)} mm`]), "status"],
+      rows, tolerance === undefined ? [0, 8] : [0, 8, 9]));
 }

@@ -40,14 +40,14 @@ export class Traces {
   }
 
   /** Moves the playheads and the figures beside the titles. */
-  place(place: number): void {
+  place(place: number, figures = true): void {
     const s = between(this.model.s.values, place);
     for (const { plot, panel, values, playhead } of this.shown) {
       const px = plot.valToPos(s, "x");
       const inside = px >= 0 && px <= plot.over.clientWidth;
       playhead.style.display = inside ? "" : "none";
       playhead.style.transform = `translateX(${px.toFixed(2)}px)`;
-      panel.curves.forEach((curve, i) => {
+      if (figures) panel.curves.forEach((curve, i) => {
         const text = fixed(curve.series.values[Math.round(place)], curve.series.decimals);
         if (values[i].textContent !== text) values[i].textContent = text;
       });

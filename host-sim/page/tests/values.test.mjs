@@ -77,7 +77,8 @@ test("the table of probe points holds every point with deviation, normal and sta
     assert.equal(row[0], points.line[i]);
     assert.equal(number(row[7]), Number(Number(points.error_mm[i]).toFixed(4)));
     assert.deepEqual([number(row[5]), number(row[6])], [Number(points.nx[i]), Number(points.ny[i])]);
-    assert.equal(row[8], points.status[i]);
+    assert.equal(row[8], Number(points.error_mm[i]) > 0.02 ? "left" : "in");
+    assert.equal(row[9], points.status[i]);
   });
   await close();
 });
