@@ -17,10 +17,11 @@ const page = await readFile("src/page.html", "utf8");
 const code = script.outputFiles[0].text.trim();
 const css = style.outputFiles[0].text.trim();
 if (/<\/script|<!--/i.test(code) || /<\/style/i.test(css)) throw new Error("the bundle would end its own element");
-const licence = "uPlot 1.6.32, Copyright (c) 2022 Leon Sorokin, MIT licence";
+const licence = (await readFile("node_modules/uplot/LICENSE", "utf8")).trim();
+const { version } = JSON.parse(await readFile("node_modules/uplot/package.json", "utf8"));
 const html = page
   .replace("/*style*/", () => css)
-  .replace("/*script*/", () => `/* ${licence} */${code}`);
+  .replace("/*script*/", () => `/* Contains uPlot ${version}.\n${licence}\n*/\n${code}`);
 if (html.split('id="truepath-data">null</script>').length !== 2) throw new Error("the place for the data must occur once");
 await mkdir("dist", { recursive: true });
 await writeFile("dist/report.html", html.endsWith("\n") ? html : `${html}\n`);

@@ -118,7 +118,7 @@ export function strip(c: Context, view: View, indices: Uint32Array, one: Line, o
 }
 
 /** Fills between two lines, in pieces of so many samples: one outline of thousands is slow to fill. */
-const PIECE = 128;
+const PIECE = 4096;
 
 function ribbon(c: Context, view: View, indices: Uint32Array, one: Line, other: Line, holds: (i: number) => boolean): void {
   let run: number[] = [];

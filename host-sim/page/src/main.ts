@@ -71,7 +71,11 @@ function show(report: Report, main: HTMLElement): void {
   const live = document.getElementById("live") as HTMLElement;
   const tracesBox = el("section", { class: "traces", "aria-label": "Traces over arc length" });
   const traces = model && player ? new Traces(tracesBox, model, {
-    range: (range) => store.set({ range }),
+    range: (range) => {
+      const [first, last] = [model.s.values[0], model.s.values[model.count - 1]];
+      const part = range && (range[0] > first + 1e-6 || range[1] < last - 1e-6) ? range : null;
+      if (part?.join() !== store.state.range?.join()) store.set({ range: part });
+    },
     hover: (index) => { stage.mark(index); readout?.show(index ?? Math.round(store.state.place)); },
     pick: (index) => store.set({ place: index, playing: false }),
   }) : null;

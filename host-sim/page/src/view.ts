@@ -3,7 +3,7 @@
 export interface Box { x0: number; y0: number; x1: number; y1: number }
 
 /** Pixels kept free at every side of the whole: room for figures. */
-const EDGE = 44;
+const EDGE = 54;
 
 export class View {
   width = 1;

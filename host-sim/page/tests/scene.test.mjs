@@ -147,6 +147,8 @@ test("the magnification and every layer change the picture", async () => {
 test("a stretch drawn in a trace is shown in all of them, and in the picture on demand", async () => {
   const { page, close } = await pocket();
   const [, , scale] = await view(page);
+  await page.click('label[for="shown-after"]');
+  assert.equal(await page.getByRole("button", { name: "fragment" }).count(), 0);
   const box = await page.locator(".u-over").nth(2).boundingBox();
   await page.mouse.move(box.x + box.width * 0.3, box.y + 10);
   await page.mouse.down();
