@@ -62,7 +62,7 @@ function show(report: Report, main: HTMLElement): void {
     shown: before ? "before" : "after", magnify: 1, height: null, place: 0, playing: false, speed: 1, range: null, hidden: new Set(),
   });
   let colours = palette();
-  const stage = new Stage(report, model, store, colours, (index) => readout?.show(index ?? Math.round(store.state.place)));
+  const stage = new Stage(report, model, store, colours, (index) => readout?.show(index ?? Math.round(store.state.place), index !== null));
   const { x0, x1, y0, y1 } = stage.whole;
   store.state.magnify = fittingFactor(Math.max(...errors), Math.min(x1 - x0, y1 - y0));
 
@@ -76,7 +76,7 @@ function show(report: Report, main: HTMLElement): void {
       const part = range && (range[0] > first + 1e-6 || range[1] < last - 1e-6) ? range : null;
       if (part?.join() !== store.state.range?.join()) store.set({ range: part });
     },
-    hover: (index) => { stage.mark(index); readout?.show(index ?? Math.round(store.state.place)); },
+    hover: (index) => { stage.mark(index); readout?.show(index ?? Math.round(store.state.place), index !== null); },
     pick: (index) => store.set({ place: index, playing: false }),
   }) : null;
 

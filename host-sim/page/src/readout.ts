@@ -18,6 +18,7 @@ function row(quantity: Quantity, values: (number | undefined)[], decimals: numbe
 export class Readout {
   readonly element: HTMLElement;
   private readonly place: HTMLElement;
+  private readonly title = el("h2", { id: "readout-title" }, "At the cutter");
   private readonly cells: [Quantity | "cx" | "cy", HTMLElement[]][] = [];
 
   constructor(private readonly model: Model) {
@@ -40,12 +41,14 @@ export class Readout {
     const heads = [el("th", { scope: "col", class: "text" }, "quantity"), ...names.map((n) => el("th", { scope: "col", class: `number ${n}` }, n)),
       el("th", { scope: "col", class: "text" }, "unit")];
     this.element = el("section", { class: "card", id: "readout", "aria-labelledby": "readout-title" },
-      el("h2", { id: "readout-title" }, "At the cutter"), this.place,
+      this.title, this.place,
       el("table", {}, el("thead", {}, el("tr", {}, ...heads)), body));
   }
 
-  show(index: number): void {
+  show(index: number, hovered = false): void {
     const { model } = this;
+    const title = hovered ? "At the pointer" : "At the cutter";
+    if (this.title.textContent !== title) this.title.textContent = title;
     const names = (["before", "after"] as const).filter((n) => model.passes[n]);
     this.place.textContent = placeText(model, index);
     for (const [key, cells] of this.cells) {

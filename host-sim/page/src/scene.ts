@@ -131,14 +131,18 @@ export class Scene {
     const release = (event: PointerEvent) => {
       if (!this.fingers.delete(event.pointerId)) return;
       const now = this.at(event);
-      if (event.type === "pointerup" && !dragged) events.pick(now.x, now.y);
+      if (event.type === "pointerup" && !dragged) {
+        events.pick(now.x, now.y);
+        if (event.pointerType === "touch") events.hover(this, now.x, now.y);
+      }
       if (event.type === "pointerup" && dragged && start?.shift) this.zoomToFrame(start, now);
       this.frame.hidden = true;
       start = null;
     };
     stage.addEventListener("pointerup", release);
     stage.addEventListener("pointercancel", release);
-    stage.addEventListener("pointerleave", () => events.leave());
+    // A finger that is lifted leaves the figures it asked for.
+    stage.addEventListener("pointerleave", (event) => { if (event.pointerType !== "touch") events.leave(); });
     stage.addEventListener("dblclick", () => {
       view.fit();
       events.view();
