@@ -118,5 +118,7 @@ export function transport(model: Model, store: Store, player: Player): HTMLEleme
   };
   store.onChange((changed) => { if (changed.has("place") || changed.has("playing")) show(); });
   show();
-  return el("div", { class: "transport", role: "group", "aria-label": "Cutter" }, play, scrub, at, el("label", { class: "field" }, "speed", speed));
+  const follow = el("input", { type: "checkbox", id: "follow" });
+  follow.addEventListener("change", () => store.set({ follow: follow.checked }));
+  return el("div", { class: "transport", role: "group", "aria-label": "Cutter" }, play, scrub, at, el("label", { class: "field follow" }, follow, "follow"), el("label", { class: "field" }, "speed", speed));
 }

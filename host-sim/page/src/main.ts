@@ -11,6 +11,7 @@ import { Player } from "./player";
 import { placeText, Readout } from "./readout";
 import { Stage } from "./stage";
 import { Store } from "./state";
+import { stretched, turned } from "./stretch";
 import { themeButton } from "./theme";
 import { Traces } from "./traces";
 import { printing } from "./printing";
@@ -59,7 +60,7 @@ function show(report: Report, main: HTMLElement): void {
   const errors = [largest(before?.series.error_mm?.values), largest(after?.series.error_mm?.values),
     largest(report.points?.map((p) => p.error_mm))];
   const store = new Store({
-    shown: before ? "before" : "after", magnify: 1, height: null, place: 0, playing: false, speed: 1, range: null, hidden: new Set(),
+    shown: before ? "before" : "after", magnify: 1, height: null, place: 0, playing: false, speed: 1, follow: false, range: null, hidden: new Set(),
   });
   let colours = palette();
   const stage = new Stage(report, model, store, colours, (index) => readout?.show(index ?? Math.round(store.state.place), index !== null));
@@ -69,7 +70,7 @@ function show(report: Report, main: HTMLElement): void {
   const player = model && (before || after) ? new Player(model, store) : null;
   const readout = player && model ? new Readout(model) : null;
   const live = document.getElementById("live") as HTMLElement;
-  const tracesBox = el("section", { class: "traces", "aria-label": "Traces over arc length" });
+  const tracesBox = el("section", { class: "traces", tabindex: "0", "aria-label": "Traces over arc length", "aria-describedby": "keys" });
   const traces = model && player ? new Traces(tracesBox, model, {
     range: (range) => {
       const [first, last] = [model.s.values[0], model.s.values[model.count - 1]];
@@ -111,10 +112,16 @@ function show(report: Report, main: HTMLElement): void {
   main.append(...(figures ? [figures] : []), work, below);
 
   const traceHeight = () => {
-    const room = work.clientWidth > 900 ? (picture.clientHeight - 34) / Math.max(1, traces?.count || expected(model)) - 20 : 84;
+    const room = work.clientWidth > 900 ? (picture.clientHeight - 47) / Math.max(1, traces?.count || expected(model)) - 20 : 84;
     return Math.max(52, Math.min(150, Math.floor(room)));
   };
   let written = 0;
+  tracesBox.addEventListener("keydown", (event) => {
+    const moved = model ? stretched(event.key, store.state.range, model, store.state.place) : undefined;
+    if (moved === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    store.set({ range: moved });
+  });
   stage.onToggle = () => player?.toggle();
   store.onChange((changed) => {
     if (changed.has("shown")) stage.layout();
@@ -124,8 +131,9 @@ function show(report: Report, main: HTMLElement): void {
     // Nobody reads figures that change sixty times a second.
     const figures = !store.state.playing || performance.now() - written > 100;
     if (figures) written = performance.now();
+    if (model && changed.has("place") && store.state.playing) store.set({ range: turned(store.state.range, model, store.state.place) });
     if (changed.has("range") || changed.has("place") || changed.has("playing")) traces?.place(store.state.place, figures);
-    if (changed.has("place") || changed.has("playing")) {
+    if (changed.has("place") || changed.has("playing") || changed.has("follow")) {
       stage.moving();
       if (figures) readout?.show(Math.round(store.state.place));
     }

@@ -1,5 +1,6 @@
 /** The scenes together: one or two of them in one view, what is hovered, the legend. */
 
+import { between } from "./cutter";
 import type { ProbePoint, Report } from "./data";
 import { el } from "./dom";
 import { levelFor, type Picture } from "./draw";
@@ -93,8 +94,14 @@ export class Stage {
     }
   }
 
-  /** The cutter and the place hovered over. */
+  /** The cutter and the place hovered over; everything when the picture follows the cutter. */
   moving(): void {
+    if (this.store.state.follow && this.model) {
+      const { place } = this.store.state;
+      this.view.centre(between(this.model.x.values, place), between(this.model.y.values, place));
+      this.still();
+      return;
+    }
     for (const { name, scene } of this.visible()) this.moveOne(name, scene);
   }
 

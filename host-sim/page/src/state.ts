@@ -15,6 +15,8 @@ export interface State {
   playing: boolean;
   /** 1: as fast as the machine. */
   speed: number;
+  /** The picture keeps the cutter in its middle. */
+  follow: boolean;
   /** Shown stretch of arc length in the traces, mm. */
   range: [number, number] | null;
   /** Layers of the scene that are hidden. */

@@ -31,6 +31,10 @@ export class Traces {
     this.element.replaceChildren();
     const panels = panelsOf(this.model, state, colours);
     this.shown = panels.map((panel, index) => this.build(panel, state, colours, height, index === panels.length - 1));
+    const axis = document.createElement("p");
+    axis.className = "axis";
+    axis.textContent = "arc length s, mm";
+    this.element.append(axis);
     this.place(state.place);
   }
 

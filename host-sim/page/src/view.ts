@@ -58,6 +58,12 @@ export class View {
     this.follows = false;
   }
 
+  centre(x: number, y: number): void {
+    this.cx = x;
+    this.cy = y;
+    this.follows = false;
+  }
+
   private scaleFor(box: Box): number {
     const room = (size: number) => Math.max(size * 0.5, size - 2 * EDGE);
     const wide = Math.max(box.x1 - box.x0, 1e-3);

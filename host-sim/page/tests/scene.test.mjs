@@ -199,3 +199,38 @@ test("a probe point chosen in the table is shown large", async () => {
   assert.ok(Math.hypot(x + 34.926, y + 0.2) < 0.01 && large > 2 * scale);
   await close();
 });
+
+test("keys zoom and move the traces, and while playing their stretch turns with the cutter", async () => {
+  const { page, complaints, close } = await pocket();
+  const ticks = () => page.locator(".trace canvas").last().evaluate((canvas) => canvas.toDataURL());
+  const whole = await ticks();
+  await page.fill("#scrub", "400");
+  await page.focus(".traces");
+  for (const key of ["+", "+", "+"]) await page.keyboard.press(key);
+  const near = await ticks();
+  assert.notEqual(near, whole);
+  await page.keyboard.press("ArrowRight");
+  assert.notEqual(await ticks(), near);
+  await page.selectOption("#speed", "10");
+  await page.click("#play");
+  await page.waitForTimeout(900);
+  await page.click("#play");
+  assert.ok(await page.locator(".playhead").first().isVisible(), "the cutter is within the traces");
+  await page.focus(".traces");
+  await page.keyboard.press("0");
+  await page.fill("#scrub", "400");
+  assert.equal(await ticks(), whole);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("the picture follows the cutter when told to", async () => {
+  const { page, close } = await pocket();
+  await page.locator(".stage:visible").focus();
+  for (let k = 0; k < 5; k++) await page.keyboard.press("+");
+  await page.check("#follow");
+  await page.fill("#scrub", "500");
+  const [cx, cy] = await view(page);
+  assert.ok(Math.abs(cx - 30) < 0.01 && cy > -16 && cy < 16);
+  await close();
+});
