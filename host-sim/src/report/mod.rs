@@ -3,6 +3,7 @@
 mod compare;
 mod damped;
 mod guard;
+pub mod page;
 mod path;
 mod points;
 mod summary;

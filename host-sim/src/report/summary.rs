@@ -16,7 +16,7 @@ use crate::pass::Pass;
 use crate::program::Difference;
 
 /// An identified quantity.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Parameter {
     /// Its value.
     pub value: f64,

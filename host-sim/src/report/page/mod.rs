@@ -1,0 +1,20 @@
+//! `report.html`: the data of a run put into the page that `host-sim/page` holds ready built.
+//!
+//! [`Page`] and what it is made of are version 1 of the data format of `host-sim/page/README.md`, field by field;
+//! [`render`] gives the file. Long columns travel as whole numbers in base64 ([`Column`]), with as many decimals as the
+//! table beside the page has, so that figures in page and table are the same. The same data give the same bytes:
+//! nothing of clock, machine or folder enters.
+
+mod column;
+mod contour;
+mod data;
+mod embed;
+mod facts;
+mod points;
+
+pub use column::Column;
+pub use contour::{Contour, Heights, Outlines, PassColumns, Polyline};
+pub use data::{Figure, Kind, Page, Parameter, Program, State, Verdict};
+pub use embed::render;
+pub use facts::{Cut, Fact, JobFacts, Stock, Tool};
+pub use points::{MOST_SHOWN, Point, PointStatus, points};
