@@ -19,7 +19,7 @@ use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
 use crate::program::{BlockEdit, Origin, RewriteOptions, Rewritten, first_pass_of, rewrite_program};
-use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, mm, points_csv};
+use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, correction_rows, mm, points_csv};
 
 use crate::report::json;
 
@@ -195,7 +195,8 @@ pub(super) fn design(
     }
     summary.warnings.append(&mut levels.left);
     summary.feature = pass.feature(&levels.written);
-    let table = correction_csv(&machine, &correction)?;
+    let rows = correction_rows(&machine, &correction);
+    let table = correction_csv(&rows)?;
     let s_mm: Vec<f64> =
         path.samples()[path.first()..path.first() + path.count()].iter().map(|sample| mm(sample.s)).collect();
     let picture = crate::plot::correction(pass, &s_mm, &correction)?;

@@ -76,7 +76,7 @@ pub fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<Trace, Failu
     let mut displacements = vec![Vector::ZERO; states.len()];
     let mut profiles = vec![Profile::default(); path.count()];
     profile(&machine, &states, Band::WHOLE, &mut displacements, &mut profiles);
-    let errors: Vec<f64> = profiles.iter().map(|p| mm(p.mean)).collect();
+    let errors: Vec<f64> = profiles.iter().map(|p| if p.on_wall { mm(p.mean) } else { f64::NAN }).collect();
     Ok(trace(&machine, &states, &errors))
 }
 
@@ -88,9 +88,11 @@ pub fn milled(pass: &Pass, machine: &plant::Machine) -> Result<Trace, Failure> {
     let milled = workshop::mill(pass, machine, None)?;
     let errors = milled.mean_errors();
     let feed = |s: f64| milled.cut.feed_per_tooth_mm(milled.cut.feed_at(s));
-    let rows = milled.samples.iter().zip(&milled.path.centre).zip(errors).map(|((sample, nominal), error_mm)| {
+    let places = milled.path.centre.iter().zip(&milled.path.normal);
+    let rows = milled.samples.iter().zip(places).zip(errors).map(|((sample, (nominal, normal)), error_mm)| {
         let leaving = sample.leaving_rad();
         let [fx_n, fy_n] = sample.force_n;
+        let wall = |axis: usize| nominal[axis] + normal[axis] * milled.cut.radius_mm;
         TraceRow {
             s_mm: sample.s_mm,
             x_mm: nominal[0],
@@ -103,6 +105,8 @@ pub fn milled(pass: &Pass, machine: &plant::Machine) -> Result<Trace, Failure> {
             dx_mm: sample.actual[0] - sample.commanded[0],
             dy_mm: sample.actual[1] - sample.commanded[1],
             error_mm,
+            wall_x_mm: wall(0),
+            wall_y_mm: wall(1),
         }
     });
     Ok(rows.collect())

@@ -18,7 +18,7 @@ pub use summary::{
     CorrectSummary, InspectSummary, Parameter, SimulateSummary, correct_summary, inspect_summary, law_name,
     simulate_summary,
 };
-pub use tables::{Trace, TraceRow, correction_csv, trace, trace_csv};
+pub use tables::{CorrectionRow, Trace, TraceRow, correction_csv, correction_rows, trace, trace_csv};
 pub(crate) use tables::{rounded, table};
 
 use truepath_core::units::{Offset, Real};

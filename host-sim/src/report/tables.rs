@@ -1,14 +1,14 @@
 //! Tables. Column names carry their units; their order is part of the contract.
 
 use truepath_core::correct::Target;
-use truepath_core::cut::{Loop, State, chip_area};
+use truepath_core::cut::{Loop, Path, Sample, State, chip_area};
 
 use super::{float, mm};
 use crate::correction::Correction;
 use crate::diagnostics::Failure;
 
 /// One place of a simulated pass.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct TraceRow {
     /// Arc length of the contour.
     pub s_mm: f64,
@@ -30,8 +30,12 @@ pub struct TraceRow {
     pub dx_mm: f64,
     /// Mean deflection along y.
     pub dy_mm: f64,
-    /// Wall error, mean over the height: positive, material left.
+    /// Wall error, mean over the height: positive, material left; not a number where no wall stands.
     pub error_mm: f64,
+    /// Nominal wall beside it.
+    pub wall_x_mm: f64,
+    /// Nominal wall beside it.
+    pub wall_y_mm: f64,
 }
 
 /// A simulated pass.
@@ -51,6 +55,7 @@ pub fn trace(machine: &Loop, states: &[State], errors_mm: &[f64]) -> Trace {
         let fx_n = n * float(state.normal.x) + t * float(heading.x);
         let fy_n = n * float(state.normal.y) + t * float(heading.y);
         let feed = path.setup().feed_per_tooth(sample.feed);
+        let wall = wall_mm(path, sample);
         TraceRow {
             s_mm: mm(sample.s),
             x_mm: sample.point.x.nm() as f64 / 1e6,
@@ -63,9 +68,17 @@ pub fn trace(machine: &Loop, states: &[State], errors_mm: &[f64]) -> Trace {
             dx_mm: mm(state.displacement.x),
             dy_mm: mm(state.displacement.y),
             error_mm: *error,
+            wall_x_mm: wall[0],
+            wall_y_mm: wall[1],
         }
     })
     .collect()
+}
+
+/// The nominal wall beside a sample, mm.
+fn wall_mm(path: &Path, sample: &Sample) -> [f64; 2] {
+    let wall = sample.point + sample.normal.times(path.setup().radius);
+    [wall.x.nm() as f64 / 1e6, wall.y.nm() as f64 / 1e6]
 }
 
 pub(crate) fn table<T: serde::Serialize>(rows: impl IntoIterator<Item = T>) -> Result<Vec<u8>, Failure> {
@@ -99,34 +112,45 @@ pub fn trace_csv(trace: &Trace) -> Result<Vec<u8>, Failure> {
         dx_mm: rounded(r.dx_mm, 6),
         dy_mm: rounded(r.dy_mm, 6),
         error_mm: rounded(r.error_mm, 6),
+        wall_x_mm: rounded(r.wall_x_mm, 6),
+        wall_y_mm: rounded(r.wall_y_mm, 6),
     }))
 }
 
-#[derive(serde::Serialize)]
-struct CorrectionRow {
-    s_mm: f64,
-    x_mm: f64,
-    y_mm: f64,
-    dx_mm: f64,
-    dy_mm: f64,
-    /// Empty where an outside corner leaves no wall.
-    predicted_error_before_mm: Option<f64>,
-    predicted_error_after_mm: Option<f64>,
-    sigma_mm: Option<f64>,
+/// One place of a correction.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct CorrectionRow {
+    /// Arc length of the contour.
+    pub s_mm: f64,
+    /// Nominal centre.
+    pub x_mm: f64,
+    /// Nominal centre.
+    pub y_mm: f64,
+    /// The correction along x.
+    pub dx_mm: f64,
+    /// The correction along y.
+    pub dy_mm: f64,
+    /// Wall error of the target quantity without it; none where an outside corner leaves no wall.
+    pub predicted_error_before_mm: Option<f64>,
+    /// The same with it.
+    pub predicted_error_after_mm: Option<f64>,
+    /// One standard deviation of that.
+    pub sigma_mm: Option<f64>,
+    /// Nominal wall beside it.
+    pub wall_x_mm: f64,
+    /// Nominal wall beside it.
+    pub wall_y_mm: f64,
 }
 
-/// `correction.csv`: for every sample of the contour its nominal place, the correction and the wall error of the
-/// target quantity before and after it.
-///
-/// # Errors
-/// Internal, when memory cannot be written.
-pub fn correction_csv(machine: &Loop, correction: &Correction) -> Result<Vec<u8>, Failure> {
+/// A correction along the contour, one row for every sample.
+pub fn correction_rows(machine: &Loop, correction: &Correction) -> Vec<CorrectionRow> {
     let path = machine.path;
     let samples = &path.samples()[path.first()..path.first() + path.count()];
     let aim = |p: &truepath_core::correct::Profile, target: Target| p.on_wall.then(|| mm(p.aim(target, None)));
-    table(samples.iter().enumerate().map(|(i, sample)| {
+    let rows = samples.iter().enumerate().map(|(i, sample)| {
         let total = correction.nodes[i].total();
         let predicted = &correction.predicted[i];
+        let wall = wall_mm(&path, sample);
         CorrectionRow {
             s_mm: mm(sample.s),
             x_mm: sample.point.x.nm() as f64 / 1e6,
@@ -136,6 +160,17 @@ pub fn correction_csv(machine: &Loop, correction: &Correction) -> Result<Vec<u8>
             predicted_error_before_mm: aim(&predicted.before, correction.wanted.target),
             predicted_error_after_mm: aim(&predicted.after, correction.wanted.target),
             sigma_mm: predicted.after.on_wall.then(|| mm(correction.sigma[i])),
+            wall_x_mm: wall[0],
+            wall_y_mm: wall[1],
         }
-    }))
+    });
+    rows.collect()
+}
+
+/// `correction.csv`.
+///
+/// # Errors
+/// Internal, when memory cannot be written.
+pub fn correction_csv(rows: &[CorrectionRow]) -> Result<Vec<u8>, Failure> {
+    table(rows)
 }
