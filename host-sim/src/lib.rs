@@ -11,6 +11,7 @@ pub mod diagnostics;
 pub mod feature;
 pub mod feed;
 pub mod image;
+pub mod inspection;
 pub mod job;
 pub mod learning;
 pub mod library;

@@ -6,7 +6,7 @@ use tempfile::TempDir;
 use truepath::command::correct::{Corrected, correct as corrected_in_memory};
 use truepath::command::{correct, inspect, simulate};
 use truepath::diagnostics::{Failure, Form, InputError, Source};
-use truepath::job::{Job, ProbeFlags, Route, Which};
+use truepath::job::{Job, PartFlags, ProbeFlags, Route, Which};
 use truepath::measurement::Measurement;
 use truepath::pass::Pass;
 use truepath::plant::Machine;
@@ -268,6 +268,7 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
         probe: &probe,
         out: Some(&out),
         force: false,
+        part: PartFlags::default(),
         probe_flags: flags,
         which: which.clone(),
     };

@@ -1,4 +1,4 @@
-//! `truepath inspect`: the accuracy of the wall from measurements alone.
+//! `truepath inspect`: the accuracy of the wall from measurements alone, and the verdict on the part.
 
 use std::path::PathBuf;
 
@@ -8,6 +8,8 @@ use super::{Terminal, print, probe_flags, which};
 use crate::command::inspect::{Inspection, Options, run as inspect};
 use crate::diagnostics::Failure;
 use crate::feature::listing;
+use crate::inspection::PointVerdict;
+use crate::job::PartFlags;
 use crate::report::json;
 
 #[derive(Debug, Args)]
@@ -23,6 +25,15 @@ pub(super) struct Arguments {
     /// Replace the files of an earlier run.
     #[arg(long, requires = "output")]
     force: bool,
+    /// Serial number of the part, in place of part.serial of the job.
+    #[arg(long, value_name = "TEXT")]
+    serial: Option<String>,
+    /// Half the width of the tolerance of the wall, mm, in place of the limits of the job.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    tolerance: Option<String>,
+    /// When the part was measured, for the report; without it none is named.
+    #[arg(long, value_name = "TEXT")]
+    date: Option<String>,
     #[command(flatten)]
     probe_flags: probe_flags::Arguments,
     #[command(flatten)]
@@ -35,6 +46,11 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         probe: &arguments.probe,
         out: arguments.output.as_deref(),
         force: arguments.force,
+        part: PartFlags {
+            serial: arguments.serial.clone(),
+            tolerance: arguments.tolerance.clone(),
+            date: arguments.date.clone(),
+        },
         probe_flags: arguments.probe_flags.flags(),
         which: arguments.which.which(),
     })?;
@@ -46,11 +62,19 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
 
 fn words(inspection: &Inspection) -> String {
     let mut text = inspection.summary.feature.as_ref().map(listing).unwrap_or_default();
-    text.push_str("  line     s mm       X mm       Y mm   height mm   error mm\n");
+    let judged = inspection.summary.tolerance.is_some();
+    text.push_str("  line     s mm       X mm       Y mm   height mm   error mm");
+    text.push_str(if judged { "  verdict\n" } else { "\n" });
     for p in &inspection.contacts {
         text += &format!(
-            "{:>6} {:>8.2} {:>10.4} {:>10.4} {:>11.3} {:>10.4}\n",
-            p.line, p.s_mm, p.x_mm, p.y_mm, p.height_mm, p.error_mm
+            "{:>6} {:>8.2} {:>10.4} {:>10.4} {:>11.3} {:>10.4}{}\n",
+            p.line,
+            p.s_mm,
+            p.x_mm,
+            p.y_mm,
+            p.height_mm,
+            p.error_mm,
+            p.verdict.map_or("", word)
         );
     }
     let s = &inspection.summary;
@@ -58,5 +82,14 @@ fn words(inspection: &Inspection) -> String {
         "\n{} points; material left is positive\nmean {:.4} mm (a wear offset removes it), largest {:.4}, smallest {:.4}, rms {:.4}, spread over height {:.4} mm\n",
         s.points, s.mean_error_mm, s.max_error_mm, s.min_error_mm, s.rms_error_mm, s.spread_over_height_mm
     );
-    text
+    text += &s.statements.join("\n");
+    text + &format!("\nverdict: {}\n", s.verdict.text)
+}
+
+const fn word(verdict: PointVerdict) -> &'static str {
+    match verdict {
+        PointVerdict::Pass => "  pass",
+        PointVerdict::Fail => "  FAIL",
+        PointVerdict::Open => "  undecided",
+    }
 }

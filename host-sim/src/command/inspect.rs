@@ -1,12 +1,14 @@
-//! `inspect`: the accuracy of the wall from measurements alone (P18), no model.
+//! `inspect`: the accuracy of the wall from measurements alone (P18), no model, and the verdict on the part.
 
 use std::path::Path as FilePath;
 
 use truepath_core::probe::CutWith;
+use truepath_core::units::Offset;
 
 use super::doubts::misread;
 use crate::diagnostics::{Failure, Source};
-use crate::job::{Job, ProbeFlags, Which};
+use crate::inspection::{PointVerdict, Rule, coverage, judge};
+use crate::job::{Job, PartFlags, ProbeFlags, Which};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::Pass;
@@ -27,6 +29,9 @@ pub struct Point {
     pub height_mm: f64,
     /// Wall error, mm: positive, material left.
     pub error_mm: f64,
+    /// Whether it is within the tolerance; absent without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<PointVerdict>,
 }
 
 /// The report.
@@ -52,19 +57,23 @@ pub struct Options<'a> {
     pub out: Option<&'a FilePath>,
     /// Replace existing files.
     pub force: bool,
+    /// What the command line says of the part.
+    pub part: PartFlags,
     /// What the command line says of the probe file.
     pub probe_flags: ProbeFlags,
     /// Which cut of the program.
     pub which: Which,
 }
 
-/// Compares a probe file with the wall of the job.
+/// Compares a probe file with the wall of the job. A part that fails is no error: the command did its work, and the verdict
+/// is in the summary.
 ///
 /// # Errors
 /// Whatever is wrong with job, program or probe file, and outputs that cannot be written.
 pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let mut job = Job::read(options.job)?;
     job.override_probe(&options.probe_flags)?;
+    job.override_part(&options.part)?;
     job.which = options.which.clone();
     // What a part was cut with does not matter for how far its wall is off.
     let pass = Pass::read(job)?.cut_with(CutWith::Anything);
@@ -73,18 +82,26 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let mut warnings = pass.warnings.clone();
     warnings.extend(measurement.remarks(&file));
     warnings.extend(misread(&pass, false, &measurement.contacts));
+    let (part, contour) = (&pass.job.part, pass.path_contour());
+    let rule = part.tolerance.map(|tolerance| Rule { tolerance, uncertainty: part.uncertainty });
+    let reach = part.reach.unwrap_or(pass.job.numbers.tool.diameter);
+    let places = measurement.contacts.iter().map(|c| c.s);
+    let coverage = coverage(places, pass.core.contour.length, reach, contour.is_closed());
+    let deviations: Vec<Offset> = measurement.contacts.iter().map(|c| c.error).collect();
+    let judgement = judge(rule, &deviations, measurement.rejected.len(), &coverage);
     let depth = mm(pass.job.numbers.cut.axial_depth);
-    let contacts = measurement.contacts.iter().map(|c| Point {
+    let contacts = measurement.contacts.iter().enumerate().map(|(at, c)| Point {
         line: c.line,
         s_mm: mm(c.s),
         x_mm: c.point.x.nm() as f64 / 1e6,
         y_mm: c.point.y.nm() as f64 / 1e6,
         height_mm: crate::report::float(c.height) * depth,
         error_mm: mm(c.error),
+        verdict: judgement.points.get(at).copied(),
     });
-    let mut summary = inspect_summary(&measurement.contacts, measurement.rejected.len(), warnings);
-    summary.feature = pass.feature(&[]);
-    let inspection = Inspection { contacts: contacts.collect(), summary };
+    let contacts = contacts.collect();
+    let summary = inspect_summary(&pass, &measurement, &judgement, coverage, warnings);
+    let inspection = Inspection { contacts, summary };
     if let Some(out) = options.out {
         let folder = OutputFolder::create(out, options.force, FILES)?;
         folder.write("points.csv", &points_csv(&measurement, &[])?)?;

@@ -11,6 +11,7 @@ use truepath_core::units::{Offset, Real};
 use super::check_correct::correct;
 use super::check_feature::features;
 use super::check_feed::feed;
+use super::check_part::part;
 use super::check_pocket::pocket;
 use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
@@ -75,6 +76,7 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     };
     let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
     let feed = feed(root.section("feed")?.as_ref())?;
+    let part = part(&source, root.section("part")?.as_ref())?;
     root.close()?;
     let program = folder.join(program.0);
     let Stock { allowance, surface } = stock;
@@ -101,6 +103,7 @@ pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
         max_kink_deg: writing.max_kink_deg,
         route: writing.route,
         feed,
+        part,
         pocket,
         shank,
         surface,

@@ -24,6 +24,7 @@ mod check;
 mod check_correct;
 mod check_feature;
 mod check_feed;
+mod check_part;
 mod check_pocket;
 mod check_probe;
 mod check_shank;
@@ -47,6 +48,7 @@ use crate::surface::Surface;
 pub(crate) use check_feature::is_id;
 pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
 pub use check_feed::{FeedTable, ForceLimit};
+pub use check_part::{PartFlags, PartTable, Tolerance};
 pub use check_pocket::PocketTable;
 pub use check_probe::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
 pub use check_shank::Shank;
@@ -72,6 +74,8 @@ pub struct Job {
     pub route: Route,
     /// How far the feeds along the contour may be changed; `None` leaves every F word.
     pub feed: Option<FeedTable>,
+    /// What the customer of the part is told; empty without `[part]`.
+    pub part: PartTable,
     /// What `truepath pocket` cuts; `None` without `[pocket]`.
     pub pocket: Option<PocketTable>,
     /// The cutter's shape as a beam, beside stick-out and material.
@@ -196,6 +200,15 @@ impl Job {
         if *flags != ProbeFlags::default() {
             self.numbers.probe = Some(flags.over(self.require_probe()?)?);
         }
+        Ok(())
+    }
+
+    /// Puts what the command line says of the part in place of what the job says.
+    ///
+    /// # Errors
+    /// `C001` for a flag that says nothing usable.
+    pub fn override_part(&mut self, flags: &PartFlags) -> Result<(), InputError> {
+        self.part = flags.over(std::mem::take(&mut self.part))?;
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 mod compare;
 mod damped;
 mod guard;
+mod inspection;
 pub mod page;
 mod path;
 mod points;
@@ -12,10 +13,11 @@ mod tables;
 pub use compare::{compare_csv, walls_csv};
 pub use damped::{DampedSummary, damped_summary};
 pub use guard::{GuardSummary, HeldBack, guard_summary};
+pub use inspection::{InspectSummary, PartSummary, ToleranceSummary, inspect_summary};
 pub use path::{block_edits, carried_edits};
 pub use points::points_csv;
 pub use summary::{
-    CorrectSummary, InspectSummary, Parameter, SimulateSummary, correct_summary, inspect_summary, law_name,
+    CorrectSummary, Parameter, SimulateSummary, correct_summary, law_name,
     simulate_summary,
 };
 pub use tables::{CorrectionRow, Trace, TraceRow, correction_csv, correction_rows, trace, trace_csv};

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use truepath_core::cut::{Path, WallLaw};
 use truepath_core::identify;
-use truepath_core::probe::Contact;
 use truepath_core::units::{Offset, Real};
 
 use super::tables::TraceRow;
@@ -238,58 +237,6 @@ pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warni
         max_chip_volume_mm3: most(|r| r.chip_area_mm2) * mm(pass.core.setup.radius),
         milling: crate::pass::milling_name(pass.core.setup.milling),
         feature: pass.feature(&[]),
-        warnings,
-    }
-}
-
-/// Summary of `inspect`: the accuracy of the wall from measurements alone.
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct InspectSummary {
-    /// Version of this file.
-    pub version: u32,
-    /// Contacts on the wall.
-    pub points: usize,
-    /// Readings set aside.
-    pub points_rejected: usize,
-    /// Mean wall error, mm: what a wear offset could remove.
-    pub mean_error_mm: f64,
-    /// Largest (most material left), mm.
-    pub max_error_mm: f64,
-    /// Smallest (deepest), mm.
-    pub min_error_mm: f64,
-    /// Root mean square, mm.
-    pub rms_error_mm: f64,
-    /// Largest spread over the heights of one place, mm.
-    pub spread_over_height_mm: f64,
-    /// The feature it is about; absent in a program with one cut and no names.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub feature: Option<FeatureSummary>,
-    /// What the user should know.
-    pub warnings: Vec<String>,
-}
-
-/// Makes the summary of `inspect`.
-pub fn inspect_summary(contacts: &[Contact], rejected: usize, warnings: Vec<String>) -> InspectSummary {
-    let errors: Vec<f64> = contacts.iter().map(|c| mm(c.error)).collect();
-    let n = errors.len().max(1) as f64;
-    let place = |a: &Contact, b: &Contact| truepath_core::job::same_place(a.s, b.s);
-    let spread = contacts
-        .chunk_by(place)
-        .map(|group| {
-            let low = group.iter().map(|c| c.error).min().unwrap_or_default();
-            group.iter().map(|c| c.error).max().unwrap_or_default() - low
-        })
-        .max();
-    InspectSummary {
-        version: 1,
-        points: contacts.len(),
-        points_rejected: rejected,
-        mean_error_mm: errors.iter().sum::<f64>() / n,
-        max_error_mm: errors.iter().copied().fold(f64::MIN, f64::max),
-        min_error_mm: errors.iter().copied().fold(f64::MAX, f64::min),
-        rms_error_mm: (errors.iter().map(|e| e * e).sum::<f64>() / n).sqrt(),
-        spread_over_height_mm: mm(spread.unwrap_or_default()),
-        feature: None,
         warnings,
     }
 }

@@ -1,0 +1,155 @@
+//! The `[part]` table: what a customer is told about a part, and the tolerance its wall is judged by.
+//!
+//! Every key is optional, and so is the table; nothing but `truepath inspect` reads it. Tolerances are limits of the wall
+//! error: material left is positive.
+
+use truepath_core::units::Offset;
+
+use super::Decimal;
+use super::document::{Section, Value};
+use super::limits::Limits;
+use crate::diagnostics::{InputError, Source};
+
+/// Longest text, characters.
+const LONGEST: usize = 100;
+const TEXT_EXPECTED: &str = "1 to 100 characters on one line";
+const HALF_WIDTH: Limits = Limits::within("0.0001", "10", "mm");
+const LIMIT: Limits = Limits::within("-10", "10", "mm");
+
+/// What the table says, and what the command line says in its place.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PartTable {
+    /// What the part is called.
+    pub name: Option<String>,
+    /// Its drawing.
+    pub drawing: Option<String>,
+    /// Its serial number.
+    pub serial: Option<String>,
+    /// Batch of the material.
+    pub material_batch: Option<String>,
+    /// Who receives it.
+    pub customer: Option<String>,
+    /// When it was measured, as somebody has written it: no clock is read.
+    pub date: Option<String>,
+    /// The limits of the wall error.
+    pub tolerance: Option<Tolerance>,
+    /// Expanded uncertainty (k = 2) of a probed deviation, 0.00001…1 mm.
+    pub uncertainty: Option<Offset>,
+    /// How far along the contour a point speaks for the wall, 0.1…1000 mm; otherwise the cutter's diameter.
+    pub reach: Option<Offset>,
+}
+
+/// Limits of the wall error, both allowed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tolerance {
+    /// The deepest cut: −10…10 mm.
+    pub lower: Offset,
+    /// The most material left, above `lower`.
+    pub upper: Offset,
+    /// Whether the command line says so.
+    pub from_command_line: bool,
+}
+
+/// What the command line says in place of the job.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PartFlags {
+    /// Serial number.
+    pub serial: Option<String>,
+    /// Half width of the tolerance, as written, mm.
+    pub tolerance: Option<String>,
+    /// Date of the measurement.
+    pub date: Option<String>,
+}
+
+impl PartFlags {
+    /// The part with these flags in force. A tolerance takes the place of every limit of the job.
+    ///
+    /// # Errors
+    /// `C001`, naming the flag, for a text or a number that the job could not hold either.
+    pub fn over(&self, part: PartTable) -> Result<PartTable, InputError> {
+        let text = |flag: &str, text: &Option<String>, given: Option<String>| match text {
+            None => Ok(given),
+            Some(text) if is_text(text) => Ok(Some(text.clone())),
+            Some(text) => {
+                let found = format!("{flag} on the command line is {text:?}");
+                Err(InputError::new("C001", found, TEXT_EXPECTED, "write it shorter, on one line, or leave it away"))
+            }
+        };
+        let tolerance = match &self.tolerance {
+            None => part.tolerance,
+            Some(text) => {
+                let half = Decimal::parse(text).filter(|d| HALF_WIDTH.admits(*d)).map(Decimal::as_mm);
+                let half = half.ok_or_else(|| {
+                    let found = format!("--tolerance on the command line is {text:?}");
+                    let expected = format!("half the width of the tolerance, {}", HALF_WIDTH.phrase());
+                    InputError::new("C001", found, expected, "write --tolerance 0.02 for ±0.02 mm")
+                })?;
+                Some(Tolerance { lower: -half, upper: half, from_command_line: true })
+            }
+        };
+        Ok(PartTable {
+            serial: text("--serial", &self.serial, part.serial)?,
+            date: text("--date", &self.date, part.date)?,
+            tolerance,
+            ..part
+        })
+    }
+}
+
+/// Whether a text can stand in one line of a report.
+fn is_text(text: &str) -> bool {
+    // Marks that turn the direction of writing could show another text than the one that is there.
+    let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{2028}' | '\u{2029}');
+    !text.trim().is_empty() && text.chars().count() <= LONGEST && !text.chars().any(|c| c.is_control() || turns(c))
+}
+
+/// What the table says.
+pub(super) fn part(source: &Source, section: Option<&Section<'_>>) -> Result<PartTable, InputError> {
+    let Some(section) = section else { return Ok(PartTable::default()) };
+    let text = |key| match section.text(key)? {
+        None => Ok(None),
+        Some((text, _)) if is_text(text) => Ok(Some(text.to_owned())),
+        Some((_, value)) => {
+            Err(section.out_of_range(&value, TEXT_EXPECTED, "write it shorter, on one line, or leave the key away"))
+        }
+    };
+    let length = |key, limits| Ok::<_, InputError>(section.number(key, limits)?.map(Decimal::as_mm));
+    let table = PartTable {
+        name: text("name")?,
+        drawing: text("drawing")?,
+        serial: text("serial")?,
+        material_batch: text("material_batch")?,
+        customer: text("customer")?,
+        date: text("date")?,
+        tolerance: tolerance(source, section)?,
+        uncertainty: length("uncertainty_mm", Limits::within("0.00001", "1", "mm"))?,
+        reach: length("reach_mm", Limits::within("0.1", "1000", "mm"))?,
+    };
+    section.close()?;
+    Ok(table)
+}
+
+/// A half width, or both limits.
+fn tolerance(source: &Source, section: &Section<'_>) -> Result<Option<Tolerance>, InputError> {
+    let limit = |value: &Value<'_>| section.number_in(value, LIMIT).map(Decimal::as_mm);
+    let half = section.number("tolerance_mm", HALF_WIDTH)?.map(Decimal::as_mm);
+    match (half, section.value("lower_mm"), section.value("upper_mm")) {
+        (half, None, None) => Ok(half.map(|half| Tolerance { lower: -half, upper: half, from_command_line: false })),
+        (Some(_), Some(value), _) | (Some(_), None, Some(value)) => {
+            let found = format!("{} is given as well as part.tolerance_mm", value.path);
+            let help = "remove tolerance_mm for limits of your own, or remove the limits";
+            Err(section.contradiction(&value, &found, "a half width or two limits", help))
+        }
+        (None, Some(_), None) => Err(section.missing("upper_mm", &format!("a number, {}", LIMIT.phrase()))),
+        (None, None, Some(_)) => Err(section.missing("lower_mm", &format!("a number, {}", LIMIT.phrase()))),
+        (None, Some(low), Some(high)) => {
+            let (lower, upper) = (limit(&low)?, limit(&high)?);
+            if upper <= lower {
+                let expected = format!("above part.lower_mm, {}", source.excerpt(low.span));
+                let help = "upper_mm is the limit of material left (positive), lower_mm that of too deep a cut";
+                return Err(section.out_of_range(&high, &expected, help));
+            }
+            Ok(Some(Tolerance { lower, upper, from_command_line: false }))
+        }
+    }
+}
