@@ -5,23 +5,28 @@ use std::path::Path as FilePath;
 use truepath_core::checksum::crc32;
 use truepath_core::cut::Path;
 use truepath_core::job;
+use truepath_core::units::Offset;
 
 use super::doubts::{cut_corrected, doubts, kinked, misread};
 use super::feeds;
 use super::levels::{self, Levels};
+use super::page::{self, Points, REPORT};
+use super::remarks::Remarks;
 use super::replaced::refuse_replacing;
 use super::second_pass;
 use crate::correction::{Correction, Identified, Wish, corrected, identified};
 use crate::diagnostics::{Failure, Source};
+use crate::feed::Schedule;
 use crate::job::{Job, ProbeFlags, Route, Which};
 use crate::learning::History;
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
 use crate::program::{BlockEdit, Origin, RewriteOptions, Rewritten, first_pass_of, rewrite_program};
-use crate::report::{CorrectSummary, block_edits, correct_summary, correction_csv, correction_rows, mm, points_csv};
-
-use crate::report::json;
+use crate::report::page::render;
+use crate::report::{
+    CorrectSummary, block_edits, correct_summary, correction_csv, correction_rows, json, mm, points_csv,
+};
 
 /// The parts so far; see [`learning`](crate::learning).
 pub(super) const HISTORY: &str = "history.json";
@@ -35,6 +40,7 @@ pub(super) const FILES: &[&str] = &[
     "points.csv",
     "summary.json",
     "correction.svg",
+    REPORT,
     "probe-raw.txt",
     "first-pass-surface.csv",
     "correction-pass-1.tpi",
@@ -75,6 +81,10 @@ pub struct Corrected {
     pub identified: Identified,
     /// The correction.
     pub correction: Correction,
+    /// Feeds in place of the programmed ones, where the job wants any.
+    pub schedule: Option<Schedule>,
+    /// Wall error beside the model, one entry per sample of the contour; empty where none is known.
+    pub residual: Vec<Offset>,
     /// The summary.
     pub summary: CorrectSummary,
     /// The corrected program, when that is a route.
@@ -110,26 +120,6 @@ pub fn correct(
     let mut done = design(pass, &sampled, identified, &Wish::of(law), remarks, routes, progress)?;
     done.summary.warnings.extend(cut_corrected(&done.identified, &done.correction));
     Ok(done)
-}
-
-/// What a measurement leaves to be said.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Remarks<'a> {
-    /// Readings set aside.
-    pub(super) set_aside: usize,
-    /// Sentences for the summary.
-    pub(super) texts: &'a [String],
-    /// CRC-32 of the probe file.
-    pub(super) probe: u32,
-    /// Whether it is of the pass that is corrected, and not of one before it.
-    pub(super) of_this_pass: bool,
-}
-
-impl<'a> Remarks<'a> {
-    /// Of a measurement, with sentences about it.
-    pub(super) const fn of(measurement: &Measurement, texts: &'a [String]) -> Self {
-        Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc, of_this_pass: true }
-    }
 }
 
 /// Designs the correction of a pass for an identified machine and writes it for the routes.
@@ -201,7 +191,8 @@ pub(super) fn design(
         path.samples()[path.first()..path.first() + path.count()].iter().map(|sample| mm(sample.s)).collect();
     let picture = crate::plot::correction(pass, &s_mm, &correction)?;
     progress(1.0);
-    Ok(Corrected { identified, correction, summary, program, image, other_images, table, picture })
+    let (schedule, residual) = (feeds.schedule, wish.residual.to_vec());
+    Ok(Corrected { identified, correction, schedule, residual, summary, program, image, other_images, table, picture })
 }
 
 /// Corrects and writes the outputs.
@@ -242,12 +233,15 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
         );
     }
     remarks.extend(misread(first.as_ref().unwrap_or(&pass), first.is_some(), &measurement.contacts));
-    let done = match &first {
-        None => correct(&pass, &measurement, &remarks, &[route], progress)?,
+    let (pass, done, points) = match &first {
+        None => {
+            let done = correct(&pass, &measurement, &remarks, &[route], progress)?;
+            (pass, done, Points::ThisPass)
+        }
         Some(first) => {
             let (done, surface) = second_pass::correct(&pass, first, &measurement, &remarks, &[route], progress)?;
             folder.write("first-pass-surface.csv", &surface.table())?;
-            done
+            (pass.over(surface)?, done, Points::FirstPass)
         }
     };
     folder.write("probe-raw.txt", file.bytes())?;
@@ -256,6 +250,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
         folder.write(HISTORY, &History::first(&pass, &measurement, &done)?.text()?)?;
     }
     write(&folder, &pass, &measurement, &done)?;
+    folder.write(REPORT, &render(&page::corrected(&pass, &measurement, &done, points)?)?)?;
     folder.commit()?;
     Ok(done.summary)
 }

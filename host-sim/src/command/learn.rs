@@ -6,7 +6,9 @@ use truepath_core::checksum::crc32;
 use truepath_core::correct::Law;
 use truepath_core::job::LawName;
 
-use super::correct::{Corrected, FILES, HISTORY, Remarks, design, write};
+use super::correct::{Corrected, FILES, HISTORY, design, write};
+use super::page::{REPORT, learned};
+use super::remarks::Remarks;
 use crate::correction::{Identified, Wish};
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::job::{Job, ProbeFlags, Route, Which};
@@ -14,6 +16,7 @@ use crate::learning::{History, MOST_PARTS, Part, PartPoints, Update, Verdict, up
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
+use crate::report::page::render;
 use crate::report::{CorrectSummary, json};
 
 /// What is learned from.
@@ -152,11 +155,13 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
         }
         failure => failure,
     })?;
+    let page = learned(&pass, &measurement, &done.corrected, &done.verdict)?;
     let summary = LearnSummary { correct: done.corrected.summary.clone(), verdict: done.verdict };
     folder.write("probe-raw.txt", file.bytes())?;
     folder.write("summary.json", &json(&summary)?)?;
     folder.write(HISTORY, &done.history.text()?)?;
     write(&folder, &pass, &measurement, &done.corrected)?;
+    folder.write(REPORT, &render(&page)?)?;
     folder.commit()?;
     Ok(summary)
 }

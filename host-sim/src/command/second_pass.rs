@@ -11,7 +11,8 @@ use truepath_core::gcode::program_crc;
 use truepath_core::geometry::Vector;
 use truepath_core::job::{self, LawName};
 
-use super::correct::{Corrected, Remarks, design};
+use super::correct::{Corrected, design};
+use super::remarks::Remarks;
 use crate::correction::{Identified, Wish, identified};
 use crate::diagnostics::{Failure, InputError};
 use crate::job::Route;

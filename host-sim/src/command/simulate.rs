@@ -6,16 +6,18 @@ use truepath_core::correct::{Band, Profile, profile};
 use truepath_core::cut::{ForceTable, State};
 use truepath_core::geometry::Vector;
 
+use super::page::{REPORT, simulated};
 use crate::diagnostics::{Failure, InputError, Source};
 use crate::job::{Job, Which};
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
 use crate::plant;
+use crate::report::page::{self, Along};
 use crate::report::{SimulateSummary, Trace, TraceRow, json, mm, simulate_summary, trace, trace_csv};
 use crate::workshop;
 
 /// Files this command may write.
-const FILES: &[&str] = &["trace.csv", "summary.json", "trace.svg"];
+const FILES: &[&str] = &["trace.csv", "summary.json", "trace.svg", REPORT];
 
 /// What is simulated.
 #[derive(Clone, Debug)]
@@ -42,14 +44,21 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     let pass = Pass::read(job)?;
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
     let mut warnings = pass.warnings.clone();
-    let (by, trace) = match options.plant {
-        None => ("core", predicted(&pass, &mut warnings)?),
-        Some(file) => ("plant", milled(&pass, &read_machine(file)?)?),
+    let (by, trace, along) = match options.plant {
+        None => {
+            let (trace, along) = predicted(&pass, &mut warnings)?;
+            ("core", trace, along)
+        }
+        Some(file) => {
+            let (trace, along) = milled(&pass, &read_machine(file)?)?;
+            ("plant", trace, along)
+        }
     };
     let summary = simulate_summary(&pass, by, &trace, warnings);
     folder.write("trace.csv", &trace_csv(&trace)?)?;
     folder.write("summary.json", &json(&summary)?)?;
     folder.write("trace.svg", &crate::plot::trace(&trace)?)?;
+    folder.write(REPORT, &page::render(&simulated(&pass, along, &summary))?)?;
     folder.commit()?;
     Ok(summary)
 }
@@ -58,7 +67,7 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
 ///
 /// # Errors
 /// As [`Pass::sample`].
-pub fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<Trace, Failure> {
+fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<(Trace, Along), Failure> {
     let mut buffer = PathBuffer::default();
     let path = pass.sample(&mut buffer)?;
     let prior = pass.core.prior(pass.core.setup.law).mean;
@@ -77,24 +86,26 @@ pub fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<Trace, Failu
     let mut profiles = vec![Profile::default(); path.count()];
     profile(&machine, &states, Band::WHOLE, &mut displacements, &mut profiles);
     let errors: Vec<f64> = profiles.iter().map(|p| if p.on_wall { mm(p.mean) } else { f64::NAN }).collect();
-    Ok(trace(&machine, &states, &errors))
+    let trace = trace(&machine, &states, &errors);
+    let along = page::simulated(&machine, &states, &trace, "predicted by the core from the job's values");
+    Ok((trace, along))
 }
 
 /// The uncorrected pass as a virtual machine cuts it.
 ///
 /// # Errors
 /// What the plant refuses.
-pub fn milled(pass: &Pass, machine: &plant::Machine) -> Result<Trace, Failure> {
+fn milled(pass: &Pass, machine: &plant::Machine) -> Result<(Trace, Along), Failure> {
     let milled = workshop::mill(pass, machine, None)?;
     let errors = milled.mean_errors();
     let feed = |s: f64| milled.cut.feed_per_tooth_mm(milled.cut.feed_at(s));
-    let places = milled.path.centre.iter().zip(&milled.path.normal);
-    let rows = milled.samples.iter().zip(places).zip(errors).map(|((sample, (nominal, normal)), error_mm)| {
+    let places = milled.path.centre.iter().zip(&milled.path.normal).zip(&milled.path.s_mm);
+    let rows = milled.samples.iter().zip(places).zip(errors).map(|((sample, ((nominal, normal), s_mm)), error_mm)| {
         let leaving = sample.leaving_rad();
         let [fx_n, fy_n] = sample.force_n;
         let wall = |axis: usize| nominal[axis] + normal[axis] * milled.cut.radius_mm;
         TraceRow {
-            s_mm: sample.s_mm,
+            s_mm: *s_mm,
             x_mm: nominal[0],
             y_mm: nominal[1],
             arc_deg: leaving.to_degrees(),
@@ -109,7 +120,9 @@ pub fn milled(pass: &Pass, machine: &plant::Machine) -> Result<Trace, Failure> {
             wall_y_mm: wall(1),
         }
     });
-    Ok(rows.collect())
+    let trace: Trace = rows.collect();
+    let along = page::milled(&milled, &trace, "cut by the virtual machine");
+    Ok((trace, along))
 }
 
 /// Reads a PLANT.toml.

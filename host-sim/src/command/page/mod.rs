@@ -1,0 +1,26 @@
+//! `report.html` of the commands: what each of them puts on its page. Everything shown is what the tables and the summary
+//! beside the page hold, with the same digits; nothing is computed for the page alone but the passes over the whole
+//! contour that the tables hold in part.
+
+mod corrected;
+mod learned;
+mod simulated;
+
+pub(super) use corrected::{Points, corrected};
+pub(super) use learned::learned;
+pub(super) use simulated::simulated;
+
+use crate::pass::Pass;
+use crate::report::page::{JobFacts, Kind, Outlines, Page, Program, subject};
+
+/// File of the page.
+pub(super) const REPORT: &str = "report.html";
+
+/// A page of a pass: program, job, stock.
+fn of_pass(kind: Kind, title: String, pass: &Pass) -> Page {
+    let mut page = Page::new(kind, format!("{title} {}", subject(pass)));
+    page.program = Some(Program::of(pass));
+    page.job = Some(JobFacts::of(pass));
+    page.outlines = Outlines::of(pass);
+    page
+}

@@ -1,0 +1,122 @@
+//! A pass as the core computes it: columns along the path, with the digits of `trace.csv` and `correction.csv`.
+
+use truepath_core::correct::{Profile, commanded};
+use truepath_core::cut::{Loop, Path, Sample, State};
+use truepath_core::geometry::Vector;
+use truepath_core::units::Offset;
+
+use super::heights::{errors_at_heights, heights};
+use super::kept::Kept;
+use super::{Column, Contour, Heights, PassColumns};
+use crate::correction::Correction;
+use crate::report::{Trace, TraceRow, float, mm, trace};
+
+/// What a page shows along the path.
+#[derive(Clone, Debug)]
+pub struct Along {
+    /// The path and its passes.
+    pub contour: Contour,
+    /// Wall error over the height; `None` where it is the same at every height.
+    pub heights: Option<Heights>,
+    /// A sentence when not all samples are shown.
+    pub note: Option<String>,
+}
+
+/// Digits of lengths and angles, and of forces, in the tables.
+pub(super) const FINE: u32 = 6;
+/// The same of forces.
+const FORCE: u32 = 4;
+/// Of feeds.
+const FEED: u32 = 3;
+/// Of unit vectors.
+pub(super) const UNIT: u32 = 9;
+
+/// The pass without and with a correction, as a machine on its path cuts it; `residual` is the wall error beside the model,
+/// one entry per sample of the contour, empty where none is known.
+pub fn predicted(machine: &Loop, correction: &Correction, residual: &[Offset], labels: [&str; 2]) -> Along {
+    let path = machine.path;
+    let kept = Kept::of(path.count());
+    let target = correction.wanted.target;
+    let aim = |p: &Profile| if p.on_wall { mm(p.aim(target, None)) } else { f64::NAN };
+    let start = path.working().start;
+    let mut states = vec![State::REST; path.working().len()];
+    let mut pass = |label: &str, shift: &dyn Fn(usize) -> Vector, errors: Vec<f64>| {
+        machine.run(start, &mut states, shift);
+        let columns = pass_columns(label, path, &trace(machine, &states, &errors), &kept);
+        (columns, errors_at_heights(machine, &states, residual, &kept))
+    };
+    let before = correction.predicted.iter().map(|p| aim(&p.before)).collect();
+    let after = correction.predicted.iter().map(|p| aim(&p.after)).collect();
+    let (before, low) = pass(labels[0], &|_| Vector::ZERO, before);
+    let (mut after, high) = pass(labels[1], &|i| commanded(path, &correction.nodes, i), after);
+    let sigma = |i: usize| correction.predicted[i].after.on_wall.then(|| mm(correction.sigma[i]));
+    after.sigma_mm = Some(Column::partly(kept.indices().map(sigma), FINE));
+    let total = |axis: fn(Vector) -> Offset| kept.indices().map(move |i| mm(axis(correction.nodes[i].total())));
+    let contour = Contour {
+        correction_x_mm: Some(Column::of(total(|v| v.x), FINE)),
+        correction_y_mm: Some(Column::of(total(|v| v.y), FINE)),
+        before: Some(before),
+        after: Some(after),
+        ..contour(path, &kept)
+    };
+    Along { contour, heights: heights(path, &kept, low, Some(high)), note: kept.note() }
+}
+
+/// A single pass in states of the elastic loop, with its trace.
+pub fn simulated(machine: &Loop, states: &[State], trace: &Trace, label: &str) -> Along {
+    let path = machine.path;
+    let kept = Kept::of(path.count());
+    let before = Some(pass_columns(label, path, trace, &kept));
+    let errors = errors_at_heights(machine, states, &[], &kept);
+    let contour = Contour { before, ..contour(path, &kept) };
+    Along { contour, heights: heights(path, &kept, errors, None), note: kept.note() }
+}
+
+/// The samples of the contour itself.
+pub(super) fn samples<'a>(path: &Path<'a>) -> &'a [Sample] {
+    &path.samples()[path.first()..path.first() + path.count()]
+}
+
+/// The path without passes.
+pub(super) fn contour(path: &Path, kept: &Kept) -> Contour {
+    let samples = samples(path);
+    let column = |of: fn(&Sample) -> f64, decimals| Column::of(kept.indices().map(|i| of(&samples[i])), decimals);
+    Contour {
+        s_mm: column(|sample| mm(sample.s), FINE),
+        x_mm: column(|sample| sample.point.x.nm() as f64 / 1e6, FINE),
+        y_mm: column(|sample| sample.point.y.nm() as f64 / 1e6, FINE),
+        nx: Some(column(|sample| float(sample.normal.x), UNIT)),
+        ny: Some(column(|sample| float(sample.normal.y), UNIT)),
+        correction_x_mm: None,
+        correction_y_mm: None,
+        before: None,
+        after: None,
+    }
+}
+
+/// The columns of a pass, one row of the trace per sample of the contour.
+fn pass_columns(label: &str, path: &Path, trace: &Trace, kept: &Kept) -> PassColumns {
+    let samples = samples(path);
+    let feeds = kept.indices().map(|i| float(samples[i].feed));
+    let rows = kept.indices().map(|i| trace.get(i).copied());
+    PassColumns { feed_mm_per_min: Some(Column::of(feeds, FEED)), ..columns(label, rows) }
+}
+
+/// The columns of rows, without feed and standard deviation.
+pub(super) fn columns(label: &str, rows: impl Iterator<Item = Option<TraceRow>> + Clone) -> PassColumns {
+    let column =
+        |of: fn(TraceRow) -> f64, decimals| Some(Column::partly(rows.clone().map(|row| row.map(of)), decimals));
+    PassColumns {
+        label: Some(label.to_owned()),
+        error_mm: column(|r| r.error_mm, FINE),
+        sigma_mm: None,
+        arc_deg: column(|r| r.arc_deg, FINE),
+        chip_area_mm2: column(|r| r.chip_area_mm2, FINE),
+        force_n: column(|r| r.force_n, FORCE),
+        fx_n: column(|r| r.fx_n, FORCE),
+        fy_n: column(|r| r.fy_n, FORCE),
+        dx_mm: column(|r| r.dx_mm, FINE),
+        dy_mm: column(|r| r.dy_mm, FINE),
+        feed_mm_per_min: None,
+    }
+}
