@@ -36,10 +36,11 @@ fn words(outcomes: &[Outcome]) -> String {
         text +=
             &format!("{:<62}{:>6}{:>12.4}{:>11.4}{:>11.1}x\n", o.title, o.points, o.before_mm, o.after_mm, o.factor);
     }
-    text += "\nLook at the pictures:\n";
+    text += "\nLook at the reports (open them in a browser):\n";
     for o in outcomes {
-        text += &format!("  {}\n", o.folder.join("before-after.svg").display());
+        text += &format!("  {}\n", o.folder.join("report.html").display());
     }
-    text += "The corrected programs (corrected.nc) and images for the coprocessor (correction.tpi) lie beside them.\n";
+    text += "Pictures (before-after.svg), corrected programs (corrected.nc) and images for the coprocessor (correction.tpi) lie\n\
+             beside them.\n";
     text
 }

@@ -4,6 +4,7 @@
 use std::path::{Path as FilePath, PathBuf};
 
 use crate::command::correct::{Corrected, correct};
+use crate::command::page::{REPORT, demonstrated};
 use crate::diagnostics::{Failure, Source};
 use crate::job::{Job, Route};
 use crate::measurement::Measurement;
@@ -11,7 +12,8 @@ use crate::output::OutputFolder;
 use crate::pass::Pass;
 use crate::plant::{Milled, Score};
 use crate::plot;
-use crate::report::json;
+use crate::report::page::render;
+use crate::report::{json, points_csv};
 use crate::workshop;
 
 /// A part of the story.
@@ -68,6 +70,8 @@ const FILES: &[&str] = &[
     "correction.csv",
     "summary.json",
     "before-after.svg",
+    "points.csv",
+    REPORT,
 ];
 
 /// One line of the table.
@@ -144,6 +148,9 @@ fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(
     out.write("correction.csv", &corrected.table)?;
     out.write("summary.json", &json(&corrected.summary)?)?;
     out.write("before-after.svg", &picture(story, &pass, (&first, &before), (&second, &after))?)?;
+    out.write("points.csv", &points_csv(&measurement, &corrected.identified.observations)?)?;
+    let page = demonstrated(story.title, &pass, &measurement, &corrected, [(&first, &before), (&second, &after)])?;
+    out.write(REPORT, &render(&page)?)?;
     out.commit()?;
     progress(1.0);
     Ok(outcome(story, folder, &measurement, &corrected, &before, &after))

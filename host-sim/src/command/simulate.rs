@@ -13,7 +13,7 @@ use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
 use crate::plant;
 use crate::report::page::{self, Along};
-use crate::report::{SimulateSummary, Trace, TraceRow, json, mm, simulate_summary, trace, trace_csv};
+use crate::report::{SimulateSummary, Trace, json, mm, simulate_summary, trace, trace_csv};
 use crate::workshop;
 
 /// Files this command may write.
@@ -97,30 +97,7 @@ fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<(Trace, Along), 
 /// What the plant refuses.
 fn milled(pass: &Pass, machine: &plant::Machine) -> Result<(Trace, Along), Failure> {
     let milled = workshop::mill(pass, machine, None)?;
-    let errors = milled.mean_errors();
-    let feed = |s: f64| milled.cut.feed_per_tooth_mm(milled.cut.feed_at(s));
-    let places = milled.path.centre.iter().zip(&milled.path.normal).zip(&milled.path.s_mm);
-    let rows = milled.samples.iter().zip(places).zip(errors).map(|((sample, ((nominal, normal), s_mm)), error_mm)| {
-        let leaving = sample.leaving_rad();
-        let [fx_n, fy_n] = sample.force_n;
-        let wall = |axis: usize| nominal[axis] + normal[axis] * milled.cut.radius_mm;
-        TraceRow {
-            s_mm: *s_mm,
-            x_mm: nominal[0],
-            y_mm: nominal[1],
-            arc_deg: leaving.to_degrees(),
-            chip_area_mm2: milled.cut.axial_depth_mm * feed(sample.s_mm) * (1.0 - leaving.cos()),
-            force_n: fx_n.hypot(fy_n),
-            fx_n,
-            fy_n,
-            dx_mm: sample.actual[0] - sample.commanded[0],
-            dy_mm: sample.actual[1] - sample.commanded[1],
-            error_mm,
-            wall_x_mm: wall(0),
-            wall_y_mm: wall(1),
-        }
-    });
-    let trace: Trace = rows.collect();
+    let trace = page::trace_of(&milled);
     let along = page::milled(&milled, &trace, "cut by the virtual machine");
     Ok((trace, along))
 }

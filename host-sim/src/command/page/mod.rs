@@ -3,10 +3,12 @@
 //! contour that the tables hold in part.
 
 mod corrected;
+mod demonstrated;
 mod learned;
 mod simulated;
 
 pub(super) use corrected::{Points, corrected};
+pub(super) use demonstrated::demonstrated;
 pub(super) use learned::learned;
 pub(super) use simulated::simulated;
 

@@ -24,6 +24,6 @@ pub use embed::render;
 pub use facts::{Cut, Fact, JobFacts, Stock, Tool};
 pub use job::subject;
 pub use kept::MOST_SAMPLES;
-pub use milled::milled;
+pub use milled::{milled, milled_twice, trace_of};
 pub use model::{Along, predicted, simulated};
 pub use points::{MOST_SHOWN, Point, PointStatus, points};

@@ -27,7 +27,7 @@ pub(super) const FINE: u32 = 6;
 /// The same of forces.
 const FORCE: u32 = 4;
 /// Of feeds.
-const FEED: u32 = 3;
+pub(super) const FEED: u32 = 3;
 /// Of unit vectors.
 pub(super) const UNIT: u32 = 9;
 
