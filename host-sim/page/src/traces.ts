@@ -202,12 +202,17 @@ function around(min: number | null, max: number | null, tolerance = 0): [number,
 }
 
 function data(model: Model, panel: Panel): uPlot.AlignedData {
-  const columns: (Float64Array | number[])[] = [model.s.values, ...panel.curves.map((curve) => curve.series.values)];
+  const columns: (Float64Array | (number | null)[])[] = [model.s.values, ...panel.curves.map((curve) => gaps(curve.series.values))];
   if (panel.sigma) {
     const { error, sigma } = panel.sigma;
-    columns.push(error.values.map((v, i) => v + 2 * sigma.values[i]), error.values.map((v, i) => v - 2 * sigma.values[i]));
+    columns.push(...[2, -2].map((times) => gaps(error.values.map((v, i) => v + times * sigma.values[i]))));
   }
   return columns as uPlot.AlignedData;
+}
+
+/** A place without a value is a gap for the plot, and does not count for its scale. */
+function gaps(values: Float64Array): Float64Array | (number | null)[] {
+  return values.some(Number.isNaN) ? Array.from(values, (v) => (Number.isNaN(v) ? null : v)) : values;
 }
 
 function panelsOf(model: Model, state: State, colours: Palette): Panel[] {
