@@ -68,9 +68,10 @@ export interface ProbePoint {
   y_mm: number;
   /** Height above the tip of the cutter. */
   z_mm?: number;
-  nx: number;
-  ny: number;
-  error_mm: number;
+  /** Normal and deviation are not known of a reading that was set aside. */
+  nx?: number;
+  ny?: number;
+  error_mm?: number;
 }
 
 export interface Parameter {

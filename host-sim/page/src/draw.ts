@@ -167,19 +167,20 @@ function band(c: Context, view: View, indices: Uint32Array, model: Model, wall: 
 function points(c: Context, view: View, picture: Picture, colours: Palette): void {
   const boxes: [number, number, number, number][] = [];
   picture.points.forEach((point, index) => {
-    const wx = point.x_mm + point.error_mm * point.nx;
-    const wy = point.y_mm + point.error_mm * point.ny;
+    const { nx = 0, ny = 0, error_mm: error = 0 } = point;
+    const wx = point.x_mm + error * nx;
+    const wy = point.y_mm + error * ny;
     const ax = view.px(wx);
     const ay = view.py(wy);
     if (!near(view, ax, ay)) return;
-    const bx = view.px(wx - picture.magnify * point.error_mm * point.nx);
-    const by = view.py(wy - picture.magnify * point.error_mm * point.ny);
+    const bx = view.px(wx - picture.magnify * error * nx);
+    const by = view.py(wy - picture.magnify * error * ny);
     const colour = point.status === "used" ? colours.ink : colours.quiet;
     const outward = 14;
     c.strokeStyle = colour;
     c.lineWidth = 1;
     c.beginPath();
-    c.moveTo(ax + point.nx * outward, ay - point.ny * outward);
+    c.moveTo(ax + nx * outward, ay - ny * outward);
     c.lineTo(bx, by);
     c.stroke();
     c.fillStyle = fillOf(point, picture.tolerance, colours);
@@ -195,22 +196,24 @@ function points(c: Context, view: View, picture: Picture, colours: Palette): voi
       c.lineTo(bx - 4, by + 4);
     }
     c.stroke();
-    label(c, view, boxes, ax + point.nx * (outward + 4), ay - point.ny * (outward + 4), point, colours);
+    if (point.error_mm !== undefined) label(c, view, boxes, ax + nx * (outward + 4), ay - ny * (outward + 4), point, colours);
   });
 }
 
 /** As the band: left, too deep, within; plain without a tolerance. */
 function fillOf(point: ProbePoint, tolerance: number, colours: Palette): string {
-  if (!(tolerance > 0)) return colours.ground;
-  return Math.abs(point.error_mm) <= tolerance ? colours.within : point.error_mm > 0 ? colours.left : colours.gouge;
+  const error = point.error_mm;
+  if (!(tolerance > 0) || error === undefined) return colours.ground;
+  return Math.abs(error) <= tolerance ? colours.within : error > 0 ? colours.left : colours.gouge;
 }
 
 function label(c: Context, view: View, boxes: [number, number, number, number][], x: number, y: number, point: ProbePoint, colours: Palette): void {
   const text = signed(point.error_mm, 3);
   c.font = `11px ${colours.font}`;
   const wide = c.measureText(text).width;
-  const left = Math.abs(point.nx) < 0.5 ? x - wide / 2 : point.nx > 0 ? x : x - wide;
-  const top = Math.abs(point.nx) < 0.5 ? (point.ny > 0 ? y - 12 : y) : y - 6;
+  const { nx = 0, ny = 0 } = point;
+  const left = Math.abs(nx) < 0.5 ? x - wide / 2 : nx > 0 ? x : x - wide;
+  const top = Math.abs(nx) < 0.5 ? (ny > 0 ? y - 12 : y) : y - 6;
   if (left < 2 || top < 2 || left + wide > view.width - 2 || top + 12 > view.height - 2) return;
   if (boxes.some(([l, t, w]) => left < l + w + 3 && l < left + wide + 3 && top < t + 12 && t < top + 12)) return;
   boxes.push([left, top, wide, 12]);

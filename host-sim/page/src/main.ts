@@ -58,7 +58,7 @@ function show(report: Report, main: HTMLElement): void {
   const model = report.contour ? new Model(report, report.contour) : null;
   const { before, after } = model?.passes ?? {};
   const errors = [largest(before?.series.error_mm?.values), largest(after?.series.error_mm?.values),
-    largest(report.points?.map((p) => p.error_mm))];
+    largest(report.points?.map((p) => p.error_mm ?? 0))];
   const store = new Store({
     shown: before ? "before" : "after", magnify: 1, height: null, place: 0, playing: false, speed: 1, follow: false, range: null, hidden: new Set(),
   });

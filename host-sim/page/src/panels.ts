@@ -64,8 +64,14 @@ export function parameters(list: Parameter[]): HTMLElement {
     table("Identified parameters", ["parameter", "value", "σ", "believed before", "unit", "decided by points"], rows, [0, 4, 5]));
 }
 
-function place(error: number, tolerance: number): string {
+function place(error: number | undefined, tolerance: number): string {
+  if (error === undefined) return NO_VALUE;
   return Math.abs(error) <= tolerance ? "in" : error > 0 ? "left" : "too deep";
+}
+
+/** What became of a point, and why. */
+export function statusOf(p: ProbePoint): string {
+  return `${p.status === "used" ? "used" : "set aside"}${p.reason ? `: ${p.reason}` : ""}`;
 }
 
 export function points(list: ProbePoint[], tolerance: number | undefined, show: (index: number) => void): HTMLElement {
@@ -74,7 +80,7 @@ export function points(list: ProbePoint[], tolerance: number | undefined, show: 
     const button = el("button", { type: "button", class: "link", "aria-label": `Show probe point ${p.line ?? index + 1} in the picture` }, String(p.line ?? index + 1));
     button.addEventListener("click", () => show(index));
     return [button, fixed(p.s_mm, 3), fixed(p.x_mm, 4), fixed(p.y_mm, 4), fixed(p.z_mm, 2), fixed(p.nx, 3), fixed(p.ny, 3),
-      signed(p.error_mm, 4), ...(tolerance === undefined ? [] : [place(p.error_mm, tolerance)]), p.status === "used" ? "used" : `set aside${p.reason ? `: ${p.reason}` : ""}`];
+      signed(p.error_mm, 4), ...(tolerance === undefined ? [] : [place(p.error_mm, tolerance)]), statusOf(p)];
   });
   return card("points", `Probe points: ${list.length}, used ${used}, set aside ${list.length - used}`,
     table("Probe points", ["line", "s mm", "X mm", "Y mm", "height mm", "normal x", "normal y", "deviation mm", ...(tolerance === undefined ? [] : [`in ±${fixed(tolerance, 4)} mm`]), "status"],

@@ -8,6 +8,7 @@ import { fixed, signed } from "./format";
 import type { Model, PassName } from "./model";
 import { boxOf, offsetOf, outline, type Line } from "./outline";
 import type { Palette } from "./palette";
+import { statusOf } from "./panels";
 import { flagLines } from "./readout";
 import { Scene } from "./scene";
 import type { Store } from "./state";
@@ -38,7 +39,10 @@ export class Stage {
     this.stock = model && allowance !== undefined && given.stock.length === 0 ? offsetOf(model, model.radius - allowance) : null;
     if (model) this.outlines = { wall: [], stock: given.stock };
     this.points = report.points ?? [];
-    const touched = { x: Float64Array.from(this.points, (p) => p.x_mm), y: Float64Array.from(this.points, (p) => p.y_mm) };
+    // A reading set aside may lie anywhere: where there is something else to see, the view does not reach out for it.
+    const known = this.points.filter((p) => p.error_mm !== undefined);
+    const framed = model || given.wall.length > 0 || known.length > 0 ? known : this.points;
+    const touched = { x: Float64Array.from(framed, (p) => p.x_mm), y: Float64Array.from(framed, (p) => p.y_mm) };
     const path = model ? [{ x: model.x.values, y: model.y.values }, this.wall as Line] : [];
     this.whole = boxOf([...path, ...given.wall, ...given.stock, touched], Math.max(1, (model?.radius ?? 0) * 0.4));
     this.view = new View(this.whole);
@@ -185,7 +189,7 @@ export class Stage {
         ["probe point", String(p.line ?? point + 1)], ["deviation", `${signed(p.error_mm, 6)} mm`],
         ["X, Y", `${fixed(p.x_mm, 6)}, ${fixed(p.y_mm, 6)} mm`], ["normal", `${fixed(p.nx, 3)}, ${fixed(p.ny, 3)}`],
         ...(p.z_mm === undefined ? [] : [["height", `${fixed(p.z_mm, 2)} mm`] as [string, string]]),
-        ["status", p.status === "used" ? "used" : `set aside ${p.reason ?? ""}`],
+        ["status", statusOf(p)],
       ]);
       return;
     }
@@ -201,8 +205,9 @@ export class Stage {
     let best: number | null = null;
     let least = 9;
     this.points.forEach((p, i) => {
-      const x = this.view.px(p.x_mm + (1 - magnify) * p.error_mm * p.nx);
-      const y = this.view.py(p.y_mm + (1 - magnify) * p.error_mm * p.ny);
+      const { nx = 0, ny = 0, error_mm: error = 0 } = p;
+      const x = this.view.px(p.x_mm + (1 - magnify) * error * nx);
+      const y = this.view.py(p.y_mm + (1 - magnify) * error * ny);
       const distance = Math.hypot(x - px, y - py);
       if (distance < least) [least, best] = [distance, i];
     });
