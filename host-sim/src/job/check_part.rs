@@ -1,6 +1,6 @@
 //! The `[part]` table: what a customer is told about a part, and the tolerance its wall is judged by.
 //!
-//! Every key is optional, and so is the table; nothing but `truepath inspect` reads it. Tolerances are limits of the wall
+//! Every key is optional, and so is the table; `truepath inspect` judges by it, the reports of other commands show name and tolerance. Tolerances are limits of the wall
 //! error: material left is positive.
 
 use truepath_core::units::Offset;

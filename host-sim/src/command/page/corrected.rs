@@ -2,6 +2,7 @@
 
 use truepath_core::correct::{Band, Target};
 
+use super::expected::judge;
 use super::of_pass;
 use crate::command::correct::Corrected;
 use crate::diagnostics::Failure;
@@ -51,6 +52,7 @@ pub(in crate::command) fn corrected(
     if let Some(job) = &mut page.job {
         job.facts.extend(facts(pass, done, of));
     }
+    judge(&mut page, pass.job.part.tolerance, &done.correction);
     Ok(page)
 }
 

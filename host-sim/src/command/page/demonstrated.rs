@@ -28,6 +28,8 @@ pub(in crate::command) fn demonstrated(
         page.heights = milled_twice(contour, [(first, labels[0]), (second, labels[1])], trim_mm);
     }
     page.results = figures(before, after, done);
+    // What was foretold of a part that has been cut is not its verdict.
+    (page.tolerance_mm, page.verdict) = (None, None);
     if let Some(job) = &mut page.job {
         job.facts.retain(|fact| fact.name != "error shown");
         let shown = format!(

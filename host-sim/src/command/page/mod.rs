@@ -4,6 +4,7 @@
 
 mod corrected;
 mod demonstrated;
+mod expected;
 mod learned;
 mod simulated;
 

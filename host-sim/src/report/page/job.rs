@@ -21,8 +21,11 @@ fn file_name(pass: &Pass) -> String {
     name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned()
 }
 
-/// What a page is about: the name of the feature, else that of the program.
+/// What a page is about: the name of the part, else of the feature, else of the program.
 pub fn subject(pass: &Pass) -> String {
+    if let Some(name) = &pass.job.part.name {
+        return name.clone();
+    }
     pass.plan.as_ref().and_then(|plan| plan.id.clone()).unwrap_or_else(|| file_name(pass))
 }
 
