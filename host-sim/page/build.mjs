@@ -1,5 +1,6 @@
-// Bundles src/ into one self-contained file, dist/report.html, with an empty place for the data.
+// Bundles src/ into one self-contained file, dist/report.html or the one named, with an empty place for the data.
 import { readFile, mkdir, writeFile } from "node:fs/promises";
+import { dirname } from "node:path";
 import { build } from "esbuild";
 
 const script = await build({
@@ -23,6 +24,7 @@ const html = page
   .replace("/*style*/", () => css)
   .replace("/*script*/", () => `/* Contains uPlot ${version}.\n${licence}\n*/\n${code}`);
 if (html.split('id="truepath-data">null</script>').length !== 2) throw new Error("the place for the data must occur once");
-await mkdir("dist", { recursive: true });
-await writeFile("dist/report.html", html.endsWith("\n") ? html : `${html}\n`);
-console.log(`dist/report.html: ${(html.length / 1024).toFixed(0)} KiB`);
+const file = process.argv[2] ?? "dist/report.html";
+await mkdir(dirname(file), { recursive: true });
+await writeFile(file, html.endsWith("\n") ? html : `${html}\n`);
+console.log(`${file}: ${(html.length / 1024).toFixed(0)} KiB`);

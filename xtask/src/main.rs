@@ -11,6 +11,7 @@ mod firmware;
 mod fuzz;
 mod hil;
 mod judge;
+mod page;
 mod repository;
 mod step;
 mod toolchain;
@@ -32,7 +33,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Task {
-    /// Everything a change has to pass: fmt, lint, doc, device, test-only, hil.
+    /// Everything a change has to pass: fmt, lint, doc, device, firmware, elf, budget, test-only, page, hil.
     Test,
     /// Formatting of every source file.
     Fmt {
@@ -120,6 +121,12 @@ enum Task {
         #[arg(long, default_value_t = 20)]
         seconds: u64,
     },
+    /// The report page: its build as committed, and pages that the program wrote in a real browser.
+    Page {
+        /// Renew the committed build and the reference pictures.
+        #[arg(long)]
+        write: bool,
+    },
     /// Corrects the parts of an independent machine program and has it score them.
     Judge {
         /// The program that makes and scores parts, relative to the repository; its scenarios lie in `scenarios`
@@ -141,6 +148,7 @@ fn main() -> ExitCode {
             report.run(Step::new("elf", || firmware::elf::check(false)));
             report.run(Step::new("budget", || firmware::budget::check(false)));
             report.run(Step::new("test-only", || checks::tests(&[])));
+            report.run(Step::new("page", || page::check(false)));
             report.run(Step::new("hil", hil::check));
         }
         Task::Fmt { write } => report.run(Step::new("fmt", || checks::format(write))),
@@ -169,6 +177,7 @@ fn main() -> ExitCode {
             let length = runs.map_or(fuzz::Length::Seconds(seconds), fuzz::Length::Runs);
             report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
         }
+        Task::Page { write } => report.run(Step::new("page", || page::check(write))),
         Task::Judge { judge } => report.run(Step::new("judge", || judge::run_all(judge.as_deref()))),
     }
     report.finish()

@@ -1,0 +1,113 @@
+//! The pages that are tried: each written by the program, of the kind a user has.
+//!
+//! The demonstration; a pass predicted and one cut by the virtual machine; an island with its wall on the left, cut
+//! conventionally, corrected, learnt from and inspected; and a contour of ten metres with 100,000 samples.
+
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+
+use crate::repository::{cargo, program, root, run, target};
+use crate::step::Failure;
+
+/// Job, program, machine and touches of the island, relative to the root.
+const ISLAND: &str = "host-sim/page/tests/parts/island";
+/// Radius, depth and number of the lobes of the long contour, mm: a star of about ten metres.
+const STAR: (f64, f64, f64) = (1500.0, 60.0, 12.0);
+/// Length of its lines, mm.
+const LINE: f64 = 5.0;
+const LONG_JOB: &str = "version = 1
+program = \"program.nc\"
+wall = \"left\"
+[stock]
+allowance_mm = 0.5
+[tool]
+diameter_mm = 12.0
+teeth = 4
+helix_deg = 30
+[cut]
+axial_depth_mm = 10.0
+[force]
+material = \"al-7075-t6\"
+model = \"helical\"
+[machine]
+stiffness_x_n_per_mm = 1200
+stiffness_y_n_per_mm = 2400
+";
+
+/// Has the program write all pages into `page` of the target directory; returns that folder.
+///
+/// # Errors
+/// A command that fails.
+pub fn write() -> Result<PathBuf, Failure> {
+    run(cargo().args(["build", "--quiet", "--package", "truepath", "--bin", "truepath"]))?;
+    let pages = target().join("page");
+    let truepath = |arguments: &[&Path], out: &str| {
+        let mut command = program(target().join("debug/truepath"));
+        command.args(arguments).arg("--force").arg("--output").arg(pages.join(out));
+        run(command.stdout(Stdio::null()).stderr(Stdio::null()))
+    };
+    let word = Path::new;
+    let pocket = |file: &str| pages.join("demo/pocket").join(file);
+    let island = |file: &str| root().join(ISLAND).join(file);
+    truepath(&[word("demo")], "demo")?;
+    truepath(&[word("simulate"), &pocket("job.toml")], "simulate-core")?;
+    truepath(&[word("simulate"), &pocket("job.toml"), word("--plant"), &pocket("plant.toml")], "simulate-plant")?;
+    truepath(&[word("simulate"), &island("job.toml"), word("--plant"), &island("plant.toml")], "island")?;
+    let touched = [island("job.toml"), island("probe.txt"), island("probe-2.txt")];
+    let [job, first, second] = touched.each_ref().map(PathBuf::as_path);
+    truepath(&[word("inspect"), job, word("--probe"), first], "inspect")?;
+    truepath(&[word("correct"), job, word("--probe"), first], "correct")?;
+    truepath(&[word("learn"), job, word("--probe"), second, word("--from"), &pages.join("correct")], "learn")?;
+    let long = pages.join("long");
+    long_job(&long).map_err(|e| Failure::found(format!("{}: {e}", long.display())))?;
+    truepath(&[word("simulate"), &long.join("job.toml")], "long")?;
+    Ok(pages)
+}
+
+/// Program and job of the long contour.
+fn long_job(folder: &Path) -> std::io::Result<()> {
+    fs::create_dir_all(folder)?;
+    let points = star();
+    let mut text = String::from("%\nG21 G90 G94\nT1 M6\nS4000 M3\n");
+    for (k, [x, y]) in points.iter().chain(points.first()).enumerate() {
+        let line = if k == 0 { "G0" } else { "G1" };
+        let plunge = if k == 0 { "\nG0 Z5\nG1 Z-10 F6000" } else { "" };
+        writeln!(text, "{line} X{x:.4} Y{y:.4}{plunge}").expect("text is written to memory");
+    }
+    text += "G0 Z5\nM30\n%\n";
+    fs::write(folder.join("program.nc"), text)?;
+    fs::write(folder.join("job.toml"), LONG_JOB)
+}
+
+/// Corners of the long contour, counter-clockwise.
+fn star() -> Vec<[f64; 2]> {
+    let (radius, depth, lobes) = STAR;
+    let at = |turn: f64| {
+        let r = radius + depth * (lobes * turn).sin();
+        [r * turn.cos(), r * turn.sin()]
+    };
+    let (mut points, mut turn) = (Vec::new(), 0.0);
+    while turn < TAU {
+        let here = at(turn);
+        points.push(here);
+        let ahead = at(turn + 1e-6);
+        turn += LINE * 1e-6 / (ahead[0] - here[0]).hypot(ahead[1] - here[1]);
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_long_contour_is_long_and_made_of_lines_of_nearly_the_same_length() {
+        let points = star();
+        let lengths: Vec<f64> = points.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).collect();
+        assert!(lengths.iter().sum::<f64>() > 9500.0);
+        assert!(lengths.iter().all(|l| (l - LINE).abs() < 0.1), "{lengths:?}");
+    }
+}
