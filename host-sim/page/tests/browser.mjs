@@ -1,44 +1,74 @@
-// A browser with a report opened from disk, and a record of everything it complains about or asks the network for.
+// One browser for all tests, pages opened from disk, and a record of everything a page complains about or asks the network for.
+// The pages are those the program wrote into TRUEPATH_PAGES (`cargo xtask page`), otherwise into target/page.
+import assert from "node:assert/strict";
 import { mkdir, readFile, writeFile } from "node:fs/promises";
+import { after } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
+import { parse } from "./columns.mjs";
 
 const root = fileURLToPath(new URL("..", import.meta.url));
-export const out = `${root}tests/out/`;
-const PLACE = 'id="truepath-data">null</script>';
+export const pages = `${process.env.TRUEPATH_PAGES ?? fileURLToPath(new URL("../../../target/page", import.meta.url))}/`;
+/** Pictures of the pages, for whoever wants to look. */
+export const pictures = `${pages}pictures/`;
+/** Pages with data made up for a test. */
+const made = `${pages}made/`;
+const PLACE = /(<script type="application\/json" id="truepath-data">)(.*?)(<\/script>)/s;
+await mkdir(pictures, { recursive: true });
+await mkdir(made, { recursive: true });
 
-export async function launch() {
-  return chromium.launch({
+export const PHONE = { viewport: { width: 360, height: 740 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
+
+let launched;
+export function browser() {
+  launched ??= chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-      "--disable-component-update", "--disable-sync"],
+      "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--font-render-hinting=none"],
   });
+  return launched;
 }
+after(async () => (await launched)?.close());
 
-export async function sample(name) {
-  return JSON.parse(await readFile(`${root}samples/${name}.json`, "utf8"));
-}
-
-/** The report with data in it, as the program writes it; its path. */
-export async function write(name, data) {
+/** A page of the program: its file. The page is the committed one with data put in, nothing else. */
+export async function report(name) {
+  const file = `${pages}${name}/report.html`;
+  const written = await readFile(file, "utf8");
   const page = await readFile(`${root}dist/report.html`, "utf8");
-  const text = JSON.stringify(data).replaceAll("<", "\\u003c");
-  await mkdir(out, { recursive: true });
-  const file = `${out}${name}.html`;
-  await writeFile(file, page.replace(PLACE, () => `id="truepath-data">${text}</script>`));
+  if (written.replace(PLACE, "$1null$3") === page) return file;
+  // While the page is being worked on, its newest build shows the program's data.
+  assert.ok(!process.env.TRUEPATH_PAGES_AS_WRITTEN, `${file} is not host-sim/page/dist/report.html with data in it`);
+  return write(name.replaceAll("/", "-"), JSON.parse(PLACE.exec(written)[2]));
+}
+
+/** The data the program put into a page. */
+export async function dataOf(name) {
+  return JSON.parse(PLACE.exec(await readFile(`${pages}${name}/report.html`, "utf8"))[2]);
+}
+
+/** A table the program wrote beside a page. */
+export async function table(name) {
+  return parse(await readFile(`${pages}${name}`, "utf8"));
+}
+
+/** A page with data made up for a test; its file. */
+export async function write(name, content) {
+  const page = await readFile(`${root}dist/report.html`, "utf8");
+  const text = JSON.stringify(content).replaceAll("<", "\\u003c");
+  const file = `${made}${name}.html`;
+  await writeFile(file, page.replace(PLACE, (_, open, _data, close) => open + text + close));
   return file;
 }
 
-export async function open(browser, file, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "light", reducedMotion: "no-preference", ...options });
+export async function open(file, options = {}) {
+  const context = await (await browser()).newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "light", reducedMotion: "no-preference", ...options });
   const page = await context.newPage();
   const complaints = [];
   const requests = [];
   page.on("console", (message) => { if (["error", "warning"].includes(message.type())) complaints.push(message.text()); });
   page.on("pageerror", (error) => complaints.push(String(error)));
   page.on("request", (request) => { if (!/^(file|data|blob):/.test(request.url())) requests.push(request.url()); });
-  const url = pathToFileURL(file).href;
-  await page.goto(url);
+  await page.goto(pathToFileURL(file).href);
   await page.waitForFunction(() => document.documentElement.dataset.firstPicture !== undefined);
   return { context, page, complaints, requests, close: () => context.close() };
 }

@@ -1,17 +1,13 @@
 // The picture under pointer, wheel, fingers and keys; cutter, passes, layers, heights, traces.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { column } from "../samples/convert.mjs";
-import { launch, onPage, open, out, sample, write } from "./browser.mjs";
-
-let browser;
-before(async () => { browser = await launch(); });
-after(() => browser.close());
+import { test } from "node:test";
+import { column } from "./columns.mjs";
+import { dataOf, onPage, open, pictures, report, write } from "./browser.mjs";
 
 const view = async (page) => (await page.locator(".stage:visible").first().getAttribute("data-view")).split(" ").map(Number);
 const place = (page) => page.inputValue("#scrub").then(Number);
 const still = (page) => page.locator(".stage:visible canvas").first().evaluate((canvas) => canvas.toDataURL());
-const pocket = async () => open(browser, await write("pocket", await sample("pocket")));
+const pocket = async () => open(await report("demo/pocket"));
 
 test("play moves the cutter at the speed of the machine, pause holds it, scrubbing puts it elsewhere", async () => {
   const { page, close } = await pocket();
@@ -126,7 +122,7 @@ test("before, after and side by side show different passes in one view", async (
   await page.keyboard.press("+");
   const views = await page.locator(".stage:visible").evaluateAll((all) => all.map((stage) => stage.dataset.view));
   assert.equal(views[0], views[1]);
-  await page.screenshot({ path: `${out}pocket-side-by-side.png` });
+  await page.screenshot({ path: `${pictures}pocket-side-by-side.png` });
   await close();
 });
 
@@ -165,14 +161,14 @@ test("a stretch drawn in a trace is shown in all of them, and in the picture on 
 });
 
 test("the height slider shows the error at the height it names", async () => {
-  const data = await sample("pocket");
+  const data = await dataOf("demo/pocket");
   // Made up for the test: a wall that leans, 10 µm at the tip and −10 µm at the top.
   const nodes = 194;
   data.heights = {
     z_mm: [0, 6, 12], stride: 10,
     before: column(Array.from({ length: nodes }, () => ["0.010", "0.000", "-0.010"]).flat()),
   };
-  const { page, complaints, close } = await open(browser, await write("heights", data));
+  const { page, complaints, close } = await open(await write("heights", data));
   const at = await onPage(page, 12, -20);
   const error = async () => {
     await page.mouse.move(at.x + 1, at.y);

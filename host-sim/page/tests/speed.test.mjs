@@ -1,12 +1,14 @@
-// First picture and frames a second, of the pocket and of a contour of 100,000 samples.
+// First picture and frames a second, of the pocket and of a contour of ten metres with 100,000 samples.
+// A machine that is busy with something else may miss the figures once: then they are measured again, and it is said.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { column } from "../samples/convert.mjs";
-import { launch, open, sample, write } from "./browser.mjs";
+import { test } from "node:test";
+import { dataOf, open, report, write } from "./browser.mjs";
 
-let browser;
-before(async () => { browser = await launch(); });
-after(() => browser.close());
+/** Milliseconds to the first picture; frames a second at least while playing. */
+const FIRST = 1000;
+const FRAMES = 30;
+/** Milliseconds from a key to its picture, of the long contour. */
+const REDRAW = 150;
 
 /** Frames in which the cutter stood elsewhere than in the one before, a second. */
 async function frames(page, seconds) {
@@ -17,46 +19,16 @@ async function frames(page, seconds) {
     const clear = context.clearRect;
     context.clearRect = function cleared(...box) { drawn++; clear.apply(context, box); };
     const from = performance.now();
-    setTimeout(() => done(drawn / ((performance.now() - from) / 1000)), duration * 1000);
+    setTimeout(() => {
+      context.clearRect = clear;
+      done(drawn / ((performance.now() - from) / 1000));
+    }, duration * 1000);
   }), seconds);
 }
 
-test("the pocket is there within a second and plays with 30 frames a second or more", async (t) => {
-  const { page, close } = await open(browser, await write("pocket", await sample("pocket")));
-  const first = Number(await page.getAttribute("html", "data-first-picture"));
-  await page.click("#play");
-  const rate = await frames(page, 2);
-  t.diagnostic(`first picture ${first} ms, ${rate.toFixed(0)} frames a second`);
-  assert.ok(first < 1000, `${first} ms`);
-  assert.ok(rate >= 30, `${rate} frames a second`);
-  await close();
-});
-
-test("a contour of 100,000 samples plays, zooms and moves smoothly", async (t) => {
-  const count = 100_000;
-  const each = (f) => column(Array.from({ length: count }, (_, i) => f(i).toFixed(5)));
-  const turn = (i) => (2 * Math.PI * i) / count;
-  const radius = (i) => 400 + 40 * Math.sin(12 * turn(i));
-  const pass = (k) => ({
-    error_mm: each((i) => k * (0.1 + 0.05 * Math.sin(300 * turn(i)))), arc_deg: each((i) => 40 + 5 * Math.sin(90 * turn(i))),
-    force_n: each((i) => 200 + 20 * Math.sin(90 * turn(i))), fx_n: each((i) => 200 * Math.cos(turn(i))), fy_n: each((i) => 200 * Math.sin(turn(i))),
-    dx_mm: each((i) => -0.1 * Math.cos(turn(i))), dy_mm: each((i) => -0.1 * Math.sin(turn(i))), chip_area_mm2: each(() => 0.1),
-  });
-  const file = await write("long", {
-    version: 1, kind: "correct", title: "A long contour", tolerance_mm: 0.02,
-    job: { wall: "right", tool: { diameter_mm: 20 }, cut: { feed_mm_per_min: 6000 }, stock: { allowance_mm: 1 } },
-    contour: {
-      s_mm: each((i) => i * 0.026), x_mm: each((i) => radius(i) * Math.cos(turn(i))), y_mm: each((i) => radius(i) * Math.sin(turn(i))),
-      correction_x_mm: each((i) => 0.1 * Math.cos(turn(i))), correction_y_mm: each((i) => 0.1 * Math.sin(turn(i))), before: pass(1), after: pass(0.1),
-    },
-  });
-  const { page, complaints, close } = await open(browser, file);
-  const first = Number(await page.getAttribute("html", "data-first-picture"));
-  await page.click("#play");
-  const rate = await frames(page, 2);
-  await page.click("#play");
-  // Zooming in step by step: how long a key takes from press to picture.
-  const slowest = await page.evaluate(async () => {
+/** How long the slowest key takes from press to picture, zooming in and out step by step. */
+async function slowestRedraw(page) {
+  return page.evaluate(async () => {
     const stage = document.querySelector(".stage");
     let most = 0;
     for (const key of [..."+++++++++++++++", "ArrowRight", "ArrowUp", ..."---------------"]) {
@@ -67,9 +39,44 @@ test("a contour of 100,000 samples plays, zooms and moves smoothly", async (t) =
     }
     return most;
   });
-  t.diagnostic(`first picture ${first} ms, ${rate.toFixed(0)} frames a second, slowest redraw ${slowest.toFixed(0)} ms`);
-  assert.ok(rate >= 30, `${rate} frames a second`);
-  assert.ok(slowest < 150, `${slowest} ms`);
+}
+
+async function measured(file, redraws) {
+  const { page, complaints, close } = await open(file);
+  const first = Number(await page.getAttribute("html", "data-first-picture"));
+  await page.click("#play");
+  const rate = await frames(page, 1.5);
+  await page.click("#play");
+  const slowest = redraws ? await slowestRedraw(page) : 0;
   assert.deepEqual(complaints, []);
   await close();
+  return { first, rate, slowest };
+}
+
+async function fast(t, name, file, redraws = false) {
+  for (const again of [true, false]) {
+    const { first, rate, slowest } = await measured(file, redraws);
+    const said = `${name}: first picture ${first} ms, ${rate.toFixed(0)} frames a second${redraws ? `, slowest redraw ${slowest.toFixed(0)} ms` : ""}`;
+    t.diagnostic(said);
+    if (first < FIRST && rate >= FRAMES && slowest < REDRAW) return;
+    assert.ok(again, said);
+    t.diagnostic("missed once: measured again");
+  }
+}
+
+test("the pocket is there within a second and plays with 30 frames a second or more", async (t) => {
+  await fast(t, "pocket", await report("demo/pocket"));
+});
+
+test("a simulated contour of ten metres, 100,000 samples, plays, zooms and moves smoothly", async (t) => {
+  await fast(t, "ten metres", await report("long"), true);
+});
+
+test("the same contour before and after a correction does, too", async (t) => {
+  const long = await dataOf("long");
+  // Made up for the test: the program corrects such a contour in half a minute, simulates it in two seconds.
+  const { contour } = long;
+  const { before } = contour;
+  const both = { ...contour, correction_x_mm: before.dx_mm, correction_y_mm: before.dy_mm, after: { ...before, sigma_mm: before.error_mm } };
+  await fast(t, "ten metres, two passes", await write("long-both", { ...long, kind: "correct", contour: both }), true);
 });

@@ -1,96 +1,134 @@
-// What the page shows is what the tables of the program hold, to the last digit.
+// What the page shows is what the tables of the same run hold, to the last digit.
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
-import { after, before, test } from "node:test";
-import { parse } from "../samples/convert.mjs";
-import { launch, onPage, open, sample, write } from "./browser.mjs";
+import { test } from "node:test";
+import { dataOf, onPage, open, report, table } from "./browser.mjs";
 
-let browser;
-before(async () => { browser = await launch(); });
-after(() => browser.close());
-
-const table = async (part, file) => parse(await readFile(new URL(`../samples/raw/${part}/${file}`, import.meta.url), "utf8"));
 /** The text of the page as a number, and how many decimals it shows. */
-const number = (text) => Number(text.replace("−", "-").replace("+", "").replace(/[^-\d.]/g, ""));
+const number = (text) => (text.trim() === "–" ? NaN : Number(text.replace("−", "-").replace("+", "").replace(/[^-\d.]/g, "")));
 const decimals = (text) => (/\.(\d+)/.exec(text)?.[1] ?? "").length;
 
-for (const part of ["corner", "pocket"]) {
-  test(`hovering over the ${part} gives the figures of trace.csv and correction.csv`, async () => {
-    const { page, complaints, close } = await open(browser, await write(part, await sample(part)));
-    const trace = await table(part, "before.csv");
-    const correction = await table(part, "correction.csv");
-    for (const share of [0.1, 0.35, 0.45, 0.62, 0.9]) {
-      const i = Math.round(share * (trace.s_mm.length - 1));
-      const at = await onPage(page, Number(trace.x_mm[i]), Number(trace.y_mm[i]));
-      await page.mouse.move(at.x, at.y);
-      const cells = await page.locator(".flag.shown b").allTextContents();
-      const names = await page.locator(".flag.shown span").allTextContents();
-      const shown = Object.fromEntries(names.map((name, k) => [name, cells[k]]));
-      // The picture has a few samples a pixel: take the sample that the page names and look its row up.
-      const s = number(shown.s);
-      const row = correction.s_mm.findIndex((v) => Math.abs(Number(v) - s) < 1e-9);
-      assert.ok(row >= 0, `${shown.s} is in the table`);
-      assert.ok(Math.abs(row - i) <= 3, `sample ${row} beside the pointer at ${i}`);
-      assert.equal(number(shown["error before"]), Number(trace.error_mm[row]));
-      assert.ok(decimals(shown["error before"]) >= decimals(trace.error_mm[row]));
-      assert.equal(number(shown["force before"]), Number(trace.force_n[row]));
-      assert.equal(number(shown.arc), Number(trace.arc_deg[row]));
-      const [cx, cy] = shown["correction x, y"].split(",");
-      assert.equal(number(cx), Number(correction.dx_mm[row]));
-      assert.equal(number(cy), Number(correction.dy_mm[row]));
-      assert.equal(number(shown["± σ"]), Number(correction.sigma_mm[row]));
+/** The number shown is that of the table, with all its digits; no number in the one is none in the other. */
+function same(shown, text, what) {
+  assert.ok(shown !== undefined, `${what} is shown`);
+  assert.equal(number(shown), text === "" || text === undefined ? NaN : Number(text), what);
+  // The table drops zeros at the end.
+  if (Number.isFinite(number(shown))) assert.ok(decimals(shown) >= decimals(text), `${what}: ${shown} has the digits of ${text}`);
+}
+
+/** The figures at the pointer, by name. */
+async function flag(page) {
+  const cells = await page.locator(".flag.shown b").allTextContents();
+  const names = await page.locator(".flag.shown span").allTextContents();
+  return Object.fromEntries(names.map((name, k) => [name, cells[k]]));
+}
+
+/** Hovers over places of the wanted path; calls back with the figures shown and the row of the table they belong to. */
+async function hovered(page, rows, check) {
+  for (const share of [0.1, 0.35, 0.45, 0.62, 0.9]) {
+    const i = Math.round(share * (rows.s_mm.length - 1));
+    const at = await onPage(page, Number(rows.x_mm[i]), Number(rows.y_mm[i]));
+    await page.mouse.move(at.x, at.y);
+    const shown = await flag(page);
+    // A pixel holds a few samples: take the one that the page names and look its row up.
+    const s = number(shown.s);
+    const row = rows.s_mm.findIndex((v, k) => Math.abs(Number(v) - s) < 1e-9 && Math.abs(k - i) < 5);
+    assert.ok(row >= 0, `${shown.s} is in the table, beside row ${i}`);
+    check(shown, row);
+  }
+}
+
+/** The figures in words and digits at the cutter, by name: one for each pass. */
+async function readout(page) {
+  const rows = await page.locator("#readout tbody tr").evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  return Object.fromEntries(rows.map(([name, ...cells]) => [name, cells]));
+}
+
+const QUANTITIES = {
+  "wall error": "error_mm", "engagement arc": "arc_deg", "chip area": "chip_area_mm2", force: "force_n", "force x": "fx_n",
+  "force y": "fy_n", "deflection x": "dx_mm", "deflection y": "dy_mm",
+};
+
+for (const name of ["simulate-core", "simulate-plant", "island"]) {
+  test(`${name}: pointer, figures at the cutter and traces show trace.csv`, async () => {
+    const trace = await table(`${name}/trace.csv`);
+    const { page, complaints, close } = await open(await report(name));
+    await hovered(page, trace, (shown, row) => {
+      same(shown.error, trace.error_mm[row], `error in row ${row}`);
+      same(shown.force, trace.force_n[row], `force in row ${row}`);
+      same(shown.arc, trace.arc_deg[row], `arc in row ${row}`);
+    });
+    for (let i = 3; i < trace.s_mm.length; i += 197) {
+      await page.fill("#scrub", String(i));
+      const shown = await readout(page);
+      for (const [title, quantity] of Object.entries(QUANTITIES)) same(shown[title][0], trace[quantity][i], `${title} in row ${i}`);
+      const beside = await page.locator(".trace .entry b").first().textContent();
+      same(beside, trace.error_mm[i], `error beside its trace in row ${i}`);
+      const at = await page.locator("#readout .at").textContent();
+      for (const [letter, quantity] of [["s", "s_mm"], ["X", "x_mm"], ["Y", "y_mm"]]) {
+        same(new RegExp(`${letter} (\\S+) mm`).exec(at)[1], trace[quantity][i], `${letter} in row ${i}`);
+      }
     }
     assert.deepEqual(complaints, []);
     await close();
   });
+}
 
-  test(`the figures at the cutter and beside the traces of the ${part} are those of the tables`, async () => {
-    const { page, close } = await open(browser, await write(part, await sample(part)));
-    const trace = await table(part, "before.csv");
-    const correction = await table(part, "correction.csv");
-    const names = {
-      "wall error": "error_mm", "engagement arc": "arc_deg", "chip area": "chip_area_mm2", force: "force_n", "force x": "fx_n",
-      "force y": "fy_n", "deflection x": "dx_mm", "deflection y": "dy_mm",
-    };
-    for (let i = 0; i < trace.s_mm.length; i += 97) {
+for (const name of ["correct", "learn"]) {
+  test(`${name}: pointer and figures at the cutter show correction.csv`, async () => {
+    const rows = await table(`${name}/correction.csv`);
+    const { page, complaints, close } = await open(await report(name));
+    await hovered(page, rows, (shown, row) => {
+      same(shown["error before"], rows.predicted_error_before_mm[row], `error before in row ${row}`);
+      same(shown["error after"], rows.predicted_error_after_mm[row], `error after in row ${row}`);
+      same(shown["± σ"], rows.sigma_mm[row], `sigma in row ${row}`);
+      const [cx, cy] = shown["correction x, y"].split(",");
+      same(cx, rows.dx_mm[row], `correction x in row ${row}`);
+      same(cy, rows.dy_mm[row], `correction y in row ${row}`);
+    });
+    for (let i = 5; i < rows.s_mm.length; i += 211) {
       await page.fill("#scrub", String(i));
-      const rows = await page.locator("#readout tbody tr").evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
-      for (const [name, column] of Object.entries(names)) {
-        const shown = rows.find((row) => row[0] === name)[1];
-        assert.equal(number(shown), Number(trace[column][i]), `${name} at ${i}`);
-      }
-      assert.equal(number(rows.find((row) => row[0] === "correction x")[1]), Number(correction.dx_mm[i]));
-      assert.equal(number(rows.find((row) => row[0] === "correction y")[1]), Number(correction.dy_mm[i]));
-      const beside = await page.locator(".trace").first().locator(".entry b").first().textContent();
-      assert.equal(number(beside), Number(trace.error_mm[i]));
+      const shown = await readout(page);
+      same(shown["wall error"][0], rows.predicted_error_before_mm[i], `error before in row ${i}`);
+      same(shown["wall error"][1], rows.predicted_error_after_mm[i], `error after in row ${i}`);
+      same(shown["correction x"][0], rows.dx_mm[i], `correction x in row ${i}`);
+      same(shown["correction y"][0], rows.dy_mm[i], `correction y in row ${i}`);
     }
+    assert.deepEqual(complaints, []);
     await close();
   });
 }
 
-test("the table of probe points holds every point with deviation, normal and status", async () => {
-  const { page, close } = await open(browser, await write("pocket", await sample("pocket")));
-  const points = await table("pocket", "points.csv");
-  const rows = await page.locator("#points tbody tr").evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
-  assert.equal(rows.length, points.line.length);
-  rows.forEach((row, i) => {
-    assert.equal(row[0], points.line[i]);
-    assert.equal(number(row[7]), Number(Number(points.error_mm[i]).toFixed(4)));
-    assert.deepEqual([number(row[5]), number(row[6])], [Number(points.nx[i]), Number(points.ny[i])]);
-    assert.equal(row[8], Number(points.error_mm[i]) > 0.02 ? "left" : "in");
-    assert.equal(row[9], points.status[i]);
+for (const name of ["correct", "inspect"]) {
+  test(`${name}: the table of probe points holds every line of points.csv`, async () => {
+    const { page, close } = await open(await report(name));
+    const points = await table(`${name}/points.csv`);
+    const heads = await page.locator("#points thead th").allTextContents();
+    const rows = await page.locator("#points tbody tr").evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+    assert.equal(rows.length, points.line.length);
+    const cell = (row, title) => row[heads.findIndex((head) => head.startsWith(title))];
+    const lines = [];
+    for (const row of rows) {
+      const i = points.line.indexOf(cell(row, "line"));
+      lines.push(i);
+      const error = Number(points.error_mm[i]);
+      assert.ok(Math.abs(number(cell(row, "deviation")) - error) <= 0.5001e-4, `deviation of line ${points.line[i]}`);
+      assert.ok(Math.abs(number(cell(row, "normal x")) - Number(points.nx[i])) <= 0.5001e-3);
+      assert.ok(Math.abs(number(cell(row, "normal y")) - Number(points.ny[i])) <= 0.5001e-3);
+      assert.ok(cell(row, "status").startsWith(points.status[i] === "used" ? "used" : "set aside"), points.status[i]);
+    }
+    assert.equal(new Set(lines).size, points.line.length, "every line once");
+    await close();
   });
-  await close();
-});
+}
 
 test("a probe point under the pointer shows its own deviation", async () => {
-  const data = await sample("corner");
-  const { page, close } = await open(browser, await write("corner", data));
+  const { points } = await dataOf("correct");
+  const { page, close } = await open(await report("correct"));
   const factor = Number(await page.inputValue("#magnify"));
-  const point = data.points[1];
+  const point = points[1];
   const at = await onPage(page, point.x_mm + (1 - factor) * point.error_mm * point.nx, point.y_mm + (1 - factor) * point.error_mm * point.ny);
   await page.mouse.move(at.x, at.y);
-  const cells = await page.locator(".flag.shown b").allTextContents();
-  assert.equal(number(cells[1]), point.error_mm);
+  const shown = await flag(page);
+  assert.equal(number(shown.deviation), point.error_mm);
   await close();
 });

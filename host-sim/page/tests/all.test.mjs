@@ -1,0 +1,7 @@
+// All tests in one process and one browser, one after the other; those that measure time first.
+import "./speed.test.mjs";
+import "./values.test.mjs";
+import "./scene.test.mjs";
+import "./page.test.mjs";
+import "./partial.test.mjs";
+import "./picture.test.mjs";
