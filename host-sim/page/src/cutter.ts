@@ -9,6 +9,7 @@ type Context = CanvasRenderingContext2D;
 /** Linear between two samples. */
 export function between(values: ArrayLike<number>, place: number): number {
   const i = Math.floor(place);
+  if (place === i) return values[i];
   const j = Math.min(i + 1, values.length - 1);
   return values[i] + (values[j] - values[i]) * (place - i);
 }
@@ -23,8 +24,9 @@ export function drawMoving(c: Context, view: View, picture: Picture, colours: Pa
   if (hovered !== null) mark(c, view, picture, colours, hovered);
   if (!pass || picture.hidden.has("cutter")) return;
   const m = picture.magnify;
-  const dx = pass.deviation ? between(pass.deviation.x, place) * m : 0;
-  const dy = pass.deviation ? between(pass.deviation.y, place) * m : 0;
+  // Where no deviation is known the cutter stands on its path.
+  const dx = pass.deviation ? (between(pass.deviation.x, place) || 0) * m : 0;
+  const dy = pass.deviation ? (between(pass.deviation.y, place) || 0) * m : 0;
   const px = view.px(between(model.x.values, place) + dx);
   const py = view.py(between(model.y.values, place) + dy);
   const radius = model.radius * view.scale;

@@ -5,13 +5,14 @@ import { signed } from "./format";
 import type { Model, Pass } from "./model";
 import type { Line } from "./outline";
 import type { Palette } from "./palette";
-import { roundStep, type View } from "./view";
+import type { Trimmed } from "./trim";
+import { roundBelow, roundStep, type View } from "./view";
 
 export interface Picture {
   model: Model | null;
   pass: Pass | null;
   error: Float64Array | undefined;
-  wall: Line | null;
+  wall: Trimmed | null;
   stock: Line | null;
   outlines: { wall: Line[]; stock: Line[] };
   points: ProbePoint[];
@@ -55,6 +56,35 @@ export function drawStill(c: Context, view: View, picture: Picture, colours: Pal
   for (const line of picture.outlines.stock) path(c, view, allOf(line), line, colours.quiet, 1, [5, 4]);
   for (const line of picture.outlines.wall) path(c, view, allOf(line), line, colours.ink, 1.75);
   if (!picture.hidden.has("points")) points(c, view, picture, colours);
+  if (picture.error || picture.pass?.deviation || picture.points.length) errorScale(c, view, picture.magnify, colours);
+}
+
+/** How large an error is drawn: a bar of a round number of millimetres. */
+function errorScale(c: Context, view: View, magnify: number, colours: Palette): void {
+  const pixels = view.scale * magnify;
+  const size = roundBelow(90 / pixels);
+  const text = `error ${size.toFixed(Math.max(0, -Math.floor(Math.log10(size) + 1e-9)))} mm`;
+  c.font = `11px ${colours.font}`;
+  const wide = Math.max(size * pixels, c.measureText(text).width);
+  const right = view.width - 10;
+  c.fillStyle = colours.ground;
+  c.globalAlpha = 0.85;
+  c.fillRect(right - wide - 5, 5, wide + 10, 29);
+  c.globalAlpha = 1;
+  c.fillStyle = colours.ink;
+  c.textBaseline = "top";
+  c.textAlign = "right";
+  c.fillText(text, right, 8);
+  c.textAlign = "left";
+  const left = right - size * pixels;
+  c.beginPath();
+  for (const [x, y] of [[left, 22], [left, 30], [left, 26], [right, 26], [right, 22], [right, 30]]) {
+    if (x === left && y === 22) c.moveTo(x, y);
+    else c.lineTo(x, y);
+  }
+  c.strokeStyle = colours.ink;
+  c.lineWidth = 1.5;
+  c.stroke();
 }
 
 /** The coarsest level whose samples lie no more than a pixel apart. */
@@ -144,7 +174,7 @@ function ribbon(c: Context, view: View, indices: Uint32Array, one: Line, other: 
   fill();
 }
 
-function band(c: Context, view: View, indices: Uint32Array, model: Model, wall: Line, picture: Picture, colours: Palette): void {
+function band(c: Context, view: View, indices: Uint32Array, model: Model, wall: Trimmed, picture: Picture, colours: Palette): void {
   const error = picture.error as Float64Array;
   const edge = {
     x: wall.x.map((v, i) => v - picture.magnify * error[i] * model.nx[i]),
@@ -158,9 +188,10 @@ function band(c: Context, view: View, indices: Uint32Array, model: Model, wall: 
   for (const [colour, holds] of kinds) {
     c.fillStyle = colour;
     c.globalAlpha = 0.5;
-    ribbon(c, view, indices, wall, edge, (i) => holds(error[i]));
+    const shown = (i: number) => holds(error[i]) && !wall.gone[i];
+    ribbon(c, view, indices, wall, edge, shown);
     c.globalAlpha = 1;
-    path(c, view, indices, edge, colour, 1.75, [], (i) => holds(error[i]));
+    path(c, view, indices, edge, colour, 1.75, [], shown);
   }
 }
 

@@ -4,6 +4,7 @@ import { fittingFactor, legend, sceneBar, transport, type Layer } from "./contro
 import { readReport } from "./decode";
 import type { Report } from "./data";
 import { el } from "./dom";
+import { fixed } from "./format";
 import { Model } from "./model";
 import { palette } from "./palette";
 import { head, job, parameters, points, results } from "./panels";
@@ -38,8 +39,8 @@ function layersOf(report: Report, model: Model | null): Layer[] {
   const { before, after } = model?.passes ?? {};
   const errors: [string, string][] = [["left", "material left"], ["gouge", "cut too deep"]];
   if (report.tolerance_mm) errors.push(["within", "within tolerance"]);
-  const paths: [string, string][] = [...(before?.deviation ? [["before", "actual path before"] as [string, string]] : []),
-    ...(after?.deviation ? [["after", "actual path after"] as [string, string]] : [])];
+  const paths: [string, string][] = [...(before?.deviation ? [["before", model?.of("actual path", "before")] as [string, string]] : []),
+    ...(after?.deviation ? [["after", model?.of("actual path", "after")] as [string, string]] : [])];
   const all: [Layer, unknown][] = [
     [{ id: "band", keys: errors }, before ?? after],
     [{ id: "nominal", keys: [["nominal", "nominal path"]] }, model],
@@ -167,7 +168,7 @@ function announce(live: HTMLElement, model: Model, place: number): void {
     const index = Math.round(place);
     const errors = (["before", "after"] as const).flatMap((name) => {
       const error = model.passes[name]?.series.error_mm;
-      return error ? [`error ${name} ${error.values[index].toFixed(4)} mm`] : [];
+      return error ? [`${model.of("error", name)} ${fixed(error.values[index], 4)} mm`] : [];
     });
     live.textContent = [placeText(model, index), ...errors].join("; ");
   }, 400);

@@ -24,7 +24,7 @@ export class Pass {
   readonly deviation?: { x: Float64Array; y: Float64Array };
 
   constructor(readonly name: PassName, columns: PassColumns, length: number, correction?: { x: Series; y: Series }) {
-    this.label = columns.label ?? (name === "before" ? "before the correction" : "after the correction");
+    this.label = columns.label ?? `${name} the correction`;
     for (const quantity of QUANTITIES) {
       const column = columns[quantity];
       if (column) this.series[quantity] = decode(column, `${name}.${quantity}`, length);
@@ -83,6 +83,11 @@ export class Model {
     this.readHeights();
   }
 
+  /** "what before", "what after"; of a pass that stands alone "what". */
+  of(what: string, name: PassName): string {
+    return this.passes.before && this.passes.after ? `${what} ${name}` : what;
+  }
+
   get length(): number {
     return this.s.values[this.count - 1] - this.s.values[0];
   }
@@ -117,11 +122,15 @@ export class Model {
   private normals(): [Float64Array, Float64Array] {
     const nx = new Float64Array(this.count);
     const ny = new Float64Array(this.count);
+    const { values: x } = this.x;
+    const { values: y } = this.y;
     for (let i = 0; i < this.count; i++) {
-      const a = Math.max(0, i - 1);
-      const b = Math.min(this.count - 1, i + 1);
-      const tx = this.x.values[b] - this.x.values[a];
-      const ty = this.y.values[b] - this.y.values[a];
+      let a = Math.max(0, i - 1);
+      let b = Math.min(this.count - 1, i + 1);
+      // Several samples may stand on one spot.
+      while (x[a] === x[b] && y[a] === y[b] && (a > 0 || b < this.count - 1)) [a, b] = [Math.max(0, a - 1), Math.min(this.count - 1, b + 1)];
+      const tx = x[b] - x[a];
+      const ty = y[b] - y[a];
       const size = Math.hypot(tx, ty) || 1;
       nx[i] = (this.turn * ty) / size;
       ny[i] = (-this.turn * tx) / size;

@@ -38,7 +38,7 @@ export class Readout {
       add("cy", "correction y", "mm", 1);
     }
     this.place = el("p", { class: "at" });
-    const heads = [el("th", { scope: "col", class: "text" }, "quantity"), ...names.map((n) => el("th", { scope: "col", class: `number ${n}` }, n)),
+    const heads = [el("th", { scope: "col", class: "text" }, "quantity"), ...names.map((n) => el("th", { scope: "col", class: `number ${n}` }, names.length > 1 ? n : "value")),
       el("th", { scope: "col", class: "text" }, "unit")];
     this.element = el("section", { class: "card", id: "readout", "aria-labelledby": "readout-title" },
       this.title, this.place,
@@ -79,11 +79,11 @@ export function flagLines(model: Model, index: number, height: number | null): [
     const pass = model.passes[name];
     if (!pass) continue;
     const error = model.error(name, height);
-    if (error) lines.push([`error ${name}`, `${signed(error[index], pass.series.error_mm?.decimals ?? 6)} mm`]);
+    if (error) lines.push([model.of("error", name), `${signed(error[index], pass.series.error_mm?.decimals ?? 6)} mm`]);
     const { sigma_mm: sigma, force_n: force, arc_deg: arc } = pass.series;
     if (sigma) lines.push(["± σ", `${fixed(sigma.values[index], sigma.decimals)} mm`]);
-    if (force) lines.push([`force ${name}`, `${fixed(force.values[index], force.decimals)} N`]);
-    if (arc && name === "before") lines.push(["arc", `${fixed(arc.values[index], arc.decimals)}°`]);
+    if (force) lines.push([model.of("force", name), `${fixed(force.values[index], force.decimals)} N`]);
+    if (arc && (name === "before" || !model.passes.before)) lines.push(["arc", `${fixed(arc.values[index], arc.decimals)}°`]);
   }
   if (model.correction) {
     const { x, y } = model.correction;

@@ -12,6 +12,7 @@ import { statusOf } from "./panels";
 import { flagLines } from "./readout";
 import { Scene } from "./scene";
 import type { Store } from "./state";
+import { trimmed, type Trimmed } from "./trim";
 import { View, type Box } from "./view";
 
 const REACH = 40;
@@ -21,7 +22,7 @@ export class Stage {
   readonly view: View;
   private readonly scenes: { name: PassName; scene: Scene }[];
   private readonly flag = el("div", { class: "flag", "aria-hidden": "true" });
-  private readonly wall: Line | null;
+  private readonly wall: Trimmed | null;
   private readonly stock: Line | null;
   private readonly outlines: { wall: Line[]; stock: Line[] };
   private readonly points: ProbePoint[];
@@ -34,9 +35,9 @@ export class Stage {
     private readonly hoverChanged: (index: number | null) => void) {
     const given = { wall: outline(report.outlines?.wall, "wall") ?? [], stock: outline(report.outlines?.stock, "stock") ?? [] };
     this.outlines = given;
-    this.wall = model ? offsetOf(model, model.radius) : null;
+    this.wall = model ? trimmed(model, offsetOf(model, model.radius), model.radius) : null;
     const allowance = report.job?.stock?.allowance_mm;
-    this.stock = model && allowance !== undefined && given.stock.length === 0 ? offsetOf(model, model.radius - allowance) : null;
+    this.stock = model && allowance !== undefined && given.stock.length === 0 ? trimmed(model, offsetOf(model, model.radius - allowance), model.radius - allowance) : null;
     if (model) this.outlines = { wall: [], stock: given.stock };
     this.points = report.points ?? [];
     // A reading set aside may lie anywhere: where there is something else to see, the view does not reach out for it.
@@ -54,7 +55,9 @@ export class Stage {
   }
 
   private scene(name: PassName): Scene {
-    const label = this.model ? `Contour ${name} the correction, to scale, errors enlarged` : "Wall and probe points";
+    const passes = this.model?.passes;
+    const label = passes?.before && passes.after ? `Contour ${name} the correction, to scale, errors enlarged`
+      : passes?.before || passes?.after ? "Contour, to scale, errors enlarged" : "Wall and probe points";
     return new Scene(this.view, {
       view: () => this.still(),
       hover: (scene, px, py) => this.hover(scene, px, py),
@@ -146,7 +149,7 @@ export class Stage {
     const { magnify, height } = this.store.state;
     const pass = this.model?.passes[name];
     const z = height === null ? "" : `, ${fixed(this.report.heights?.z_mm[height], 2)} mm above the tip`;
-    return `${pass ? `${name}: ${pass.label}` : "wall and probe points"}${z}; errors ${magnify} ×`;
+    return `${pass && this.model ? [this.model.of("", name).trim(), pass.label].filter(Boolean).join(": ") : "wall and probe points"}${z}; errors ${magnify} ×`;
   }
 
   private picture(name: PassName): Picture {

@@ -224,8 +224,7 @@ function panelsOf(model: Model, state: State, colours: Palette): Panel[] {
     const error = height === null ? undefined : model.error(name, height);
     if (!series && !error) return [];
     return [{
-      name, series: error ? { values: error, decimals: series?.decimals ?? 6 } : (series as Series), colour: colours[name],
-      faint: state.shown !== "both" && state.shown !== name,
+      name: before && after ? name : "", series: error ? { values: error, decimals: series?.decimals ?? 6 } : (series as Series), colour: colours[name], faint: state.shown !== "both" && state.shown !== name,
     }];
   });
   const components = (x: Quantity, y: Quantity, names: [string, string]): Curve[] => {

@@ -77,6 +77,13 @@ export class View {
   }
 }
 
+/** The next of 1, 2, 5, 10, … that is not larger. */
+export function roundBelow(wanted: number): number {
+  const power = 10 ** Math.floor(Math.log10(wanted));
+  const lead = wanted / power;
+  return power * (lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
+}
+
 /** The next of 1, 2, 5, 10, … that is not smaller. */
 export function roundStep(wanted: number): number {
   const power = 10 ** Math.floor(Math.log10(wanted));
