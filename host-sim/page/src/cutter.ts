@@ -25,12 +25,13 @@ export function drawMoving(c: Context, view: View, picture: Picture, colours: Pa
   if (!pass || picture.hidden.has("cutter")) return;
   const m = picture.magnify;
   // Where no deviation is known the cutter stands on its path.
-  const dx = pass.deviation ? (between(pass.deviation.x, place) || 0) * m : 0;
-  const dy = pass.deviation ? (between(pass.deviation.y, place) || 0) * m : 0;
-  const px = view.px(between(model.x.values, place) + dx);
-  const py = view.py(between(model.y.values, place) + dy);
+  const deviation = pass.across ? (between(pass.across, place) || 0) * m : 0;
+  const nx = between(model.nx, place);
+  const ny = between(model.ny, place);
+  const px = view.px(between(model.x.values, place) + deviation * nx);
+  const py = view.py(between(model.y.values, place) + deviation * ny);
   const radius = model.radius * view.scale;
-  const normal = Math.atan2(between(model.ny, place), between(model.nx, place));
+  const normal = Math.atan2(ny, nx);
   if (radius < 20000) {
     c.beginPath();
     c.arc(px, py, radius, 0, 2 * Math.PI);

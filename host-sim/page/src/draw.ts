@@ -45,18 +45,18 @@ export function drawStill(c: Context, view: View, picture: Picture, colours: Pal
     if (!picture.hidden.has("nominal")) path(c, view, indices, { x: model.x.values, y: model.y.values }, colours.quiet, 1, [8, 3, 2, 3]);
     const { correction } = model;
     if (!picture.hidden.has("commanded") && correction && picture.pass?.name === "after") {
-      path(c, view, indices, moved(model, correction.x.values, correction.y.values, picture.magnify), colours.second, 1.5, [4, 3]);
+      path(c, view, indices, moved(model, correction.across, picture.magnify), colours.second, 1.5, [4, 3]);
     }
-    const deviation = picture.pass?.deviation;
-    if (!picture.hidden.has("actual") && deviation && picture.pass) {
+    const across = picture.pass?.across;
+    if (!picture.hidden.has("actual") && across && picture.pass) {
       const colour = picture.pass.name === "after" ? colours.after : colours.before;
-      path(c, view, indices, moved(model, deviation.x, deviation.y, picture.magnify), colour, 1.5);
+      path(c, view, indices, moved(model, across, picture.magnify), colour, 1.5);
     }
   }
   for (const line of picture.outlines.stock) path(c, view, allOf(line), line, colours.quiet, 1, [5, 4]);
   for (const line of picture.outlines.wall) path(c, view, allOf(line), line, colours.ink, 1.75);
   if (!picture.hidden.has("points")) points(c, view, picture, colours);
-  if (picture.error || picture.pass?.deviation || picture.points.length) errorScale(c, view, picture.magnify, colours);
+  if (picture.error || picture.pass?.across || picture.points.length) errorScale(c, view, picture.magnify, colours);
 }
 
 /** How large an error is drawn: a bar of a round number of millimetres. */
@@ -103,8 +103,10 @@ function shifted(line: Line, model: Model, distance: number): Line {
   return { x: line.x.map((v, i) => v + distance * model.nx[i]), y: line.y.map((v, i) => v + distance * model.ny[i]) };
 }
 
-function moved(model: Model, dx: Float64Array, dy: Float64Array, factor: number): Line {
-  return { x: model.x.values.map((v, i) => v + factor * dx[i]), y: model.y.values.map((v, i) => v + factor * dy[i]) };
+/** The path moved towards the wall. */
+function moved(model: Model, across: Float64Array, factor: number): Line {
+  const by = (path: Float64Array, normal: Float64Array) => path.map((v, i) => v + factor * across[i] * normal[i]);
+  return { x: by(model.x.values, model.nx), y: by(model.y.values, model.ny) };
 }
 
 function near(view: View, px: number, py: number): boolean {

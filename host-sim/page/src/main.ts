@@ -1,7 +1,7 @@
 /** Puts the page together from the data in it. */
 
 import { fittingFactor, legend, sceneBar, transport, type Layer } from "./controls";
-import { readReport } from "./decode";
+import { decode, readReport } from "./decode";
 import type { Report } from "./data";
 import { el } from "./dom";
 import { fixed } from "./format";
@@ -39,8 +39,8 @@ function layersOf(report: Report, model: Model | null): Layer[] {
   const { before, after } = model?.passes ?? {};
   const errors: [string, string][] = [["left", "material left"], ["gouge", "cut too deep"]];
   if (report.tolerance_mm) errors.push(["within", "within tolerance"]);
-  const paths: [string, string][] = [...(before?.deviation ? [["before", model?.of("actual path", "before")] as [string, string]] : []),
-    ...(after?.deviation ? [["after", model?.of("actual path", "after")] as [string, string]] : [])];
+  const paths: [string, string][] = [...(before?.across ? [["before", model?.of("actual path", "before")] as [string, string]] : []),
+    ...(after?.across ? [["after", model?.of("actual path", "after")] as [string, string]] : [])];
   const all: [Layer, unknown][] = [
     [{ id: "band", keys: errors }, before ?? after],
     [{ id: "nominal", keys: [["nominal", "nominal path"]] }, model],
@@ -56,7 +56,9 @@ function layersOf(report: Report, model: Model | null): Layer[] {
 
 function show(report: Report, main: HTMLElement): void {
   document.title = `${report.title} – Truepath`;
-  const model = report.contour ? new Model(report, report.contour) : null;
+  const samples = report.contour ? decode(report.contour.s_mm, "s_mm").values.length : 0;
+  const model = report.contour && samples > 1 ? new Model(report, report.contour) : null;
+  if (report.contour && !model) report.warnings = [...(report.warnings ?? []), "a contour of fewer than two samples is not drawn"];
   const { before, after } = model?.passes ?? {};
   const errors = [largest(before?.series.error_mm?.values), largest(after?.series.error_mm?.values),
     largest(report.points?.map((p) => p.error_mm ?? 0))];

@@ -20,10 +20,11 @@ const QUANTITIES: Quantity[] = [
 
 export class Pass {
   readonly series: Partial<Record<Quantity, Series>> = {};
-  /** Deviation of the centre from the programmed path; absent without deflections. */
-  readonly deviation?: { x: Float64Array; y: Float64Array };
+  /** Deviation of the centre from the programmed path, towards the wall; absent without deflections. */
+  readonly across?: Float64Array;
 
-  constructor(readonly name: PassName, columns: PassColumns, length: number, correction?: { x: Series; y: Series }) {
+  constructor(readonly name: PassName, columns: PassColumns, normals: [Float64Array, Float64Array], correction?: Float64Array) {
+    const { length } = normals[0];
     this.label = columns.label ?? `${name} the correction`;
     for (const quantity of QUANTITIES) {
       const column = columns[quantity];
@@ -31,12 +32,17 @@ export class Pass {
     }
     const { dx_mm: dx, dy_mm: dy } = this.series;
     if (dx && dy) {
-      const add = (d: Series, c?: Series) => (name === "after" && c ? d.values.map((v, i) => v + c.values[i]) : d.values);
-      this.deviation = { x: add(dx, correction?.x), y: add(dy, correction?.y) };
+      const deflection = across(dx, dy, normals);
+      this.across = name === "after" && correction ? deflection.map((v, i) => v + correction[i]) : deflection;
     }
   }
 
   readonly label: string;
+}
+
+/** The part of a vector towards the wall. What lies along the path moves no wall. */
+function across(x: Series, y: Series, [nx, ny]: [Float64Array, Float64Array]): Float64Array {
+  return x.values.map((v, i) => v * nx[i] + y.values[i] * ny[i]);
 }
 
 export class Model {
@@ -46,7 +52,7 @@ export class Model {
   readonly y: Series;
   readonly nx: Float64Array;
   readonly ny: Float64Array;
-  readonly correction?: { x: Series; y: Series };
+  readonly correction?: { x: Series; y: Series; across: Float64Array };
   readonly passes: Partial<Record<PassName, Pass>> = {};
   /** Seconds from the start of the contour, at the feed of the pass, else of the job, else 20 s in all. */
   readonly time: Float64Array;
@@ -57,19 +63,13 @@ export class Model {
   readonly levels: Uint32Array[];
   private readonly heightErrors: Partial<Record<PassName, Float64Array[]>> = {};
 
+  /** Of a contour of two samples or more. */
   constructor(readonly report: Report, columns: ContourColumns) {
     this.s = decode(columns.s_mm, "s_mm");
     const count = this.s.values.length;
-    if (count < 2) throw new Error("s_mm: a contour has at least two samples");
     this.count = count;
     this.x = decode(columns.x_mm, "x_mm", count);
     this.y = decode(columns.y_mm, "y_mm", count);
-    const { correction_x_mm: cx, correction_y_mm: cy } = columns;
-    if (cx && cy) this.correction = { x: decode(cx, "correction_x_mm", count), y: decode(cy, "correction_y_mm", count) };
-    for (const name of ["before", "after"] as const) {
-      const pass = columns[name];
-      if (pass) this.passes[name] = new Pass(name, pass, count, this.correction);
-    }
     this.radius = (report.job?.tool?.diameter_mm ?? 0) / 2;
     this.turn = report.job?.wall === "left" ? -1 : 1;
     if (columns.nx && columns.ny) {
@@ -77,6 +77,16 @@ export class Model {
       this.ny = decode(columns.ny, "ny", count).values;
     } else {
       [this.nx, this.ny] = this.normals();
+    }
+    const { correction_x_mm: cx, correction_y_mm: cy } = columns;
+    const normals: [Float64Array, Float64Array] = [this.nx, this.ny];
+    if (cx && cy) {
+      const [x, y] = [decode(cx, "correction_x_mm", count), decode(cy, "correction_y_mm", count)];
+      this.correction = { x, y, across: across(x, y, normals) };
+    }
+    for (const name of ["before", "after"] as const) {
+      const pass = columns[name];
+      if (pass) this.passes[name] = new Pass(name, pass, normals, this.correction?.across);
     }
     this.time = this.times();
     this.levels = this.coarser();

@@ -33,7 +33,7 @@ after(async () => (await launched)?.close());
 /** A page of the program: its file. The page is the committed one with data put in, nothing else. */
 export async function report(name) {
   const file = `${pages}${name}/report.html`;
-  const written = await readFile(file, "utf8");
+  const written = await readFile(file, "utf8").catch(() => assert.fail(`no ${file}: cargo xtask page has the program write it`));
   const page = await readFile(`${root}dist/report.html`, "utf8");
   if (written.replace(PLACE, "$1null$3") === page) return file;
   // While the page is being worked on, its newest build shows the program's data.
@@ -68,9 +68,14 @@ export async function open(file, options = {}) {
   page.on("console", (message) => { if (["error", "warning"].includes(message.type())) complaints.push(message.text()); });
   page.on("pageerror", (error) => complaints.push(String(error)));
   page.on("request", (request) => { if (!/^(file|data|blob):/.test(request.url())) requests.push(request.url()); });
+  if (file !== "about:blank") await show(page, file);
+  return { context, page, complaints, requests, close: () => context.close() };
+}
+
+/** Opens a page from disk and waits for its picture. */
+export async function show(page, file) {
   await page.goto(pathToFileURL(file).href);
   await page.waitForFunction(() => document.documentElement.dataset.firstPicture !== undefined);
-  return { context, page, complaints, requests, close: () => context.close() };
 }
 
 /** Where a point of the part lies on the page, from what the scene says of its view. */
