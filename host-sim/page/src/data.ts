@@ -68,10 +68,47 @@ export interface ProbePoint {
   y_mm: number;
   /** Height above the tip of the cutter. */
   z_mm?: number;
-  /** Normal and deviation are not known of a reading that was set aside. */
+  /** Of a reading set aside there may be no wall to tell normal and error of. */
   nx?: number;
   ny?: number;
   error_mm?: number;
+  /** Judged by the program, with the uncertainty; otherwise the page compares with the tolerance. */
+  verdict?: "pass" | "fail" | "open";
+}
+
+/** What a part is called, for its customer. */
+export interface Part {
+  name?: string;
+  drawing?: string;
+  serial?: string;
+  material_batch?: string;
+  customer?: string;
+  date?: string;
+}
+
+/** A file that the report rests on. */
+export interface InputFile {
+  /** "program", "probe file", "job". */
+  what: string;
+  name: string;
+  crc32: string;
+}
+
+/** Limits of the wall error: material left is positive. */
+export interface GivenLimits {
+  lower_mm: number;
+  upper_mm: number;
+  /** Expanded uncertainty (k = 2) of a deviation. */
+  uncertainty_mm?: number;
+  /** Who gave them, where that is worth a word. */
+  from?: string;
+}
+
+/** Stretches of the contour that lie farther than `reach_mm` from every measured place. */
+export interface Coverage {
+  reach_mm: number;
+  length_mm: number;
+  stretches: { from_mm: number; to_mm: number }[];
 }
 
 export interface Parameter {
@@ -117,6 +154,13 @@ export interface Report {
   parameters?: Parameter[];
   results?: Result[];
   tolerance_mm?: number;
+  /** In place of `tolerance_mm`, for limits that need not lie evenly. */
+  limits?: GivenLimits;
   verdict?: { state: "pass" | "fail" | "open"; text: string };
+  /** What the verdict rests on and what it does not cover, in sentences. */
+  statements?: string[];
+  coverage?: Coverage;
+  part?: Part;
+  files?: InputFile[];
   warnings?: string[];
 }

@@ -2,6 +2,8 @@
 
 import type { ProbePoint } from "./data";
 import { signed } from "./format";
+import { standing, type Limits } from "./limits";
+import { drawMark, fillOf } from "./marks";
 import type { Model, Pass } from "./model";
 import type { Line } from "./outline";
 import type { Palette } from "./palette";
@@ -17,7 +19,7 @@ export interface Picture {
   outlines: { wall: Line[]; stock: Line[] };
   points: ProbePoint[];
   magnify: number;
-  tolerance: number;
+  limits: Limits | undefined;
   hidden: Set<string>;
   picked: number | null;
 }
@@ -182,10 +184,11 @@ function band(c: Context, view: View, indices: Uint32Array, model: Model, wall: 
     x: wall.x.map((v, i) => v - picture.magnify * error[i] * model.nx[i]),
     y: wall.y.map((v, i) => v - picture.magnify * error[i] * model.ny[i]),
   };
+  const { lower, upper } = picture.limits ?? { lower: 0, upper: 0 };
   const kinds: [string, (e: number) => boolean][] = [
-    [colours.within, (e) => Math.abs(e) <= picture.tolerance],
-    [colours.left, (e) => e > picture.tolerance],
-    [colours.gouge, (e) => e < -picture.tolerance],
+    [colours.within, (e) => e >= lower && e <= upper],
+    [colours.left, (e) => e > upper],
+    [colours.gouge, (e) => e < lower],
   ];
   for (const [colour, holds] of kinds) {
     c.fillStyle = colour;
@@ -197,47 +200,37 @@ function band(c: Context, view: View, indices: Uint32Array, model: Model, wall: 
   }
 }
 
+/** Points over each other: what fails lies above what is undecided, that above what passes; so do larger deviations. */
+const RANK = { aside: 0, plain: 1, within: 1, open: 2, left: 3, gouge: 3 };
+
 function points(c: Context, view: View, picture: Picture, colours: Palette): void {
-  const boxes: [number, number, number, number][] = [];
-  picture.points.forEach((point, index) => {
+  const seen = picture.points.flatMap((point, index) => {
     const { nx = 0, ny = 0, error_mm: error = 0 } = point;
-    const wx = point.x_mm + error * nx;
-    const wy = point.y_mm + error * ny;
-    const ax = view.px(wx);
-    const ay = view.py(wy);
-    if (!near(view, ax, ay)) return;
-    const bx = view.px(wx - picture.magnify * error * nx);
-    const by = view.py(wy - picture.magnify * error * ny);
-    const colour = point.status === "used" ? colours.ink : colours.quiet;
-    const outward = 14;
-    c.strokeStyle = colour;
+    const x = point.x_mm + error * nx;
+    const y = point.y_mm + error * ny;
+    const where = standing(point, picture.limits);
+    const wall = { x: view.px(x), y: view.py(y) };
+    if (!near(view, wall.x, wall.y)) return [];
+    return [{ point, index, nx, ny, where, wall, x: view.px(x - picture.magnify * error * nx), y: view.py(y - picture.magnify * error * ny) }];
+  });
+  const worth = (p: ProbePoint) => Math.abs(p.error_mm ?? 0);
+  seen.sort((a, b) => RANK[a.where] - RANK[b.where] || worth(a.point) - worth(b.point));
+  const outward = 14;
+  for (const { index, nx, ny, where, wall, x, y } of seen) {
+    c.strokeStyle = where === "aside" ? colours.quiet : colours.ink;
     c.lineWidth = 1;
     c.beginPath();
-    c.moveTo(ax + nx * outward, ay - ny * outward);
-    c.lineTo(bx, by);
+    c.moveTo(wall.x + nx * outward, wall.y - ny * outward);
+    c.lineTo(x, y);
     c.stroke();
-    c.fillStyle = fillOf(point, picture.tolerance, colours);
+    c.fillStyle = fillOf(where, colours);
     c.lineWidth = index === picture.picked ? 3 : 1.5;
-    c.beginPath();
-    if (point.status === "used") {
-      c.arc(bx, by, 4, 0, 2 * Math.PI);
-      c.fill();
-    } else {
-      c.moveTo(bx - 4, by - 4);
-      c.lineTo(bx + 4, by + 4);
-      c.moveTo(bx + 4, by - 4);
-      c.lineTo(bx - 4, by + 4);
-    }
-    c.stroke();
-    if (point.error_mm !== undefined) label(c, view, boxes, ax + nx * (outward + 4), ay - ny * (outward + 4), point, colours);
-  });
-}
-
-/** As the band: left, too deep, within; plain without a tolerance. */
-function fillOf(point: ProbePoint, tolerance: number, colours: Palette): string {
-  const error = point.error_mm;
-  if (!(tolerance > 0) || error === undefined) return colours.ground;
-  return Math.abs(error) <= tolerance ? colours.within : error > 0 ? colours.left : colours.gouge;
+    drawMark(c, where, x, y, 4);
+  }
+  const boxes: [number, number, number, number][] = [];
+  for (const { point, nx, ny, wall } of seen.reverse()) {
+    if (point.error_mm !== undefined) label(c, view, boxes, wall.x + nx * (outward + 4), wall.y - ny * (outward + 4), point, colours);
+  }
 }
 
 function label(c: Context, view: View, boxes: [number, number, number, number][], x: number, y: number, point: ProbePoint, colours: Palette): void {

@@ -1,10 +1,13 @@
 /** Puts the page together from the data in it. */
 
+import { Chart } from "./chart";
 import { fittingFactor, legend, sceneBar, transport, type Layer } from "./controls";
 import { decode, readReport } from "./decode";
 import type { Report } from "./data";
 import { el } from "./dom";
 import { fixed } from "./format";
+import { part, signature, statements } from "./inspection";
+import { limitsOf } from "./limits";
 import { Model } from "./model";
 import { palette } from "./palette";
 import { head, job, parameters, points, results } from "./panels";
@@ -38,7 +41,7 @@ function largest(values: ArrayLike<number> | undefined): number {
 function layersOf(report: Report, model: Model | null): Layer[] {
   const { before, after } = model?.passes ?? {};
   const errors: [string, string][] = [["left", "material left"], ["gouge", "cut too deep"]];
-  if (report.tolerance_mm) errors.push(["within", "within tolerance"]);
+  if (limitsOf(report)) errors.push(["within", "within tolerance"]);
   const paths: [string, string][] = [...(before?.across ? [["before", model?.of("actual path", "before")] as [string, string]] : []),
     ...(after?.across ? [["after", model?.of("actual path", "after")] as [string, string]] : [])];
   const all: [Layer, unknown][] = [
@@ -87,6 +90,7 @@ function show(report: Report, main: HTMLElement): void {
   const recolour = () => {
     colours = palette();
     stage.recolour(colours);
+    chart?.draw();
     traces?.rebuild(store.state, colours, traceHeight());
   };
   const print = el("button", { type: "button" }, "print");
@@ -103,16 +107,19 @@ function show(report: Report, main: HTMLElement): void {
   const picture = el("section", { class: "picture", "aria-label": "Contour" }, bar, stage.element,
     legend(store, layersOf(report, model)), player && model ? transport(model, store, player) : null);
   const work = el("div", { class: traces ? "work" : "work alone" }, picture, traces ? tracesBox : null);
-  const below = el("div", { class: "below" }, readout?.element,
+  const chart = Chart.of(report);
+  const below = el("div", { class: "below" }, readout?.element, chart?.element, statements(report),
     report.parameters?.length ? parameters(report.parameters) : null, job(report),
-    report.points?.length ? points(report.points, report.tolerance_mm, (index) => {
+    report.points?.length ? points(report, (index) => {
       if (before && store.state.shown === "after") store.set({ shown: "before" });
       stage.showPoint(index);
       picture.scrollIntoView({ block: "nearest" });
     }) : null);
   picture.hidden = !seen;
   const figures = results(report);
-  main.append(...(figures ? [figures] : []), work, below);
+  const [named, signed] = [part(report), signature(report)];
+  main.append(...(figures ? [figures] : []), ...(named ? [named] : []), work, below, ...(signed ? [signed] : []));
+  chart?.draw();
 
   const traceHeight = () => {
     const room = work.clientWidth > 900 ? (picture.clientHeight - 47) / Math.max(1, traces?.count || expected(model)) - 20 : 84;
@@ -153,7 +160,7 @@ function show(report: Report, main: HTMLElement): void {
     traces?.resize(traceHeight());
     traces?.place(store.state.place);
   }).observe(work);
-  printing(stage, store, traces, recolour, Boolean(before && after));
+  printing(report, stage, store, traces, recolour, Boolean(before && after));
 }
 
 /** Panels that a model will have, before they are built. */

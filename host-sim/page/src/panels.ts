@@ -3,6 +3,8 @@
 import type { Parameter, ProbePoint, Report } from "./data";
 import { card, el, table } from "./dom";
 import { decimalsFor, fixed, NO_VALUE, signed, withUnit } from "./format";
+import { limitsOf, limitsText, standing, verdictWord, type Limits } from "./limits";
+import { SIGNS } from "./marks";
 
 const KINDS = { simulate: "simulated pass", correct: "correction", learn: "correction of the next part", inspect: "inspection" };
 
@@ -23,13 +25,19 @@ function warnings(report: Report): HTMLElement {
 }
 
 export function results(report: Report): HTMLElement | null {
-  const { verdict, results: list = [], tolerance_mm: tolerance } = report;
+  const { verdict, results: list = [], limits: given } = report;
+  const limits = limitsOf(report);
   const entries = list.map((r) => el("div", { class: "result" },
     el("dt", {}, r.name), el("dd", {}, withUnit(fixed(r.value, r.decimals), r.unit)), r.note ? el("dd", { class: "note" }, r.note) : null));
-  if (tolerance !== undefined) entries.unshift(el("div", { class: "result" }, el("dt", {}, "tolerance"), el("dd", {}, `±${fixed(tolerance, 4)} mm`)));
+  if (limits) {
+    const notes = [limits.uncertainty === undefined ? "" : `uncertainty ±${fixed(limits.uncertainty, 4)} mm, k = 2`, given?.from ?? ""].filter(Boolean);
+    entries.unshift(el("div", { class: "result" }, el("dt", {}, "tolerance"), el("dd", {}, limitsText(limits)),
+      notes.length ? el("dd", { class: "note" }, notes.join("; ")) : null));
+  }
   if (entries.length === 0 && !verdict) return null;
   const words = { pass: "within tolerance", fail: "out of tolerance", open: "not decided" };
-  const stamp = verdict ? el("p", { class: `verdict ${verdict.state}` }, el("strong", {}, words[verdict.state]), el("span", {}, verdict.text)) : null;
+  const stamp = verdict ? el("p", { class: `verdict ${verdict.state}` }, el("strong", {}, words[verdict.state]),
+    el("span", {}, verdict.text)) : null;
   return el("section", { class: "results", "aria-label": "Results" }, stamp, el("dl", {}, ...entries));
 }
 
@@ -64,25 +72,29 @@ export function parameters(list: Parameter[]): HTMLElement {
     table("Identified parameters", ["parameter", "value", "σ", "believed before", "unit", "decided by points"], rows, [0, 4, 5]));
 }
 
-function place(error: number | undefined, tolerance: number): string {
-  if (error === undefined) return NO_VALUE;
-  return Math.abs(error) <= tolerance ? "in" : error > 0 ? "left" : "too deep";
-}
-
 /** What became of a point, and why. */
 export function statusOf(p: ProbePoint): string {
   return `${p.status === "used" ? "used" : "set aside"}${p.reason ? `: ${p.reason}` : ""}`;
 }
 
-export function points(list: ProbePoint[], tolerance: number | undefined, show: (index: number) => void): HTMLElement {
+/** Without a verdict of the program: where the deviation lies. */
+const PLACES = { within: "in", left: "left", gouge: "too deep", open: "undecided", aside: NO_VALUE, plain: NO_VALUE };
+
+export function points(report: Report, show: (index: number) => void): HTMLElement {
+  const list = report.points ?? [];
+  const limits: Limits | undefined = limitsOf(report);
+  const judged = list.some((p) => p.verdict);
   const used = list.filter((p) => p.status === "used").length;
   const rows = list.map((p, index) => {
     const button = el("button", { type: "button", class: "link", "aria-label": `Show probe point ${p.line ?? index + 1} in the picture` }, String(p.line ?? index + 1));
     button.addEventListener("click", () => show(index));
+    const where = standing(p, limits);
+    const word = judged ? el("span", { class: `standing ${where}` }, `${SIGNS[where]} ${verdictWord(p, limits)}`) : PLACES[where];
     return [button, fixed(p.s_mm, 3), fixed(p.x_mm, 4), fixed(p.y_mm, 4), fixed(p.z_mm, 2), fixed(p.nx, 3), fixed(p.ny, 3),
-      signed(p.error_mm, 4), ...(tolerance === undefined ? [] : [place(p.error_mm, tolerance)]), statusOf(p)];
+      signed(p.error_mm, 4), ...(limits ? [word] : []), statusOf(p)];
   });
+  const column = limits ? [judged ? `verdict, ${limitsText(limits)}` : `in ${limitsText(limits)}`] : [];
   return card("points", `Probe points: ${list.length}, used ${used}, set aside ${list.length - used}`,
-    table("Probe points", ["line", "s mm", "X mm", "Y mm", "height mm", "normal x", "normal y", "deviation mm", ...(tolerance === undefined ? [] : [`in ±${fixed(tolerance, 4)} mm`]), "status"],
-      rows, tolerance === undefined ? [0, 8] : [0, 8, 9]));
+    table("Probe points", ["line", "s mm", "X mm", "Y mm", "height mm", "normal x", "normal y", "deviation mm", ...column, "status"],
+      rows, limits ? [0, 8, 9] : [0, 8]));
 }

@@ -1,11 +1,29 @@
-/** Paper: light colours, the whole part, both passes, the cutter where it stands; and back. */
+/** Paper: light colours, the whole part, both passes, the cutter where it stands, a head and a number on every sheet; and back. */
 
+import type { Report } from "./data";
+import { el } from "./dom";
 import type { Stage } from "./stage";
 import type { Shown, Store } from "./state";
 import type { Traces } from "./traces";
 
-export function printing(stage: Stage, store: Store, traces: Traces | null, recolour: () => void, both: boolean): void {
+/** A text as CSS writes it: whatever is no letter or digit as its number. */
+function quoted(text: string): string {
+  return `"${[...text].map((c) => (/[\p{L}\p{N} ]/u.test(c) ? c : `\\${(c.codePointAt(0) as number).toString(16)} `)).join("")}"`;
+}
+
+/** What stands on the margin of every sheet. */
+function sheets(report: Report): HTMLStyleElement {
+  const { name, serial, drawing } = report.part ?? {};
+  const part = [name ?? (serial || drawing ? "" : report.title), drawing && `drawing ${drawing}`, serial && `serial ${serial}`].filter(Boolean).join(" · ");
+  const program = report.program ? [report.program.name, report.program.crc32 && `CRC-32 ${report.program.crc32}`].filter(Boolean).join(" · ") : "";
+  const box = (place: string, content: string) => `@${place} { content: ${content}; }`;
+  return el("style", {}, `@page { ${box("top-left", quoted(part))} ${box("bottom-left", quoted([report.by, program].filter(Boolean).join(" · ")))}`
+    + ` ${box("bottom-right", '"sheet " counter(page) " of " counter(pages)')} }`);
+}
+
+export function printing(report: Report, stage: Stage, store: Store, traces: Traces | null, recolour: () => void, both: boolean): void {
   const root = document.documentElement;
+  document.head.append(sheets(report));
   let kept: { theme: string | undefined; shown: Shown; range: [number, number] | null; cx: number; cy: number; scale: number } | null = null;
   window.addEventListener("beforeprint", () => {
     const { cx, cy, scale } = stage.view;

@@ -5,6 +5,7 @@ import type { ProbePoint, Report } from "./data";
 import { el } from "./dom";
 import { levelFor, type Picture } from "./draw";
 import { fixed, signed } from "./format";
+import { limitsOf, verdictWord, type Limits } from "./limits";
 import type { Model, PassName } from "./model";
 import { boxOf, offsetOf, outline, type Line } from "./outline";
 import type { Palette } from "./palette";
@@ -26,6 +27,7 @@ export class Stage {
   private readonly stock: Line | null;
   private readonly outlines: { wall: Line[]; stock: Line[] };
   private readonly points: ProbePoint[];
+  private readonly limits: Limits | undefined;
   private readonly largestForce: number;
   private hovered: number | null = null;
   private picked: number | null = null;
@@ -39,6 +41,7 @@ export class Stage {
     const allowance = report.job?.stock?.allowance_mm;
     this.stock = model && allowance !== undefined && given.stock.length === 0 ? trimmed(model, offsetOf(model, model.radius - allowance), model.radius - allowance) : null;
     if (model) this.outlines = { wall: [], stock: given.stock };
+    this.limits = limitsOf(report);
     this.points = report.points ?? [];
     // A reading set aside may lie anywhere: where there is something else to see, the view does not reach out for it.
     const known = this.points.filter((p) => p.error_mm !== undefined);
@@ -158,7 +161,7 @@ export class Stage {
       model: this.model, pass: this.model?.passes[name] ?? null, error: this.model?.error(name, height),
       wall: this.wall, stock: this.stock, outlines: this.outlines,
       points: name === "before" || this.scenes.length === 1 ? this.points : [],
-      magnify, tolerance: this.report.tolerance_mm ?? 0, hidden, picked: this.picked,
+      magnify, limits: this.limits, hidden, picked: this.picked,
     };
   }
 
@@ -191,6 +194,7 @@ export class Stage {
       this.show(scene, px, py, [
         ["probe point", String(p.line ?? point + 1)], ["deviation", `${signed(p.error_mm, 6)} mm`],
         ["X, Y", `${fixed(p.x_mm, 6)}, ${fixed(p.y_mm, 6)} mm`], ["normal", `${fixed(p.nx, 3)}, ${fixed(p.ny, 3)}`],
+        ...(p.verdict ? [["verdict", verdictWord(p, this.limits)] as [string, string]] : []),
         ...(p.z_mm === undefined ? [] : [["height", `${fixed(p.z_mm, 2)} mm`] as [string, string]]),
         ["status", statusOf(p)],
       ]);

@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     /// The probe file.
     #[arg(long, value_name = "FILE")]
     probe: PathBuf,
-    /// Folder for the points as a table, the summary and the probe file as it is.
+    /// Folder for report.html, the points as a table, the summary and the probe file as it is.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Replace the files of an earlier run.

@@ -6,13 +6,15 @@ use truepath_core::probe::CutWith;
 use truepath_core::units::Offset;
 
 use super::doubts::misread;
+use super::page::{REPORT, inspected};
 use crate::diagnostics::{Failure, Source};
 use crate::inspection::{PointVerdict, Rule, coverage, judge};
 use crate::job::{Job, PartFlags, ProbeFlags, Which};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::Pass;
-use crate::report::{InspectSummary, inspect_summary, json, mm, points_csv};
+use crate::report::page::render;
+use crate::report::{InspectSummary, inspect_summary, json, judged_points_csv, mm, points_csv};
 
 /// One contact, for the list that is printed.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -44,7 +46,7 @@ pub struct Inspection {
 }
 
 /// Files this command may write.
-const FILES: &[&str] = &["points.csv", "summary.json", "probe-raw.txt"];
+const FILES: &[&str] = &["points.csv", "summary.json", "probe-raw.txt", REPORT];
 
 /// What is inspected.
 #[derive(Clone, Debug)]
@@ -79,9 +81,9 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let pass = Pass::read(job)?.cut_with(CutWith::Anything);
     let file = Source::read(options.probe)?;
     let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
-    let mut warnings = pass.warnings.clone();
-    warnings.extend(measurement.remarks(&file));
-    warnings.extend(misread(&pass, false, &measurement.contacts));
+    let doubts = misread(&pass, false, &measurement.contacts);
+    let told: Vec<String> = pass.warnings.iter().chain(&doubts).cloned().collect();
+    let warnings = [pass.warnings.clone(), measurement.remarks(&file), doubts].concat();
     let (part, contour) = (&pass.job.part, pass.path_contour());
     let rule = part.tolerance.map(|tolerance| Rule { tolerance, uncertainty: part.uncertainty });
     let reach = part.reach.unwrap_or(pass.job.numbers.tool.diameter);
@@ -104,9 +106,15 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let inspection = Inspection { contacts, summary };
     if let Some(out) = options.out {
         let folder = OutputFolder::create(out, options.force, FILES)?;
-        folder.write("points.csv", &points_csv(&measurement, &[])?)?;
+        let points = match inspection.summary.tolerance {
+            Some(_) => judged_points_csv(&measurement, &judgement.points)?,
+            None => points_csv(&measurement, &[])?,
+        };
+        folder.write("points.csv", &points)?;
         folder.write("summary.json", &json(&inspection.summary)?)?;
         folder.write("probe-raw.txt", file.bytes())?;
+        let page = inspected(&pass, &measurement, &judgement, &inspection.summary, &told)?;
+        folder.write(REPORT, &render(&page)?)?;
         folder.commit()?;
     }
     Ok(inspection)

@@ -57,7 +57,7 @@ pub struct InspectSummary {
 }
 
 /// What a part is called.
-#[derive(Clone, Debug, Default, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct PartSummary {
     /// Its name.
     pub name: Option<String>,

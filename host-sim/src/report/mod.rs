@@ -15,7 +15,7 @@ pub use damped::{DampedSummary, damped_summary};
 pub use guard::{GuardSummary, HeldBack, guard_summary};
 pub use inspection::{InspectSummary, PartSummary, ToleranceSummary, inspect_summary};
 pub use path::{block_edits, carried_edits};
-pub use points::points_csv;
+pub use points::{judged_points_csv, points_csv};
 pub use summary::{CorrectSummary, Parameter, SimulateSummary, correct_summary, law_name, simulate_summary};
 pub use tables::{CorrectionRow, Trace, TraceRow, correction_csv, correction_rows, trace, trace_csv};
 pub(crate) use tables::{rounded, table};

@@ -7,6 +7,7 @@ use truepath_core::units::Real;
 use super::tables::{rounded, table};
 use super::{float, mm};
 use crate::diagnostics::Failure;
+use crate::inspection::PointVerdict;
 use crate::measurement::{Aside, Measurement};
 use crate::refusal::why;
 
@@ -74,4 +75,21 @@ pub(super) fn row_aside(aside: &Aside) -> Row {
 pub fn points_csv(measurement: &Measurement, observations: &[Observation]) -> Result<Vec<u8>, Failure> {
     let used = measurement.contacts.iter().enumerate().map(|(at, c)| row_used(c, observations.get(at)));
     table(used.chain(measurement.rejected.iter().map(row_aside)))
+}
+
+/// The verdict of a row.
+#[derive(serde::Serialize)]
+struct Judged {
+    verdict: Option<PointVerdict>,
+}
+
+/// `points.csv` of a judged part: the same with a last column `verdict`, one verdict for each contact; empty for what was
+/// set aside.
+///
+/// # Errors
+/// Internal, when memory cannot be written.
+pub fn judged_points_csv(measurement: &Measurement, verdicts: &[PointVerdict]) -> Result<Vec<u8>, Failure> {
+    let contacts = measurement.contacts.iter().zip(verdicts);
+    let used = contacts.map(|(c, verdict)| (row_used(c, None), Judged { verdict: Some(*verdict) }));
+    table(used.chain(measurement.rejected.iter().map(|aside| (row_aside(aside), Judged { verdict: None }))))
 }

@@ -5,11 +5,13 @@
 mod corrected;
 mod demonstrated;
 mod expected;
+mod inspected;
 mod learned;
 mod simulated;
 
 pub(super) use corrected::{Points, corrected};
 pub(super) use demonstrated::demonstrated;
+pub(super) use inspected::inspected;
 pub(super) use learned::learned;
 pub(super) use simulated::simulated;
 

@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use super::{Contour, Heights, JobFacts, Outlines, Point};
+use super::{Contour, Heights, Inspected, JobFacts, Outlines, Point};
 
 /// Which command made the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -63,6 +63,9 @@ pub struct Page {
     /// Verdict on the part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
+    /// What a page of `inspect` has beside that.
+    #[serde(flatten)]
+    pub inspected: Option<Inspected>,
     /// What the user should know.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
@@ -86,6 +89,7 @@ impl Page {
             results: Vec::new(),
             tolerance_mm: None,
             verdict: None,
+            inspected: None,
             warnings: Vec::new(),
         }
     }

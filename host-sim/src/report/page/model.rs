@@ -72,6 +72,12 @@ pub fn simulated(machine: &Loop, states: &[State], trace: &Trace, label: &str) -
     Along { contour, heights: heights(path, &kept, errors, None), note: kept.note() }
 }
 
+/// The path alone.
+pub fn nominal(path: &Path) -> Along {
+    let kept = Kept::of(path.count());
+    Along { contour: contour(path, &kept), heights: None, note: kept.note() }
+}
+
 /// The samples of the contour itself.
 pub(super) fn samples<'a>(path: &Path<'a>) -> &'a [Sample] {
     &path.samples()[path.first()..path.first() + path.count()]

@@ -2,12 +2,14 @@
 
 use serde::Serialize;
 
+use crate::inspection::PointVerdict;
 use crate::measurement::Measurement;
 use crate::pass::Pass;
 use crate::report::float;
 use crate::report::points::{Row, row_aside, row_used};
 use crate::report::tables::rounded;
 use truepath_core::identify::Observation;
+use truepath_core::probe::Contact;
 
 /// Contacts on a page at most, and as many readings set aside: a table that a reader and a browser can still take.
 pub const MOST_SHOWN: usize = 2_000;
@@ -51,6 +53,9 @@ pub struct Point {
     /// Wall error; absent where no wall is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_mm: Option<f64>,
+    /// Whether it is within the tolerance, where that was judged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<PointVerdict>,
 }
 
 /// The points of a measurement with the numbers of `points.csv`, and a sentence when there are more than the
@@ -58,18 +63,45 @@ pub struct Point {
 ///
 /// `observations` are those of the fit, one for each contact; empty when nothing was fitted.
 pub fn points(pass: &Pass, measurement: &Measurement, observations: &[Observation]) -> (Vec<Point>, Option<String>) {
+    shown(pass, measurement, |at, c| (row_used(c, observations.get(at)), None))
+}
+
+/// The same of a judged part, with the verdict of each contact; empty when there is no tolerance. Of neighbours the one shown is
+/// one that fails, then one that is undecided, then the one with the largest deviation.
+pub fn judged_points(
+    pass: &Pass,
+    measurement: &Measurement,
+    verdicts: &[PointVerdict],
+) -> (Vec<Point>, Option<String>) {
+    shown(pass, measurement, |at, c| (row_used(c, None), verdicts.get(at).copied()))
+}
+
+fn shown(
+    pass: &Pass,
+    measurement: &Measurement,
+    row: impl Fn(usize, &Contact) -> (Row, Option<PointVerdict>),
+) -> (Vec<Point>, Option<String>) {
     let depth_mm = float(pass.core.setup.axial_depth);
     let contacts = &measurement.contacts;
     let together = contacts.len().div_ceil(MOST_SHOWN).max(1);
-    let indices: Vec<usize> = (0..contacts.len()).collect();
-    let largest = indices.chunks(together).filter_map(|some| some.iter().max_by_key(|at| contacts[**at].error.abs()));
-    let used = largest.map(|at| row_used(&contacts[*at], observations.get(*at)));
-    let aside = measurement.rejected.iter().take(MOST_SHOWN).map(row_aside);
-    let points: Vec<Point> = used.chain(aside).map(|row| point(row, depth_mm)).collect();
+    let rank = |verdict| match verdict {
+        Some(PointVerdict::Fail) => 2,
+        Some(PointVerdict::Open) => 1,
+        Some(PointVerdict::Pass) | None => 0,
+    };
+    let all: Vec<(usize, &Contact)> = contacts.iter().enumerate().collect();
+    let worst = all.chunks(together).filter_map(|some| {
+        some.iter()
+            .map(|(at, c)| (row(*at, c), c.error.abs()))
+            .max_by_key(|((_, verdict), size)| (rank(*verdict), *size))
+    });
+    let used = worst.map(|((row, verdict), _)| Point { verdict, ..point(row, depth_mm) });
+    let aside = measurement.rejected.iter().take(MOST_SHOWN).map(|aside| point(row_aside(aside), depth_mm));
+    let points: Vec<Point> = used.chain(aside).collect();
     let all = contacts.len() + measurement.rejected.len();
     let left_out = (points.len() < all).then(|| {
         let shown = points.len();
-        format!("the report shows {shown} of {all} probe points, of neighbours the one that deviates most; points.csv has all")
+        format!("the report shows {shown} of {all} probe points, of neighbours the worst one; points.csv has all")
     });
     (points, left_out)
 }
@@ -86,5 +118,6 @@ fn point(row: Row, depth_mm: f64) -> Point {
         nx: row.nx,
         ny: row.ny,
         error_mm: row.error_mm,
+        verdict: None,
     }
 }

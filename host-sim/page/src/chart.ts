@@ -1,0 +1,121 @@
+/**
+ * Deviation of every point over the arc length, with limits, guard band and what no point speaks for.
+ *
+ * SVG, so that paper has it sharp. Points at one place but at several heights stand above each other.
+ */
+
+import type { Report } from "./data";
+import { card, el } from "./dom";
+import { fixed, signed } from "./format";
+import { limitsOf, standing, type Standing } from "./limits";
+import { markPath } from "./marks";
+import { roundStep } from "./view";
+
+const HEIGHT = 210;
+const EDGE = { left: 54, right: 64, top: 8, bottom: 34 };
+const SPACE = "http://www.w3.org/2000/svg";
+
+function svg(tag: string, attributes: Record<string, string | number>, text?: string): SVGElement {
+  const element = document.createElementNS(SPACE, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+  if (text !== undefined) element.textContent = text;
+  return element;
+}
+
+interface Scale { px(s: number): number; py(e: number): number }
+
+export class Chart {
+  readonly element: HTMLElement;
+  private readonly box = el("div", { class: "chart" });
+
+  constructor(private readonly report: Report) {
+    this.element = card("deviations", "Deviation along the contour", this.box);
+    new ResizeObserver(() => { if (!document.documentElement.dataset.printing) this.draw(); }).observe(this.box);
+  }
+
+  /** Whether there is anything to draw. */
+  static of(report: Report): Chart | null {
+    return report.kind === "inspect" && report.points?.some((p) => p.s_mm !== undefined && p.error_mm !== undefined) ? new Chart(report) : null;
+  }
+
+  draw(): void {
+    const width = Math.max(280, this.box.clientWidth);
+    const points = (this.report.points ?? []).filter((p) => p.s_mm !== undefined && p.error_mm !== undefined);
+    const limits = limitsOf(this.report);
+    const guard = limits?.uncertainty ?? 0;
+    const values = [0, ...points.flatMap((p) => [(p.error_mm as number) - guard, (p.error_mm as number) + guard]), ...(limits ? [limits.lower, limits.upper] : [])];
+    const low = values.reduce((a, b) => Math.min(a, b));
+    const high = values.reduce((a, b) => Math.max(a, b));
+    const room = 0.06 * Math.max(high - low, 1e-4);
+    const along = points.map((p) => p.s_mm as number);
+    const end = this.report.coverage?.length_mm ?? along.reduce((a, b) => Math.max(a, b), 1);
+    const scale = {
+      px: (s: number) => EDGE.left + (s / end) * (width - EDGE.left - EDGE.right),
+      py: (e: number) => EDGE.top + ((high + room - e) / (high - low + 2 * room)) * (HEIGHT - EDGE.top - EDGE.bottom),
+    };
+    const picture = svg("svg", { width, height: HEIGHT, viewBox: `0 0 ${width} ${HEIGHT}`, role: "img",
+      "aria-label": `Deviation of ${points.length} points over arc length; the table holds the figures` });
+    this.unmeasured(picture, scale);
+    this.axes(picture, scale, width, [low - room, high + room], end);
+    if (limits) this.limitLines(picture, scale, end, limits, guard);
+    for (const p of points) {
+      const [x, y] = [scale.px(p.s_mm as number), scale.py(p.error_mm as number)];
+      if (guard > 0) picture.append(svg("path", { class: "bar-u", d: `M${x} ${scale.py((p.error_mm as number) - guard)}V${scale.py((p.error_mm as number) + guard)}` }));
+      const where = standing(p, limits);
+      picture.append(svg("path", { class: `mark ${where}`, d: markPath(where, x, y, 4) }));
+    }
+    this.box.replaceChildren(picture, this.key(guard));
+  }
+
+  /** What the signs are. */
+  private key(guard: number): HTMLElement {
+    const { points = [], coverage } = this.report;
+    const limits = limitsOf(this.report);
+    const entry = (shape: SVGElement, text: string) => {
+      const picture = svg("svg", { width: 16, height: 12, "aria-hidden": "true" });
+      picture.append(shape);
+      return el("span", {}, picture, text);
+    };
+    const there = new Set(points.map((p) => standing(p, limits)));
+    const words: [Standing, string][] = [["within", "pass"], ["left", "fail: material left"], ["gouge", "fail: too deep"], ["open", "undecided"]];
+    const entries = words.filter(([where]) => there.has(where)).map(([where, text]) => entry(svg("path", { class: `mark ${where}`, d: markPath(where, 8, 6, 4) }), text));
+    const fill = (kind: string) => svg("rect", { class: kind, width: 16, height: 12 });
+    if (guard > 0) entries.push(entry(svg("path", { class: "bar-u", d: "M8 0V12" }), `± uncertainty, ${fixed(guard, 4)} mm`));
+    if (guard > 0 && limits) entries.push(entry(fill("band"), "undecided: closer to a limit than the uncertainty"));
+    if (coverage?.stretches.length) entries.push(entry(fill("unmeasured"), `farther than ${coverage.reach_mm} mm from any measured place`));
+    return el("p", { class: "chart-key" }, ...entries);
+  }
+
+  private unmeasured(picture: SVGElement, { px }: Scale): void {
+    for (const { from_mm: from, to_mm: to } of this.report.coverage?.stretches ?? []) {
+      picture.append(svg("rect", { class: "unmeasured", x: px(from), width: Math.max(0, px(to) - px(from)), y: EDGE.top, height: HEIGHT - EDGE.top - EDGE.bottom }));
+    }
+  }
+
+  private limitLines(picture: SVGElement, { px, py }: Scale, end: number, limits: { lower: number; upper: number }, guard: number): void {
+    for (const value of [limits.upper, limits.lower]) {
+      if (guard > 0) picture.append(svg("rect", { class: "band", x: px(0), width: px(end) - px(0), y: py(value + guard), height: py(value - guard) - py(value + guard) }));
+      picture.append(svg("path", { class: "limit", d: `M${px(0)} ${py(value)}H${px(end)}` }));
+      picture.append(svg("text", { class: "limit-text", x: px(end) + 5, y: py(value) + 4 }, signed(value, 4)));
+    }
+  }
+
+  private axes(picture: SVGElement, { px, py }: Scale, width: number, [low, high]: [number, number], end: number): void {
+    const step = roundStep((high - low) / 5);
+    const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    for (let k = Math.ceil(low / step); k * step <= high; k++) {
+      picture.append(svg("path", { class: k === 0 ? "nought" : "rule", d: `M${px(0)} ${py(k * step)}H${px(end)}` }));
+      picture.append(svg("text", { x: px(0) - 6, y: py(k * step) + 4, "text-anchor": "end" }, fixed(k * step, decimals)));
+    }
+    const along = roundStep(end / Math.max(3, Math.floor(width / 90)));
+    const bottom = HEIGHT - EDGE.bottom;
+    const places = Math.max(0, -Math.floor(Math.log10(along) + 1e-9));
+    for (let k = 0; k * along <= end; k++) {
+      picture.append(svg("path", { class: "tick", d: `M${px(k * along)} ${bottom}v4` }));
+      picture.append(svg("text", { x: px(k * along), y: bottom + 16, "text-anchor": "middle" }, fixed(k * along, places)));
+    }
+    picture.append(svg("path", { class: "tick", d: `M${px(0)} ${EDGE.top}V${bottom}H${px(end)}` }));
+    picture.append(svg("text", { x: px(end), y: bottom + 30, "text-anchor": "end" }, "arc length s, mm"));
+    picture.append(svg("text", { x: px(0), y: bottom + 30 }, "deviation, mm: material left is positive"));
+  }
+}

@@ -1,0 +1,81 @@
+//! The page of `inspect`: a part for its customer. Deviations are those of the points; no model enters.
+
+use super::of_pass;
+use crate::diagnostics::Failure;
+use crate::inspection::{self, Judgement};
+use crate::measurement::Measurement;
+use crate::pass::{Pass, PathBuffer};
+use crate::report::page::{Figure, InputFile, Inspected, Kind, Limits, Page, State, Verdict, judged_points, nominal};
+use crate::report::{InspectSummary, mm};
+
+/// The page of an inspection. `warnings` are those of the summary without one for every reading set aside: these stand in the
+/// table of points.
+pub(in crate::command) fn inspected(
+    pass: &Pass,
+    measurement: &Measurement,
+    judgement: &Judgement,
+    summary: &InspectSummary,
+    warnings: &[String],
+) -> Result<Page, Failure> {
+    let mut page = of_pass(Kind::Inspect, "Inspection report:".to_owned(), pass);
+    if let Some(name) = &summary.part.name {
+        page.title = format!("Inspection report: {name}");
+    }
+    let mut buffer = PathBuffer::default();
+    let mut notes = Vec::new();
+    // A contour that leaves no wall at some tight corner can still be touched elsewhere.
+    match pass.sample(&mut buffer) {
+        Ok(path) => {
+            let along = nominal(&path);
+            page.contour = Some(along.contour);
+            notes.extend(along.note);
+        }
+        Err(Failure::Input(error)) => notes.push(format!("the contour is not drawn: {error}")),
+        Err(failure) => return Err(failure),
+    }
+    let (points, left_out) = judged_points(pass, measurement, &judgement.points);
+    page.points = points;
+    page.results = figures(summary, measurement);
+    page.verdict = Some(Verdict {
+        state: match summary.verdict.state {
+            inspection::State::Pass => State::Pass,
+            inspection::State::Fail => State::Fail,
+            inspection::State::Open => State::Open,
+        },
+        text: summary.verdict.text.clone(),
+    });
+    page.inspected = Some(Inspected {
+        part: summary.part.clone(),
+        files: vec![
+            InputFile::new("program", pass.program.name(), &summary.program_crc32),
+            InputFile::new("probe file", &measurement.file, &summary.probe_crc32),
+            InputFile::new("job", pass.job.source().name(), &summary.job_crc32),
+        ],
+        limits: Limits::of(summary),
+        statements: summary.statements.clone(),
+        coverage: summary.coverage.clone(),
+    });
+    page.warnings = warnings.iter().cloned().chain(notes).chain(left_out).collect();
+    Ok(page)
+}
+
+fn figures(s: &InspectSummary, measurement: &Measurement) -> Vec<Figure> {
+    let points = |state: &str, count: usize| Figure::of(format!("points {state}"), count as f64, 0, "");
+    let touched = measurement.contacts.iter().map(|c| c.s).min().zip(measurement.contacts.iter().map(|c| c.s).max());
+    let between = touched.map(|(from, to)| format!("between s = {:.1} and {:.1} mm", mm(from), mm(to)));
+    let count = s.points_by_verdict.unwrap_or_default();
+    let judged = s.points_by_verdict.is_some();
+    let figures = [
+        Figure::mm("mean", s.mean_error_mm).map(|f| f.noted("a wear offset removes it")),
+        Figure::mm("largest", s.max_error_mm).map(|f| f.noted("most material left")),
+        Figure::mm("smallest", s.min_error_mm).map(|f| f.noted("deepest cut")),
+        Figure::mm("root mean square", s.rms_error_mm),
+        Figure::mm("spread over the height", s.spread_over_height_mm).map(|f| f.noted("largest of one place")),
+        points("measured", s.points).map(|f| f.noted(between.unwrap_or_default())),
+        points("within", count.pass).filter(|_| judged),
+        points("outside", count.fail).filter(|_| judged),
+        points("undecided", count.open).filter(|_| judged),
+        points("set aside", s.points_rejected),
+    ];
+    figures.into_iter().flatten().collect()
+}
