@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     /// From tool and material data alone: the same as truepath pocket.
     #[arg(long, conflicts_with_all = ["probe", "route", "first_pass"])]
     no_probe: bool,
-    /// Folder for the corrected program (or image), tables, summary and picture.
+    /// Folder for the corrected program (or image), tables, summary, report and picture.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Correct in the program text or in the coprocessor; the job says it otherwise.
@@ -119,6 +119,6 @@ pub(super) fn words(s: &CorrectSummary, output: &Path) -> String {
         text +=
             &format!("  {name:<24} {:>10.4} {:>10.4} {:>8.4} {:<5}{seen}\n", p.value + 0.0, p.sigma, p.prior, p.unit);
     }
-    text += &format!("\nwritten to {}\n", output.display());
+    text += &format!("\nwritten to {}; to look at: {}\n", output.display(), output.join("report.html").display());
     text
 }

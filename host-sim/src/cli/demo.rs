@@ -11,7 +11,7 @@ use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Folder for the programs, probe files, corrections and pictures.
+    /// Folder for the programs, probe files, corrections, reports and pictures.
     #[arg(short, long, value_name = "DIR", default_value = "out/demo")]
     output: PathBuf,
     /// Keep the files of an earlier run: stop when there are some.

@@ -17,7 +17,7 @@ pub(super) struct Arguments {
     /// A virtual machine to cut with; without it the core predicts from the job's own numbers.
     #[arg(long, value_name = "PLANT.toml")]
     plant: Option<PathBuf>,
-    /// Folder for trace.csv, trace.svg and summary.json.
+    /// Folder for trace.csv, trace.svg, report.html and summary.json.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Replace the files of an earlier run.
@@ -45,7 +45,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     let text = format!(
         "{}{:.1} mm of contour, {} milling, by the {}\n\
          largest wall error {:.4} mm (rms {:.4}), largest engagement {:.2} degrees, largest mean force {:.0} N\n\
-         written to {}\n",
+         written to {}; to look at: {}\n",
         summary.feature.as_ref().map(listing).unwrap_or_default(),
         summary.length_mm,
         summary.milling,
@@ -54,7 +54,8 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         summary.rms_error_mm,
         summary.max_arc_deg,
         summary.max_force_n,
-        arguments.output.display()
+        arguments.output.display(),
+        arguments.output.join("report.html").display()
     );
     print(text.as_bytes())
 }

@@ -4,3 +4,4 @@ mod part;
 mod passes;
 mod reading;
 mod tables;
+mod unusual;

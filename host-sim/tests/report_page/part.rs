@@ -55,20 +55,29 @@ impl Part {
 
     /// Touches it at three heights of some places.
     pub fn touched(&self, milled: &Milled, places: &[f64], file: &str) {
-        let pass = self.pass();
+        self.touched_along(&self.pass(), milled, places, file);
+    }
+
+    /// The same along another pass.
+    pub fn touched_along(&self, pass: &Pass, milled: &Milled, places: &[f64], file: &str) {
         let ball_mm = mm(pass.job.require_probe().unwrap().ball_diameter);
-        let text = shown(workshop::probe(&pass, milled, places, &[0.1, 0.5, 0.9], ball_mm));
+        let text = shown(workshop::probe(pass, milled, places, &[0.1, 0.5, 0.9], ball_mm));
         fs::write(self.at(file), text).unwrap();
     }
 
     pub fn correct(&self, probe: &str, out: &str, route: Option<Route>) {
+        self.correct_after(None, probe, out, route);
+    }
+
+    /// Corrects the pass that follows the one of another job, which the points are of.
+    pub fn correct_after(&self, first_pass: Option<&Path>, probe: &str, out: &str, route: Option<Route>) {
         let options = correct::Options {
             job: &self.at("job.toml"),
             probe: &self.at(probe),
             out: &self.at(out),
             force: false,
             route,
-            first_pass: None,
+            first_pass,
             probe_flags: ProbeFlags::default(),
             which: Which::default(),
         };
