@@ -15,6 +15,7 @@ mod image;
 mod inspect;
 mod learn;
 mod multiaxis;
+mod plot;
 mod pocket;
 mod probe;
 mod probe_flags;
@@ -74,6 +75,8 @@ enum Command {
     Split(split::Arguments),
     /// A whole pocket, finishing pass or slot, compensated from tool and material data alone, section by section.
     Pocket(pocket::Arguments),
+    /// Pictures (SVG, PNG) of what the commands wrote: traces, correction, wall to scale, laws compared.
+    Plot(plot::Arguments),
     /// How well the method does on virtual machines of all kinds, and where it stops working.
     Study(study::Arguments),
     /// The chord error of a five-axis program, and a program in which locations are inserted against it.
@@ -123,6 +126,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Learn(arguments) => learn::run(&arguments, terminal),
         Command::Split(arguments) => split::run(&arguments, terminal),
         Command::Pocket(arguments) => pocket::run(&arguments, terminal),
+        Command::Plot(arguments) => plot::run(arguments, terminal),
         Command::Study(arguments) => study::run(&arguments, terminal),
         Command::Multiaxis(arguments) => multiaxis::run(&arguments, terminal),
         Command::Replay(arguments) => replay::run(&arguments, terminal),

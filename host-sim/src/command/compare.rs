@@ -9,7 +9,7 @@ use crate::job::{Job, ProbeFlags, Which};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
-use crate::plot::{self, Curve};
+use crate::plot::{self, Compared, LawWall, View};
 use crate::report::{compare_csv, float, json, mm, walls_csv};
 
 use super::simulate::read_machine;
@@ -128,18 +128,18 @@ fn target_name(target: truepath_core::correct::Target) -> &'static str {
     }
 }
 
-/// The walls of all laws; and again without those that would make the others a line.
+/// The walls of all laws.
 fn picture(summary: &CompareSummary, walls: &[(&str, &Walls)]) -> Result<Vec<u8>, Failure> {
-    let title = |law: &str| summary.laws.iter().find(|r| r.law == law).map_or("", |r| r.title);
-    let worst = |law: &str| summary.laws.iter().find(|r| r.law == law).and_then(|r| r.max_error_mm).unwrap_or(0.0);
-    let curve = |k: usize, law: &str, walls: &Walls| {
-        let points = walls.judged(summary.trim_mm).map(|p| (p.s_mm, p.error_mm)).collect();
-        Curve { name: title(law), points, colour: plot::COLOURS[k % plot::COLOURS.len()] }
+    let law = |law: &str, walls: &Walls| {
+        let row = summary.laws.iter().find(|r| r.law == law);
+        LawWall {
+            law: law.to_owned(),
+            title: row.map_or("", |r| r.title).to_owned(),
+            max_error_mm: row.and_then(|r| r.max_error_mm),
+            places: walls.places.iter().map(|p| [p.s_mm, p.error_mm, p.lowest_mm, p.highest_mm]).collect(),
+        }
     };
-    let all = || walls.iter().enumerate().map(|(k, (law, walls))| (*law, curve(k, law, walls)));
-    let none = worst("none");
-    let near = all().filter(|(law, _)| worst(law) <= 1.5 * none).map(|(_, curve)| curve).collect();
-    let on = if summary.machine == "plant" { "on a virtual machine" } else { "on the identified machine" };
-    let rows = [("wall error, mm", all().map(|(_, curve)| curve).collect()), ("no worse than half again, mm", near)];
-    plot::panels(&format!("What every law leaves {on}"), &rows)
+    let laws = walls.iter().map(|(name, walls)| law(name, walls)).collect();
+    let compared = Compared { on_plant: summary.machine == "plant", trim_mm: summary.trim_mm, laws };
+    plot::compare(&View::default(), &compared)
 }

@@ -187,9 +187,7 @@ pub(super) fn design(
     summary.feature = pass.feature(&levels.written);
     let rows = correction_rows(&machine, &correction);
     let table = correction_csv(&rows)?;
-    let s_mm: Vec<f64> =
-        path.samples()[path.first()..path.first() + path.count()].iter().map(|sample| mm(sample.s)).collect();
-    let picture = crate::plot::correction(pass, &s_mm, &correction)?;
+    let picture = crate::plot::predicted_error(&crate::plot::View::default(), &rows, &[])?;
     progress(1.0);
     let (schedule, residual) = (feeds.schedule, wish.residual.to_vec());
     Ok(Corrected { identified, correction, schedule, residual, summary, program, image, other_images, table, picture })

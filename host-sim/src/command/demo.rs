@@ -11,7 +11,7 @@ use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::Pass;
 use crate::plant::{Milled, Score};
-use crate::plot;
+use crate::plot::{self, View, Wall};
 use crate::report::page::render;
 use crate::report::{json, points_csv};
 use crate::workshop;
@@ -147,7 +147,7 @@ fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(
     out.write("correction.tpi", corrected.image.as_deref().unwrap_or_default())?;
     out.write("correction.csv", &corrected.table)?;
     out.write("summary.json", &json(&corrected.summary)?)?;
-    out.write("before-after.svg", &picture(story, &pass, (&first, &before), (&second, &after))?)?;
+    out.write("before-after.svg", &picture(story, (&first, &before), (&second, &after))?)?;
     out.write("points.csv", &points_csv(&measurement, &corrected.identified.observations)?)?;
     let page = demonstrated(story.title, &pass, &measurement, &corrected, [(&first, &before), (&second, &after)])?;
     out.write(REPORT, &render(&page)?)?;
@@ -181,21 +181,12 @@ fn outcome(
 
 fn picture(
     story: &Story,
-    pass: &Pass,
     (first, before): (&Milled, &Score),
     (second, after): (&Milled, &Score),
 ) -> Result<Vec<u8>, Failure> {
-    // The ends, where the cutter plunges and lifts, are not judged.
-    let trim = (0.8 * first.cut.radius_mm).max(6.0);
-    let length = crate::report::mm(pass.core.contour.length);
-    let along = |milled: &Milled| {
-        let errors = milled.mean_errors();
-        let judged = |s: f64| s > trim && s < length - trim;
-        let at = |(s, e): (&f64, f64)| (*s, if judged(*s) { e } else { f64::NAN });
-        milled.path.s_mm.iter().zip(errors).map(at).collect::<Vec<_>>()
+    let wall = |milled: &Milled, what: &str, score: &Score, colour| {
+        Wall::of_milled(format!("{what}: largest error {:.3} mm", score.max_error_mm), colour, milled)
     };
-    let name = |text: &str, score: &Score| format!("{text}: largest error {:.3} mm", score.max_error_mm);
-    let (first_name, second_name) = (name("first part", before), name("corrected part", after));
-    let curves = [plot::Curve::before(&first_name, along(first)), plot::Curve::after(&second_name, along(second))];
-    plot::part(story.title, &plot::nominal_wall(pass), &curves, &[])
+    let walls = [wall(first, "first part", before, plot::BEFORE), wall(second, "corrected part", after, plot::AFTER)];
+    plot::error(&View::default(), story.title, &walls, None, &[])
 }

@@ -17,6 +17,7 @@ pub mod learn;
 mod levels;
 pub mod multiaxis;
 mod page;
+pub mod plot;
 pub mod pocket;
 pub mod probe;
 pub mod probe_next;

@@ -12,6 +12,7 @@ use crate::job::{Job, Which};
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
 use crate::plant;
+use crate::plot::{self, Column, View};
 use crate::report::page::{self, Along};
 use crate::report::{SimulateSummary, Trace, json, mm, simulate_summary, trace, trace_csv};
 use crate::workshop;
@@ -57,7 +58,7 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     let summary = simulate_summary(&pass, by, &trace, warnings);
     folder.write("trace.csv", &trace_csv(&trace)?)?;
     folder.write("summary.json", &json(&summary)?)?;
-    folder.write("trace.svg", &crate::plot::trace(&trace)?)?;
+    folder.write("trace.svg", &plot::trace(&View::default(), &[("", &trace)], &Column::USUAL)?)?;
     folder.write(REPORT, &page::render(&simulated(&pass, along, &summary))?)?;
     folder.commit()?;
     Ok(summary)

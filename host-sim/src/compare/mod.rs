@@ -13,4 +13,4 @@ mod score;
 
 pub use laws::{Candidate, candidates};
 pub use machine::{identified, virtual_machine};
-pub use score::{Place, Row, Walls, row};
+pub use score::{Place, Row, Walls, judged, row};

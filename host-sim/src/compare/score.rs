@@ -1,5 +1,7 @@
 //! What a law leaves, in numbers.
 
+use std::ops::RangeInclusive;
+
 use truepath_core::units::Offset;
 
 use super::Candidate;
@@ -53,10 +55,15 @@ pub struct Row {
 impl Walls {
     /// The places that are judged: away from the ends where the contour is long enough to have a middle.
     pub fn judged(&self, trim_mm: f64) -> impl Iterator<Item = &Place> {
-        let end = self.places.last().map_or(0.0, |p| p.s_mm);
-        let trim = if end > 2.5 * trim_mm { trim_mm } else { 0.0 };
-        self.places.iter().filter(move |p| p.s_mm >= trim && p.s_mm <= end - trim && p.error_mm.is_finite())
+        let stretch = judged(self.places.last().map_or(0.0, |p| p.s_mm), trim_mm);
+        self.places.iter().filter(move |p| stretch.contains(&p.s_mm) && p.error_mm.is_finite())
     }
+}
+
+/// The stretch of a contour of a length that is judged, mm.
+pub fn judged(length_mm: f64, trim_mm: f64) -> RangeInclusive<f64> {
+    let trim = if length_mm > 2.5 * trim_mm { trim_mm } else { 0.0 };
+    trim..=length_mm - trim
 }
 
 /// The line of a law. `walls` is what it leaves, or why that is not known; `none_mm` is the largest error without

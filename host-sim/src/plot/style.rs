@@ -11,12 +11,23 @@ use crate::diagnostics::Failure;
 pub(crate) const BEFORE: RGBColor = RGBColor(213, 94, 0);
 /// What is after it.
 pub(crate) const AFTER: RGBColor = RGBColor(0, 114, 178);
+/// Along x.
+pub(crate) const ALONG_X: RGBColor = RGBColor(0, 158, 115);
+/// Along y.
+pub(crate) const ALONG_Y: RGBColor = RGBColor(204, 121, 167);
 /// What is nominal, allowed, or measured against.
 pub(crate) const DARK: RGBColor = RGBColor(60, 60, 60);
+/// The nominal wall, under the milled ones.
+pub(crate) const NOMINAL: RGBColor = RGBColor(190, 190, 190);
+/// The line of zero.
+pub(crate) const ZERO: RGBColor = RGBColor(160, 160, 160);
 /// Lines of a grid.
 pub(crate) const LIGHT: RGBColor = RGBColor(225, 225, 225);
-/// Letters.
-pub(crate) const FONT: &str = "sans-serif";
+/// Of things of one kind in their order.
+pub(crate) const IN_ORDER: [RGBColor; 7] =
+    [BEFORE, AFTER, ALONG_X, ALONG_Y, RGBColor(230, 159, 0), RGBColor(86, 180, 233), DARK];
+/// Letters: the first of these a reader has. All but the last have the same widths as the font the PNG pictures are drawn with.
+pub(crate) const FONT: &str = "Arimo, Arial, Helvetica, Liberation Sans, sans-serif";
 
 /// A picture that cannot be drawn is a fault of the program.
 pub(crate) fn failed(error: impl std::fmt::Display) -> Failure {

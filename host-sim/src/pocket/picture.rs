@@ -4,7 +4,8 @@ use super::design::Designed;
 use super::process::{Cutting, Mode};
 use super::station::Station;
 use crate::diagnostics::Failure;
-use crate::plot::{COLOURS, Curve, panels};
+use crate::plot::style::{ALONG_X, DARK};
+use crate::plot::{Curve, Panel, View, panels};
 
 /// The picture.
 ///
@@ -20,7 +21,7 @@ pub fn before_after(
     let wall = |cut: &[Cutting], far: bool| along(&|i| if far { cut[i].walls.far } else { cut[i].walls.near });
     let (before, after) = (&designed.before, &designed.after);
     let end = stations.last().map_or(0.0, |s| s.s_mm);
-    let limit = |value: f64, name| Curve { name, points: vec![(0.0, value), (end, value)], colour: COLOURS[0] };
+    let limit = |value: f64, name| Curve::new(name, DARK, vec![(0.0, value), (end, value)]);
     let errors = |far| {
         let mut curves = vec![
             Curve::before("program as it is", wall(before, far)),
@@ -28,21 +29,22 @@ pub fn before_after(
             limit(tolerance_mm, "band"),
         ];
         // One entry of the legend for both lines.
-        curves[2].points.extend([(f64::NAN, f64::NAN), (0.0, -tolerance_mm), (end, -tolerance_mm)]);
+        curves.push(limit(-tolerance_mm, ""));
         curves
     };
     let engaged = along(&|i| before[i].engaged_rad.to_degrees());
     let shift = along(&|i| designed.shift_mm[i]);
-    let plain = |name, points, colour| vec![Curve { name, points, colour }];
-    let mut rows = vec![("engaged, degrees", plain("engagement angle", engaged, COLOURS[0]))];
-    rows.push((if mode == Mode::Slot { "near wall error, mm" } else { "wall error, mm" }, errors(false)));
+    let plain = |name, points, colour| vec![Curve::new(name, colour, points)];
+    let mut rows = vec![Panel::new("engagement (°)", plain("engagement angle", engaged, DARK))];
+    let near = if mode == Mode::Slot { "near wall error (mm)" } else { "wall error (mm)" };
+    rows.push(Panel::new(near, errors(false)));
     if mode == Mode::Slot {
-        rows.push(("far wall error, mm", errors(true)));
+        rows.push(Panel::new("far wall error (mm)", errors(true)));
     }
-    rows.push(("shift, mm", plain("towards the near wall", shift, COLOURS[2])));
+    rows.push(Panel::new("shift (mm)", plain("towards the near wall", shift, ALONG_X)));
     let title = match mode {
         Mode::Wall => "Finishing a pocket: the wall before and after, as predicted",
         Mode::Slot => "Slot: both walls before and after, as predicted",
     };
-    panels(title, &rows)
+    panels(&View::default(), title, &rows)
 }

@@ -7,6 +7,8 @@ mod inspection;
 pub mod page;
 mod path;
 mod points;
+mod reading;
+pub(crate) mod sheet;
 mod summary;
 mod tables;
 
@@ -16,6 +18,7 @@ pub use guard::{GuardSummary, HeldBack, guard_summary};
 pub use inspection::{InspectSummary, PartSummary, ToleranceSummary, inspect_summary};
 pub use path::{block_edits, carried_edits};
 pub use points::{judged_points_csv, points_csv};
+pub use reading::{LawPlaces, PointRow, read_correction, read_points, read_trace, read_walls};
 pub use summary::{CorrectSummary, Parameter, SimulateSummary, correct_summary, law_name, simulate_summary};
 pub use tables::{CorrectionRow, Trace, TraceRow, correction_csv, correction_rows, trace, trace_csv};
 pub(crate) use tables::{rounded, table};

@@ -150,7 +150,7 @@ pub fn correction_rows(machine: &Loop, correction: &Correction) -> Vec<Correctio
     let rows = samples.iter().enumerate().map(|(i, sample)| {
         let total = correction.nodes[i].total();
         let predicted = &correction.predicted[i];
-        let wall = wall_mm(&path, sample);
+        let wall = wall_mm(path, sample);
         CorrectionRow {
             s_mm: mm(sample.s),
             x_mm: sample.point.x.nm() as f64 / 1e6,

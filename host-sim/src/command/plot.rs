@@ -1,0 +1,251 @@
+//! `plot`: pictures of what the other commands wrote.
+//!
+//! | code | meaning |
+//! |---|---|
+//! | Z011 | an output that ends neither in .svg nor in .png; `--scale` for an SVG |
+//! | Z012 | a folder without the table |
+//! | Z013 | too many tables, too many laws, or tables that do not go together |
+//! | Z014 | a summary.json that is not one of `compare` |
+//!
+//! Others: [`view`](crate::plot::View), [`png`], `report::sheet`.
+
+use std::io::Write;
+use std::path::{Path as FilePath, PathBuf};
+
+use crate::diagnostics::{Failure, InputError, Source};
+use crate::output::OutputFile;
+use crate::plot::{self, Column, Compared, LawWall, PASSES, Place, Probed, View, Wall, png};
+use crate::report::sheet::{names as names_of, read_bounded};
+use crate::report::{Trace, read_correction, read_points, read_trace, read_walls};
+
+/// Most laws of a comparison.
+const LAWS: usize = 12;
+/// Pixels of a PNG picture to one of the view, when nothing is said.
+const SCALE: f64 = 2.0;
+
+/// What is drawn. Every path is a table or the folder it lies in.
+#[derive(Clone, Debug)]
+pub enum Kind {
+    /// Traces of passes over each other.
+    Trace {
+        /// One a pass.
+        tables: Vec<PathBuf>,
+        /// Their names; those left out are the folders'.
+        names: Vec<String>,
+        /// What is drawn of them.
+        columns: Vec<Column>,
+    },
+    /// A correction and what is predicted with it.
+    Correction(PathBuf),
+    /// The wall to scale: of a correction, or of passes.
+    Error {
+        /// One correction, or one trace a pass.
+        tables: Vec<PathBuf>,
+        /// Names of the passes.
+        names: Vec<String>,
+        /// Probed places; without it those beside the first table, if there are any.
+        points: Option<PathBuf>,
+    },
+    /// A comparison of laws.
+    Compare(PathBuf),
+}
+
+/// How it is drawn.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// What.
+    pub kind: Kind,
+    /// The picture: .svg or .png.
+    pub output: PathBuf,
+    /// Its size and what it shows.
+    pub view: View,
+    /// Pixels of a PNG picture to one of the view.
+    pub scale: Option<f64>,
+    /// Replace an existing picture.
+    pub force: bool,
+}
+
+/// What was written.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct PlotSummary {
+    /// Version of this object.
+    pub version: u32,
+    /// The picture.
+    pub output: PathBuf,
+    /// `svg` or `png`.
+    pub format: &'static str,
+    /// Its size.
+    pub bytes: usize,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Draws a picture of tables.
+///
+/// # Errors
+/// The codes of this module and those it names; an output that exists or cannot be written.
+pub fn run(options: &Options) -> Result<PlotSummary, Failure> {
+    let format = format(&options.output)?;
+    if format == "svg" && options.scale.is_some() {
+        let help = "an SVG picture is sharp at any size: leave --scale out, or name a .png";
+        return Err(InputError::new("Z011", "--scale was given for an SVG picture", "a .png", help).into());
+    }
+    let mut file = OutputFile::create(&options.output, options.force)?;
+    let svg = drawn(&options.kind, &options.view)?;
+    let mut warnings = Vec::new();
+    let bytes = match format {
+        "svg" => svg,
+        _ => {
+            warnings.extend(plot::unknown_letters(&svg));
+            png(&svg, options.scale.unwrap_or(SCALE))?
+        }
+    };
+    file.write_all(&bytes).map_err(|e| InputError::unwritable(&options.output, &e))?;
+    file.commit()?;
+    Ok(PlotSummary { version: 1, output: options.output.clone(), format, bytes: bytes.len(), warnings })
+}
+
+fn format(output: &FilePath) -> Result<&'static str, InputError> {
+    let extension = output.extension().unwrap_or_default().to_ascii_lowercase();
+    match extension.to_str() {
+        Some("svg") => Ok("svg"),
+        Some("png") => Ok("png"),
+        _ => {
+            let found = format!("{} is neither .svg nor .png", output.display());
+            let help = "the ending of the output says what kind of picture is written";
+            Err(InputError::new("Z011", found, "a name that ends in .svg or .png", help).in_file(output))
+        }
+    }
+}
+
+fn drawn(kind: &Kind, view: &View) -> Result<Vec<u8>, Failure> {
+    match kind {
+        Kind::Trace { tables, names, columns } => {
+            let traces = traces(tables, names, |source| read_trace(source, false))?;
+            let passes: Vec<_> = traces.iter().map(|(name, trace)| (name.as_str(), trace.as_slice())).collect();
+            plot::trace(view, &passes, columns)
+        }
+        Kind::Correction(table) => {
+            let source = read_bounded(&table_in(table, &["correction.csv"])?)?;
+            plot::correction(view, &read_correction(&source, false)?)
+        }
+        Kind::Error { tables, names, points } => error(view, tables, names, points.as_deref()),
+        Kind::Compare(folder) => plot::compare(view, &compared(folder)?),
+    }
+}
+
+/// The passes of several tables with their names.
+fn traces(
+    tables: &[PathBuf],
+    names: &[String],
+    read: impl Fn(&Source) -> Result<Trace, InputError>,
+) -> Result<Vec<(String, Trace)>, InputError> {
+    if tables.len() > PASSES || names.len() > tables.len() {
+        let found = format!("there are {} tables and {} names", tables.len(), names.len());
+        let help = "one name a table, in their order";
+        return Err(InputError::new("Z013", found, format!("at most {PASSES} tables"), help));
+    }
+    let each = tables.iter().enumerate().map(|(k, table)| {
+        let file = table_in(table, &["trace.csv"])?;
+        let name = names.get(k).cloned().unwrap_or_else(|| named_after(&file));
+        Ok((name, read(&read_bounded(&file)?)?))
+    });
+    each.collect()
+}
+
+/// The folder a table lies in, or the table itself where that has no name.
+fn named_after(table: &FilePath) -> String {
+    let folder = table.parent().and_then(FilePath::file_name);
+    folder.unwrap_or(table.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// A table, or the first of these that lies in a folder.
+fn table_in(path: &FilePath, wanted: &[&str]) -> Result<PathBuf, InputError> {
+    if !path.is_dir() {
+        return Ok(path.to_owned());
+    }
+    let there = wanted.iter().map(|name| path.join(name)).find(|file| file.is_file());
+    there.ok_or_else(|| {
+        let found = format!("{} holds no {}", path.display(), wanted.join(" and no "));
+        let help = "simulate writes trace.csv, correct and learn write correction.csv, compare writes walls.csv";
+        InputError::new("Z012", found, "a folder of the command that writes it", help).in_file(path)
+    })
+}
+
+fn error(view: &View, tables: &[PathBuf], names: &[String], points: Option<&FilePath>) -> Result<Vec<u8>, Failure> {
+    let files = tables.iter().map(|t| table_in(t, &["correction.csv", "trace.csv"])).collect::<Result<Vec<_>, _>>()?;
+    let beside = files.first().map(|f| f.with_file_name("points.csv")).filter(|f| f.is_file());
+    let probed = match points.map(FilePath::to_owned).or(beside) {
+        Some(file) => probed(&read_bounded(&file)?)?,
+        None => Vec::new(),
+    };
+    if let [file] = files.as_slice() {
+        let source = read_bounded(file)?;
+        if names_of(&source).iter().any(|name| name == "predicted_error_before_mm") {
+            return plot::predicted_error(view, &read_correction(&source, true)?, &probed);
+        }
+    }
+    let passes = traces(&files, names, |source| read_trace(source, true))?;
+    let walls: Vec<Wall> = passes
+        .iter()
+        .zip(plot::IN_ORDER)
+        .map(|((name, trace), colour)| Wall::of_trace(&**name, colour, trace))
+        .collect();
+    plot::error(view, "The wall", &walls, None, &probed)
+}
+
+fn probed(source: &Source) -> Result<Vec<Probed>, InputError> {
+    let rows = read_points(source)?;
+    let probed = rows.iter().map(|r| {
+        let nominal = [r.contact[0] + r.normal[0] * r.error_mm, r.contact[1] + r.normal[1] * r.error_mm];
+        let free = [-r.normal[0], -r.normal[1]];
+        Probed { place: Place { s_mm: r.s_mm, wall: nominal, free, error_mm: r.error_mm }, outlying: r.outlying }
+    });
+    Ok(probed.collect())
+}
+
+/// What of the summary of `compare` a picture needs.
+#[derive(serde::Deserialize)]
+struct Summary {
+    machine: String,
+    trim_mm: f64,
+    laws: Vec<Law>,
+}
+
+#[derive(serde::Deserialize)]
+struct Law {
+    law: String,
+    title: String,
+    max_error_mm: Option<f64>,
+}
+
+fn compared(path: &FilePath) -> Result<Compared, InputError> {
+    let file = table_in(path, &["walls.csv"])?;
+    let walls = read_walls(&read_bounded(&file)?)?;
+    let source = read_bounded(&file.with_file_name("summary.json"))?;
+    let summary: Summary = serde_json::from_slice(source.bytes()).map_err(|e| {
+        let (line, column) = (u32::try_from(e.line()).unwrap_or(1), u32::try_from(e.column()).unwrap_or(1));
+        let help = "summary.json lies beside walls.csv in the folder of compare";
+        InputError::new("Z014", e.to_string(), "the summary of compare", help)
+            .at(&source, source.span_at(line, column, 0))
+    })?;
+    if walls.len() > LAWS {
+        let found = format!("{} holds {} laws", file.display(), walls.len());
+        let help = "the lines of a law stand together in the table";
+        return Err(InputError::new("Z013", found, format!("at most {LAWS}"), help).in_file(&file));
+    }
+    let law = |(law, places): (String, Vec<[f64; 4]>)| {
+        let row = summary.laws.iter().find(|row| row.law == law);
+        LawWall {
+            title: row.map_or_else(|| law.clone(), |row| row.title.clone()),
+            max_error_mm: row.and_then(|row| row.max_error_mm),
+            places,
+            law,
+        }
+    };
+    Ok(Compared {
+        on_plant: summary.machine == "plant",
+        trim_mm: summary.trim_mm,
+        laws: walls.into_iter().map(law).collect(),
+    })
+}

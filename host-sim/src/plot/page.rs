@@ -1,0 +1,77 @@
+//! One picture as a file: an SVG drawn ten times finer than a pixel, with its title as the name a screen reader says.
+//!
+//! `plotters` puts everything on whole units; at ten units a pixel a curve is smooth and a peak stands where it belongs.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::letters;
+use super::style::{DARK, FONT, failed};
+use crate::diagnostics::Failure;
+
+/// Units of the drawing to a pixel.
+pub(super) const FINE: f64 = 10.0;
+/// Size of the letters of axes and legends, px.
+pub(super) const SMALL: f64 = 12.0;
+const TITLE: f64 = 16.0;
+
+/// Part of a picture.
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Units of a length in pixels.
+pub(super) fn units(px: f64) -> i32 {
+    (px * FINE).round() as i32
+}
+
+/// Thickness of a line in pixels.
+pub(super) fn thick(px: f64) -> u32 {
+    units(px).unsigned_abs()
+}
+
+/// The room a title takes, px.
+pub(super) fn title_height(title: &str) -> f64 {
+    if title.is_empty() { 8.0 } else { 34.0 }
+}
+
+/// Letters of a size in pixels.
+pub(super) fn lettering<'a>(size: f64, colour: RGBColor) -> TextStyle<'a> {
+    // plotters divides the size by 1.24 when it writes it.
+    TextStyle { color: colour.to_backend_color(), ..TextStyle::from((FONT, size * FINE * 1.24)) }
+}
+
+/// The largest size up to `size` at which a text is no wider than `available`.
+pub(super) fn fitted(text: &str, size: f64, available: f64) -> f64 {
+    size.min(size * available.max(1.0) / letters::width(text, size).max(1.0))
+}
+
+/// Draws a picture of a size in pixels under a title.
+pub(super) fn picture(
+    (width, height): (u32, u32),
+    title: &str,
+    draw: impl FnOnce(&Area) -> Result<(), Failure>,
+) -> Result<Vec<u8>, Failure> {
+    let mut text = String::new();
+    let fine = |px: u32| thick(f64::from(px));
+    {
+        let root = SVGBackend::with_string(&mut text, (fine(width), fine(height))).into_drawing_area();
+        root.fill(&WHITE).map_err(failed)?;
+        if !title.is_empty() {
+            let size = fitted(title, TITLE, f64::from(width) - 24.0);
+            let style = lettering(size, DARK).pos(Pos::new(HPos::Center, VPos::Center));
+            let middle = (units(f64::from(width) / 2.0), units(18.0));
+            root.draw(&Text::new(title.to_owned(), middle, style)).map_err(failed)?;
+        }
+        draw(&root)?;
+        root.present().map_err(failed)?;
+    }
+    let body = text.find('>').and_then(|end| text.get(end + 1..)).ok_or_else(|| failed("no SVG"))?;
+    let name = title.replace('&', "&amp;").replace('<', "&lt;");
+    let head = format!(
+        "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" \
+         stroke-linejoin=\"round\" stroke-linecap=\"round\">\n<title>{name}</title>",
+        fine(width),
+        fine(height)
+    );
+    Ok((head + body).into_bytes())
+}
