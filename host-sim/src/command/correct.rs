@@ -25,7 +25,7 @@ use crate::pass::{Pass, PathBuffer};
 use crate::program::{BlockEdit, Origin, RewriteOptions, Rewritten, first_pass_of, rewrite_program};
 use crate::report::page::render;
 use crate::report::{
-    CorrectSummary, block_edits, correct_summary, correction_csv, correction_rows, json, mm, points_csv,
+    CorrectSummary, block_edits, correct_summary, correction_csv, correction_rows, json, mm, points_csv, wall_csv,
 };
 
 /// The parts so far; see [`learning`](crate::learning).
@@ -37,6 +37,7 @@ pub(super) const FILES: &[&str] = &[
     "difference.txt",
     "correction.tpi",
     "correction.csv",
+    "wall.csv",
     "points.csv",
     "summary.json",
     "correction.svg",
@@ -93,8 +94,8 @@ pub struct Corrected {
     pub image: Option<Vec<u8>>,
     /// Images of the other depths with their numbers.
     pub other_images: Vec<(u32, Vec<u8>)>,
-    /// `correction.csv`.
-    pub table: Vec<u8>,
+    /// `correction.csv` and `wall.csv`.
+    pub tables: [Vec<u8>; 2],
     /// `correction.svg`.
     pub picture: Vec<u8>,
 }
@@ -186,11 +187,11 @@ pub(super) fn design(
     summary.warnings.append(&mut levels.left);
     summary.feature = pass.feature(&levels.written);
     let rows = correction_rows(&machine, &correction);
-    let table = correction_csv(&rows)?;
+    let tables = [correction_csv(&rows)?, wall_csv(&rows)?];
     let picture = crate::plot::predicted_error(&crate::plot::View::default(), &rows, &[])?;
     progress(1.0);
     let (schedule, residual) = (feeds.schedule, wish.residual.to_vec());
-    Ok(Corrected { identified, correction, schedule, residual, summary, program, image, other_images, table, picture })
+    Ok(Corrected { identified, correction, schedule, residual, summary, program, image, other_images, tables, picture })
 }
 
 /// Corrects and writes the outputs.
@@ -270,7 +271,8 @@ pub(super) fn write(
     for (number, bytes) in &done.other_images {
         folder.write(&format!("correction-pass-{number}.tpi"), bytes)?;
     }
-    folder.write("correction.csv", &done.table)?;
+    folder.write("correction.csv", &done.tables[0])?;
+    folder.write("wall.csv", &done.tables[1])?;
     folder.write("points.csv", &points_csv(measurement, &done.identified.observations)?)?;
     folder.write("correction.svg", &done.picture)?;
     Ok(())

@@ -68,6 +68,7 @@ const FILES: &[&str] = &[
     "difference.txt",
     "correction.tpi",
     "correction.csv",
+    "wall.csv",
     "summary.json",
     "before-after.svg",
     "points.csv",
@@ -145,7 +146,8 @@ fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(
     out.write("corrected.nc", text)?;
     out.write("difference.txt", corrected.summary.difference("program.nc").as_bytes())?;
     out.write("correction.tpi", corrected.image.as_deref().unwrap_or_default())?;
-    out.write("correction.csv", &corrected.table)?;
+    out.write("correction.csv", &corrected.tables[0])?;
+    out.write("wall.csv", &corrected.tables[1])?;
     out.write("summary.json", &json(&corrected.summary)?)?;
     out.write("before-after.svg", &picture(story, (&first, &before), (&second, &after))?)?;
     out.write("points.csv", &points_csv(&measurement, &corrected.identified.observations)?)?;

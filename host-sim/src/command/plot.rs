@@ -3,11 +3,11 @@
 //! | code | meaning |
 //! |---|---|
 //! | Z011 | an output that ends neither in .svg nor in .png; `--scale` for an SVG |
-//! | Z012 | a folder without the table |
+//! | Z012 | a folder without the table, a table without its wall.csv |
 //! | Z013 | too many tables, too many laws, or tables that do not go together |
 //! | Z014 | a summary.json that is not one of `compare` |
 //!
-//! Others: [`view`](crate::plot::View), [`png`], `report::sheet`.
+//! Others: [`View`], [`png`], `report::sheet`.
 
 use std::io::Write;
 use std::path::{Path as FilePath, PathBuf};
@@ -16,7 +16,7 @@ use crate::diagnostics::{Failure, InputError, Source};
 use crate::output::OutputFile;
 use crate::plot::{self, Column, Compared, LawWall, PASSES, Place, Probed, View, Wall, png};
 use crate::report::sheet::{names as names_of, read_bounded};
-use crate::report::{Trace, read_correction, read_points, read_trace, read_walls};
+use crate::report::{Trace, WallRow, read_correction, read_points, read_trace, read_wall, read_walls};
 
 /// Most laws of a comparison.
 const LAWS: usize = 12;
@@ -121,13 +121,13 @@ fn format(output: &FilePath) -> Result<&'static str, InputError> {
 fn drawn(kind: &Kind, view: &View) -> Result<Vec<u8>, Failure> {
     match kind {
         Kind::Trace { tables, names, columns } => {
-            let traces = traces(tables, names, |source| read_trace(source, false))?;
+            let traces = traces(tables, names, |_, source| read_trace(source, None))?;
             let passes: Vec<_> = traces.iter().map(|(name, trace)| (name.as_str(), trace.as_slice())).collect();
             plot::trace(view, &passes, columns)
         }
         Kind::Correction(table) => {
             let source = read_bounded(&table_in(table, &["correction.csv"])?)?;
-            plot::correction(view, &read_correction(&source, false)?)
+            plot::correction(view, &read_correction(&source, None)?)
         }
         Kind::Error { tables, names, points } => error(view, tables, names, points.as_deref()),
         Kind::Compare(folder) => plot::compare(view, &compared(folder)?),
@@ -138,7 +138,7 @@ fn drawn(kind: &Kind, view: &View) -> Result<Vec<u8>, Failure> {
 fn traces(
     tables: &[PathBuf],
     names: &[String],
-    read: impl Fn(&Source) -> Result<Trace, InputError>,
+    read: impl Fn(&FilePath, &Source) -> Result<Trace, InputError>,
 ) -> Result<Vec<(String, Trace)>, InputError> {
     if tables.len() > PASSES || names.len() > tables.len() {
         let found = format!("there are {} tables and {} names", tables.len(), names.len());
@@ -148,7 +148,7 @@ fn traces(
     let each = tables.iter().enumerate().map(|(k, table)| {
         let file = table_in(table, &["trace.csv"])?;
         let name = names.get(k).cloned().unwrap_or_else(|| named_after(&file));
-        Ok((name, read(&read_bounded(&file)?)?))
+        Ok((name, read(&file, &read_bounded(&file)?)?))
     });
     each.collect()
 }
@@ -182,16 +182,28 @@ fn error(view: &View, tables: &[PathBuf], names: &[String], points: Option<&File
     if let [file] = files.as_slice() {
         let source = read_bounded(file)?;
         if names_of(&source).iter().any(|name| name == "predicted_error_before_mm") {
-            return plot::predicted_error(view, &read_correction(&source, true)?, &probed);
+            return plot::predicted_error(view, &read_correction(&source, Some(&wall_beside(file)?))?, &probed);
         }
     }
-    let passes = traces(&files, names, |source| read_trace(source, true))?;
+    let passes = traces(&files, names, |file, source| read_trace(source, Some(&wall_beside(file)?)))?;
     let walls: Vec<Wall> = passes
         .iter()
         .zip(plot::IN_ORDER)
         .map(|((name, trace), colour)| Wall::of_trace(&**name, colour, trace))
         .collect();
     plot::error(view, "The wall", &walls, None, &probed)
+}
+
+/// The nominal wall of a table.
+fn wall_beside(table: &FilePath) -> Result<Vec<WallRow>, InputError> {
+    let file = table.with_file_name("wall.csv");
+    if !file.is_file() {
+        let found = format!("there is no wall.csv beside {}", table.display());
+        let help = "the wall to scale needs the wall.csv that simulate, correct and learn write beside their table: name \
+                    their folder, or run them again";
+        return Err(InputError::new("Z012", found, "a folder with both tables", help).in_file(&file));
+    }
+    read_wall(&read_bounded(&file)?)
 }
 
 fn probed(source: &Source) -> Result<Vec<Probed>, InputError> {

@@ -14,11 +14,11 @@ use crate::pass::{Pass, PathBuffer};
 use crate::plant;
 use crate::plot::{self, Column, View};
 use crate::report::page::{self, Along};
-use crate::report::{SimulateSummary, Trace, json, mm, simulate_summary, trace, trace_csv};
+use crate::report::{SimulateSummary, Trace, json, mm, simulate_summary, trace, trace_csv, wall_csv};
 use crate::workshop;
 
 /// Files this command may write.
-const FILES: &[&str] = &["trace.csv", "summary.json", "trace.svg", REPORT];
+const FILES: &[&str] = &["trace.csv", "wall.csv", "summary.json", "trace.svg", REPORT];
 
 /// What is simulated.
 #[derive(Clone, Debug)]
@@ -57,6 +57,7 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     };
     let summary = simulate_summary(&pass, by, &trace, warnings);
     folder.write("trace.csv", &trace_csv(&trace)?)?;
+    folder.write("wall.csv", &wall_csv(&trace)?)?;
     folder.write("summary.json", &json(&summary)?)?;
     folder.write("trace.svg", &plot::trace(&View::default(), &[("", &trace)], &Column::USUAL)?)?;
     folder.write(REPORT, &page::render(&simulated(&pass, along, &summary))?)?;

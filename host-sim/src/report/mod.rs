@@ -11,6 +11,7 @@ mod reading;
 pub(crate) mod sheet;
 mod summary;
 mod tables;
+mod wall;
 
 pub use compare::{compare_csv, walls_csv};
 pub use damped::{DampedSummary, damped_summary};
@@ -18,10 +19,11 @@ pub use guard::{GuardSummary, HeldBack, guard_summary};
 pub use inspection::{InspectSummary, PartSummary, ToleranceSummary, inspect_summary};
 pub use path::{block_edits, carried_edits};
 pub use points::{judged_points_csv, points_csv};
-pub use reading::{LawPlaces, PointRow, read_correction, read_points, read_trace, read_walls};
+pub use reading::{LawPlaces, PointRow, read_correction, read_points, read_trace, read_wall, read_walls};
 pub use summary::{CorrectSummary, Parameter, SimulateSummary, correct_summary, law_name, simulate_summary};
 pub use tables::{CorrectionRow, Trace, TraceRow, correction_csv, correction_rows, trace, trace_csv};
 pub(crate) use tables::{rounded, table};
+pub use wall::{WallRow, wall_csv};
 
 use truepath_core::units::{Offset, Real};
 

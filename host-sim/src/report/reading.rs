@@ -2,6 +2,7 @@
 
 use super::sheet::{Line, each_line};
 use super::tables::{CorrectionRow, Trace, TraceRow};
+use super::wall::WallRow;
 use crate::diagnostics::{InputError, Source};
 
 /// Columns of `trace.csv` that every one has.
@@ -9,13 +10,18 @@ const TRACE: [&str; 11] =
     ["s_mm", "x_mm", "y_mm", "arc_deg", "chip_area_mm2", "force_n", "fx_n", "fy_n", "dx_mm", "dy_mm", "error_mm"];
 const CORRECTION: [&str; 8] =
     ["s_mm", "x_mm", "y_mm", "dx_mm", "dy_mm", "predicted_error_before_mm", "predicted_error_after_mm", "sigma_mm"];
-const WALL: [&str; 2] = ["wall_x_mm", "wall_y_mm"];
+const WALL: [&str; 5] = ["s_mm", "x_mm", "y_mm", "nx", "ny"];
 const POINTS: [&str; 7] = ["status", "s_mm", "x_mm", "y_mm", "nx", "ny", "error_mm"];
 const WALLS: [&str; 5] = ["law", "s_mm", "error_mm", "lowest_mm", "highest_mm"];
 
-/// The columns with those of the wall, where the table must have them.
-fn with_wall<'a>(columns: &[&'a str], wall: bool) -> Vec<&'a str> {
-    columns.iter().copied().chain(WALL.into_iter().filter(|_| wall)).collect()
+/// The wall beside a row, which must be of the same place; not a number without a wall.
+fn beside(line: &Line, wall: Option<&[WallRow]>, row: usize, s_mm: f64) -> Result<[f64; 2], InputError> {
+    let Some(wall) = wall else { return Ok([f64::NAN; 2]) };
+    match wall.get(row) {
+        Some(place) if (place.s_mm - s_mm).abs() < 1e-5 => Ok([place.x_mm, place.y_mm]),
+        Some(place) => Err(line.refused(0, "Z013", &format!("{} as in the same line of wall.csv", place.s_mm))),
+        None => Err(line.refused(0, "Z013", &format!("no more than the {} lines of wall.csv", wall.len()))),
+    }
 }
 
 /// At least two places that are not the same.
@@ -28,16 +34,37 @@ fn enough(source: &Source, first: Option<f64>, last: Option<f64>) -> Result<(), 
     Err(InputError::new("Z009", "the table has fewer than two places along the contour", "", help).at(source, end..end))
 }
 
-/// `trace.csv`; with `wall` the nominal wall must be in it, without it is not read.
+/// `wall.csv`.
 ///
 /// # Errors
-/// See the table of [`sheet`](super::sheet).
-pub fn read_trace(source: &Source, wall: bool) -> Result<Trace, InputError> {
+/// See the table of `sheet`.
+pub fn read_wall(source: &Source) -> Result<Vec<WallRow>, InputError> {
+    let mut rows: Vec<WallRow> = Vec::new();
+    each_line(source, &WALL, |line| {
+        let s_mm = line.along(0, rows.last().map(|r| r.s_mm))?;
+        rows.push(WallRow {
+            s_mm,
+            x_mm: line.number(1)?,
+            y_mm: line.number(2)?,
+            nx: line.number(3)?,
+            ny: line.number(4)?,
+        });
+        Ok(())
+    })?;
+    Ok(rows)
+}
+
+/// `trace.csv`, with the places of its `wall.csv` where they are needed.
+///
+/// # Errors
+/// See the table of `sheet`; `Z013` when the wall is of another table.
+pub fn read_trace(source: &Source, wall: Option<&[WallRow]>) -> Result<Trace, InputError> {
     let mut rows: Trace = Vec::new();
-    each_line(source, &with_wall(&TRACE, wall), |line| {
-        let on_wall = |column| if wall { line.number(column) } else { Ok(f64::NAN) };
+    each_line(source, &TRACE, |line| {
+        let s_mm = line.along(0, rows.last().map(|r| r.s_mm))?;
+        let [wall_x_mm, wall_y_mm] = beside(line, wall, rows.len(), s_mm)?;
         rows.push(TraceRow {
-            s_mm: line.along(0, rows.last().map(|r| r.s_mm))?,
+            s_mm,
             x_mm: line.number(1)?,
             y_mm: line.number(2)?,
             arc_deg: line.known(3)?,
@@ -48,8 +75,8 @@ pub fn read_trace(source: &Source, wall: bool) -> Result<Trace, InputError> {
             dx_mm: line.known(8)?,
             dy_mm: line.known(9)?,
             error_mm: line.known(10)?,
-            wall_x_mm: on_wall(11)?,
-            wall_y_mm: on_wall(12)?,
+            wall_x_mm,
+            wall_y_mm,
         });
         Ok(())
     })?;
@@ -60,14 +87,15 @@ pub fn read_trace(source: &Source, wall: bool) -> Result<Trace, InputError> {
 /// `correction.csv`; `wall` as in [`read_trace`].
 ///
 /// # Errors
-/// See the table of [`sheet`](super::sheet).
-pub fn read_correction(source: &Source, wall: bool) -> Result<Vec<CorrectionRow>, InputError> {
+/// See the table of `sheet`; `Z013` when the wall is of another table.
+pub fn read_correction(source: &Source, wall: Option<&[WallRow]>) -> Result<Vec<CorrectionRow>, InputError> {
     let mut rows: Vec<CorrectionRow> = Vec::new();
-    each_line(source, &with_wall(&CORRECTION, wall), |line| {
-        let on_wall = |column| if wall { line.number(column) } else { Ok(f64::NAN) };
+    each_line(source, &CORRECTION, |line| {
+        let s_mm = line.along(0, rows.last().map(|r| r.s_mm))?;
+        let [wall_x_mm, wall_y_mm] = beside(line, wall, rows.len(), s_mm)?;
         let known = |column| line.known(column).map(|v| v.is_finite().then_some(v));
         rows.push(CorrectionRow {
-            s_mm: line.along(0, rows.last().map(|r| r.s_mm))?,
+            s_mm,
             x_mm: line.number(1)?,
             y_mm: line.number(2)?,
             dx_mm: line.known(3)?,
@@ -75,8 +103,8 @@ pub fn read_correction(source: &Source, wall: bool) -> Result<Vec<CorrectionRow>
             predicted_error_before_mm: known(5)?,
             predicted_error_after_mm: known(6)?,
             sigma_mm: known(7)?,
-            wall_x_mm: on_wall(8)?,
-            wall_y_mm: on_wall(9)?,
+            wall_x_mm,
+            wall_y_mm,
         });
         Ok(())
     })?;
@@ -102,7 +130,7 @@ pub struct PointRow {
 /// `points.csv` without the readings that were set aside.
 ///
 /// # Errors
-/// See the table of [`sheet`](super::sheet).
+/// See the table of `sheet`.
 pub fn read_points(source: &Source) -> Result<Vec<PointRow>, InputError> {
     let mut rows = Vec::new();
     each_line(source, &POINTS, |line| {
@@ -130,7 +158,7 @@ pub type LawPlaces = (String, Vec<[f64; 4]>);
 /// `walls.csv`.
 ///
 /// # Errors
-/// See the table of [`sheet`](super::sheet).
+/// See the table of `sheet`.
 pub fn read_walls(source: &Source) -> Result<Vec<LawPlaces>, InputError> {
     let mut laws: Vec<LawPlaces> = Vec::new();
     each_line(source, &WALLS, |line: &Line| {

@@ -32,9 +32,11 @@ pub struct TraceRow {
     pub dy_mm: f64,
     /// Wall error, mean over the height: positive, material left; not a number where no wall stands.
     pub error_mm: f64,
-    /// Nominal wall beside it.
+    /// Nominal wall beside it; in `wall.csv`.
+    #[serde(skip)]
     pub wall_x_mm: f64,
-    /// Nominal wall beside it.
+    /// Nominal wall beside it; in `wall.csv`.
+    #[serde(skip)]
     pub wall_y_mm: f64,
 }
 
@@ -112,8 +114,7 @@ pub fn trace_csv(trace: &Trace) -> Result<Vec<u8>, Failure> {
         dx_mm: rounded(r.dx_mm, 6),
         dy_mm: rounded(r.dy_mm, 6),
         error_mm: rounded(r.error_mm, 6),
-        wall_x_mm: rounded(r.wall_x_mm, 6),
-        wall_y_mm: rounded(r.wall_y_mm, 6),
+        ..*r
     }))
 }
 
@@ -136,9 +137,11 @@ pub struct CorrectionRow {
     pub predicted_error_after_mm: Option<f64>,
     /// One standard deviation of that.
     pub sigma_mm: Option<f64>,
-    /// Nominal wall beside it.
+    /// Nominal wall beside it; in `wall.csv`.
+    #[serde(skip)]
     pub wall_x_mm: f64,
-    /// Nominal wall beside it.
+    /// Nominal wall beside it; in `wall.csv`.
+    #[serde(skip)]
     pub wall_y_mm: f64,
 }
 
