@@ -4,12 +4,13 @@ import uPlot from "uplot";
 import { between } from "./cutter";
 import type { Series } from "./decode";
 import { fixed } from "./format";
+import { limitsOf, type Limits } from "./limits";
 import type { Model, PassName, Quantity } from "./model";
 import type { Palette } from "./palette";
 import type { State } from "./state";
 
 interface Curve { name: string; series: Series; colour: string; dash?: number[]; faint?: boolean; width?: number }
-interface Panel { title: string; unit: string; curves: Curve[]; sigma?: { error: Series; sigma: Series; colour: string }; tolerance?: number }
+interface Panel { title: string; unit: string; curves: Curve[]; sigma?: { error: Series; sigma: Series; colour: string }; limits?: Limits }
 
 interface Shown { plot: uPlot; panel: Panel; head: HTMLElement; values: HTMLElement[]; playhead: HTMLElement }
 
@@ -151,7 +152,7 @@ export class Traces {
         points: { show: false },
         y: false,
       },
-      scales: { x: { time: false, min, max, range: (_plot, a, b) => [a, b] }, y: { range: (_plot, a, b) => around(a, b, panel.tolerance) } },
+      scales: { x: { time: false, min, max, range: (_plot, a, b) => [a, b] }, y: { range: (_plot, a, b) => around(a, b, panel.limits) } },
       axes: [
         { ...axis, show: last, size: 30, gap: 2, values: (_plot, ticks) => ticks.map((t) => label(t)) },
         { ...axis, size: 54, gap: 4, space: 16, values: (_plot, ticks) => ticks.map((t) => label(t)) },
@@ -174,7 +175,7 @@ function label(tick: number): string {
 
 /** Zero and the tolerance. */
 function lines(plot: uPlot, panel: Panel, colours: Palette): void {
-  const levels = panel.tolerance ? [0, panel.tolerance, -panel.tolerance] : [0];
+  const levels = panel.limits ? [0, panel.limits.upper, panel.limits.lower] : [0];
   const { left, top, width, height } = plot.bbox;
   for (const level of levels) {
     const y = plot.valToPos(level, "y", true);
@@ -191,9 +192,9 @@ function lines(plot: uPlot, panel: Panel, colours: Palette): void {
   }
 }
 
-function around(min: number | null, max: number | null, tolerance = 0): [number, number] {
-  let low = Math.min(min ?? 0, 0, -tolerance * 1.3);
-  let high = Math.max(max ?? 0, 0, tolerance * 1.3);
+function around(min: number | null, max: number | null, limits?: Limits): [number, number] {
+  let low = Math.min(min ?? 0, 0, (limits?.lower ?? 0) * 1.3);
+  let high = Math.max(max ?? 0, 0, (limits?.upper ?? 0) * 1.3);
   if (high - low < 1e-9) high = low + 1;
   const room = (high - low) * 0.06;
   if (high > 0) high += room;
@@ -242,7 +243,7 @@ function panelsOf(model: Model, state: State, colours: Palette): Panel[] {
     ? [{ name: "x", series: model.correction.x, colour: colours.first }, { name: "y", series: model.correction.y, colour: colours.second }] : [];
   const z = state.height === null ? "" : ` at ${fixed(model.report.heights?.z_mm[state.height], 2)} mm height`;
   const panels: Panel[] = [
-    { title: `Wall error${z}`, unit: bounded ? "mm, ±2σ" : "mm", curves: errors, sigma: bounded, tolerance: model.report.tolerance_mm },
+    { title: `Wall error${z}`, unit: bounded ? "mm, ±2σ" : "mm", curves: errors, sigma: bounded, limits: limitsOf(model.report) },
     { title: "Correction", unit: "mm", curves: correction },
     { title: `Deflection${suffix}`, unit: "mm", curves: components("dx_mm", "dy_mm", ["x", "y"]) },
     { title: `Force${suffix}`, unit: "N", curves: force(selected?.series.force_n, components("fx_n", "fy_n", ["x", "y"]), colours) },

@@ -9,13 +9,16 @@ use truepath_core::units::Offset;
 use crate::correction::Correction;
 use crate::job::Tolerance;
 use crate::report::mm;
-use crate::report::page::{Page, State, Verdict};
+use crate::report::page::{Limits, Page, State, Verdict};
 
 /// Puts tolerance and verdict on the page, where the job gives limits.
 pub(super) fn judge(page: &mut Page, tolerance: Option<Tolerance>, correction: &Correction) {
     let Some(limits) = tolerance else { return };
+    let (lower_mm, upper_mm) = (mm(limits.lower), mm(limits.upper));
     if limits.upper == -limits.lower {
-        page.tolerance_mm = Some(mm(limits.upper));
+        page.tolerance_mm = Some(upper_mm);
+    } else {
+        page.limits = Some(Limits { lower_mm, upper_mm, uncertainty_mm: None, from: None });
     }
     page.verdict = Some(verdict(&limits, correction));
 }
@@ -67,7 +70,7 @@ mod tests {
     use truepath_core::cut::Passage;
 
     /// Walls from lowest to highest, µm, all with one standard deviation of 1 µm.
-    fn verdict_of(walls: &[(i64, i64)]) -> Verdict {
+    fn correction(walls: &[(i64, i64)]) -> Correction {
         let um = Offset::from_um;
         let wall = |(lowest, highest): &(i64, i64)| {
             let mut after = Profile::default();
@@ -75,7 +78,7 @@ mod tests {
             Predicted { before: after, after }
         };
         let wanted = Design { law: Law::Model, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
-        let correction = Correction {
+        Correction {
             nodes: Vec::new(),
             unguarded: Vec::new(),
             predicted: walls.iter().map(wall).collect(),
@@ -84,8 +87,27 @@ mod tests {
             used_again: false,
             wanted,
             passage: Passage::default(),
+        }
+    }
+
+    fn limits(lower_um: i64, upper_um: i64) -> Tolerance {
+        Tolerance { lower: Offset::from_um(lower_um), upper: Offset::from_um(upper_um), from_command_line: false }
+    }
+
+    fn verdict_of(walls: &[(i64, i64)]) -> Verdict {
+        verdict(&limits(-10, 20), &correction(walls))
+    }
+
+    #[test]
+    fn even_limits_are_a_tolerance_and_uneven_ones_are_limits() {
+        let judged = |limits| {
+            let mut page = Page::new(crate::report::page::Kind::Correct, "part");
+            judge(&mut page, limits, &correction(&[(0, 0)]));
+            (page.tolerance_mm, page.limits.map(|l| (l.lower_mm, l.upper_mm)), page.verdict.is_some())
         };
-        verdict(&Tolerance { lower: um(-10), upper: um(20), from_command_line: false }, &correction)
+        assert_eq!(judged(Some(limits(-20, 20))), (Some(0.02), None, true));
+        assert_eq!(judged(Some(limits(0, 20))), (None, Some((0.0, 0.02)), true));
+        assert_eq!(judged(None), (None, None, false));
     }
 
     #[test]

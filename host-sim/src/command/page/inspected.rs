@@ -44,6 +44,7 @@ pub(in crate::command) fn inspected(
         },
         text: summary.verdict.text.clone(),
     });
+    page.limits = Limits::of(summary);
     page.inspected = Some(Inspected {
         part: summary.part.clone(),
         files: vec![
@@ -51,7 +52,6 @@ pub(in crate::command) fn inspected(
             InputFile::new("probe file", &measurement.file, &summary.probe_crc32),
             InputFile::new("job", pass.job.source().name(), &summary.job_crc32),
         ],
-        limits: Limits::of(summary),
         statements: summary.statements.clone(),
         coverage: summary.coverage.clone(),
     });

@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use super::{Contour, Heights, Inspected, JobFacts, Outlines, Point};
+use super::{Contour, Heights, Inspected, JobFacts, Limits, Outlines, Point};
 
 /// Which command made the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -60,6 +60,9 @@ pub struct Page {
     /// Half width of the tolerance band.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance_mm: Option<f64>,
+    /// Limits of the wall error, where they lie unevenly about zero or come with an uncertainty.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limits: Option<Limits>,
     /// Verdict on the part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
@@ -88,6 +91,7 @@ impl Page {
             parameters: Vec::new(),
             results: Vec::new(),
             tolerance_mm: None,
+            limits: None,
             verdict: None,
             inspected: None,
             warnings: Vec::new(),

@@ -1,4 +1,4 @@
-//! What a page of `inspect` has beside points and figures: the part, the files, the limits, what the verdict rests on.
+//! What a page of `inspect` has beside points and figures: the part, the files, what the verdict rests on; and limits.
 
 use serde::Serialize;
 
@@ -12,9 +12,6 @@ pub struct Inspected {
     pub part: PartSummary,
     /// What the report rests on.
     pub files: Vec<InputFile>,
-    /// Limits of the wall error.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub limits: Option<Limits>,
     /// Decision rule and what the verdict does not cover.
     pub statements: Vec<String>,
     /// Which stretches no point speaks for.
