@@ -57,7 +57,8 @@ fn an_outside_corner_cut_with_two_lines_is_corrected_up_to_its_edge() {
     let legs = |m: &Milled| worst(m, 8.0, 43.0).max(worst(m, 58.0, 92.0));
     assert!(legs(&told.first) > 0.08 && legs(&told.second) < 0.01, "{} -> {}", legs(&told.first), legs(&told.second));
     assert!(told.corrected.summary.max_correction_mm < 0.3, "{}", told.corrected.summary.max_correction_mm);
-    let table = String::from_utf8(told.corrected.table).unwrap();
+    let [table, _] = told.corrected.tables;
+    let table = String::from_utf8(table).unwrap();
     assert!(table.lines().any(|line| line.ends_with(",,,")), "places without a wall are empty in the table");
 }
 

@@ -105,7 +105,7 @@ pub fn first(case: &Case, outcome: &mut Outcome) -> Result<Carried, Failure> {
     outcome.gouge_mm = some(score.gouge_mm);
     outcome.worst_height_mm = some(score.worst_height_mm);
     outcome.axial_form_mm = some(score.axial_form_mm);
-    outcome.coverage = coverage(&after, &corrected.table)?;
+    outcome.coverage = coverage(&after, &corrected.tables[0])?;
     Ok(Carried { probe, measurement, corrected, milled, after })
 }
 
@@ -127,7 +127,7 @@ pub fn second(case: &Case, carried: &Carried, outcome: &mut Outcome) -> Result<T
     outcome.learned_mm = some(after.score.max_error_mm);
     outcome.learned_factor = some(case.before.score.max_error_mm / after.score.max_error_mm.max(1e-6));
     outcome.learned_gouge_mm = some(after.score.gouge_mm);
-    outcome.learned_coverage = coverage(&after, &learned.corrected.table)?;
+    outcome.learned_coverage = coverage(&after, &learned.corrected.tables[0])?;
     Ok(Taught { probe, learned, after })
 }
 
