@@ -1,7 +1,10 @@
 //! What the bench needs of a board: the configuration link, and setpoints with commands in their order.
 
+use std::sync::Arc;
+
 use super::client::Client;
 use super::error::BenchError;
+use super::watch::Watch;
 use super::wire::Wire;
 
 /// One step of the bench, in the order in which the board gets them.
@@ -45,6 +48,8 @@ pub trait Board {
     /// The first id for a new series of requests, far from those of the series before: a device takes a repeated id
     /// for a repeated request.
     fn first_id(&mut self) -> u16;
+    /// Tells of every answer from now on, if it knows of them one by one, and ends an exchange when that is asked for.
+    fn watched_by(&mut self, _watch: Arc<Watch>) {}
     /// Sends events and collects what comes back, up to what is expected.
     ///
     /// # Errors

@@ -13,7 +13,7 @@ use truepath_core::image::Image;
 use truepath_core::link::{
     Ask, Counters, Denial, DeviceSettings, MAX_SETPOINT_BYTES, PACKET_BYTES, Request, SetpointFrame, encode,
 };
-use truepath_core::rewrite::{Mode, Refusal, Setpoint};
+use truepath_core::rewrite::{Mode, Output, Refusal, Setpoint};
 
 use super::board::{Board, Event};
 use super::difference::Difference;
@@ -22,6 +22,7 @@ use super::expect::Expectation;
 use super::injector::{Delivery, FaultInjector, Faults, Injected};
 use super::judge::{Happened, Judge};
 use super::traffic::{Command, Traffic};
+use super::watch::Sight;
 
 /// Frames of a batch.
 const BATCH: usize = 8192;
@@ -79,6 +80,8 @@ pub struct Campaign<'a> {
     pub(super) host: FnvHasher,
     pub(super) board: FnvHasher,
     pub(super) outcome: Outcome,
+    /// Some of the answers of the batch.
+    pub(super) trail: Vec<Output>,
 }
 
 /// The tick of a device, µs, rounded up: frames at this distance never come faster than its setpoint rate.
@@ -131,12 +134,14 @@ impl<'a> Campaign<'a> {
                 elapsed: Duration::ZERO,
                 difference: None,
             },
+            trail: vec![],
             expectation,
             plan,
         })
     }
 
-    /// Runs the traffic to its end or to the first difference. `progress` is told the frames sent.
+    /// Runs the traffic to its end or to the first difference. `progress` is told after
+    /// every batch.
     ///
     /// # Errors
     /// The connection is lost.
@@ -144,7 +149,7 @@ impl<'a> Campaign<'a> {
         mut self,
         traffic: &mut dyn Traffic,
         board: &mut dyn Board,
-        mut progress: impl FnMut(u64),
+        mut progress: impl FnMut(&Sight<'_>),
     ) -> Result<Outcome, BenchError> {
         self.id = board.first_id();
         loop {
@@ -160,7 +165,17 @@ impl<'a> Campaign<'a> {
                 break;
             }
             self.outcome.round_trips_ns.extend(exchange.round_trips_ns);
-            progress(self.cable.injected().frames);
+            progress(&Sight {
+                injected: self.cable.injected(),
+                counters: self.expectation.endpoint().counters(),
+                answers: self.outcome.answers,
+                modes: self.judge.modes(),
+                armed: self.outcome.armed,
+                largest_nm: self.judge.largest_nm(),
+                elapsed: self.outcome.elapsed,
+                trail: &self.trail,
+            });
+            self.trail.clear();
         }
         let mut outcome = self.outcome;
         outcome.injected = *self.cable.injected();

@@ -9,6 +9,7 @@ use super::board::{Event, Exchange};
 use super::campaign::{Batch, Campaign};
 use super::difference::Difference;
 use super::judge::Happened;
+use super::watch::TRAIL_EVERY;
 
 impl<'a> Campaign<'a> {
     /// Compares what came back with what had to; judges every answer.
@@ -26,6 +27,9 @@ impl<'a> Campaign<'a> {
                 return Err(self.differs(batch, index, &want, &got, found.get(index)));
             };
             self.outcome.answers += 1;
+            if self.outcome.answers.is_multiple_of(TRAIL_EVERY) {
+                self.trail.push(output);
+            }
             if let Err(violation) = self.judge.answer(&output, &mut self.log) {
                 let mut difference = self.differs(batch, index, &want, &got, None);
                 difference.what = violation.to_string();

@@ -9,6 +9,7 @@
 //! | H005 | the device speaks another version |
 //! | H006 | device and host differ |
 //! | H007 | an option does not fit |
+//! | H008 | a run was stopped before its end |
 
 use truepath_core::link::Denial;
 
@@ -45,6 +46,9 @@ pub enum BenchError {
     /// Device and host differ.
     #[error("device and host differ: {0}")]
     Differs(String),
+    /// Somebody ended the run.
+    #[error("the run was stopped {0}")]
+    Stopped(String),
     /// An option that does not fit.
     #[error("{found}")]
     Option {
@@ -71,6 +75,7 @@ impl From<BenchError> for InputError {
             BenchError::Denied(_) => ("H004", "bring the device into the mode in which it takes this request"),
             BenchError::Foreign(_) => ("H005", "use firmware and program of the same version"),
             BenchError::Differs(_) => ("H006", "do not drive axes with this firmware; report it with the command line"),
+            BenchError::Stopped(_) => ("H008", "run it again to its end; a shorter run has a smaller --count"),
             BenchError::Option { help, .. } => ("H007", help.as_str()),
         };
         Self::new(code, error.to_string(), "", help)

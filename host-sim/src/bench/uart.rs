@@ -4,12 +4,14 @@
 //! before them has arrived, so that their place among the setpoints is the same on both sides.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::board::{Board, Event, Exchange, IDS};
 use super::client::Client;
 use super::emulator::Emulator;
 use super::error::BenchError;
+use super::watch::Watch;
 use super::wire::{Line, Wire};
 
 /// How long an answer is waited for before it is taken for missing.
@@ -26,6 +28,7 @@ pub struct UartBoard {
     /// Whether events keep to their time.
     paced: bool,
     first_id: u16,
+    watch: Option<Arc<Watch>>,
 }
 
 impl UartBoard {
@@ -40,7 +43,7 @@ impl UartBoard {
         // Not the ids of the client before: its last answer is still remembered over there.
         let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
         let first_id = now.as_millis() as u16;
-        Self { _behind: behind, name, setpoints, configuration, window: window.max(1), paced, first_id }
+        Self { _behind: behind, name, setpoints, configuration, window: window.max(1), paced, first_id, watch: None }
     }
 }
 
@@ -71,7 +74,9 @@ impl Running<'_> {
                     for _ in arrival.bytes.iter().filter(|&&b| b == 0) {
                         if let Some(sent) = self.outstanding.pop_front() {
                             let ns = arrival.at.saturating_duration_since(sent).as_nanos();
-                            self.exchange.round_trips_ns.push(ns.try_into().unwrap_or(u64::MAX));
+                            let ns = ns.try_into().unwrap_or(u64::MAX);
+                            self.exchange.round_trips_ns.push(ns);
+                            self.board.watch.iter().for_each(|watch| watch.answer(ns));
                         }
                     }
                     self.exchange.answers.extend_from_slice(&arrival.bytes);
@@ -120,12 +125,19 @@ impl Board for UartBoard {
         self.first_id
     }
 
+    fn watched_by(&mut self, watch: Arc<Watch>) {
+        self.watch = Some(watch);
+    }
+
     fn exchange(&mut self, events: &[Event]) -> Result<Exchange, BenchError> {
         let (window, paced) = (self.window as usize, self.paced);
         let mut running =
             Running { board: self, exchange: Exchange::default(), outstanding: VecDeque::new(), missing: false };
         let mut due = Instant::now();
         for event in events {
+            if running.board.watch.as_ref().is_some_and(|watch| watch.is_leaving()) {
+                return Err(BenchError::Stopped("within a batch".to_owned()));
+            }
             match event {
                 Event::Time(us) => {
                     let step = Duration::from_micros((*us).into());

@@ -4,6 +4,7 @@ mod arguments;
 mod monitor;
 
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Duration;
 
 use serde::Serialize;
@@ -13,6 +14,7 @@ use truepath_core::rewrite::Reason;
 pub(super) use arguments::Arguments;
 use arguments::Task;
 
+use super::monitor::{Known, Looked, device as view, wanted};
 use super::{Terminal, image, print};
 use crate::bench::{BenchError, Client, Ingredients, Line, compute};
 use crate::command::device::{activate, changed, info, named, recording, recording_setpoints, recording_table, upload};
@@ -23,7 +25,7 @@ use crate::output::write_file;
 use crate::report::json;
 
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
-    let mut client = connect(arguments)?;
+    let mut client = connect(arguments.port.as_deref(), arguments.baud)?;
     match &arguments.task {
         Task::List => {
             let slots = client.slots()?;
@@ -67,9 +69,16 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         }
         Task::Deactivate => done(&mut client, Ask::Deactivate, terminal, "no image is active"),
         Task::Disarm => done(&mut client, Ask::Disarm, terminal, "disarmed"),
-        Task::Monitor { seconds, every_ms } => {
-            let end = seconds.map(Duration::from_secs);
-            monitor::run(&mut client, end, Duration::from_millis(*every_ms), terminal)
+        Task::Monitor { plain, image, seconds, every_ms } => {
+            let (end, every) = (seconds.map(Duration::from_secs), Duration::from_millis(*every_ms));
+            let known = image.as_deref().map(known).transpose()?;
+            if !wanted(*plain, terminal) {
+                return monitor::run(&mut client, end, every, terminal);
+            }
+            let (port, baud) = (arguments.port.clone().unwrap_or_default(), arguments.baud);
+            let name = port.clone();
+            let looked = Looked { port, reopen: move || connect(Some(&name), baud), every, end, known };
+            view(client, looked)
         }
         Task::Record { output, setpoints, release, force } => {
             let axes = client.settings()?.axes;
@@ -131,14 +140,20 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     }
 }
 
-fn connect(arguments: &Arguments) -> Result<Client<Line>, BenchError> {
-    let Some(name) = arguments.port.as_deref() else {
+/// What the view marks of an image.
+fn known(path: &Path) -> Result<Known, Failure> {
+    let bytes = image::read(path)?;
+    Ok(Known::of(&image::check(&bytes, path)?))
+}
+
+fn connect(port: Option<&str>, baud: u32) -> Result<Client<Line>, BenchError> {
+    let Some(name) = port else {
         return Err(BenchError::Option {
             found: "no port is named".to_owned(),
             help: "add --port with a serial port, a Unix socket or tcp:HOST:PORT".to_owned(),
         });
     };
-    let line = Line::open(name, arguments.baud).map_err(|e| BenchError::open(name, &e))?;
+    let line = Line::open(name, baud).map_err(|e| BenchError::open(name, &e))?;
     // Not the id of the request before this one, which the device remembers.
     let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
     Ok(Client::new(line, now.as_millis() as u16))

@@ -1,13 +1,19 @@
 //! `truepath hil`: a board under setpoints and faults, compared with the host answer by answer.
 
+mod onlooker;
+
 use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use onlooker::Onlooker;
+
 use super::{Terminal, image, print};
 use crate::bench::{BenchError, Faults, Probability, RoundTrip};
-use crate::command::hil::{Kind, Options, Report, STREAM_HZ, Source, on_board, open, recorded, run as hil, settings};
+use crate::command::hil::{
+    Kind, Options, Report, STREAM_HZ, Source, on_board, open, recorded, run_watched as hil, settings,
+};
 use crate::diagnostics::{Failure, InputError};
 use crate::report::json;
 
@@ -50,6 +56,9 @@ pub(super) struct Arguments {
     /// Seed of controller and faults: the same seed gives the same run.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
+    /// No live view on a terminal.
+    #[arg(long)]
+    plain: bool,
     #[command(flatten)]
     faults: FaultArguments,
     #[command(flatten)]
@@ -126,21 +135,27 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     // Setpoints at a rate of their own keep to it; the others go out as fast as the answers come.
     let paced = arguments.rate.is_some() || arguments.setpoints.is_some();
     let mut board = open(&kind(arguments)?, arguments.window, paced)?;
+    let mut onlooker = Onlooker::new(arguments.plain, terminal, board.describe(), options.count);
     let made = match (&arguments.job, &arguments.probe) {
         (Some(job), Some(probe)) => {
             let settings = settings(&options, board.is_stepped())?;
-            Some(on_board(&mut *board, &settings, job, probe, &mut |_| ())?)
+            Some(on_board(&mut *board, &settings, job, probe, &mut |stage| onlooker.stage(stage))?)
         }
         _ => None,
     };
     let bytes = given.or_else(|| made.as_ref().map(|m| m.image.clone())).unwrap_or_default();
-    let mut bar = terminal.progress("setpoints", 1000);
-    let mut report = hil(&mut *board, &bytes, &options, &mut |share| bar.reached((share * 1000.0) as u64))?;
-    drop(bar);
+    let watch = onlooker.watch();
+    let mut report = hil(&mut *board, &bytes, &options, &watch, &mut |sight| onlooker.batch(sight))?;
+    // What is printed stays on the screen.
+    drop(onlooker);
     report.on_board = made;
     print(&if terminal.json() { json(&report)? } else { words(&report).into_bytes() })?;
     match report.difference {
         Some(difference) => Err(BenchError::Differs(difference).into()),
+        None if watch.is_stopping() => {
+            let text = format!("after {} of {} setpoints", report.setpoints, options.count);
+            Err(BenchError::Stopped(text).into())
+        }
         None => Ok(()),
     }
 }

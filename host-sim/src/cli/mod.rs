@@ -14,6 +14,7 @@ mod hil;
 mod image;
 mod inspect;
 mod learn;
+mod monitor;
 mod multiaxis;
 mod plot;
 mod pocket;

@@ -40,8 +40,14 @@ pub(in crate::cli) enum Task {
     Deactivate,
     /// Ends an arming; an active correction ramps out. (Arming belongs to the controller, which knows part and frame.)
     Disarm,
-    /// State, place and correction, live.
+    /// State, place and correction, live: a view on a terminal, otherwise lines.
     Monitor {
+        /// Print lines on a terminal too.
+        #[arg(long)]
+        plain: bool,
+        /// The image that should be active: its clamp is marked in the view.
+        #[arg(long, value_name = "FILE")]
+        image: Option<PathBuf>,
         /// Stop after so long; otherwise until interrupted.
         #[arg(long, value_name = "SECONDS")]
         seconds: Option<u64>,

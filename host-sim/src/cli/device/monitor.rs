@@ -1,6 +1,6 @@
-//! The live table: one line a look; on a terminal the table stays in place.
+//! The live table as lines: one a look. (The view on a terminal is `cli/monitor`.)
 
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::time::{Duration, Instant};
 
 use truepath_core::link::{Ask, DeviceStatus, Reply, TraceSample};
@@ -18,9 +18,7 @@ pub(super) fn run<W: Wire>(
     terminal: &Terminal,
 ) -> Result<(), Failure> {
     let start = Instant::now();
-    let in_place = !terminal.json() && std::io::stdout().is_terminal();
-    let mut shown = false;
-    if !terminal.json() && !in_place {
+    if !terminal.json() {
         print(HEAD.as_bytes())?;
     }
     while end.is_none_or(|end| start.elapsed() < end) {
@@ -31,14 +29,9 @@ pub(super) fn run<W: Wire>(
         let text = if terminal.json() {
             let value = serde_json::json!({ "t_s": time, "status": status, "sample": sample, "dropped": dropped });
             format!("{value}\n")
-        } else if in_place {
-            // Up over the table of the look before, and each line cleared to its end.
-            let up = if shown { "\x1b[2A" } else { "" };
-            format!("{up}\x1b[K{HEAD}\x1b[K{}", line(time, &status, sample.as_ref()))
         } else {
             line(time, &status, sample.as_ref())
         };
-        shown = true;
         let mut out = std::io::stdout().lock();
         match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
             Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => return Ok(()),

@@ -5,13 +5,14 @@ mod place;
 mod report;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use truepath_core::image::Image;
 use truepath_core::link::{Ask, DeviceSettings};
-use truepath_core::rewrite::ArmRequest;
+use truepath_core::rewrite::{ArmRequest, Mode};
 
-use crate::bench::traffic::{Controller, Manner, Recorded};
-use crate::bench::{Board, Campaign, Faults, Plan, Probability, Traffic, identify, prepare, to_off};
+use crate::bench::traffic::{Command, Controller, Manner, Recorded};
+use crate::bench::{Board, Campaign, Faults, Plan, Probability, Sight, Traffic, Watch, identify, prepare, to_off};
 use crate::diagnostics::{Failure, InputError};
 use crate::replay;
 use crate::setpoints::{Frame, Setpoints};
@@ -49,7 +50,7 @@ pub struct Options {
     pub seed: u64,
 }
 
-/// Runs setpoints through a board. `progress` is told the share done, 0…1.
+/// Runs setpoints through a board. `progress` is told after every batch.
 ///
 /// # Errors
 /// The board cannot be reached, is of another version, or refuses; the options do not go together. A difference is no
@@ -58,7 +59,21 @@ pub fn run(
     board: &mut dyn Board,
     bytes: &[u8],
     options: &Options,
-    progress: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(&Sight<'_>),
+) -> Result<Report, Failure> {
+    run_watched(board, bytes, options, &Arc::default(), progress)
+}
+
+/// The same with somebody who looks on and may end it: a run that was stopped has the report of what was done.
+///
+/// # Errors
+/// As [`run`]; `H008` when it was left within a batch.
+pub fn run_watched(
+    board: &mut dyn Board,
+    bytes: &[u8],
+    options: &Options,
+    watch: &Arc<Watch>,
+    progress: &mut dyn FnMut(&Sight<'_>),
 ) -> Result<Report, Failure> {
     let image = Image::new_checked(bytes).map_err(|e| Failure::Internal(format!("an image that was checked: {e}")))?;
     let device = identify(board)?;
@@ -66,8 +81,9 @@ pub fn run(
     let before = prepare(board, bytes, &settings, |_| ())?;
     let plan = Plan { settings, faults: options.faults, seed: options.seed };
     let campaign = Campaign::new(plan, image, board.is_stepped())?;
-    let mut traffic = traffic(image, options);
-    let outcome = campaign.run(&mut *traffic, board, |sent| progress(sent as f64 / options.count.max(1) as f64))?;
+    let mut traffic = Stoppable { traffic: traffic(image, options), watch };
+    board.watched_by(Arc::clone(watch));
+    let outcome = campaign.run(&mut traffic, board, progress)?;
     let counters = board.client().status()?.counters;
     let report = report(board, device, &outcome, &counters);
     if !board.is_stepped() {
@@ -76,6 +92,18 @@ pub fn run(
         board.client().done(Ask::Configure(before))?;
     }
     Ok(report)
+}
+
+/// Traffic that ends when it is asked to.
+struct Stoppable<'a> {
+    traffic: Box<dyn Traffic>,
+    watch: &'a Watch,
+}
+
+impl Traffic for Stoppable<'_> {
+    fn next(&mut self, mode: Mode) -> Option<Command> {
+        if self.watch.is_stopping() { None } else { self.traffic.next(mode) }
+    }
 }
 
 /// Settings for a run. Over streams the clock of the device is not ours: deadline and silence are then as long as they
