@@ -126,8 +126,8 @@ mod tests {
 
     #[test]
     fn a_column_far_from_zero_keeps_its_decimals() {
-        let column = Column::of([8000.000_001, f64::NAN, 8000.5], 6);
-        assert_eq!((column.decimals(), column.values()), (6, vec![Some(8000.000_001), None, Some(8000.5)]));
+        let column = Column::of([8_000.000_001, f64::NAN, 8000.5], 6);
+        assert_eq!((column.decimals(), column.values()), (6, vec![Some(8_000.000_001), None, Some(8000.5)]));
     }
 
     #[test]
