@@ -55,7 +55,7 @@ mod tests {
             assert!((width(letter, 2048.0) - units).abs() < 1.0, "{letter}: {}", width(letter, 2048.0));
         }
         assert!((width("00", 2048.0) - 2278.0).abs() < 1.0);
-        assert_eq!(missing("before → after ±2σ, µm, 30°, mm², N·m, −0.1 × 100 ≤ 5, Деталь Ø20"), []);
+        assert_eq!(missing("before → after ±2σ, µm, 30°, mm², N·m, −0.1 × 100 ≤ 5, Деталь Ø20"), Vec::<char>::new());
         assert_eq!(missing("壁a壁"), ['壁']);
     }
 }
