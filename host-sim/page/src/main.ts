@@ -123,7 +123,7 @@ function show(report: Report, main: HTMLElement): void {
 
   const traceHeight = () => {
     const room = work.clientWidth > 900 ? (picture.clientHeight - 47) / Math.max(1, traces?.count || expected(model)) - 20 : 84;
-    return Math.max(52, Math.min(150, Math.floor(room)));
+    return Math.max(52, Math.min(window.innerHeight > 1300 ? 240 : 150, Math.floor(room)));
   };
   let written = 0;
   tracesBox.addEventListener("keydown", (event) => {

@@ -2,6 +2,8 @@
 import "./speed.test.mjs";
 import "./values.test.mjs";
 import "./scene.test.mjs";
+import "./cutter.test.mjs";
 import "./page.test.mjs";
 import "./partial.test.mjs";
+import "./odd.test.mjs";
 import "./picture.test.mjs";

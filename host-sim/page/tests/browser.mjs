@@ -78,10 +78,9 @@ export async function show(page, file) {
   await page.waitForFunction(() => document.documentElement.dataset.firstPicture !== undefined);
 }
 
-/** Where a point of the part lies on the page, from what the scene says of its view. */
-export async function onPage(page, x, y, scene = 0) {
-  const stage = page.locator(".stage:visible").nth(scene);
-  const box = await stage.boundingBox();
-  const [cx, cy, scale] = (await stage.getAttribute("data-view")).split(" ").map(Number);
+/** Where a point of the part lies on the page, from what the first visible scene says of its view. */
+export async function onPage(page, x, y) {
+  const [box, view] = await page.locator(".stage:visible").first().evaluate((stage) => [stage.getBoundingClientRect().toJSON(), stage.dataset.view]);
+  const [cx, cy, scale] = view.split(" ").map(Number);
   return { x: box.x + box.width / 2 + (x - cx) * scale, y: box.y + box.height / 2 - (y - cy) * scale };
 }

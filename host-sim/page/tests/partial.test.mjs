@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { column } from "./columns.mjs";
-import { dataOf, open, write } from "./browser.mjs";
+import { dataOf, open, show, write } from "./browser.mjs";
 
 async function opened(name, data) {
   const report = await open(await write(name, data));
@@ -25,13 +25,16 @@ test("points alone, a wall as an outline alone, and nothing but a title are show
 
 test("every column of a pass may be missing", async () => {
   const data = await dataOf("demo/corner");
+  const { page, complaints, requests, close } = await opened("missing", data);
   for (const name of Object.keys(data.contour.before).filter((key) => key !== "label")) {
     const contour = structuredClone(data.contour);
     delete contour.before[name];
     delete contour.after[name];
-    const { close } = await opened("missing", { ...data, contour });
-    await close();
+    await show(page, await write("missing", { ...data, contour }));
+    assert.equal(await page.locator("[role=alert]").count(), 0, name);
   }
+  assert.deepEqual([complaints, requests], [[], []]);
+  await close();
 });
 
 test("missing values leave gaps", async () => {
