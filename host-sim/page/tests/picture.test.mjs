@@ -24,7 +24,7 @@ const SIZE = { viewport: { width: 1440, height: 900 } };
 const VIEWS = [
   ["demo/corner", "light", SIZE, "before", 480, true], ["demo/corner", "side-by-side", SIZE, "both", 430],
   ["demo/pocket", "light", SIZE, "before", 560], ["demo/pocket", "both", SIZE, "both", 560, true], ["demo/pocket", "dark", { ...SIZE, colorScheme: "dark" }, "both", 560],
-  ["demo/pocket", "phone", PHONE, "after", 560], ["island", "light", SIZE, null, 1500],
+  ["demo/pocket", "phone", PHONE, "after", 560], ["island", "light", SIZE, null, 1500], ["inspect", "light", SIZE, null, null],
 ];
 
 /** A blank page that reads and makes pictures. */
