@@ -60,16 +60,32 @@ export async function write(name, content) {
   return file;
 }
 
+/** Tabs by the options they were made with: making one costs more than a test. */
+const tabs = new Map();
+
+async function tab(options) {
+  const key = JSON.stringify(options);
+  if (!tabs.has(key)) {
+    const context = await (await browser()).newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "light", reducedMotion: "no-preference", ...options });
+    const page = await context.newPage();
+    const heard = { complaints: [], requests: [] };
+    page.on("console", (message) => { if (["error", "warning"].includes(message.type())) heard.complaints.push(message.text()); });
+    page.on("pageerror", (error) => heard.complaints.push(String(error)));
+    page.on("request", (request) => { if (!/^(file|data|blob|about):/.test(request.url())) heard.requests.push(request.url()); });
+    tabs.set(key, { context, page, heard });
+  }
+  return tabs.get(key);
+}
+
+/** Opens a page in a tab of its own for these options, which is left empty when it is closed. */
 export async function open(file, options = {}) {
-  const context = await (await browser()).newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "light", reducedMotion: "no-preference", ...options });
-  const page = await context.newPage();
-  const complaints = [];
-  const requests = [];
-  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) complaints.push(message.text()); });
-  page.on("pageerror", (error) => complaints.push(String(error)));
-  page.on("request", (request) => { if (!/^(file|data|blob):/.test(request.url())) requests.push(request.url()); });
+  const { context, page, heard } = await tab(options);
+  heard.complaints = [];
+  heard.requests = [];
+  await page.goto("about:blank");
+  await page.mouse.move(0, 0);
   if (file !== "about:blank") await show(page, file);
-  return { context, page, complaints, requests, close: () => context.close() };
+  return { context, page, complaints: heard.complaints, requests: heard.requests, close: () => page.goto("about:blank") };
 }
 
 /** Opens a page from disk and waits for its picture. */
