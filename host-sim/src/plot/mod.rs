@@ -1,7 +1,7 @@
 //! Pictures (SVG, PNG): the traces of a pass, a correction, the wall to scale, laws of correction compared.
 //!
 //! The commands draw what they have in memory, `truepath plot` what they wrote: the same rows go into the same functions.
-//! Series are thinned without losing a peak ([`thin`]), so a picture stays below a megabyte whatever the length of the
+//! Series are thinned without losing a peak (M4), so a picture stays below a megabyte whatever the length of the
 //! contour.
 
 mod axis;
