@@ -111,7 +111,7 @@ function show(report: Report, main: HTMLElement): void {
   const below = el("div", { class: "below" }, readout?.element, chart?.element, statements(report),
     report.parameters?.length ? parameters(report.parameters) : null, job(report),
     report.points?.length ? points(report, (index) => {
-      if (before && store.state.shown === "after") store.set({ shown: "before" });
+      if (before && after && store.state.shown !== "both") store.set({ shown: stage.touched });
       stage.showPoint(index);
       picture.scrollIntoView({ block: "nearest" });
     }) : null);

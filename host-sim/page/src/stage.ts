@@ -32,6 +32,8 @@ export class Stage {
   private hovered: number | null = null;
   private picked: number | null = null;
   readonly whole: Box;
+  /** The pass that the probe points stand beside: a part that was learned from had been cut with a correction. */
+  readonly touched: PassName;
 
   constructor(private readonly report: Report, readonly model: Model | null, private readonly store: Store, private colours: Palette,
     private readonly hoverChanged: (index: number | null) => void) {
@@ -43,6 +45,7 @@ export class Stage {
     if (model) this.outlines = { wall: [], stock: given.stock };
     this.limits = limitsOf(report);
     this.points = report.points ?? [];
+    this.touched = report.kind === "learn" && model?.passes.after ? "after" : "before";
     // A reading set aside may lie anywhere: where there is something else to see, the view does not reach out for it.
     const known = this.points.filter((p) => p.error_mm !== undefined);
     const framed = model || given.wall.length > 0 || known.length > 0 ? known : this.points;
@@ -160,7 +163,7 @@ export class Stage {
     return {
       model: this.model, pass: this.model?.passes[name] ?? null, error: this.model?.error(name, height),
       wall: this.wall, stock: this.stock, outlines: this.outlines,
-      points: name === "before" || this.scenes.length === 1 ? this.points : [],
+      points: name === this.touched || this.scenes.length === 1 ? this.points : [],
       magnify, limits: this.limits, hidden, picked: this.picked,
     };
   }
@@ -207,7 +210,7 @@ export class Stage {
 
   private pointAt(px: number, py: number, scene: Scene): number | null {
     const name = this.scenes.find((s) => s.scene === scene)?.name;
-    if (this.scenes.length > 1 && name !== "before" || this.store.state.hidden.has("points")) return null;
+    if (this.scenes.length > 1 && name !== this.touched || this.store.state.hidden.has("points")) return null;
     const { magnify } = this.store.state;
     let best: number | null = null;
     let least = 9;
