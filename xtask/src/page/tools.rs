@@ -88,7 +88,16 @@ fn node() -> Option<(PathBuf, bool)> {
     let own = packaged().join("bin/node");
     if !new_enough(&own) && may_install() {
         let folder = target().join("page/node");
-        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--upgrade", "--target"];
+        let pip = [
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--disable-pip-version-check",
+            "--root-user-action=ignore",
+            "--upgrade",
+            "--target",
+        ];
         run(program("python3").args(pip).arg(folder).arg(NODE_PACKAGE)).ok()?;
     }
     new_enough(&own).then_some((own, true))
@@ -124,10 +133,10 @@ fn major(version: &str) -> Option<u32> {
 
 fn remedy(lacks: &[String]) -> String {
     format!(
-        "the report page is built and tested with tools that are missing: {}. Building the program needs neither of \
-         them. Install\n  Node.js {OLDEST_NODE} or newer with npm: from nodejs.org, or apt-get install nodejs npm (Debian 13 \
-         or newer), or with python3 and pip: CI=true cargo xtask page (into the target directory)\n  Chromium: apt-get \
-         install {}; another one is named by CHROMIUM=/path",
+        "missing: {}\nThe page is built and tested with them; building the program needs neither. Install\n  Node.js \
+         {OLDEST_NODE} or newer with npm: from nodejs.org; or apt-get install nodejs npm (Debian 13 or newer); or, with python3 \
+         and pip, into the target directory: CI=true cargo xtask page\n  Chromium: apt-get install {}; another one is \
+         named by CHROMIUM=/path",
         lacks.join("; "),
         BROWSER_PACKAGES.join(" ")
     )
@@ -147,6 +156,6 @@ mod tests {
     #[test]
     fn what_is_missing_is_told_with_the_ways_to_get_it() {
         let text = remedy(&["Chromium".to_owned()]);
-        assert!(text.contains("missing: Chromium.") && text.contains("apt-get install chromium"));
+        assert!(text.starts_with("missing: Chromium\n") && text.contains("apt-get install chromium"));
     }
 }
