@@ -203,6 +203,9 @@ function band(c: Context, view: View, indices: Uint32Array, model: Model, wall: 
 /** Points over each other: what fails lies above what is undecided, that above what passes; so do larger deviations. */
 const RANK = { aside: 0, plain: 1, within: 1, open: 2, left: 3, gouge: 3 };
 
+/** More points than this are a crowd. */
+const CROWD = 60;
+
 function points(c: Context, view: View, picture: Picture, colours: Palette): void {
   const seen = picture.points.flatMap((point, index) => {
     const { nx = 0, ny = 0, error_mm: error = 0 } = point;
@@ -218,7 +221,8 @@ function points(c: Context, view: View, picture: Picture, colours: Palette): voi
   const outward = 14;
   for (const { index, nx, ny, where, wall, x, y } of seen) {
     c.strokeStyle = where === "aside" ? colours.quiet : colours.ink;
-    c.lineWidth = 1;
+    // A scan has its normals side by side: thin ones, so that the wall stays to be seen.
+    c.lineWidth = seen.length > CROWD ? 0.3 : 1;
     c.beginPath();
     c.moveTo(wall.x + nx * outward, wall.y - ny * outward);
     c.lineTo(x, y);

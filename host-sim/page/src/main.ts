@@ -108,7 +108,7 @@ function show(report: Report, main: HTMLElement): void {
     legend(store, layersOf(report, model)), player && model ? transport(model, store, player) : null);
   const work = el("div", { class: traces ? "work" : "work alone" }, picture, traces ? tracesBox : null);
   const chart = Chart.of(report);
-  const below = el("div", { class: "below" }, readout?.element, chart?.element, statements(report),
+  const below = el("div", { class: "below" }, readout?.element, statements(report), chart?.element,
     report.parameters?.length ? parameters(report.parameters) : null, job(report),
     report.points?.length ? points(report, (index) => {
       if (before && after && store.state.shown !== "both") store.set({ shown: stage.touched });

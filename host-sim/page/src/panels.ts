@@ -93,7 +93,7 @@ export function points(report: Report, show: (index: number) => void): HTMLEleme
     return [button, fixed(p.s_mm, 3), fixed(p.x_mm, 4), fixed(p.y_mm, 4), fixed(p.z_mm, 2), fixed(p.nx, 3), fixed(p.ny, 3),
       signed(p.error_mm, 4), ...(limits ? [word] : []), statusOf(p)];
   });
-  const column = limits ? [judged ? `verdict, ${limitsText(limits)}` : `in ${limitsText(limits)}`] : [];
+  const column = limits ? [judged ? "verdict" : `in ${limitsText(limits)}`] : [];
   return card("points", `Probe points: ${list.length}, used ${used}, set aside ${list.length - used}`,
     table("Probe points", ["line", "s mm", "X mm", "Y mm", "height mm", "normal x", "normal y", "deviation mm", ...column, "status"],
       rows, limits ? [0, 8, 9] : [0, 8]));
