@@ -5,5 +5,6 @@ import "./scene.test.mjs";
 import "./cutter.test.mjs";
 import "./page.test.mjs";
 import "./partial.test.mjs";
+import "./inspection.test.mjs";
 import "./odd.test.mjs";
 import "./picture.test.mjs";
