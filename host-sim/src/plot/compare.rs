@@ -7,6 +7,9 @@ use super::style::{AFTER, ALONG_Y, BEFORE, DARK, IN_ORDER};
 use super::view::View;
 use crate::diagnostics::Failure;
 
+/// Spread over the height from which it is drawn, mm.
+const HEIGHT_TOLD: f64 = 0.001;
+
 /// The wall one law leaves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LawWall {
@@ -68,7 +71,9 @@ pub fn compare(view: &View, compared: &Compared) -> Result<Vec<u8>, Failure> {
     let all: Vec<Curve> = each().map(|(at, law)| law.curve(at, compared.trim_mm)).collect();
     let near = each().filter(|(_, law)| worst(law) <= limit);
     let mut near = Panel::new("wall error (mm)", near.map(|(at, law)| law.curve(at, compared.trim_mm)).collect());
-    near.band = compared.laws.last().map(|law| Band {
+    // A cutter without helix leaves the same at every height: nothing to show.
+    let spread = |p: &[f64; 4]| p[3] - p[2] > HEIGHT_TOLD;
+    near.band = compared.laws.last().filter(|law| law.judged(compared.trim_mm).any(|p| spread(&p))).map(|law| Band {
         name: format!("{}: over the height", law.title),
         edges: law.judged(compared.trim_mm).map(|p| (p[0], p[2], p[3])).collect(),
         colour: law.colour(compared.laws.len() - 1),
