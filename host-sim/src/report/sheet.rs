@@ -125,10 +125,8 @@ impl Line<'_> {
     /// # Errors
     /// `Z007`.
     pub(crate) fn known(&self, column: usize) -> Result<f64, InputError> {
-        match self.text(column) {
-            "" | "NaN" => Ok(f64::NAN),
-            _ => self.number(column),
-        }
+        let text = self.text(column);
+        if text.is_empty() || text.eq_ignore_ascii_case("nan") { Ok(f64::NAN) } else { self.number(column) }
     }
 
     /// The arc length in a column, which does not fall below the one before.
