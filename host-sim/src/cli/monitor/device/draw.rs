@@ -75,12 +75,10 @@ fn state(frame: &mut Frame<'_>, area: Rect, model: &ViewModel, now: Duration, th
         (None, None) => ("...", Tone::Plain),
     };
     let spaced: String = word.chars().flat_map(|letter| [letter, ' ']).collect();
-    let above = vec![Line::from(""); usize::from(area.height.saturating_sub(2) / 2)];
-    let mut lines = above;
-    lines.push(Line::from(spaced.trim_end().to_owned()));
-    if let Some(since) = lost {
-        lines.push(Line::from(format!("for {}", time(since))));
-    }
+    let mut said = vec![Line::from(spaced.trim_end().to_owned())];
+    said.extend(lost.map(|since| Line::from(format!("for {}", time(since)))));
+    let mut lines = vec![Line::from(""); usize::from(area.height).saturating_sub(said.len()) / 2];
+    lines.append(&mut said);
     let block = Paragraph::new(lines).alignment(Alignment::Center).style(theme.block(tone));
     frame.render_widget(block, left);
     frame.render_widget(Paragraph::new(meaning(model, now, theme)).wrap(Wrap { trim: true }), right);
@@ -104,7 +102,8 @@ fn meaning(model: &ViewModel, now: Duration, theme: Theme) -> Vec<Line<'static>>
     let Some(words) = words else { return vec![Line::from("Asking the device ...")] };
     let mut lines = vec![Line::styled(words.shown.goes_out(), theme.heading())];
     lines.extend(words.why.map(|why| Line::styled(why, theme.text(words.tone))));
-    lines.push(Line::from(format!("→ {}", words.advice)));
+    let urgent = if words.tone == Tone::Wrong { theme.heading() } else { theme.text(Tone::Plain) };
+    lines.push(Line::styled(format!("→ {}", words.advice), urgent));
     lines
 }
 
