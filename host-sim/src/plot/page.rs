@@ -67,11 +67,34 @@ pub(super) fn picture(
     }
     let body = text.find('>').and_then(|end| text.get(end + 1..)).ok_or_else(|| failed("no SVG"))?;
     let name = title.replace('&', "&amp;").replace('<', "&lt;");
+    let (body, name) = (well_formed(body), well_formed(&name));
     let head = format!(
         "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" \
          stroke-linejoin=\"round\" stroke-linecap=\"round\">\n<title>{name}</title>",
         fine(width),
         fine(height)
     );
-    Ok((head + body).into_bytes())
+    Ok((head + &body).into_bytes())
+}
+
+/// Text that XML allows: letters it has no room for become U+FFFD, and `]]>` must not stand in a text.
+fn well_formed(text: &str) -> String {
+    let allowed = |c: char| matches!(c, '\t' | '\n' | '\r' | ' '..='\u{FFFD}' | '\u{10000}'..);
+    let text: String = text.chars().map(|c| if allowed(c) { c } else { char::REPLACEMENT_CHARACTER }).collect();
+    text.replace("]]>", "]]&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::png;
+
+    #[test]
+    fn a_title_of_any_letters_gives_a_picture_that_is_well_formed() {
+        let svg = picture((300, 200), "\u{1}\u{1b}\u{8}\u{ffff} a ]]> <b> &amp;", |_| Ok(())).expect("drawn");
+        let text = String::from_utf8(svg.clone()).expect("text");
+        assert!(!text.contains("]]>") && !text.contains('\u{ffff}'), "{text}");
+        assert!(text.chars().all(|c| c == '\n' || c >= ' '), "{text}");
+        assert!(png(&svg, 1.0).is_ok());
+    }
 }

@@ -71,7 +71,9 @@ impl View {
         // What is told apart, mm: much less than a step of any table.
         const LEAST: f64 = 1e-4;
         if from.max(start) + LEAST > to.min(end) || !from.is_finite() || !to.is_finite() {
-            let found = format!("the stretch from {} to {} mm holds nothing of the contour", plain(from), plain(to));
+            // Of a number nobody means not every digit.
+            let told = |mm: f64| if mm.abs() < 1e9 { plain(mm) } else { format!("{mm:e}") };
+            let found = format!("the stretch from {} to {} mm holds nothing of the contour", told(from), told(to));
             let expected = format!("a stretch between {} and {} mm", plain(start), plain(end));
             return Err(InputError::new("Z002", found, expected, "correct --from and --to"));
         }
@@ -113,6 +115,8 @@ mod tests {
             let error = view(Some(from), Some(to)).window((0.0, 50.0)).expect_err("refused");
             assert_eq!(error.code(), "Z002", "{from} {to}");
         }
+        let far = view(Some(1e300), None).window((0.0, 50.0)).expect_err("refused");
+        assert!(far.to_string().contains("from 1e300 to 50 mm"), "{far}");
     }
 
     #[test]
