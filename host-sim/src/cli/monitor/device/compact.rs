@@ -32,7 +32,7 @@ fn lines(model: &ViewModel, now: Duration, width: u16, theme: Theme) -> Vec<Line
         let style = theme.text(tone);
         wrapped(text, width).into_iter().map(move |line| Line::styled(line, style))
     };
-    let words = model.words();
+    let words = model.words(now);
     let who = Span::styled(format!(" {}", model.port), theme.faint());
     let mut lines = Vec::new();
     match (model.lost_for(now), &words) {
@@ -46,7 +46,7 @@ fn lines(model: &ViewModel, now: Duration, width: u16, theme: Theme) -> Vec<Line
         (None, Some(words)) => {
             let word = format!("  {}  ", words.shown.word());
             lines.push(Line::from(vec![Span::styled(word, theme.block(words.tone)), who]));
-            let meaning = words.why.clone().unwrap_or_else(|| words.shown.goes_out().to_owned());
+            let meaning = words.why.clone().unwrap_or_else(|| words.goes_out.to_owned());
             lines.extend(in_lines(&meaning, words.tone));
             lines.extend(in_lines(&format!("→ {}", words.advice), Tone::Plain));
         }

@@ -67,7 +67,7 @@ fn head(frame: &mut Frame<'_>, area: Rect, model: &ViewModel, now: Duration, the
 fn state(frame: &mut Frame<'_>, area: Rect, model: &ViewModel, now: Duration, theme: Theme) {
     let [left, _, right] =
         Layout::horizontal([Constraint::Length(BLOCK), Constraint::Length(2), Constraint::Fill(1)]).areas(area);
-    let words = model.words();
+    let words = model.words(now);
     let lost = model.lost_for(now);
     let (word, tone) = match (&words, lost) {
         (_, Some(_)) => (Shown::Lost.word(), Tone::Unknown),
@@ -86,7 +86,7 @@ fn state(frame: &mut Frame<'_>, area: Rect, model: &ViewModel, now: Duration, th
 
 /// What goes to the axes, why, what to do.
 fn meaning(model: &ViewModel, now: Duration, theme: Theme) -> Vec<Line<'static>> {
-    let words = model.words();
+    let words = model.words(now);
     if let Some(since) = model.lost_for(now) {
         let why = model.failure().unwrap_or("no answer").to_owned();
         let before = words.map_or_else(
@@ -100,7 +100,7 @@ fn meaning(model: &ViewModel, now: Duration, theme: Theme) -> Vec<Line<'static>>
         ];
     }
     let Some(words) = words else { return vec![Line::from("Asking the device ...")] };
-    let mut lines = vec![Line::styled(words.shown.goes_out(), theme.heading())];
+    let mut lines = vec![Line::styled(words.goes_out, theme.heading())];
     lines.extend(words.why.map(|why| Line::styled(why, theme.text(words.tone))));
     let urgent = if words.tone == Tone::Wrong { theme.heading() } else { theme.text(Tone::Plain) };
     lines.push(Line::styled(format!("→ {}", words.advice), urgent));

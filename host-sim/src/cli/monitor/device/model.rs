@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use truepath_core::image::{HEADER_BYTES, Image, NODE_BYTES};
 use truepath_core::link::{DeviceStatus, Slot, TraceSample};
-use truepath_core::rewrite::Reason;
+use truepath_core::rewrite::{Reason, Status};
 
 use crate::cli::monitor::counts::Row;
 use crate::cli::monitor::growth::{Count, Growth};
@@ -93,6 +93,8 @@ pub struct ViewModel {
     pub(super) status: Option<DeviceStatus>,
     pub(super) failure: Option<String>,
     pub(super) newest: Option<(Duration, TraceSample)>,
+    /// Flags of all samples of a look, for as long as they are of now: one in a single sample can be read.
+    flagged: std::collections::VecDeque<(Duration, Status)>,
     pub(super) dropped: u64,
     pub(super) round_trip: Duration,
     pub(super) help: bool,
@@ -116,6 +118,7 @@ impl ViewModel {
             status: None,
             failure: None,
             newest: None,
+            flagged: std::collections::VecDeque::new(),
             dropped: 0,
             round_trip: Duration::ZERO,
             help: false,
@@ -142,6 +145,12 @@ impl ViewModel {
                 self.history.take(self.answered_at.unwrap_or(at), at, dropped, &samples);
                 if let Some(newest) = samples.last() {
                     self.newest = Some((at, *newest));
+                }
+                self.flagged
+                    .push_back((at, samples.iter().fold(Status(0), |all, sample| Status(all.0 | sample.status.0))));
+                let old = self.old();
+                while self.flagged.front().is_some_and(|(then, _)| *then + old < at) {
+                    self.flagged.pop_front();
                 }
                 self.dropped += u64::from(dropped);
                 self.growth.take(at, counters(&status));
@@ -185,13 +194,24 @@ impl ViewModel {
         self.failure.as_deref()
     }
     /// The state in words, of the last answer.
-    pub(super) fn words(&self) -> Option<InWords> {
-        self.status.as_ref().map(InWords::of)
+    pub(super) fn words(&self, now: Duration) -> Option<InWords> {
+        let flags = self.flags(now).unwrap_or(Status(0));
+        self.status.as_ref().map(|status| InWords::of(status, flags))
+    }
+    /// The flags of late, if there are samples of now.
+    pub(super) fn flags(&self, now: Duration) -> Option<Status> {
+        self.fresh(now)?;
+        let of_late = self.flagged.iter().filter(|(at, _)| now.saturating_sub(*at) <= self.old());
+        Some(of_late.fold(Status(0), |all, (_, flags)| Status(all.0 | flags.0)))
+    }
+    /// What is older than this is not of now.
+    fn old(&self) -> Duration {
+        FRESH.max(self.every * 2)
     }
     /// The newest sample, if it is of now.
     pub(super) fn fresh(&self, now: Duration) -> Option<&TraceSample> {
         let (at, sample) = self.newest.as_ref()?;
-        let old = now.saturating_sub(*at) > FRESH.max(self.every * 2) || self.lost_for(now).is_some();
+        let old = now.saturating_sub(*at) > self.old() || self.lost_for(now).is_some();
         (!old).then_some(sample)
     }
     /// The samples shown, the time at the right edge, and since when they stand.

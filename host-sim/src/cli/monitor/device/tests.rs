@@ -181,11 +181,11 @@ fn what_the_operator_should_do_is_legible_in_full_on_80_columns() {
     for reason in Reason::ALL {
         for mode in [Mode::Off, Mode::Bypass, Mode::Active, Mode::Fault] {
             let (model, now) = milled(mode, reason, 0, false);
-            let words = model.words().unwrap();
+            let words = model.words(now).unwrap();
             let shown = text(&picture(&model, now, [80, 24], true));
             let right: Vec<&str> = shown.lines().skip(2).take(5).filter_map(|line| line.get(22..)).collect();
             let said = right.join(" ");
-            for wanted in [words.shown.goes_out(), words.advice, words.why.as_deref().unwrap_or_default()] {
+            for wanted in [words.goes_out, words.advice, words.why.as_deref().unwrap_or_default()] {
                 assert!(said.contains(wanted), "{mode} {reason}: \"{wanted}\" is cut:\n{shown}");
             }
         }
@@ -270,4 +270,19 @@ fn place_and_clamp_are_those_of_the_active_image() {
         round_trip: Duration::ZERO,
     });
     assert_eq!((model.nodes(), model.clamp_nm()), (None, None));
+}
+
+#[test]
+fn a_flag_of_a_single_sample_is_shown_for_as_long_as_it_is_of_now() {
+    let (mut model, now) = milled(Mode::Active, Reason::None, 0, true);
+    let mut look = |at, bits: &[u16]| {
+        let samples = bits.iter().map(|bits| TraceSample { status: Status(*bits), ..TraceSample::default() }).collect();
+        let status = Box::new(status(Mode::Active, Reason::None, 720, Counters::default()));
+        model.update(Message::Look { at, status, dropped: 0, samples, round_trip: Duration::ZERO });
+        text(&picture(&model, at, [80, 24], true))
+    };
+    assert!(look(now, &[0, Status::SATURATED.0, 0]).contains("SATURATED"));
+    assert!(look(now + Duration::from_millis(400), &[0]).contains("SATURATED"));
+    let after = look(now + Duration::from_secs(2), &[0]);
+    assert!(after.contains("Flags: none") && after.contains("Nothing to do."), "{after}");
 }

@@ -99,8 +99,8 @@ const FLAGS: [(Status, &str, &str); 5] = [
 
 /// The line of flags: the first with its meaning, if there is room for it.
 pub fn flags(model: &ViewModel, now: Duration, theme: Theme) -> Line<'static> {
-    let Some(sample) = model.fresh(now) else { return Line::styled("Flags: -", theme.faint()) };
-    let set: Vec<_> = FLAGS.into_iter().filter(|(bit, ..)| sample.status.has(*bit)).collect();
+    let Some(flags) = model.flags(now) else { return Line::styled("Flags: -", theme.faint()) };
+    let set: Vec<_> = FLAGS.into_iter().filter(|(bit, ..)| flags.has(*bit)).collect();
     let Some((first, ..)) = set.first() else { return Line::from("Flags: none") };
     let tone = if [Status::SATURATED, Status::JOINT_LIMITED].contains(first) { Tone::Wrong } else { Tone::Passing };
     let texts: Vec<String> = match set.as_slice() {
