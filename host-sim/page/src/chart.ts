@@ -7,7 +7,7 @@
 import type { Report } from "./data";
 import { card, el } from "./dom";
 import { fixed, signed } from "./format";
-import { limitsOf, standing, type Standing } from "./limits";
+import { limitDecimals, limitsOf, standing, type Limits, type Standing } from "./limits";
 import { markPath } from "./marks";
 import { roundStep } from "./view";
 
@@ -80,7 +80,7 @@ export class Chart {
     const words: [Standing, string][] = [["within", "pass"], ["left", "fail: material left"], ["gouge", "fail: too deep"], ["open", "undecided"]];
     const entries = words.filter(([where]) => there.has(where)).map(([where, text]) => entry(svg("path", { class: `mark ${where}`, d: markPath(where, 8, 6, 4) }), text));
     const fill = (kind: string) => svg("rect", { class: kind, width: 16, height: 12 });
-    if (guard > 0) entries.push(entry(svg("path", { class: "bar-u", d: "M8 0V12" }), `± uncertainty, ${fixed(guard, 4)} mm`));
+    if (guard > 0) entries.push(entry(svg("path", { class: "bar-u", d: "M8 0V12" }), `± uncertainty, ${fixed(guard, limits ? limitDecimals(limits) : 4)} mm`));
     if (guard > 0 && limits) entries.push(entry(fill("band"), "undecided: closer to a limit than the uncertainty"));
     if (coverage?.stretches.length) entries.push(entry(fill("unmeasured"), `farther than ${coverage.reach_mm} mm from any measured place`));
     return el("p", { class: "chart-key" }, ...entries);
@@ -92,11 +92,11 @@ export class Chart {
     }
   }
 
-  private limitLines(picture: SVGElement, { px, py }: Scale, end: number, limits: { lower: number; upper: number }, guard: number): void {
+  private limitLines(picture: SVGElement, { px, py }: Scale, end: number, limits: Limits, guard: number): void {
     for (const value of [limits.upper, limits.lower]) {
       if (guard > 0) picture.append(svg("rect", { class: "band", x: px(0), width: px(end) - px(0), y: py(value + guard), height: py(value - guard) - py(value + guard) }));
       picture.append(svg("path", { class: "limit", d: `M${px(0)} ${py(value)}H${px(end)}` }));
-      picture.append(svg("text", { class: "limit-text", x: px(end) + 5, y: py(value) + 4 }, signed(value, 4)));
+      picture.append(svg("text", { class: "limit-text", x: px(end) + 5, y: py(value) + 4 }, signed(value, limitDecimals(limits))));
     }
   }
 

@@ -2,7 +2,7 @@
 
 import type { ProbePoint } from "./data";
 import { signed } from "./format";
-import { standing, type Limits } from "./limits";
+import { decimalsTelling, standing, type Limits } from "./limits";
 import { drawMark, fillOf } from "./marks";
 import type { Model, Pass } from "./model";
 import type { Line } from "./outline";
@@ -232,13 +232,14 @@ function points(c: Context, view: View, picture: Picture, colours: Palette): voi
     drawMark(c, where, x, y, 4);
   }
   const boxes: [number, number, number, number][] = [];
+  const decimals = decimalsTelling(picture.points, picture.limits, 3);
   for (const { point, nx, ny, wall } of seen.reverse()) {
-    if (point.error_mm !== undefined) label(c, view, boxes, wall.x + nx * (outward + 4), wall.y - ny * (outward + 4), point, colours);
+    const text = signed(point.error_mm, decimals);
+    if (point.error_mm !== undefined) label(c, view, boxes, wall.x + nx * (outward + 4), wall.y - ny * (outward + 4), text, point, colours);
   }
 }
 
-function label(c: Context, view: View, boxes: [number, number, number, number][], x: number, y: number, point: ProbePoint, colours: Palette): void {
-  const text = signed(point.error_mm, 3);
+function label(c: Context, view: View, boxes: [number, number, number, number][], x: number, y: number, text: string, point: ProbePoint, colours: Palette): void {
   c.font = `11px ${colours.font}`;
   const wide = c.measureText(text).width;
   const { nx = 0, ny = 0 } = point;

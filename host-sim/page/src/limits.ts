@@ -14,8 +14,29 @@ export function limitsOf(report: Report): Limits | undefined {
   return half === undefined ? undefined : { lower: -half, upper: half, uncertainty: undefined };
 }
 
-export function limitsText({ lower, upper }: Limits): string {
-  return lower === -upper ? `±${fixed(upper, 4)} mm` : `${signed(lower, 4)} … ${signed(upper, 4)} mm`;
+/** Decimals that tell limits and uncertainty with all of their digits, four at least. */
+export function limitDecimals({ lower, upper, uncertainty = 0 }: Limits): number {
+  const exact = (decimals: number) => [lower, upper, uncertainty].every((v) => Math.abs(v - Number(v.toFixed(decimals))) < 1e-9);
+  return [4, 5].find(exact) ?? 6;
+}
+
+export function limitsText(limits: Limits): string {
+  const { lower, upper } = limits;
+  const decimals = limitDecimals(limits);
+  return lower === -upper ? `±${fixed(upper, decimals)} mm` : `${signed(lower, decimals)} … ${signed(upper, decimals)} mm`;
+}
+
+/** As many decimals as it takes, so that no deviation is rounded to the other side of a limit: `least`, or more up to nanometres. */
+export function decimalsTelling(points: ProbePoint[], limits: Limits | undefined, least: number): number {
+  if (!limits) return least;
+  const nm = (mm: number) => Math.round(mm * 1e6);
+  const [lower, upper, guard] = [nm(limits.lower), nm(limits.upper), nm(limits.uncertainty ?? 0)];
+  const side = (e: number) => (e > upper + guard || e < lower - guard ? 2 : e <= upper - guard && e >= lower + guard ? 0 : 1);
+  const errors = points.flatMap((p) => (p.error_mm === undefined ? [] : [p.error_mm]));
+  const holds = (decimals: number) => errors.every((e) => side(nm(e)) === side(nm(Number(e.toFixed(decimals)))));
+  let decimals = least;
+  while (decimals < 6 && !holds(decimals)) decimals++;
+  return decimals;
 }
 
 export function standing(point: ProbePoint, limits: Limits | undefined): Standing {

@@ -3,7 +3,7 @@
 import type { Parameter, ProbePoint, Report } from "./data";
 import { card, el, table } from "./dom";
 import { decimalsFor, fixed, NO_VALUE, signed, withUnit } from "./format";
-import { limitsOf, limitsText, standing, verdictWord, type Limits } from "./limits";
+import { decimalsTelling, limitDecimals, limitsOf, limitsText, standing, verdictWord, type Limits } from "./limits";
 import { SIGNS } from "./marks";
 
 const KINDS = { simulate: "simulated pass", correct: "correction", learn: "correction of the next part", inspect: "inspection" };
@@ -30,7 +30,7 @@ export function results(report: Report): HTMLElement | null {
   const entries = list.map((r) => el("div", { class: "result" },
     el("dt", {}, r.name), el("dd", {}, withUnit(fixed(r.value, r.decimals), r.unit)), r.note ? el("dd", { class: "note" }, r.note) : null));
   if (limits) {
-    const notes = [limits.uncertainty === undefined ? "" : `uncertainty ±${fixed(limits.uncertainty, 4)} mm, k = 2`, given?.from ?? ""].filter(Boolean);
+    const notes = [limits.uncertainty === undefined ? "" : `uncertainty ±${fixed(limits.uncertainty, limitDecimals(limits))} mm, k = 2`, given?.from ?? ""].filter(Boolean);
     entries.unshift(el("div", { class: "result" }, el("dt", {}, "tolerance"), el("dd", {}, limitsText(limits)),
       notes.length ? el("dd", { class: "note" }, notes.join("; ")) : null));
   }
@@ -85,13 +85,14 @@ export function points(report: Report, show: (index: number) => void): HTMLEleme
   const limits: Limits | undefined = limitsOf(report);
   const judged = list.some((p) => p.verdict);
   const used = list.filter((p) => p.status === "used").length;
+  const decimals = decimalsTelling(list, limits, 4);
   const rows = list.map((p, index) => {
     const button = el("button", { type: "button", class: "link", "aria-label": `Show probe point ${p.line ?? index + 1} in the picture` }, String(p.line ?? index + 1));
     button.addEventListener("click", () => show(index));
     const where = standing(p, limits);
     const word = judged ? el("span", { class: `standing ${where}` }, `${SIGNS[where]} ${verdictWord(p, limits)}`) : PLACES[where];
     return [button, fixed(p.s_mm, 3), fixed(p.x_mm, 4), fixed(p.y_mm, 4), fixed(p.z_mm, 2), fixed(p.nx, 3), fixed(p.ny, 3),
-      signed(p.error_mm, 4), ...(limits ? [word] : []), statusOf(p)];
+      signed(p.error_mm, decimals), ...(limits ? [word] : []), statusOf(p)];
   });
   const column = limits ? [judged ? "verdict" : `in ${limitsText(limits)}`] : [];
   return card("points", `Probe points: ${list.length}, used ${used}, set aside ${list.length - used}`,

@@ -37,6 +37,25 @@ test("each point of an inspection has its verdict in words and as a shape, with 
   await close();
 });
 
+test("no deviation and no limit is rounded so far that figures and verdict contradict each other", async () => {
+  const close = [{ ...points[0], error_mm: 0.02004, verdict: "fail" }, { ...points[1], error_mm: 0.019, verdict: "pass" }];
+  const limits = { lower_mm: -0.02, upper_mm: 0.02 };
+  const shown = async (name, changes) => {
+    const { page, complaints, close } = await open(await write(name, { ...made, points: changes.points ?? made.points, limits: changes.limits }));
+    const heads = await page.locator("#points thead th").allTextContents();
+    const deviations = await page.locator(`#points tbody tr td:nth-child(${heads.indexOf("deviation mm") + 1})`).allTextContents();
+    const head = await page.locator(".results").textContent();
+    assert.deepEqual(complaints, []);
+    await close();
+    return { deviations, head };
+  };
+  assert.deepEqual((await shown("close", { points: close, limits })).deviations, ["+0.02004", "+0.01900"]);
+  const clear = [close[1], { ...close[0], error_mm: 0.0201 }];
+  assert.deepEqual((await shown("clear", { points: clear, limits })).deviations, ["+0.0190", "+0.0201"]);
+  const odd = { lower_mm: -0.02, upper_mm: 0.02808, uncertainty_mm: 0.00001 };
+  assert.match((await shown("odd-limits", { limits: odd })).head, /−0\.02000 … \+0\.02808 mmuncertainty ±0\.00001 mm/);
+});
+
 test("on paper there are lines to sign, a head and a number on every sheet, and nothing wider than the sheet", async () => {
   const many = Array.from({ length: 200 }, (_, i) => ({ ...points[i % 5], line: i + 1 }));
   const { page, complaints, close } = await open(await write("inspected-many", { ...made, points: many }));

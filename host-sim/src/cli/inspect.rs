@@ -67,20 +67,27 @@ fn words(inspection: &Inspection) -> String {
     text.push_str(if judged { "  verdict\n" } else { "\n" });
     for p in &inspection.contacts {
         text += &format!(
-            "{:>6} {:>8.2} {:>10.4} {:>10.4} {:>11.3} {:>10.4}{}\n",
+            "{:>6} {:>8.2} {:>10.4} {:>10.4} {:>11.3} {:>10.*}{}\n",
             p.line,
             p.s_mm,
             p.x_mm,
             p.y_mm,
             p.height_mm,
+            inspection.decimals,
             p.error_mm,
             p.verdict.map_or("", word)
         );
     }
     let s = &inspection.summary;
     text += &format!(
-        "\n{} points; material left is positive\nmean {:.4} mm (a wear offset removes it), largest {:.4}, smallest {:.4}, rms {:.4}, spread over height {:.4} mm\n",
-        s.points, s.mean_error_mm, s.max_error_mm, s.min_error_mm, s.rms_error_mm, s.spread_over_height_mm
+        "\n{} points; material left is positive\nmean {:.4} mm (a wear offset removes it), largest {:.d$}, smallest {:.d$}, rms {:.4}, spread over height {:.4} mm\n",
+        s.points,
+        s.mean_error_mm,
+        s.max_error_mm,
+        s.min_error_mm,
+        s.rms_error_mm,
+        s.spread_over_height_mm,
+        d = inspection.decimals
     );
     text += &s.statements.join("\n");
     text + &format!("\nverdict: {}\n", s.verdict.text)

@@ -43,6 +43,9 @@ pub struct Inspection {
     pub summary: InspectSummary,
     /// Every contact, in the order of the contour.
     pub contacts: Vec<Point>,
+    /// Decimals of a millimetre with which deviations are told in words.
+    #[serde(skip)]
+    pub decimals: usize,
 }
 
 /// Files this command may write.
@@ -103,7 +106,7 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     });
     let contacts = contacts.collect();
     let summary = inspect_summary(&pass, &measurement, &judgement, coverage, warnings);
-    let inspection = Inspection { contacts, summary };
+    let inspection = Inspection { contacts, summary, decimals: judgement.decimals };
     if let Some(out) = options.out {
         let folder = OutputFolder::create(out, options.force, FILES)?;
         let points = match inspection.summary.tolerance {

@@ -73,9 +73,13 @@ impl Coverage {
         let named: Vec<String> =
             stretches.iter().take(NAMED).map(|s| format!("{:.1} to {:.1}", s.from_mm, s.to_mm)).collect();
         let more = stretches.len().saturating_sub(NAMED);
-        let more = if more == 0 { String::new() } else { format!(" and {more} more") };
+        let more = match more {
+            0 => String::new(),
+            1 => ", and 1 more stretch".to_owned(),
+            more => format!(", and {more} more stretches"),
+        };
         format!(
-            "{farther_mm:.1} of {length_mm:.1} mm of the contour lie farther than {reach_mm} mm from any measured place: s = {}{more} mm.",
+            "{farther_mm:.1} of {length_mm:.1} mm of the contour lie farther than {reach_mm} mm from any measured place: s = {} mm{more}.",
             named.join(", ")
         )
     }
@@ -115,7 +119,7 @@ mod tests {
         let found = coverage((0..20).map(far), Offset::from_um(19_000_000), Offset::from_um(10_000), false);
         assert_eq!(found.stretches.len(), 19);
         assert!(
-            found.words().contains("10.0 to 990.0") && found.words().contains("and 13 more mm"),
+            found.words().contains("10.0 to 990.0") && found.words().contains("mm, and 13 more stretches."),
             "{}",
             found.words()
         );

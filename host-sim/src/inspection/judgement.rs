@@ -47,6 +47,8 @@ pub struct Judgement {
     pub points: Vec<PointVerdict>,
     /// How many are what; absent without limits.
     pub count: Option<Count>,
+    /// Decimals of a millimetre with which the deviations are told.
+    pub decimals: usize,
     /// Sentences for the report: decision rule, what the verdict holds for, what no point speaks for.
     pub statements: Vec<String>,
 }
@@ -80,7 +82,8 @@ pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: usize, coverage: 
         statements.push(format!("{aside} {readings} set aside and not judged; {they} listed with the reason."));
     }
     statements.push(coverage.words());
-    Judgement { verdict, points, count, statements }
+    let decimals = rule.map_or(4, |rule| rule.decimals(deviations));
+    Judgement { verdict, points, count, decimals, statements }
 }
 
 fn verdict(rule: &Rule, count: Count, deviations: &[Offset]) -> Verdict {
@@ -90,17 +93,18 @@ fn verdict(rule: &Rule, count: Count, deviations: &[Offset]) -> Verdict {
     // The deviation that reaches farthest beyond its limit, or comes closest to it.
     let excess = |d: &Offset| (*d - rule.tolerance.upper).max(rule.tolerance.lower - *d);
     let worst = deviations.iter().copied().max_by_key(excess).map_or(0.0, mm);
+    let worst = format!("{worst:+.*}", rule.decimals(deviations));
     let with = if rule.uncertainty.is_some() { "" } else { ", simple acceptance without uncertainty" };
     let (state, text) = if fail > 0 {
         let undecided = if open > 0 { format!(", {open} undecided") } else { String::new() };
         let verb = if fail == 1 { "is" } else { "are" };
         (
             State::Fail,
-            format!("fail: {fail} of {all} points {verb} outside {limits}{undecided}, the worst {worst:+.4} mm{with}"),
+            format!("fail: {fail} of {all} points {verb} outside {limits}{undecided}, the worst {worst} mm{with}"),
         )
     } else if all > 0 && pass == all {
         let points = if all == 1 { "the point lies".to_owned() } else { format!("all {all} points lie") };
-        (State::Pass, format!("pass: {points} within {limits}, closest to a limit {worst:+.4} mm{with}"))
+        (State::Pass, format!("pass: {points} within {limits}, closest to a limit {worst} mm{with}"))
     } else {
         let verb = if open == 1 { "is" } else { "are" };
         (
@@ -137,6 +141,13 @@ mod tests {
             "{}",
             judgement.verdict.text
         );
+    }
+
+    #[test]
+    fn the_worst_point_of_a_part_that_fails_is_not_told_as_on_the_limit() {
+        let judgement = judged(None, &[20_040]);
+        assert!(judgement.verdict.text.contains("the worst +0.020040 mm"), "{}", judgement.verdict.text);
+        assert_eq!((judgement.decimals, judged(None, &[20_100]).decimals), (6, 4));
     }
 
     #[test]

@@ -45,6 +45,16 @@ impl Rule {
         }
     }
 
+    /// Decimals of a millimetre that tell each deviation without contradicting its verdict: 4, or 6 (whole nanometres) where
+    /// a value rounded to 4 would lie on the other side of a limit.
+    pub fn decimals(&self, deviations: &[Offset]) -> usize {
+        let rounded = |d: &Offset| {
+            let told = format!("{:.4}", mm(*d)).parse().map_or(0.0, |mm: f64| mm * 1e6);
+            Offset::from_nm(told.round() as i64)
+        };
+        if deviations.iter().all(|d| self.point(rounded(d)) == self.point(*d)) { 4 } else { 6 }
+    }
+
     /// Whether the uncertainty leaves no deviation that could be proven within the limits.
     pub fn proves_nothing(&self) -> bool {
         let guard = self.uncertainty.unwrap_or_default();
@@ -112,6 +122,19 @@ mod tests {
         ] {
             assert_eq!(rule.point(Offset::from_nm(nm)), verdict, "{nm}");
         }
+    }
+
+    #[test]
+    fn a_deviation_is_never_rounded_to_the_other_side_of_its_limit() {
+        let decimals = |rule: Rule, nm: i64| rule.decimals(&[Offset::from_nm(nm)]);
+        let exact = rule(0, 20_000, None);
+        for (nm, expected) in [(20_000, 4), (19_951, 4), (20_049, 6), (20_051, 4), (-49, 6), (-51, 4), (12_345, 4)] {
+            assert_eq!(decimals(exact, nm), expected, "{nm}");
+        }
+        // A limit between two tenths of a micrometre.
+        assert_eq!(decimals(rule(0, 20_040, None), 20_030), 4);
+        assert_eq!(decimals(rule(0, 20_080, None), 20_070), 6);
+        assert_eq!(decimals(rule(0, 20_000, Some(5_000)), 15_010), 6);
     }
 
     #[test]

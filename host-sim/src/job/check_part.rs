@@ -71,7 +71,10 @@ impl PartFlags {
             None => Ok(given),
             Some(text) if is_text(text) => Ok(Some(text.clone())),
             Some(text) => {
-                let found = format!("{flag} on the command line is {text:?}");
+                let found = match text.chars().count() {
+                    all if all > LONGEST => format!("{flag} on the command line has {all} characters"),
+                    _ => format!("{flag} on the command line is {text:?}"),
+                };
                 Err(InputError::new("C001", found, TEXT_EXPECTED, "write it shorter, on one line, or leave it away"))
             }
         };

@@ -53,7 +53,7 @@ impl Milled {
     }
 }
 
-/// How far the circles go beyond the wall point along its normal, mm; −∞ if none crosses the normal.
+/// How far the circles go beyond the wall point along its normal, mm; −∞ if none crosses the normal within reach.
 fn deepest(track: &Track, wall: Point, normal: Point, near: &[u32]) -> f64 {
     let rr = track.radius_mm * track.radius_mm;
     let mut depth = f64::NEG_INFINITY;
@@ -62,7 +62,11 @@ fn deepest(track: &Track, wall: Point, normal: Point, near: &[u32]) -> f64 {
         let along = dot(sub(centre, wall), normal);
         let room = rr - (squared_distance(centre, wall) - along * along);
         if room > 0.0 {
-            depth = depth.max(along + room.sqrt());
+            let end = along + room.sqrt();
+            // At the end of a wall the flank of a circle may cross the normal far out in the stock; that makes no wall.
+            if end > -REACH_MM {
+                depth = depth.max(end);
+            }
         }
     }
     depth

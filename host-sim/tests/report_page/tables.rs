@@ -146,6 +146,10 @@ fn a_simulated_pass_shows_its_trace() {
         for name in ["arc_deg", "chip_area_mm2", "force_n", "fx_n", "fy_n", "dx_mm", "dy_mm", "error_mm"] {
             assert_eq!(column(&contour["before"][name]), table(&file, name), "{name}");
         }
+        // Whoever receives the page is not told where the files lie.
+        assert!(page["warnings"].to_string().contains("\"program.nc: line 3"), "{}", page["warnings"]);
+        let text = fs::read_to_string(part.at("out/report.html")).unwrap();
+        assert!(!text.contains(part.at("").to_str().unwrap()));
         // The page looks places up by arc length.
         let s = super::reading::full(&contour["s_mm"]);
         assert!(s.windows(2).all(|pair| pair[0] <= pair[1]));

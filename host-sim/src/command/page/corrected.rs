@@ -3,7 +3,7 @@
 use truepath_core::correct::{Band, Target};
 
 use super::expected::judge;
-use super::of_pass;
+use super::{of_pass, told};
 use crate::command::correct::Corrected;
 use crate::diagnostics::Failure;
 use crate::measurement::Measurement;
@@ -48,7 +48,7 @@ pub(in crate::command) fn corrected(
     page.points = points;
     page.parameters = parameters(&done.summary);
     page.results = figures(&done.summary);
-    page.warnings = done.summary.warnings.iter().cloned().chain(along.note).chain(left_out).collect();
+    page.warnings = told(pass, done.summary.warnings.iter().cloned().chain(along.note).chain(left_out));
     if let Some(job) = &mut page.job {
         job.facts.extend(facts(pass, done, of));
     }

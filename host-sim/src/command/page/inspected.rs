@@ -1,6 +1,6 @@
 //! The page of `inspect`: a part for its customer. Deviations are those of the points; no model enters.
 
-use super::of_pass;
+use super::{of_pass, told};
 use crate::diagnostics::Failure;
 use crate::inspection::{self, Judgement};
 use crate::measurement::Measurement;
@@ -35,7 +35,7 @@ pub(in crate::command) fn inspected(
     }
     let (points, left_out) = judged_points(pass, measurement, &judgement.points);
     page.points = points;
-    page.results = figures(summary, measurement);
+    page.results = figures(summary, measurement, judgement.decimals);
     page.verdict = Some(Verdict {
         state: match summary.verdict.state {
             inspection::State::Pass => State::Pass,
@@ -55,11 +55,16 @@ pub(in crate::command) fn inspected(
         statements: summary.statements.clone(),
         coverage: summary.coverage.clone(),
     });
-    page.warnings = warnings.iter().cloned().chain(notes).chain(left_out).collect();
+    page.warnings = told(pass, warnings.iter().cloned().chain(notes).chain(left_out));
     Ok(page)
 }
 
-fn figures(s: &InspectSummary, measurement: &Measurement) -> Vec<Figure> {
+fn figures(s: &InspectSummary, measurement: &Measurement, decimals: usize) -> Vec<Figure> {
+    let told = |name: &str, value: f64| Figure::of(name, value, u32::try_from(decimals).unwrap_or(6), "mm");
+    let (most, least) = (
+        if s.max_error_mm > 0.0 { "most material left" } else { "shallowest cut" },
+        if s.min_error_mm < 0.0 { "deepest cut" } else { "least material left" },
+    );
     let points = |state: &str, count: usize| Figure::of(format!("points {state}"), count as f64, 0, "");
     let touched = measurement.contacts.iter().map(|c| c.s).min().zip(measurement.contacts.iter().map(|c| c.s).max());
     let between = touched.map(|(from, to)| format!("between s = {:.1} and {:.1} mm", mm(from), mm(to)));
@@ -67,8 +72,8 @@ fn figures(s: &InspectSummary, measurement: &Measurement) -> Vec<Figure> {
     let judged = s.points_by_verdict.is_some();
     let figures = [
         Figure::mm("mean", s.mean_error_mm).map(|f| f.noted("a wear offset removes it")),
-        Figure::mm("largest", s.max_error_mm).map(|f| f.noted("most material left")),
-        Figure::mm("smallest", s.min_error_mm).map(|f| f.noted("deepest cut")),
+        told("largest", s.max_error_mm).map(|f| f.noted(most)),
+        told("smallest", s.min_error_mm).map(|f| f.noted(least)),
         Figure::mm("root mean square", s.rms_error_mm),
         Figure::mm("spread over the height", s.spread_over_height_mm).map(|f| f.noted("largest of one place")),
         points("measured", s.points).map(|f| f.noted(between.unwrap_or_default())),

@@ -29,3 +29,14 @@ fn of_pass(kind: Kind, title: String, pass: &Pass) -> Page {
     page.outlines = Outlines::of(pass);
     page
 }
+
+/// Warnings as the page tells them: files without their folders, which are nobody's business who receives the page.
+fn told(pass: &Pass, warnings: impl Iterator<Item = String>) -> Vec<String> {
+    let folders = [pass.program.name(), pass.job.source().name()]
+        .map(|name| name.rfind(['/', '\\']).map_or("", |end| name.get(..=end).unwrap_or_default()));
+    // A folder of one mark ("/") stands in other texts as well.
+    let without = |text: String| {
+        folders.iter().filter(|folder| folder.len() > 1).fold(text, |text, folder| text.replace(folder, ""))
+    };
+    warnings.map(without).collect()
+}

@@ -1,6 +1,6 @@
 //! The page of `simulate`: one pass, with who computed it.
 
-use super::of_pass;
+use super::{of_pass, told};
 use crate::pass::Pass;
 use crate::report::SimulateSummary;
 use crate::report::page::{Along, Fact, Figure, Kind, Page};
@@ -11,7 +11,7 @@ pub(in crate::command) fn simulated(pass: &Pass, along: Along, summary: &Simulat
     page.contour = Some(along.contour);
     page.heights = along.heights;
     page.results = figures(summary);
-    page.warnings = summary.warnings.iter().cloned().chain(along.note).collect();
+    page.warnings = told(pass, summary.warnings.iter().cloned().chain(along.note));
     if let Some(job) = &mut page.job {
         job.facts.push(Fact::new("error shown", "mean over the engaged depth"));
     }
