@@ -63,7 +63,7 @@ pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: usize, coverage: 
         open: of(PointVerdict::Open),
     });
     let verdict = match (rule, count) {
-        (Some(rule), Some(count)) => verdict(&rule, count, deviations),
+        (Some(rule), Some(count)) => verdict(&rule, count, deviations, aside),
         _ => Verdict { state: State::Open, text: "open: no tolerance given".to_owned() },
     };
     let mut statements: Vec<String> = rule.iter().map(Rule::words).collect();
@@ -86,7 +86,7 @@ pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: usize, coverage: 
     Judgement { verdict, points, count, decimals, statements }
 }
 
-fn verdict(rule: &Rule, count: Count, deviations: &[Offset]) -> Verdict {
+fn verdict(rule: &Rule, count: Count, deviations: &[Offset], aside: usize) -> Verdict {
     let Count { pass, fail, open } = count;
     let all = deviations.len();
     let limits = limits_text(rule.tolerance);
@@ -113,6 +113,12 @@ fn verdict(rule: &Rule, count: Count, deviations: &[Offset]) -> Verdict {
                 "open: {open} of {all} points {verb} within the uncertainty of a limit of {limits}, none proven outside"
             ),
         )
+    };
+    // A wall that is off by more than a millimetre is among these: nobody shall sign without having read it.
+    let text = match aside {
+        0 => text,
+        1 => format!("{text}; 1 reading set aside and not judged"),
+        aside => format!("{text}; {aside} readings set aside and not judged"),
     };
     Verdict { state, text }
 }
@@ -148,6 +154,21 @@ mod tests {
         let judgement = judged(None, &[20_040]);
         assert!(judgement.verdict.text.contains("the worst +0.020040 mm"), "{}", judgement.verdict.text);
         assert_eq!((judgement.decimals, judged(None, &[20_100]).decimals), (6, 4));
+    }
+
+    #[test]
+    fn a_verdict_says_that_readings_were_not_judged() {
+        let rule = |tolerance| Rule { tolerance, uncertainty: None };
+        let tolerance = Tolerance { lower: Offset::ZERO, upper: Offset::from_nm(20_000), from_command_line: false };
+        let far = Offset::from_um(10_000);
+        let text =
+            |aside| judge(Some(rule(tolerance)), &[far - far], aside, &coverage([], far, far, false)).verdict.text;
+        assert!(
+            text(1).starts_with("pass: ") && text(1).ends_with("; 1 reading set aside and not judged"),
+            "{}",
+            text(1)
+        );
+        assert!(text(2).ends_with("; 2 readings set aside and not judged") && !text(0).contains("set aside"));
     }
 
     #[test]
