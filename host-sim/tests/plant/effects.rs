@@ -60,7 +60,7 @@ fn an_outside_corner_without_an_arc_is_judged_only_where_there_is_a_wall() {
     // Nor does a flank of the cutter that crosses the normal far out in the stock make one, whatever the height.
     let soft = pass(&outside, Side::Right, &d20(), &p23());
     let levels: Vec<f64> = (0..=8).map(|k| f64::from(k) / 8.0).collect();
-    assert!(soft.wall_errors(&levels).iter().flatten().filter(|e| e.is_finite()).all(|e| e.abs() < 1.0));
+    assert!(soft.wall_errors(&levels).iter().flatten().filter(|e| e.is_finite()).all(|e| e.abs() <= 2.0));
     // The raw stock ends at its own corner (−7, −7): from there on the cutter meets nothing.
     assert!((arc_deg(&milled, 40.0) - 45.573).abs() < 0.01);
     assert!(arc_deg(&milled, 59.0) < 0.01);
