@@ -48,7 +48,8 @@ pub(in crate::command) fn corrected(
     page.points = points;
     page.parameters = parameters(&done.summary);
     page.results = figures(&done.summary);
-    page.warnings = told(pass, done.summary.warnings.iter().cloned().chain(along.note).chain(left_out));
+    page.warnings =
+        told(pass, Some(&measurement.file), done.summary.warnings.iter().cloned().chain(along.note).chain(left_out));
     if let Some(job) = &mut page.job {
         job.facts.extend(facts(pass, done, of));
     }

@@ -55,7 +55,7 @@ pub(in crate::command) fn inspected(
         statements: summary.statements.clone(),
         coverage: summary.coverage.clone(),
     });
-    page.warnings = told(pass, warnings.iter().cloned().chain(notes).chain(left_out));
+    page.warnings = told(pass, Some(&measurement.file), warnings.iter().cloned().chain(notes).chain(left_out));
     Ok(page)
 }
 

@@ -31,12 +31,12 @@ fn of_pass(kind: Kind, title: String, pass: &Pass) -> Page {
 }
 
 /// Warnings as the page tells them: files without their folders, which are nobody's business who receives the page.
-fn told(pass: &Pass, warnings: impl Iterator<Item = String>) -> Vec<String> {
-    let folders = [pass.program.name(), pass.job.source().name()]
-        .map(|name| name.rfind(['/', '\\']).map_or("", |end| name.get(..=end).unwrap_or_default()));
+fn told(pass: &Pass, probe: Option<&str>, warnings: impl Iterator<Item = String>) -> Vec<String> {
+    let files = [Some(pass.program.name()), Some(pass.job.source().name()), probe];
+    let folder = |name: &str| name.rfind(['/', '\\']).map(|end| name[..=end].to_owned());
     // A folder of one mark ("/") stands in other texts as well.
-    let without = |text: String| {
-        folders.iter().filter(|folder| folder.len() > 1).fold(text, |text, folder| text.replace(folder, ""))
-    };
-    warnings.map(without).collect()
+    let mut folders: Vec<String> = files.into_iter().flatten().filter_map(folder).filter(|f| f.len() > 1).collect();
+    // The longest first: one may be the beginning or the end of another.
+    folders.sort_unstable_by_key(|folder| std::cmp::Reverse(folder.len()));
+    warnings.map(|text| folders.iter().fold(text, |text, folder| text.replace(folder, ""))).collect()
 }

@@ -11,7 +11,7 @@ pub(in crate::command) fn simulated(pass: &Pass, along: Along, summary: &Simulat
     page.contour = Some(along.contour);
     page.heights = along.heights;
     page.results = figures(summary);
-    page.warnings = told(pass, summary.warnings.iter().cloned().chain(along.note));
+    page.warnings = told(pass, None, summary.warnings.iter().cloned().chain(along.note));
     if let Some(job) = &mut page.job {
         job.facts.push(Fact::new("error shown", "mean over the engaged depth"));
     }
