@@ -126,6 +126,11 @@ fn what_was_set_aside_or_never_touched_is_told_beside_the_verdict() {
     assert!(said[0].starts_with("Simple acceptance"));
     assert!(said.iter().any(|s| s.contains("4 measured places only")), "{said:?}");
     assert!(said.iter().any(|s| s.starts_with("1 reading was set aside and not judged")), "{said:?}");
+    // A wall 1.5 mm off is no contact of the contour, yet nobody shall sign for it.
+    let doubted = judged("[part]\ntolerance_mm = 0.02", &touches([1, 2, 3, 1500]), &[]);
+    let verdict = &doubted["summary"]["verdict"];
+    assert_eq!((&verdict["state"], &doubted["summary"]["points_rejected"]), (&"open".into(), &1.into()), "{verdict}");
+    assert!(verdict["text"].as_str().unwrap().starts_with("open, though all 3 points lie within"), "{verdict}");
     // Touched at s = 20, 30, 74.954 and 83.854 of 103.854 mm.
     let coverage = &summary["coverage"];
     let stretches: Vec<[f64; 2]> = coverage["stretches"]

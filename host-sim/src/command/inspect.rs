@@ -8,7 +8,7 @@ use truepath_core::units::Offset;
 use super::doubts::misread;
 use super::page::{REPORT, inspected};
 use crate::diagnostics::{Failure, Source};
-use crate::inspection::{PointVerdict, Rule, coverage, judge};
+use crate::inspection::{PointVerdict, Rule, SetAside, coverage, judge};
 use crate::job::{Job, PartFlags, ProbeFlags, Which};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
@@ -93,7 +93,8 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let places = measurement.contacts.iter().map(|c| c.s);
     let coverage = coverage(places, pass.core.contour.length, reach, contour.is_closed());
     let deviations: Vec<Offset> = measurement.contacts.iter().map(|c| c.error).collect();
-    let judgement = judge(rule, &deviations, measurement.rejected.len(), &coverage);
+    let aside = SetAside::of(measurement.rejected.iter().map(|r| &r.reason), pass.job.numbers.tool.diameter);
+    let judgement = judge(rule, &deviations, aside, &coverage);
     let depth = mm(pass.job.numbers.cut.axial_depth);
     let contacts = measurement.contacts.iter().enumerate().map(|(at, c)| Point {
         line: c.line,

@@ -4,6 +4,7 @@ use truepath_core::units::Offset;
 
 use super::coverage::Coverage;
 use super::rule::{PointVerdict, Rule, limits_text};
+use super::set_aside::SetAside;
 use crate::report::mm;
 
 /// What is known of the part.
@@ -53,8 +54,8 @@ pub struct Judgement {
     pub statements: Vec<String>,
 }
 
-/// Judges a part. `aside` readings were not judged.
-pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: usize, coverage: &Coverage) -> Judgement {
+/// Judges a part. Readings `aside` were not judged; those that may be of its wall keep it from passing.
+pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, coverage: &Coverage) -> Judgement {
     let points: Vec<PointVerdict> = rule.iter().flat_map(|rule| deviations.iter().map(|d| rule.point(*d))).collect();
     let of = |verdict| points.iter().filter(|p| **p == verdict).count();
     let count = rule.map(|_| Count {
@@ -77,16 +78,16 @@ pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: usize, coverage: 
         1 => "What is said here holds at the one measured place only.".to_owned(),
         all => format!("What is said here holds at the {all} measured places only."),
     });
-    if aside > 0 {
-        let (readings, they) = if aside == 1 { ("reading was", "it is") } else { ("readings were", "they are") };
-        statements.push(format!("{aside} {readings} set aside and not judged; {they} listed with the reason."));
+    if aside.all > 0 {
+        let (readings, they) = if aside.all == 1 { ("reading was", "it is") } else { ("readings were", "they are") };
+        statements.push(format!("{} {readings} set aside and not judged; {they} listed with the reason.", aside.all));
     }
     statements.push(coverage.words());
     let decimals = rule.map_or(4, |rule| rule.decimals(deviations));
     Judgement { verdict, points, count, decimals, statements }
 }
 
-fn verdict(rule: &Rule, count: Count, deviations: &[Offset], aside: usize) -> Verdict {
+fn verdict(rule: &Rule, count: Count, deviations: &[Offset], aside: SetAside) -> Verdict {
     let Count { pass, fail, open } = count;
     let all = deviations.len();
     let limits = limits_text(rule.tolerance);
@@ -104,7 +105,8 @@ fn verdict(rule: &Rule, count: Count, deviations: &[Offset], aside: usize) -> Ve
         )
     } else if all > 0 && pass == all {
         let points = if all == 1 { "the point lies".to_owned() } else { format!("all {all} points lie") };
-        (State::Pass, format!("pass: {points} within {limits}, closest to a limit {worst} mm{with}"))
+        let (state, said) = if aside.doubtful > 0 { (State::Open, "open, though") } else { (State::Pass, "pass:") };
+        (state, format!("{said} {points} within {limits}, closest to a limit {worst} mm{with}"))
     } else {
         let verb = if open == 1 { "is" } else { "are" };
         (
@@ -114,11 +116,14 @@ fn verdict(rule: &Rule, count: Count, deviations: &[Offset], aside: usize) -> Ve
             ),
         )
     };
-    // A wall that is off by more than a millimetre is among these: nobody shall sign without having read it.
+    let readings = |n: usize| if n == 1 { "reading" } else { "readings" };
     let text = match aside {
-        0 => text,
-        1 => format!("{text}; 1 reading set aside and not judged"),
-        aside => format!("{text}; {aside} readings set aside and not judged"),
+        SetAside { all: 0, .. } => text,
+        SetAside { all, doubtful: 0 } => format!("{text}; {all} {} set aside and not judged", readings(all)),
+        SetAside { all, doubtful } => format!(
+            "{text}; {doubtful} of {all} {} set aside may be of a wall that is far off: look at the list, touch there again",
+            readings(all)
+        ),
     };
     Verdict { state, text }
 }
@@ -134,7 +139,7 @@ mod tests {
         let rule = Rule { tolerance, uncertainty: uncertainty.map(Offset::from_nm) };
         let deviations: Vec<Offset> = nm.iter().map(|v| Offset::from_nm(*v)).collect();
         let far = Offset::from_um(10_000);
-        judge(Some(rule), &deviations, 0, &coverage([], far, far, false))
+        judge(Some(rule), &deviations, SetAside::default(), &coverage([], far, far, false))
     }
 
     #[test]
@@ -161,14 +166,25 @@ mod tests {
         let rule = |tolerance| Rule { tolerance, uncertainty: None };
         let tolerance = Tolerance { lower: Offset::ZERO, upper: Offset::from_nm(20_000), from_command_line: false };
         let far = Offset::from_um(10_000);
-        let text =
-            |aside| judge(Some(rule(tolerance)), &[far - far], aside, &coverage([], far, far, false)).verdict.text;
+        let judged = |all, doubtful| {
+            let aside = SetAside { all, doubtful };
+            judge(Some(rule(tolerance)), &[far - far], aside, &coverage([], far, far, false)).verdict
+        };
+        let text = |all| judged(all, 0).text;
         assert!(
             text(1).starts_with("pass: ") && text(1).ends_with("; 1 reading set aside and not judged"),
             "{}",
             text(1)
         );
         assert!(text(2).ends_with("; 2 readings set aside and not judged") && !text(0).contains("set aside"));
+        let doubted = judged(3, 1);
+        assert_eq!(doubted.state, State::Open);
+        assert!(doubted.text.starts_with("open, though the point lies within"), "{}", doubted.text);
+        assert!(
+            doubted.text.contains("1 of 3 readings set aside may be of a wall that is far off"),
+            "{}",
+            doubted.text
+        );
     }
 
     #[test]
@@ -183,7 +199,7 @@ mod tests {
     #[test]
     fn the_statements_name_rule_readings_set_aside_and_what_was_not_touched() {
         let far = Offset::from_um(10_000);
-        let none = judge(None, &[Offset::ZERO], 2, &coverage([], far, far, false));
+        let none = judge(None, &[Offset::ZERO], SetAside { all: 2, doubtful: 0 }, &coverage([], far, far, false));
         assert_eq!(none.verdict.text, "open: no tolerance given");
         assert!(none.points.is_empty() && none.count.is_none());
         let said = none.statements.join("\n");

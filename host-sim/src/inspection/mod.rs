@@ -1,7 +1,7 @@
 //! The judgement of a milled wall from its probe points: tolerance, uncertainty, verdict, and what it does not cover.
 //!
-//! `rule` judges one deviation, `judgement` the part, `coverage` says which stretches of the contour no point speaks for.
-//! Comparisons are of whole nanometres, so that a value on a limit lies within it on every computer.
+//! `rule` judges one deviation, `judgement` the part; `set_aside` says which readings are not judged and leave a doubt,
+//! `coverage` which stretches of the contour no point speaks for. Comparisons are of whole nanometres, so that a value on a limit lies within it on every computer.
 //!
 //! Source of the rule: ISO 14253-1, acceptance and rejection zones reduced by the expanded uncertainty on both sides.
 //!
@@ -11,7 +11,9 @@
 mod coverage;
 mod judgement;
 mod rule;
+mod set_aside;
 
 pub use coverage::{Coverage, Stretch, coverage};
 pub use judgement::{Count, Judgement, State, Verdict, judge};
 pub use rule::{PointVerdict, Rule};
+pub use set_aside::SetAside;

@@ -1,7 +1,7 @@
 //! The `[part]` table: what a customer is told about a part, and the tolerance its wall is judged by.
 //!
-//! Every key is optional, and so is the table; `truepath inspect` judges by it, the reports of other commands show name and tolerance. Tolerances are limits of the wall
-//! error: material left is positive.
+//! Every key is optional, and so is the table; `truepath inspect` judges by it, the reports of other commands show name
+//! and tolerance. Tolerances are limits of the wall error: material left is positive.
 
 use truepath_core::units::Offset;
 
@@ -16,10 +16,10 @@ const TEXT_EXPECTED: &str = "1 to 100 characters on one line";
 const HALF_WIDTH: Limits = Limits::within("0.0001", "10", "mm");
 const LIMIT: Limits = Limits::within("-10", "10", "mm");
 
-/// What the table says, and what the command line says in its place.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct PartTable {
-    /// What the part is called.
+/// What a part is called.
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct PartNames {
+    /// Its name.
     pub name: Option<String>,
     /// Its drawing.
     pub drawing: Option<String>,
@@ -31,6 +31,13 @@ pub struct PartTable {
     pub customer: Option<String>,
     /// When it was measured, as somebody has written it: no clock is read.
     pub date: Option<String>,
+}
+
+/// What the table says, and what the command line says in its place.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PartTable {
+    /// What the part is called.
+    pub names: PartNames,
     /// The limits of the wall error.
     pub tolerance: Option<Tolerance>,
     /// Expanded uncertainty (k = 2) of a probed deviation, 0.00001…1 mm.
@@ -90,12 +97,12 @@ impl PartFlags {
                 Some(Tolerance { lower: -half, upper: half, from_command_line: true })
             }
         };
-        Ok(PartTable {
-            serial: text("--serial", &self.serial, part.serial)?,
-            date: text("--date", &self.date, part.date)?,
-            tolerance,
-            ..part
-        })
+        let names = PartNames {
+            serial: text("--serial", &self.serial, part.names.serial)?,
+            date: text("--date", &self.date, part.names.date)?,
+            ..part.names
+        };
+        Ok(PartTable { names, tolerance, ..part })
     }
 }
 
@@ -117,13 +124,16 @@ pub(super) fn part(source: &Source, section: Option<&Section<'_>>) -> Result<Par
         }
     };
     let length = |key, limits| Ok::<_, InputError>(section.number(key, limits)?.map(Decimal::as_mm));
-    let table = PartTable {
+    let names = PartNames {
         name: text("name")?,
         drawing: text("drawing")?,
         serial: text("serial")?,
         material_batch: text("material_batch")?,
         customer: text("customer")?,
         date: text("date")?,
+    };
+    let table = PartTable {
+        names,
         tolerance: tolerance(source, section)?,
         uncertainty: length("uncertainty_mm", Limits::within("0.00001", "1", "mm"))?,
         reach: length("reach_mm", Limits::within("0.1", "1000", "mm"))?,

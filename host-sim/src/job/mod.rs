@@ -48,7 +48,7 @@ use crate::surface::Surface;
 pub(crate) use check_feature::is_id;
 pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
 pub use check_feed::{FeedTable, ForceLimit};
-pub use check_part::{PartFlags, PartTable, Tolerance};
+pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
 pub use check_pocket::PocketTable;
 pub use check_probe::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
 pub use check_shank::Shank;

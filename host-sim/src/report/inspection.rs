@@ -6,7 +6,7 @@ use truepath_core::probe::Contact;
 use super::mm;
 use crate::feature::FeatureSummary;
 use crate::inspection::{Count, Coverage, Judgement, Verdict};
-use crate::job::{PartTable, Tolerance};
+use crate::job::{PartNames, Tolerance};
 use crate::measurement::Measurement;
 use crate::pass::Pass;
 
@@ -16,7 +16,7 @@ pub struct InspectSummary {
     /// Version of this file.
     pub version: u32,
     /// The part, as job and command line name it.
-    pub part: PartSummary,
+    pub part: PartNames,
     /// CRC-32 of the program.
     pub program_crc32: String,
     /// CRC-32 of the job.
@@ -56,36 +56,6 @@ pub struct InspectSummary {
     pub warnings: Vec<String>,
 }
 
-/// What a part is called.
-#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct PartSummary {
-    /// Its name.
-    pub name: Option<String>,
-    /// Its drawing.
-    pub drawing: Option<String>,
-    /// Its serial number.
-    pub serial: Option<String>,
-    /// Batch of the material.
-    pub material_batch: Option<String>,
-    /// Who receives it.
-    pub customer: Option<String>,
-    /// When it was measured, as given.
-    pub date: Option<String>,
-}
-
-impl PartSummary {
-    fn of(part: &PartTable) -> Self {
-        Self {
-            name: part.name.clone(),
-            drawing: part.drawing.clone(),
-            serial: part.serial.clone(),
-            material_batch: part.material_batch.clone(),
-            customer: part.customer.clone(),
-            date: part.date.clone(),
-        }
-    }
-}
-
 /// Limits of the wall error.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
 pub struct ToleranceSummary {
@@ -118,7 +88,7 @@ pub fn inspect_summary(
     let n = errors.len().max(1) as f64;
     InspectSummary {
         version: 1,
-        part: PartSummary::of(part),
+        part: part.names.clone(),
         program_crc32: format!("{:08x}", pass.core.program_crc),
         job_crc32: format!("{:08x}", crc32(pass.job.source().bytes())),
         probe_crc32: format!("{:08x}", measurement.crc),

@@ -16,7 +16,7 @@ mod wall;
 pub use compare::{compare_csv, walls_csv};
 pub use damped::{DampedSummary, damped_summary};
 pub use guard::{GuardSummary, HeldBack, guard_summary};
-pub use inspection::{InspectSummary, PartSummary, ToleranceSummary, inspect_summary};
+pub use inspection::{InspectSummary, ToleranceSummary, inspect_summary};
 pub use path::{block_edits, carried_edits};
 pub use points::{judged_points_csv, points_csv};
 pub use reading::{LawPlaces, PointRow, read_correction, read_points, read_trace, read_wall, read_walls};

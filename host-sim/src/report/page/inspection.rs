@@ -3,13 +3,14 @@
 use serde::Serialize;
 
 use crate::inspection::Coverage;
-use crate::report::{InspectSummary, PartSummary};
+use crate::job::PartNames;
+use crate::report::InspectSummary;
 
 /// The inspection of a part; its fields are fields of the page.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inspected {
     /// What the part is called.
-    pub part: PartSummary,
+    pub part: PartNames,
     /// What the report rests on.
     pub files: Vec<InputFile>,
     /// Decision rule and what the verdict does not cover.

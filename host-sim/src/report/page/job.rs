@@ -23,7 +23,7 @@ fn file_name(pass: &Pass) -> String {
 
 /// What a page is about: the name of the part, else of the feature, else of the program.
 pub fn subject(pass: &Pass) -> String {
-    if let Some(name) = &pass.job.part.name {
+    if let Some(name) = &pass.job.part.names.name {
         return name.clone();
     }
     pass.plan.as_ref().and_then(|plan| plan.id.clone()).unwrap_or_else(|| file_name(pass))
