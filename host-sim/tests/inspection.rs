@@ -131,6 +131,8 @@ fn what_was_set_aside_or_never_touched_is_told_beside_the_verdict() {
     let verdict = &doubted["summary"]["verdict"];
     assert_eq!((&verdict["state"], &doubted["summary"]["points_rejected"]), (&"open".into(), &1.into()), "{verdict}");
     assert!(verdict["text"].as_str().unwrap().starts_with("open, though all 3 points lie within"), "{verdict}");
+    let said = doubted["summary"]["statements"].to_string();
+    assert!(said.contains("does not pass whatever its points say"), "{said}");
     // Touched at s = 20, 30, 74.954 and 83.854 of 103.854 mm.
     let coverage = &summary["coverage"];
     let stretches: Vec<[f64; 2]> = coverage["stretches"]

@@ -82,6 +82,12 @@ pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, coverag
         let (readings, they) = if aside.all == 1 { ("reading was", "it is") } else { ("readings were", "they are") };
         statements.push(format!("{} {readings} set aside and not judged; {they} listed with the reason.", aside.all));
     }
+    if rule.is_some() && aside.doubtful > 0 {
+        statements.push(
+            "With a reading set aside that may be of this wall, far off, the part does not pass whatever its points say."
+                .to_owned(),
+        );
+    }
     statements.push(coverage.words());
     let decimals = rule.map_or(4, |rule| rule.decimals(deviations));
     Judgement { verdict, points, count, decimals, statements }

@@ -1,7 +1,8 @@
 //! The judgement of a milled wall from its probe points: tolerance, uncertainty, verdict, and what it does not cover.
 //!
 //! `rule` judges one deviation, `judgement` the part; `set_aside` says which readings are not judged and leave a doubt,
-//! `coverage` which stretches of the contour no point speaks for. Comparisons are of whole nanometres, so that a value on a limit lies within it on every computer.
+//! `coverage` which stretches of the contour no point speaks for. Comparisons are of whole nanometres, so that a value on
+//! a limit lies within it on every computer.
 //!
 //! Source of the rule: ISO 14253-1, acceptance and rejection zones reduced by the expanded uncertainty on both sides.
 //!

@@ -1,8 +1,9 @@
 //! The tolerance of the job held against what the model foretells of the corrected part.
 //!
-//! A prediction proves nothing about a part that is not milled yet: it can say that the tolerance will be missed, and otherwise that
-//! it is expected to be kept, which stays open until the part has been touched (`truepath inspect`). Everywhere along the
-//! contour and at every height of the band the interval of two standard deviations around the predicted error counts.
+//! A prediction proves nothing about a part that is not milled yet: it can say that the tolerance will be missed, and
+//! otherwise that it is expected to be kept, which stays open until the part has been touched (`truepath inspect`).
+//! Everywhere along the contour and at every height of the band the interval of two standard deviations around the
+//! predicted error counts.
 
 use truepath_core::units::Offset;
 
