@@ -117,11 +117,15 @@ pub struct OnTerminal {
     pub screen: vt100::Parser,
     /// All of it.
     pub raw: Vec<u8>,
+    /// How much of it the screen has seen.
+    shown: usize,
     modes: String,
 }
 
 /// How long something may take to be shown.
 const PATIENCE: Duration = Duration::from_secs(20);
+/// Bytes of output between two looks at the screen.
+const SLICE: usize = 64;
 
 impl OnTerminal {
     pub fn start(arguments: &[&str], rows: u16, cols: u16, environment: &[(&str, &str)]) -> Self {
@@ -147,7 +151,7 @@ impl OnTerminal {
         std::mem::forget(pair.slave);
         let keys = pair.master.take_writer().unwrap();
         let screen = vt100::Parser::new(rows, cols, 100);
-        Self { master: pair.master, keys, child, output, screen, raw: vec![], modes }
+        Self { master: pair.master, keys, child, output, screen, raw: vec![], shown: 0, modes }
     }
     pub fn press(&mut self, keys: &str) {
         self.keys.write_all(keys.as_bytes()).unwrap();
@@ -160,10 +164,16 @@ impl OnTerminal {
     pub fn id(&self) -> u32 {
         self.child.process_id().unwrap()
     }
+    /// Shows a little more of the output; a quick program writes everything at once, and what it shows in between is to
+    /// be seen as well.
     fn take(&mut self, within: Duration) -> bool {
-        let Ok(bytes) = self.output.recv_timeout(within) else { return false };
-        self.screen.process(&bytes);
-        self.raw.extend(bytes);
+        if self.shown == self.raw.len() {
+            let Ok(bytes) = self.output.recv_timeout(within) else { return false };
+            self.raw.extend(bytes);
+        }
+        let next = self.raw.len().min(self.shown + SLICE);
+        self.screen.process(&self.raw[self.shown..next]);
+        self.shown = next;
         true
     }
     /// The text on the screen.

@@ -88,12 +88,12 @@ impl Drop for View {
     }
 }
 
-/// Draws until the run is over. When it cannot draw it stops, and the run goes on.
+/// Draws until the run is over, at least once. When it cannot draw it stops, and the run goes on.
 fn keep_drawing(mut screen: Screen, shared: &Shared) -> io::Result<()> {
     let theme = Theme::of_environment();
     let start = Instant::now();
     let mut trips = RoundTrips::new();
-    while !shared.over.load(Ordering::Relaxed) {
+    loop {
         let now = start.elapsed();
         let model = {
             let mut model = shared.model();
@@ -110,11 +110,13 @@ fn keep_drawing(mut screen: Screen, shared: &Shared) -> io::Result<()> {
             screen.end_by(signal);
             return Ok(());
         }
+        if shared.over.load(Ordering::Relaxed) {
+            return Ok(());
+        }
         match screen.key(FRAME)? {
             Some(Key::Leave | Key::Back) if shared.watch.is_stopping() => shared.watch.leave(),
             Some(Key::Leave | Key::Back) => shared.watch.stop(),
             _ => {}
         }
     }
-    Ok(())
 }
