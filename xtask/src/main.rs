@@ -11,6 +11,7 @@ mod firmware;
 mod fuzz;
 mod hil;
 mod judge;
+mod linuxcnc;
 mod page;
 mod repository;
 mod step;
@@ -127,6 +128,11 @@ enum Task {
         #[arg(long)]
         write: bool,
     },
+    /// The LinuxCNC component: builds it and tests it on a simulated machine.
+    Linuxcnc {
+        #[command(subcommand)]
+        task: Option<linuxcnc::Task>,
+    },
     /// Corrects the parts of an independent machine program and has it score them.
     Judge {
         /// The program that makes and scores parts, relative to the repository; its scenarios lie in `scenarios`
@@ -178,6 +184,7 @@ fn main() -> ExitCode {
             report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
         }
         Task::Page { write } => report.run(Step::new("page", || page::check(write))),
+        Task::Linuxcnc { task } => report.run(Step::new("linuxcnc", || linuxcnc::run(task))),
         Task::Judge { judge } => report.run(Step::new("judge", || judge::run_all(judge.as_deref()))),
     }
     report.finish()

@@ -1,0 +1,48 @@
+//! truepath.so, the real-time component.
+//!
+//! LinuxCNC's `halcompile` turns `linuxcnc/truepath.comp` into C, its `Makefile.modinc` compiles and links that with the
+//! flags of its own modules. All of it happens below the target directory.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::repository::{program, read, root, run, succeeds, target};
+use crate::step::Failure;
+
+/// Debian's package with what compiles components.
+const PACKAGE: &str = "linuxcnc-uspace-dev";
+
+/// Builds it; gives its folder, in which `make install` puts it among LinuxCNC's modules.
+///
+/// # Errors
+/// LinuxCNC's development package is missing, or something does not compile.
+pub fn build() -> Result<PathBuf, Failure> {
+    if !succeeds(program("halcompile").arg("--print-modinc")) {
+        return Err(Failure::Missing(format!(
+            "halcompile, which builds components of LinuxCNC, cannot be started. Install it:\n  apt-get install {PACKAGE}"
+        )));
+    }
+    let folder = target().join("linuxcnc");
+    fs::create_dir_all(&folder).map_err(|e| written(&folder, &e))?;
+    let source = root().join("linuxcnc/truepath.comp");
+    let c = folder.join("truepath.c");
+    run(program("halcompile").args(["--preprocess", "--outfile"]).arg(&c).arg(&source))?;
+    let rules = read(program("halcompile").arg("--print-modinc"))?;
+    let makefile = folder.join("Makefile");
+    fs::write(&makefile, text(rules.trim())).map_err(|e| written(&makefile, &e))?;
+    run(program("make").arg("--directory").arg(&folder).arg("modules"))?;
+    let made = folder.join("truepath.so");
+    let bytes = fs::metadata(&made).map_err(|e| written(&made, &e))?.len();
+    println!("{}: {bytes} bytes", made.display());
+    Ok(folder)
+}
+
+/// The makefile, with LinuxCNC's own rules.
+fn text(rules: &str) -> String {
+    let include = root().join("linuxcnc");
+    format!("obj-m += truepath.o\ninclude {rules}\nEXTRA_CFLAGS += -Wall -I{}\n", include.display())
+}
+
+fn written(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::found(format!("{}: {error}", path.display()))
+}

@@ -1,0 +1,59 @@
+//! Puts the component and what belongs to it where LinuxCNC and its user find them.
+
+use std::path::Path;
+use std::process::Command;
+
+use super::component;
+use crate::repository::{cargo, is_root, program, root, run, target};
+use crate::step::{Failure, Outcome, Passed};
+
+/// Programs on the path.
+const PROGRAMS: &str = "/usr/local/bin";
+/// Where `HALFILE = LIB:truepath.hal` of an INI file is looked for.
+const HAL_FILES: &str = "/usr/share/linuxcnc/hallib";
+/// M-codes, to be named in an INI file's `USER_M_PATH`.
+const M_CODES: &str = "/usr/local/share/truepath/mcodes";
+
+/// Files of `linuxcnc/`, where each goes, and its mode.
+const FILES: [(&str, &str, &str); 4] = [
+    ("truepath-desk", PROGRAMS, "755"),
+    ("truepath.hal", HAL_FILES, "644"),
+    ("mcodes/M160", M_CODES, "755"),
+    ("mcodes/M161", M_CODES, "755"),
+];
+
+/// Builds and installs; says where everything went.
+pub fn install(component_only: bool) -> Outcome {
+    let folder = component::build()?;
+    run(with_rights("make").arg("--directory").arg(&folder).arg("install"))?;
+    println!("truepath.so -> LinuxCNC's modules (loadrt truepath)");
+    if component_only {
+        return Ok(Passed::Done);
+    }
+    run(cargo().args(["build", "--release", "--package", "truepath", "--bin", "truepath"]))?;
+    put(&target().join("release/truepath"), PROGRAMS, "755")?;
+    for (file, folder, mode) in FILES {
+        let source = root().join("linuxcnc").join(file);
+        if source.exists() {
+            put(&source, folder, mode)?;
+        }
+    }
+    Ok(Passed::Done)
+}
+
+fn put(source: &Path, folder: &str, mode: &str) -> Result<(), Failure> {
+    let name = source.file_name().unwrap_or_default().to_string_lossy();
+    run(with_rights("install").args(["-D", "-m", mode]).arg(source).arg(format!("{folder}/{name}")))?;
+    println!("{name} -> {folder}");
+    Ok(())
+}
+
+/// A program that may write into the system's folders.
+fn with_rights(name: &str) -> Command {
+    if is_root() {
+        return program(name);
+    }
+    let mut command = program("sudo");
+    command.arg(name);
+    command
+}

@@ -1,0 +1,30 @@
+//! The LinuxCNC component: built, installed, tested on a simulated machine.
+
+mod component;
+mod install;
+
+use clap::Subcommand;
+
+use crate::step::Outcome;
+
+/// What is done with the component; without one, everything that tests it.
+#[derive(Clone, Copy, Debug, Subcommand)]
+pub enum Task {
+    /// Builds the real-time component truepath.so.
+    Build,
+    /// Builds it and puts it and what belongs to it into LinuxCNC's folders, as root or through sudo.
+    Install {
+        /// Only the real-time component, not the programs.
+        #[arg(long)]
+        component_only: bool,
+    },
+}
+
+/// Does a task.
+pub fn run(task: Option<Task>) -> Outcome {
+    match task {
+        // The tests on the simulated machine follow here.
+        None | Some(Task::Build) => component::build().map(|_| crate::step::Passed::Done),
+        Some(Task::Install { component_only }) => install::install(component_only),
+    }
+}
