@@ -35,7 +35,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 
 /// The sources of every package, without tests and benchmarks.
 fn all_sources() -> Vec<PathBuf> {
-    ["core", "host-sim", "tests", "xtask"]
+    ["core", "host-sim", "linuxcnc/abi", "tests", "xtask"]
         .iter()
         .flat_map(|package| sources(&root().join(package).join("src")))
         .collect()

@@ -50,6 +50,10 @@ pub struct AxisState {
 }
 
 impl AxisState {
+    /// A correction that stands.
+    pub const fn at_rest(correction: FineOffset) -> Self {
+        Self { position: correction.bits(), velocity: 0, target: correction.bits() }
+    }
     /// The correction.
     pub const fn correction(&self) -> FineOffset {
         FineOffset::from_bits(self.position)
