@@ -4,12 +4,16 @@
 //! the same settings scaled to the file's tick rate: what comes out is what the device would have sent to the drives,
 //! bit for bit. The image is armed with its own identity, once, before the first tick.
 //!
-//! Limits: X, Y, Z on the first three axes, no mirror; drives enabled and spindle speed fresh throughout.
+//! What the controller said besides the positions comes from the optional columns of the file (flags, frame, disarmed by
+//! command); settings other than the usual ones come from the caller. With both, a recorded run is reproduced to the
+//! last bit from its arming on.
+//!
+//! Limits: X, Y, Z on the first three axes, no mirror; the spindle speed is fresh throughout, no tick is missing.
 
 use truepath_core::image::Image;
 use truepath_core::rewrite::{
-    AXES, ArmRequest, Digest, Flags, Frame, Mode, Output, Reason, Rewriter, Setpoint, Settings, State, Status,
-    TURN_BITS,
+    AXES, ArmRequest, Digest, Frame, Mode, Output, Reason, Rewriter, Setpoint, Settings, State, Status, TURN_BITS,
+    TURN_ONE,
 };
 use truepath_core::units::{Offset, Real, shift_rounded_i64, sin_cos};
 
@@ -17,12 +21,47 @@ use crate::diagnostics::{Failure, InputError};
 use crate::setpoints::Setpoints;
 
 /// Where the program stands in the machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Placement {
     /// Machine coordinates of the program's origin, nm.
     pub origin_nm: [i64; 3],
-    /// Turn of the program in the XY plane, degrees, counter-clockwise.
-    pub rotation_deg: Real,
+    /// Cosine of the turn of the program in the XY plane, counter-clockwise, units of 2⁻³⁰.
+    pub cosine: i32,
+    /// Sine of that turn.
+    pub sine: i32,
+}
+
+impl Default for Placement {
+    /// Program coordinates are machine coordinates.
+    fn default() -> Self {
+        Self { origin_nm: [0; 3], cosine: TURN_ONE, sine: 0 }
+    }
+}
+
+impl Placement {
+    /// The origin, nm, and a turn in degrees.
+    pub fn turned(origin_nm: [i64; 3], rotation_deg: Real) -> Self {
+        let (sine, cosine) = sin_cos(rotation_deg * Real::PI / Real::from_int(180));
+        let turn = |v: Real| shift_rounded_i64(v.bits(), Real::FRACTION_BITS - TURN_BITS) as i32;
+        Self { origin_nm, cosine: turn(cosine), sine: turn(sine) }
+    }
+
+    /// As the controller sends it with the arming: X, Y, Z on the first three axes.
+    pub fn frame(&self) -> Frame {
+        let Self { origin_nm, cosine, sine } = *self;
+        Frame { offset_nm: origin_nm, cosine, sine, ..Frame::identity() }.sealed()
+    }
+}
+
+/// What is replayed besides the file.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Where the program stands.
+    pub placement: Placement,
+    /// Serial number of the part.
+    pub part_serial: u32,
+    /// Settings of the rewriter; see [`settings`] for the usual ones.
+    pub settings: Settings,
 }
 
 /// What came of a replay.
@@ -55,19 +94,20 @@ pub struct Summary {
 /// Replays setpoints; `each` gets every tick's output in order.
 ///
 /// # Errors
-/// `R001` for a tick rate outside 10 Hz … 100 kHz or a setting that does not go with it, `R002` when the image refuses
-/// to be armed, and whatever `each` answers.
+/// `R001` for a tick rate outside 10 Hz … 100 kHz or a setting out of range, `R002` when the image refuses to be armed,
+/// and whatever `each` answers.
 pub fn replay(
     image: Image<'_>,
     setpoints: &Setpoints,
-    placement: &Placement,
-    part_serial: u32,
+    run: &Run,
     mut each: impl FnMut(usize, &Output) -> Result<(), Failure>,
 ) -> Result<Summary, Failure> {
     let nominal_millirpm = image.settings().feed.spindle_millirpm;
-    let request = ArmRequest { binding: image.settings().binding, part_serial, frame: frame(placement) };
-    let rewriter = Rewriter::new(settings(setpoints.period_ns), Some(image)).map_err(|e| {
-        InputError::new("R001", e.to_string(), "", "record the setpoints at the rate of the machine's servo cycle")
+    let request =
+        ArmRequest { binding: image.settings().binding, part_serial: run.part_serial, frame: run.placement.frame() };
+    let rewriter = Rewriter::new(run.settings, Some(image)).map_err(|e| {
+        let help = "record the setpoints at the rate of the machine's servo cycle; give settings within their ranges";
+        InputError::new("R001", e.to_string(), "", help)
     })?;
     let mut state = State::default();
     let refused =
@@ -85,9 +125,13 @@ pub fn replay(
             spindle_millirpm: row.spindle_rpm.map_or(nominal_millirpm, millirpm),
             spindle_age_ticks: 0,
             sequence: index as u32 + 1,
-            frame_crc: request.frame.crc,
-            flags: Flags::DRIVES_ENABLED.with(Flags::SPINDLE_LOADED),
+            frame_crc: row.frame_crc.unwrap_or(request.frame.crc),
+            flags: row.flags,
         };
+        if row.disarm {
+            // Where nothing is armed any more the controller's command was refused as well.
+            let _ = rewriter.disarm(&mut state);
+        }
         let output = rewriter.tick(&mut state, &setpoint);
         tally.add(&output);
         each(index, &output)?;
@@ -112,12 +156,6 @@ pub fn settings(period_ns: i64) -> Settings {
         feed_smoothing: smoothing_ticks.ilog2().min(12),
         ..slow
     }
-}
-
-fn frame(placement: &Placement) -> Frame {
-    let (sine, cosine) = sin_cos(placement.rotation_deg * Real::PI / Real::from_int(180));
-    let turn = |v: Real| shift_rounded_i64(v.bits(), Real::FRACTION_BITS - TURN_BITS) as i32;
-    Frame { offset_nm: placement.origin_nm, cosine: turn(cosine), sine: turn(sine), ..Frame::identity() }.sealed()
 }
 
 fn millirpm(rpm: Real) -> u32 {

@@ -1,7 +1,8 @@
-//! Recorded setpoints: `t_s,x_mm,y_mm,z_mm[,spindle_rpm]` after a first line `# frame = program` or `# frame = machine`.
+//! Recorded setpoints: `t_s,x_mm,y_mm,z_mm` and optional columns after a first line `# frame = program` or `# frame = machine`.
 //!
 //! Numbers are read as exact decimals: 0.1 mm is 100,000 nm. The rows are the ticks of a servo cycle, so their times
-//! must rise by one and the same period; what does not is an error with its line.
+//! must rise by one and the same period; what does not is an error with its line. The optional columns are in
+//! [`columns`]; a controller that writes them all is reproduced to the last bit, whatever happened during the run.
 //!
 //! | code | meaning |
 //! |---|---|
@@ -11,12 +12,15 @@
 //! | S004 | times that do not rise evenly |
 //! | S005 | fewer than two rows |
 
+pub mod columns;
+
 use std::ops::Range;
 
-use truepath_core::units::{Offset, Real};
+use truepath_core::rewrite::Flags;
+use truepath_core::units::Real;
 
 use crate::diagnostics::{InputError, Source};
-use crate::job::Decimal;
+use columns::{Columns, Fields};
 
 /// The coordinates a file is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +38,12 @@ pub struct Row {
     pub position_nm: [i64; 3],
     /// Spindle speed, rev/min; `None` when the file has no such column.
     pub spindle_rpm: Option<Real>,
+    /// What the controller said with it; drives enabled and spindle loaded when the file has no such column.
+    pub flags: Flags,
+    /// Checksum of the frame in force; `None` when the file has no such column: the frame that was armed.
+    pub frame_crc: Option<u32>,
+    /// Whether the arming was ended by command before this tick.
+    pub disarm: bool,
 }
 
 /// A file of setpoints.
@@ -51,11 +61,6 @@ pub struct Setpoints {
 
 /// How far the time between two rows may be from the period: times are printed with few decimals.
 const PERIOD_TOLERANCE_PERCENT: i64 = 10;
-const COLUMNS: [&str; 5] = ["t_s", "x_mm", "y_mm", "z_mm", "spindle_rpm"];
-/// The farthest coordinate: 4 m.
-const FARTHEST: Offset = Offset::from_um(4_000_000);
-/// The fastest spindle, rev/min.
-const FASTEST: Real = Real::from_int(200_000);
 
 impl Setpoints {
     /// Reads a file.
@@ -71,14 +76,14 @@ impl Setpoints {
             .trim(csv::Trim::None)
             .from_reader(source.bytes().get(body..).unwrap_or_default());
         let mut record = csv::ByteRecord::new();
-        let mut columns = None;
+        let mut columns: Option<Columns> = None;
         let (mut times, mut rows) = (Vec::new(), Vec::new());
         while read(&mut reader, &mut record, source)? {
             let fields = Fields { source, record: &record, start: body + start_of(&record, source, body) };
-            match columns {
-                None => columns = Some(fields.header()?),
-                Some(count) => {
-                    let (time, row) = fields.row(count)?;
+            match &columns {
+                None => columns = Some(Columns::read(&fields)?),
+                Some(columns) => {
+                    let (time, row) = columns.row(&fields)?;
                     times.push((time, fields.span(0)));
                     rows.push(row);
                 }
@@ -139,74 +144,6 @@ fn start_of(record: &csv::ByteRecord, source: &Source, body: usize) -> usize {
     from + at
 }
 
-/// The fields of one line.
-struct Fields<'a> {
-    source: &'a Source,
-    record: &'a csv::ByteRecord,
-    start: usize,
-}
-
-impl Fields<'_> {
-    /// Where a field stands; the whole line for one that is missing.
-    fn span(&self, index: usize) -> Range<usize> {
-        let before: usize = self.record.iter().take(index).map(|f| f.len() + 1).sum();
-        match self.record.get(index) {
-            Some(field) => self.start + before..self.start + before + field.len(),
-            None => self.start..self.start + self.record.as_slice().len() + self.record.len().saturating_sub(1),
-        }
-    }
-
-    /// How many columns the file has.
-    fn header(&self) -> Result<usize, InputError> {
-        let names: Vec<String> = self.record.iter().map(|f| String::from_utf8_lossy(f).trim().to_owned()).collect();
-        if names == COLUMNS[..4] || names == COLUMNS {
-            return Ok(names.len());
-        }
-        let wrong = names.iter().zip(COLUMNS).position(|(name, column)| name != column).unwrap_or(names.len().min(5));
-        let found = match names.get(wrong) {
-            Some(name) => format!("column {} is \"{name}\"", wrong + 1),
-            None => format!("there are {} columns", names.len()),
-        };
-        let expected = "t_s,x_mm,y_mm,z_mm or t_s,x_mm,y_mm,z_mm,spindle_rpm";
-        let help = "name the columns in the second line of the file";
-        Err(InputError::new("S002", found, expected, help).at(self.source, self.span(wrong)))
-    }
-
-    fn row(&self, columns: usize) -> Result<(i64, Row), InputError> {
-        if self.record.len() != columns {
-            let found = format!("this line has {} fields", self.record.len());
-            let expected = format!("{columns}, as in the line with the names");
-            let help = "a line that was cut off? remove it or record again";
-            return Err(InputError::new("S002", found, expected, help).at(self.source, self.span(usize::MAX)));
-        }
-        let time_ns = self.number(0)?.as_billionths();
-        let mut position_nm = [0; 3];
-        for (axis, nm) in position_nm.iter_mut().enumerate() {
-            let length = self.number(axis + 1)?.as_mm();
-            if length.abs() > FARTHEST {
-                return Err(self.refused(axis + 1, "-4000 to 4000 mm"));
-            }
-            *nm = length.nm();
-        }
-        let spindle_rpm = if columns == 5 { Some(self.number(4)?.as_real()) } else { None };
-        if spindle_rpm.is_some_and(|rpm| rpm < 0 || rpm > FASTEST) {
-            return Err(self.refused(4, "0 to 200000 rev/min"));
-        }
-        Ok((time_ns, Row { position_nm, spindle_rpm }))
-    }
-
-    fn number(&self, index: usize) -> Result<Decimal, InputError> {
-        let text = self.record.get(index).and_then(|f| std::str::from_utf8(f).ok()).map(str::trim);
-        text.and_then(Decimal::parse).ok_or_else(|| self.refused(index, "a decimal number"))
-    }
-
-    fn refused(&self, index: usize, expected: &str) -> InputError {
-        let span = self.span(index);
-        let found = format!("{} is \"{}\"", COLUMNS[index.min(4)], self.source.excerpt(span.clone()));
-        InputError::new("S003", found, expected, "correct the field").at(self.source, span)
-    }
-}
-
 /// Times rise by one period; the median step is it, so that a gap is found where it is.
 fn even(source: &Source, times: &[(i64, Range<usize>)]) -> Result<(), InputError> {
     let mut steps: Vec<i64> = times.windows(2).map(|pair| pair[1].0.saturating_sub(pair[0].0)).collect();
@@ -242,6 +179,18 @@ mod tests {
     }
 
     #[test]
+    fn optional_columns_stand_in_any_order_and_default_to_an_undisturbed_cut() {
+        let plain = parse("# frame = machine\nt_s,x_mm,y_mm,z_mm\n0,1,2,3\n1,1,2,3\n").expect("setpoints").rows[0];
+        assert_eq!(plain.flags, Flags::DRIVES_ENABLED.with(Flags::SPINDLE_LOADED));
+        assert_eq!((plain.frame_crc, plain.disarm, plain.spindle_rpm), (None, false, None));
+        let head = "# frame = machine\nt_s,x_mm,y_mm,z_mm,disarm,flags,frame_crc,spindle_rpm\n";
+        let row = parse(&format!("{head}0,1,2,3,0,5,4294967295,1500\n1,1,2,3,1,127,0,0.5\n")).expect("setpoints").rows;
+        assert_eq!((row[0].flags, row[0].frame_crc, row[0].disarm), (Flags(5), Some(u32::MAX), false));
+        assert_eq!((row[1].flags, row[1].frame_crc, row[1].disarm), (Flags(127), Some(0), true));
+        assert_eq!(row[1].spindle_rpm, Some(Real::ratio(1, 2)));
+    }
+
+    #[test]
     fn what_is_wrong_is_named_with_its_place() {
         let rows = |body: &str| format!("# frame = program\nt_s,x_mm,y_mm,z_mm\n{body}");
         let cases = [
@@ -254,6 +203,11 @@ mod tests {
             (rows("0,1,2,3\n1,1,2,3,4\n"), "S002", (4, 1)),
             (rows("0,1,2,3\n\n# gap\n1,1,two,3\n"), "S003", (6, 5)),
             (rows("0,1,2,3\n1,1,2,5000\n"), "S003", (4, 7)),
+            ("# frame = program\nt_s,x_mm,y_mm,z_mm,flags,flags\n".to_owned(), "S002", (2, 26)),
+            ("# frame = program\nt_s,x_mm,y_mm,z_mm,load\n".to_owned(), "S002", (2, 20)),
+            ("# frame = program\nt_s,x_mm,y_mm,z_mm,flags\n0,0,0,0,128\n".to_owned(), "S003", (3, 9)),
+            ("# frame = program\nt_s,x_mm,y_mm,z_mm,disarm\n0,0,0,0,2\n".to_owned(), "S003", (3, 9)),
+            ("# frame = program\nt_s,x_mm,y_mm,z_mm,frame_crc\n0,0,0,0,-1\n".to_owned(), "S003", (3, 9)),
             (rows("0,1,2,3\n1,1,2,3\n1,1,2,3\n"), "S004", (5, 1)),
             (rows("0,1,2,3\n1,1,2,3\n2,1,2,3\n4,1,2,3\n5,1,2,3\n"), "S004", (6, 1)),
         ];

@@ -176,6 +176,97 @@ fn the_same_ticks_give_the_same_fingerprint_and_others_another() {
     assert_ne!(first, digest("other.csv", "3.csv"));
 }
 
+/// The file with a column more, its value from the number of the tick, and a settings option: the summary.
+fn disturbed(desk: &Path, name: &str, value: impl Fn(usize) -> u32, options: &[&str]) -> serde_json::Value {
+    let text = std::fs::read_to_string(desk.join("in.csv")).expect("a file");
+    let mut lines = text.lines();
+    let mut out = format!("{}\n{},{name}\n", lines.next().unwrap_or(""), lines.next().unwrap_or(""));
+    for (tick, line) in lines.enumerate() {
+        let _ = writeln!(out, "{line},{}", value(tick));
+    }
+    std::fs::write(desk.join("disturbed.csv"), out).expect("a file");
+    let usual = ["replay", "correction.tpi", "--setpoints", "disturbed.csv", "-o", "d.csv", "--json", "--force"];
+    let done = truepath(desk, &[&usual, options].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+    json(&done.stdout)
+}
+
+#[test]
+fn what_the_controller_said_besides_the_positions_is_replayed() {
+    let desk = desk();
+    let usual = json(
+        &truepath(desk.path(), &["replay", "correction.tpi", "--setpoints", "in.csv", "-o", "u.csv", "--json"]).stdout,
+    );
+    let reason = |name: &str, value: &dyn Fn(usize) -> u32| {
+        let summary = disturbed(desk.path(), name, value, &[]);
+        (summary["reason"].as_u64(), summary["fault"].as_bool(), summary["digest"] == usual["digest"])
+    };
+    let at = |tick: usize, value: u32, else_: u32| move |t: usize| if t == tick { value } else { else_ };
+    // Drives enabled and spindle loaded are what a file without the column stands for.
+    assert_eq!(reason("flags", &|_| 5), (Some(1), Some(false), true));
+    assert_eq!(reason("flags", &at(4_000, 5 | 16, 5)), (Some(16), Some(true), false), "emergency stop");
+    assert_eq!(reason("flags", &at(4_000, 5 | 8, 5)), (Some(17), Some(true), false), "abort");
+    assert_eq!(reason("flags", &at(4_000, 5 | 64, 5)), (Some(18), Some(true), false), "tool change");
+    assert_eq!(reason("flags", &at(4_000, 4, 5)), (Some(19), Some(true), false), "drives disabled");
+    assert_eq!(reason("flags", &at(4_000, 5 | 32, 5)), (Some(3), Some(false), false), "end of the program");
+    assert_eq!(reason("disarm", &at(4_000, 1, 0)), (Some(2), Some(false), false));
+    let frame = truepath_core::rewrite::Frame::identity().crc;
+    assert_eq!(reason("frame_crc", &|_| frame), (Some(1), Some(false), true));
+    assert_eq!(reason("frame_crc", &at(4_000, frame ^ 1, frame)), (Some(20), Some(true), false));
+}
+
+#[test]
+fn settings_of_the_machine_change_what_goes_out_and_wrong_ones_are_refused() {
+    let desk = desk();
+    let with = |settings: &[&str]| disturbed(desk.path(), "disarm", |_| 0, settings);
+    let usual = with(&[]);
+    // Y may go up to 5.02 mm: the correction of 0.05 mm does not fit.
+    let limits =
+        "joint_limits_nm=[[-9e18,9e18],[0,5020000],[0,0],[0,0],[0,0],[0,0]]".replace("9e18", "9000000000000000000");
+    let limited = with(&["--setting", &limits]);
+    assert_eq!((limited["reason"].as_u64(), usual["reason"].as_u64()), (Some(30), Some(1)));
+    let slower = with(&["--setting", "fade_ticks=10", "--setting", "max_step=9999"]);
+    assert_eq!(slower["reason"].as_u64(), Some(22), "10 000 nm a tick are a jump then");
+    for (settings, code) in [
+        (["--setting", "fade_tick=10"], "R004"),
+        (["--setting", "fade_ticks"], "R004"),
+        (["--setting", "fade_ticks=0"], "R001"),
+    ] {
+        let arguments = ["replay", "correction.tpi", "--setpoints", "in.csv", "-o", "x.csv", "--json"];
+        let refused = truepath(desk.path(), &[&arguments[..], &settings].concat());
+        assert_eq!((refused.status.code(), json(&refused.stderr)["error"]["code"].as_str()), (Some(1), Some(code)));
+    }
+}
+
+#[test]
+fn a_turn_in_whole_units_is_the_one_of_the_angle() {
+    let desk = desk();
+    let digest = |turn: [&str; 2], out: &str| {
+        let place = ["replay", "correction.tpi", "--setpoints", "machine.csv", "-o", out, "--json", "--origin-mm"];
+        let done = truepath(desk.path(), &[&place[..], &["105,-240,-300"], &turn].concat());
+        (json(&done.stdout)["corrected_ticks"].clone(), json(&done.stdout)["digest"].clone())
+    };
+    // The path of the file runs along +X of the machine; in a program turned by 0 it is the image's.
+    let none = digest(["--turn", "1073741824,0"], "1.csv");
+    assert_eq!(none, digest(["--rotation-deg", "0"], "2.csv"));
+    let refused = truepath(
+        desk.path(),
+        &[
+            "replay",
+            "correction.tpi",
+            "--setpoints",
+            "machine.csv",
+            "-o",
+            "3.csv",
+            "--origin-mm",
+            "0,0,0",
+            "--turn",
+            "1,0",
+        ],
+    );
+    assert_eq!(refused.status.code(), Some(1), "no rigid motion");
+}
+
 #[test]
 fn an_image_is_shown_as_text_and_as_json() {
     let desk = desk();

@@ -72,9 +72,10 @@ fn a_recorded_file_gives_what_replay_gives() {
     }
     let source = truepath::diagnostics::Source::new("in.csv", text.into_bytes());
     let setpoints = truepath::setpoints::Setpoints::parse(&source).unwrap();
-    let placement = truepath::replay::Placement::default();
+    let settings = truepath::replay::settings(setpoints.period_ns);
+    let run_file = truepath::replay::Run { placement: Default::default(), part_serial: 1, settings };
     let mut largest = 0;
-    let replayed = truepath::replay::replay(image, &setpoints, &placement, 1, |_, output| {
+    let replayed = truepath::replay::replay(image, &setpoints, &run_file, |_, output| {
         largest = largest.max(output.correction_nm.iter().map(|nm| nm.abs()).max().unwrap_or(0));
         Ok(())
     })

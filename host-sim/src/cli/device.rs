@@ -17,8 +17,9 @@ use arguments::Task;
 use super::monitor::{Known, Looked, device as view, wanted};
 use super::{Terminal, image, print};
 use crate::bench::{BenchError, Client, Ingredients, Line, compute};
-use crate::command::device::{activate, changed, info, named, recording, recording_setpoints, recording_table, upload};
+use crate::command::device::{activate, info, recording, recording_setpoints, recording_table, upload};
 use crate::command::hil::Counts;
+use crate::command::settings::{NoSuchSetting, changed, named};
 use crate::diagnostics::{Failure, Source};
 use crate::job::Job;
 use crate::output::write_file;
@@ -100,7 +101,8 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
         Task::Settings { changes } => {
             let mut settings = client.settings()?;
             if !changes.is_empty() {
-                settings = changed(&settings, changes)?;
+                let unfit = |e: NoSuchSetting| BenchError::Option { found: e.found, help: e.help };
+                settings = changed(&settings, changes).map_err(unfit)?;
                 client.done(Ask::Configure(settings))?;
             }
             say(terminal, &settings, || {

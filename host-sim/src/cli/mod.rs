@@ -16,6 +16,7 @@ mod inspect;
 mod learn;
 mod monitor;
 mod multiaxis;
+mod placement;
 mod plot;
 mod pocket;
 mod probe;

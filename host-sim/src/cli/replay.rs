@@ -4,34 +4,35 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use truepath_core::units::Real;
 
+use super::placement::PlacementArguments;
 use super::{Terminal, image, print};
+use crate::command::settings::changed;
 use crate::diagnostics::{Failure, InputError, Source};
-use crate::job::Decimal;
 use crate::output::OutputFile;
-use crate::replay::{Placement, Summary, replay};
+use crate::replay::{Run, Summary, replay, settings};
 use crate::setpoints::{Frame, Setpoints};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The correction image.
     image: PathBuf,
-    /// Recorded setpoints: `# frame = program` or `machine`, then t_s,x_mm,y_mm,z_mm[,spindle_rpm].
+    /// Recorded setpoints: `# frame = program` or `machine`, then t_s,x_mm,y_mm,z_mm and any of spindle_rpm, flags,
+    /// frame_crc, disarm.
     #[arg(long, value_name = "FILE")]
     setpoints: PathBuf,
     /// Corrected setpoints with correction, state and reason of every tick.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Machine coordinates of the program's origin, needed for `# frame = machine`.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = lengths)]
-    origin_mm: Option<[i64; 3]>,
-    /// Turn of the program in the machine's XY plane, counter-clockwise.
-    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = angle)]
-    rotation_deg: Option<Real>,
+    #[command(flatten)]
+    placement: PlacementArguments,
     /// Serial number of the part.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     part: u32,
+    /// A setting that differs from the usual ones, named as by `truepath device settings`, for instance
+    /// `hold_after_ticks=40`; may be repeated.
+    #[arg(long = "setting", value_name = "NAME=VALUE")]
+    settings: Vec<String>,
     /// Replace the output file if it exists.
     #[arg(long)]
     force: bool,
@@ -45,7 +46,10 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     let image = image::check(&bytes, &arguments.image)?;
     let source = Source::read(&arguments.setpoints)?;
     let setpoints = Setpoints::parse(&source)?;
-    let placement = placement(arguments, &setpoints, &source)?;
+    let placement = arguments.placement.of(&setpoints, &source)?;
+    let settings = changed(&settings(setpoints.period_ns), &arguments.settings)
+        .map_err(|e| InputError::new("R004", e.found, "a setting of the rewriter as NAME=VALUE", e.help))?;
+    let run = Run { placement, part_serial: arguments.part, settings };
     if setpoints.rows.first().is_some_and(|row| row.spindle_rpm.is_none()) {
         terminal.note("the file has no spindle_rpm; the image's nominal speed is taken");
     }
@@ -54,7 +58,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     let frame = if setpoints.frame == Frame::Program { "program" } else { "machine" };
     writeln!(file, "# frame = {frame}\nt_s,x_mm,y_mm,z_mm,dx_mm,dy_mm,state,reason,status,node").map_err(failed)?;
     let mut progress = terminal.progress("replaying", setpoints.rows.len() as u64);
-    let summary = replay(image, &setpoints, &placement, arguments.part, |index, output| {
+    let summary = replay(image, &setpoints, &run, |index, output| {
         if index % BAR_STEP == 0 {
             progress.reached(index as u64);
         }
@@ -100,39 +104,6 @@ fn report(summary: &Summary, arguments: &Arguments, terminal: &Terminal) -> Resu
         arguments.output.display(),
     );
     print(text.as_bytes())
-}
-
-/// Where the program stands; machine coordinates mean nothing without it, program coordinates nothing with it.
-fn placement(arguments: &Arguments, setpoints: &Setpoints, source: &Source) -> Result<Placement, InputError> {
-    let given = arguments.origin_mm.is_some() || arguments.rotation_deg.is_some();
-    match (setpoints.frame, arguments.origin_mm) {
-        (Frame::Program, _) if !given => Ok(Placement::default()),
-        (Frame::Machine, Some(origin_nm)) => {
-            Ok(Placement { origin_nm, rotation_deg: arguments.rotation_deg.unwrap_or_default() })
-        }
-        (Frame::Program, _) => {
-            let found = "the setpoints are in program coordinates, but --origin-mm or --rotation-deg is given";
-            let help = "leave the options out, or say # frame = machine in the file";
-            Err(InputError::new("R003", found, "one or the other", help).at(source, 0..1))
-        }
-        (Frame::Machine, None) => {
-            let found = "the setpoints are in machine coordinates, but --origin-mm is not given";
-            let help = "add --origin-mm X,Y,Z: the work offset with the tool's length";
-            Err(InputError::new("R003", found, "the place of the program's origin", help).at(source, 0..1))
-        }
-    }
-}
-
-fn lengths(text: &str) -> Result<[i64; 3], String> {
-    let lengths: Option<Vec<i64>> = text.split(',').map(|t| Some(Decimal::parse(t.trim())?.as_mm().nm())).collect();
-    lengths
-        .and_then(|l| <[i64; 3]>::try_from(l).ok())
-        .ok_or_else(|| "three lengths in mm, like 120.5,-80,-310".to_owned())
-}
-
-fn angle(text: &str) -> Result<Real, String> {
-    let angle = Decimal::parse(text.trim()).map(Decimal::as_real).filter(|a| a.abs() <= Real::from_int(360));
-    angle.ok_or_else(|| "an angle from -360 to 360 degrees".to_owned())
 }
 
 /// Millionths printed with six decimals: nanometres as millimetres.

@@ -3,8 +3,7 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use serde_json::Value;
-use truepath_core::link::{Ask, DeviceSettings, Item, Reply, ResetCause, SetpointFrame, Slot, setpoint_bytes};
+use truepath_core::link::{Ask, Item, Reply, ResetCause, SetpointFrame, Slot, setpoint_bytes};
 use truepath_core::rewrite::{AXES, Setpoint};
 
 use crate::bench::{BenchError, Client, Committed, Wire};
@@ -158,7 +157,7 @@ pub fn recording_table(frames: &[Recorded], axes: u8) -> String {
 /// A recording as a file of setpoints for `replay` and `hil`: machine coordinates, the first three axes as X, Y, Z.
 /// Damaged frames leave a gap.
 pub fn recording_setpoints(frames: &[Recorded], tick_hz: u32) -> String {
-    let mut text = String::from("# frame = machine\nt_s,x_mm,y_mm,z_mm,spindle_rpm\n");
+    let mut text = String::from("# frame = machine\nt_s,x_mm,y_mm,z_mm,spindle_rpm,flags,frame_crc\n");
     let good = || frames.iter().filter_map(|f| if let Recorded::Setpoint(s) = f { Some(s) } else { None });
     let first = good().next().map_or(0, |s| s.sequence);
     for s in good() {
@@ -166,7 +165,8 @@ pub fn recording_setpoints(frames: &[Recorded], tick_hz: u32) -> String {
         let ns = ticks * 1_000_000_000 / u64::from(tick_hz.max(1));
         let [x, y, z] = [s.axes[0], s.axes[1], s.axes[2]].map(millimetres);
         let rpm = f64::from(s.spindle_millirpm) / 1000.0;
-        let _ = writeln!(text, "{}.{:09},{x},{y},{z},{rpm}", ns / 1_000_000_000, ns % 1_000_000_000);
+        let (seconds, rest, flags, frame) = (ns / 1_000_000_000, ns % 1_000_000_000, s.flags.0, s.frame_crc);
+        let _ = writeln!(text, "{seconds}.{rest:09},{x},{y},{z},{rpm},{flags},{frame}");
     }
     text
 }
@@ -177,65 +177,11 @@ fn millimetres(nm: i64) -> String {
     format!("{sign}{}.{:06}", nm / 1_000_000, nm % 1_000_000)
 }
 
-/// Settings by name: `axes`, `deadline_us`, `rewriter.tick_hz` …, with their values.
-pub fn named(settings: &DeviceSettings) -> Vec<(String, Value)> {
-    let mut out = Vec::new();
-    if let Ok(value) = serde_json::to_value(settings) {
-        flatten("", &value, &mut out);
-    }
-    out
-}
-
-fn flatten(name: &str, value: &Value, out: &mut Vec<(String, Value)>) {
-    match value {
-        Value::Object(members) => {
-            for (key, value) in members {
-                let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
-                flatten(&name, value, out);
-            }
-        }
-        _ => out.push((name.to_owned(), value.clone())),
-    }
-}
-
-/// Settings with some of them changed, each as `name=value`.
-///
-/// # Errors
-/// A name or a value that there is not; ranges are the device's to check.
-pub fn changed(settings: &DeviceSettings, changes: &[String]) -> Result<DeviceSettings, BenchError> {
-    let option = |found: String, help: String| BenchError::Option { found, help };
-    let mut all = serde_json::to_value(settings).map_err(|e| BenchError::Foreign(e.to_string()))?;
-    for change in changes {
-        let names = || named(settings).into_iter().map(|(name, _)| name).collect::<Vec<_>>().join(", ");
-        let (name, text) = change
-            .split_once('=')
-            .ok_or_else(|| option(format!("\"{change}\" is no name=value"), "write axes=6".into()))?;
-        let place = all
-            .pointer_mut(&format!("/{}", name.replace('.', "/")))
-            .filter(|place| !place.is_object())
-            .ok_or_else(|| option(format!("there is no setting \"{name}\""), format!("one of {}", names())))?;
-        *place = serde_json::from_str(text)
-            .map_err(|_| option(format!("\"{text}\" is no value"), format!("{name} is {place} now")))?;
-    }
-    serde_json::from_value(all).map_err(|e| option(format!("settings: {e}"), "give values of the kind shown".into()))
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use truepath_core::rewrite::Flags;
 
-    #[test]
-    fn a_setting_is_changed_by_its_name_and_nothing_else_is() {
-        let settings = DeviceSettings::at_1_khz();
-        let wanted = ["axes=6".to_owned(), "rewriter.tick_hz=2000".to_owned()];
-        let new = changed(&settings, &wanted).expect("settings");
-        let mut expected = settings;
-        (expected.axes, expected.rewriter.tick_hz) = (6, 2000);
-        assert_eq!(new, expected);
-        for wrong in ["axis=6", "axes", "axes=many", "axes=300", "rewriter=1"] {
-            assert!(changed(&settings, &[wrong.to_owned()]).is_err(), "{wrong}");
-        }
-    }
+    use super::*;
 
     #[test]
     fn a_recording_is_a_file_that_replay_reads() {
@@ -243,6 +189,8 @@ mod tests {
             axes: [x, -1, 2_000_000, 0, 0, 0],
             spindle_millirpm: 1_500_500,
             sequence,
+            frame_crc: 7,
+            flags: Flags::EMERGENCY_STOP,
             ..Setpoint::default()
         };
         let frames: Vec<Recorded> =
@@ -252,6 +200,7 @@ mod tests {
         let read = crate::setpoints::Setpoints::parse(&source).expect("setpoints");
         assert_eq!(read.period_ns, 1_000_000);
         assert_eq!(read.rows[3].position_nm, [-1_499_997, -1, 2_000_000]);
+        assert_eq!((read.rows[3].flags, read.rows[3].frame_crc), (Flags::EMERGENCY_STOP, Some(7)));
         let table = recording_table(&[Recorded::Damaged, frames[0]], 3);
         assert_eq!(table.lines().map(|l| l.split(',').count()).collect::<Vec<_>>(), [9, 9, 9]);
     }

@@ -24,6 +24,7 @@ pub mod probe_next;
 mod remarks;
 mod replaced;
 pub mod second_pass;
+pub mod settings;
 pub mod simulate;
 pub mod split;
 pub mod study;

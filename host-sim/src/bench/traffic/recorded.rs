@@ -84,7 +84,8 @@ impl Traffic for Recorded {
             self.armed = true;
             return Some(Command::Arm(self.request));
         }
-        let command = self.setpoint(Flags::DRIVES_ENABLED.with(Flags::SPINDLE_LOADED));
+        let usual = Flags::DRIVES_ENABLED.with(Flags::SPINDLE_LOADED);
+        let command = self.setpoint(self.setpoints.rows.get(self.row).map_or(usual, |row| row.flags));
         self.row = self.row.saturating_add(1);
         command
     }

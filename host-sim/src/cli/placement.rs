@@ -1,0 +1,71 @@
+//! Where the program stands in the machine, on the command line.
+
+use clap::Args;
+use truepath_core::units::Real;
+
+use crate::diagnostics::{InputError, Source};
+use crate::job::Decimal;
+use crate::replay::Placement;
+use crate::setpoints::{Frame, Setpoints};
+
+#[derive(Clone, Debug, Args)]
+pub(super) struct PlacementArguments {
+    /// Machine coordinates of the program's origin, needed for `# frame = machine`.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = lengths)]
+    origin_mm: Option<[i64; 3]>,
+    /// Turn of the program in the machine's XY plane, counter-clockwise.
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = angle)]
+    rotation_deg: Option<Real>,
+    /// Cosine and sine of that turn in units of 2⁻³⁰, as they were sent with the arming.
+    #[arg(long, value_name = "COSINE,SINE", allow_hyphen_values = true, value_parser = turn, conflicts_with = "rotation_deg")]
+    turn: Option<[i32; 2]>,
+}
+
+impl PlacementArguments {
+    /// For a file of setpoints: machine coordinates mean nothing without an origin, program coordinates nothing with one.
+    ///
+    /// # Errors
+    /// `R003` when frame and options do not go together.
+    pub fn of(&self, setpoints: &Setpoints, source: &Source) -> Result<Placement, InputError> {
+        let given = self.origin_mm.is_some() || self.rotation_deg.is_some() || self.turn.is_some();
+        let (found, expected, help) = match (setpoints.frame, self.origin_mm) {
+            (Frame::Program, _) if !given => return Ok(Placement::default()),
+            (Frame::Machine, Some(origin_nm)) => {
+                return Ok(match self.turn {
+                    Some([cosine, sine]) => Placement { origin_nm, cosine, sine },
+                    None => Placement::turned(origin_nm, self.rotation_deg.unwrap_or_default()),
+                });
+            }
+            (Frame::Program, _) => (
+                "the setpoints are in program coordinates, but --origin-mm, --rotation-deg or --turn is given",
+                "one or the other",
+                "leave the options out, or say # frame = machine in the file",
+            ),
+            (Frame::Machine, None) => (
+                "the setpoints are in machine coordinates, but --origin-mm is not given",
+                "the place of the program's origin",
+                "add --origin-mm X,Y,Z: the work offset with the tool's length",
+            ),
+        };
+        Err(InputError::new("R003", found, expected, help).at(source, 0..1))
+    }
+}
+
+fn lengths(text: &str) -> Result<[i64; 3], String> {
+    let lengths: Option<Vec<i64>> = text.split(',').map(|t| Some(Decimal::parse(t.trim())?.as_mm().nm())).collect();
+    lengths
+        .and_then(|l| <[i64; 3]>::try_from(l).ok())
+        .ok_or_else(|| "three lengths in mm, like 120.5,-80,-310".to_owned())
+}
+
+fn angle(text: &str) -> Result<Real, String> {
+    let angle = Decimal::parse(text.trim()).map(Decimal::as_real).filter(|a| a.abs() <= Real::from_int(360));
+    angle.ok_or_else(|| "an angle from -360 to 360 degrees".to_owned())
+}
+
+fn turn(text: &str) -> Result<[i32; 2], String> {
+    let numbers: Option<Vec<i32>> = text.split(',').map(|t| t.trim().parse().ok()).collect();
+    numbers
+        .and_then(|n| <[i32; 2]>::try_from(n).ok())
+        .ok_or_else(|| "two whole numbers in units of 2^-30, like 1073741824,0 for no turn".to_owned())
+}
