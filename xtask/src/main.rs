@@ -129,9 +129,16 @@ enum Task {
         write: bool,
     },
     /// The LinuxCNC component: builds it and tests it on a simulated machine.
+    #[command(args_conflicts_with_subcommands = true)]
     Linuxcnc {
         #[command(subcommand)]
         task: Option<linuxcnc::Task>,
+        /// Only this scenario.
+        #[arg(long)]
+        scenario: Option<String>,
+        /// Write the times in the servo thread into docs/linuxcnc.md.
+        #[arg(long)]
+        write: bool,
     },
     /// Corrects the parts of an independent machine program and has it score them.
     Judge {
@@ -184,7 +191,9 @@ fn main() -> ExitCode {
             report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
         }
         Task::Page { write } => report.run(Step::new("page", || page::check(write))),
-        Task::Linuxcnc { task } => report.run(Step::new("linuxcnc", || linuxcnc::run(task))),
+        Task::Linuxcnc { task, scenario, write } => {
+            report.run(Step::new("linuxcnc", || linuxcnc::run(task, scenario.as_deref(), write)));
+        }
         Task::Judge { judge } => report.run(Step::new("judge", || judge::run_all(judge.as_deref()))),
     }
     report.finish()

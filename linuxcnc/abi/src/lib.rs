@@ -11,4 +11,3 @@
 )]
 
 pub mod board;
-pub mod board_abi;

@@ -4,11 +4,14 @@ use std::path::Path;
 use std::process::Command;
 
 use super::component;
-use crate::repository::{cargo, is_root, program, root, run, target};
+use crate::repository::{cargo, is_root, may_install, program, root, run, target};
 use crate::step::{Failure, Outcome, Passed};
 
 /// Programs on the path.
 const PROGRAMS: &str = "/usr/local/bin";
+/// Where LinuxCNC looks for modules.
+const MODULES: &str = "/usr/lib/linuxcnc/modules";
+const MODULE: &str = "truepath.so";
 /// Where `HALFILE = LIB:truepath.hal` of an INI file is looked for.
 const HAL_FILES: &str = "/usr/share/linuxcnc/hallib";
 /// M-codes, to be named in an INI file's `USER_M_PATH`.
@@ -39,6 +42,25 @@ pub fn install(component_only: bool) -> Outcome {
         }
     }
     Ok(Passed::Done)
+}
+
+/// Builds the component, and installs it where it is not the one that is installed.
+///
+/// # Errors
+/// It does not build, or it would have to be installed and may not be.
+pub fn component_if_changed() -> Result<(), Failure> {
+    let made = component::build()?.join(MODULE);
+    if read_bytes(&made).is_some() && read_bytes(&made) == read_bytes(&Path::new(MODULES).join(MODULE)) {
+        return Ok(());
+    }
+    if !may_install() {
+        return Err(Failure::Missing("another truepath.so is installed: cargo xtask linuxcnc install".to_owned()));
+    }
+    install(true).map(drop)
+}
+
+fn read_bytes(file: &Path) -> Option<Vec<u8>> {
+    std::fs::read(file).ok()
 }
 
 fn put(source: &Path, folder: &str, mode: &str) -> Result<(), Failure> {

@@ -1,7 +1,14 @@
 //! The LinuxCNC component: built, installed, tested on a simulated machine.
 
+mod check;
 mod component;
 mod install;
+mod machine;
+mod notes;
+mod parts;
+mod recording;
+mod suite;
+mod timing;
 
 use clap::Subcommand;
 
@@ -21,10 +28,11 @@ pub enum Task {
 }
 
 /// Does a task.
-pub fn run(task: Option<Task>) -> Outcome {
+pub fn run(task: Option<Task>, scenario: Option<&str>, write: bool) -> Outcome {
     match task {
         // The tests on the simulated machine follow here.
-        None | Some(Task::Build) => component::build().map(|_| crate::step::Passed::Done),
+        None => suite::run(scenario, write),
+        Some(Task::Build) => component::build().map(|_| crate::step::Passed::Done),
         Some(Task::Install { component_only }) => install::install(component_only),
     }
 }

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Takes the place of the screen: starts the recording, goes through the scenarios, ends LinuxCNC by ending itself.
+
+What to do stands in the environment, because LinuxCNC starts this program without arguments:
+
+- TRUEPATH_SCENARIOS: names, separated by commas
+- TRUEPATH_RECORDINGS: folder for the recording and for notes.json, which says where in it each scenario lies
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import traceback
+from pathlib import Path
+
+import hal
+
+import scenarios
+from machine import Machine, Stuck
+from notes import Notes
+from recorder import Recorder
+
+
+def main() -> int:
+    folder = Path(os.environ["TRUEPATH_RECORDINGS"])
+    names = os.environ["TRUEPATH_SCENARIOS"].split(",")
+    # Pins can be read and set by a component only.
+    component = hal.component("truepath-tests")
+    component.ready()
+    # By this number the harness finds the real-time process after a crash.
+    real_time = subprocess.run(["pidof", "rtapi_app"], capture_output=True, text=True).stdout
+    (folder.parent.parent / "rtapi_app.pid").write_text(real_time)
+    machine = Machine()
+    recorder = Recorder(folder)
+    notes = Notes(machine)
+    try:
+        machine.switch_on()
+        machine.home()
+        for name in names:
+            print(f"scenario {name}", flush=True)
+            with notes.scenario(name):
+                scenarios.ALL[name](machine, notes)
+        return 0
+    except Stuck as stuck:
+        notes.failed(str(stuck))
+        return 1
+    except Exception:
+        notes.failed(traceback.format_exc())
+        return 1
+    finally:
+        machine.abort()
+        recorder.stop()
+        (folder / "notes.json").write_text(json.dumps(notes.all(), indent=1))
+        # Last of all: the harness may end the machine from here on.
+        (folder / "finished").touch()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

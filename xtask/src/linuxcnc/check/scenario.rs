@@ -1,0 +1,249 @@
+//! What has to come of each scenario, as the safety contract has it (docs/safety.md), read from the recording.
+
+use std::cell::RefCell;
+
+use super::super::notes::Notes;
+use super::super::recording::Row;
+use super::ramp;
+
+const BYPASS: u32 = 1;
+const ARMED: u32 = 2;
+const ACTIVE: u32 = 3;
+const HOLD: u32 = 4;
+/// Numbers of `rewrite::Reason`.
+const COMPLETED: u32 = 1;
+const DISARMED: u32 = 2;
+const EMERGENCY_STOP: u32 = 16;
+const ABORT: u32 = 17;
+const DRIVES_DISABLED: u32 = 19;
+const FRAME_CHANGED: u32 = 20;
+/// Less than this is no correction that a test could see, nm.
+const VISIBLE: i64 = 10_000;
+
+/// A scenario: what to check in it besides the rules that hold in every period.
+pub struct Scenario {
+    pub name: &'static str,
+    /// Whether a part is armed in it, so that it is compared with `truepath replay`.
+    pub replayed: bool,
+    check: fn(&Case),
+}
+
+/// All scenarios, in the order in which they are run.
+pub const ALL: &[Scenario] = &[
+    Scenario { name: "corner", replayed: true, check: completed },
+    Scenario { name: "pocket", replayed: true, check: completed_and_spent },
+    Scenario { name: "repeated", replayed: false, check: repeated },
+    Scenario { name: "dry-run", replayed: true, check: dry_run },
+    Scenario { name: "abort", replayed: true, check: |case| ended(case, &[ABORT]) },
+    Scenario { name: "emergency-stop", replayed: true, check: |case| ended(case, &[EMERGENCY_STOP]) },
+    Scenario { name: "drives-off", replayed: true, check: |case| ended(case, &[DRIVES_DISABLED]) },
+    Scenario { name: "disarm", replayed: false, check: disarmed },
+    Scenario { name: "feed-hold", replayed: true, check: feed_hold },
+    Scenario { name: "feed-override", replayed: true, check: feed_override },
+    Scenario { name: "spindle-override", replayed: true, check: spindle_override },
+    Scenario { name: "spindle-stop", replayed: true, check: spindle_stop },
+    Scenario { name: "restart", replayed: false, check: restart },
+    Scenario { name: "offset", replayed: true, check: offset },
+    Scenario { name: "offset-while-armed", replayed: false, check: offset_while_armed },
+];
+
+impl Scenario {
+    /// Checks it; what is wrong is added to the findings.
+    pub fn check(&self, notes: &Notes, rows: &[Row], found: &mut Vec<String>) {
+        let case = Case { notes, rows, found: RefCell::new(std::mem::take(found)) };
+        (self.check)(&case);
+        *found = case.found.into_inner();
+    }
+}
+
+/// One scenario of a session with its findings.
+struct Case<'a> {
+    notes: &'a Notes,
+    rows: &'a [Row],
+    found: RefCell<Vec<String>>,
+}
+
+impl Case<'_> {
+    fn expect(&self, holds: bool, otherwise: impl Into<String>) {
+        if !holds {
+            self.found.borrow_mut().push(otherwise.into());
+        }
+    }
+
+    /// The periods between two marks; an empty name is the end of the scenario.
+    fn between(&self, from: &str, to: &str) -> &[Row] {
+        let place = |at| self.rows.partition_point(|row| row.sequence <= at);
+        let from = if from.is_empty() { 0 } else { place(self.notes.mark(from)) };
+        let to = if to.is_empty() { self.rows.len() } else { place(self.notes.mark(to)) };
+        self.expect(from < to, "there are no periods to check: the driver did not come so far");
+        &self.rows[from..to.max(from)]
+    }
+
+    /// No correction in any of the periods, and no state in which there could be one.
+    fn untouched(&self, rows: &[Row], when: &str) {
+        let wrong = rows.iter().find(|row| row.correction != [0; 3] || row.state >= ACTIVE);
+        let told = |row: &Row| format!("{when}: correction {:?} nm, state {}", row.correction, row.state);
+        self.expect(wrong.is_none(), wrong.map(told).unwrap_or_default());
+    }
+
+    /// The axes went on by more than some millimetres: uncorrected is not the same as standing.
+    fn moved(&self, rows: &[Row], when: &str) {
+        let reach = (0..2).map(|axis| {
+            let places = rows.iter().map(|row| row.setpoint[axis]);
+            places.clone().max().unwrap_or(0) - places.min().unwrap_or(0)
+        });
+        self.expect(reach.max() > Some(1_000_000), format!("{when}: the axes did not move"));
+    }
+
+    fn largest(rows: &[Row]) -> i64 {
+        rows.iter().flat_map(|row| row.correction).map(i64::abs).max().unwrap_or(0)
+    }
+
+    fn refused(&self, key: &str) {
+        self.expect(
+            self.notes.number(key).is_some_and(|code| code > 0.0),
+            format!("{key}: the arming was not refused"),
+        );
+    }
+}
+
+/// The whole contour, corrected to its end.
+fn completed(case: &Case) {
+    case.expect(Case::largest(case.rows) > VISIBLE, "there was no correction to speak of");
+    let end = case.rows.last().map(|row| (row.state, row.reason));
+    case.expect(end == Some((BYPASS, COMPLETED)), format!("it ended as {end:?}, not completed"));
+    let states: Vec<u32> = case.rows.iter().map(|row| row.state).collect();
+    let first = |state| states.iter().position(|&s| s == state).unwrap_or(usize::MAX);
+    case.expect(first(ARMED) < first(ACTIVE) && first(ACTIVE) < states.len(), "it was not armed, then active");
+    case.expect(!states.iter().any(|&s| s > ACTIVE), "there was a hold or a fault in it");
+}
+
+fn completed_and_spent(case: &Case) {
+    let whole = case.between("", "again").len();
+    completed(&Case { rows: &case.rows[..whole], notes: case.notes, found: case.found.take().into() });
+    case.untouched(case.between("again", ""), "after the part was done");
+    case.refused("refusal");
+}
+
+/// The program once more, with nothing confirmed.
+fn repeated(case: &Case) {
+    case.untouched(case.rows, "program repeated");
+    case.expect(!case.rows.iter().any(|row| row.state >= ARMED), "it was armed again");
+}
+
+/// Armed and in the contour, but nothing on: the spindle does not turn.
+fn dry_run(case: &Case) {
+    let largest = Case::largest(case.rows);
+    case.expect(largest == 0, format!("correction up to {largest} nm without a spindle"));
+    case.expect(case.rows.iter().any(|row| row.state == ACTIVE), "the contour was not entered");
+    let active: Vec<Row> = case.rows.iter().filter(|row| row.state == ACTIVE).cloned().collect();
+    case.moved(&active, "in the contour");
+    case.expect(active.iter().all(|row| row.faded), "the component did not say that the correction is faded");
+}
+
+/// The contour is broken off: the correction ramps to zero, and never comes back.
+fn ended(case: &Case, reasons: &[u32]) {
+    let after = case.between("event", "");
+    case.expect(Case::largest(case.between("", "event")) > VISIBLE, "there was no correction before it");
+    if let Err(wrong) = ramp::to_zero(after) {
+        case.expect(false, wrong);
+    }
+    let last = after.last();
+    case.expect(last.is_some_and(|row| row.state == BYPASS), "it did not end in bypass");
+    let reason = last.map_or(0, |row| row.reason);
+    case.expect(reasons.contains(&reason), format!("the reason is {reason}, expected {reasons:?}"));
+    case.untouched(case.between("again", ""), "after it");
+    case.refused("refusal");
+}
+
+fn disarmed(case: &Case) {
+    let after = case.between("event", "");
+    if let Err(wrong) = ramp::to_zero(after) {
+        case.expect(false, wrong);
+    }
+    case.moved(after, "after disarming");
+    let reason = after.last().map_or(0, |row| row.reason);
+    case.expect(reason == DISARMED, format!("the reason is {reason}, expected {DISARMED}"));
+}
+
+/// The correction stays to the nanometre while the axes stand, and goes on with them.
+fn feed_hold(case: &Case) {
+    let standing = case.between("standing", "resume");
+    if let Some(first) = standing.first() {
+        case.expect(first.correction != [0; 3], "there was no correction to be held");
+        let wrong = standing
+            .iter()
+            .find(|row| (row.correction, row.setpoint, row.state) != (first.correction, first.setpoint, HOLD));
+        let told = |row: &Row| {
+            format!("in hold: correction {:?}, at first {:?}, state {}", row.correction, first.correction, row.state)
+        };
+        case.expect(wrong.is_none(), wrong.map(told).unwrap_or_default());
+    }
+    let after = case.between("resume", "leave");
+    case.expect(after.last().is_some_and(|row| row.state == ACTIVE), "it did not become active again");
+    case.expect(!after.iter().any(|row| row.state > HOLD), "there was a fault after it");
+    case.moved(after, "after the hold");
+}
+
+fn feed_override(case: &Case) {
+    let stays = case.between("50 %", "leave");
+    case.expect(stays.iter().all(|row| row.state == ACTIVE), "it did not stay active");
+    let slow = speed(case.between("50 %", "120 %"));
+    let fast = speed(case.between("120 %", "100 %"));
+    case.expect(
+        fast > 2.2 * slow && fast < 2.6 * slow,
+        format!("the feeds are {slow:.0} and {fast:.0} nm in a period"),
+    );
+    case.expect(Case::largest(stays) > VISIBLE, "there was no correction to speak of");
+}
+
+/// The feed, as the median of the way in a period, nm.
+fn speed(rows: &[Row]) -> f64 {
+    let mut ways: Vec<f64> = rows.windows(2).map(|pair| way(&pair[0], &pair[1])).collect();
+    ways.sort_by(f64::total_cmp);
+    ways.get(ways.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn way(a: &Row, b: &Row) -> f64 {
+    ((b.setpoint[0] - a.setpoint[0]) as f64).hypot((b.setpoint[1] - a.setpoint[1]) as f64)
+}
+
+fn spindle_override(case: &Case) {
+    let stays = case.between("80 %", "leave");
+    case.expect(stays.iter().all(|row| row.state == ACTIVE), "it did not stay active");
+    let rpm = |rows: &[Row]| rows.last().and_then(|row| row.spindle_rpm.parse::<f64>().ok()).unwrap_or(0.0);
+    let (slow, fast) = (rpm(case.between("80 %", "110 %")), rpm(case.between("110 %", "100 %")));
+    case.expect((fast / slow - 1.375).abs() < 0.02, format!("the spindle turned {slow} and {fast} rev/min"));
+}
+
+/// Faded to nothing while the spindle stands, back when it turns; armed all the time.
+fn spindle_stop(case: &Case) {
+    let stopped = case.between("stop", "go");
+    case.expect(stopped.last().is_some_and(|row| row.correction == [0; 3]), "the correction did not fade to zero");
+    case.expect(stopped.iter().all(|row| row.state == ACTIVE), "it did not stay active");
+    let after = case.between("go", "leave");
+    case.expect(after.last().is_some_and(|row| row.correction != [0; 3]), "the correction did not come back");
+}
+
+/// Armed, begun behind the gate: no correction, armed until it is ended.
+fn restart(case: &Case) {
+    case.expect(case.notes.number("refusal") == Some(0.0), "it could not be armed");
+    case.untouched(case.rows, "restart in the middle");
+    let run = case.between("run", "leave");
+    case.moved(run, "restart in the middle");
+    case.expect(case.rows.last().is_some_and(|row| row.state == BYPASS), "it did not end in bypass");
+}
+
+fn offset(case: &Case) {
+    case.expect(Case::largest(case.rows) > VISIBLE, "there was no correction in the other place");
+    case.expect(case.notes.number("truepath.frame-sine").is_some_and(|s| s > 1e8), "the turn was not told");
+}
+
+fn offset_while_armed(case: &Case) {
+    case.expect(case.notes.number("refusal") == Some(0.0), "it could not be armed");
+    let after = case.between("event", "");
+    case.untouched(case.rows, "offset changed while armed");
+    let reasons: Vec<u32> = after.iter().filter(|row| row.state == BYPASS).map(|row| row.reason).collect();
+    case.expect(reasons.first() == Some(&FRAME_CHANGED), format!("the reason is {:?}", reasons.first()));
+    case.moved(after, "offset changed while armed");
+}

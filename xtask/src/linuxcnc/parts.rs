@@ -1,0 +1,56 @@
+//! The parts of the sample machine: programs, and images made from probed walls.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::machine::sample::Sample;
+use crate::repository::{cargo, program, read, run, target};
+use crate::step::Failure;
+
+/// Parts that the scenarios mill; the demonstration has probed walls of both.
+pub const PARTS: [&str; 2] = ["corner", "pocket"];
+
+/// The command-line program and the images.
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// `truepath`.
+    pub truepath: PathBuf,
+    folder: PathBuf,
+}
+
+impl Parts {
+    /// Builds the program, makes the images and puts both into the machine's folder.
+    ///
+    /// # Errors
+    /// Something does not build, or a part cannot be corrected.
+    pub fn make(sample: &Sample) -> Result<Self, Failure> {
+        run(cargo().args(["build", "--package", "truepath", "--bin", "truepath"]))?;
+        let truepath = target().join("debug/truepath");
+        sample.put(&truepath)?;
+        let folder = target().join("linuxcnc/parts");
+        let demonstration = folder.join("demo");
+        read(program(&truepath).arg("demo").arg("-o").arg(&demonstration))?;
+        let parts = Self { truepath, folder };
+        for part in PARTS {
+            parts.correct(sample, part, &demonstration.join(part).join("probe.txt"))?;
+        }
+        Ok(parts)
+    }
+
+    /// The image of a part.
+    pub fn image(&self, part: &str) -> PathBuf {
+        self.folder.join(part).join("correction.tpi")
+    }
+
+    /// Corrects a part of the machine by the wall that was probed, and lays its image beside its program.
+    fn correct(&self, sample: &Sample, part: &str, probe: &Path) -> Result<(), Failure> {
+        let programs = sample.folder.join("sim/programs");
+        let made = self.folder.join(part);
+        let mut command = program(&self.truepath);
+        command.arg("correct").arg(programs.join(format!("{part}.toml"))).arg("--probe").arg(probe);
+        command.args(["--route", "coprocessor", "--force", "-o"]).arg(&made);
+        read(&mut command)?;
+        let to = programs.join(format!("{part}.tpi"));
+        fs::copy(self.image(part), &to).map(drop).map_err(|e| Failure::found(format!("{}: {e}", to.display())))
+    }
+}
