@@ -11,3 +11,4 @@
 )]
 
 pub mod board;
+pub mod board_abi;

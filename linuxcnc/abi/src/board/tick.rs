@@ -164,9 +164,9 @@ impl Board {
         taken
     }
 
-    /// Whether no more bytes need to be waited for in this tick.
-    pub const fn is_settled(&self) -> bool {
-        self.answer.is_some() || self.room == 0
+    /// How many bytes may still be looked at in this tick; 0 when none need to be waited for any more.
+    pub const fn room(&self) -> usize {
+        if self.answer.is_some() { 0 } else { self.room }
     }
 
     /// Ends the tick: what goes to the drives.
