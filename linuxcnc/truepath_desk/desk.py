@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The loop: looks at LinuxCNC a hundred times a second, says what runs, takes requests, watches over what is armed."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from . import words
+from .arming import Situation
+from .configuration import Configuration
+from .identity import Program
+from .panel import Panel
+from .permission import Permission
+from .requests import Requests
+from .status import Operator, Source, Status
+
+PERIOD_S = 0.01
+
+
+class Pins:
+    """Pins of truepath, read by name, and the desk's own pins to it."""
+
+    def __init__(self, hal: Any, pins: Any) -> None:
+        self._hal, self._pins = hal, pins
+
+    def get(self, pin: str) -> int:
+        """A pin of the real-time component."""
+        return self._hal.get_value("truepath." + pin)
+
+    def set(self, pin: str, value: int | bool) -> None:
+        """A pin of truepath-desk."""
+        self._pins[pin] = value
+
+
+class Desk:
+    """Everything between LinuxCNC's status, the component, the panel and the M-codes."""
+
+    def __init__(self, hal: Any, pins: Any, source: Source, operator: Operator, configuration: Configuration) -> None:
+        self._hal, self._pins, self._source = hal, pins, source
+        self._operator, self._configuration = operator, configuration
+        self._component = Pins(hal, pins)
+        self._panel = Panel(pins, self._component)
+        self._permission = Permission(hal, pins, operator, configuration)
+        self._requests = Requests(pins, self._component, operator, configuration)
+        self._program = Program()
+        self._selected: tuple[int, int, float] | None = None
+
+    def run(self) -> None:
+        """For ever, until LinuxCNC unloads the component."""
+        while True:
+            self.round(time.monotonic())
+            time.sleep(PERIOD_S)
+
+    def round(self, now: float) -> None:
+        """One look. Without LinuxCNC's status there is no heartbeat, and the watchdog ends what is on."""
+        status = self._source.look()
+        if status is None:
+            return
+        self._pins["heartbeat"] = not self._pins["heartbeat"]
+        changed = self._program.update(status.program)
+        self._publish(status)
+        permitted = self._permission.update(status, now)
+        state = self._component.get("state")
+        self._watch(status, state, changed)
+        selected = (self._program.crc, status.tool, self._pins["feature-wanted"])
+        if selected != self._selected:
+            self._selected = selected
+            self._requests.program_changed()
+        self._requests.update(self._situation(status, permitted), state in (words.OFF, words.BYPASS))
+        self._panel.show(self._requests.image_crc, permitted, self._operator)
+
+    def _publish(self, status: Status) -> None:
+        pins, frame = self._pins, status.frame
+        pins["offset-x"], pins["offset-y"], pins["offset-z"] = frame.offset
+        pins["frame-cosine"], pins["frame-sine"] = frame.cosine, frame.sine
+        pins["program-crc"] = self._program.crc
+        pins["setup"] = self._configuration.setup or status.work_offset
+        pins["tool"], pins["tool-offset"] = status.tool, status.tool_offset
+        pins["program-running"] = status.running
+
+    def _watch(self, status: Status, state: int, program_changed: bool) -> None:
+        """What is armed is for the program that was loaded then, and for no move typed by hand."""
+        if state not in (words.ARMED, words.ACTIVE, words.HOLD):
+            return
+        if program_changed:
+            self._requests.end("another program is loaded, or its file has changed")
+        elif status.mdi and status.running:
+            self._requests.end("a line is run by hand (MDI), the correction belongs to the program")
+        elif self._external_offset():
+            self._requests.end("an external offset is on")
+
+    def _external_offset(self) -> bool:
+        return bool(self._hal.get_value("motion.eoffset-active"))
+
+    def _situation(self, status: Status, permitted: bool) -> Situation:
+        return Situation(
+            program_crc=self._program.crc,
+            tool=status.tool,
+            tool_offset=status.tool_offset,
+            mdi=status.mdi,
+            external_offset=self._external_offset(),
+            permitted=permitted,
+        )

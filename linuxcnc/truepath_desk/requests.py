@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Requests of the panel, of M160 and M161, one at a time, and their answers."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+from . import arming
+from .arming import Component, Request, Result, Situation, Steps
+from .configuration import Configuration
+from .identity import feature_and_pass
+from .panel import Edge
+from .status import Operator
+
+ARM, DISARM = 160, 161
+
+
+class Requests:
+    """What is being done for whom; `image_crc` is the image for the loaded program, 0 while none is known."""
+
+    def __init__(self, pins: Any, component: Component, operator: Operator, configuration: Configuration) -> None:
+        self._pins, self._component = pins, component
+        self._operator, self._configuration = operator, configuration
+        self._arm, self._disarm = Edge(pins, "arm-button"), Edge(pins, "disarm-button")
+        self._reload = Edge(pins, "reload-button")
+        self._answered = int(pins["mcode-request"])
+        self._steps: Steps | None = None
+        self._for_mcode = False
+        self._quiet = False
+        self._look_for_image = False
+        self.image_crc = 0
+
+    def program_changed(self) -> None:
+        """Another program is loaded: its image is looked for as soon as nothing else is done."""
+        self.image_crc = 0
+        self._look_for_image = True
+
+    def end(self, why: str) -> None:
+        """Ends what is armed or on, whatever else is asked for."""
+        self._operator.warn("disarmed: " + why)
+        self._begin(arming.disarm(self._component, time.monotonic), quiet=True)
+
+    def update(self, situation: Situation, changeable: bool) -> None:
+        """Takes a request, goes on with the one that runs. `changeable`: nothing is armed or on."""
+        asked = int(self._pins["mcode-request"])
+        disarm = self._disarm.pressed()
+        arm, reload = self._arm.pressed(), self._reload.pressed()
+        if disarm:
+            self._begin(arming.disarm(self._component, time.monotonic))
+        elif self._steps is None and asked != self._answered:
+            self._answered = asked
+            self._mcode(situation)
+        elif self._steps is None and arm:
+            feature, pass_number = feature_and_pass(self._pins["feature-wanted"])
+            serial = _whole(self._pins["serial-wanted"])
+            self._begin(self._armed(situation, Request(feature, pass_number, serial)))
+        elif self._steps is None and (reload or self._look_for_image and changeable):
+            self._look_for_image = False
+            self._begin(self._image(situation), quiet=not reload)
+        self._go_on()
+
+    def _mcode(self, situation: Situation) -> None:
+        code = int(self._pins["mcode-code"])
+        if code == DISARM:
+            self._begin(arming.disarm(self._component, time.monotonic), mcode=True)
+            return
+        feature, pass_number = feature_and_pass(self._pins["mcode-p"])
+        serial = self._pins["mcode-q"]
+        serial = _whole(serial if serial >= 0 else self._pins["serial-wanted"])
+        self._begin(self._armed(situation, Request(feature, pass_number, serial)), mcode=True)
+
+    def _armed(self, situation: Situation, request: Request) -> Steps:
+        result = yield from arming.arm(self._component, time.monotonic, self._configuration, situation, request)
+        if result.code == 0:
+            self.image_crc = self._component.get("image-crc")
+        return result
+
+    def _image(self, situation: Situation) -> Steps:
+        """The image for what is loaded, handed over before anyone arms it."""
+        feature, pass_number = feature_and_pass(self._pins["feature-wanted"])
+        try:
+            chosen = arming.choose(self._configuration, situation, feature, pass_number)
+        except arming.NoImage as error:
+            return Result(arming.NO_IMAGE, str(error))
+        result = yield from arming.hand_over(self._component, time.monotonic, self._configuration, chosen)
+        if result.code == 0:
+            self.image_crc = chosen.crc
+            return Result(0, "image of %s" % chosen.path.name)
+        return result
+
+    def _begin(self, steps: Steps, mcode: bool = False, quiet: bool = False) -> None:
+        if self._steps is not None:
+            # Only a disarming interrupts.
+            self._steps.close()
+            for pin in ("arm", "reload"):
+                self._component.set(pin, False)
+            if self._for_mcode:
+                self._answer(Result(arming.BUSY, "interrupted by a disarming"))
+        self._steps, self._for_mcode, self._quiet = steps, mcode, quiet
+
+    def _go_on(self) -> None:
+        if self._steps is None:
+            return
+        try:
+            next(self._steps)
+        except StopIteration as end:
+            self._steps = None
+            result: Result = end.value
+            if result.code and not self._quiet:
+                self._operator.warn("refused (%d): %s" % (result.code, result.text))
+            elif not self._quiet:
+                self._operator.tell(result.text)
+            if self._for_mcode:
+                self._answer(result)
+
+    def _answer(self, result: Result) -> None:
+        self._for_mcode = False
+        self._pins["mcode-result"] = result.code
+        self._pins["mcode-answered"] = self._answered
+
+
+def _whole(number: float) -> int:
+    """A pin's number as a whole one; 0, which no part has, when it is none."""
+    return int(number) if math.isfinite(number) and number == int(number) and number >= 0 else 0
