@@ -1,6 +1,6 @@
 //! Puts the component and what belongs to it where LinuxCNC and its user find them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::component;
@@ -16,6 +16,9 @@ const MODULE: &str = "truepath.so";
 const HAL_FILES: &str = "/usr/share/linuxcnc/hallib";
 /// M-codes, to be named in an INI file's `USER_M_PATH`.
 const M_CODES: &str = "/usr/local/share/truepath/mcodes";
+
+/// Python package of `truepath-desk`.
+const DESK: &str = "/usr/local/share/truepath/truepath_desk";
 
 /// Files of `linuxcnc/`, where each goes, and its mode.
 const FILES: [(&str, &str, &str); 4] = [
@@ -41,6 +44,9 @@ pub fn install(component_only: bool) -> Outcome {
             put(&source, folder, mode)?;
         }
     }
+    for source in files_below(&root().join("linuxcnc/truepath_desk"))? {
+        put(&source, DESK, "644")?;
+    }
     Ok(Passed::Done)
 }
 
@@ -61,6 +67,15 @@ pub fn component_if_changed() -> Result<(), Failure> {
 
 fn read_bytes(file: &Path) -> Option<Vec<u8>> {
     std::fs::read(file).ok()
+}
+
+/// The Python files of a folder, in the order of their names.
+fn files_below(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let entries = folder.read_dir().map_err(|e| Failure::found(format!("{}: {e}", folder.display())))?;
+    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    files.retain(|file| file.extension().is_some_and(|e| e == "py"));
+    files.sort();
+    Ok(files)
 }
 
 fn put(source: &Path, folder: &str, mode: &str) -> Result<(), Failure> {
