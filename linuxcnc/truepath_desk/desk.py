@@ -68,7 +68,7 @@ class Desk:
             self._selected = selected
             self._requests.program_changed()
         self._requests.update(self._situation(status, permitted), state in (words.OFF, words.BYPASS))
-        self._panel.show(self._requests.image_crc, permitted, self._operator)
+        self._panel.show(self._requests.image_crc, self._requests.refusal, permitted, self._operator)
 
     def _publish(self, status: Status) -> None:
         pins, frame = self._pins, status.frame

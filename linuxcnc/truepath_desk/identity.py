@@ -80,7 +80,7 @@ def _equal(a: Sequence[float], b: Sequence[float]) -> bool:
 
 def feature_and_pass(number: float) -> tuple[int | None, int | None]:
     """The P word of M160: P3 is feature 3, P3.2 its pass 2; below 1, as when there is no P, nothing is asked for."""
-    if number < 1 or number > 1e6:
+    if not 1 <= number <= 1e6:
         return None, None
     tenths = round(number * 10)
     feature, pass_number = divmod(tenths, 10)

@@ -33,8 +33,8 @@ class Panel:
         self._state = words.BYPASS
         self._peak = 0.0
 
-    def show(self, image_crc: int, permitted: bool, operator: Operator) -> None:
-        """Once per look; `image_crc` is that of the image for the loaded program, 0 for none."""
+    def show(self, image_crc: int, refusal: int, permitted: bool, operator: Operator) -> None:
+        """Once per look; `image_crc` is that of the image for the loaded program, 0 for none; `refusal` the last one."""
         get, pins = self._component.get, self._pins
         state = get("state")
         for number, name in enumerate(words.STATES):
@@ -48,7 +48,7 @@ class Panel:
             self._peak = 0.0
         self._peak = max(self._peak, abs(x), abs(y))
         pins["correction-x-um"], pins["correction-y-um"], pins["peak-um"] = x, y, self._peak
-        pins["reason"], pins["refusal"] = reason, get("refusal")
+        pins["reason"], pins["refusal"] = reason, refusal
         pins["armed-serial"] = get("armed-serial")
         pins["image-fits"] = bool(image_crc) and bool(get("image-ready")) and get("image-crc") == image_crc
         pins["permitted"] = permitted

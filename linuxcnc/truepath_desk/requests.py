@@ -31,6 +31,8 @@ class Requests:
         self._quiet = False
         self._look_for_image = False
         self.image_crc = 0
+        # Of the last arming that was asked for, the component's or the desk's; 0: none.
+        self.refusal = 0
 
     def program_changed(self) -> None:
         """Another program is loaded: its image is looked for as soon as nothing else is done."""
@@ -72,7 +74,9 @@ class Requests:
         self._begin(self._armed(situation, Request(feature, pass_number, serial)), mcode=True)
 
     def _armed(self, situation: Situation, request: Request) -> Steps:
+        self.refusal = 0
         result = yield from arming.arm(self._component, time.monotonic, self._configuration, situation, request)
+        self.refusal = result.code
         if result.code == 0:
             self.image_crc = self._component.get("image-crc")
         return result
