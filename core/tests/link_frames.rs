@@ -153,7 +153,7 @@ fn a_frame_of_another_length_kind_version_or_number_of_axes_is_refused_by_name()
         SetpointFrame::decode(&other, 3)
     };
     assert_eq!(changed(0, b'C'), Err(LinkError::Kind { found: b'C' }));
-    assert_eq!(changed(1, LINK_VERSION + 1), Err(LinkError::Version { found: 2 }));
+    assert_eq!(changed(1, LINK_VERSION + 1), Err(LinkError::Version { found: LINK_VERSION + 1 }));
     assert_eq!(changed(2, 4), Err(LinkError::Axes { expected: 3, found: 4 }));
     assert_eq!(changed(3, 1), Err(LinkError::Reserved));
     assert!(changed(0, b'S').is_ok());

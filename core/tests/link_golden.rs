@@ -90,7 +90,7 @@ fn the_bytes_of_every_frame_and_message_are_those_of_the_file() {
 fn the_setpoint_frame_is_that_of_the_document_byte_for_byte() {
     let mut raw = [0; 100];
     let used = SetpointFrame { axes: 3, setpoint: setpoint() }.encode(&mut raw).unwrap();
-    let head = [0x53, 1, 3, 0, 4, 3, 2, 1, 5, 0, 3, 0, 0x60, 0xe3, 0x16, 0, 0xef, 0xcd, 0xab, 0x89];
+    let head = [0x53, 2, 3, 0, 4, 3, 2, 1, 5, 0, 3, 0, 0x60, 0xe3, 0x16, 0, 0xef, 0xcd, 0xab, 0x89];
     assert_eq!(raw[..20], head);
     assert_eq!(raw[20..28], [0x40, 0x59, 0x73, 0x07, 0, 0, 0, 0]);
     assert_eq!((raw[28..36].to_vec(), raw[36..44].to_vec()), (vec![0xff; 8], vec![0; 8]));

@@ -48,8 +48,11 @@ fn payload(boots: u32) -> Vec<u8> {
     let settings = Some(DeviceSettings::at_1_khz());
     let mut remembered = Remembered { boots, settings, ..Remembered::default() };
     remembered.spend(part(boots));
-    let mut buffer = [0; 992];
-    postcard::to_slice(&remembered, &mut buffer).unwrap().to_vec()
+    encoded(&remembered)
+}
+
+fn encoded(value: &impl serde::Serialize) -> Vec<u8> {
+    postcard::to_slice(value, &mut [0; 992]).unwrap().to_vec()
 }
 
 #[test]
@@ -90,6 +93,35 @@ fn a_record_of_another_firmware_still_tells_which_parts_were_armed() {
     assert_eq!(ledger.now().settings, None);
 }
 
+/// The record before its settings had caps of the correction: everything before and behind them is as it was.
+fn payload_without_caps(boots: u32, settings: DeviceSettings) -> Vec<u8> {
+    let mut remembered = Remembered { boots, settings: Some(settings), ..Remembered::default() };
+    remembered.spend(part(boots));
+    let whole = encoded(&remembered);
+    let caps = (settings.rewriter.correction_slew_nm_per_s, settings.rewriter.correction_acceleration_nm_per_s2);
+    let caps = encoded(&caps);
+    let tail = encoded(&(settings.axes, settings.deadline_us, settings.silence_us, boots));
+    let end = whole.len() - tail.len();
+    let begin = end - caps.len();
+    assert_eq!((&whole[begin..end], &whole[end..]), (&caps[..], &tail[..]));
+    [&whole[..begin], &tail[..]].concat()
+}
+
+#[test]
+fn a_record_from_before_the_caps_tells_the_armed_parts_and_is_never_taken_for_other_settings() {
+    for boots in [0, 1, 127, 128, 300, 70_000, u32::MAX] {
+        for (deadline_us, silence_us) in [(10, 4_000), (128, 16_384), (500, 20_000), (1_000_000, 10_000_000)] {
+            let settings = DeviceSettings { deadline_us, silence_us, ..DeviceSettings::at_1_khz() };
+            let bytes = payload_without_caps(boots, settings);
+            let mut nor = erased();
+            record(&mut nor, 0, 0, 1, &bytes, crc32(&bytes));
+            let ledger = Ledger::open(&mut nor);
+            assert!(ledger.now().is_spent(&part(boots)));
+            assert_eq!(ledger.now().settings, None, "{boots} {deadline_us} {silence_us}");
+        }
+    }
+}
+
 #[test]
 fn settings_that_are_out_of_range_count_as_none() {
     let mut nor = erased();
@@ -118,6 +150,8 @@ fn the_longest_record_fits_into_its_place() {
         settings.rewriter.joint_limits_nm = [(i64::MIN, i64::MAX); 6];
         settings.rewriter.hold_after_ticks = 1 << 31;
         settings.rewriter.spindle_stale_ticks = u32::MAX;
+        settings.rewriter.correction_slew_nm_per_s = u32::MAX;
+        settings.rewriter.correction_acceleration_nm_per_s2 = 1_000_000_000_000;
         now.settings = Some(settings);
     };
     ledger.change(&mut nor, longest).unwrap();

@@ -15,7 +15,7 @@ use wire_support::*;
 
 type Change = fn(&mut DeviceSettings, i64);
 
-const RANGES: [(Change, i64, i64); 9] = [
+const RANGES: [(Change, i64, i64); 10] = [
     (|s, v| s.axes = v as u8, 1, 6),
     (|s, v| s.deadline_us = v as u32, 10, 1_000_000),
     // At least two ticks more than may be lost, at 1 kHz.
@@ -26,6 +26,7 @@ const RANGES: [(Change, i64, i64); 9] = [
     (|s, v| s.rewriter.hold_after_ticks = v as u32, 2, 1 << 31),
     (|s, v| s.rewriter.fade_ticks = v as u32, 1, 65_536),
     (|s, v| s.rewriter.feed_smoothing = v as u32, 0, 12),
+    (|s, v| s.rewriter.correction_acceleration_nm_per_s2 = v as u64, 1, 1_000_000_000_000),
 ];
 
 /// So patient that every tick rate goes with it.

@@ -15,7 +15,7 @@ use truepath_core::rewrite::{
     AXES, ArmRequest, Digest, Frame, Mode, Output, Reason, Rewriter, Setpoint, Settings, State, Status, TURN_BITS,
     TURN_ONE,
 };
-use truepath_core::units::{Offset, Real, shift_rounded_i64, sin_cos};
+use truepath_core::units::{Real, shift_rounded_i64, sin_cos};
 
 use crate::diagnostics::{Failure, InputError};
 use crate::setpoints::Setpoints;
@@ -143,19 +143,7 @@ pub fn replay(
 pub fn settings(period_ns: i64) -> Settings {
     let hz = (1_000_000_000 + period_ns / 2) / period_ns.max(1);
     let tick_hz = u32::try_from(hz).unwrap_or(u32::MAX);
-    let per_second = |at_1_khz: u32| ((u64::from(at_1_khz) * u64::from(tick_hz)).div_ceil(1000)).max(1) as u32;
-    let slow = Settings::at_1_khz();
-    let smoothing_ticks = per_second(1 << slow.feed_smoothing);
-    Settings {
-        tick_hz,
-        // 1 m/s whatever the rate; faster moves are rapids.
-        max_step: Offset::from_nm((slow.max_step.nm() * 1000 / i64::from(tick_hz.max(1))).clamp(1, 8_000_000)),
-        hold_after_ticks: per_second(slow.hold_after_ticks),
-        spindle_stale_ticks: per_second(slow.spindle_stale_ticks),
-        fade_ticks: per_second(slow.fade_ticks).min(65_536),
-        feed_smoothing: smoothing_ticks.ilog2().min(12),
-        ..slow
-    }
+    Settings::at_rate(tick_hz)
 }
 
 fn millirpm(rpm: Real) -> u32 {

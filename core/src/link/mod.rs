@@ -38,4 +38,4 @@ pub use stuffing::{MAX_STUFFED, stuff, unstuff};
 pub use trace::{TRACE_SAMPLES, Trace, TraceSample};
 
 /// Version of both links; a setpoint frame of another version is refused, and `Hello` tells it.
-pub const LINK_VERSION: u8 = 1;
+pub const LINK_VERSION: u8 = 2;

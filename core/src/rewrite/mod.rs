@@ -44,7 +44,7 @@ pub use locate::{ADVANCE_LIMIT, Place};
 pub use reason::{Reason, UnknownReason};
 pub use refusal::{Identity, Refusal};
 pub use setpoint::{Flags, Output, Setpoint, Status};
-pub use settings::{Setting, Settings, SettingsError};
+pub use settings::{NO_ACCELERATION_CAP, NO_VELOCITY_CAP, Setting, Settings, SettingsError};
 pub use spent::{SPENT_CAPACITY, SPENT_FLOORS, Spent, SpentList};
 pub use state::{Mode, State};
 
@@ -92,7 +92,7 @@ impl<'a> Rewriter<'a> {
     /// A setting is outside its range, or a limit of the image vanishes at this tick rate.
     pub fn new(settings: Settings, image: Option<Image<'a>>) -> Result<Self, SettingsError> {
         settings.check()?;
-        let plan = image.map(|image| Plan::new(image, settings.tick_hz)).transpose()?;
+        let plan = image.map(|image| Plan::new(image, &settings)).transpose()?;
         let fade_step = 65_536u32.div_ceil(settings.fade_ticks.max(1)) as i32;
         let joints =
             settings.joint_limits_nm.map(|(low, high)| (low.max(i64::MIN + FAR_JOINT), high.min(i64::MAX - FAR_JOINT)));
@@ -114,15 +114,15 @@ impl<'a> Rewriter<'a> {
 }
 
 impl<'a> Plan<'a> {
-    fn new(image: Image<'a>, tick_hz: u32) -> Result<Self, SettingsError> {
+    fn new(image: Image<'a>, machine: &Settings) -> Result<Self, SettingsError> {
         let settings = image.settings();
         let window = settings.window;
         // In range: an image's tolerance is at most 5 mm, its gate 1 m. A pass deeper than 2.1 m ends there.
         let tolerance_nm = window.tolerance.nm() as i32;
         let depth = (window.z_high - window.z_low + window.tolerance).nm().min(i32::MAX.into());
         Ok(Self {
-            limits: Limits::new(&settings.limits, tick_hz)?,
-            feed_scale: FeedScale::new(&settings.feed, tick_hz),
+            limits: Limits::new(&machine.capped(&settings.limits), machine.tick_hz)?,
+            feed_scale: FeedScale::new(&settings.feed, machine.tick_hz),
             tolerance_nm,
             tolerance_squared: u64::from(tolerance_nm.unsigned_abs()).saturating_pow(2),
             last_segment: image.len().saturating_sub(2) as u32,

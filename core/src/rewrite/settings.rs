@@ -5,6 +5,7 @@ use core::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::frame::AXES;
+use crate::image::CorrectionLimits;
 use crate::units::Offset;
 
 /// Times and limits of the machine the rewriter sits in.
@@ -31,11 +32,30 @@ pub struct Settings {
     /// Least and greatest position of each axis, nm. A correction that would carry an axis over one is a fault, and
     /// until it has ramped out the position is held at the limit, which goes before the limits of speed.
     pub joint_limits_nm: [(i64, i64); AXES],
+    /// Velocity that the machine leaves to a correction, nm/s, 1 … 2³² − 1; the lower of it and the image's counts.
+    /// [`NO_VELOCITY_CAP`] leaves it to the image.
+    pub correction_slew_nm_per_s: u32,
+    /// Acceleration that the machine leaves to a correction, nm/s², 1 … 10¹²; the lower of it and the image's counts.
+    /// [`NO_ACCELERATION_CAP`] leaves it to the image.
+    pub correction_acceleration_nm_per_s2: u64,
 }
+
+/// Largest [`Settings::max_step`], nm.
+const LARGEST_STEP_NM: i64 = 8_000_000;
+/// Least [`Settings::hold_after_ticks`].
+const SHORTEST_HOLD: u32 = 2;
+/// Largest [`Settings::fade_ticks`].
+const LONGEST_FADE: u32 = 65_536;
+/// Largest [`Settings::feed_smoothing`].
+const MOST_SMOOTHING: u32 = 12;
+/// Above every velocity of an image.
+pub const NO_VELOCITY_CAP: u32 = u32::MAX;
+/// The highest acceleration of an image.
+pub const NO_ACCELERATION_CAP: u64 = 1_000_000_000_000;
 
 impl Settings {
     /// 1 kHz, 1 mm per tick, two lost frames, hold after 20 ms, spindle stale after 100 ms, fade in 250 ms, smoothing
-    /// over 16 ms, no load input, no joint limits.
+    /// over 16 ms, no load input, no joint limits, no caps.
     pub const fn at_1_khz() -> Self {
         Self {
             tick_hz: 1_000,
@@ -47,6 +67,38 @@ impl Settings {
             feed_smoothing: 4,
             require_spindle_load: false,
             joint_limits_nm: [(i64::MIN, i64::MAX); AXES],
+            correction_slew_nm_per_s: NO_VELOCITY_CAP,
+            correction_acceleration_nm_per_s2: NO_ACCELERATION_CAP,
+        }
+    }
+
+    /// [`Settings::at_1_khz`] with the same times at another rate, and steps of 1 m/s; ranges are checked when a
+    /// rewriter is made.
+    pub fn at_rate(tick_hz: u32) -> Self {
+        let slow = Self::at_1_khz();
+        let hz = u64::from(tick_hz);
+        let ticks = |at_1_khz: u32| {
+            let scaled = u64::from(at_1_khz).saturating_mul(hz).div_ceil(u64::from(slow.tick_hz));
+            u32::try_from(scaled).unwrap_or(u32::MAX).max(1)
+        };
+        let step = slow.max_step.nm().saturating_mul(slow.tick_hz.into()).checked_div(hz.cast_signed()).unwrap_or(0);
+        Self {
+            tick_hz,
+            max_step: Offset::from_nm(step.clamp(1, LARGEST_STEP_NM)),
+            hold_after_ticks: ticks(slow.hold_after_ticks).max(SHORTEST_HOLD),
+            spindle_stale_ticks: ticks(slow.spindle_stale_ticks),
+            fade_ticks: ticks(slow.fade_ticks).min(LONGEST_FADE),
+            feed_smoothing: ticks(1 << slow.feed_smoothing).ilog2().min(MOST_SMOOTHING),
+            ..slow
+        }
+    }
+
+    /// The limits of an image with the caps of the machine.
+    pub(super) fn capped(&self, image: &CorrectionLimits) -> CorrectionLimits {
+        CorrectionLimits {
+            slew_nm_per_s: image.slew_nm_per_s.min(self.correction_slew_nm_per_s),
+            acceleration_nm_per_s2: image.acceleration_nm_per_s2.min(self.correction_acceleration_nm_per_s2),
+            ..*image
         }
     }
 
@@ -56,11 +108,14 @@ impl Settings {
             if (low..=high).contains(&value) { Ok(()) } else { Err(SettingsError::Range { name, value, low, high }) }
         };
         range(Setting::TickRate, self.tick_hz.into(), 10, 100_000)?;
-        range(Setting::LargestStep, self.max_step.nm(), 1, 8_000_000)?;
+        range(Setting::LargestStep, self.max_step.nm(), 1, LARGEST_STEP_NM)?;
         range(Setting::LostFrames, self.max_lost_frames.into(), 0, 16)?;
-        range(Setting::HoldAfter, self.hold_after_ticks.into(), 2, 1 << 31)?;
-        range(Setting::Fade, self.fade_ticks.into(), 1, 65_536)?;
-        range(Setting::FeedSmoothing, self.feed_smoothing.into(), 0, 12)?;
+        range(Setting::HoldAfter, self.hold_after_ticks.into(), SHORTEST_HOLD.into(), 1 << 31)?;
+        range(Setting::Fade, self.fade_ticks.into(), 1, LONGEST_FADE.into())?;
+        range(Setting::FeedSmoothing, self.feed_smoothing.into(), 0, MOST_SMOOTHING.into())?;
+        range(Setting::CorrectionVelocity, self.correction_slew_nm_per_s.into(), 1, NO_VELOCITY_CAP.into())?;
+        let acceleration = i64::try_from(self.correction_acceleration_nm_per_s2).unwrap_or(i64::MAX);
+        range(Setting::CorrectionAcceleration, acceleration, 1, NO_ACCELERATION_CAP.cast_signed())?;
         for (axis, (low, high)) in self.joint_limits_nm.iter().enumerate() {
             if low > high {
                 return Err(SettingsError::JointLimits { axis });
@@ -85,6 +140,10 @@ pub enum Setting {
     Fade,
     /// [`Settings::feed_smoothing`].
     FeedSmoothing,
+    /// [`Settings::correction_slew_nm_per_s`].
+    CorrectionVelocity,
+    /// [`Settings::correction_acceleration_nm_per_s2`].
+    CorrectionAcceleration,
 }
 
 impl fmt::Display for Setting {
@@ -96,6 +155,8 @@ impl fmt::Display for Setting {
             Self::HoldAfter => "hold after (ticks)",
             Self::Fade => "fade (ticks)",
             Self::FeedSmoothing => "feed smoothing (binary logarithm of ticks)",
+            Self::CorrectionVelocity => "velocity of the correction (nm/s)",
+            Self::CorrectionAcceleration => "acceleration of the correction (nm/s2)",
         })
     }
 }
