@@ -68,6 +68,12 @@ class Requests:
         if code == DISARM:
             self._begin(arming.disarm(self._component, time.monotonic), mcode=True)
             return
+        if not self._pins["enable-switch"]:
+            # The operator mills this part uncorrected, with the same program.
+            self._operator.tell("corrections are switched off: the program runs uncorrected")
+            self._for_mcode = True
+            self._answer(Result(0, ""))
+            return
         feature, pass_number = feature_and_pass(self._pins["mcode-p"])
         serial = self._pins["mcode-q"]
         serial = _whole(serial if serial >= 0 else self._pins["serial-wanted"])
