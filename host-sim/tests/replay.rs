@@ -241,14 +241,14 @@ fn settings_of_the_machine_change_what_goes_out_and_wrong_ones_are_refused() {
 #[test]
 fn a_turn_in_whole_units_is_the_one_of_the_angle() {
     let desk = desk();
-    let digest = |turn: [&str; 2], out: &str| {
+    let digest = |turn: &[&str], out: &str| {
         let place = ["replay", "correction.tpi", "--setpoints", "machine.csv", "-o", out, "--json", "--origin-mm"];
-        let done = truepath(desk.path(), &[&place[..], &["105,-240,-300"], &turn].concat());
+        let done = truepath(desk.path(), &[&place[..], &["105,-240,-300"], turn].concat());
         (json(&done.stdout)["corrected_ticks"].clone(), json(&done.stdout)["digest"].clone())
     };
     // The path of the file runs along +X of the machine; in a program turned by 0 it is the image's.
-    let none = digest(["--turn", "1073741824,0"], "1.csv");
-    assert_eq!(none, digest(["--rotation-deg", "0"], "2.csv"));
+    let none = digest(&["--cosine", "1073741824", "--sine", "0"], "1.csv");
+    assert_eq!(none, digest(&["--rotation-deg", "0"], "2.csv"));
     let refused = truepath(
         desk.path(),
         &[
@@ -260,8 +260,10 @@ fn a_turn_in_whole_units_is_the_one_of_the_angle() {
             "3.csv",
             "--origin-mm",
             "0,0,0",
-            "--turn",
-            "1,0",
+            "--cosine",
+            "1",
+            "--sine",
+            "0",
         ],
     );
     assert_eq!(refused.status.code(), Some(1), "no rigid motion");

@@ -4,6 +4,8 @@
 mod hil_support;
 
 use std::fs;
+use std::io::{Read, Write};
+use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -12,12 +14,25 @@ use truepath::bench::{Board, Faults};
 use truepath::command::device::{Recorded, recording, recording_table};
 use truepath::command::hil::{Kind, Source, open, run};
 use truepath_core::image::Image;
-use truepath_core::link::Ask;
+use truepath_core::link::{Ask, SetpointFrame};
+use truepath_core::rewrite::{Flags, Frame, Setpoint};
 
 /// The program's own binary would have to be built for this; the library is called as `main` calls it, in a process of
 /// its own by way of this test binary.
 fn device(folder: &Path, arguments: &[&str]) -> (u8, String) {
-    let Output { status, stdout, .. } = Command::new(std::env::current_exe().unwrap())
+    let (code, said, _) = called(folder, arguments);
+    (code, said)
+}
+
+/// What it says on standard error.
+fn device_with_errors(folder: &Path, arguments: &[&str]) -> (u8, String) {
+    let (code, _, complaint) = called(folder, arguments);
+    // The test binary adds its own lines.
+    (code, complaint.lines().find(|line| line.starts_with('{')).unwrap_or_default().to_owned())
+}
+
+fn called(folder: &Path, arguments: &[&str]) -> (u8, String, String) {
+    let Output { status, stdout, stderr } = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "the_command_line_itself", "--nocapture", "--ignored"])
         .env("TRUEPATH_ARGUMENTS", arguments.join("\n"))
         .env("TRUEPATH_PORT", folder.join("config.sock"))
@@ -26,7 +41,7 @@ fn device(folder: &Path, arguments: &[&str]) -> (u8, String) {
     let text = String::from_utf8(stdout).unwrap();
     let said = text.split_once(BEGIN).unwrap().1.split_once(END).unwrap().0;
     let code = if status.success() { 0 } else { 1 };
-    (code, said.to_owned())
+    (code, said.to_owned(), String::from_utf8(stderr).unwrap())
 }
 
 const BEGIN: &str = "<<<said\n";
@@ -89,6 +104,69 @@ fn a_new_board_is_looked_at_loaded_configured_and_its_fault_recorded() {
     let table = folder.path().join("frames.csv").display().to_string();
     assert_eq!(device(folder.path(), &["record", "-o", &table]).0, 1);
     assert!(!fs::exists(&table).unwrap());
+}
+
+/// So many setpoints to the device behind the socket, each a millisecond after the one before.
+fn send(folder: &Path, sequence: &mut u32, count: u32, flags: Flags, frame_crc: u32) {
+    let mut stream = UnixStream::connect(folder.join("setpoint.sock")).unwrap();
+    let mut answer = [0; 256];
+    for _ in 0..count {
+        *sequence += 1;
+        let setpoint = Setpoint { sequence: *sequence, flags, frame_crc, ..Setpoint::default() };
+        let mut packet = [0; 80];
+        let used = SetpointFrame { axes: 3, setpoint }.encode_packet(&mut packet).unwrap();
+        stream.write_all(&packet[..used]).unwrap();
+        assert!(stream.read(&mut answer).unwrap() > 0);
+    }
+}
+
+#[test]
+fn a_controller_acknowledges_and_arms_and_every_refusal_says_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    serve(folder.path());
+    let mut sequence = 0;
+    let ask = |arguments: &[&str]| {
+        let (code, said) = device(folder.path(), arguments);
+        assert_eq!(code, 0, "{arguments:?}: {said}");
+        said
+    };
+    let refused = |arguments: &[&str]| {
+        let (code, said) = device_with_errors(folder.path(), arguments);
+        assert_eq!(code, 1, "{arguments:?}");
+        let error: serde_json::Value = serde_json::from_str(&said).unwrap_or_else(|e| panic!("{e}: {said}"));
+        error["error"]["help"].as_str().unwrap().to_owned() + error["error"]["message"].as_str().unwrap()
+    };
+    let arm = ["--json", "arm", "--part", "7", "--offset-nm", "-1000,2,3"];
+    assert!(refused(&arm).contains("no active image"));
+    let file = part(0).join("correction.tpi").display().to_string();
+    ask(&["upload", &file, "--activate"]);
+    assert!(refused(&arm).contains("device settings"), "not configured");
+    ask(&["settings", "axes=3"]);
+    assert!(refused(&["--json", "acknowledge"]).contains("start the controller"));
+    send(folder.path(), &mut sequence, 40, Flags::DRIVES_ENABLED, 0);
+    assert!(refused(&["--json", "acknowledge"]).contains("machine off"));
+    assert!(refused(&arm).contains("truepath device acknowledge"));
+    send(folder.path(), &mut sequence, 40, Flags(0), 0);
+    assert!(ask(&["acknowledge"]).contains("bypass"));
+
+    let with = |more: &[&'static str]| [&arm[..], more].concat();
+    assert!(refused(&with(&["--program-crc", "12345678"])).contains("12345678"));
+    assert!(refused(&with(&["--tool", "99"])).contains("activate the image of this program"));
+    assert!(refused(&with(&["--cosine", "5"])).contains("one angle"));
+    assert!(refused(&with(&["--axes", "0,1,1"])).contains("three"));
+    let checked: serde_json::Value = serde_json::from_str(&ask(&with(&["--check"]))).unwrap();
+    assert_eq!((checked["armed"].as_bool(), checked["part"].as_u64()), (Some(false), Some(7)));
+    let armed: serde_json::Value = serde_json::from_str(&ask(&with(&["--image", file.clone().leak()]))).unwrap();
+    let frame = Frame { offset_nm: [-1_000, 2, 3], ..Frame::identity() }.sealed();
+    assert_eq!(armed["frame_crc"].as_u64(), Some(frame.crc.into()));
+    send(folder.path(), &mut sequence, 2, Flags::DRIVES_ENABLED, frame.crc);
+    assert!(ask(&["info"]).contains("Armed"));
+    assert!(ask(&["disarm"]).contains("disarmed"));
+    assert!(refused(&arm).contains("higher than the one before"), "one part, one arming");
+    // A frame other than the one armed ends the next arming at once.
+    ask(&["arm", "--part", "8", "--offset-nm", "0,0,0"]);
+    send(folder.path(), &mut sequence, 2, Flags::DRIVES_ENABLED, frame.crc);
+    assert!(ask(&["info"]).contains("Bypass (the frame changed after arming)"));
 }
 
 #[test]

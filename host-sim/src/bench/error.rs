@@ -5,13 +5,14 @@
 //! | H001 | a port, socket or file cannot be opened |
 //! | H002 | the emulator or the firmware is missing |
 //! | H003 | the device does not answer |
-//! | H004 | the device refuses |
+//! | H004 | the device refuses a request; what to do follows from its reason |
 //! | H005 | the device speaks another version |
 //! | H006 | device and host differ |
 //! | H007 | an option does not fit |
 //! | H008 | a run was stopped before its end |
 
 use truepath_core::link::Denial;
+use truepath_core::rewrite::{Mode, Refusal};
 
 use crate::diagnostics::{Failure, InputError};
 
@@ -72,13 +73,39 @@ impl From<BenchError> for InputError {
             BenchError::Open { .. } => ("H001", "check the name, the permissions, and that nobody else uses it"),
             BenchError::Missing { remedy, .. } => ("H002", remedy.as_str()),
             BenchError::Silent(_) => ("H003", "check cable, port and baud rate, and that the board is powered"),
-            BenchError::Denied(_) => ("H004", "bring the device into the mode in which it takes this request"),
+            BenchError::Denied(denial) => ("H004", remedy(denial)),
             BenchError::Foreign(_) => ("H005", "use firmware and program of the same version"),
             BenchError::Differs(_) => ("H006", "do not drive axes with this firmware; report it with the command line"),
             BenchError::Stopped(_) => ("H008", "run it again to its end; a shorter run has a smaller --count"),
             BenchError::Option { help, .. } => ("H007", help.as_str()),
         };
         Self::new(code, error.to_string(), "", help)
+    }
+}
+
+/// What to do when the device refuses.
+fn remedy(denial: &Denial) -> &'static str {
+    match denial {
+        Denial::Refused(refusal) => match refusal {
+            Refusal::State(Mode::Off) => "disable the drives, then: truepath device acknowledge",
+            Refusal::State(_) => "bring the device into the mode in which it takes this request",
+            Refusal::NoImage => "truepath device upload FILE --activate",
+            Refusal::DrivesEnabled => "disable the drives (machine off), then ask again",
+            Refusal::NoSetpoints => "start the controller: it has to send setpoints, with the drives disabled",
+            Refusal::Identity { .. } => {
+                "load the program, tool and set-up of the image, or activate the image of this program"
+            }
+            Refusal::PartRepeated { .. } => "give each part its own number, higher than the one before",
+            Refusal::FrameDamaged { .. } | Refusal::FrameNotRigid { .. } => {
+                "send cosine and sine of one angle, units of 2^-30"
+            }
+            Refusal::FrameAxes { .. } => "name three axes that the controller sends",
+            Refusal::FrameRate { .. } => "set rewriter.tick_hz to the servo rate, or wait until 33 setpoints have come",
+        },
+        Denial::NoImage { .. } => "truepath device upload FILE --activate",
+        Denial::NotConfigured => "truepath device settings NAME=VALUE, with the limits of this machine",
+        Denial::Busy => "wait until the upload or the computation has ended",
+        _ => "bring the device into the mode in which it takes this request",
     }
 }
 

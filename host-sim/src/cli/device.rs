@@ -1,6 +1,7 @@
 //! `truepath device`: a coprocessor over its configuration link.
 
 mod arguments;
+mod arm;
 mod monitor;
 
 use std::fmt::Write;
@@ -69,6 +70,19 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
             say(terminal, &both, || format!("image {crc:08x} of slot {slot} is active\n"))
         }
         Task::Deactivate => done(&mut client, Ask::Deactivate, terminal, "no image is active"),
+        Task::Acknowledge => {
+            done(&mut client, Ask::AcknowledgeDrivesDisabled, terminal, "drives acknowledged as disabled: bypass")
+        }
+        Task::Arm(arm) => {
+            let request = arm.request(&mut client)?;
+            let (ask, word) =
+                if arm.check { (Ask::Check(request), "could be armed") } else { (Ask::Arm(request), "armed") };
+            client.done(ask)?;
+            let (part, frame) = (request.part_serial, request.frame.crc);
+            let both = serde_json::json!({
+                "armed": !arm.check, "part": part, "frame_crc": frame, "binding": request.binding });
+            say(terminal, &both, || format!("{word}: part {part}, frame {frame:08x}\n"))
+        }
         Task::Disarm => done(&mut client, Ask::Disarm, terminal, "disarmed"),
         Task::Monitor { plain, image, seconds, every_ms } => {
             let (end, every) = (seconds.map(Duration::from_secs), Duration::from_millis(*every_ms));

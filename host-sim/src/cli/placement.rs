@@ -16,9 +16,12 @@ pub(super) struct PlacementArguments {
     /// Turn of the program in the machine's XY plane, counter-clockwise.
     #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = angle)]
     rotation_deg: Option<Real>,
-    /// Cosine and sine of that turn in units of 2⁻³⁰, as they were sent with the arming.
-    #[arg(long, value_name = "COSINE,SINE", allow_hyphen_values = true, value_parser = turn, conflicts_with = "rotation_deg")]
-    turn: Option<[i32; 2]>,
+    /// Cosine of that turn in units of 2⁻³⁰, as it was sent with the arming.
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, requires = "sine", conflicts_with = "rotation_deg")]
+    cosine: Option<i32>,
+    /// Sine of that turn.
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, requires = "cosine")]
+    sine: Option<i32>,
 }
 
 impl PlacementArguments {
@@ -27,17 +30,17 @@ impl PlacementArguments {
     /// # Errors
     /// `R003` when frame and options do not go together.
     pub fn of(&self, setpoints: &Setpoints, source: &Source) -> Result<Placement, InputError> {
-        let given = self.origin_mm.is_some() || self.rotation_deg.is_some() || self.turn.is_some();
+        let given = self.origin_mm.is_some() || self.rotation_deg.is_some() || self.cosine.is_some();
         let (found, expected, help) = match (setpoints.frame, self.origin_mm) {
             (Frame::Program, _) if !given => return Ok(Placement::default()),
             (Frame::Machine, Some(origin_nm)) => {
-                return Ok(match self.turn {
-                    Some([cosine, sine]) => Placement { origin_nm, cosine, sine },
-                    None => Placement::turned(origin_nm, self.rotation_deg.unwrap_or_default()),
+                return Ok(match (self.cosine, self.sine) {
+                    (Some(cosine), Some(sine)) => Placement { origin_nm, cosine, sine },
+                    _ => Placement::turned(origin_nm, self.rotation_deg.unwrap_or_default()),
                 });
             }
             (Frame::Program, _) => (
-                "the setpoints are in program coordinates, but --origin-mm, --rotation-deg or --turn is given",
+                "the setpoints are in program coordinates, but --origin-mm, --rotation-deg or --cosine is given",
                 "one or the other",
                 "leave the options out, or say # frame = machine in the file",
             ),
@@ -61,11 +64,4 @@ fn lengths(text: &str) -> Result<[i64; 3], String> {
 fn angle(text: &str) -> Result<Real, String> {
     let angle = Decimal::parse(text.trim()).map(Decimal::as_real).filter(|a| a.abs() <= Real::from_int(360));
     angle.ok_or_else(|| "an angle from -360 to 360 degrees".to_owned())
-}
-
-fn turn(text: &str) -> Result<[i32; 2], String> {
-    let numbers: Option<Vec<i32>> = text.split(',').map(|t| t.trim().parse().ok()).collect();
-    numbers
-        .and_then(|n| <[i32; 2]>::try_from(n).ok())
-        .ok_or_else(|| "two whole numbers in units of 2^-30, like 1073741824,0 for no turn".to_owned())
 }

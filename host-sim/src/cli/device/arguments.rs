@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use super::arm::ArmArguments;
+
 #[derive(Debug, Args)]
 pub(in crate::cli) struct Arguments {
     /// Configuration link: a serial port, a Unix socket, or tcp:HOST:PORT.
@@ -38,7 +40,11 @@ pub(in crate::cli) enum Task {
     },
     /// No image is active any more: setpoints pass unchanged.
     Deactivate,
-    /// Ends an arming; an active correction ramps out. (Arming belongs to the controller, which knows part and frame.)
+    /// Tells a device in Off that the drives are disabled; setpoints have to arrive that say so too.
+    Acknowledge,
+    /// Arms the active image for one pass of one part. This is the controller's to call, which knows what runs and where.
+    Arm(ArmArguments),
+    /// Ends an arming; an active correction ramps out.
     Disarm,
     /// State, place and correction, live: a view on a terminal, otherwise lines.
     Monitor {
