@@ -20,7 +20,7 @@ use super::{Terminal, image, print};
 use crate::bench::{BenchError, Client, Ingredients, Line, compute};
 use crate::command::device::{activate, info, recording, recording_setpoints, recording_table, upload};
 use crate::command::hil::Counts;
-use crate::command::settings::{NoSuchSetting, changed, named};
+use crate::command::settings::{NoSuchSetting, changed, named, paced};
 use crate::diagnostics::{Failure, Source};
 use crate::job::Job;
 use crate::output::write_file;
@@ -112,9 +112,12 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
             let both = serde_json::json!({ "frames": frames.len(), "file": output });
             say(terminal, &both, || format!("{} frames in {}\n", frames.len(), output.display()))
         }
-        Task::Settings { changes } => {
+        Task::Settings { period_us, changes } => {
             let mut settings = client.settings()?;
-            if !changes.is_empty() {
+            if let Some(period_us) = *period_us {
+                settings = paced(&settings, period_us);
+            }
+            if !changes.is_empty() || period_us.is_some() {
                 let unfit = |e: NoSuchSetting| BenchError::Option { found: e.found, help: e.help };
                 settings = changed(&settings, changes).map_err(unfit)?;
                 client.done(Ask::Configure(settings))?;

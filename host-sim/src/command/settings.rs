@@ -6,6 +6,8 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use truepath_core::link::DeviceSettings;
+use truepath_core::rewrite::Settings;
 
 /// What is wrong with a change.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,10 +61,29 @@ pub fn changed<S: Serialize + DeserializeOwned>(settings: &S, changes: &[String]
     serde_json::from_value(all).map_err(|e| wrong(format!("settings: {e}"), "give values of the kind shown".into()))
 }
 
+/// Settings for a controller that sends a setpoint each `period_us`: what is counted in ticks, and the largest step, become
+/// those of [`replay`](crate::replay::settings); an answer within half a period, silence after 20. The rest stays.
+pub fn paced(settings: &DeviceSettings, period_us: u32) -> DeviceSettings {
+    let paced = crate::replay::settings(i64::from(period_us) * 1000);
+    DeviceSettings {
+        rewriter: Settings {
+            tick_hz: paced.tick_hz,
+            max_step: paced.max_step,
+            max_lost_frames: paced.max_lost_frames,
+            hold_after_ticks: paced.hold_after_ticks,
+            spindle_stale_ticks: paced.spindle_stale_ticks,
+            fade_ticks: paced.fade_ticks,
+            feed_smoothing: paced.feed_smoothing,
+            ..settings.rewriter
+        },
+        deadline_us: (period_us / 2).max(10),
+        silence_us: period_us.saturating_mul(20),
+        ..*settings
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use truepath_core::link::DeviceSettings;
-    use truepath_core::rewrite::Settings;
 
     use super::*;
 
@@ -84,5 +105,21 @@ mod tests {
         let all = "joint_limits_nm=[[-1,2],[-3,4],[0,5],[0,0],[0,0],[0,0]]".to_owned();
         let new = changed(&Settings::at_1_khz(), &[all]).expect("settings");
         assert_eq!(new.joint_limits_nm[..3], [(-1, 2), (-3, 4), (0, 5)]);
+    }
+
+    #[test]
+    fn settings_for_a_pace_are_those_of_a_replay_at_that_pace_and_keep_the_machine() {
+        let mut old = DeviceSettings { axes: 4, ..DeviceSettings::at_1_khz() };
+        old.rewriter.joint_limits_nm[1] = (-5, 5);
+        old.rewriter.require_spindle_load = true;
+        for period_us in [10, 1_000, 10_000, 100_000] {
+            let new = paced(&old, period_us);
+            assert_eq!(new.check(), Ok(()), "{period_us} us");
+            let mut expected = crate::replay::settings(i64::from(period_us) * 1000);
+            expected.joint_limits_nm = old.rewriter.joint_limits_nm;
+            expected.require_spindle_load = true;
+            assert_eq!((new.rewriter, new.axes), (expected, 4));
+        }
+        assert_eq!(paced(&DeviceSettings::at_1_khz(), 1_000), DeviceSettings::at_1_khz());
     }
 }

@@ -78,6 +78,10 @@ pub(in crate::cli) enum Task {
     },
     /// Shows the settings, or changes some of them (in Off only).
     Settings {
+        /// First sets everything that is counted in ticks for a controller that sends a setpoint each so many
+        /// microseconds: a LinuxCNC servo period of 1 ms is 1000.
+        #[arg(long, value_name = "US", value_parser = clap::value_parser!(u32).range(10..=100_000))]
+        period_us: Option<u32>,
         /// For instance rewriter.tick_hz=2000 axes=6.
         #[arg(value_name = "NAME=VALUE")]
         changes: Vec<String>,

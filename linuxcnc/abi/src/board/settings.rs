@@ -15,7 +15,7 @@ pub struct BoardSettings {
     pub tick_hz: u32,
     /// A larger correction is not taken, nm, 1 … 4 000 000.
     pub clamp_nm: i32,
-    /// Largest speed of the correction that the machine has left, nm/s, 1 … 4 × 10⁹.
+    /// Largest speed of the correction that the machine has left, nm/s, not 0.
     pub slew_nm_per_s: u32,
     /// Largest acceleration that it has left, nm/s², 1 … 10¹².
     pub acceleration_nm_per_s2: u64,
@@ -58,7 +58,7 @@ impl BoardSettings {
         if !(1..=MAX_CLAMP_NM).contains(&i64::from(self.clamp_nm)) {
             return Err(BoardSettingsError::Clamp(self.clamp_nm));
         }
-        let speed = (1..=4_000_000_000).contains(&self.slew_nm_per_s);
+        let speed = self.slew_nm_per_s > 0;
         let acceleration = (1..=1_000_000_000_000).contains(&self.acceleration_nm_per_s2);
         if !speed || !acceleration {
             return Err(BoardSettingsError::Caps);
