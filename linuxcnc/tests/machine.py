@@ -114,7 +114,8 @@ class Machine:
         return self.stat.interp_state == linuxcnc.INTERP_IDLE and bool(self.stat.inpos) and self.is_heard()
 
     def is_heard(self) -> bool:
-        return self.stat.echo_serial_number == self.command.serial
+        # Messages of truepath-desk are commands as well, with numbers of their own: the echo may be past ours.
+        return self.stat.echo_serial_number >= self.command.serial
 
     # Commands
 

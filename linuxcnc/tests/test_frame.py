@@ -21,10 +21,15 @@ class FrameTest(unittest.TestCase):
         self.assertEqual(f.machine((5, 0, 0)), (101.0, 17.0, 3.0))
 
     def test_a_point_goes_where_linuxcnc_2_9_moved_its_joints(self):
-        # Joint positions of LinuxCNC after G10 L2 P1 X150 Y100 Z-120 R30, G92 as below, G43 H1, G0 X10 Y20 Z5.
-        f = frame((150, 100, -120), (13, 7, 0), (0, 0, 40), 30.0)
-        for found, joint in zip(f.machine((10, 20, 5)), (156.4185842878, 134.8826859021, -75.0)):
-            self.assertAlmostEqual(found, joint, places=6)
+        # joint.N.pos-cmd after G10 L2 P1 X150 Y100 Z-120 R30, G0 X10 Y20 Z90, G92 X-3 Y33 Z80, and what is named here.
+        moved = (
+            ("G0 X12 Y13 Z75", 0, (12, 13, 75), (171.65063509461098, 112.5, -35.0)),
+            ("G43 H1, G0 X10 Y20 Z45", 40, (10, 20, 45), (166.41858428704208, 117.56217782649107, -25.0)),
+        )
+        for words, length, point, joints in moved:
+            f = frame((150, 100, -120), (13, -13, 10), (0, 0, length), 30.0)
+            for found, joint in zip(f.machine(point), joints):
+                self.assertAlmostEqual(found, joint, delta=1e-7, msg=words)
 
     def test_quarter_turns_are_exact(self):
         for degrees, turn in ((90, (0, 1)), (180, (-1, 0)), (270, (0, -1)), (-90, (0, -1)), (360, (1, 0))):

@@ -57,7 +57,6 @@ class Desk:
         status = self._source.look()
         if status is None:
             return
-        self._pins["heartbeat"] = not self._pins["heartbeat"]
         changed = self._program.update(status.program)
         self._publish(status)
         permitted = self._permission.update(status, now)
@@ -83,7 +82,9 @@ class Desk:
         """What is armed is for the program that was loaded then, and for no move typed by hand."""
         if state not in (words.ARMED, words.ACTIVE, words.HOLD):
             return
-        if program_changed:
+        if not self._permission.wanted:
+            self._requests.end("corrections are not permitted any more")
+        elif program_changed:
             self._requests.end("another program is loaded, or its file has changed")
         elif status.mdi and status.running:
             self._requests.end("a line is run by hand (MDI), the correction belongs to the program")

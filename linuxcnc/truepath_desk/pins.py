@@ -13,8 +13,8 @@ SIGNED_OUT = ("frame-cosine", "frame-sine", "tool", "tool-offset")
 UNSIGNED_OUT = ("program-crc", "feature", "pass", "setup", "part-serial")
 BITS_OUT = (
     "trivial-kinematics", "program-running", "arm", "disarm", "reload",
-    "heartbeat",  # changes with every look at LinuxCNC's status
-    "enable",  # to the watchdog: a correction is permitted
+    "heartbeat",  # changes with every look at LinuxCNC's status, while a correction is permitted
+    "enable",  # to the watchdog: begins with its rising edge
 )  # fmt: skip
 
 # For the panel.

@@ -29,6 +29,7 @@ class Requests:
         self._steps: Steps | None = None
         self._for_mcode = False
         self._quiet = False
+        self._ending = False
         self._look_for_image = False
         self.image_crc = 0
         # Of the last arming that was asked for, the component's or the desk's; 0: none.
@@ -40,7 +41,10 @@ class Requests:
         self._look_for_image = True
 
     def end(self, why: str) -> None:
-        """Ends what is armed or on, whatever else is asked for."""
+        """Ends what is armed or on, whatever else is asked for; may be called in every round."""
+        if self._ending:
+            return
+        self._ending = True
         self._operator.warn("disarmed: " + why)
         self._begin(arming.disarm(self._component, time.monotonic), quiet=True)
 
@@ -116,7 +120,7 @@ class Requests:
         try:
             next(self._steps)
         except StopIteration as end:
-            self._steps = None
+            self._steps, self._ending = None, False
             result: Result = end.value
             if result.code and not self._quiet:
                 self._operator.warn("refused (%d): %s" % (result.code, result.text))
