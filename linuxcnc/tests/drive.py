@@ -14,6 +14,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 import traceback
 from pathlib import Path
 
@@ -23,6 +24,13 @@ import scenarios
 from machine import Machine, Stuck
 from notes import Notes
 from recorder import Recorder
+
+# In the machine's folder: parts count up over several runs of LinuxCNC.
+SERIAL = Path("last-serial")
+
+
+def last_serial() -> int:
+    return int(SERIAL.read_text()) if SERIAL.exists() else 0
 
 
 def main() -> int:
@@ -34,7 +42,7 @@ def main() -> int:
     # By this number the harness finds the real-time process after a crash.
     real_time = subprocess.run(["pidof", "rtapi_app"], capture_output=True, text=True).stdout
     (folder.parent.parent / "rtapi_app.pid").write_text(real_time)
-    machine = Machine()
+    machine = Machine(last_serial())
     recorder = Recorder(folder)
     notes = Notes(machine)
     try:
@@ -52,11 +60,16 @@ def main() -> int:
         notes.failed(traceback.format_exc())
         return 1
     finally:
-        machine.abort()
+        # The machine that is about to be killed stays in the contour.
+        if names[-1] != "killed":
+            machine.abort()
         recorder.stop()
+        SERIAL.write_text(str(machine.serial))
         (folder / "notes.json").write_text(json.dumps(notes.all(), indent=1))
         # Last of all: the harness may end the machine from here on.
         (folder / "finished").touch()
+        if names[-1] == "killed":
+            time.sleep(60)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ channel is kept, with the sequence number of the servo period in which it was re
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -18,6 +19,9 @@ import linuxcnc
 LIMIT = 90.0
 POLL = 0.002
 
+# How truepath-desk answers a request to arm; with the code of the refusal.
+ANSWER = re.compile(r"Truepath: (?:refused \((\d+)\)|armed: part)")
+
 OFF, BYPASS, ARMED, ACTIVE, HOLD, FAULT = range(6)
 
 
@@ -28,12 +32,12 @@ class Stuck(Exception):
 class Machine:
     """LinuxCNC and the pins of the component."""
 
-    def __init__(self) -> None:
+    def __init__(self, serial: int) -> None:
         self.command = linuxcnc.command()
         self.stat = linuxcnc.stat()
         self.errors = linuxcnc.error_channel()
         self.said: list[tuple[int, str]] = []
-        self.serial = 0
+        self.serial = serial
 
     # Pins
 
@@ -62,18 +66,25 @@ class Machine:
         self.serial = serial
         hal.set_p("truepath-desk.serial-wanted", str(float(serial)))
 
-    def press_arm(self) -> None:
-        """The button on the panel, held until the answer is there."""
-        hal.set_p("truepath-desk.arm-button", "0")
-        self.periods(50)
-        hal.set_p("truepath-desk.arm-button", "1")
-        try:
-            self.wait("armed or refused", lambda: self.state == ARMED or self.refused())
-        finally:
-            hal.set_p("truepath-desk.arm-button", "0")
+    def press_arm(self) -> int:
+        """The button on the panel, until truepath-desk says what came of it: 0, or the code of the refusal."""
+        self.poll()
+        before = len(self.said)
+        self.press("arm-button")
+        self.wait("an answer to the button", lambda: any(ANSWER.search(text) for _, text in self.said[before:]))
+        found = next(match for _, text in self.said[before:] if (match := ANSWER.search(text)))
+        return int(found.group(1) or 0)
 
-    def refused(self) -> int:
-        return int(self.pin("truepath-desk.refusal"))
+    def press(self, button: str) -> None:
+        for value in ("0", "1"):
+            hal.set_p(f"truepath-desk.{button}", value)
+            self.looks(3)
+
+    def looks(self, count: int) -> None:
+        """Lets truepath-desk look at its pins some times."""
+        for _ in range(count):
+            before = self.pin("truepath-desk.heartbeat")
+            self.wait("truepath-desk", lambda: self.pin("truepath-desk.heartbeat") != before)
 
     # Waiting
 

@@ -70,8 +70,16 @@ def leave(m: Machine, notes: Notes) -> None:
 def same_part_again(m: Machine, notes: Notes) -> None:
     """The button on the panel once more, with the same serial number."""
     notes.mark("again")
-    m.press_arm()
-    notes.value("refusal", m.refused())
+    notes.value("refusal", m.press_arm())
+
+
+def armed_by_hand(m: Machine, notes: Notes) -> None:
+    """A new part armed with the button on the panel, as for a program without M160; the cutter turns in the contour."""
+    next_part(m, notes, POCKET)
+    for block in ("T2 M6", "G43 H2", "S3200 M3", "G0 Z30", "G0 X30 Y0", "G1 Z-12 F600"):
+        m.mdi(block)
+    m.open(POCKET)
+    notes.value("refusal", m.press_arm())
 
 
 @scenario
@@ -92,11 +100,25 @@ def pocket(m: Machine, notes: Notes) -> None:
 @scenario
 def repeated(m: Machine, notes: Notes) -> None:
     """The program once more for the part that was milled last; its serial number was not changed."""
+    if not m.serial:
+        m.new_serial()
     m.open(POCKET)
     m.run()
     m.wait("the program over, or in the contour", lambda: m.is_idle() or m.stat.motion_line > line_of(POCKET, "G1 X26"))
-    notes.value("refusal", m.refused())
     leave(m, notes)
+
+
+@scenario
+def switched_off(m: Machine, notes: Notes) -> None:
+    """Corrections not permitted: M160 lets the program run."""
+    hal.set_p("truepath-desk.enable-switch", "0")
+    try:
+        next_part(m, notes, POCKET)
+        m.run()
+        m.wait("the second side", lambda: m.stat.motion_line >= line_of(POCKET, "G1 X30 Y16"))
+        leave(m, notes)
+    finally:
+        hal.set_p("truepath-desk.enable-switch", "1")
 
 
 @scenario
@@ -151,9 +173,8 @@ def disarm(m: Machine, notes: Notes) -> None:
     """The button on the panel in the contour: the program goes on, uncorrected."""
     into_contour(m, notes, POCKET)
     notes.mark("event")
-    hal.set_p("truepath-desk.disarm-button", "1")
+    m.press("disarm-button")
     until_out(m)
-    hal.set_p("truepath-desk.disarm-button", "0")
     m.periods(300)
     leave(m, notes)
 
@@ -218,12 +239,7 @@ def spindle_stop(m: Machine, notes: Notes) -> None:
 @scenario
 def restart(m: Machine, notes: Notes) -> None:
     """Armed with the button, begun in the middle of the contour."""
-    next_part(m, notes, POCKET)
-    m.mdi("T2 M6")
-    m.mdi("G43 H2")
-    m.open(POCKET)
-    m.press_arm()
-    notes.value("refusal", m.refused())
+    armed_by_hand(m, notes)
     notes.mark("run")
     m.run(line_of(POCKET, "G1 X30 Y16"))
     m.wait("the next arc", lambda: m.stat.motion_line >= line_of(POCKET, "G3 X26 Y20"))
@@ -244,12 +260,7 @@ def offset(m: Machine, notes: Notes) -> None:
 
 @scenario
 def offset_while_armed(m: Machine, notes: Notes) -> None:
-    next_part(m, notes, POCKET)
-    m.mdi("T2 M6")
-    m.mdi("G43 H2")
-    m.open(POCKET)
-    m.press_arm()
-    notes.value("refusal", m.refused())
+    armed_by_hand(m, notes)
     notes.mark("event")
     try:
         m.mdi("G10 L2 P1 X151 Y100 Z-120")
@@ -262,6 +273,39 @@ def offset_while_armed(m: Machine, notes: Notes) -> None:
 
 
 @scenario
+def probe_armed(m: Machine, notes: Notes) -> None:
+    """A probing move with an image armed, through the gate of the contour and along it."""
+    armed_by_hand(m, notes)
+    m.mdi("G0 X0 Y-20 Z-11")
+    notes.mark("probe")
+    m.mdi("G38.3 Z-12 F300")
+    m.mdi("G38.3 X8 F600")
+    leave(m, notes)
+
+
+@scenario
+def probe_after(m: Machine, notes: Notes) -> None:
+    """A probing move while a correction is still on its way out; the way is made long for it."""
+    cap = "truepath.{}.max-correction-vel"
+    before = [m.pin(cap.format(joint)) for joint in range(3)]
+    try:
+        # Parameters take effect with the next image.
+        m.open(CORNER)
+        for joint in range(3):
+            hal.set_p(cap.format(joint), "0.05")
+        into_contour(m, notes, POCKET, 80)
+        m.abort()
+        m.wait("the interpreter idle", m.is_idle)
+        notes.mark("probe")
+        m.mdi("G38.3 X20 F600")
+        leave(m, notes)
+    finally:
+        for joint, value in enumerate(before):
+            hal.set_p(cap.format(joint), str(value))
+        m.open(CORNER)
+
+
+@scenario
 def killed(m: Machine, notes: Notes) -> None:
     """Into the contour; the harness kills LinuxCNC there."""
     into_contour(m, notes, POCKET)
@@ -270,15 +314,12 @@ def killed(m: Machine, notes: Notes) -> None:
 @scenario
 def spent(m: Machine, notes: Notes) -> None:
     """After a new start: the serial number of the part before is refused, the next is not."""
-    m.mdi("T2 M6")
-    m.mdi("G43 H2")
+    for block in ("T2 M6", "G43 H2"):
+        m.mdi(block)
     m.open(POCKET)
-    m.enter_serial(int(Path("last-serial").read_text()))
     same_part_again(m, notes)
     m.new_serial()
-    m.press_arm()
-    notes.value("next-refusal", m.refused())
+    notes.value("next-refusal", m.press_arm())
     notes.value("next-state", m.state)
-    hal.set_p("truepath-desk.disarm-button", "1")
+    m.press("disarm-button")
     m.until_state(BYPASS)
-    hal.set_p("truepath-desk.disarm-button", "0")

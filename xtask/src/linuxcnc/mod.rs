@@ -9,6 +9,7 @@ mod parts;
 mod recording;
 mod suite;
 mod timing;
+mod verdict;
 
 use clap::Subcommand;
 

@@ -1,13 +1,13 @@
 //! The parts of the sample machine: programs, and images made from probed walls.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::machine::sample::Sample;
 use crate::repository::{cargo, program, read, run, target};
 use crate::step::Failure;
 
-/// Parts that the scenarios mill; the demonstration has probed walls of both.
+/// Parts that the scenarios mill; their walls have been probed.
 pub const PARTS: [&str; 2] = ["corner", "pocket"];
 
 /// The command-line program and the images.
@@ -28,11 +28,9 @@ impl Parts {
         let truepath = target().join("debug/truepath");
         sample.put(&truepath)?;
         let folder = target().join("linuxcnc/parts");
-        let demonstration = folder.join("demo");
-        read(program(&truepath).arg("demo").arg("-o").arg(&demonstration))?;
         let parts = Self { truepath, folder };
         for part in PARTS {
-            parts.correct(sample, part, &demonstration.join(part).join("probe.txt"))?;
+            parts.correct(sample, part)?;
         }
         Ok(parts)
     }
@@ -43,11 +41,12 @@ impl Parts {
     }
 
     /// Corrects a part of the machine by the wall that was probed, and lays its image beside its program.
-    fn correct(&self, sample: &Sample, part: &str, probe: &Path) -> Result<(), Failure> {
+    fn correct(&self, sample: &Sample, part: &str) -> Result<(), Failure> {
         let programs = sample.folder.join("sim/programs");
         let made = self.folder.join(part);
         let mut command = program(&self.truepath);
-        command.arg("correct").arg(programs.join(format!("{part}.toml"))).arg("--probe").arg(probe);
+        command.arg("correct").arg(programs.join(format!("{part}.toml"))).arg("--probe");
+        command.arg(programs.join(format!("{part}-probe.txt")));
         command.args(["--route", "coprocessor", "--force", "-o"]).arg(&made);
         read(&mut command)?;
         let to = programs.join(format!("{part}.tpi"));

@@ -4,17 +4,18 @@ use std::fs;
 use std::time::Instant;
 
 use super::check::equal::{Equality, Replay, compare};
-use super::check::limits::{Extremes, Joint, check};
-use super::check::scenario::{ALL, Scenario};
+use super::check::limits::{Joint, check};
+use super::check::scenario::{ALL, KILLED, SPENT, Scenario};
 use super::machine::sample::{Sample, number};
 use super::machine::session::{self, End};
 use super::notes::{self, Notes};
 use super::parts::Parts;
 use super::recording::{JOINTS, Recording, Row};
+use super::verdict::{self, Verdict};
 use super::{install, timing};
 use crate::bench::table::replace;
 use crate::repository::root;
-use crate::step::{Failure, Outcome, Passed};
+use crate::step::{Failure, Outcome};
 
 /// Servo periods per second of the sample machine.
 const HZ: f64 = 1000.0;
@@ -23,7 +24,12 @@ const DOCUMENT: &str = "docs/linuxcnc.md";
 
 /// Runs all scenarios, or one.
 pub fn run(only: Option<&str>, write: bool) -> Outcome {
-    let wanted: Vec<&Scenario> = ALL.iter().filter(|s| only.is_none_or(|name| name == s.name)).collect();
+    let asked: Vec<&str> = only.map(|names| names.split(',').collect()).unwrap_or_default();
+    let mut wanted: Vec<&Scenario> = ALL.iter().filter(|s| only.is_none() || asked.contains(&s.name)).collect();
+    if wanted.iter().any(|s| s.name == SPENT) && !wanted.iter().any(|s| s.name == KILLED) {
+        // There has to be something that was armed before.
+        wanted.extend(ALL.iter().filter(|s| s.name == KILLED));
+    }
     if wanted.is_empty() {
         let names: Vec<&str> = ALL.iter().map(|s| s.name).collect();
         return Err(Failure::found(format!("there is no such scenario; there are: {}", names.join(", "))));
@@ -36,32 +42,31 @@ pub fn run(only: Option<&str>, write: bool) -> Outcome {
     let bench = Bench::new(&ini, &parts, &sample)?;
     let mut verdicts = Vec::new();
     let mut rows = Vec::new();
-    let names: Vec<&str> = wanted.iter().map(|s| s.name).collect();
-    let begin = Instant::now();
-    let folder = session::run(&sample, "main", &names, End::Regular)?;
-    eprintln!("    {:.0} s", begin.elapsed().as_secs_f64());
-    let recording = Recording::read(&folder)?;
-    let noted = notes::read(&folder)?;
-    for scenario in &wanted {
-        let notes = noted.iter().find(|n| n.name == scenario.name);
-        verdicts.push(bench.judge(scenario, notes, &recording));
+    // Killed last, and the machine started once more behind it.
+    let (again, first): (Vec<&Scenario>, Vec<&Scenario>) = wanted.into_iter().partition(|s| s.name == SPENT);
+    let end = if first.iter().any(|s| s.name == KILLED) { End::Killed } else { End::Regular };
+    for (name, scenarios, end) in [("main", first, end), ("again", again, End::Regular)] {
+        let names: Vec<&str> = scenarios.iter().map(|s| s.name).collect();
+        if names.is_empty() {
+            continue;
+        }
+        let begin = Instant::now();
+        let folder = session::run(&sample, name, &names, end)?;
+        eprintln!("    {:.0} s", begin.elapsed().as_secs_f64());
+        let (recording, noted) = (Recording::read(&folder)?, notes::read(&folder)?);
+        for scenario in scenarios {
+            let notes = noted.iter().find(|n| n.name == scenario.name);
+            verdicts.push(bench.judge(scenario, notes, &recording));
+        }
+        rows.extend(recording.rows);
     }
-    rows.extend(recording.rows);
     let times = timing::table(&rows);
     println!("\n{times}");
     if write {
         replace(&root().join(DOCUMENT), "times in the servo thread", &times)?;
+        replace(&root().join(DOCUMENT), "scenarios", &verdict::document(&verdicts))?;
     }
-    told(&verdicts)
-}
-
-/// What a scenario came to.
-struct Verdict {
-    name: &'static str,
-    periods: usize,
-    equality: Option<Equality>,
-    extremes: Extremes,
-    found: Vec<String>,
+    verdict::tell(&verdicts)
 }
 
 /// What recordings are judged by.
@@ -85,13 +90,7 @@ impl<'a> Bench<'a> {
     }
 
     fn judge(&self, scenario: &Scenario, notes: Option<&Notes>, recording: &Recording) -> Verdict {
-        let mut verdict = Verdict {
-            name: scenario.name,
-            periods: 0,
-            equality: None,
-            extremes: Extremes::default(),
-            found: Vec::new(),
-        };
+        let mut verdict = Verdict { name: scenario.name, ..Verdict::default() };
         let Some(notes) = notes else {
             verdict.found.push("it was not run".to_owned());
             return verdict;
@@ -99,6 +98,7 @@ impl<'a> Bench<'a> {
         if let Some(why) = &notes.failed {
             verdict.found.push(format!("the driver gave up: {why}"));
         }
+        verdict.said.clone_from(&notes.said);
         for said in &notes.said {
             // What LinuxCNC stops a machine for.
             if ["following error", "limit"].iter().any(|word| said.contains(word)) {
@@ -150,42 +150,11 @@ fn settings(ini: &str) -> Vec<String> {
             }
         })
         .collect();
-    vec![format!("joint_limits_nm=[{}]", limits.join(","))]
-}
-
-/// The table on the terminal, and the outcome.
-fn told(verdicts: &[Verdict]) -> Outcome {
-    println!(
-        "{:<19} {:>8} {:>9} {:>8} {:>9} {:>9} {:>10} {:>10}",
-        "scenario", "periods", "corrected", "largest", "velocity", "accel.", "following", "changed by"
-    );
-    println!(
-        "{:<19} {:>8} {:>9} {:>8} {:>9} {:>9} {:>10} {:>10}",
-        "", "", "= replay", "mm", "of limit", "of limit", "error mm", "mm"
-    );
-    for v in verdicts {
-        let equal = v.equality.map_or("-".to_owned(), |e| e.corrected.to_string());
-        let (e, said) = (v.extremes, if v.found.is_empty() { "" } else { "  FAILED" });
-        println!(
-            "{:<19} {:>8} {equal:>9} {:>8.4} {:>8.0}% {:>8.0}% {:>10.4} {:>10.4}{said}",
-            v.name,
-            v.periods,
-            e.correction_mm,
-            100.0 * e.velocity,
-            100.0 * e.acceleration,
-            e.following_error_mm,
-            e.following_change_mm
-        );
-    }
-    let mut findings = 0;
-    for v in verdicts {
-        for finding in &v.found {
-            eprintln!("{}: {finding}", v.name);
-            findings += 1;
-        }
-    }
-    match findings {
-        0 => Ok(Passed::Done),
-        _ => Err(Failure::found(format!("{findings} findings in {} scenarios", verdicts.len()))),
-    }
+    let cap = |key| number(ini, "TRUEPATH", key).map(|mm| format!("{:.0}", mm * 1e6));
+    let caps = [
+        ("correction_slew_nm_per_s", cap("MAX_CORRECTION_VEL")),
+        ("correction_acceleration_nm_per_s2", cap("MAX_CORRECTION_ACCEL")),
+    ];
+    let caps = caps.into_iter().filter_map(|(name, value)| Some(format!("{name}={}", value?)));
+    caps.chain([format!("joint_limits_nm=[{}]", limits.join(","))]).collect()
 }

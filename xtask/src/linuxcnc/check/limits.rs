@@ -95,7 +95,8 @@ impl Track<'_> {
             *reach = reach.max(correction.unsigned_abs() as f64 / NM_PER_MM);
         }
         for pair in rows.windows(2) {
-            let (removed, correction) = (pair[1].feedback_in[j] - pair[1].feedback_out[j], pair[0].correction[j]);
+            // The drives move at the end of a period, and are read in the next.
+            let (removed, correction) = (pair[0].feedback_in[j] - pair[1].feedback_out[j], pair[0].correction[j]);
             if (removed - correction).abs() > i64::from(correction != 0) {
                 let detail = format!("{removed} nm were removed, the correction before was {correction} nm");
                 self.broken("feedback", &pair[1], detail);
@@ -189,9 +190,9 @@ mod tests {
             row.motor_in[0] = position;
             row.correction[0] = correction;
             row.motor_out[0] = position + correction;
-            row.feedback_in[0] = drive.round() as i64;
-            row.feedback_out[0] = row.feedback_in[0] - correction_before;
+            row.feedback_out[0] = drive.round() as i64 - correction_before;
             drive += GAIN * ((position + correction) as f64 - drive);
+            row.feedback_in[0] = drive.round() as i64;
             correction_before = correction;
             rows.push(row);
         }

@@ -4,7 +4,8 @@ use std::cell::RefCell;
 
 use super::super::notes::Notes;
 use super::super::recording::Row;
-use super::ramp;
+use super::case::Case;
+use super::{ramp, uncorrected};
 
 const BYPASS: u32 = 1;
 const ARMED: u32 = 2;
@@ -16,7 +17,6 @@ const DISARMED: u32 = 2;
 const EMERGENCY_STOP: u32 = 16;
 const ABORT: u32 = 17;
 const DRIVES_DISABLED: u32 = 19;
-const FRAME_CHANGED: u32 = 20;
 /// Less than this is no correction that a test could see, nm.
 const VISIBLE: i64 = 10_000;
 
@@ -32,8 +32,9 @@ pub struct Scenario {
 pub const ALL: &[Scenario] = &[
     Scenario { name: "corner", replayed: true, check: completed },
     Scenario { name: "pocket", replayed: true, check: completed_and_spent },
-    Scenario { name: "repeated", replayed: false, check: repeated },
-    Scenario { name: "dry-run", replayed: true, check: dry_run },
+    Scenario { name: "repeated", replayed: false, check: uncorrected::repeated },
+    Scenario { name: "switched-off", replayed: false, check: uncorrected::switched_off },
+    Scenario { name: "dry-run", replayed: true, check: uncorrected::dry_run },
     Scenario { name: "abort", replayed: true, check: |case| ended(case, &[ABORT]) },
     Scenario { name: "emergency-stop", replayed: true, check: |case| ended(case, &[EMERGENCY_STOP]) },
     Scenario { name: "drives-off", replayed: true, check: |case| ended(case, &[DRIVES_DISABLED]) },
@@ -42,10 +43,22 @@ pub const ALL: &[Scenario] = &[
     Scenario { name: "feed-override", replayed: true, check: feed_override },
     Scenario { name: "spindle-override", replayed: true, check: spindle_override },
     Scenario { name: "spindle-stop", replayed: true, check: spindle_stop },
-    Scenario { name: "restart", replayed: false, check: restart },
+    Scenario { name: "restart", replayed: false, check: uncorrected::restart },
     Scenario { name: "offset", replayed: true, check: offset },
-    Scenario { name: "offset-while-armed", replayed: false, check: offset_while_armed },
+    Scenario { name: "offset-while-armed", replayed: false, check: uncorrected::offset_while_armed },
+    Scenario { name: "probe-armed", replayed: false, check: uncorrected::probe_armed },
+    Scenario { name: "probe-after", replayed: false, check: uncorrected::probe_after },
+    Scenario {
+        name: KILLED,
+        replayed: true,
+        check: |case| case.expect(Case::largest(case.rows) > VISIBLE, "no correction"),
+    },
+    Scenario { name: SPENT, replayed: false, check: uncorrected::spent },
 ];
+/// LinuxCNC is killed behind it.
+pub const KILLED: &str = "killed";
+/// In a new run of LinuxCNC.
+pub const SPENT: &str = "spent";
 
 impl Scenario {
     /// Checks it; what is wrong is added to the findings.
@@ -53,57 +66,6 @@ impl Scenario {
         let case = Case { notes, rows, found: RefCell::new(std::mem::take(found)) };
         (self.check)(&case);
         *found = case.found.into_inner();
-    }
-}
-
-/// One scenario of a session with its findings.
-struct Case<'a> {
-    notes: &'a Notes,
-    rows: &'a [Row],
-    found: RefCell<Vec<String>>,
-}
-
-impl Case<'_> {
-    fn expect(&self, holds: bool, otherwise: impl Into<String>) {
-        if !holds {
-            self.found.borrow_mut().push(otherwise.into());
-        }
-    }
-
-    /// The periods between two marks; an empty name is the end of the scenario.
-    fn between(&self, from: &str, to: &str) -> &[Row] {
-        let place = |at| self.rows.partition_point(|row| row.sequence <= at);
-        let from = if from.is_empty() { 0 } else { place(self.notes.mark(from)) };
-        let to = if to.is_empty() { self.rows.len() } else { place(self.notes.mark(to)) };
-        self.expect(from < to, "there are no periods to check: the driver did not come so far");
-        &self.rows[from..to.max(from)]
-    }
-
-    /// No correction in any of the periods, and no state in which there could be one.
-    fn untouched(&self, rows: &[Row], when: &str) {
-        let wrong = rows.iter().find(|row| row.correction != [0; 3] || row.state >= ACTIVE);
-        let told = |row: &Row| format!("{when}: correction {:?} nm, state {}", row.correction, row.state);
-        self.expect(wrong.is_none(), wrong.map(told).unwrap_or_default());
-    }
-
-    /// The axes went on by more than some millimetres: uncorrected is not the same as standing.
-    fn moved(&self, rows: &[Row], when: &str) {
-        let reach = (0..2).map(|axis| {
-            let places = rows.iter().map(|row| row.setpoint[axis]);
-            places.clone().max().unwrap_or(0) - places.min().unwrap_or(0)
-        });
-        self.expect(reach.max() > Some(1_000_000), format!("{when}: the axes did not move"));
-    }
-
-    fn largest(rows: &[Row]) -> i64 {
-        rows.iter().flat_map(|row| row.correction).map(i64::abs).max().unwrap_or(0)
-    }
-
-    fn refused(&self, key: &str) {
-        self.expect(
-            self.notes.number(key).is_some_and(|code| code > 0.0),
-            format!("{key}: the arming was not refused"),
-        );
     }
 }
 
@@ -123,22 +85,6 @@ fn completed_and_spent(case: &Case) {
     completed(&Case { rows: &case.rows[..whole], notes: case.notes, found: case.found.take().into() });
     case.untouched(case.between("again", ""), "after the part was done");
     case.refused("refusal");
-}
-
-/// The program once more, with nothing confirmed.
-fn repeated(case: &Case) {
-    case.untouched(case.rows, "program repeated");
-    case.expect(!case.rows.iter().any(|row| row.state >= ARMED), "it was armed again");
-}
-
-/// Armed and in the contour, but nothing on: the spindle does not turn.
-fn dry_run(case: &Case) {
-    let largest = Case::largest(case.rows);
-    case.expect(largest == 0, format!("correction up to {largest} nm without a spindle"));
-    case.expect(case.rows.iter().any(|row| row.state == ACTIVE), "the contour was not entered");
-    let active: Vec<Row> = case.rows.iter().filter(|row| row.state == ACTIVE).cloned().collect();
-    case.moved(&active, "in the contour");
-    case.expect(active.iter().all(|row| row.faded), "the component did not say that the correction is faded");
 }
 
 /// The contour is broken off: the correction ramps to zero, and never comes back.
@@ -225,25 +171,7 @@ fn spindle_stop(case: &Case) {
     case.expect(after.last().is_some_and(|row| row.correction != [0; 3]), "the correction did not come back");
 }
 
-/// Armed, begun behind the gate: no correction, armed until it is ended.
-fn restart(case: &Case) {
-    case.expect(case.notes.number("refusal") == Some(0.0), "it could not be armed");
-    case.untouched(case.rows, "restart in the middle");
-    let run = case.between("run", "leave");
-    case.moved(run, "restart in the middle");
-    case.expect(case.rows.last().is_some_and(|row| row.state == BYPASS), "it did not end in bypass");
-}
-
 fn offset(case: &Case) {
     case.expect(Case::largest(case.rows) > VISIBLE, "there was no correction in the other place");
     case.expect(case.notes.number("truepath.frame-sine").is_some_and(|s| s > 1e8), "the turn was not told");
-}
-
-fn offset_while_armed(case: &Case) {
-    case.expect(case.notes.number("refusal") == Some(0.0), "it could not be armed");
-    let after = case.between("event", "");
-    case.untouched(case.rows, "offset changed while armed");
-    let reasons: Vec<u32> = after.iter().filter(|row| row.state == BYPASS).map(|row| row.reason).collect();
-    case.expect(reasons.first() == Some(&FRAME_CHANGED), format!("the reason is {:?}", reasons.first()));
-    case.moved(after, "offset changed while armed");
 }
