@@ -65,7 +65,7 @@ pin in bit disarm "Rising edge: end the arming";
 pin in bit reload "Rising edge: read the image file again";
 
 // What it says.
-pin out u32 state = 1 "0 off, 1 bypass, 2 armed, 3 active, 4 hold, 5 fault";
+pin out u32 state "0 off, 1 bypass, 2 armed, 3 active, 4 hold, 5 fault";
 pin out bit active "A correction is on: states 3, 4, 5";
 pin out bit armed "State 2";
 pin out bit fault "The last correction ended in a fault, until the next arming";
@@ -111,45 +111,157 @@ RTAPI_MP_INT(axes, "axes in a frame on that port");
 
 #define FUNCTION(name) static void name(struct __comp_state *hal, long period)
 
-enum { MOST_JOINTS = 6 };
-static int joints;
+#include "desk.h"
 
-// Joints in `coordinates`, or a negative errno.
-static int count_joints(void) {
-    int count = 0;
+static struct truepath_block block;
+static struct truepath_sides sides;
+static struct desk desk;
+static struct __comp_state *component;
+static int joints;
+// Axis of each joint, 0…5 for X, Y, Z, A, B, C.
+static uint8_t axis_of_joint[TRUEPATH_JOINTS];
+static bool reload_before;
+
+// Reads `coordinates`. 0 or a negative errno.
+static int read_coordinates(void) {
+    unsigned seen = 0;
+    memset(axis_of_joint, TRUEPATH_NO_AXIS, sizeof axis_of_joint);
     for (const char *c = coordinates; *c; c++) {
         if (*c == ' ' || *c == ',') continue;
-        if (!strchr("XYZABCUVWxyzabcuvw", *c) || count == MOST_JOINTS) {
-            rtapi_print_msg(RTAPI_MSG_ERR, "truepath: coordinates=%s: one axis letter for each of at most %d joints is "
-                "expected, for instance XYZ\n", coordinates, MOST_JOINTS);
-            return -EINVAL;
+        const char *letters = "XYZABCUVWxyzabcuvw", *letter = strchr(letters, *c);
+        if (!letter || joints == TRUEPATH_JOINTS) {
+            seen = 0;
+            break;
         }
-        count++;
+        int axis = (int)(letter - letters) % 9;
+        if (axis < TRUEPATH_JOINTS) axis_of_joint[joints] = (uint8_t)axis;
+        seen |= 1u << axis;
+        joints++;
     }
-    return count ? count : -EINVAL;
+    if ((seen & 7) == 7) return 0;
+    rtapi_print_msg(RTAPI_MSG_ERR, "truepath: coordinates=%s: the axis letter of each joint, X, Y and Z among them, at most "
+        "%d, for instance XYZ or XYYZ\n", coordinates, TRUEPATH_JOINTS);
+    return -EINVAL;
 }
 
+// The parameters, for the desk thread.
+static void limits(struct truepath_limits *to) {
+    for (int j = 0; j < joints; j++) {
+        to->least[j] = component->_min_limit[j];
+        to->greatest[j] = component->_max_limit[j];
+        to->velocity[j] = component->_max_correction_vel[j];
+        to->acceleration[j] = component->_max_correction_accel[j];
+    }
+    to->nm_per_unit = component->nm_per_unit;
+}
+
+static uint32_t switches(const struct __comp_state *hal) {
+    bool homed = true;
+    for (int j = 0; j < joints; j++) homed &= *hal->_homed[j];
+    return (*hal->drives_on ? TRUEPATH_DRIVES_ON : 0)
+        | (homed ? TRUEPATH_ALL_HOMED : 0)
+        | (*hal->emergency_stop ? TRUEPATH_EMERGENCY_STOP : 0)
+        | (*hal->feed_hold ? TRUEPATH_FEED_HOLD : 0)
+        | (*hal->program_running ? TRUEPATH_PROGRAM_RUNNING : 0)
+        | (*hal->tool_change ? TRUEPATH_TOOL_CHANGE : 0)
+        | (*hal->spindle_on ? TRUEPATH_SPINDLE_ON : 0)
+        | (*hal->spindle_loaded ? TRUEPATH_SPINDLE_LOADED : 0)
+        | (*hal->trivial_kinematics ? TRUEPATH_TRIVIAL_KINEMATICS : 0)
+        | (*hal->enable ? TRUEPATH_ENABLE : 0)
+        | (*hal->arm ? TRUEPATH_ARM : 0)
+        | (*hal->disarm ? TRUEPATH_DISARM : 0);
+}
+
+static void read_pins(const struct __comp_state *hal, long period, struct truepath_inputs *in) {
+    for (int j = 0; j < joints; j++) {
+        in->pos_cmd[j] = *hal->_pos_cmd[j];
+        in->motor_pos_cmd[j] = *hal->_motor_pos_cmd_in[j];
+    }
+    in->offset[0] = *hal->offset_x;
+    in->offset[1] = *hal->offset_y;
+    in->offset[2] = *hal->offset_z;
+    in->spindle_rpm = *hal->spindle_rpm;
+    in->nm_per_unit = hal->nm_per_unit;
+    in->cosine = *hal->frame_cosine;
+    in->sine = *hal->frame_sine;
+    in->motion_type = *hal->motion_type;
+    in->tool = *hal->tool;
+    in->tool_offset = *hal->tool_offset;
+    in->program_crc = *hal->program_crc;
+    in->feature = *hal->feature;
+    in->pass = *hal->pass;
+    in->setup = *hal->setup;
+    in->part_serial = *hal->part_serial;
+    in->switches = switches(hal);
+    in->period_ns = (uint32_t)period;
+}
+
+static void write_pins(struct __comp_state *hal, const struct truepath_outputs *out) {
+    for (int j = 0; j < joints; j++) {
+        *hal->_motor_pos_cmd[j] = out->motor_pos_cmd[j];
+        *hal->_amp_enable[j] = *hal->_amp_enable_in[j] && out->forward;
+    }
+    *hal->state = out->state;
+    *hal->armed = out->state == 2;
+    *hal->active = out->state >= 3;
+    *hal->fault = out->fault;
+    *hal->reason = out->reason;
+    *hal->refusal = out->refusal;
+    *hal->warn = out->status & TRUEPATH_WARN;
+    *hal->saturated = (out->status & TRUEPATH_SATURATED) != 0;
+    *hal->lagging = (out->status & TRUEPATH_LAGGING) != 0;
+    *hal->faded = (out->status & TRUEPATH_FADED) != 0;
+    *hal->joint_limited = (out->status & TRUEPATH_JOINT_LIMITED) != 0;
+    *hal->correction_x = out->correction[0];
+    *hal->correction_y = out->correction[1];
+    *hal->correction_z = out->correction[2];
+    for (int axis = 0; axis < 3; axis++) *hal->correction_nm[axis] = out->correction_nm[axis];
+    *hal->armed_serial = out->armed_serial;
+    *hal->image_ready = out->image_ready;
+    *hal->image_crc = out->image_crc;
+    *hal->node = out->node;
+    *hal->sequence = out->sequence;
+    *hal->flags = out->flags;
+    *hal->feed_inhibit = out->feed_inhibit;
+}
+
+// Route A. With a port set, Route B takes its place: the same pins, the setpoint of the same rules, the correction of the
+// board.
 FUNCTION(feedback) {
     (void)period;
-    for (int j = 0; j < joints; j++) *hal->_motor_pos_fb[j] = *hal->_motor_pos_fb_in[j];
+    double measured[TRUEPATH_JOINTS] = {0}, plain[TRUEPATH_JOINTS];
+    for (int j = 0; j < joints; j++) measured[j] = *hal->_motor_pos_fb_in[j];
+    truepath_pc_feedback(sides.servo, measured, plain);
+    for (int j = 0; j < joints; j++) *hal->_motor_pos_fb[j] = plain[j];
 }
 
 FUNCTION(command) {
-    (void)period;
-    for (int j = 0; j < joints; j++) {
-        *hal->_motor_pos_cmd[j] = *hal->_motor_pos_cmd_in[j];
-        *hal->_amp_enable[j] = *hal->_amp_enable_in[j];
-    }
-    *hal->sequence += 1;
+    struct truepath_inputs in = {0};
+    struct truepath_outputs out;
+    read_pins(hal, period, &in);
+    truepath_pc_command(sides.servo, &in, &out);
+    write_pins(hal, &out);
+    bool reload = *hal->reload;
+    if (reload && !reload_before) atomic_fetch_add(&desk.reloads, 1);
+    reload_before = reload;
 }
 
 int rtapi_app_main(void) {
-    joints = count_joints();
-    if (joints < 0) return joints;
+    desk.image = image;
+    desk.ledger = ledger;
+    desk.limits = limits;
+    int r = read_coordinates();
+    if (!r) r = desk_open(&desk, &block, axis_of_joint, &sides);
+    if (r) return r;
     comp_id = hal_init("truepath");
     if (comp_id < 0) return comp_id;
-    int r = export("truepath", 0, joints);
-    if (r != 0) {
+    r = export("truepath", 0, joints);
+    if (!r) {
+        component = __comp_first_inst;
+        desk.error = component->image_error;
+        r = desk_start(&desk);
+    }
+    if (r) {
         hal_exit(comp_id);
         return r;
     }
@@ -158,5 +270,6 @@ int rtapi_app_main(void) {
 }
 
 void rtapi_app_exit(void) {
+    desk_stop(&desk);
     hal_exit(comp_id);
 }

@@ -6,7 +6,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::repository::{program, read, root, run, succeeds, target};
+use crate::repository::{cargo, program, read, root, run, succeeds, target};
 use crate::step::Failure;
 
 /// Debian's package with what compiles components.
@@ -24,12 +24,13 @@ pub fn build() -> Result<PathBuf, Failure> {
     }
     let folder = target().join("linuxcnc");
     fs::create_dir_all(&folder).map_err(|e| written(&folder, &e))?;
+    let library = library()?;
     let source = root().join("linuxcnc/truepath.comp");
     let c = folder.join("truepath.c");
     run(program("halcompile").args(["--preprocess", "--outfile"]).arg(&c).arg(&source))?;
     let rules = read(program("halcompile").arg("--print-modinc"))?;
     let makefile = folder.join("Makefile");
-    fs::write(&makefile, text(rules.trim())).map_err(|e| written(&makefile, &e))?;
+    fs::write(&makefile, text(rules.trim(), &library)).map_err(|e| written(&makefile, &e))?;
     run(program("make").arg("--directory").arg(&folder).arg("modules"))?;
     let made = folder.join("truepath.so");
     let bytes = fs::metadata(&made).map_err(|e| written(&made, &e))?.len();
@@ -37,10 +38,28 @@ pub fn build() -> Result<PathBuf, Failure> {
     Ok(folder)
 }
 
+/// The core as a static library: whole-program optimised, position independent, a panic has no handler.
+fn library() -> Result<PathBuf, Failure> {
+    let mut build = cargo();
+    build.args(["rustc", "--profile", "firmware", "--package", "truepath-abi", "--features", "component", "--lib"]);
+    build.args(["--crate-type", "staticlib"]);
+    run(&mut build)?;
+    Ok(target().join("firmware/libtruepath_abi.a"))
+}
+
 /// The makefile, with LinuxCNC's own rules.
-fn text(rules: &str) -> String {
-    let include = root().join("linuxcnc");
-    format!("obj-m += truepath.o\ninclude {rules}\nEXTRA_CFLAGS += -Wall -I{}\n", include.display())
+fn text(rules: &str, library: &Path) -> String {
+    let sources = root().join("linuxcnc");
+    format!(
+        "obj-m += truepath.o\n\
+         truepath-objs := truepath.o\n\
+         include {rules}\n\
+         EXTRA_CFLAGS += -std=gnu11 -Wall -Wextra -Wno-unused-function -Wno-unused-parameter -I{0} -I{0}/abi\n\
+         LDFLAGS += -Wl,--gc-sections -pthread\n\
+         truepath.so: {1}\n",
+        sources.display(),
+        library.display()
+    )
 }
 
 fn written(path: &Path, error: &std::io::Error) -> Failure {

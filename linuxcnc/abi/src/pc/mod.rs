@@ -1,0 +1,51 @@
+//! Route A: the correction is computed on the PC, in LinuxCNC's servo thread.
+//!
+//! Two sides, as in the firmware. The **servo side** ([`Servo`]) is called once a period before and behind the motion
+//! controller; it is bounded, and holds no allocation, no system call and no panic. The **desk side** ([`Desk`]) runs in
+//! a thread of its own; it checks images, prepares rewriters and keeps the ledger of spent parts. They share nothing but
+//! places for one item ([`Mailboxes`]), each with one sender and one receiver.
+//!
+//! What LinuxCNC says becomes a setpoint with flags ([`Signals`], [`WorkFrame`]); the other route sends the same
+//! setpoint to a board. The rules are in `linuxcnc/README.md`.
+
+mod desk;
+mod ledger;
+mod limits;
+mod mailbox;
+mod mailboxes;
+mod pins;
+mod refusal;
+mod servo;
+mod signals;
+mod work_frame;
+
+pub use desk::Desk;
+pub use ledger::{LEDGER_BYTES, LedgerError};
+pub use limits::{Joints, Limits, OfferError};
+pub use mailboxes::Mailboxes;
+pub use pins::{Inputs, JOINTS, Outputs, Switches};
+pub use refusal::Refused;
+pub use servo::Servo;
+pub use signals::{PROBING, Signals};
+pub use work_frame::WorkFrame;
+
+use core::sync::atomic::AtomicU32;
+
+use truepath_core::rewrite::{Rewriter, Settings, SpentList};
+
+/// Both sides, on mailboxes that live as long as they do. The ledger is the content of its file, nothing for a new one.
+///
+/// # Errors
+/// The ledger cannot be used.
+pub fn open(
+    mailboxes: &'static mut Mailboxes,
+    period_ns: &'static AtomicU32,
+    joints: Joints,
+    ledger: &[u8],
+) -> Result<(Servo, Desk), LedgerError> {
+    let spent = if ledger.is_empty() { SpentList::EMPTY } else { ledger::read(ledger)? };
+    // The settings are in range, and without an image there is nothing else that could be refused.
+    let bare = Rewriter::new(Settings::at_1_khz(), None).map_err(|_| LedgerError::Damaged)?;
+    let (servo, desk) = mailboxes.split();
+    Ok((Servo::new(servo, joints, period_ns, bare, spent), Desk::new(desk, joints, period_ns, spent)))
+}

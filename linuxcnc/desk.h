@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+//
+// The desk thread: reads the image, keeps the ledger on the disk. It has the scheduling of a normal program and shares
+// nothing with the servo thread but the queues of truepath.h and the counter of reloads.
+
+#ifndef TRUEPATH_DESK_H
+#define TRUEPATH_DESK_H
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <time.h>
+
+#include "files.h"
+#include "rtapi.h"
+#include "truepath.h"
+
+enum {
+    // An image of the most nodes is smaller.
+    DESK_IMAGE_BYTES = 64 << 20,
+    // In use, waiting to be used, and come back: there are never more.
+    DESK_IMAGES = 3,
+    // Between two rounds. An arming waits for one of them and for the disk.
+    DESK_ROUND_NS = 5000000,
+};
+
+// Values of image-error besides those of the library.
+enum { DESK_NOT_READ = 64 };
+
+struct desk {
+    const char *image, *ledger;
+    struct truepath_desk *side;
+    // The parameters of the component, as they are now.
+    void (*limits)(struct truepath_limits *limits);
+    // Pin image-error.
+    volatile hal_u32_t *error;
+    atomic_uint reloads;
+    atomic_bool end;
+    pthread_t thread;
+    unsigned char *images[DESK_IMAGES];
+};
+
+static void desk_forget(struct desk *desk, const unsigned char *image) {
+    for (int i = 0; i < DESK_IMAGES; i++) {
+        if (desk->images[i] != image) continue;
+        free(desk->images[i]);
+        desk->images[i] = NULL;
+    }
+}
+
+// Keeps the memory of an image that is lent; false when there is no place, which does not happen.
+static bool desk_keep(struct desk *desk, unsigned char *image) {
+    for (int i = 0; i < DESK_IMAGES; i++) {
+        if (desk->images[i]) continue;
+        desk->images[i] = image;
+        return true;
+    }
+    return false;
+}
+
+// Offers what the image file holds now, or that there is none. `first`: a missing file is no error.
+static void desk_offer(struct desk *desk, const struct truepath_limits *limits, bool first) {
+    unsigned char *bytes = NULL;
+    size_t count = 0;
+    int r = *desk->image ? read_file(desk->image, DESK_IMAGE_BYTES, &bytes, &count) : -ENOENT;
+    uint32_t error = 0;
+    if (r) {
+        error = first && r == -ENOENT ? 0 : DESK_NOT_READ;
+        if (error) rtapi_print_msg(RTAPI_MSG_ERR, "truepath: image %s: %s\n", desk->image, strerror(-r));
+    } else if (!desk_keep(desk, bytes)) {
+        error = DESK_NOT_READ;
+        free(bytes);
+        bytes = NULL;
+    } else if ((error = truepath_pc_offer(desk->side, limits, bytes, count))) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "truepath: image %s is not used: error %u, see docs/linuxcnc.md\n", desk->image, error);
+        desk_forget(desk, bytes);
+        bytes = NULL;
+    }
+    // Never an image that is not the one in the file.
+    if (!bytes) truepath_pc_offer(desk->side, limits, NULL, 0);
+    *desk->error = error;
+}
+
+static void desk_write_ledger(struct desk *desk, const unsigned char *file, size_t count) {
+    int r = *desk->ledger ? write_file(desk->ledger, file, count) : -ENOENT;
+    if (r) rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s: %s; nothing can be armed\n",
+        *desk->ledger ? desk->ledger : "(no file is named)", strerror(-r));
+    truepath_pc_written(desk->side, !r);
+}
+
+static void *desk_run(void *argument) {
+    struct desk *desk = argument;
+    struct truepath_limits used = {0}, now;
+    unsigned seen = 0;
+    bool first = true;
+    const struct timespec round = {0, DESK_ROUND_NS};
+    while (!atomic_load(&desk->end)) {
+        const unsigned char *back;
+        while ((back = truepath_pc_returned(desk->side))) desk_forget(desk, back);
+        unsigned char file[TRUEPATH_LEDGER_BYTES];
+        size_t count = truepath_pc_spend(desk->side, file);
+        if (count) desk_write_ledger(desk, file, count);
+        unsigned reloads = atomic_load(&desk->reloads);
+        memset(&now, 0, sizeof now);
+        desk->limits(&now);
+        if ((first || reloads != seen || memcmp(&now, &used, sizeof now)) && truepath_pc_ready(desk->side)) {
+            desk_offer(desk, &now, first);
+            used = now;
+            seen = reloads;
+            first = false;
+        }
+        nanosleep(&round, NULL);
+    }
+    return NULL;
+}
+
+// Reads the ledger and fills the block. 0 or a negative errno.
+static int desk_open(struct desk *desk, struct truepath_block *block, const uint8_t *axes, struct truepath_sides *sides) {
+    unsigned char *file = NULL;
+    size_t count = 0;
+    int r = *desk->ledger ? read_file(desk->ledger, TRUEPATH_LEDGER_BYTES, &file, &count) : -ENOENT;
+    if (r && r != -ENOENT) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s: %s\n", desk->ledger, strerror(-r));
+        return r;
+    }
+    uint32_t wrong = truepath_pc_new(block, axes, file, count, sides);
+    free(file);
+    if (wrong) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s is %s. It remembers which parts were corrected: move it away "
+            "only if none of them is machined again\n", desk->ledger, wrong == 1 ? "damaged" : "of another version");
+        return -EINVAL;
+    }
+    desk->side = sides->desk;
+    return 0;
+}
+
+static int desk_start(struct desk *desk) {
+    pthread_attr_t attributes;
+    struct sched_param normal = {0};
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_attr_init(&attributes);
+    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+    pthread_attr_setschedpolicy(&attributes, SCHED_OTHER);
+    pthread_attr_setschedparam(&attributes, &normal);
+    // Signals are for the program that loads the component.
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    int r = pthread_create(&desk->thread, &attributes, desk_run, desk);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    pthread_attr_destroy(&attributes);
+    if (r) rtapi_print_msg(RTAPI_MSG_ERR, "truepath: no thread: %s\n", strerror(r));
+    return -r;
+}
+
+// Ends the thread, which takes as long as the disk, and gives the memory back. The servo thread is gone.
+static void desk_stop(struct desk *desk) {
+    atomic_store(&desk->end, true);
+    pthread_join(desk->thread, NULL);
+    for (int i = 0; i < DESK_IMAGES; i++) free(desk->images[i]);
+}
+
+#endif
