@@ -33,6 +33,21 @@ def last_serial() -> int:
     return int(SERIAL.read_text()) if SERIAL.exists() else 0
 
 
+def gone_through(name: str, machine: Machine, notes: Notes) -> bool:
+    """One scenario. After one that got stuck the machine is brought back to where the next may begin."""
+    print(f"scenario {name}", flush=True)
+    try:
+        with notes.scenario(name):
+            scenarios.ALL[name](machine, notes)
+        return True
+    except Stuck as stuck:
+        notes.failed(str(stuck))
+        machine.abort()
+        machine.switch_on()
+        machine.until_idle()
+        return False
+
+
 def main() -> int:
     folder = Path(os.environ["TRUEPATH_RECORDINGS"])
     names = os.environ["TRUEPATH_SCENARIOS"].split(",")
@@ -48,14 +63,8 @@ def main() -> int:
     try:
         machine.switch_on()
         machine.home()
-        for name in names:
-            print(f"scenario {name}", flush=True)
-            with notes.scenario(name):
-                scenarios.ALL[name](machine, notes)
-        return 0
-    except Stuck as stuck:
-        notes.failed(str(stuck))
-        return 1
+        done = [gone_through(name, machine, notes) for name in names]
+        return 0 if all(done) else 1
     except Exception:
         notes.failed(traceback.format_exc())
         return 1

@@ -115,6 +115,12 @@ class Machine:
         start = self.sequence
         self.wait(f"{count} servo periods", lambda: (self.sequence - start) % 2**32 >= count)
 
+    def while_running(self, what: str, condition: Callable[[], bool]) -> None:
+        """A condition that has to come true before the program ends."""
+        self.wait(what, lambda: condition() or self.is_idle())
+        if not condition():
+            raise Stuck(f"the program ended before: {what}; {self.situation()}")
+
     def until_state(self, *states: int) -> None:
         self.wait(f"state {states}", lambda: self.state in states)
 

@@ -102,6 +102,44 @@ fn every_source_file_says_what_it_is_and_holds_one_concept() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// What of `linuxcnc/` is source.
+const LINUXCNC_SOURCES: [&str; 7] = ["py", "comp", "h", "hal", "ini", "xml", ""];
+
+/// The files below a folder of `linuxcnc/` that are source and no Rust.
+fn linuxcnc_sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for path in fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()) {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let end = name.rsplit_once('.').map_or("", |(_, end)| end);
+        if path.is_dir() {
+            linuxcnc_sources(&path, found);
+        } else if LINUXCNC_SOURCES.contains(&end) && name != "COPYING" {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_source_file_for_linuxcnc_names_its_licence_and_holds_one_concept() {
+    let (mut found, mut wrong) = (Vec::new(), Vec::new());
+    linuxcnc_sources(&root().join("linuxcnc"), &mut found);
+    assert!(found.len() > 20, "{found:?}");
+    for file in found {
+        let text = fs::read_to_string(&file).unwrap();
+        let licence = text.lines().take(3).find_map(|line| line.split_once("SPDX-License-Identifier: "));
+        // What is under the permissive licences may be used without HAL.
+        let permissive = file.starts_with(root().join("linuxcnc/abi"));
+        let expected = if permissive { "MIT OR Apache-2.0" } else { "GPL-2.0-or-later" };
+        if !licence.is_some_and(|(_, name)| name.starts_with(expected)) {
+            wrong.push(format!("{} does not name {expected} in its first three lines", file.display()));
+        }
+        let lines = text.lines().count();
+        if lines > LONGEST_FILE {
+            wrong.push(format!("{} has {lines} lines, more than {LONGEST_FILE}", file.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn the_core_stays_without_std_and_without_unsafe() {
     let lib = fs::read_to_string(root().join("core/src/lib.rs")).unwrap();

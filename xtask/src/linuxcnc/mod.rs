@@ -6,6 +6,7 @@ mod install;
 mod machine;
 mod notes;
 mod parts;
+mod python;
 mod recording;
 mod suite;
 mod timing;

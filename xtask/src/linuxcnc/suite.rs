@@ -12,7 +12,7 @@ use super::notes::{self, Notes};
 use super::parts::Parts;
 use super::recording::{JOINTS, Recording, Row};
 use super::verdict::{self, Verdict};
-use super::{install, timing};
+use super::{install, python, timing};
 use crate::bench::table::replace;
 use crate::repository::root;
 use crate::step::{Failure, Outcome};
@@ -34,6 +34,7 @@ pub fn run(only: Option<&str>, write: bool) -> Outcome {
         let names: Vec<&str> = ALL.iter().map(|s| s.name).collect();
         return Err(Failure::found(format!("there is no such scenario; there are: {}", names.join(", "))));
     }
+    python::check()?;
     install::component_if_changed()?;
     let sample = Sample::fresh("machine")?;
     let parts = Parts::make(&sample)?;
