@@ -4,8 +4,8 @@
 //
 // The servo thread only reads, writes and waits, without blocking and never beyond the time it is given. Opening and
 // closing can take as long as a driver likes, so a thread of its own does both, with the scheduling of a normal
-// program: it opens the port, tries again each second when that fails, and closes it when the servo thread says that
-// it is broken. They share one number, the descriptor.
+// program: it opens the port once its owner is ready, tries again each second when that fails, and closes it when the
+// servo thread says that it is broken. They share one number, the descriptor.
 
 #ifndef TRUEPATH_PORT_H
 #define TRUEPATH_PORT_H
@@ -17,6 +17,7 @@
 #include <linux/serial.h>
 #include <poll.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <string.h>
@@ -29,6 +30,9 @@
 struct port {
     const char *path;
     unsigned baud;
+    // Asked by the keeper until it says yes; nothing is opened before.
+    bool (*ready)(void *owner);
+    void *owner;
     // The descriptor while the servo thread may use it, otherwise -1. Set by the keeper, taken back by the servo thread.
     atomic_int open;
     atomic_bool end;
@@ -82,7 +86,7 @@ static void *port_keep(void *context) {
             close(mine);
             mine = -1;
         }
-        if (mine < 0) {
+        if (mine < 0 && port->ready(port->owner)) {
             mine = port_open(port->path, port->baud);
             if (mine >= 0) {
                 atomic_store(&port->open, mine);
@@ -101,12 +105,23 @@ static void *port_keep(void *context) {
 }
 
 // Starts the keeper. 0, or a negative errno.
-static int port_start(struct port *port, const char *path, unsigned baud) {
-    port->path = path;
-    port->baud = baud;
+static int port_start(struct port *port) {
+    pthread_attr_t attributes;
+    struct sched_param normal = {0};
+    sigset_t all, before;
     atomic_store(&port->open, -1);
     atomic_store(&port->end, false);
-    return -pthread_create(&port->keeper, NULL, port_keep, port);
+    sigfillset(&all);
+    pthread_attr_init(&attributes);
+    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+    pthread_attr_setschedpolicy(&attributes, SCHED_OTHER);
+    pthread_attr_setschedparam(&attributes, &normal);
+    // Signals are for the program that loads the component.
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    int error = pthread_create(&port->keeper, &attributes, port_keep, port);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    pthread_attr_destroy(&attributes);
+    return -error;
 }
 
 // Ends the keeper; not before the servo thread has stopped.

@@ -88,9 +88,18 @@ pin out u32 node "Place on the path: node of the image";
 pin out u32 sequence "Number of the cycle";
 pin out u32 flags "Flags that the core was given in this cycle";
 pin out bit feed-inhibit "To motion.feed-inhibit: a probing move waits until the correction is out";
-pin out bit link-lost "The board does not answer";
-pin out u32 link-misses "Answers that did not come";
+pin out bit amp-fault "To joint.N.amp-fault-in of every joint: a drive that LinuxCNC enables is held disabled";
+
+// The link to a board.
+pin out bit link-lost "The link to the board is lost; until the drives are off and the board answers again";
+pin out u32 link-cause "Why: 1 not heard yet, 2 no answers, 3 the board was reset, 4 the port, 5 a position is no number";
+pin out u32 link-misses "Periods without an answer in time";
 pin out u32 link-late "Answers that came too late";
+pin out u32 link-damaged "Answers that were damaged or cannot be true";
+pin out u32 link-time "From the setpoint to its answer, ns";
+pin out u32 link-time-max "The longest of them since the link was there";
+param rw float link-wait = 0.5 "Part of the period for which an answer is waited, 0 to 0.9";
+param rw u32 link-clamp-nm = 500000 "Largest correction that is taken from a board, nm";
 
 function feedback fp "Before motion-controller: takes the correction out of the feedback";
 function command fp "After motion-controller: adds the correction to the commanded position";
@@ -111,11 +120,13 @@ RTAPI_MP_INT(axes, "axes in a frame on that port");
 
 #define FUNCTION(name) static void name(struct __comp_state *hal, long period)
 
+#include "board.h"
 #include "desk.h"
 
 static struct truepath_block block;
 static struct truepath_sides sides;
 static struct desk desk;
+static struct board board;
 static struct __comp_state *component;
 static int joints;
 // Axis of each joint, 0…5 for X, Y, Z, A, B, C.
@@ -197,10 +208,13 @@ static void read_pins(const struct __comp_state *hal, long period, struct truepa
 }
 
 static void write_pins(struct __comp_state *hal, const struct truepath_outputs *out) {
+    bool held = false;
     for (int j = 0; j < joints; j++) {
         *hal->_motor_pos_cmd[j] = out->motor_pos_cmd[j];
         *hal->_amp_enable[j] = *hal->_amp_enable_in[j] && out->forward;
+        held |= *hal->_amp_enable_in[j] && !out->forward;
     }
+    *hal->amp_fault = held;
     *hal->state = out->state;
     *hal->armed = out->state == 2;
     *hal->active = out->state >= 3;
@@ -225,13 +239,26 @@ static void write_pins(struct __comp_state *hal, const struct truepath_outputs *
     *hal->feed_inhibit = out->feed_inhibit;
 }
 
+static void write_link(struct __comp_state *hal) {
+    *hal->link_lost = board.state.cause != TRUEPATH_LINK_THERE;
+    *hal->link_cause = board.state.cause;
+    *hal->link_misses = board.state.missed;
+    *hal->link_late = board.state.late;
+    *hal->link_damaged = board.state.damaged;
+    if (!board.state.answered) return;
+    *hal->link_time = (hal_u32_t)board.took;
+    if (*hal->link_lost) *hal->link_time_max = 0;
+    else if (board.took > *hal->link_time_max) *hal->link_time_max = (hal_u32_t)board.took;
+}
+
 // Route A. With a port set, Route B takes its place: the same pins, the setpoint of the same rules, the correction of the
 // board.
 FUNCTION(feedback) {
     (void)period;
     double measured[TRUEPATH_JOINTS] = {0}, plain[TRUEPATH_JOINTS];
     for (int j = 0; j < joints; j++) measured[j] = *hal->_motor_pos_fb_in[j];
-    truepath_pc_feedback(sides.servo, measured, plain);
+    if (*port) board_feedback(&board, measured, plain);
+    else truepath_pc_feedback(sides.servo, measured, plain);
     for (int j = 0; j < joints; j++) *hal->_motor_pos_fb[j] = plain[j];
 }
 
@@ -239,7 +266,12 @@ FUNCTION(command) {
     struct truepath_inputs in = {0};
     struct truepath_outputs out;
     read_pins(hal, period, &in);
-    truepath_pc_command(sides.servo, &in, &out);
+    if (*port) {
+        board_command(&board, &in, &out, hal->link_wait);
+        write_link(hal);
+    } else {
+        truepath_pc_command(sides.servo, &in, &out);
+    }
     write_pins(hal, &out);
     bool reload = *hal->reload;
     if (reload && !reload_before) atomic_fetch_add(&desk.reloads, 1);
@@ -251,7 +283,10 @@ int rtapi_app_main(void) {
     desk.ledger = ledger;
     desk.limits = limits;
     int r = read_coordinates();
-    if (!r) r = desk_open(&desk, &block, axis_of_joint, &sides);
+    board.axis_of_joint = axis_of_joint;
+    board.limits = limits;
+    board.axes = (unsigned)axes;
+    if (!r && !*port) r = desk_open(&desk, &block, axis_of_joint, &sides);
     if (r) return r;
     comp_id = hal_init("truepath");
     if (comp_id < 0) return comp_id;
@@ -259,7 +294,8 @@ int rtapi_app_main(void) {
     if (!r) {
         component = __comp_first_inst;
         desk.error = component->image_error;
-        r = desk_start(&desk);
+        board.clamp_nm = &component->link_clamp_nm;
+        r = *port ? board_start(&board, port, (unsigned)baud) : desk_start(&desk);
     }
     if (r) {
         hal_exit(comp_id);
@@ -270,6 +306,7 @@ int rtapi_app_main(void) {
 }
 
 void rtapi_app_exit(void) {
-    desk_stop(&desk);
+    if (*port) board_stop(&board);
+    else desk_stop(&desk);
     hal_exit(comp_id);
 }

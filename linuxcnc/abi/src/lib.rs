@@ -21,3 +21,4 @@ pub mod convert;
 mod panic;
 pub mod pc;
 pub mod pc_abi;
+pub mod remote;

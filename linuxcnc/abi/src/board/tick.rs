@@ -26,6 +26,8 @@ pub enum Cause {
     BoardOff = 3,
     /// The port failed.
     Port = 4,
+    /// There was no setpoint to send: a position was no length.
+    Setpoint = 5,
 }
 
 /// What goes to the drives in this tick.
@@ -131,6 +133,12 @@ impl Board {
         self.cut_off = true;
         self.deframer = Deframer::new();
         self.lose(Cause::Port);
+    }
+
+    /// There is nothing to send in this tick: the link is lost at once.
+    pub fn no_setpoint(&mut self) {
+        self.cut_off = true;
+        self.lose(Cause::Setpoint);
     }
 
     /// Takes bytes as they arrive, no more than [`BYTES_A_TICK`] in a tick; gives how many were taken.

@@ -56,7 +56,7 @@ impl OfferError {
 
 impl Joints {
     /// The axis of a joint.
-    pub(super) fn axis(&self, joint: usize) -> Option<usize> {
+    pub(crate) fn axis(&self, joint: usize) -> Option<usize> {
         self.0.get(joint).map(|&axis| usize::from(axis)).filter(|&axis| axis < AXES)
     }
 }
@@ -67,7 +67,7 @@ impl Limits {
     ///
     /// # Errors
     /// [`OfferError::Limits`]: the least position is not below the greatest, or nothing is left to the correction.
-    pub(super) fn settings(&self, joints: &Joints, period_ns: u32) -> Result<Settings, OfferError> {
+    pub(crate) fn settings(&self, joints: &Joints, period_ns: u32) -> Result<Settings, OfferError> {
         let half = period_ns >> 1;
         let tick_hz = 1_000_000_000u32.saturating_add(half).checked_div(period_ns).unwrap_or(0);
         let mut settings = Settings::at_rate(tick_hz);

@@ -16,6 +16,7 @@ mod mailboxes;
 mod pins;
 mod refusal;
 mod servo;
+mod setpoint;
 mod signals;
 mod work_frame;
 

@@ -16,7 +16,7 @@ use super::pins::{Inputs, JOINTS, Outputs, Switches};
 use super::refusal::Refused;
 use super::signals::{PROBING, Signals};
 use super::work_frame::WorkFrame;
-use crate::convert::{added, millirpm, nearest_nm, removed, units};
+use crate::convert::{added, removed, units};
 
 /// The servo side.
 pub struct Servo {
@@ -91,7 +91,7 @@ impl Servo {
         let flags = self.signals.flags(inputs, self.state.mode());
         self.frame.update(inputs);
         self.commands(inputs, flags);
-        match self.setpoint(inputs, flags) {
+        match self.joints.setpoint(inputs, flags, self.frame.crc(), self.sequence) {
             Some(setpoint) => {
                 let output = self.tick(&setpoint);
                 if output.mode == Mode::Off && !inputs.switches.has(Switches::DRIVES_ON) {
@@ -203,26 +203,6 @@ impl Servo {
         let rewriter = self.loaded.as_ref().map_or(&self.bare, |loaded| &loaded.rewriter);
         // Refused in the period in which the drives are still said to be on.
         let _ = rewriter.acknowledge_drives_disabled(&mut self.state);
-    }
-
-    /// The setpoint of a period; none when a position is no length.
-    fn setpoint(&self, inputs: &Inputs, flags: Flags) -> Option<Setpoint> {
-        let mut axes = [0; AXES];
-        // From the last joint on, so that of two joints of an axis the first one counts.
-        for joint in (0..JOINTS).rev() {
-            let Some(axis) = self.joints.axis(joint) else { continue };
-            *axes.get_mut(axis)? = nearest_nm(*inputs.pos_cmd.get(joint)?, inputs.nm_per_unit)?;
-            nearest_nm(*inputs.motor_pos_cmd.get(joint)?, inputs.nm_per_unit)?;
-        }
-        let turns = inputs.switches.has(Switches::SPINDLE_ON);
-        Some(Setpoint {
-            axes,
-            spindle_millirpm: if turns { millirpm(inputs.spindle_rpm) } else { 0 },
-            spindle_age_ticks: 0,
-            sequence: self.sequence,
-            frame_crc: self.frame.crc(),
-            flags,
-        })
     }
 
     /// A position that is no length goes on as it is: a correction that is on goes with the drives, because there is

@@ -1,0 +1,177 @@
+//! Route B: the correction is computed by a board, and this is what the servo thread does for it.
+//!
+//! LinuxCNC's pins become the same setpoint as on the other route ([`Signals`], [`WorkFrame`]); it goes out, and what
+//! comes back is judged by [`Board`]. Arming, images and the ledger are the board's; truepath-desk asks for them over
+//! the configuration link. What ends an arming here goes as a flag with the setpoint:
+//!
+//! | LinuxCNC | flag |
+//! |---|---|
+//! | pin `enable` or `trivial-kinematics` low, rising edge of `disarm` | program end: disarms, a correction ramps out |
+//! | link lost | drives not enabled, abort |
+//!
+//! Limits: a `disarm` in a period whose setpoint is lost has no effect, `enable` has one in every period.
+
+use truepath_core::rewrite::{Flags, Mode, Setpoint};
+
+use crate::board::{Board, BoardSettings, BoardSettingsError, Counters, Driven, PACKET_BYTES};
+use crate::convert::{added, removed, units};
+use crate::pc::{Inputs, JOINTS, Joints, Limits, OfferError, Outputs, PROBING, Signals, Switches, WorkFrame};
+
+/// Why there is no link to a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RemoteError {
+    /// A limit of a joint.
+    Limits(OfferError),
+    /// The limits of the link.
+    Board(BoardSettingsError),
+}
+
+impl RemoteError {
+    /// Its number: that of an [`OfferError`], or 64 and more: axes, tick rate, clamp, speed or acceleration, joint limits,
+    /// a correction that could not move.
+    pub const fn code(self) -> u32 {
+        match self {
+            Self::Limits(error) => error.code(),
+            Self::Board(BoardSettingsError::Axes(_)) => 64,
+            Self::Board(BoardSettingsError::TickRate(_)) => 65,
+            Self::Board(BoardSettingsError::Clamp(_)) => 66,
+            Self::Board(BoardSettingsError::Caps) => 67,
+            Self::Board(BoardSettingsError::JointLimits { .. }) => 68,
+            Self::Board(BoardSettingsError::Limits(_)) => 69,
+        }
+    }
+}
+
+/// The servo side of Route B.
+#[derive(Debug)]
+pub struct Remote {
+    board: Board,
+    joints: Joints,
+    signals: Signals,
+    frame: WorkFrame,
+    /// The setpoint of this period; the one before it when a position is no length.
+    setpoint: Setpoint,
+    /// The switches of the period before.
+    before: Switches,
+    /// State of the board in the period before.
+    mode: Mode,
+    /// Added to each joint in the last period, machine units.
+    correction: [f64; JOINTS],
+    armed_serial: u32,
+}
+
+impl Remote {
+    /// For a machine with these limits; `clamp_nm` is the largest correction that is taken from a board, nm. Divides and
+    /// takes roots, so it belongs outside the servo thread.
+    ///
+    /// # Errors
+    /// A limit is missing or out of range.
+    pub fn new(limits: &Limits, joints: Joints, period_ns: u32, axes: u8, clamp_nm: u32) -> Result<Self, RemoteError> {
+        let machine = limits.settings(&joints, period_ns).map_err(RemoteError::Limits)?;
+        let settings = BoardSettings {
+            axes,
+            tick_hz: machine.tick_hz,
+            clamp_nm: i32::try_from(clamp_nm).unwrap_or(i32::MAX),
+            slew_nm_per_s: machine.correction_slew_nm_per_s,
+            acceleration_nm_per_s2: machine.correction_acceleration_nm_per_s2,
+            joint_limits_nm: machine.joint_limits_nm,
+        };
+        Ok(Self {
+            board: Board::new(settings).map_err(RemoteError::Board)?,
+            joints,
+            signals: Signals::default(),
+            frame: WorkFrame::new(),
+            setpoint: Setpoint::default(),
+            before: Switches::default(),
+            mode: Mode::Off,
+            correction: [0.0; JOINTS],
+            armed_serial: 0,
+        })
+    }
+
+    /// Before the motion controller: the measured position of each joint without the correction of the last period.
+    pub fn feedback(&self, measured: &[f64; JOINTS], plain: &mut [f64; JOINTS]) {
+        for ((to, &from), &correction) in plain.iter_mut().zip(measured).zip(&self.correction) {
+            *to = removed(from, correction);
+        }
+    }
+
+    /// Behind the motion controller: the bytes to send. None are sent when a position is no length; the link is lost
+    /// then, because there is nothing a correction could be added to.
+    pub fn begin(&mut self, inputs: &Inputs, packet: &mut [u8; PACKET_BYTES]) -> usize {
+        self.frame.update(inputs);
+        let flags = self.signals.flags(inputs, self.mode).with(self.endings(inputs));
+        let setpoint = self.joints.setpoint(inputs, flags, self.frame.crc(), 0);
+        let sent = setpoint.is_some();
+        self.setpoint = setpoint.unwrap_or(Setpoint { flags, ..self.setpoint });
+        let bytes = self.board.begin(&self.setpoint, inputs.switches.has(Switches::DRIVES_ON), packet);
+        if sent {
+            return bytes;
+        }
+        self.board.no_setpoint();
+        0
+    }
+
+    /// The link, for what happens between begin and finish.
+    pub const fn board(&mut self) -> &mut Board {
+        &mut self.board
+    }
+
+    /// Ends the period: what goes to the drives and to the pins.
+    pub fn finish(&mut self, inputs: &Inputs, outputs: &mut Outputs) -> (Driven, &Counters) {
+        let driven = self.board.finish();
+        let mode = driven.board.mode;
+        if mode == Mode::Armed && self.mode != Mode::Armed {
+            self.armed_serial = inputs.part_serial;
+        }
+        self.mode = mode;
+        self.put(inputs, &driven, outputs);
+        (driven, self.board.counters())
+    }
+
+    /// What ends an arming from this side.
+    fn endings(&mut self, inputs: &Inputs) -> Flags {
+        let on = |switch| inputs.switches.has(switch);
+        let disarmed = on(Switches::DISARM) && !self.before.has(Switches::DISARM);
+        self.before = inputs.switches;
+        if disarmed || !on(Switches::ENABLE) || !on(Switches::TRIVIAL_KINEMATICS) {
+            Flags::PROGRAM_END
+        } else {
+            Flags::default()
+        }
+    }
+
+    fn put(&mut self, inputs: &Inputs, driven: &Driven, outputs: &mut Outputs) {
+        let nm = |axis: usize| driven.correction_nm.get(axis).copied().unwrap_or(0);
+        let length = |nm| if nm == 0 { 0.0 } else { units(nm, inputs.nm_per_unit) };
+        for (joint, correction) in self.correction.iter_mut().enumerate() {
+            *correction = self.joints.axis(joint).map_or(0.0, |axis| length(nm(axis)));
+        }
+        for ((to, &from), &correction) in
+            outputs.motor_pos_cmd.iter_mut().zip(&inputs.motor_pos_cmd).zip(&self.correction)
+        {
+            *to = added(from, correction);
+        }
+        let on = driven.correction_nm != [0; JOINTS];
+        *outputs = Outputs {
+            motor_pos_cmd: outputs.motor_pos_cmd,
+            correction_nm: [0, 1, 2].map(nm),
+            correction: [0, 1, 2].map(nm).map(length),
+            state: driven.board.mode as u32,
+            reason: driven.board.reason.code().into(),
+            fault: driven.board.reason.is_fault().into(),
+            status: driven.status.0.into(),
+            refusal: 0,
+            forward: driven.enable.into(),
+            armed_serial: self.armed_serial,
+            image_ready: 0,
+            image_crc: 0,
+            node: driven.board.place.node,
+            sequence: driven.sequence,
+            flags: driven.flags.0.into(),
+            feed_inhibit: (inputs.motion_type == PROBING
+                && (on || matches!(self.mode, Mode::Active | Mode::Hold | Mode::Fault)))
+            .into(),
+        };
+    }
+}
