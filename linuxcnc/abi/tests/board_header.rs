@@ -1,10 +1,15 @@
 //! `truepath-board.h` says what the crate has: sizes and names of fields, in their order, and every function.
 
+mod remote_support;
+
 use std::collections::BTreeSet;
 use std::mem::{MaybeUninit, offset_of, size_of};
 
-use truepath_abi::board::{Board, PACKET_BYTES};
+use remote_support::{inputs, outputs};
+use truepath_abi::board::{Cause, PACKET_BYTES};
 use truepath_abi::board_abi::*;
+use truepath_abi::pc::Limits;
+use truepath_abi::remote::Remote;
 
 const HEADER: &str = include_str!("../truepath-board.h");
 const SOURCE: &str = include_str!("../src/board_abi.rs");
@@ -35,22 +40,9 @@ macro_rules! offsets {
 
 #[test]
 fn structures_lie_in_memory_as_the_header_says() {
-    let (settings, size) = fields("truepath_board_settings");
-    assert_eq!(
-        settings,
-        offsets!(Settings: acceleration_nm_per_s2, least_nm, greatest_nm, slew_nm_per_s, tick_hz, clamp_nm, axes)
-    );
-    assert_eq!(size, size_of::<Settings>());
-    let (sent, size) = fields("truepath_board_sent");
-    assert_eq!(sent, offsets!(Sent: axes_nm, spindle_millirpm, frame_crc, flags, drives_on));
-    assert_eq!(size, size_of::<Sent>());
-    let (got, size) = fields("truepath_board_got");
-    assert_eq!(
-        got,
-        offsets!(Got: correction_nm, enable, cause, state, reason, status, node, sequence, flags, answered, missed, late,
-            damaged)
-    );
-    assert_eq!(size, size_of::<Got>().next_multiple_of(8));
+    let (link, size) = fields("truepath_link");
+    assert_eq!(link, offsets!(Link: cause, answered, missed, late, damaged));
+    assert_eq!(size, size_of::<Link>().next_multiple_of(8));
     for (name, value) in [("WORDS", BOARD_WORDS), ("PACKET_BYTES", PACKET_BYTES)] {
         assert!(HEADER.contains(&format!("#define TRUEPATH_BOARD_{name} {value}\n")));
     }
@@ -67,35 +59,58 @@ fn the_header_declares_every_function_and_no_other() {
 }
 
 #[test]
+fn the_causes_of_the_header_are_those_of_the_crate() {
+    for (name, cause) in [
+        ("THERE", Cause::None),
+        ("NOT_HEARD", Cause::Start),
+        ("SILENT", Cause::Silence),
+        ("BOARD_OFF", Cause::BoardOff),
+        ("PORT", Cause::Port),
+        ("NO_SETPOINT", Cause::Setpoint),
+    ] {
+        assert!(HEADER.contains(&format!("    TRUEPATH_LINK_{name} = {},\n", cause as u32)), "{name}");
+    }
+}
+
+#[test]
 fn a_tick_through_the_functions_of_c_is_one_of_the_board() {
     let mut block = MaybeUninit::<Block>::uninit();
-    let settings = Settings {
-        acceleration_nm_per_s2: 1_000_000_000,
-        least_nm: [i64::MIN; 6],
-        greatest_nm: [i64::MAX; 6],
-        slew_nm_per_s: 20_000_000,
-        tick_hz: 1_000,
-        clamp_nm: 500_000,
-        axes: 3,
+    let limits = Limits {
+        least: [-100.0; 6],
+        greatest: [100.0; 6],
+        velocity: [20.0; 6],
+        acceleration: [1000.0; 6],
+        nm_per_unit: 1e6,
     };
+    let axes = [0, 1, 2, 255, 255, 255];
     // SAFETY: a block has no invalid contents, and a board lies in it once `new` has given 0.
     let board = unsafe {
-        assert_eq!(truepath_board_new(block.assume_init_mut(), &Settings { axes: 9, ..settings }), 1);
-        assert_eq!(truepath_board_new(block.assume_init_mut(), &settings), 0);
-        &mut *block.as_mut_ptr().cast::<Board>()
+        let none = Limits::default();
+        assert_eq!(truepath_board_new(block.assume_init_mut(), &axes, &none, 1_000_000, 3, 500_000), 32);
+        for (wrong, axes_of_frame, clamp) in [(64, 9, 500_000), (66, 3, 0), (66, 3, u32::MAX)] {
+            let refused = truepath_board_new(block.assume_init_mut(), &axes, &limits, 1_000_000, axes_of_frame, clamp);
+            assert_eq!(refused, wrong);
+        }
+        assert_eq!(truepath_board_new(block.assume_init_mut(), &axes, &limits, 1_000_000, 3, 500_000), 0);
+        &mut *block.as_mut_ptr().cast::<Remote>()
     };
     let mut packet = [0; PACKET_BYTES];
-    let mut got = Got::default();
+    let (inputs, mut outputs) = (inputs(), outputs());
+    let mut link = Link::default();
     for tick in 1..=3 {
-        assert!(truepath_board_begin(board, &Sent::default(), &mut packet) > 24);
+        assert!(truepath_board_begin(board, &inputs, &mut packet) > 24);
         assert!(truepath_board_room(board) > 100);
         // SAFETY: that many bytes lie there.
         unsafe { truepath_board_take(board, [7, 0].as_ptr(), 2) };
-        truepath_board_finish(board, &mut got);
-        assert_eq!((got.sequence, got.missed, got.damaged, got.cause, got.enable), (tick, tick, tick, 1, 0));
+        truepath_board_finish(board, &inputs, &mut outputs, &mut link);
+        assert_eq!((outputs.sequence, link.missed, link.damaged, link.cause), (tick, tick, tick, 1));
+        assert_eq!((outputs.forward, outputs.motor_pos_cmd), (0, inputs.motor_pos_cmd));
     }
     truepath_board_port_failed(board);
     truepath_board_not_sent(board);
-    truepath_board_finish(board, &mut got);
-    assert_eq!(got.cause, 4);
+    truepath_board_finish(board, &inputs, &mut outputs, &mut link);
+    assert_eq!(link.cause, 4);
+    let mut plain = [0.0; 6];
+    truepath_board_feedback(board, &[1.5; 6], &mut plain);
+    assert_eq!(plain, [1.5; 6]);
 }
