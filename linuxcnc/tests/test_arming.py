@@ -17,6 +17,7 @@ class Component:
     """The real-time component, as the desk sees it: takes an image and an arming some rounds after the edge."""
 
     def __init__(self, folder):
+        self.board = None
         self.pins = dict.fromkeys(("image-ready", "image-crc", "image-error", "state", "refusal", "armed-serial"), 0)
         self.pins["state"] = words.BYPASS
         self.folder, self.refuses, self.deaf, self.late, self.error = folder, 0, False, 3, 0

@@ -10,12 +10,13 @@ from dataclasses import dataclass
 from typing import Callable, Generator, Protocol
 
 from . import image, words
+from .board import Board
 from .configuration import Configuration
 from .image import Image, NoImage
 
 # Refusals of the desk; those of the component are below 100.
 CONFIGURATION, NO_IMAGE, IMAGE_NOT_TAKEN, FROM_MDI, NO_ANSWER = 100, 101, 102, 103, 104
-BUSY, EXTERNAL_OFFSET, TOOL_OFFSET, NOT_PERMITTED, SERIAL = 105, 106, 107, 108, 109
+BUSY, EXTERNAL_OFFSET, TOOL_OFFSET, NOT_PERMITTED, SERIAL, BOARD = 105, 106, 107, 108, 109, 110
 
 # Reading and checking the image, writing the ledger to the disk: seconds on a busy one.
 PATIENCE_S = 5.0
@@ -54,7 +55,9 @@ class Situation:
 
 
 class Component(Protocol):
-    """The real-time component, and the desk's pins to it."""
+    """The real-time component, and the desk's pins to it; the board when there is one (Route B)."""
+
+    board: Board | None
 
     def get(self, pin: str) -> int: ...
 
@@ -75,6 +78,9 @@ def hand_over(component: Component, clock: Clock, configuration: Configuration, 
     """Until the component uses the image."""
     if component.get("image-ready") and component.get("image-crc") == chosen.crc:
         return Result(0, "")
+    if component.board is not None:
+        used = yield from component.board.use(chosen)
+        return Result(0 if used.done else IMAGE_NOT_TAKEN, used.text)
     try:
         image.hand_over(chosen, configuration.image)
     except OSError as error:
@@ -124,7 +130,12 @@ def arm(
     if handed.code:
         return handed
     before = component.get("refusal")
-    yield from _pulse(component, "arm")
+    if component.board is not None:
+        asked = yield from component.board.arm(component.get)
+        if not asked.done:
+            return Result(BOARD, asked.text)
+    else:
+        yield from _pulse(component, "arm")
     begin = clock()
     while clock() - begin < PATIENCE_S:
         if component.get("state") in (words.ARMED, words.ACTIVE) and component.get("armed-serial") == request.serial:

@@ -51,7 +51,7 @@ def load(ini: Ini, folder: Path) -> Configuration:
         config_port=ini.find("TRUEPATH", "CONFIG_PORT") or "",
         config_baud=int(_number(ini, "TRUEPATH", "CONFIG_BAUD", 921600)),
         truepath=ini.find("TRUEPATH", "TRUEPATH") or "truepath",
-        problems=kinematics(ini, coordinates) + headroom(ini, coordinates),
+        problems=kinematics(ini, coordinates) + headroom(ini, coordinates) + board(ini),
     )
 
 
@@ -90,6 +90,13 @@ def headroom(ini: Ini, coordinates: str) -> list[str]:
                     % (letter, key, axis, limit, correction, joint, key, most)
                 )
     return problems
+
+
+def board(ini: Ini) -> list[str]:
+    """What is missing for a board (Route B); empty without one."""
+    if _parameter(ini.find("TRUEPATH", "BOARD") or "", "port") and not ini.find("TRUEPATH", "CONFIG_PORT"):
+        return ["[TRUEPATH]CONFIG_PORT is missing: the port over which the board is asked to arm"]
+    return []
 
 
 def _parameter(words: str, name: str) -> str:

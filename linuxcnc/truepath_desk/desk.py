@@ -8,6 +8,7 @@ from typing import Any
 
 from . import words
 from .arming import Situation
+from .board import Board
 from .configuration import Configuration
 from .identity import Program
 from .panel import Panel
@@ -21,11 +22,13 @@ PERIOD_S = 0.01
 class Pins:
     """Pins of truepath, read by name, and the desk's own pins to it."""
 
-    def __init__(self, hal: Any, pins: Any) -> None:
-        self._hal, self._pins = hal, pins
+    def __init__(self, hal: Any, pins: Any, board: Board | None) -> None:
+        self._hal, self._pins, self.board = hal, pins, board
 
     def get(self, pin: str) -> int:
-        """A pin of the real-time component."""
+        """A pin of the real-time component; of the image, what the board says when there is one."""
+        if self.board is not None and pin in ("image-ready", "image-crc"):
+            return self.board.image_crc
         return self._hal.get_value("truepath." + pin)
 
     def set(self, pin: str, value: int | bool) -> None:
@@ -39,7 +42,8 @@ class Desk:
     def __init__(self, hal: Any, pins: Any, source: Source, operator: Operator, configuration: Configuration) -> None:
         self._hal, self._pins, self._source = hal, pins, source
         self._operator, self._configuration = operator, configuration
-        self._component = Pins(hal, pins)
+        board = Board(configuration, time.monotonic) if configuration.port else None
+        self._component = Pins(hal, pins, board)
         self._panel = Panel(pins, self._component)
         self._permission = Permission(hal, pins, operator, configuration)
         self._requests = Requests(pins, self._component, operator, configuration)
@@ -62,6 +66,8 @@ class Desk:
         permitted = self._permission.update(status, now)
         state = self._component.get("state")
         self._watch(status, state, changed)
+        if self._component.board is not None:
+            self._component.board.acknowledge(self._component.get)
         selected = (self._program.crc, status.tool, self._pins["feature-wanted"])
         if selected != self._selected:
             self._selected = selected
