@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 from types import SimpleNamespace
 
-import desk  # noqa: F401
+import desk  # noqa: F401 (where the package is)
 from truepath_desk import board
 
 ASKED = "#!/bin/sh\nshift 6\necho \"$*\" >> %s/asked\ncase $1 in %s esac\n"

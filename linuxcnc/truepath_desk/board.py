@@ -100,7 +100,7 @@ class Board:
     def acknowledge(self, get: Callable[[str], Any]) -> None:
         """Once per round: a board that is off, with the drives off, is told that they are."""
         if self._acknowledging is None:
-            due = self._clock() - self._acknowledged > AGAIN_S and not self._running
+            due = self._clock() - self._acknowledged >= AGAIN_S and not self._running
             if due and get("state") == OFF and not get("link-lost") and not get("drives-on"):
                 self._acknowledging = self.ask("acknowledge")
                 # It was reset: which image it uses has to be asked again.
