@@ -92,7 +92,7 @@ class Desk:
             self._requests.end("corrections are not permitted any more")
         elif program_changed:
             self._requests.end("another program is loaded, or its file has changed")
-        elif status.mdi and status.running:
+        elif status.by_hand:
             self._requests.end("a line is run by hand (MDI), the correction belongs to the program")
         elif self._external_offset():
             self._requests.end("an external offset is on")

@@ -20,7 +20,9 @@ class Status:
     tool: int
     tool_offset: int
     program: str
+    # The loaded program runs; a line of MDI runs.
     running: bool
+    by_hand: bool
     mdi: bool
     identity_kinematics: bool
     mm_per_unit: float
@@ -53,7 +55,8 @@ class Source:
             tool=max(s.tool_in_spindle, 0),
             tool_offset=tool_offset_number(s.gcodes, s.tool_offset[:3], s.tool_in_spindle, table),
             program=s.file,
-            running=s.interp_state != self._linuxcnc.INTERP_IDLE,
+            running=s.interp_state != self._linuxcnc.INTERP_IDLE and s.task_mode == self._linuxcnc.MODE_AUTO,
+            by_hand=s.interp_state != self._linuxcnc.INTERP_IDLE and s.task_mode == self._linuxcnc.MODE_MDI,
             mdi=s.task_mode == self._linuxcnc.MODE_MDI,
             identity_kinematics=s.kinematics_type == self._linuxcnc.KINEMATICS_IDENTITY,
             mm_per_unit=1.0 / s.linear_units,
