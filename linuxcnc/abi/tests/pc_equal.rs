@@ -32,6 +32,7 @@ fn a_part_gets_the_corrections_of_the_rewriter_to_the_last_bit_and_linuxcnc_neve
     rewriter.arm(&mut state, &ArmRequest { binding: settings().binding, part_serial: 7, frame }).unwrap();
 
     let mut pc = Pc::ready(&[]);
+    pc.set(Switches::PROGRAM_RUNNING, true);
     pc.next.offset = offset.map(|nm| nm as f64 / 1e6);
     assert_eq!(pc.arm(), 0);
     let mut places = vec![(0, 0, CLEAR); 5];

@@ -118,6 +118,24 @@ fn a_probing_move_keeps_the_gate_shut_while_armed() {
 }
 
 #[test]
+fn without_a_running_program_nothing_goes_through_the_gate() {
+    let mut pc = Pc::ready(&[]);
+    assert_eq!(pc.arm(), 0);
+    for i in 0..=100 {
+        let out = pc.go(0, 0, GATE + (PASS - GATE) * i / 100);
+        assert_eq!(out.state, ARMED);
+        assert!(untouched(&pc.next, &out));
+    }
+    // The same way once more, in the program.
+    pc.set(Switches::PROGRAM_RUNNING, true);
+    pc.go(0, 0, CLEAR);
+    for i in 0..=100 {
+        pc.go(0, 0, GATE + (PASS - GATE) * i / 100);
+    }
+    assert_eq!(pc.last.state, ACTIVE);
+}
+
+#[test]
 fn a_probing_move_waits_until_the_correction_is_out() {
     let mut pc = Pc::active();
     pc.next.motion_type = PROBING;

@@ -2,10 +2,12 @@
 //!
 //! | LinuxCNC | flag |
 //! |---|---|
-//! | drives on and all joints homed | drives enabled; while armed not during a probing move, which keeps the gate shut |
+//! | drives on and all joints homed | drives enabled; while armed only in a running program, and not during a probing move |
 //! | drives or homing lost while armed | abort |
 //! | program no longer runs | abort with a correction on, otherwise program end |
 //! | probing move with a correction on | abort |
+//!
+//! Without "drives enabled" the gate stays shut, so jogging, a line typed by hand or a probing move never goes through it.
 
 use truepath_core::rewrite::{Flags, Mode};
 
@@ -34,7 +36,7 @@ impl Signals {
         let lost = self.drives && !drives;
         *self = Self { drives, running };
         [
-            (drives && !(armed && probing), Flags::DRIVES_ENABLED),
+            (drives && !(armed && (probing || !running)), Flags::DRIVES_ENABLED),
             (on(Switches::FEED_HOLD), Flags::FEED_HOLD),
             (on(Switches::SPINDLE_LOADED), Flags::SPINDLE_LOADED),
             (on(Switches::EMERGENCY_STOP), Flags::EMERGENCY_STOP),
