@@ -6,6 +6,7 @@ mod install;
 mod machine;
 mod notes;
 mod parts;
+mod proof;
 mod python;
 mod recording;
 mod suite;
@@ -19,7 +20,7 @@ use crate::step::Outcome;
 /// What is done with the component; without one, everything that tests it.
 #[derive(Clone, Copy, Debug, Subcommand)]
 pub enum Task {
-    /// Builds the real-time component truepath.so.
+    /// Builds the real-time component truepath.so, and proves from its machine code what its servo side does not do.
     Build,
     /// Builds it and puts it and what belongs to it into LinuxCNC's folders, as root or through sudo.
     Install {
