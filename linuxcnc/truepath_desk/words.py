@@ -82,6 +82,15 @@ IMAGE_ERRORS = {
     12: "a derived value is wrong",
     13: "its correction is larger than its clamp",
     14: "it is marked as closed and is not",
+    32: "the limits of joint 0 are missing or wrong: min-limit, max-limit, max-correction-vel, max-correction-accel",
+    33: "the limits of joint 1 are missing or wrong",
+    34: "the limits of joint 2 are missing or wrong",
+    35: "the limits of joint 3 are missing or wrong",
+    36: "the limits of joint 4 are missing or wrong",
+    37: "the limits of joint 5 are missing or wrong",
+    40: "the limits do not go with the servo period: the correction could not move",
+    41: "the image before is not yet taken",
+    64: "the file cannot be read: see LinuxCNC's messages",
 }
 
 

@@ -154,7 +154,7 @@ fn a_probing_move_waits_until_the_correction_is_out() {
 }
 
 #[test]
-fn a_hold_keeps_the_correction_and_a_spindle_that_stops_fades_it() {
+fn a_hold_keeps_the_correction_and_a_spindle_that_stops_or_has_no_load_fades_it() {
     let mut pc = Pc::active();
     pc.set(Switches::FEED_HOLD, true);
     let held = pc.period().correction_nm;
@@ -163,14 +163,22 @@ fn a_hold_keeps_the_correction_and_a_spindle_that_stops_fades_it() {
     for (now, then) in pc.last.correction_nm.iter().zip(held) {
         assert!((now - then).abs() < 2_000, "{now} {then}");
     }
-    let mut pc = Pc::active();
-    pc.set(Switches::SPINDLE_ON, false);
-    let mut x = 499 * FEED;
-    for _ in 0..400 {
-        x += FEED;
-        pc.go(x, 0, PASS);
+    for switch in [Switches::SPINDLE_ON, Switches::SPINDLE_LOADED] {
+        let mut pc = Pc::active();
+        pc.set(switch, false);
+        let mut x = 499 * FEED;
+        for _ in 0..400 {
+            x += FEED;
+            pc.go(x, 0, PASS);
+        }
+        assert_eq!((pc.last.state, pc.last.correction_nm), (ACTIVE, [0; 3]));
+        pc.set(switch, true);
+        for _ in 0..300 {
+            x += FEED;
+            pc.go(x, 0, PASS);
+        }
+        assert!(pc.last.correction_nm[0].abs() > 10_000);
     }
-    assert_eq!((pc.last.state, pc.last.correction_nm), (ACTIVE, [0; 3]));
 }
 
 #[test]

@@ -70,7 +70,8 @@ impl Limits {
     pub(crate) fn settings(&self, joints: &Joints, period_ns: u32) -> Result<Settings, OfferError> {
         let half = period_ns >> 1;
         let tick_hz = 1_000_000_000u32.saturating_add(half).checked_div(period_ns).unwrap_or(0);
-        let mut settings = Settings::at_rate(tick_hz);
+        // A load input that is not connected says that the cutter cuts.
+        let mut settings = Settings { require_spindle_load: true, ..Settings::at_rate(tick_hz) };
         for joint in 0..JOINTS {
             if let Some(axis) = joints.axis(joint) {
                 self.narrow(&mut settings, joint, axis).ok_or(OfferError::Limits { joint })?;
