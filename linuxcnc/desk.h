@@ -23,6 +23,8 @@ enum {
     DESK_IMAGES = 3,
     // Between two rounds. An arming waits for one of them and for the disk.
     DESK_ROUND_NS = 5000000,
+    // All memory of a real-time process is locked, the thread's stack as well.
+    DESK_STACK_BYTES = 256 << 10,
 };
 
 // Values of image-error besides those of the library.
@@ -144,6 +146,7 @@ static int desk_start(struct desk *desk) {
     pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
     pthread_attr_setschedpolicy(&attributes, SCHED_OTHER);
     pthread_attr_setschedparam(&attributes, &normal);
+    pthread_attr_setstacksize(&attributes, DESK_STACK_BYTES);
     // Signals are for the program that loads the component.
     pthread_sigmask(SIG_SETMASK, &all, &before);
     int r = pthread_create(&desk->thread, &attributes, desk_run, desk);
@@ -153,10 +156,14 @@ static int desk_start(struct desk *desk) {
     return -r;
 }
 
-// Ends the thread, which takes as long as the disk, and gives the memory back. The servo thread is gone.
+// Ends the thread, which takes as long as the disk.
 static void desk_stop(struct desk *desk) {
     atomic_store(&desk->end, true);
     pthread_join(desk->thread, NULL);
+}
+
+// Gives the memory of the images back, once the servo thread calls the component no more.
+static void desk_free(struct desk *desk) {
     for (int i = 0; i < DESK_IMAGES; i++) free(desk->images[i]);
 }
 

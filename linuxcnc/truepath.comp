@@ -226,4 +226,5 @@ void rtapi_app_exit(void) {
     if (*port) board_stop(&board);
     else desk_stop(&desk);
     hal_exit(comp_id);
+    desk_free(&desk);
 }

@@ -118,6 +118,5 @@ uint32_t truepath_pc_offer(struct truepath_desk *desk, const struct truepath_lim
 const uint8_t *truepath_pc_returned(struct truepath_desk *desk);
 size_t truepath_pc_spend(struct truepath_desk *desk, uint8_t file[TRUEPATH_LEDGER_BYTES]);
 void truepath_pc_written(struct truepath_desk *desk, uint32_t done);
-size_t truepath_pc_ledger(const struct truepath_desk *desk, uint8_t file[TRUEPATH_LEDGER_BYTES]);
 
 #endif

@@ -138,9 +138,3 @@ pub extern "C" fn truepath_pc_spend(desk: &mut Desk, file: &mut [u8; LEDGER_BYTE
 pub extern "C" fn truepath_pc_written(desk: &mut Desk, done: u32) {
     desk.written(done != 0);
 }
-
-/// See [`Desk::ledger`].
-#[unsafe(no_mangle)]
-pub extern "C" fn truepath_pc_ledger(desk: &Desk, file: &mut [u8; LEDGER_BYTES]) -> usize {
-    desk.ledger(file)
-}

@@ -74,11 +74,6 @@ impl Desk {
             let _ = self.ends.written.send(done);
         }
     }
-
-    /// The ledger as it is; gives the bytes of the file.
-    pub fn ledger(&self, file: &mut [u8; LEDGER_BYTES]) -> usize {
-        ledger::write(&self.spent, file)
-    }
 }
 
 /// A part whose arming was not completed is asked for again; it is remembered once.
