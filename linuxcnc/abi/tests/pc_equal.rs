@@ -13,6 +13,7 @@ fn machine() -> Settings {
     let mut settings = Settings {
         correction_slew_nm_per_s: 20_000_000,
         correction_acceleration_nm_per_s2: 1_000_000_000,
+        require_spindle_load: true,
         ..Settings::at_1_khz()
     };
     for axis in 0..3 {

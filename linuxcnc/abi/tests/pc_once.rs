@@ -69,13 +69,19 @@ fn a_damaged_ledger_is_not_forgotten() {
 #[test]
 fn what_comes_while_the_ledger_is_written_takes_the_arming_back() {
     type Event = fn(&mut Pc);
-    let events: [Event; 6] = [
+    let events: [Event; 12] = [
         |pc| pc.set(Switches::DISARM, true),
         |pc| pc.set(Switches::ENABLE, false),
         |pc| pc.set(Switches::PROGRAM_RUNNING, false),
         |pc| pc.set(Switches::EMERGENCY_STOP, true),
         |pc| pc.set(Switches::TOOL_CHANGE, true),
         |pc| pc.next.offset[0] = 5.0,
+        |pc| pc.set(Switches::DRIVES_ON, false),
+        |pc| pc.set(Switches::ALL_HOMED, false),
+        |pc| pc.set(Switches::TRIVIAL_KINEMATICS, false),
+        |pc| pc.next.program_crc ^= 1,
+        |pc| pc.next.tool = 4,
+        |pc| pc.next.nm_per_unit = 25.4e6,
     ];
     for (index, event) in events.into_iter().enumerate() {
         let mut pc = Pc::ready(&[]);
@@ -93,6 +99,18 @@ fn what_comes_while_the_ledger_is_written_takes_the_arming_back() {
         assert_eq!(pc.last.refusal, if frame { 0 } else { 69 }, "event {index}");
         assert_eq!(pc.last.reason, if frame { Reason::FrameChanged.code().into() } else { 0 });
     }
+}
+
+#[test]
+fn a_disarming_in_the_same_period_is_the_stronger_one() {
+    let mut pc = Pc::ready(&[]);
+    pc.set(Switches::ARM, true);
+    pc.set(Switches::DISARM, true);
+    pc.period();
+    pc.round();
+    pc.periods(2);
+    assert_eq!((pc.last.state, pc.last.refusal), (BYPASS, 69));
+    assert!(pc.disk.is_empty(), "the part is not spent");
 }
 
 #[test]

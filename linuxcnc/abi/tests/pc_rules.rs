@@ -31,7 +31,7 @@ fn after_loading_nothing_is_enabled_until_the_drives_are_seen_off() {
 #[test]
 fn an_event_while_active_ramps_the_correction_out_and_its_reason_stays() {
     type Event = fn(&mut Pc);
-    let events: [(Event, Reason); 9] = [
+    let events: [(Event, Reason); 11] = [
         (|pc| pc.set(Switches::EMERGENCY_STOP, true), Reason::EmergencyStop),
         (|pc| pc.set(Switches::PROGRAM_RUNNING, false), Reason::Abort),
         (|pc| pc.set(Switches::DRIVES_ON, false), Reason::DrivesDisabled),
@@ -41,6 +41,8 @@ fn an_event_while_active_ramps_the_correction_out_and_its_reason_stays() {
         (|pc| pc.next.sine = 1, Reason::FrameChanged),
         (|pc| pc.next.offset[2] = f64::NAN, Reason::FrameChanged),
         (|pc| pc.next.motion_type = PROBING, Reason::Abort),
+        (|pc| pc.next.program_crc ^= 1, Reason::Abort),
+        (|pc| pc.next.tool = 4, Reason::ToolChange),
     ];
     for (event, expected) in events {
         let mut pc = Pc::active();
@@ -73,13 +75,16 @@ fn disarming_and_the_master_switch_ramp_it_out_without_a_fault() {
 #[test]
 fn what_ends_an_arming() {
     type Event = fn(&mut Pc);
-    let events: [(Event, Reason); 6] = [
+    let events: [(Event, Reason); 9] = [
         (|pc| pc.set(Switches::PROGRAM_RUNNING, false), Reason::ProgramEnd),
         (|pc| pc.set(Switches::EMERGENCY_STOP, true), Reason::EmergencyStop),
         (|pc| pc.set(Switches::DRIVES_ON, false), Reason::Abort),
         (|pc| pc.set(Switches::ALL_HOMED, false), Reason::Abort),
         (|pc| pc.set(Switches::TOOL_CHANGE, true), Reason::ToolChange),
         (|pc| pc.next.offset[0] = 1.0, Reason::FrameChanged),
+        (|pc| pc.set(Switches::TRIVIAL_KINEMATICS, false), Reason::Disarmed),
+        (|pc| pc.next.program_crc ^= 1, Reason::Abort),
+        (|pc| pc.next.tool = 4, Reason::ToolChange),
     ];
     for (event, expected) in events {
         let mut pc = Pc::armed();
@@ -182,6 +187,13 @@ fn a_hold_keeps_the_correction_and_a_spindle_that_stops_or_has_no_load_fades_it(
 }
 
 #[test]
+fn another_request_while_a_correction_is_on_does_not_end_it() {
+    let mut pc = Pc::active();
+    (pc.next.feature, pc.next.pass, pc.next.part_serial) = (9, 9, 9);
+    assert_eq!(pc.periods(3).state, ACTIVE);
+}
+
+#[test]
 fn a_position_that_is_no_length_goes_through_as_it_is_and_takes_the_drives_with_the_correction() {
     for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e12] {
         for motor in [false, true] {
@@ -191,14 +203,20 @@ fn a_position_that_is_no_length_goes_through_as_it_is_and_takes_the_drives_with_
             } else {
                 pc.next.pos_cmd[0] = wrong
             };
+            let on = pc.last.correction_nm;
             let out = pc.period();
-            assert!(untouched(&pc.next, &out), "{wrong}");
+            if motor {
+                assert!((out.motor_pos_cmd[3] - wrong).abs() < 1.0 || !wrong.is_finite(), "{wrong}");
+                assert_eq!(out.motor_pos_cmd[3].is_finite(), wrong.is_finite());
+            }
             assert_eq!((out.state, out.forward, reason(&pc)), (OFF, 0, code(Reason::Jump)));
+            assert_eq!(out.correction_nm, on, "it does not jump");
             pc.go(0, 0, CLEAR);
             assert_eq!(pc.periods(10).forward, 0, "until the drives are off");
             pc.set(Switches::DRIVES_ON, false);
             pc.periods(2);
             assert_eq!((pc.last.state, pc.last.forward), (BYPASS, 1));
+            assert!(untouched(&pc.next, &pc.last));
 
             let mut pc = Pc::armed();
             if motor {

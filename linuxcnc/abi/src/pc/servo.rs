@@ -14,6 +14,7 @@ use super::limits::Joints;
 use super::mailboxes::{Loaded, ServoEnds};
 use super::pins::{Inputs, JOINTS, Outputs, Switches};
 use super::refusal::Refused;
+use super::running::{Arming, Running};
 use super::signals::{PROBING, Signals};
 use super::work_frame::WorkFrame;
 use crate::convert::{added, removed, units};
@@ -32,20 +33,17 @@ pub struct Servo {
     sequence: u32,
     /// The switches of the period before.
     before: Switches,
-    /// Added to each joint in the last period, machine units.
+    /// The correction of the last period, nm, and added to each joint, machine units.
+    correction_nm: [i32; AXES],
     correction: [f64; JOINTS],
+    /// Nanometres of a machine unit; taken from the pins only where nothing is armed or on.
+    nm_per_unit: f64,
+    /// What the last part was armed for.
+    running: Option<Running>,
     /// An arming that waits for the ledger.
     arming: Option<Arming>,
     refusal: u32,
     armed_serial: u32,
-}
-
-/// An arming that waits for the ledger.
-#[derive(Clone, Copy, Debug)]
-struct Arming {
-    request: ArmRequest,
-    /// Something happened that would have ended it.
-    overtaken: bool,
 }
 
 impl Servo {
@@ -67,7 +65,10 @@ impl Servo {
             frame: WorkFrame::new(),
             sequence: 0,
             before: Switches::default(),
+            correction_nm: [0; AXES],
             correction: [0.0; JOINTS],
+            nm_per_unit: 0.0,
+            running: None,
             arming: None,
             refusal: 0,
             armed_serial: 0,
@@ -82,13 +83,15 @@ impl Servo {
     }
 
     /// Behind the motion controller: a period.
-    pub fn command(&mut self, inputs: &Inputs, outputs: &mut Outputs) {
+    pub fn command(&mut self, pins: &Inputs, outputs: &mut Outputs) {
+        let (inputs, kept) = self.in_unit(pins);
+        let inputs = &inputs;
         if self.period_ns.load(Ordering::Relaxed) != inputs.period_ns {
             self.period_ns.store(inputs.period_ns, Ordering::Relaxed);
         }
         self.sequence = self.sequence.wrapping_add(1);
         self.exchange();
-        let flags = self.signals.flags(inputs, self.state.mode());
+        let flags = self.signals.flags(inputs, self.state.mode()).with(self.ended(inputs, kept));
         self.frame.update(inputs);
         self.commands(inputs, flags);
         match self.joints.setpoint(inputs, flags, self.frame.crc(), self.sequence) {
@@ -100,6 +103,26 @@ impl Servo {
                 self.put(inputs, flags, &output, outputs);
             }
             None => self.pass(inputs, flags, outputs),
+        }
+    }
+
+    /// The pins with the unit that what is armed or on is in, and whether that is the one of the pins.
+    fn in_unit(&mut self, pins: &Inputs) -> (Inputs, bool) {
+        let idle = matches!(self.state.mode(), Mode::Off | Mode::Bypass) && self.correction_nm == [0; AXES];
+        if idle && self.arming.is_none() {
+            self.nm_per_unit = pins.nm_per_unit;
+        }
+        let kept = self.nm_per_unit.to_bits() == pins.nm_per_unit.to_bits();
+        (Inputs { nm_per_unit: self.nm_per_unit, ..*pins }, kept)
+    }
+
+    /// What ends an arming because it was for something else.
+    fn ended(&self, inputs: &Inputs, kept: bool) -> Flags {
+        let unit = if kept { Flags::default() } else { Flags::ABORT };
+        match (self.state.mode(), self.running, &self.arming) {
+            (Mode::Armed | Mode::Active | Mode::Hold, Some(running), _) => unit.with(running.ended(inputs)),
+            (.., Some(arming)) => unit.with(arming.running.ended(inputs)),
+            _ => unit,
         }
     }
 
@@ -120,11 +143,14 @@ impl Servo {
     fn commands(&mut self, inputs: &Inputs, flags: Flags) {
         const STOPS: Flags = Flags::EMERGENCY_STOP.with(Flags::ABORT).with(Flags::TOOL_CHANGE).with(Flags::PROGRAM_END);
         let rises = |switch| inputs.switches.has(switch) && !self.before.has(switch);
+        let falls = |switch| self.before.has(switch) && !inputs.switches.has(switch);
         let (arm, disarm) = (rises(Switches::ARM), rises(Switches::DISARM));
+        let lost = falls(Switches::DRIVES_ON) || falls(Switches::ALL_HOMED);
         self.before = inputs.switches;
-        let taken_back = disarm || !inputs.switches.has(Switches::ENABLE);
+        let permitted = inputs.switches.has(Switches::ENABLE) && inputs.switches.has(Switches::TRIVIAL_KINEMATICS);
+        let taken_back = disarm || !permitted;
         if let Some(arming) = &mut self.arming {
-            arming.overtaken |= taken_back || flags.has(STOPS);
+            arming.overtaken |= taken_back || lost || flags.has(STOPS);
         }
         if taken_back {
             // Refused where nothing is armed or the correction is on its way out.
@@ -138,12 +164,13 @@ impl Servo {
             } else if arming.overtaken {
                 Err(Refused::Overtaken)
             } else {
-                self.arm(&arming.request)
+                self.arm(&arming)
             };
             self.refusal = result.err().map_or(0, Refused::code);
         }
         if arm {
-            self.refusal = self.ask(inputs).err().map_or(0, Refused::code);
+            let asked = if disarm { Err(Refused::Overtaken) } else { self.ask(inputs) };
+            self.refusal = asked.err().map_or(0, Refused::code);
         }
     }
 
@@ -178,14 +205,15 @@ impl Servo {
         self.rewriter().arm(&mut trial, &request)?;
         let part = trial.spent().last().ok_or(Refused::Ledger)?;
         self.ends.spending.send(part).map_err(|_| Refused::Busy)?;
-        self.arming = Some(Arming { request, overtaken: false });
+        self.arming = Some(Arming { request, running: Running::of(inputs), overtaken: false });
         Ok(())
     }
 
-    fn arm(&mut self, request: &ArmRequest) -> Result<(), Refused> {
+    fn arm(&mut self, arming: &Arming) -> Result<(), Refused> {
         let rewriter = self.loaded.as_ref().map_or(&self.bare, |l| &l.rewriter);
-        rewriter.arm(&mut self.state, request)?;
-        self.armed_serial = request.part_serial;
+        rewriter.arm(&mut self.state, &arming.request)?;
+        self.armed_serial = arming.request.part_serial;
+        self.running = Some(arming.running);
         Ok(())
     }
 
@@ -206,7 +234,7 @@ impl Servo {
     }
 
     /// A position that is no length goes on as it is: a correction that is on goes with the drives, because there is
-    /// nothing it could be added to.
+    /// nothing it could follow.
     #[cold]
     fn pass(&mut self, inputs: &Inputs, flags: Flags, outputs: &mut Outputs) {
         let rewriter = self.loaded.as_ref().map_or(&self.bare, |loaded| &loaded.rewriter);
@@ -228,10 +256,15 @@ impl Servo {
         self.put(inputs, flags, &output, outputs);
     }
 
-    /// The output of the core for the pins.
+    /// The output of the core for the pins. In `Off` the correction that was on stays until the drives are off: their
+    /// enable is dropped, and none of them is to jump by it on the way.
     fn put(&mut self, inputs: &Inputs, flags: Flags, output: &Output, outputs: &mut Outputs) {
-        let nm = |axis: usize| output.correction_nm.get(axis).copied().unwrap_or(0);
-        let length = |nm| if nm == 0 { 0.0 } else { units(nm, inputs.nm_per_unit) };
+        if output.mode != Mode::Off || !inputs.switches.has(Switches::DRIVES_ON) {
+            self.correction_nm = output.correction_nm;
+        }
+        let (held, unit) = (self.correction_nm, self.nm_per_unit);
+        let nm = |axis: usize| held.get(axis).copied().unwrap_or(0);
+        let length = |nm| if nm == 0 { 0.0 } else { units(nm, unit) };
         for (joint, correction) in self.correction.iter_mut().enumerate() {
             *correction = self.joints.axis(joint).map_or(0.0, |axis| length(nm(axis)));
         }
