@@ -9,13 +9,13 @@
 //! | pin `enable` or `trivial-kinematics` low, rising edge of `disarm` | program end: disarms, a correction ramps out |
 //! | link lost | drives not enabled, abort |
 //!
-//! Limits: a `disarm` in a period whose setpoint is lost has no effect, `enable` has one in every period.
+//! What ends an arming is said again in every period until one of them is answered, so that it is not lost with a frame.
 
 use truepath_core::rewrite::{Flags, Mode, Setpoint};
 
 use crate::board::{Board, BoardSettings, BoardSettingsError, Counters, Driven, PACKET_BYTES};
 use crate::convert::{added, removed, units};
-use crate::pc::{Inputs, JOINTS, Joints, Limits, OfferError, Outputs, PROBING, Signals, Switches, WorkFrame};
+use crate::pc::{Inputs, JOINTS, Joints, Limits, OfferError, Outputs, PROBING, Running, Signals, Switches, WorkFrame};
 
 /// Why there is no link to a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +58,15 @@ pub struct Remote {
     /// Added to each joint in the last period, machine units.
     correction: [f64; JOINTS],
     armed_serial: u32,
+    /// What is armed or on is for this, and in this unit.
+    running: Option<Running>,
+    nm_per_unit: f64,
+    /// What ends an arming and was said in periods without an answer.
+    unheard: Flags,
 }
+
+/// What ends an arming.
+const ENDINGS: Flags = Flags::EMERGENCY_STOP.with(Flags::ABORT).with(Flags::TOOL_CHANGE).with(Flags::PROGRAM_END);
 
 impl Remote {
     /// For a machine with these limits; `clamp_nm` is the largest correction that is taken from a board, nm. Divides and
@@ -86,6 +94,9 @@ impl Remote {
             mode: Mode::Off,
             correction: [0.0; JOINTS],
             armed_serial: 0,
+            running: None,
+            nm_per_unit: limits.nm_per_unit,
+            unheard: Flags::default(),
         })
     }
 
@@ -98,9 +109,13 @@ impl Remote {
 
     /// Behind the motion controller: the bytes to send. None are sent when a position is no length; the link is lost
     /// then, because there is nothing a correction could be added to.
-    pub fn begin(&mut self, inputs: &Inputs, packet: &mut [u8; PACKET_BYTES]) -> usize {
+    pub fn begin(&mut self, pins: &Inputs, packet: &mut [u8; PACKET_BYTES]) -> usize {
+        let (inputs, kept) = self.in_unit(pins);
+        let inputs = &inputs;
         self.frame.update(inputs);
-        let flags = self.signals.flags(inputs, self.mode).with(self.endings(inputs));
+        let ended = self.signals.flags(inputs, self.mode).with(self.endings(inputs, kept));
+        let flags = ended.with(self.unheard);
+        self.unheard = Flags(flags.0 & ENDINGS.0);
         let setpoint = self.joints.setpoint(inputs, flags, self.frame.crc(), 0);
         let sent = setpoint.is_some();
         self.setpoint = setpoint.unwrap_or(Setpoint { flags, ..self.setpoint });
@@ -124,13 +139,33 @@ impl Remote {
         if mode == Mode::Armed && self.mode != Mode::Armed {
             self.armed_serial = inputs.part_serial;
         }
+        self.running = matches!(mode, Mode::Armed | Mode::Active | Mode::Hold)
+            .then(|| self.running.unwrap_or_else(|| Running::of(inputs)));
+        if driven.answered {
+            self.unheard = Flags::default();
+        }
         self.mode = mode;
         self.put(inputs, &driven, outputs);
         (driven, self.board.counters())
     }
 
+    /// The pins with the unit that what is armed or on is in, and whether that is the one of the pins.
+    fn in_unit(&mut self, pins: &Inputs) -> (Inputs, bool) {
+        if matches!(self.mode, Mode::Off | Mode::Bypass) && self.correction == [0.0; JOINTS] {
+            self.nm_per_unit = pins.nm_per_unit;
+        }
+        let kept = self.nm_per_unit.to_bits() == pins.nm_per_unit.to_bits();
+        (Inputs { nm_per_unit: self.nm_per_unit, ..*pins }, kept)
+    }
+
     /// What ends an arming from this side.
-    fn endings(&mut self, inputs: &Inputs) -> Flags {
+    fn endings(&mut self, inputs: &Inputs, kept: bool) -> Flags {
+        let other = self.running.map_or(Flags::default(), |running| running.ended(inputs));
+        let unit = if kept { Flags::default() } else { Flags::ABORT };
+        self.taken_back(inputs).with(other).with(unit)
+    }
+
+    fn taken_back(&mut self, inputs: &Inputs) -> Flags {
         let on = |switch| inputs.switches.has(switch);
         let disarmed = on(Switches::DISARM) && !self.before.has(Switches::DISARM);
         self.before = inputs.switches;
@@ -143,7 +178,8 @@ impl Remote {
 
     fn put(&mut self, inputs: &Inputs, driven: &Driven, outputs: &mut Outputs) {
         let nm = |axis: usize| driven.correction_nm.get(axis).copied().unwrap_or(0);
-        let length = |nm| if nm == 0 { 0.0 } else { units(nm, inputs.nm_per_unit) };
+        let unit = self.nm_per_unit;
+        let length = |nm| if nm == 0 { 0.0 } else { units(nm, unit) };
         for (joint, correction) in self.correction.iter_mut().enumerate() {
             *correction = self.joints.axis(joint).map_or(0.0, |axis| length(nm(axis)));
         }

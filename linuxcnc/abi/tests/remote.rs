@@ -129,3 +129,62 @@ fn a_position_that_is_no_length_loses_the_link() {
     let (driven, _) = remote.finish(&wrong, &mut out);
     assert_eq!((driven.cause, out.forward), (Cause::Setpoint, 0));
 }
+
+/// A period whose setpoint or answer is lost; gives what was sent.
+fn lost(remote: &mut Remote, inputs: &Inputs) -> Flags {
+    let mut packet = [0; PACKET_BYTES];
+    let bytes = remote.begin(inputs, &mut packet);
+    let setpoint = sent(&packet[..bytes]);
+    remote.finish(inputs, &mut outputs());
+    setpoint.flags
+}
+
+#[test]
+fn what_ends_an_arming_is_said_again_until_it_was_heard() {
+    let events = [
+        (ON & !Switches::PROGRAM_RUNNING.0, Flags::ABORT),
+        (ON | Switches::DISARM.0, Flags::PROGRAM_END),
+        (ON | Switches::TOOL_CHANGE.0, Flags::TOOL_CHANGE),
+    ];
+    for (bits, expected) in events {
+        let (mut remote, on) = ready();
+        period(&mut remote, &on, Mode::Active, [900, 0]);
+        assert!(lost(&mut remote, &with(&on, bits)).has(expected));
+        assert!(lost(&mut remote, &on).has(expected), "{expected:?}");
+        let (setpoint, ..) = period(&mut remote, &on, Mode::Active, [900, 0]);
+        assert!(setpoint.flags.has(expected));
+        let (setpoint, ..) = period(&mut remote, &on, Mode::Fault, [800, 0]);
+        assert!(!setpoint.flags.has(expected), "once heard it is not said any more");
+    }
+}
+
+#[test]
+fn drives_that_go_while_a_setpoint_is_lost_end_an_arming_all_the_same() {
+    let (mut remote, on) = ready();
+    period(&mut remote, &on, Mode::Armed, [0; 2]);
+    lost(&mut remote, &with(&on, ON & !Switches::DRIVES_ON.0));
+    let (setpoint, ..) = period(&mut remote, &on, Mode::Armed, [0; 2]);
+    assert!(setpoint.flags.has(Flags::ABORT));
+}
+
+#[test]
+fn another_program_tool_or_unit_ends_what_is_armed() {
+    let events: [fn(&mut Inputs); 3] =
+        [|pins| pins.program_crc ^= 1, |pins| pins.tool = 9, |pins| pins.nm_per_unit = 25.4e6];
+    for (index, event) in events.into_iter().enumerate() {
+        let (mut remote, on) = ready();
+        period(&mut remote, &on, Mode::Armed, [0; 2]);
+        period(&mut remote, &on, Mode::Active, [900, 0]);
+        let mut other = on;
+        event(&mut other);
+        let (setpoint, out, _) = period(&mut remote, &other, Mode::Active, [890, 0]);
+        assert!(setpoint.flags.has(Flags::ABORT.with(Flags::TOOL_CHANGE)), "event {index}");
+        assert_eq!(setpoint.axes[0], 1_000_000);
+        assert!((out.motor_pos_cmd[0] - 11.000_89).abs() < 1e-9, "nothing jumps: {}", out.motor_pos_cmd[0]);
+        for _ in 0..3 {
+            period(&mut remote, &other, Mode::Bypass, [0; 2]);
+        }
+        let (setpoint, ..) = period(&mut remote, &other, Mode::Bypass, [0; 2]);
+        assert!(!setpoint.flags.has(Flags::ABORT.with(Flags::TOOL_CHANGE)), "event {index}");
+    }
+}
