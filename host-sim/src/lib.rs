@@ -23,6 +23,7 @@ pub mod plant;
 pub mod plot;
 pub mod pocket;
 pub mod program;
+pub mod recorded;
 pub mod refusal;
 pub mod replay;
 pub mod report;

@@ -7,7 +7,10 @@ use truepath_core::units::Real;
 use crate::diagnostics::Failure;
 use crate::pass::Pass;
 use crate::plant::{self, Milled, PlantError};
+use crate::recorded;
+use crate::replay::Placement;
 use crate::report::{float, mm};
+use crate::setpoints::Setpoints;
 
 fn coordinates(p: Point) -> [f64; 2] {
     [p.x.nm() as f64 / 1e6, p.y.nm() as f64 / 1e6]
@@ -91,6 +94,25 @@ pub fn mill_program(pass: &Pass, machine: &plant::Machine, text: &[u8]) -> Resul
         (cut.feed_mm_per_min, cut.feed_changes) = feeds(&path, &blocks);
     }
     plant::mill(&path, &cut, machine, Some(&centres(&blocks))).map_err(|e| refused(&e))
+}
+
+/// Mills a pass along the path a controller was recorded on, at the feeds it had there.
+///
+/// # Errors
+/// What the plant refuses, and a recording without such a pass.
+pub fn mill_recorded(
+    pass: &Pass,
+    machine: &plant::Machine,
+    setpoints: &Setpoints,
+    placement: &Placement,
+) -> Result<(Milled, recorded::Facts), Failure> {
+    let path = path(pass).map_err(|e| refused(&e))?;
+    let mut cut = cut(pass);
+    let z_mm = pass.core.contour.z.nm() as f64 / 1e6;
+    let found = recorded::cut_path(setpoints, placement, &path, &cut, z_mm)?;
+    (cut.feed_mm_per_min, cut.feed_changes) = (found.feed_mm_per_min, found.feed_changes);
+    let milled = plant::mill(&path, &cut, machine, Some(&found.centre)).map_err(|e| refused(&e))?;
+    Ok((milled, found.facts))
 }
 
 /// How far beyond the length of a block its end is looked for, mm.

@@ -249,7 +249,15 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
     }
     let which = Which { feature: Some("pocket".to_owned()), pass: None };
     let (job, out) = (at("markers.toml"), at("simulated"));
-    let options = simulate::Options { job: &job, plant: None, out: &out, force: false, which };
+    let options = simulate::Options {
+        job: &job,
+        plant: None,
+        out: &out,
+        recording: None,
+        probed_wall: false,
+        force: false,
+        which,
+    };
     let feature = simulate::run(&options).unwrap().feature.unwrap();
     assert_eq!((feature.id.as_deref(), feature.chosen_by), (Some("pocket"), "markers"));
     let without = simulate::Options { which: Which::default(), out: &at("never"), ..options };

@@ -1,5 +1,6 @@
 //! `simulate`: the pass as the core predicts it, or as the plant cuts it.
 
+use std::fmt::Write;
 use std::path::Path as FilePath;
 
 use truepath_core::correct::{Band, Profile, profile};
@@ -11,14 +12,21 @@ use crate::diagnostics::{Failure, InputError, Source};
 use crate::job::{Job, Which};
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
-use crate::plant;
+use crate::plant::{self, Milled};
 use crate::plot::{self, Column, View};
+use crate::recorded;
+use crate::replay::Placement;
 use crate::report::page::{self, Along};
 use crate::report::{SimulateSummary, Trace, json, mm, simulate_summary, trace, trace_csv, wall_csv};
+use crate::setpoints::Setpoints;
 use crate::workshop;
 
 /// Files this command may write.
-const FILES: &[&str] = &["trace.csv", "wall.csv", "summary.json", "trace.svg", REPORT];
+const FILES: &[&str] = &["trace.csv", "wall.csv", PROBED, "summary.json", "trace.svg", REPORT];
+/// The wall as cut, at several heights.
+const PROBED: &str = "probed-wall.csv";
+/// Heights of that file, over the whole depth.
+const HEIGHTS: usize = 21;
 
 /// What is simulated.
 #[derive(Clone, Debug)]
@@ -27,12 +35,25 @@ pub struct Options<'a> {
     pub job: &'a FilePath,
     /// A machine for the plant; without it the core predicts with the job's priors.
     pub plant: Option<&'a FilePath>,
+    /// A recording whose tool path the plant cuts along, in place of the program's.
+    pub recording: Option<Recording<'a>>,
+    /// Whether the wall is also written at several heights, for a simulated probe.
+    pub probed_wall: bool,
     /// Output folder.
     pub out: &'a FilePath,
     /// Replace existing files.
     pub force: bool,
     /// Which cut of the program.
     pub which: Which,
+}
+
+/// A recorded tool path.
+#[derive(Clone, Copy, Debug)]
+pub struct Recording<'a> {
+    /// Its rows.
+    pub setpoints: &'a Setpoints,
+    /// Where the program stood in the machine.
+    pub placement: Placement,
 }
 
 /// Simulates and writes trace and summary.
@@ -45,17 +66,19 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     let pass = Pass::read(job)?;
     let folder = OutputFolder::create(options.out, options.force, FILES)?;
     let mut warnings = pass.warnings.clone();
-    let (by, trace, along) = match options.plant {
+    let done = match options.plant {
         None => {
             let (trace, along) = predicted(&pass, &mut warnings)?;
-            ("core", trace, along)
+            Done { by: "core", trace, along, milled: None, facts: None }
         }
-        Some(file) => {
-            let (trace, along) = milled(&pass, &read_machine(file)?)?;
-            ("plant", trace, along)
-        }
+        Some(file) => milled(&pass, &read_machine(file)?, options.recording.as_ref(), &mut warnings)?,
     };
-    let summary = simulate_summary(&pass, by, &trace, warnings);
+    let Done { by, trace, along, milled, facts } = done;
+    let mut summary = simulate_summary(&pass, by, &trace, warnings);
+    (summary.judged, summary.recorded) = (milled.as_ref().map(Milled::score), facts);
+    if let Some(milled) = milled.filter(|_| options.probed_wall) {
+        folder.write(PROBED, probed_wall(&pass, &milled).as_bytes())?;
+    }
     folder.write("trace.csv", &trace_csv(&trace)?)?;
     folder.write("wall.csv", &wall_csv(&trace)?)?;
     folder.write("summary.json", &json(&summary)?)?;
@@ -93,15 +116,59 @@ fn predicted(pass: &Pass, warnings: &mut Vec<String>) -> Result<(Trace, Along), 
     Ok((trace, along))
 }
 
-/// The uncorrected pass as a virtual machine cuts it.
+/// A pass, whoever made it.
+struct Done {
+    by: &'static str,
+    trace: Trace,
+    along: Along,
+    milled: Option<Milled>,
+    facts: Option<recorded::Facts>,
+}
+
+/// The pass as a virtual machine cuts it: uncorrected along its nominal path, or as it was recorded.
 ///
 /// # Errors
-/// What the plant refuses.
-fn milled(pass: &Pass, machine: &plant::Machine) -> Result<(Trace, Along), Failure> {
-    let milled = workshop::mill(pass, machine, None)?;
+/// What the plant refuses, and a recording without the pass.
+fn milled(
+    pass: &Pass,
+    machine: &plant::Machine,
+    recording: Option<&Recording>,
+    warnings: &mut Vec<String>,
+) -> Result<Done, Failure> {
+    let (milled, facts) = match recording {
+        None => (workshop::mill(pass, machine, None)?, None),
+        Some(Recording { setpoints, placement }) => {
+            let (milled, facts) = workshop::mill_recorded(pass, machine, setpoints, placement)?;
+            if facts.passes > 1 {
+                warnings.push(format!(
+                    "the recording passes the contour {} times; taken is the pass nearest to it, {:.3} to {:.3} s",
+                    facts.passes, facts.from_s, facts.to_s
+                ));
+            }
+            (milled, Some(facts))
+        }
+    };
     let trace = page::trace_of(&milled);
-    let along = page::milled(&milled, &trace, "cut by the virtual machine");
-    Ok((trace, along))
+    let label = if facts.is_some() {
+        "cut by the virtual machine along the recorded path"
+    } else {
+        "cut by the virtual machine"
+    };
+    let along = page::milled(&milled, &trace, label);
+    Ok(Done { by: "plant", trace, along, milled: Some(milled), facts })
+}
+
+/// The wall as cut, for a simulated probe: program coordinates, mm, from the lowest height to the highest.
+fn probed_wall(pass: &Pass, milled: &Milled) -> String {
+    let levels: [f64; HEIGHTS] = std::array::from_fn(|k| k as f64 / (HEIGHTS - 1) as f64);
+    let (tip, depth) = (pass.core.contour.z.nm() as f64 / 1e6, milled.cut.axial_depth_mm);
+    let mut text = String::from("z_mm,x_mm,y_mm\n");
+    for (level, wall) in levels.iter().zip(milled.walls(&levels)) {
+        let z = tip + level * depth;
+        // Writing to a String cannot fail.
+        wall.iter().for_each(|[x, y]| _ = writeln!(text, "{z:.4},{x:.6},{y:.6}"));
+    }
+    text
 }
 
 /// Reads a PLANT.toml.

@@ -40,6 +40,14 @@ impl Milled {
         errors
     }
 
+    /// The wall as cut at each of `levels`, in the sense of travel, mm. Undefined places are left out.
+    pub fn walls(&self, levels: &[f64]) -> Vec<Vec<Point>> {
+        let place = |(i, e): (usize, &f64)| {
+            e.is_finite().then(|| along(self.path.wall(i, self.cut.radius_mm), self.path.normal[i], -e))
+        };
+        self.wall_errors(levels).iter().map(|row| row.iter().enumerate().filter_map(place).collect()).collect()
+    }
+
     /// The wall as cut, averaged over `levels`, in the sense of travel, mm: the stock of a next pass. Undefined places are left out.
     pub fn surface(&self, levels: &[f64]) -> Vec<Point> {
         let errors = self.wall_errors(levels);

@@ -12,7 +12,9 @@ use crate::correction::{Correction, Identified};
 use crate::feature::FeatureSummary;
 use crate::feed::FeedSummary;
 use crate::pass::Pass;
+use crate::plant::Score;
 use crate::program::Difference;
+use crate::recorded;
 
 /// An identified quantity.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -214,6 +216,12 @@ pub struct SimulateSummary {
     pub max_chip_volume_mm3: f64,
     /// Climb or conventional.
     pub milling: &'static str,
+    /// The wall away from its ends, where the cutter plunges and lifts; by the plant only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub judged: Option<Score>,
+    /// The recorded pass that was cut along, if one was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<recorded::Facts>,
     /// The feature it is about; absent in a program with one cut and no names.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feature: Option<FeatureSummary>,
@@ -236,6 +244,8 @@ pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warni
         max_chip_area_mm2: most(|r| r.chip_area_mm2),
         max_chip_volume_mm3: most(|r| r.chip_area_mm2) * mm(pass.core.setup.radius),
         milling: crate::pass::milling_name(pass.core.setup.milling),
+        judged: None,
+        recorded: None,
         feature: pass.feature(&[]),
         warnings,
     }

@@ -101,8 +101,15 @@ impl Part {
     pub fn simulate(&self, plant: bool, out: &str) {
         let plant = plant.then(|| self.at("plant.toml"));
         let (job, out) = (self.at("job.toml"), self.at(out));
-        let options =
-            simulate::Options { job: &job, plant: plant.as_deref(), out: &out, force: false, which: Which::default() };
+        let options = simulate::Options {
+            job: &job,
+            plant: plant.as_deref(),
+            out: &out,
+            recording: None,
+            probed_wall: false,
+            force: false,
+            which: Which::default(),
+        };
         shown(simulate::run(&options));
     }
 }

@@ -63,7 +63,15 @@ fn the_page_says_which_of_several_depths_it_is_of() {
     let job = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/features/pocket.toml"));
     let out = folder.path().join("out");
     let which = Which { pass: Some(2), ..Which::default() };
-    shown(simulate::run(&simulate::Options { job, plant: None, out: &out, force: false, which }));
+    shown(simulate::run(&simulate::Options {
+        job,
+        plant: None,
+        out: &out,
+        recording: None,
+        probed_wall: false,
+        force: false,
+        which,
+    }));
     let page = data(&out.join("report.html"));
     let facts = page["job"]["facts"].to_string();
     assert!(facts.contains("pass 2 of 2, Z -12 mm"), "{facts}");

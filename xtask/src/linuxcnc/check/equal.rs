@@ -50,7 +50,10 @@ pub fn compare(rows: &[Row], name: &str, serial: u32, replay: &Replay) -> Result
     let [x, y, z] = replay.origin.map(millimetres);
     let mut command = program(replay.truepath);
     command.arg("replay").arg(replay.image).arg("--setpoints").arg(&input).arg("-o").arg(&output).arg("--force");
-    command.arg(format!("--origin-mm={x},{y},{z}")).arg(format!("--turn={},{}", replay.turn[0], replay.turn[1]));
+    command
+        .arg(format!("--origin-mm={x},{y},{z}"))
+        .arg(format!("--cosine={}", replay.turn[0]))
+        .arg(format!("--sine={}", replay.turn[1]));
     command.args(["--part", &serial.to_string()]);
     for setting in replay.settings {
         command.args(["--setting", setting]);
