@@ -8,6 +8,7 @@ from __future__ import annotations
 
 # Importing them puts them into the table.
 import corrected  # noqa: F401
+import story  # noqa: F401
 import uncorrected  # noqa: F401
 from steps import ALL
 

@@ -1,6 +1,6 @@
-//! truepath.so, the real-time component.
+//! truepath.so, the real-time component, and truepath_wall.so, which only the sample machine has.
 //!
-//! LinuxCNC's `halcompile` turns `linuxcnc/truepath.comp` into C, its `Makefile.modinc` compiles and links that with the
+//! LinuxCNC's `halcompile` turns `linuxcnc/truepath.comp` and `linuxcnc/sim/truepath_wall.comp` into C, its `Makefile.modinc` compiles and links that with the
 //! flags of its own modules. All of it happens below the target directory.
 
 use std::fs;
@@ -13,7 +13,11 @@ use crate::step::Failure;
 /// Debian's package with what compiles components.
 const PACKAGE: &str = "linuxcnc-uspace-dev";
 
-/// Builds it; gives its folder, in which `make install` puts it among LinuxCNC's modules.
+/// What is built, and from what.
+pub const MODULES: [(&str, &str); 2] =
+    [("truepath.so", "linuxcnc/truepath.comp"), ("truepath_wall.so", "linuxcnc/sim/truepath_wall.comp")];
+
+/// Builds both; gives their folder, in which `make install` puts them among LinuxCNC's modules.
 ///
 /// # Errors
 /// LinuxCNC's development package is missing, or something does not compile.
@@ -26,17 +30,21 @@ pub fn build() -> Result<PathBuf, Failure> {
     let folder = target().join("linuxcnc");
     fs::create_dir_all(&folder).map_err(|e| written(&folder, &e))?;
     let library = library()?;
-    let source = root().join("linuxcnc/truepath.comp");
-    let c = folder.join("truepath.c");
-    run(program("halcompile").args(["--preprocess", "--outfile"]).arg(&c).arg(&source))?;
+    for (_, source) in MODULES {
+        let source = root().join(source);
+        let c = folder.join(source.with_extension("c").file_name().unwrap_or_default());
+        run(program("halcompile").args(["--preprocess", "--outfile"]).arg(&c).arg(&source))?;
+    }
     let rules = read(program("halcompile").arg("--print-modinc"))?;
     let makefile = folder.join("Makefile");
     fs::write(&makefile, text(rules.trim(), &library)).map_err(|e| written(&makefile, &e))?;
     run(program("make").arg("--directory").arg(&folder).arg("modules"))?;
-    let made = folder.join("truepath.so");
-    let bytes = fs::metadata(&made).map_err(|e| written(&made, &e))?.len();
-    println!("{}: {bytes} bytes", made.display());
-    let Proved { functions, instructions } = proof::check(&made)?;
+    for (made, _) in MODULES {
+        let made = folder.join(made);
+        let bytes = fs::metadata(&made).map_err(|e| written(&made, &e))?.len();
+        println!("{}: {bytes} bytes", made.display());
+    }
+    let Proved { functions, instructions } = proof::check(&folder.join(MODULES[0].0))?;
     println!(
         "servo side: {functions} functions, {instructions} instructions; no panic, no allocation, no system call, no \
          division, floats only between pins and nanometres"
@@ -57,8 +65,9 @@ fn library() -> Result<PathBuf, Failure> {
 fn text(rules: &str, library: &Path) -> String {
     let sources = root().join("linuxcnc");
     format!(
-        "obj-m += truepath.o\n\
+        "obj-m += truepath.o truepath_wall.o\n\
          truepath-objs := truepath.o\n\
+         truepath_wall-objs := truepath_wall.o\n\
          include {rules}\n\
          EXTRA_CFLAGS += -std=gnu11 -Wall -Wextra -Wno-unused-function -Wno-unused-parameter -I{0} -I{0}/abi\n\
          LDFLAGS += -Wl,--gc-sections -pthread\n\

@@ -11,7 +11,6 @@ use crate::step::{Failure, Outcome, Passed};
 const PROGRAMS: &str = "/usr/local/bin";
 /// Where LinuxCNC looks for modules.
 const MODULES: &str = "/usr/lib/linuxcnc/modules";
-const MODULE: &str = "truepath.so";
 /// Where `HALFILE = LIB:truepath.hal` of an INI file is looked for.
 const HAL_FILES: &str = "/usr/share/linuxcnc/hallib";
 /// M-codes, to be named in an INI file's `USER_M_PATH`.
@@ -55,8 +54,12 @@ pub fn install(component_only: bool) -> Outcome {
 /// # Errors
 /// It does not build, or it would have to be installed and may not be.
 pub fn component_if_changed() -> Result<(), Failure> {
-    let made = component::build()?.join(MODULE);
-    if read_bytes(&made).is_some() && read_bytes(&made) == read_bytes(&Path::new(MODULES).join(MODULE)) {
+    let folder = component::build()?;
+    let installed = |name: &str| {
+        let made = read_bytes(&folder.join(name));
+        made.is_some() && made == read_bytes(&Path::new(MODULES).join(name))
+    };
+    if component::MODULES.iter().all(|(name, _)| installed(name)) {
         return Ok(());
     }
     if !may_install() {

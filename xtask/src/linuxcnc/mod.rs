@@ -9,6 +9,7 @@ mod parts;
 mod proof;
 mod python;
 mod recording;
+mod story;
 mod suite;
 mod timing;
 mod verdict;
@@ -28,13 +29,19 @@ pub enum Task {
         #[arg(long)]
         component_only: bool,
     },
+    /// Mills two parts on the sample machine, touches them, corrects, mills again, and tells how much better the walls are.
+    Story,
 }
 
 /// Does a task.
 pub fn run(task: Option<Task>, scenario: Option<&str>, write: bool) -> Outcome {
     match task {
-        // The tests on the simulated machine follow here.
-        None => suite::run(scenario, write),
+        None if scenario.is_some() => suite::run(scenario, write),
+        None => {
+            suite::run(None, write)?;
+            story::run(write)
+        }
+        Some(Task::Story) => story::run(write),
         Some(Task::Build) => component::build().map(|_| crate::step::Passed::Done),
         Some(Task::Install { component_only }) => install::install(component_only),
     }

@@ -140,7 +140,7 @@ impl<'a> Bench<'a> {
 }
 
 /// What the component makes of the INI file, for the replay.
-fn settings(ini: &str) -> Vec<String> {
+pub(super) fn settings(ini: &str) -> Vec<String> {
     let nm = |section: &str, key: &str| number(ini, section, key).map(|mm| (mm * 1e6).round() as i64);
     let limits: Vec<String> = (0..6)
         .map(|joint| {
