@@ -14,10 +14,11 @@ import hal
 
 from machine import Machine
 from notes import Notes
-from steps import CORNER, POCKET, next_part, scenario
+from steps import CORNER, POCKET, PROGRAMS, line_of, next_part, scenario
 
 FRAME = tuple(f"truepath.{name}" for name in ("offset-x", "offset-y", "offset-z", "frame-cosine", "frame-sine"))
-WALL = Path("sim/wall.csv")
+# [TRUEPATH]WALL of the INI file.
+WALL = PROGRAMS.parent / "wall.csv"
 
 
 def milled(m: Machine, notes: Notes, program: Path) -> None:
@@ -26,22 +27,18 @@ def milled(m: Machine, notes: Notes, program: Path) -> None:
     try:
         next_part(m, notes, program)
         m.run()
-        m.while_running("the cut", lambda: m.pin("truepath.offset-z") != 0 and m.stat.motion_line >= cut_line(program))
+        # The spindle stands when a program begins: from here on it is this one that runs.
+        m.while_running("the spindle", lambda: bool(m.pin("truepath.spindle-on")))
+        m.while_running("the first arc", lambda: m.stat.motion_line == line_of(program, "G3 "))
         notes.pins(*FRAME)
         m.until_idle()
     finally:
         hal.set_p("truepath-desk.enable-switch", "1")
 
 
-def cut_line(program: Path) -> int:
-    """The line after the plunge."""
-    lines = program.read_text().splitlines()
-    return 2 + next(place for place, line in enumerate(lines) if line.startswith("G1 Z"))
-
-
 def touched(m: Machine, notes: Notes, part: str, ball_diameter: float) -> None:
     """The probing program beside a wall."""
-    shutil.copyfile(f"sim/programs/{part}-wall.csv", WALL)
+    shutil.copyfile(PROGRAMS / f"{part}-wall.csv", WALL)
     hal.set_p("truepath-wall.ball-radius", str(ball_diameter / 2))
     loads = m.pin("truepath-wall.loads")
     hal.set_p("truepath-wall.reload", "0")
@@ -49,7 +46,7 @@ def touched(m: Machine, notes: Notes, part: str, ball_diameter: float) -> None:
     hal.set_p("truepath-wall.reload", "1")
     m.wait("the wall read", lambda: m.pin("truepath-wall.loads") > loads and m.pin("truepath-wall.points") > 0)
     notes.value("points", m.pin("truepath-wall.points"))
-    m.open(Path(__file__).resolve().parent.parent / f"sim/programs/{part}-probe.ngc")
+    m.open(PROGRAMS / f"{part}-probe.ngc")
     m.run()
     m.wait("the wall touched at every place", m.is_idle, 400.0)
     # What LinuxCNC said, of a touch where nothing should be for instance.
