@@ -87,8 +87,7 @@ fn a_recording_of_the_program_itself_gives_its_wall() {
     let facts = recorded.recorded.expect("facts");
     assert!(facts.passes == 1 && facts.farthest_mm < 1e-3, "{facts:?}");
     assert!((facts.from_s - 0.5).abs() < 0.011 && (facts.to_s - 0.5 - LENGTH_MM * 0.15).abs() < 0.02, "{facts:?}");
-    // At its end the cutter stops for a period before it rises.
-    assert!(facts.least_feed > 0.7 && (facts.greatest_feed - 1.0).abs() < 1e-3, "{facts:?}");
+    assert!((facts.least_feed - 1.0).abs() < 1e-3 && (facts.greatest_feed - 1.0).abs() < 1e-3, "{facts:?}");
 }
 
 #[test]

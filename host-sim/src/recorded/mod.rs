@@ -56,7 +56,7 @@ pub struct Facts {
     pub farthest_mm: f64,
     /// Its root mean square, mm.
     pub off_rms_mm: f64,
-    /// Least feed, as a share of that of the program.
+    /// Least feed away from the ends, as a share of that of the program.
     pub least_feed: f64,
     /// Greatest feed, likewise.
     pub greatest_feed: f64,

@@ -76,11 +76,16 @@ fn at(way: &[f64], place: f64) -> f64 {
 fn steps(shares: &[f64], path: &Path, cut: &plant::Cut) -> Pace {
     let mut pace = Pace { first_mm_per_min: cut.feed_mm_per_min, changes: Vec::new(), least: 1.0, greatest: 1.0 };
     let mut share = shares.iter().copied().find(|s| s.is_finite()).unwrap_or(1.0);
-    (pace.least, pace.greatest) = (share, share);
+    // At the ends the cutter starts, plunges and lifts.
+    let trim = plant::judged_trim_mm(cut.radius_mm);
+    let judged = |s: f64| s > trim && s < path.length_mm - trim;
+    (pace.least, pace.greatest) = (f64::INFINITY, 0.0);
     let mut feed = f64::NAN;
     for (k, &here) in shares.iter().enumerate() {
         if here.is_finite() {
             share = here;
+        }
+        if judged(path.s_mm[k]) {
             pace.least = pace.least.min(share);
             pace.greatest = pace.greatest.max(share);
         }
@@ -92,5 +97,6 @@ fn steps(shares: &[f64], path: &Path, cut: &plant::Cut) -> Pace {
         }
         feed = next;
     }
+    pace.least = pace.least.min(pace.greatest);
     pace
 }
