@@ -21,6 +21,7 @@ from pathlib import Path
 import hal
 
 import scenarios
+import steps
 from machine import Machine, Stuck
 from notes import Notes
 from recorder import Recorder
@@ -63,6 +64,9 @@ def main() -> int:
     try:
         machine.switch_on()
         machine.home()
+        # LinuxCNC's status may hold no work offset until the first program has ended: its first message about it is
+        # lost when the machine is switched on before it was carried out.
+        machine.mdi(steps.G54)
         done = [gone_through(name, machine, notes) for name in names]
         return 0 if all(done) else 1
     except Exception:
