@@ -3,9 +3,13 @@
 
 from __future__ import annotations
 
+import os
+import signal
+from pathlib import Path
+
 import hal
 
-from machine import ACTIVE, HOLD, Machine
+from machine import ACTIVE, HOLD, Machine, Stuck
 from notes import Notes
 from steps import CORNER, G54, POCKET, begin, into_contour, leave, same_part_again, scenario, until_out
 
@@ -69,6 +73,47 @@ def disarm(m: Machine, notes: Notes) -> None:
     until_out(m)
     m.periods(300)
     leave(m, notes)
+
+
+@scenario
+def desk_stopped(m: Machine, notes: Notes) -> None:
+    """truepath-desk hangs in the contour: the watchdog ends the correction, the program goes on."""
+    into_contour(m, notes, POCKET)
+    desk = desk_process()
+    os.kill(desk, signal.SIGSTOP)
+    try:
+        notes.mark("event")
+        until_out(m)
+        m.periods(300)
+        leave(m, notes)
+    finally:
+        os.kill(desk, signal.SIGCONT)
+    m.wait("corrections permitted again", lambda: bool(m.pin("truepath-desk.permitted")))
+
+
+@scenario
+def program_changed(m: Machine, notes: Notes) -> None:
+    """The file of the program is written anew in the contour, with other bytes."""
+    into_contour(m, notes, POCKET)
+    before = POCKET.read_bytes()
+    try:
+        notes.mark("event")
+        POCKET.write_bytes(before + b"(changed)\n")
+        until_out(m)
+        m.periods(300)
+        leave(m, notes)
+    finally:
+        POCKET.write_bytes(before)
+    m.open(CORNER)
+
+
+def desk_process() -> int:
+    """Number of the process of truepath-desk, by the name it was started with."""
+    for process in Path("/proc").iterdir():
+        words = (process / "cmdline").read_bytes().split(b"\0") if process.name.isdecimal() else []
+        if len(words) > 1 and words[1].endswith(b"truepath-desk"):
+            return int(process.name)
+    raise Stuck("truepath-desk does not run")
 
 
 @scenario

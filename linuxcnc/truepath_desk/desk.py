@@ -85,15 +85,13 @@ class Desk:
         pins["program-running"] = status.running
 
     def _watch(self, status: Status, state: int, program_changed: bool) -> None:
-        """What is armed is for the program that was loaded then, and for no move typed by hand."""
+        """What is armed is for the program that was loaded then. (Moves by hand never enter: no program runs.)"""
         if state not in (words.ARMED, words.ACTIVE, words.HOLD):
             return
         if not self._permission.wanted:
             self._requests.end("corrections are not permitted any more")
         elif program_changed:
             self._requests.end("another program is loaded, or its file has changed")
-        elif status.by_hand:
-            self._requests.end("a line is run by hand (MDI), the correction belongs to the program")
         elif self._external_offset():
             self._requests.end("an external offset is on")
 

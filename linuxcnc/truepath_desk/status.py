@@ -20,9 +20,8 @@ class Status:
     tool: int
     tool_offset: int
     program: str
-    # The loaded program runs; a line of MDI runs.
+    # The loaded program runs, not a line of MDI.
     running: bool
-    by_hand: bool
     mdi: bool
     identity_kinematics: bool
     mm_per_unit: float
@@ -56,7 +55,6 @@ class Source:
             tool_offset=tool_offset_number(s.gcodes, s.tool_offset[:3], s.tool_in_spindle, table),
             program=s.file,
             running=s.interp_state != self._linuxcnc.INTERP_IDLE and s.task_mode == self._linuxcnc.MODE_AUTO,
-            by_hand=s.interp_state != self._linuxcnc.INTERP_IDLE and s.task_mode == self._linuxcnc.MODE_MDI,
             mdi=s.task_mode == self._linuxcnc.MODE_MDI,
             identity_kinematics=s.kinematics_type == self._linuxcnc.KINEMATICS_IDENTITY,
             mm_per_unit=1.0 / s.linear_units,

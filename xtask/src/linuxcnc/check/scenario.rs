@@ -39,6 +39,8 @@ pub const ALL: &[Scenario] = &[
     Scenario { name: "emergency-stop", replayed: true, check: |case| ended(case, &[EMERGENCY_STOP]) },
     Scenario { name: "drives-off", replayed: true, check: |case| ended(case, &[DRIVES_DISABLED]) },
     Scenario { name: "disarm", replayed: false, check: disarmed },
+    Scenario { name: "desk-stopped", replayed: false, check: after_a_while },
+    Scenario { name: "program-changed", replayed: false, check: disarmed },
     Scenario { name: "feed-hold", replayed: true, check: feed_hold },
     Scenario { name: "feed-override", replayed: true, check: feed_override },
     Scenario { name: "spindle-override", replayed: true, check: spindle_override },
@@ -108,6 +110,19 @@ fn disarmed(case: &Case) {
         case.expect(false, wrong);
     }
     case.moved(after, "after disarming");
+    let reason = after.last().map_or(0, |row| row.reason);
+    case.expect(reason == DISARMED, format!("the reason is {reason}, expected {DISARMED}"));
+}
+
+/// Ended by the watchdog, which waits a second: the correction goes on until then.
+fn after_a_while(case: &Case) {
+    let after = case.between("event", "");
+    let out = after.iter().position(|row| row.correction == [0; 3]);
+    let told = out.map_or("never".to_owned(), |periods| format!("{periods} periods later"));
+    case.expect(out.is_some_and(|periods| (500..5_000).contains(&periods)), format!("the correction was out {told}"));
+    let rest = out.map_or(&[][..], |periods| &after[periods..]);
+    case.expect(rest.iter().all(|row| row.correction == [0; 3]), "it came back");
+    case.moved(rest, "after the end");
     let reason = after.last().map_or(0, |row| row.reason);
     case.expect(reason == DISARMED, format!("the reason is {reason}, expected {DISARMED}"));
 }
