@@ -59,7 +59,9 @@ pub fn clean(user: &User, folder: &Path) -> Result<(), Failure> {
         succeeds(user.program(REALTIME, folder).arg("stop"));
     }
     for key in KEYS {
+        // Another user's semaphore under the same key crashes LinuxCNC.
         succeeds(program("ipcrm").args(["-M", key]));
+        succeeds(program("ipcrm").args(["-S", key]));
     }
     // Of a LinuxCNC that no longer runs, whoever started it.
     let _ = fs::remove_file(LOCK);
