@@ -141,6 +141,8 @@ class Machine:
         self.wait("the command taken", self.is_heard)
 
     def switch_on(self) -> None:
+        # Switched on before it has told its offsets, LinuxCNC never does.
+        self.wait("the work offset shown", lambda: self.stat.g5x_index > 0)
         self.command.state(linuxcnc.STATE_ESTOP_RESET)
         self.wait("out of emergency stop", lambda: self.stat.task_state != linuxcnc.STATE_ESTOP)
         self.command.state(linuxcnc.STATE_ON)

@@ -127,6 +127,7 @@ class ArmingTest(unittest.TestCase):
             (arming.FROM_MDI, replace(SITUATION, mdi=True), REQUEST),
             (arming.EXTERNAL_OFFSET, replace(SITUATION, external_offset=True), REQUEST),
             (arming.NOT_PERMITTED, replace(SITUATION, permitted=False), REQUEST),
+            (arming.OFFSETS, replace(SITUATION, offsets_known=False), REQUEST),
             (arming.TOOL_OFFSET, replace(SITUATION, tool_offset=-1), REQUEST),
             (arming.SERIAL, SITUATION, replace(REQUEST, serial=0)),
             (arming.SERIAL, SITUATION, replace(REQUEST, serial=1 << 32)),

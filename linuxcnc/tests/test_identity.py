@@ -41,6 +41,16 @@ class ProgramTest(unittest.TestCase):
         self.assertTrue(self.program.update(""))
 
 
+class WorkOffsetTest(unittest.TestCase):
+    def test_it_is_the_index_when_the_modal_code_says_the_same(self):
+        for number, code in enumerate((540, 550, 560, 570, 580, 590, 591, 592, 593), start=1):
+            self.assertEqual(identity.work_offset(number, (0, code, 490)), number)
+
+    def test_a_status_that_contradicts_itself_is_0(self):
+        for index, codes in ((0, (540,)), (2, (540,)), (1, ()), (1, (540, 550))):
+            self.assertEqual(identity.work_offset(index, codes), 0)
+
+
 class ToolOffsetTest(unittest.TestCase):
     def number(self, gcodes, offset, spindle):
         return identity.tool_offset_number(gcodes, offset, spindle, TABLE)

@@ -16,7 +16,7 @@ from .image import Image, NoImage
 
 # Refusals of the desk; those of the component are below 100.
 CONFIGURATION, NO_IMAGE, IMAGE_NOT_TAKEN, FROM_MDI, NO_ANSWER = 100, 101, 102, 103, 104
-BUSY, EXTERNAL_OFFSET, TOOL_OFFSET, NOT_PERMITTED, SERIAL, BOARD = 105, 106, 107, 108, 109, 110
+BUSY, EXTERNAL_OFFSET, TOOL_OFFSET, NOT_PERMITTED, SERIAL, BOARD, OFFSETS = 105, 106, 107, 108, 109, 110, 111
 
 # Reading and checking the image, writing the ledger to the disk: seconds on a busy one.
 PATIENCE_S = 5.0
@@ -52,6 +52,8 @@ class Situation:
     mdi: bool
     external_offset: bool
     permitted: bool
+    # False: the offsets of the status are not those in force.
+    offsets_known: bool = True
 
 
 class Component(Protocol):
@@ -106,6 +108,8 @@ def forbidden(configuration: Configuration, situation: Situation, request: Reque
         return Result(EXTERNAL_OFFSET, "an external offset is on: it moves the axes off the program")
     if not situation.permitted:
         return Result(NOT_PERMITTED, "corrections are not permitted: see the switch on the panel")
+    if not situation.offsets_known:
+        return Result(OFFSETS, "LinuxCNC does not show the work offset in force: command G55 and G54 by hand (MDI), then again")
     if situation.tool_offset < 0:
         return Result(TOOL_OFFSET, "the number of the tool offset in force cannot be told: use G43 H or G49")
     if not 1 <= request.serial <= MOST_SERIAL:

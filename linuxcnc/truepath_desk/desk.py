@@ -106,4 +106,5 @@ class Desk:
             mdi=status.mdi,
             external_offset=self._external_offset(),
             permitted=permitted,
+            offsets_known=status.work_offset > 0,
         )

@@ -56,6 +56,17 @@ def crc32_of(path: str) -> int:
     return crc
 
 
+def work_offset(index: int, gcodes: Iterable[int]) -> int:
+    """Number of the work offset, 1 for G54 to 9 for G59.3, or 0 when the status contradicts itself.
+
+    A LinuxCNC that is switched on in the moment of its start keeps its offsets to itself: the status then has 0 for
+    index and offsets, while the interpreter works with those of its file. The modal code tells.
+    """
+    modal = {code: number for number, code in enumerate((540, 550, 560, 570, 580, 590, 591, 592, 593), start=1)}
+    active = [modal[code] for code in gcodes if code in modal]
+    return index if active == [index] else 0
+
+
 def tool_offset_number(
     gcodes: Iterable[int], offset: Sequence[float], in_spindle: int, table: Iterable[tuple[int, Sequence[float]]]
 ) -> int:

@@ -16,6 +16,7 @@ class Status:
     """One look at LinuxCNC."""
 
     frame: Frame
+    # Number of the work offset, 1 for G54; 0 when the status does not show the one that is in force.
     work_offset: int
     tool: int
     tool_offset: int
@@ -50,7 +51,7 @@ class Source:
         table = [(t.id, (t.xoffset, t.yoffset, t.zoffset)) for t in s.tool_table if t.id > 0]
         return Status(
             frame=frame(s.g5x_offset, s.g92_offset, s.tool_offset, s.rotation_xy),
-            work_offset=s.g5x_index,
+            work_offset=work_offset(s.g5x_index, s.gcodes),
             tool=max(s.tool_in_spindle, 0),
             tool_offset=tool_offset_number(s.gcodes, s.tool_offset[:3], s.tool_in_spindle, table),
             program=s.file,
