@@ -128,7 +128,9 @@ class Machine:
         self.wait("the interpreter idle and the axes standing", self.is_idle)
 
     def is_idle(self) -> bool:
-        return self.stat.interp_state == linuxcnc.INTERP_IDLE and bool(self.stat.inpos) and self.is_heard()
+        s = self.stat
+        executed = s.exec_state in (linuxcnc.EXEC_DONE, linuxcnc.EXEC_ERROR) and s.queue == 0
+        return s.interp_state == linuxcnc.INTERP_IDLE and executed and bool(s.inpos) and self.is_heard()
 
     def is_heard(self) -> bool:
         # Messages of truepath-desk are commands as well, with numbers of their own: the echo may be past ours.

@@ -44,6 +44,7 @@ SECOND: list[Column] = [
     *joints("following-error", "f", "joint.{}.f-error"),
     ("drives-on", "b", "truepath.drives-on"),
     ("faded", "b", "truepath.faded"),
+    ("spindle-on", "b", "truepath.spindle-on"),
     ("time-command", "s", "truepath.command.time"),
     ("time-feedback", "s", "truepath.feedback.time"),
     ("time-controller", "s", "motion-controller.time"),

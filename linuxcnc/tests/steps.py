@@ -63,8 +63,11 @@ def leave(m: Machine, notes: Notes) -> None:
 
 
 def same_part_again(m: Machine, notes: Notes) -> None:
-    """The button on the panel once more, with the same serial number."""
+    """The button on the panel once more, with the same serial number; everything else as it was when it was armed."""
     notes.mark("again")
+    for block in ("T2 M6", "G43 H2"):
+        m.mdi(block)
+    m.open(POCKET)
     notes.value("refusal", m.press_arm())
 
 

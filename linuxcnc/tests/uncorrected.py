@@ -126,9 +126,7 @@ def killed(m: Machine, notes: Notes) -> None:
 @scenario
 def spent(m: Machine, notes: Notes) -> None:
     """After a new start: the serial number of the part before is refused, the next is not."""
-    for block in ("T2 M6", "G43 H2"):
-        m.mdi(block)
-    m.open(POCKET)
+    m.enter_serial(m.serial)
     same_part_again(m, notes)
     m.new_serial()
     notes.value("next-refusal", m.press_arm())

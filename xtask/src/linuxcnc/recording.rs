@@ -37,6 +37,7 @@ pub struct Row {
     pub following_error: [i64; JOINTS],
     pub drives_on: bool,
     pub faded: bool,
+    pub spindle_on: bool,
     /// Clocks of the processor that the functions took.
     pub command_clocks: i64,
     pub feedback_clocks: i64,
@@ -185,6 +186,7 @@ fn row(first: &Line, second: &Line) -> Result<Row, String> {
         following_error: second.lengths("following-error")?,
         drives_on: second.whole("drives-on")? != 0,
         faded: second.whole("faded")? != 0,
+        spindle_on: second.whole("spindle-on")? != 0,
         command_clocks: second.whole("time-command")?,
         feedback_clocks: second.whole("time-feedback")?,
         controller_clocks: second.whole("time-controller")?,

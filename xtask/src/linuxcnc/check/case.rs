@@ -7,6 +7,8 @@ use super::super::recording::Row;
 
 /// States of the component from which a correction can be on.
 const ACTIVE: u32 = 3;
+/// Number of `rewrite::Refusal::PartRepeated`.
+const PART_REPEATED: f64 = 4.0;
 
 /// One scenario of a session with its findings.
 pub struct Case<'a> {
@@ -58,9 +60,7 @@ impl Case<'_> {
     }
 
     pub fn refused(&self, key: &str) {
-        self.expect(
-            self.notes.number(key).is_some_and(|code| code > 0.0),
-            format!("{key}: the arming was not refused"),
-        );
+        let code = self.notes.number(key);
+        self.expect(code == Some(PART_REPEATED), format!("{key}: {code:?}, expected {PART_REPEATED}"));
     }
 }

@@ -68,8 +68,10 @@ fn setpoints(rows: &[Row]) -> String {
     let mut text = String::from("# frame = machine\nt_s,x_mm,y_mm,z_mm,spindle_rpm,flags\n");
     for (index, row) in rows.iter().enumerate() {
         let [x, y, z] = row.setpoint.map(millimetres);
+        // A spindle that is switched off counts as standing from then on.
+        let rpm = if row.spindle_on { row.spindle_rpm.as_str() } else { "0" };
         let (seconds, thousandths) = (index / 1000, index % 1000);
-        let _ = writeln!(text, "{seconds}.{thousandths:03},{x},{y},{z},{},{}", row.spindle_rpm, row.flags);
+        let _ = writeln!(text, "{seconds}.{thousandths:03},{x},{y},{z},{rpm},{}", row.flags);
     }
     text
 }

@@ -16,7 +16,7 @@ use crate::step::Failure;
 pub const REAL_TIME: &str = "rtapi_app.pid";
 /// What runs while a LinuxCNC runs.
 const RUNNING: [&str; 3] = ["rtapi_app", "milltask", "linuxcncsvr"];
-/// Keys of the shared memory of LinuxCNC's messages (linuxcnc.nml) and of its motion controller.
+/// Keys of the shared memory and the semaphores of LinuxCNC's messages (linuxcnc.nml) and of its motion controller.
 const KEYS: [&str; 6] = ["1001", "1002", "1003", "1004", "1005", "100"];
 const LOCK: &str = "/tmp/linuxcnc.lock";
 const REALTIME: &str = "/usr/lib/linuxcnc/realtime";
