@@ -113,6 +113,17 @@ class ArmingTest(unittest.TestCase):
         self.assertEqual(result.code, arming.NO_ANSWER)
         self.assertLess(seconds, arming.PATIENCE_S + 1)
 
+    def test_what_was_not_answered_in_time_is_taken_back(self):
+        self.component.pins.update({"image-ready": 1, "image-crc": image.read(self.folder / "a.tpi").crc})
+        self.component.late = 1_000_000
+        self.assertEqual(self.arm()[1].code, arming.NO_ANSWER)
+        self.assertEqual([pin for _, pin in self.component.due], ["arm", "disarm"])
+
+    def test_a_disarming_that_does_nothing_is_not_told_as_done(self):
+        self.component.pins["state"] = words.ARMED
+        self.component.deaf, self.now = True, 0.0
+        self.assertEqual(self.run_steps(arming.disarm(self.component, lambda: self.now))[1].code, arming.NO_ANSWER)
+
     def test_an_image_that_is_not_taken_or_not_used_is_told(self):
         self.component.error = 6
         result = self.arm()[1]

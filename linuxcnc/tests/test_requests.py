@@ -97,6 +97,16 @@ class RequestsTest(unittest.TestCase):
         self.assertEqual((self.pins["mcode-answered"], self.pins["mcode-result"]), (5, arming.BUSY))
         self.assertFalse(self.component.pins.get("arm") or self.component.pins.get("reload"))
 
+    def test_an_arming_whose_program_was_aborted_meanwhile_is_taken_back(self):
+        self.component.late = 30
+        self.pins |= {"mcode-code": 160, "mcode-request": 5}
+        self.rounds(50)
+        self.situation = replace(SITUATION, running=False)
+        self.rounds(200)
+        self.assertEqual((self.pins["mcode-answered"], self.pins["mcode-result"]), (5, arming.BUSY))
+        self.assertEqual(self.component.pins["state"], words.BYPASS)
+        self.assertIn("disarm", [pin for _, pin in self.component.due])
+
     def test_what_must_end_is_ended_once_and_told_once(self):
         self.press("arm-button")
         self.component.deaf = True

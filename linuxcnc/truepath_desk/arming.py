@@ -54,6 +54,7 @@ class Situation:
     permitted: bool
     # False: the offsets of the status are not those in force.
     offsets_known: bool = True
+    running: bool = True
 
 
 class Component(Protocol):
@@ -149,6 +150,8 @@ def arm(
         if code and (code != before or clock() - begin > SETTLED_S):
             return Result(code, words.refusal(code))
         yield
+    # Whatever is late: what was said to be refused is not to be armed afterwards.
+    yield from _pulse(component, "disarm")
     return Result(NO_ANSWER, "the component does not answer: is its function in the servo thread?")
 
 
@@ -160,6 +163,8 @@ def disarm(component: Component, clock: Clock) -> Steps:
         if component.get("state") in (words.OFF, words.BYPASS):
             break
         yield
+    if component.get("state") == words.ARMED:
+        return Result(NO_ANSWER, "it is still armed: the component does not answer")
     return Result(0, "disarmed")
 
 

@@ -49,6 +49,8 @@ class Desk:
         self._requests = Requests(pins, self._component, operator, configuration)
         self._program = Program()
         self._selected: tuple[int, int, float] | None = None
+        # Another program came since the last request began.
+        self._other_program = False
 
     def run(self) -> None:
         """For ever, until LinuxCNC unloads the component."""
@@ -86,11 +88,14 @@ class Desk:
 
     def _watch(self, status: Status, state: int, program_changed: bool) -> None:
         """What is armed is for the program that was loaded then. (Moves by hand never enter: no program runs.)"""
+        self._other_program |= program_changed
         if state not in (words.ARMED, words.ACTIVE, words.HOLD):
+            # While an arming is under way it is remembered: it ends what comes of it.
+            self._other_program &= self._requests.busy
             return
         if not self._permission.wanted:
             self._requests.end("corrections are not permitted any more")
-        elif program_changed:
+        elif self._other_program:
             self._requests.end("another program is loaded, or its file has changed")
         elif self._external_offset():
             self._requests.end("an external offset is on")
@@ -107,4 +112,5 @@ class Desk:
             external_offset=self._external_offset(),
             permitted=permitted,
             offsets_known=status.work_offset > 0,
+            running=status.running,
         )

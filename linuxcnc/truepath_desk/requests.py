@@ -28,12 +28,18 @@ class Requests:
         self._answered = int(pins["mcode-request"])
         self._steps: Steps | None = None
         self._for_mcode = False
+        self._ran = False
         self._quiet = False
         self._ending = False
         self._look_for_image = False
         self.image_crc = 0
         # Of the last arming that was asked for, the component's or the desk's; 0: none.
         self.refusal = 0
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is being done."""
+        return self._steps is not None
 
     def program_changed(self) -> None:
         """Another program is loaded: its image is looked for as soon as nothing else is done."""
@@ -53,8 +59,11 @@ class Requests:
         asked = int(self._pins["mcode-request"])
         disarm = self._disarm.pressed()
         arm, reload = self._arm.pressed(), self._reload.pressed()
-        if disarm:
-            self._begin(arming.disarm(self._component, time.monotonic))
+        aborted = self._for_mcode and self._ran and not situation.running
+        self._ran = situation.running
+        if disarm or aborted:
+            # The program that asked with M160 is gone: nobody waits for what it asked.
+            self._begin(arming.disarm(self._component, time.monotonic), quiet=aborted)
         elif self._steps is None and asked != self._answered:
             self._answered = asked
             self._mcode(situation)
