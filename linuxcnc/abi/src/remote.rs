@@ -61,6 +61,8 @@ pub struct Remote {
     /// What is armed or on is for this, and in this unit.
     running: Option<Running>,
     nm_per_unit: f64,
+    /// A correction was on in the last period.
+    on: bool,
     /// What ends an arming and was said in periods without an answer.
     unheard: Flags,
 }
@@ -96,6 +98,7 @@ impl Remote {
             armed_serial: 0,
             running: None,
             nm_per_unit: limits.nm_per_unit,
+            on: false,
             unheard: Flags::default(),
         })
     }
@@ -151,7 +154,7 @@ impl Remote {
 
     /// The pins with the unit that what is armed or on is in, and whether that is the one of the pins.
     fn in_unit(&mut self, pins: &Inputs) -> (Inputs, bool) {
-        if matches!(self.mode, Mode::Off | Mode::Bypass) && self.correction == [0.0; JOINTS] {
+        if matches!(self.mode, Mode::Off | Mode::Bypass) && !self.on {
             self.nm_per_unit = pins.nm_per_unit;
         }
         let kept = self.nm_per_unit.to_bits() == pins.nm_per_unit.to_bits();
@@ -188,7 +191,7 @@ impl Remote {
         {
             *to = added(from, correction);
         }
-        let on = driven.correction_nm != [0; JOINTS];
+        self.on = driven.correction_nm != [0; JOINTS];
         *outputs = Outputs {
             motor_pos_cmd: outputs.motor_pos_cmd,
             correction_nm: [0, 1, 2].map(nm),
@@ -206,7 +209,7 @@ impl Remote {
             sequence: driven.sequence,
             flags: driven.flags.0.into(),
             feed_inhibit: (inputs.motion_type == PROBING
-                && (on || matches!(self.mode, Mode::Active | Mode::Hold | Mode::Fault)))
+                && (self.on || matches!(self.mode, Mode::Active | Mode::Hold | Mode::Fault)))
             .into(),
         };
     }
