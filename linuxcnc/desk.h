@@ -35,8 +35,8 @@ struct desk {
     struct truepath_desk *side;
     // The parameters of the component, as they are now.
     void (*limits)(struct truepath_limits *limits);
-    // Pin image-error.
-    volatile hal_u32_t *error;
+    // Pin image-error: HAL moves it when it is connected.
+    hal_u32_t *volatile *error;
     atomic_uint reloads;
     atomic_bool end;
     pthread_t thread;
@@ -81,7 +81,7 @@ static void desk_offer(struct desk *desk, const struct truepath_limits *limits, 
     }
     // Never an image that is not the one in the file.
     if (!bytes) truepath_pc_offer(desk->side, limits, NULL, 0);
-    *desk->error = error;
+    **desk->error = error;
 }
 
 static void desk_write_ledger(struct desk *desk, const unsigned char *file, size_t count) {
@@ -126,13 +126,16 @@ static int desk_open(struct desk *desk, struct truepath_block *block, const uint
         rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s: %s\n", desk->ledger, strerror(-r));
         return r;
     }
-    uint32_t wrong = truepath_pc_new(block, axes, file, count, sides);
+    // Without a file it is the first start. An empty one is what is left of one.
+    uint32_t wrong = !r && !count ? 1 : truepath_pc_new(block, axes, file, count, sides);
     free(file);
     if (wrong) {
         rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s is %s. It remembers which parts were corrected: move it away "
             "only if none of them is machined again\n", desk->ledger, wrong == 1 ? "damaged" : "of another version");
         return -EINVAL;
     }
+    if (r && *desk->ledger) rtapi_print_msg(RTAPI_MSG_WARN, "truepath: no ledger %s: no part was corrected on this machine "
+        "before, as far as is known\n", desk->ledger);
     desk->side = sides->desk;
     return 0;
 }

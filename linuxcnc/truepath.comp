@@ -132,6 +132,8 @@ static int joints;
 // Axis of each joint, 0…5 for X, Y, Z, A, B, C.
 static uint8_t axis_of_joint[TRUEPATH_JOINTS];
 static bool reload_before;
+// LinuxCNC was given positions since the last command; without them it commands into the dark.
+static bool fed;
 
 #include "pins.h"
 
@@ -177,6 +179,7 @@ FUNCTION(feedback) {
     if (*port) board_feedback(&board, measured, plain);
     else truepath_pc_feedback(sides.servo, measured, plain);
     for (int j = 0; j < joints; j++) *hal->_motor_pos_fb[j] = plain[j];
+    fed = true;
 }
 
 FUNCTION(command) {
@@ -189,6 +192,8 @@ FUNCTION(command) {
     } else {
         truepath_pc_command(sides.servo, &in, &out);
     }
+    if (!fed) out.forward = 0;
+    fed = false;
     write_pins(hal, &out);
     bool reload = *hal->reload;
     if (reload && !reload_before) atomic_fetch_add(&desk.reloads, 1);
@@ -210,7 +215,7 @@ int rtapi_app_main(void) {
     r = export("truepath", 0, joints);
     if (!r) {
         component = __comp_first_inst;
-        desk.error = component->image_error;
+        desk.error = &component->image_error;
         board.clamp_nm = &component->link_clamp_nm;
         r = *port ? board_start(&board, port, (unsigned)baud) : desk_start(&desk);
     }
