@@ -147,8 +147,17 @@ class Machine:
         self.wait("the work offset shown", lambda: self.stat.g5x_index > 0)
         self.command.state(linuxcnc.STATE_ESTOP_RESET)
         self.wait("out of emergency stop", lambda: self.stat.task_state != linuxcnc.STATE_ESTOP)
-        self.command.state(linuxcnc.STATE_ON)
-        self.wait("drives on", lambda: self.stat.task_state == linuxcnc.STATE_ON)
+        for _ in range(10):
+            # On Route B truepath-desk tells the board that the drives are off; before, they cannot be switched on, and a
+            # servo thread that is held up takes them away again.
+            self.wait("the component ready", lambda: self.state != OFF and not self.pin("truepath.link-lost"))
+            self.command.state(linuxcnc.STATE_ON)
+            self.heard()
+            self.periods(10)
+            self.poll()
+            if self.stat.task_state == linuxcnc.STATE_ON:
+                return
+        raise Stuck(f"the drives do not stay on; {self.situation()}")
 
     def switch_off(self) -> None:
         self.command.state(linuxcnc.STATE_OFF)

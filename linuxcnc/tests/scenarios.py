@@ -7,6 +7,7 @@ Every scenario begins and ends with the machine on, idle, nothing armed. Marks n
 from __future__ import annotations
 
 # Importing them puts them into the table.
+import board  # noqa: F401
 import corrected  # noqa: F401
 import story  # noqa: F401
 import uncorrected  # noqa: F401
