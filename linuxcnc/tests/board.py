@@ -17,7 +17,7 @@ import hal
 
 from machine import BYPASS, Machine
 from notes import Notes
-from steps import CORNER, POCKET, begin, into_contour, same_part_again, scenario, until_out
+from steps import CORNER, G54, POCKET, begin, into_contour, same_part_again, scenario, until_out
 
 LINKS = Path(os.environ.get("TRUEPATH_LINKS", "."))
 COUNTED = ("link-misses", "link-late", "link-damaged", "link-time-max")
@@ -39,6 +39,7 @@ def lost_and_found(m: Machine, notes: Notes) -> None:
     notes.mark("on")
     m.mdi("G53 G0 Z0")
     m.mdi("G0 X0 Y0")
+    m.open(POCKET)
     same_part_again(m, notes)
     note_link(notes)
 
@@ -46,6 +47,7 @@ def lost_and_found(m: Machine, notes: Notes) -> None:
 @contextmanager
 def event(m: Machine, notes: Notes) -> Iterator[None]:
     """In the contour something happens to the link, which is lost by it; afterwards it is undone."""
+    m.mdi(G54)
     into_contour(m, notes, POCKET)
     notes.mark("event")
     try:
@@ -61,6 +63,8 @@ def event(m: Machine, notes: Notes) -> Iterator[None]:
 
 @scenario
 def board_corner(m: Machine, notes: Notes) -> None:
+    # LinuxCNC's status knows the work offset once it was set in this run.
+    m.mdi(G54)
     begin(m, notes, CORNER)
     m.until_idle()
     until_out(m)
@@ -69,6 +73,7 @@ def board_corner(m: Machine, notes: Notes) -> None:
 
 @scenario
 def board_pocket(m: Machine, notes: Notes) -> None:
+    m.mdi(G54)
     begin(m, notes, POCKET)
     m.until_idle()
     until_out(m)
