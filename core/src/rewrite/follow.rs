@@ -37,7 +37,8 @@ impl Rewriter<'_> {
         state.along = 0;
         state.behind = 0;
         state.still = 0;
-        state.fade = FADE_ONE;
+        // A cutter that does not turn at the gate bends nothing: a dry run has no correction from its first tick.
+        state.fade = if self.live_spindle(setpoint) > 0 { FADE_ONE } else { 0 };
         state.ratio = FeedRatio::default();
         state.feed_in_window = true;
         true
@@ -172,6 +173,8 @@ impl Rewriter<'_> {
         let change = match state.feed_in_window && spindle > 0 {
             true if loaded => self.fade_step,
             true if !cuts => 0,
+            // Standing, after slowing down out of the window: what it was, until it moves again.
+            false if spindle > 0 && state.still > 0 => 0,
             _ => self.fade_step.wrapping_neg(),
         };
         state.fade = state.fade.wrapping_add(change).clamp(0, FADE_ONE);
