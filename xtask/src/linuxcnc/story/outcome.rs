@@ -82,7 +82,7 @@ pub fn tell(truepath: &Path, parts: &[Part], folder: &Path, write: bool) -> Resu
     for part in parts {
         for (path, kind) in ["commanded", "measured"].iter().enumerate() {
             let factor = part.factor(path);
-            if !(factor >= LEAST_FACTOR) {
+            if factor.is_nan() || factor < LEAST_FACTOR {
                 worse.push(format!("{} along the {kind} path: only {factor:.1} times", part.name));
             }
         }
