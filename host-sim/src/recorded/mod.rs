@@ -2,8 +2,8 @@
 //!
 //! A controller does not follow a program exactly: it blends corners, slows down in them, accelerates and stops, and a
 //! compensator adds to what it commands. A recording of its setpoints holds all of that. [`cut_path`] takes the rows of
-//! one pass out of it: at the depth of the pass, along its contour from start to end ([`follow`]), with the feed per
-//! tooth at each place ([`pace`]) from the times of the rows and the recorded spindle speed.
+//! one pass out of it: at the depth of the pass, along its contour from start to end (`follow`), with the feed per
+//! tooth at each place (`pace`) from the times of the rows and the recorded spindle speed.
 //!
 //! Limits: the cutter is where the rows say; a drive that lags is seen only in a recording of measured positions. The
 //! plant is quasi-static: a standstill leaves the mark of the smallest chip, not that of the time it lasts.
