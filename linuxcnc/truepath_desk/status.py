@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .frame import Frame, frame
-from .identity import tool_offset_number
+from .identity import tool_offset_number, work_offset
 
 
 @dataclass(frozen=True)
