@@ -39,7 +39,8 @@ pub const MAGIC: [u8; 8] = *b"TRUEPATH";
 pub const FORMAT: u16 = 1;
 /// Meaning of the numbers: raised whenever the same image and setpoints would give other bits.
 /// 2: the walk along the path looks ahead once a tick, a joint limit is judged by the correction that is on.
-pub const SEMANTICS: u32 = 2;
+/// 3: nothing is added for a cutter that does not turn at the gate, and the fade rests while the axes stand.
+pub const SEMANTICS: u32 = 3;
 /// Bit of the flags word: the path ends where it starts.
 pub const FLAG_CLOSED: u32 = 1;
 /// Shortest way between neighbouring nodes.
