@@ -9,6 +9,7 @@ mod parts;
 mod proof;
 mod python;
 mod recording;
+mod route_b;
 mod story;
 mod suite;
 mod timing;
@@ -29,6 +30,8 @@ pub enum Task {
         #[arg(long)]
         component_only: bool,
     },
+    /// Route B: mills through the virtual board, and stops, delays and resets it in the cut.
+    Board,
     /// Mills two parts on the sample machine, touches them, corrects, mills again, and tells how much better the walls are.
     Story,
 }
@@ -41,6 +44,7 @@ pub fn run(task: Option<Task>, scenario: Option<&str>, write: bool) -> Outcome {
             suite::run(None, write)?;
             story::run(write)
         }
+        Some(Task::Board) => route_b::run(),
         Some(Task::Story) => story::run(write),
         Some(Task::Build) => component::build().map(|_| crate::step::Passed::Done),
         Some(Task::Install { component_only }) => install::install(component_only),

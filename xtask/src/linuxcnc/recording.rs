@@ -38,6 +38,11 @@ pub struct Row {
     pub drives_on: bool,
     pub faded: bool,
     pub spindle_on: bool,
+    /// The enable that goes to the drive of the first joint.
+    pub drive_enabled: bool,
+    /// Route B: the link is lost, and periods without an answer so far.
+    pub link_lost: bool,
+    pub link_misses: u32,
     /// Clocks of the processor that the functions took.
     pub command_clocks: i64,
     pub feedback_clocks: i64,
@@ -187,6 +192,9 @@ fn row(first: &Line, second: &Line) -> Result<Row, String> {
         drives_on: second.whole("drives-on")? != 0,
         faded: second.whole("faded")? != 0,
         spindle_on: second.whole("spindle-on")? != 0,
+        drive_enabled: second.whole("drive-enabled")? != 0,
+        link_lost: second.whole("link-lost")? != 0,
+        link_misses: u32::try_from(second.whole("link-misses")?).unwrap_or(u32::MAX),
         command_clocks: second.whole("time-command")?,
         feedback_clocks: second.whole("time-feedback")?,
         controller_clocks: second.whole("time-controller")?,

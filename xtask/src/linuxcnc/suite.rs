@@ -134,6 +134,7 @@ impl<'a> Bench<'a> {
             origin,
             turn,
             settings: &self.settings,
+            period_us: 1_000,
         };
         compare(rows, name, notes.number("serial").unwrap_or(0.0) as u32, &replay)
     }

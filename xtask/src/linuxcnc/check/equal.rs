@@ -22,6 +22,8 @@ pub struct Replay<'a> {
     pub image: &'a Path,
     /// Folder for the files of both directions.
     pub folder: &'a Path,
+    /// Length of a servo period.
+    pub period_us: u64,
     /// Machine coordinates of the program's origin, nm.
     pub origin: [i64; 3],
     /// Cosine and sine of the program's turn, units of 2⁻³⁰.
@@ -46,7 +48,8 @@ pub fn compare(rows: &[Row], name: &str, serial: u32, replay: &Replay) -> Result
     let armed = rows.iter().position(|row| row.state >= ARMED);
     let rows = &rows[armed.ok_or_else(|| Failure::found("nothing was armed"))?..];
     let [input, output] = ["setpoints", "replayed"].map(|end| replay.folder.join(format!("{name}-{end}.csv")));
-    fs::write(&input, setpoints(rows)).map_err(|e| Failure::found(format!("{}: {e}", input.display())))?;
+    fs::write(&input, setpoints(rows, replay.period_us))
+        .map_err(|e| Failure::found(format!("{}: {e}", input.display())))?;
     let [x, y, z] = replay.origin.map(millimetres);
     let mut command = program(replay.truepath);
     command.arg("replay").arg(replay.image).arg("--setpoints").arg(&input).arg("-o").arg(&output).arg("--force");
@@ -64,14 +67,15 @@ pub fn compare(rows: &[Row], name: &str, serial: u32, replay: &Replay) -> Result
 }
 
 /// The recorded setpoints as the program reads them.
-fn setpoints(rows: &[Row]) -> String {
+fn setpoints(rows: &[Row], period_us: u64) -> String {
     let mut text = String::from("# frame = machine\nt_s,x_mm,y_mm,z_mm,spindle_rpm,flags\n");
     for (index, row) in rows.iter().enumerate() {
         let [x, y, z] = row.setpoint.map(millimetres);
         // A spindle that is switched off counts as standing from then on.
         let rpm = if row.spindle_on { row.spindle_rpm.as_str() } else { "0" };
-        let (seconds, thousandths) = (index / 1000, index % 1000);
-        let _ = writeln!(text, "{seconds}.{thousandths:03},{x},{y},{z},{rpm},{}", row.flags);
+        let us = index as u64 * period_us;
+        let (seconds, millionths) = (us / 1_000_000, us % 1_000_000);
+        let _ = writeln!(text, "{seconds}.{millionths:06},{x},{y},{z},{rpm},{}", row.flags);
     }
     text
 }

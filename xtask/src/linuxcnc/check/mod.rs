@@ -1,8 +1,9 @@
 //! What has to hold in a recording.
 
-mod case;
+pub mod case;
 pub mod equal;
 pub mod limits;
+pub mod link;
 mod ramp;
 pub mod scenario;
 mod uncorrected;

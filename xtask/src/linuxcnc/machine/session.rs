@@ -42,6 +42,7 @@ pub fn run(sample: &Sample, name: &str, scenarios: &[&str], end: End) -> Result<
     let mut command = sample.user.program("linuxcnc", &sample.folder);
     command.arg("-r").arg(sample.ini()).env("PATH", sample.path());
     command.env("TRUEPATH_SCENARIOS", scenarios.join(",")).env("TRUEPATH_RECORDINGS", &recordings);
+    command.env("TRUEPATH_LINKS", sample.folder.join("links"));
     command.stdin(Stdio::null()).stdout(said).stderr(copy).process_group(0);
     let child = command
         .spawn()

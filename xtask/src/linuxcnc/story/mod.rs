@@ -157,6 +157,7 @@ impl Story {
             origin: placed.origin_nm,
             turn: placed.turn,
             settings: &self.settings,
+            period_us: 1_000,
         };
         let serial = notes.number("serial").unwrap_or(0.0) as u32;
         compare(&recording.rows, part, serial, &replay).map(|equality| equality.corrected)
