@@ -128,6 +128,8 @@ impl Bank {
             // The last line may be cut off where the machine was killed.
             if fields.len() == count
                 && let Ok(sequence) = fields[0].parse()
+                // Until the link to a board is set up, periods have no number.
+                && sequence != 0u32
             {
                 rows.push((sequence, fields));
             }
