@@ -63,11 +63,13 @@ pub fn run(only: Option<&str>, write: bool) -> Outcome {
     }
     let times = timing::table(&rows);
     println!("\n{times}");
+    let outcome = verdict::tell(&verdicts)?;
+    // Only what passed is documented.
     if write {
         replace(&root().join(DOCUMENT), "times in the servo thread", &times)?;
         replace(&root().join(DOCUMENT), "scenarios", &verdict::document(&verdicts))?;
     }
-    verdict::tell(&verdicts)
+    Ok(outcome)
 }
 
 /// What recordings are judged by.
