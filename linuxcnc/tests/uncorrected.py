@@ -92,6 +92,7 @@ def probe_armed(m: Machine, notes: Notes) -> None:
     notes.mark("probe")
     m.mdi("G38.3 Z-12 F300")
     m.mdi("G38.3 X8 F600")
+    # No program ran: what was armed stays so until it is ended by hand.
     m.press("disarm-button")
     leave(m, notes)
 
