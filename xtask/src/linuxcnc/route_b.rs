@@ -20,8 +20,10 @@ use super::recording::{JOINTS, Recording, Row};
 use super::{install, suite};
 use crate::step::{Failure, Outcome, Passed};
 
+/// What checks a scenario.
+type Check = fn(&Case);
 /// Scenarios with what has to come of each, and whether it is replayed.
-const SCENARIOS: [(&str, fn(&Case), bool); 5] = [
+const SCENARIOS: [(&str, Check, bool); 5] = [
     ("board-corner", link::milled, true),
     ("board-pocket", link::milled, true),
     ("board-stopped", link::lost, false),
