@@ -55,6 +55,10 @@ class BoardTest(unittest.TestCase):
         self.assertEqual(answer, board.Answer(False, "error H004: the device refuses"))
         self.assertEqual(made.image_crc, 0)
 
+    def test_of_an_error_in_json_what_was_found_is_told(self):
+        made = self.board({"list": "echo '{\"error\": {\"code\": \"H004\", \"found\": \"the device refuses\"}}' >&2; exit 1"})
+        self.assertEqual(self.end(made.ask("list")).text, "the device refuses")
+
     def test_a_program_that_is_missing_says_something_else_or_hangs_is_a_refusal(self):
         made = self.board({"list": "echo no JSON", "arm": "sleep 60"})
         self.assertFalse(self.end(made.ask("list")).done)

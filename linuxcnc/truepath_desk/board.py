@@ -63,7 +63,7 @@ class Board:
                 yield
             out, error = process.communicate()
             if process.returncode:
-                return Answer(False, " ".join(error.split()) or "truepath device ended with %d" % process.returncode)
+                return Answer(False, refusal(error) or "truepath device ended with %d" % process.returncode)
             return Answer(True, "", json.loads(out))
         except (OSError, ValueError) as error:
             return Answer(False, "truepath device: %s" % error)
@@ -110,6 +110,14 @@ class Board:
                 next(self._acknowledging)
             except StopIteration:
                 self._acknowledging, self._acknowledged = None, self._clock()
+
+
+def refusal(error: str) -> str:
+    """What an error of `truepath --json` says was found; the text itself when it is something else."""
+    try:
+        return str(json.loads(error)["error"]["found"])
+    except (ValueError, LookupError, TypeError):
+        return " ".join(error.split())
 
 
 def nearest_nm(nm: float) -> int:

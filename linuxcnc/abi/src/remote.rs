@@ -11,9 +11,9 @@
 //!
 //! What ends an arming is said again in every period until one of them is answered, so that it is not lost with a frame.
 
-use truepath_core::rewrite::{Flags, Mode, Setpoint};
+use truepath_core::rewrite::{Flags, Mode, Reason, Setpoint};
 
-use crate::board::{Board, BoardSettings, BoardSettingsError, Counters, Driven, PACKET_BYTES};
+use crate::board::{Board, BoardSettings, BoardSettingsError, Cause, Counters, Driven, PACKET_BYTES};
 use crate::convert::{added, removed, units};
 use crate::pc::{Inputs, JOINTS, Joints, Limits, OfferError, Outputs, PROBING, Running, Signals, Switches, WorkFrame};
 
@@ -192,13 +192,14 @@ impl Remote {
             *to = added(from, correction);
         }
         self.on = driven.correction_nm != [0; JOINTS];
+        let (state, reason) = told(driven);
         *outputs = Outputs {
             motor_pos_cmd: outputs.motor_pos_cmd,
             correction_nm: [0, 1, 2].map(nm),
             correction: [0, 1, 2].map(nm).map(length),
-            state: driven.board.mode as u32,
-            reason: driven.board.reason.code().into(),
-            fault: driven.board.reason.is_fault().into(),
+            state: state as u32,
+            reason: reason.code().into(),
+            fault: reason.is_fault().into(),
             status: driven.status.0.into(),
             refusal: 0,
             forward: driven.enable.into(),
@@ -212,5 +213,13 @@ impl Remote {
                 && (self.on || matches!(self.mode, Mode::Active | Mode::Hold | Mode::Fault)))
             .into(),
         };
+    }
+}
+
+/// State and reason for the pins: the board's, and of a lost link what it is for the drives.
+fn told(driven: &Driven) -> (Mode, Reason) {
+    match driven.cause {
+        Cause::None | Cause::Start => (driven.board.mode, driven.board.reason),
+        Cause::Silence | Cause::BoardOff | Cause::Port | Cause::Setpoint => (Mode::Off, Reason::Silence),
     }
 }

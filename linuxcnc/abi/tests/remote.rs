@@ -8,7 +8,7 @@ use remote_support::{ON, inputs, outputs};
 use truepath_abi::board::{Cause, PACKET_BYTES};
 use truepath_abi::pc::{Inputs, Joints, Limits, Outputs, PROBING, Switches};
 use truepath_abi::remote::Remote;
-use truepath_core::rewrite::{Flags, Frame, Mode, Setpoint};
+use truepath_core::rewrite::{Flags, Frame, Mode, Reason, Setpoint};
 
 fn remote() -> Remote {
     let limits = Limits {
@@ -187,4 +187,22 @@ fn another_program_tool_or_unit_ends_what_is_armed() {
         let (setpoint, ..) = period(&mut remote, &other, Mode::Bypass, [0; 2]);
         assert!(!setpoint.flags.has(Flags::ABORT.with(Flags::TOOL_CHANGE)), "event {index}");
     }
+}
+
+#[test]
+fn while_the_link_is_lost_the_pins_say_off_and_why() {
+    let (mut remote, on) = ready();
+    period(&mut remote, &on, Mode::Active, [900, 0]);
+    let mut out = outputs();
+    for state in [3, 3, 0, 0] {
+        remote.begin(&on, &mut [0; PACKET_BYTES]);
+        remote.finish(&on, &mut out);
+        assert_eq!((out.state, out.correction_nm), (state, [900, 0, 0]));
+    }
+    assert_eq!((out.reason, out.fault, out.forward), (u32::from(Reason::Silence.code()), 1, 0));
+    let off = with(&on, ON & !Switches::DRIVES_ON.0);
+    let (.., cause) = (0..10).map(|_| period(&mut remote, &off, Mode::Bypass, [0; 2])).last().unwrap();
+    assert_eq!(cause, Cause::None);
+    let (_, out, _) = period(&mut remote, &off, Mode::Bypass, [0; 2]);
+    assert_eq!((out.state, out.reason), (1, 0));
 }

@@ -7,6 +7,8 @@ const BYPASS: u32 = 1;
 const COMPLETED: u32 = 1;
 /// Periods over which the last correction is held before the link is lost.
 const HELD: usize = 2;
+/// Refusal of truepath-desk: the board refuses.
+const REFUSED_BY_BOARD: f64 = 110.0;
 /// Less than this is no correction that a test could see, nm.
 const VISIBLE: i64 = 10_000;
 
@@ -32,7 +34,10 @@ pub fn lost(case: &Case) {
         }
     }
     case.moved(case.between("on", "again"), "after it");
-    case.refused("refusal");
+    // The board tells why in words.
+    let refused = case.notes.number("refusal") == Some(REFUSED_BY_BOARD);
+    let repeated = case.notes.said.iter().any(|said| said.contains("armed for this pass before"));
+    case.expect(refused && repeated, "the same part was not refused");
 }
 
 /// A board that is reset says so in its first answer: nothing needs to be held before.
