@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Takes the place of the screen: starts the recording, goes through the scenarios, ends LinuxCNC by ending itself.
 
