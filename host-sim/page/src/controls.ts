@@ -24,8 +24,7 @@ export interface Layer { id: string; keys: [string, string][] }
 
 export function sceneBar(model: Model | null, store: Store, actions: SceneActions): HTMLElement {
   const bar = el("div", { class: "bar", role: "group", "aria-label": "Picture" });
-  const { before, after } = model?.passes ?? {};
-  if (before && after) bar.append(segments(store));
+  if (model && model.passes.length > 1) bar.append(segments(model, store));
   const factor = el("select", { id: "magnify" }, ...FACTORS.map((f) => el("option", { value: String(f) }, `${f} ×`)));
   factor.value = String(store.state.magnify);
   factor.addEventListener("change", () => store.set({ magnify: Number(factor.value) }));
@@ -65,9 +64,9 @@ export function legend(store: Store, layers: Layer[]): HTMLElement {
   return list;
 }
 
-function segments(store: Store): HTMLElement {
+function segments(model: Model, store: Store): HTMLElement {
   const group = el("div", { class: "segments", role: "radiogroup", "aria-label": "Pass shown" });
-  for (const [value, name] of [["before", "before"], ["after", "after"], ["both", "side by side"]] as [Shown, string][]) {
+  for (const [value, name] of [...model.passes.map((pass) => [pass.name, pass.title]), ["both", "side by side"]] as [Shown, string][]) {
     const input = el("input", { type: "radio", name: "shown", id: `shown-${value}`, value });
     input.checked = store.state.shown === value;
     input.addEventListener("change", () => store.set({ shown: value }));

@@ -20,6 +20,8 @@ export interface Polyline {
 
 /** One pass along the contour, one entry per sample. */
 export interface PassColumns {
+  /** Its name in tables and buttons: "part 2"; otherwise "before" or "after". */
+  name?: string;
   /** What this pass is: "uncorrected, cut by the virtual machine", "predicted". */
   label?: string;
   error_mm?: Column;
@@ -32,6 +34,9 @@ export interface PassColumns {
   dx_mm?: Column;
   dy_mm?: Column;
   feed_mm_per_min?: Column;
+  /** The correction it was cut with; that of `after` is the contour's. */
+  correction_x_mm?: Column;
+  correction_y_mm?: Column;
 }
 
 export interface ContourColumns {
@@ -44,7 +49,11 @@ export interface ContourColumns {
   ny?: Column;
   correction_x_mm?: Column;
   correction_y_mm?: Column;
+  /** Without the correction, or the only pass. */
   before?: PassColumns;
+  /** A part that was cut with an earlier correction and measured. */
+  milled?: PassColumns;
+  /** With the correction of the contour. */
   after?: PassColumns;
 }
 
@@ -55,6 +64,7 @@ export interface Heights {
   /** A node is every `stride`-th sample of the contour; the last node holds until the end. */
   stride: number;
   before?: Column;
+  milled?: Column;
   after?: Column;
 }
 

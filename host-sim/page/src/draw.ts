@@ -45,14 +45,13 @@ export function drawStill(c: Context, view: View, picture: Picture, colours: Pal
     if (!picture.hidden.has("band") && picture.error) band(c, view, indices, model, wall, picture, colours);
     path(c, view, indices, wall, colours.ink, 1.75);
     if (!picture.hidden.has("nominal")) path(c, view, indices, { x: model.x.values, y: model.y.values }, colours.quiet, 1, [8, 3, 2, 3]);
-    const { correction } = model;
-    if (!picture.hidden.has("commanded") && correction && picture.pass?.name === "after") {
+    const correction = picture.pass?.correction;
+    if (!picture.hidden.has("commanded") && correction) {
       path(c, view, indices, moved(model, correction.across, picture.magnify), colours.second, 1.5, [4, 3]);
     }
     const across = picture.pass?.across;
     if (!picture.hidden.has("actual") && across && picture.pass) {
-      const colour = picture.pass.name === "after" ? colours.after : colours.before;
-      path(c, view, indices, moved(model, across, picture.magnify), colour, 1.5);
+      path(c, view, indices, moved(model, across, picture.magnify), colours[model.colour(picture.pass)], 1.5);
     }
   }
   for (const line of picture.outlines.stock) path(c, view, allOf(line), line, colours.quiet, 1, [5, 4]);

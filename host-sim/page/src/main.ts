@@ -14,7 +14,7 @@ import { head, job, parameters, points, results } from "./panels";
 import { Player } from "./player";
 import { placeText, Readout } from "./readout";
 import { Stage } from "./stage";
-import { Store } from "./state";
+import { Store, type Shown } from "./state";
 import { stretched, turned } from "./stretch";
 import { themeButton } from "./theme";
 import { Traces } from "./traces";
@@ -39,20 +39,19 @@ function largest(values: ArrayLike<number> | undefined): number {
 }
 
 function layersOf(report: Report, model: Model | null): Layer[] {
-  const { before, after } = model?.passes ?? {};
+  const passes = model?.passes ?? [];
   const errors: [string, string][] = [["left", "material left"], ["gouge", "cut too deep"]];
   if (limitsOf(report)) errors.push(["within", "within tolerance"]);
-  const paths: [string, string][] = [...(before?.across ? [["before", model?.of("actual path", "before")] as [string, string]] : []),
-    ...(after?.across ? [["after", model?.of("actual path", "after")] as [string, string]] : [])];
+  const paths = passes.flatMap((pass): [string, string][] => (model && pass.across ? [[model.colour(pass), model.of("actual path", pass)]] : []));
   const all: [Layer, unknown][] = [
-    [{ id: "band", keys: errors }, before ?? after],
+    [{ id: "band", keys: errors }, passes.length],
     [{ id: "nominal", keys: [["nominal", "nominal path"]] }, model],
-    [{ id: "commanded", keys: [["commanded", "commanded path"]] }, after && model?.correction],
+    [{ id: "commanded", keys: [["commanded", "commanded path"]] }, passes.some((pass) => pass.correction) || undefined],
     [{ id: "actual", keys: paths }, paths.length],
     [{ id: "stock", keys: [["stock", "stock"]] }, report.job?.stock?.allowance_mm ?? report.outlines?.stock],
     [{ id: "points", keys: [["points", "probe point, normal, deviation mm"]] }, report.points?.length],
-    [{ id: "cutter", keys: [["cutter", "cutter, engaged arc"]] }, before ?? after],
-    [{ id: "force", keys: [["force", "force"]] }, before?.series.fx_n ?? after?.series.fx_n],
+    [{ id: "cutter", keys: [["cutter", "cutter, engaged arc"]] }, passes.length],
+    [{ id: "force", keys: [["force", "force"]] }, passes.find((pass) => pass.series.fx_n)],
   ];
   return all.filter(([, there]) => there !== undefined && there !== null && there !== 0).map(([layer]) => layer);
 }
@@ -62,18 +61,24 @@ function show(report: Report, main: HTMLElement): void {
   const samples = report.contour ? decode(report.contour.s_mm, "s_mm").values.length : 0;
   const model = report.contour && samples > 1 ? new Model(report, report.contour) : null;
   if (report.contour && !model) report.warnings = [...(report.warnings ?? []), "a contour of fewer than two samples is not drawn"];
-  const { before, after } = model?.passes ?? {};
-  const errors = [largest(before?.series.error_mm?.values), largest(after?.series.error_mm?.values),
-    largest(report.points?.map((p) => p.error_mm ?? 0))];
+  const passes = model?.passes ?? [];
+  const compared = model?.compared ?? [];
   const store = new Store({
-    shown: before ? "before" : "after", magnify: 1, height: null, place: 0, playing: false, speed: 1, follow: false, range: null, hidden: new Set(),
+    shown: compared[0]?.name ?? "before", magnify: 1, height: null, place: 0, playing: false, speed: 1, follow: false, range: null, hidden: new Set(),
   });
   let colours = palette();
   const stage = new Stage(report, model, store, colours, (index) => readout?.show(index ?? Math.round(store.state.place), index !== null));
   const { x0, x1, y0, y1 } = stage.whole;
-  store.state.magnify = fittingFactor(Math.max(...errors), Math.min(x1 - x0, y1 - y0));
+  // Passes that are compared have one factor; one beside them with far larger errors has its own.
+  const factor = (shown: Shown): number => {
+    const seen = passes.filter((pass) => compared.includes(pass) || pass.name === shown);
+    const errors = seen.map((pass) => largest(pass.series.error_mm?.values));
+    return fittingFactor(Math.max(...errors, largest(report.points?.map((p) => p.error_mm ?? 0))), Math.min(x1 - x0, y1 - y0));
+  };
+  let fitting = factor(store.state.shown);
+  store.state.magnify = fitting;
 
-  const player = model && (before || after) ? new Player(model, store) : null;
+  const player = model && passes.length > 0 ? new Player(model, store) : null;
   const readout = player && model ? new Readout(model) : null;
   const live = document.getElementById("live") as HTMLElement;
   const tracesBox = el("section", { class: "traces", tabindex: "0", "aria-label": "Traces over arc length", "aria-describedby": "keys" });
@@ -111,7 +116,7 @@ function show(report: Report, main: HTMLElement): void {
   const below = el("div", { class: "below" }, readout?.element, statements(report), chart?.element,
     report.parameters?.length ? parameters(report.parameters) : null, job(report),
     report.points?.length ? points(report, (index) => {
-      if (before && after && store.state.shown !== "both") store.set({ shown: stage.touched });
+      if (passes.length > 1 && store.state.shown !== "both") store.set({ shown: stage.touched });
       stage.showPoint(index);
       picture.scrollIntoView({ block: "nearest" });
     }) : null);
@@ -134,7 +139,12 @@ function show(report: Report, main: HTMLElement): void {
   });
   stage.onToggle = () => player?.toggle();
   store.onChange((changed) => {
-    if (changed.has("shown")) stage.layout();
+    if (changed.has("shown")) {
+      const chosen = store.state.magnify !== fitting;
+      fitting = factor(store.state.shown);
+      if (!chosen) store.set({ magnify: fitting });
+      stage.layout();
+    }
     if (changed.has("magnify") || changed.has("hidden") || changed.has("height")) stage.still();
     if (changed.has("shown") || changed.has("height")) traces?.rebuild(store.state, colours, traceHeight());
     if (changed.has("range")) traces?.zoom(store.state.range);
@@ -160,12 +170,12 @@ function show(report: Report, main: HTMLElement): void {
     traces?.resize(traceHeight());
     traces?.place(store.state.place);
   }).observe(work);
-  printing(report, stage, store, traces, recolour, Boolean(before && after));
+  printing(report, stage, store, traces, recolour, passes.length > 1);
 }
 
 /** Panels that a model will have, before they are built. */
 function expected(model: Model | null): number {
-  const series = model?.passes.before?.series ?? model?.passes.after?.series ?? {};
+  const series = model?.passes[0]?.series ?? {};
   return (model?.correction ? 1 : 0) + ["error_mm", "dx_mm", "force_n", "arc_deg", "chip_area_mm2", "feed_mm_per_min"].filter((q) => q in series).length;
 }
 
@@ -175,9 +185,9 @@ function announce(live: HTMLElement, model: Model, place: number): void {
   clearTimeout(pending);
   pending = window.setTimeout(() => {
     const index = Math.round(place);
-    const errors = (["before", "after"] as const).flatMap((name) => {
-      const error = model.passes[name]?.series.error_mm;
-      return error ? [`${model.of("error", name)} ${fixed(error.values[index], 4)} mm`] : [];
+    const errors = model.passes.flatMap((pass) => {
+      const error = pass.series.error_mm;
+      return error ? [`${model.of("error", pass)} ${fixed(error.values[index], 4)} mm`] : [];
     });
     live.textContent = [placeText(model, index), ...errors].join("; ");
   }, 400);

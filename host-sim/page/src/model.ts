@@ -8,7 +8,12 @@
 import type { ContourColumns, PassColumns, Report } from "./data";
 import { decode, type Series } from "./decode";
 
-export type PassName = "before" | "after";
+/** Passes in the order in which they are cut. */
+const NAMES = ["before", "milled", "after"] as const;
+export type PassName = (typeof NAMES)[number];
+
+/** A correction along the contour, and its part towards the wall. */
+export interface Correction { x: Series; y: Series; across: Float64Array }
 
 export type Quantity =
   | "error_mm" | "sigma_mm" | "arc_deg" | "chip_area_mm2" | "force_n" | "fx_n" | "fy_n" | "dx_mm" | "dy_mm"
@@ -20,12 +25,16 @@ const QUANTITIES: Quantity[] = [
 
 export class Pass {
   readonly series: Partial<Record<Quantity, Series>> = {};
+  /** What it is called in tables and buttons, and at length. */
+  readonly title: string;
+  readonly label: string;
   /** Deviation of the centre from the programmed path, towards the wall; absent without deflections. */
   readonly across?: Float64Array;
 
-  constructor(readonly name: PassName, columns: PassColumns, normals: [Float64Array, Float64Array], correction?: Float64Array) {
+  constructor(readonly name: PassName, columns: PassColumns, normals: Normals, readonly correction?: Correction) {
     const { length } = normals[0];
-    this.label = columns.label ?? `${name} the correction`;
+    this.title = columns.name ?? name;
+    this.label = columns.label ?? (columns.name ? "" : `${name} the correction`);
     for (const quantity of QUANTITIES) {
       const column = columns[quantity];
       if (column) this.series[quantity] = decode(column, `${name}.${quantity}`, length);
@@ -33,15 +42,15 @@ export class Pass {
     const { dx_mm: dx, dy_mm: dy } = this.series;
     if (dx && dy) {
       const deflection = across(dx, dy, normals);
-      this.across = name === "after" && correction ? deflection.map((v, i) => v + correction[i]) : deflection;
+      this.across = correction ? deflection.map((v, i) => v + correction.across[i]) : deflection;
     }
   }
-
-  readonly label: string;
 }
 
+type Normals = [Float64Array, Float64Array];
+
 /** The part of a vector towards the wall. What lies along the path moves no wall. */
-function across(x: Series, y: Series, [nx, ny]: [Float64Array, Float64Array]): Float64Array {
+function across(x: Series, y: Series, [nx, ny]: Normals): Float64Array {
   return x.values.map((v, i) => v * nx[i] + y.values[i] * ny[i]);
 }
 
@@ -52,8 +61,12 @@ export class Model {
   readonly y: Series;
   readonly nx: Float64Array;
   readonly ny: Float64Array;
-  readonly correction?: { x: Series; y: Series; across: Float64Array };
-  readonly passes: Partial<Record<PassName, Pass>> = {};
+  /** The correction that the report is about. */
+  readonly correction?: Correction;
+  /** The passes there are, in the order in which they are cut. */
+  readonly passes: Pass[] = [];
+  /** Those that stand side by side: the last two. */
+  readonly compared: Pass[];
   /** Seconds from the start of the contour, at the feed of the pass, else of the job, else 20 s in all. */
   readonly time: Float64Array;
   readonly radius: number;
@@ -78,24 +91,43 @@ export class Model {
     } else {
       [this.nx, this.ny] = this.normals();
     }
-    const { correction_x_mm: cx, correction_y_mm: cy } = columns;
-    const normals: [Float64Array, Float64Array] = [this.nx, this.ny];
-    if (cx && cy) {
+    const normals: Normals = [this.nx, this.ny];
+    const correction = (of: ContourColumns | PassColumns): Correction | undefined => {
+      const { correction_x_mm: cx, correction_y_mm: cy } = of;
+      if (!cx || !cy) return undefined;
       const [x, y] = [decode(cx, "correction_x_mm", count), decode(cy, "correction_y_mm", count)];
-      this.correction = { x, y, across: across(x, y, normals) };
-    }
-    for (const name of ["before", "after"] as const) {
+      return { x, y, across: across(x, y, normals) };
+    };
+    this.correction = correction(columns);
+    for (const name of NAMES) {
       const pass = columns[name];
-      if (pass) this.passes[name] = new Pass(name, pass, normals, this.correction?.across);
+      if (pass) this.passes.push(new Pass(name, pass, normals, name === "after" ? this.correction : correction(pass)));
     }
+    this.compared = this.passes.slice(-2);
     this.time = this.times();
     this.levels = this.coarser();
     this.readHeights();
   }
 
-  /** "what before", "what after"; of a pass that stands alone "what". */
-  of(what: string, name: PassName): string {
-    return this.passes.before && this.passes.after ? `${what} ${name}` : what;
+  pass(name: PassName): Pass | undefined {
+    return this.passes.find((pass) => pass.name === name);
+  }
+
+  /** "what before", "what after", "what, part 2"; of a pass that stands alone "what". */
+  of(what: string, pass: Pass): string {
+    if (this.passes.length < 2) return what;
+    return pass.title === pass.name ? `${what} ${pass.title}` : `${what}, ${pass.title}`;
+  }
+
+  /** A pass in full: its name, where there are others, and what it is. */
+  called(pass: Pass): string {
+    return [this.passes.length > 1 ? pass.title : "", pass.label].filter(Boolean).join(": ");
+  }
+
+  /** Its colour: of three passes the one without any correction is in the background. */
+  colour(pass: Pass): "quiet" | "before" | "after" {
+    if (pass.name === "after") return "after";
+    return this.compared.length < 2 || this.compared.includes(pass) ? "before" : "quiet";
   }
 
   get length(): number {
@@ -104,7 +136,7 @@ export class Model {
 
   /** Error of a pass: the mean over the height, or at one height. */
   error(name: PassName, height: number | null): Float64Array | undefined {
-    const pass = this.passes[name];
+    const pass = this.pass(name);
     if (height === null) return pass?.series.error_mm?.values;
     return this.heightErrors[name]?.[height];
   }
@@ -149,7 +181,7 @@ export class Model {
   }
 
   private times(): Float64Array {
-    const feeds = (this.passes.after ?? this.passes.before)?.series.feed_mm_per_min?.values;
+    const feeds = this.passes.at(-1)?.series.feed_mm_per_min?.values;
     const overall = this.report.job?.cut?.feed_mm_per_min ?? (this.length / 20) * 60;
     const time = new Float64Array(this.count);
     for (let i = 1; i < this.count; i++) {
@@ -160,7 +192,7 @@ export class Model {
   }
 
   private coarser(): Uint32Array[] {
-    const errors = [this.passes.before, this.passes.after].map((pass) => pass?.series.error_mm?.values);
+    const errors = this.passes.map((pass) => pass.series.error_mm?.values);
     const size = (i: number) => Math.max(...errors.map((e) => (e && Number.isFinite(e[i]) ? Math.abs(e[i]) : 0)));
     const sizes = Float64Array.from({ length: this.count }, (_, i) => size(i));
     const levels = [Uint32Array.from({ length: this.count }, (_, i) => i)];
@@ -182,7 +214,7 @@ export class Model {
     const heights = this.report.heights;
     if (!heights || heights.z_mm.length === 0 || !(heights.stride >= 1)) return;
     const rows = heights.z_mm.length;
-    for (const name of ["before", "after"] as const) {
+    for (const name of NAMES) {
       const column = heights[name];
       if (!column) continue;
       const { values } = decode(column, `heights.${name}`);

@@ -22,23 +22,25 @@ export class Readout {
   private readonly cells: [Quantity | "cx" | "cy", HTMLElement[]][] = [];
 
   constructor(private readonly model: Model) {
-    const names = (["before", "after"] as const).filter((n) => model.passes[n]);
+    const { passes } = model;
     const body = el("tbody");
     const add = (key: Quantity | "cx" | "cy", title: string, unit: string, count: number) => {
       const cells = Array.from({ length: count }, () => el("td", { class: "number" }));
-      if (count === 1 && names.length === 2) cells[0].colSpan = 2;
+      if (count < passes.length) cells[0].colSpan = passes.length;
       body.append(el("tr", {}, el("th", { scope: "row", class: "text" }, title), ...cells, el("td", { class: "text unit" }, unit)));
       this.cells.push([key, cells]);
     };
     for (const [quantity, title, unit] of ROWS) {
-      if (names.some((n) => model.passes[n]?.series[quantity])) add(quantity, title, unit, names.length);
+      if (passes.some((pass) => pass.series[quantity])) add(quantity, title, unit, passes.length);
     }
+    // One correction belongs to the page as a whole; of several each stands below its pass.
+    const own = passes.filter((pass) => pass.correction).length > 1 ? passes.length : 1;
     if (model.correction) {
-      add("cx", "correction x", "mm", 1);
-      add("cy", "correction y", "mm", 1);
+      add("cx", "correction x", "mm", own);
+      add("cy", "correction y", "mm", own);
     }
     this.place = el("p", { class: "at" });
-    const heads = [el("th", { scope: "col", class: "text" }, "quantity"), ...names.map((n) => el("th", { scope: "col", class: `number ${n}` }, names.length > 1 ? n : "value")),
+    const heads = [el("th", { scope: "col", class: "text" }, "quantity"), ...passes.map((pass) => el("th", { scope: "col", class: "number" }, passes.length > 1 ? pass.title : "value")),
       el("th", { scope: "col", class: "text" }, "unit")];
     this.element = el("section", { class: "card", id: "readout", "aria-labelledby": "readout-title" },
       this.title, this.place,
@@ -49,16 +51,18 @@ export class Readout {
     const { model } = this;
     const title = hovered ? "At the pointer" : "At the cutter";
     if (this.title.textContent !== title) this.title.textContent = title;
-    const names = (["before", "after"] as const).filter((n) => model.passes[n]);
     this.place.textContent = placeText(model, index);
     for (const [key, cells] of this.cells) {
       if (key === "cx" || key === "cy") {
-        const series = key === "cx" ? model.correction?.x : model.correction?.y;
-        cells[0].textContent = signed(series?.values[index], series?.decimals ?? 0);
+        cells.forEach((cell, k) => {
+          const correction = cells.length > 1 ? model.passes[k].correction : model.correction;
+          const series = key === "cx" ? correction?.x : correction?.y;
+          cell.textContent = signed(series?.values[index], series?.decimals ?? 0);
+        });
         continue;
       }
-      names.forEach((name, k) => {
-        const series = model.passes[name]?.series[key];
+      model.passes.forEach((pass, k) => {
+        const series = pass.series[key];
         cells[k].textContent = series ? row(key, [series.values[index]], series.decimals)[0] : NO_VALUE;
       });
     }
@@ -75,15 +79,13 @@ export function flagLines(model: Model, index: number, height: number | null): [
     ["s", `${fixed(model.s.values[index], model.s.decimals)} mm`],
     ["X, Y", `${fixed(model.x.values[index], model.x.decimals)}, ${fixed(model.y.values[index], model.y.decimals)} mm`],
   ];
-  for (const name of ["before", "after"] as const) {
-    const pass = model.passes[name];
-    if (!pass) continue;
-    const error = model.error(name, height);
-    if (error) lines.push([model.of("error", name), `${signed(error[index], pass.series.error_mm?.decimals ?? 6)} mm`]);
+  for (const pass of model.passes) {
+    const error = model.error(pass.name, height);
+    if (error) lines.push([model.of("error", pass), `${signed(error[index], pass.series.error_mm?.decimals ?? 6)} mm`]);
     const { sigma_mm: sigma, force_n: force, arc_deg: arc } = pass.series;
     if (sigma) lines.push(["± σ", `${fixed(sigma.values[index], sigma.decimals)} mm`]);
-    if (force) lines.push([model.of("force", name), `${fixed(force.values[index], force.decimals)} N`]);
-    if (arc && (name === "before" || !model.passes.before)) lines.push(["arc", `${fixed(arc.values[index], arc.decimals)}°`]);
+    if (force) lines.push([model.of("force", pass), `${fixed(force.values[index], force.decimals)} N`]);
+    if (arc && pass === model.passes[0]) lines.push(["arc", `${fixed(arc.values[index], arc.decimals)}°`]);
   }
   if (model.correction) {
     const { x, y } = model.correction;

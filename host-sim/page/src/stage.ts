@@ -32,7 +32,7 @@ export class Stage {
   private hovered: number | null = null;
   private picked: number | null = null;
   readonly whole: Box;
-  /** The pass that the probe points stand beside: a part that was learned from had been cut with a correction. */
+  /** The pass that the probe points stand beside: that of the part which was touched. */
   readonly touched: PassName;
 
   constructor(private readonly report: Report, readonly model: Model | null, private readonly store: Store, private colours: Palette,
@@ -45,7 +45,7 @@ export class Stage {
     if (model) this.outlines = { wall: [], stock: given.stock };
     this.limits = limitsOf(report);
     this.points = report.points ?? [];
-    this.touched = report.kind === "learn" && model?.passes.after ? "after" : "before";
+    this.touched = (model?.pass("milled") ?? model?.passes[0])?.name ?? "before";
     // A reading set aside may lie anywhere: where there is something else to see, the view does not reach out for it.
     const known = this.points.filter((p) => p.error_mm !== undefined);
     const framed = model || given.wall.length > 0 || known.length > 0 ? known : this.points;
@@ -53,17 +53,16 @@ export class Stage {
     const path = model ? [{ x: model.x.values, y: model.y.values }, this.wall as Line] : [];
     this.whole = boxOf([...path, ...given.wall, ...given.stock, touched], Math.max(1, (model?.radius ?? 0) * 0.4));
     this.view = new View(this.whole);
-    const forces = (["before", "after"] as const).map((n) => model?.passes[n]?.series.force_n?.values).filter((v) => v !== undefined);
+    const forces = (model?.passes ?? []).map((pass) => pass.series.force_n?.values).filter((v) => v !== undefined);
     this.largestForce = forces.reduce((most, values) => values.reduce((m, v) => (v > m ? v : m), most), 0);
-    const names: PassName[] = (["before", "after"] as const).filter((n) => model?.passes[n]);
+    const names: PassName[] = model?.passes.map((pass) => pass.name) ?? [];
     this.scenes = (names.length ? names : (["before"] as PassName[])).map((name) => ({ name, scene: this.scene(name) }));
     this.element.append(...this.scenes.map(({ scene }) => scene.element), this.flag);
   }
 
   private scene(name: PassName): Scene {
-    const passes = this.model?.passes;
-    const label = passes?.before && passes.after ? `Contour ${name} the correction, to scale, errors enlarged`
-      : passes?.before || passes?.after ? "Contour, to scale, errors enlarged" : "Wall and probe points";
+    const pass = this.model?.pass(name);
+    const label = pass ? `Contour, ${this.model?.called(pass)}, to scale, errors enlarged` : "Wall and probe points";
     return new Scene(this.view, {
       view: () => this.still(),
       hover: (scene, px, py) => this.hover(scene, px, py),
@@ -91,7 +90,10 @@ export class Stage {
   /** After a change of size or of what is shown. */
   layout(paper?: number): void {
     const { shown } = this.store.state;
-    for (const { name, scene } of this.scenes) scene.element.hidden = shown !== "both" && this.scenes.length > 1 && name !== shown;
+    const compared = this.model?.compared.map((pass) => pass.name) ?? [];
+    for (const { name, scene } of this.scenes) {
+      scene.element.hidden = this.scenes.length > 1 && (shown === "both" ? !compared.includes(name) : name !== shown);
+    }
     this.element.classList.toggle("double", shown === "both" && this.scenes.length > 1);
     for (const { scene } of this.visible()) scene.measure(paper);
     this.still();
@@ -153,15 +155,15 @@ export class Stage {
 
   private caption(name: PassName): string {
     const { magnify, height } = this.store.state;
-    const pass = this.model?.passes[name];
+    const pass = this.model?.pass(name);
     const z = height === null ? "" : `, ${fixed(this.report.heights?.z_mm[height], 2)} mm above the tip`;
-    return `${pass && this.model ? [this.model.of("", name).trim(), pass.label].filter(Boolean).join(": ") : "wall and probe points"}${z}; errors ${magnify} ×`;
+    return `${pass ? this.model?.called(pass) : "wall and probe points"}${z}; errors ${magnify} ×`;
   }
 
   private picture(name: PassName): Picture {
     const { magnify, height, hidden } = this.store.state;
     return {
-      model: this.model, pass: this.model?.passes[name] ?? null, error: this.model?.error(name, height),
+      model: this.model, pass: this.model?.pass(name) ?? null, error: this.model?.error(name, height),
       wall: this.wall, stock: this.stock, outlines: this.outlines,
       points: name === this.touched || this.scenes.length === 1 ? this.points : [],
       magnify, limits: this.limits, hidden, picked: this.picked,

@@ -5,7 +5,7 @@ import { between } from "./cutter";
 import type { Series } from "./decode";
 import { fixed } from "./format";
 import { limitsOf, type Limits } from "./limits";
-import type { Model, PassName, Quantity } from "./model";
+import type { Model, Quantity } from "./model";
 import type { Palette } from "./palette";
 import type { State } from "./state";
 
@@ -217,15 +217,17 @@ function gaps(values: Float64Array): Float64Array | (number | null)[] {
 }
 
 function panelsOf(model: Model, state: State, colours: Palette): Panel[] {
-  const { before, after } = model.passes;
-  const chosen: PassName = state.shown === "both" ? "after" : state.shown;
-  const selected = model.passes[chosen] ?? before ?? after;
-  const both = (quantity: Quantity, height: number | null = null): Curve[] => (["before", "after"] as const).flatMap((name) => {
-    const series = model.passes[name]?.series[quantity];
-    const error = height === null ? undefined : model.error(name, height);
+  const { passes, compared } = model;
+  const selected = (state.shown === "both" ? undefined : model.pass(state.shown)) ?? passes.at(-1);
+  // A pass that is not compared would make the others flat; it is there when it is asked for.
+  const drawn = passes.filter((pass) => compared.includes(pass) || pass === selected);
+  const both = (quantity: Quantity, height: number | null = null): Curve[] => drawn.flatMap((pass) => {
+    const series = pass.series[quantity];
+    const error = height === null ? undefined : model.error(pass.name, height);
     if (!series && !error) return [];
     return [{
-      name: before && after ? name : "", series: error ? { values: error, decimals: series?.decimals ?? 6 } : (series as Series), colour: colours[name], faint: state.shown !== "both" && state.shown !== name,
+      name: passes.length > 1 ? pass.title : "", series: error ? { values: error, decimals: series?.decimals ?? 6 } : (series as Series),
+      colour: colours[model.colour(pass)], faint: state.shown !== "both" && pass !== selected,
     }];
   });
   const components = (x: Quantity, y: Quantity, names: [string, string]): Curve[] => {
@@ -235,16 +237,18 @@ function panelsOf(model: Model, state: State, colours: Palette): Panel[] {
       ...(sy ? [{ name: names[1], series: sy, colour: colours.second, width: 1.25 }] : []),
     ];
   };
-  const suffix = before && after ? ` (${chosen})` : "";
+  const suffix = passes.length > 1 ? ` (${selected?.title})` : "";
   const errors = both("error_mm", state.height);
   const bounded = selected?.series.sigma_mm && selected.series.error_mm && state.height === null
-    ? { error: selected.series.error_mm, sigma: selected.series.sigma_mm, colour: colours[selected.name] } : undefined;
-  const correction = model.correction
-    ? [{ name: "x", series: model.correction.x, colour: colours.first }, { name: "y", series: model.correction.y, colour: colours.second }] : [];
+    ? { error: selected.series.error_mm, sigma: selected.series.sigma_mm, colour: colours[model.colour(selected)] } : undefined;
+  // Of several corrections that of the pass shown; where a pass has none, that of the report.
+  const several = passes.filter((pass) => pass.correction).length > 1;
+  const shown = selected?.correction ?? model.correction;
+  const correction = shown ? [{ name: "x", series: shown.x, colour: colours.first }, { name: "y", series: shown.y, colour: colours.second }] : [];
   const z = state.height === null ? "" : ` at ${fixed(model.report.heights?.z_mm[state.height], 2)} mm height`;
   const panels: Panel[] = [
     { title: `Wall error${z}`, unit: bounded ? "mm, ±2σ" : "mm", curves: errors, sigma: bounded, limits: limitsOf(model.report) },
-    { title: "Correction", unit: "mm", curves: correction },
+    { title: `Correction${several ? ` (${(selected?.correction ? selected : passes.at(-1))?.title})` : ""}`, unit: "mm", curves: correction },
     { title: `Deflection${suffix}`, unit: "mm", curves: components("dx_mm", "dy_mm", ["x", "y"]) },
     { title: `Force${suffix}`, unit: "N", curves: force(selected?.series.force_n, components("fx_n", "fy_n", ["x", "y"]), colours) },
     { title: "Engagement arc", unit: "°", curves: both("arc_deg") },
