@@ -4,7 +4,7 @@ import { el } from "./dom";
 import { fixed } from "./format";
 import type { Model } from "./model";
 import type { Player } from "./player";
-import type { Shown, Store } from "./state";
+import type { Shown, State, Store } from "./state";
 import { placeText } from "./readout";
 
 const FACTORS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000];
@@ -92,7 +92,17 @@ function heightSlider(z: number[], store: Store): HTMLElement {
   return el("label", { class: "field" }, "height", input, output);
 }
 
-export function transport(model: Model, store: Store, player: Player): HTMLElement {
+/** The sample with the largest wall error at the height shown, of the pass shown; side by side of the one after. Null without any. */
+function largestError(model: Model, { shown, height }: State): number | null {
+  const name = shown === "both" ? "after" : shown;
+  const errors = model.error(name, height);
+  let best: number | null = null;
+  errors?.forEach((error, i) => { if (Math.abs(error) > (best === null ? -1 : Math.abs(errors[best]))) best = i; });
+  return best;
+}
+
+/** `jumped` is called with the sample that the cutter was sent to. */
+export function transport(model: Model, store: Store, player: Player, jumped: (index: number) => void): HTMLElement {
   const play = el("button", { type: "button", id: "play", class: "play" });
   const scrub = el("input", { type: "range", id: "scrub", min: "0", max: String(model.count - 1), step: "1", "aria-label": "Place of the cutter" });
   const at = el("output", { class: "time", for: "scrub" });
@@ -117,7 +127,15 @@ export function transport(model: Model, store: Store, player: Player): HTMLEleme
   };
   store.onChange((changed) => { if (changed.has("place") || changed.has("playing")) show(); });
   show();
+  const worst = el("button", { type: "button", id: "worst", title: "Put the cutter where the wall error is largest" }, "largest error");
+  worst.hidden = largestError(model, store.state) === null;
+  worst.addEventListener("click", () => {
+    const index = largestError(model, store.state);
+    if (index === null) return;
+    store.set({ place: index, playing: false });
+    jumped(index);
+  });
   const follow = el("input", { type: "checkbox", id: "follow" });
   follow.addEventListener("change", () => store.set({ follow: follow.checked }));
-  return el("div", { class: "transport", role: "group", "aria-label": "Cutter" }, play, scrub, at, el("label", { class: "field follow" }, follow, "follow"), el("label", { class: "field" }, "speed", speed));
+  return el("div", { class: "transport", role: "group", "aria-label": "Cutter" }, play, scrub, worst, at, el("label", { class: "field follow" }, follow, "follow"), el("label", { class: "field" }, "speed", speed));
 }

@@ -32,31 +32,30 @@ export function drawMoving(c: Context, view: View, picture: Picture, colours: Pa
   const py = view.py(between(model.y.values, place) + deviation * ny);
   const radius = model.radius * view.scale;
   const normal = Math.atan2(ny, nx);
-  if (radius < 20000) {
+  const round = (from: number, to: number) => turn(c, view, px, py, radius, from, to);
+  c.beginPath();
+  round(0, 2 * Math.PI);
+  c.fillStyle = colours.cutter;
+  c.fill();
+  c.strokeStyle = colours.ink;
+  c.lineWidth = 1.25;
+  c.stroke();
+  const arc = pass.series.arc_deg;
+  if (arc) {
+    const end = normal + model.turn * between(arc.values, place) * (Math.PI / 180);
     c.beginPath();
-    c.arc(px, py, radius, 0, 2 * Math.PI);
-    c.fillStyle = colours.cutter;
+    c.moveTo(px, py);
+    round(normal, end);
+    c.closePath();
+    c.fillStyle = colours.first;
+    c.globalAlpha = 0.3;
     c.fill();
-    c.strokeStyle = colours.ink;
-    c.lineWidth = 1.25;
+    c.globalAlpha = 1;
+    c.beginPath();
+    round(normal, end);
+    c.strokeStyle = colours.first;
+    c.lineWidth = 5;
     c.stroke();
-    const arc = pass.series.arc_deg;
-    if (arc) {
-      const end = normal + model.turn * between(arc.values, place) * (Math.PI / 180);
-      c.beginPath();
-      c.moveTo(px, py);
-      c.arc(px, py, radius, -normal, -end, model.turn > 0);
-      c.closePath();
-      c.fillStyle = colours.first;
-      c.globalAlpha = 0.3;
-      c.fill();
-      c.globalAlpha = 1;
-      c.beginPath();
-      c.arc(px, py, radius, -normal, -end, model.turn > 0);
-      c.strokeStyle = colours.first;
-      c.lineWidth = 5;
-      c.stroke();
-    }
   }
   cross(c, px, py, colours.ink);
   const { fx_n: fx, fy_n: fy } = pass.series;
@@ -64,6 +63,38 @@ export function drawMoving(c: Context, view: View, picture: Picture, colours: Pa
     const size = Math.max(50, Math.min(110, radius * 1.4)) / largestForce;
     arrow(c, px, py, px + between(fx.values, place) * size, py - between(fy.values, place) * size, colours.ink);
   }
+}
+
+/** Radius in pixels from which the canvas' own arcs leave their place by a visible part of a pixel. */
+const LARGE = 20000;
+
+/**
+ * An arc from one angle to another, in radians counter-clockwise of X.
+ *
+ * A large one is drawn as a polygon with its corners at the rim where the window is: what lies about the window needs no more
+ * than a chord, and within it a chord of a few pixels is not told from the arc.
+ */
+function turn(c: Context, view: View, px: number, py: number, radius: number, from: number, to: number): void {
+  if (!(radius > LARGE)) {
+    c.arc(px, py, radius, -from, -to, to > from);
+    return;
+  }
+  const at = (angle: number) => c.lineTo(px + radius * Math.cos(angle), py - radius * Math.sin(angle));
+  const [least, most] = [Math.min(from, to), Math.max(from, to)];
+  const corners = [least, most];
+  const coarse = (2 * Math.PI) / 360;
+  for (let angle = least + coarse; angle < most; angle += coarse) corners.push(angle);
+  // The window as seen from the centre, and a little about it.
+  const [cx, cy] = [view.width / 2 - px, py - view.height / 2];
+  const half = Math.hypot(view.width, view.height) / radius;
+  const window = Math.atan2(cy, cx);
+  for (const whole of [window - 2 * Math.PI, window, window + 2 * Math.PI]) {
+    for (let k = -100; k <= 100; k++) {
+      const angle = whole + (k / 100) * half;
+      if (angle > least && angle < most) corners.push(angle);
+    }
+  }
+  corners.sort((a, b) => (to > from ? a - b : b - a)).forEach(at);
 }
 
 function cross(c: Context, px: number, py: number, colour: string): void {

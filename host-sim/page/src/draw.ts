@@ -7,8 +7,9 @@ import { drawMark, fillOf } from "./marks";
 import type { Model, Pass } from "./model";
 import type { Line } from "./outline";
 import type { Palette } from "./palette";
+import { errorScale, gridLines, gridNumbers } from "./rulers";
 import type { Trimmed } from "./trim";
-import { roundBelow, roundStep, type View } from "./view";
+import type { View } from "./view";
 
 export interface Picture {
   model: Model | null;
@@ -30,7 +31,7 @@ const MARGIN = 60;
 export function drawStill(c: Context, view: View, picture: Picture, colours: Palette): void {
   c.fillStyle = colours.ground;
   c.fillRect(0, 0, view.width, view.height);
-  grid(c, view, colours);
+  gridLines(c, view, colours);
   const { model } = picture;
   c.lineJoin = "round";
   if (model && picture.wall) {
@@ -56,36 +57,9 @@ export function drawStill(c: Context, view: View, picture: Picture, colours: Pal
   }
   for (const line of picture.outlines.stock) path(c, view, allOf(line), line, colours.quiet, 1, [5, 4]);
   for (const line of picture.outlines.wall) path(c, view, allOf(line), line, colours.ink, 1.75);
+  gridNumbers(c, view, colours);
   if (!picture.hidden.has("points")) points(c, view, picture, colours);
   if (picture.error || picture.pass?.across || picture.points.length) errorScale(c, view, picture.magnify, colours);
-}
-
-/** How large an error is drawn: a bar of a round number of millimetres. */
-function errorScale(c: Context, view: View, magnify: number, colours: Palette): void {
-  const pixels = view.scale * magnify;
-  const size = roundBelow(90 / pixels);
-  const text = `error ${size.toFixed(Math.max(0, -Math.floor(Math.log10(size) + 1e-9)))} mm`;
-  c.font = `11px ${colours.font}`;
-  const wide = Math.max(size * pixels, c.measureText(text).width);
-  const right = view.width - 10;
-  c.fillStyle = colours.ground;
-  c.globalAlpha = 0.85;
-  c.fillRect(right - wide - 5, 5, wide + 10, 29);
-  c.globalAlpha = 1;
-  c.fillStyle = colours.ink;
-  c.textBaseline = "top";
-  c.textAlign = "right";
-  c.fillText(text, right, 8);
-  c.textAlign = "left";
-  const left = right - size * pixels;
-  c.beginPath();
-  for (const [x, y] of [[left, 22], [left, 30], [left, 26], [right, 26], [right, 22], [right, 30]]) {
-    if (x === left && y === 22) c.moveTo(x, y);
-    else c.lineTo(x, y);
-  }
-  c.strokeStyle = colours.ink;
-  c.lineWidth = 1.5;
-  c.stroke();
 }
 
 /** The coarsest level whose samples lie no more than a pixel apart. */
@@ -254,42 +228,4 @@ function label(c: Context, view: View, boxes: [number, number, number, number][]
   c.fillStyle = point.status === "used" ? colours.ink : colours.quiet;
   c.textBaseline = "top";
   c.fillText(text, left, top + 1);
-}
-
-function grid(c: Context, view: View, colours: Palette): void {
-  const step = roundStep(70 / view.scale);
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-  const x0 = Math.ceil(view.mmX(0) / step);
-  const x1 = Math.floor(view.mmX(view.width) / step);
-  const y0 = Math.ceil(view.mmY(view.height) / step);
-  const y1 = Math.floor(view.mmY(0) / step);
-  c.strokeStyle = colours.grid;
-  c.lineWidth = 1;
-  c.beginPath();
-  for (let k = x0; k <= x1; k++) {
-    const px = Math.round(view.px(k * step)) + 0.5;
-    c.moveTo(px, 0);
-    c.lineTo(px, view.height);
-  }
-  for (let k = y0; k <= y1; k++) {
-    const py = Math.round(view.py(k * step)) + 0.5;
-    c.moveTo(0, py);
-    c.lineTo(view.width, py);
-  }
-  c.stroke();
-  c.fillStyle = colours.quiet;
-  c.font = `11px ${colours.font}`;
-  c.textBaseline = "bottom";
-  const number = (v: number) => v.toFixed(decimals).replace(/^-(?=0(\.0*)?$)/, "").replace("-", "−");
-  for (let k = x0; k <= x1; k++) {
-    const px = view.px(k * step);
-    if (px > 46 && px < view.width - 70) c.fillText(number(k * step), px + 3, view.height - 2);
-  }
-  for (let k = y0; k <= y1; k++) {
-    const py = view.py(k * step);
-    if (py < view.height - 22 && py > 26) c.fillText(number(k * step), 3, py - 1);
-  }
-  c.fillText("X mm", view.width - 32, view.height - 2);
-  c.textBaseline = "top";
-  c.fillText("Y mm", 3, 3);
 }

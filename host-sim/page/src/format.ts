@@ -16,6 +16,7 @@ export function signed(value: number | undefined, decimals: number): string {
 }
 
 export function withUnit(text: string, unit: string): string {
+  if (unit === "°") return text + unit;
   return unit === "" || unit === "1" ? text : `${text} ${unit.replace("um", "µm")}`;
 }
 

@@ -110,16 +110,21 @@ function show(report: Report, main: HTMLElement): void {
   });
   const seen = model || report.points?.length || report.outlines?.wall?.length || report.outlines?.stock?.length;
   const picture = el("section", { class: "picture", "aria-label": "Contour" }, bar, stage.element,
-    legend(store, layersOf(report, model)), player && model ? transport(model, store, player) : null);
-  const work = el("div", { class: traces ? "work" : "work alone" }, picture, traces ? tracesBox : null);
+    legend(store, layersOf(report, model)), player && model ? transport(model, store, player, (index) => stage.reveal(index)) : null);
   const chart = Chart.of(report);
-  const below = el("div", { class: "below" }, readout?.element, statements(report), chart?.element,
-    report.parameters?.length ? parameters(report.parameters) : null, job(report),
+  const rests = statements(report);
+  const facts = job(report);
+  const beside = traces ? tracesBox : rests || chart ? el("div", { class: "beside" }, rests, chart?.element, facts) : null;
+  const work = el("div", { class: beside ? "work" : "work alone" }, picture, beside);
+  const wide = [report.parameters?.length ? parameters(report.parameters) : null,
     report.points?.length ? points(report, (index) => {
       if (passes.length > 1 && store.state.shown !== "both") store.set({ shown: stage.touched });
       stage.showPoint(index);
       picture.scrollIntoView({ block: "nearest" });
-    }) : null);
+    }) : null].filter((block) => block !== null);
+  const side = [readout?.element, beside?.contains(facts) ? null : facts].filter((block) => block);
+  const below = el("div", { class: side.length && wide.length ? "below" : "below alone" },
+    side.length ? el("div", { class: "side" }, ...side) : null, wide.length ? el("div", { class: "wide" }, ...wide) : null);
   picture.hidden = !seen;
   const figures = results(report);
   const [named, signed] = [part(report), signature(report)];

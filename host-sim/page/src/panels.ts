@@ -4,6 +4,7 @@ import type { Parameter, ProbePoint, Report } from "./data";
 import { card, el, table } from "./dom";
 import { decimalsFor, fixed, NO_VALUE, signed, withUnit } from "./format";
 import { decimalsTelling, limitDecimals, limitsOf, limitsText, standing, verdictWord, type Limits } from "./limits";
+import { MEANING } from "./glossary";
 import { SIGNS } from "./marks";
 
 const KINDS = { simulate: "simulated pass", correct: "correction", learn: "correction of the next part", inspect: "inspection" };
@@ -68,8 +69,11 @@ export function parameters(list: Parameter[]): HTMLElement {
       p.unit === "1" ? NO_VALUE : p.unit.replace("um", "µm"),
       el("span", { class: p.observable ? "yes" : "no" }, p.observable ? "yes" : "no")];
   });
-  return card("parameters", "Identified",
-    table("Identified parameters", ["parameter", "value", "σ", "believed before", "unit", "decided by points"], rows, [0, 4, 5]));
+  const known = list.filter((p) => MEANING[p.name]);
+  const words = known.length === 0 ? null : el("details", { class: "meaning" }, el("summary", {}, "what these are"),
+    el("dl", { class: "facts" }, ...known.flatMap((p) => [el("dt", {}, p.name.replaceAll("_", " ")), el("dd", {}, MEANING[p.name])]),
+      el("dt", {}, "decided by points"), el("dd", {}, "yes where the points have at least halved what was uncertain before")));
+  return card("parameters", "Identified", table("Identified parameters", ["parameter", "value", "σ", "believed before", "unit", "decided by points"], rows, [0, 4, 5]), words);
 }
 
 /** What became of a point, and why. */

@@ -81,7 +81,7 @@ export function flagLines(model: Model, index: number, height: number | null): [
   ];
   for (const pass of model.passes) {
     const error = model.error(pass.name, height);
-    if (error) lines.push([model.of("error", pass), `${signed(error[index], pass.series.error_mm?.decimals ?? 6)} mm`]);
+    if (error) lines.push([model.of("error", pass), Number.isNaN(error[index]) ? NO_VALUE : `${signed(error[index], pass.series.error_mm?.decimals ?? 6)} mm`]);
     const { sigma_mm: sigma, force_n: force, arc_deg: arc } = pass.series;
     if (sigma) lines.push(["± σ", `${fixed(sigma.values[index], sigma.decimals)} mm`]);
     if (force) lines.push([model.of("force", pass), `${fixed(force.values[index], force.decimals)} N`]);

@@ -62,6 +62,8 @@ export class Scene {
   drawStill(picture: Picture, colours: Palette): void {
     const context = this.context(this.still);
     drawStill(context, this.view, picture, colours);
+    // On a screen that is touched the page scrolls over a picture that is seen whole; a part of it moves under the finger.
+    this.stage.style.touchAction = this.view.fitted ? "pan-y" : "none";
     this.stage.dataset.view = [this.view.cx, this.view.cy, this.view.scale].join(" ");
   }
 
@@ -178,12 +180,15 @@ export class Scene {
       ArrowLeft: () => view.pan(60, 0), ArrowRight: () => view.pan(-60, 0),
       ArrowUp: () => view.pan(0, 60), ArrowDown: () => view.pan(0, -60),
     };
-    const steps: Record<string, number> = { ",": -1, ".": 1, "<": -10, ">": 10, Home: NaN, End: Infinity };
+    const steps: Record<string, number> = { ",": -far, ".": far, "<": -10, ">": 10, Home: NaN, End: Infinity };
+    // With Shift the same two keys write other signs on other keyboards.
+    const written: Record<string, string> = event.shiftKey ? { Comma: ",", Period: "." } : {};
+    const step = event.key in steps ? event.key : written[event.code];
     if (moves[event.key]) {
       moves[event.key]();
       events.view();
-    } else if (event.key in steps) {
-      events.step(steps[event.key] * (Math.abs(steps[event.key]) === 1 ? far : 1));
+    } else if (step) {
+      events.step(steps[step]);
     } else if (event.key === " ") {
       events.toggle();
     } else {

@@ -3,10 +3,11 @@
 import { between } from "./cutter";
 import type { ProbePoint, Report } from "./data";
 import { el } from "./dom";
-import { levelFor, type Picture } from "./draw";
+import type { Picture } from "./draw";
 import { fixed, signed } from "./format";
 import { limitsOf, verdictWord, type Limits } from "./limits";
 import type { Model, PassName } from "./model";
+import { nearestSample } from "./nearest";
 import { boxOf, offsetOf, outline, type Line } from "./outline";
 import type { Palette } from "./palette";
 import { statusOf } from "./panels";
@@ -15,8 +16,6 @@ import { Scene } from "./scene";
 import type { Store } from "./state";
 import { trimmed, type Trimmed } from "./trim";
 import { View, type Box } from "./view";
-
-const REACH = 40;
 
 export class Stage {
   readonly element = el("div", { class: "scenes" });
@@ -126,6 +125,17 @@ export class Stage {
     this.moving();
   }
 
+  /** Moves the picture, where it does not show a sample, so that it does. */
+  reveal(index: number): void {
+    if (!this.model || !this.wall) return;
+    const { view } = this;
+    const inside = [[view.px(this.model.x.values[index]), view.py(this.model.y.values[index])], [view.px(this.wall.x[index]), view.py(this.wall.y[index])]]
+      .every(([px, py]) => px > 0 && py > 0 && px < view.width && py < view.height);
+    if (inside) return;
+    view.centre(this.wall.x[index], this.wall.y[index]);
+    this.still();
+  }
+
   /** Shows a probe point large. */
   showPoint(index: number): void {
     const point = this.points[index];
@@ -157,7 +167,7 @@ export class Stage {
     const { magnify, height } = this.store.state;
     const pass = this.model?.pass(name);
     const z = height === null ? "" : `, ${fixed(this.report.heights?.z_mm[height], 2)} mm above the tip`;
-    return `${pass ? this.model?.called(pass) : "wall and probe points"}${z}; errors ${magnify} ×`;
+    return `${pass ? this.model?.called(pass) : "wall and probe points"}${z}; errors ${magnify}\u00a0×`;
   }
 
   private picture(name: PassName): Picture {
@@ -170,25 +180,8 @@ export class Stage {
     };
   }
 
-  /** The sample whose path or wall is nearest, within reach of the pointer. */
   nearest(px: number, py: number): number | null {
-    const { model, wall, view } = this;
-    if (!model || !wall) return null;
-    const x = view.mmX(px);
-    const y = view.mmY(py);
-    let best: number | null = null;
-    let least = (REACH / view.scale) ** 2;
-    const look = (i: number) => {
-      const path = (model.x.values[i] - x) ** 2 + (model.y.values[i] - y) ** 2;
-      const edge = (wall.x[i] - x) ** 2 + (wall.y[i] - y) ** 2;
-      const distance = Math.min(path, edge);
-      if (distance < least) {
-        least = distance;
-        best = i;
-      }
-    };
-    levelFor(model, view).forEach(look);
-    return best;
+    return this.model && this.wall ? nearestSample(this.model, this.wall, this.view, px, py) : null;
   }
 
   private hover(scene: Scene, px: number, py: number): void {

@@ -9,7 +9,7 @@ import type { Model, Quantity } from "./model";
 import type { Palette } from "./palette";
 import type { State } from "./state";
 
-interface Curve { name: string; series: Series; colour: string; dash?: number[]; faint?: boolean; width?: number }
+interface Curve { name: string; series: Series; colour: string; dash?: number[]; faint?: boolean; width?: number; unscaled?: boolean }
 interface Panel { title: string; unit: string; curves: Curve[]; sigma?: { error: Series; sigma: Series; colour: string }; limits?: Limits }
 
 interface Shown { plot: uPlot; panel: Panel; head: HTMLElement; values: HTMLElement[]; playhead: HTMLElement }
@@ -130,7 +130,7 @@ export class Traces {
     for (const curve of panel.curves) {
       series.push({
         stroke: curve.colour, width: curve.width ?? 1.5, dash: curve.dash, alpha: curve.faint ? 0.55 : 1,
-        points: { show: false },
+        points: { show: false }, auto: !curve.unscaled,
       });
     }
     const bands: uPlot.Band[] = [];
@@ -238,7 +238,8 @@ function panelsOf(model: Model, state: State, colours: Palette): Panel[] {
     ];
   };
   const suffix = passes.length > 1 ? ` (${selected?.title})` : "";
-  const errors = both("error_mm", state.height);
+  // What is left after a correction is a hundredth of what was there before it: the scale is that of the pass chosen.
+  const errors = both("error_mm", state.height).map((curve) => ({ ...curve, unscaled: curve.faint }));
   const bounded = selected?.series.sigma_mm && selected.series.error_mm && state.height === null
     ? { error: selected.series.error_mm, sigma: selected.series.sigma_mm, colour: colours[model.colour(selected)] } : undefined;
   // Of several corrections that of the pass shown; where a pass has none, that of the report.

@@ -15,6 +15,9 @@ export class View {
   private whole = 1;
   private follows = true;
 
+  /** Whether everything is shown, and stays so when the size changes. */
+  get fitted(): boolean { return this.follows; }
+
   constructor(private readonly all: Box) {}
 
   px(x: number): number { return (x - this.cx) * this.scale + this.width / 2; }
@@ -65,7 +68,7 @@ export class View {
   }
 
   private scaleFor(box: Box): number {
-    const room = (size: number) => Math.max(size * 0.5, size - 2 * EDGE);
+    const room = (size: number) => size - 2 * Math.min(EDGE, size * 0.12);
     const wide = Math.max(box.x1 - box.x0, 1e-3);
     const high = Math.max(box.y1 - box.y0, 1e-3);
     return Math.min(room(this.width) / wide, room(this.height) / high);

@@ -66,7 +66,9 @@ const tabs = new Map();
 async function tab(options) {
   const key = JSON.stringify(options);
   if (!tabs.has(key)) {
-    const context = await (await browser()).newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "light", reducedMotion: "no-preference", ...options });
+    const { clock, ...given } = options;
+    const context = await (await browser()).newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "light", reducedMotion: "no-preference", ...given });
+    if (clock) await context.clock.install({ time: 0 });
     const page = await context.newPage();
     const heard = { complaints: [], requests: [] };
     page.on("console", (message) => { if (["error", "warning"].includes(message.type())) heard.complaints.push(message.text()); });
@@ -77,7 +79,11 @@ async function tab(options) {
   return tabs.get(key);
 }
 
-/** Opens a page in a tab of its own for these options, which is left empty when it is closed. */
+/**
+ * Opens a page in a tab of its own for these options, which is left empty when it is closed.
+ *
+ * With `clock` its time stands, and goes on by `page.clock.runFor` alone: how long this machine takes is nothing to such a test.
+ */
 export async function open(file, options = {}) {
   const { context, page, heard } = await tab(options);
   heard.complaints = [];
@@ -85,6 +91,7 @@ export async function open(file, options = {}) {
   await page.goto("about:blank");
   await page.mouse.move(0, 0);
   if (file !== "about:blank") await show(page, file);
+  if (options.clock) await page.clock.pauseAt((await page.evaluate(() => Date.now())) + 3_600_000);
   return { context, page, complaints: heard.complaints, requests: heard.requests, close: () => page.goto("about:blank") };
 }
 
