@@ -90,6 +90,7 @@ export class Scene {
     const { stage, view, events } = this;
     let start: { x: number; y: number; shift: boolean } | null = null;
     let dragged = false;
+    let back = () => {};
     stage.addEventListener("wheel", (event) => {
       event.preventDefault();
       const { x, y } = this.at(event);
@@ -103,6 +104,7 @@ export class Scene {
       this.fingers.set(event.pointerId, this.at(event));
       start = { ...this.at(event), shift: event.shiftKey };
       dragged = this.fingers.size > 1;
+      if (!dragged) back = view.remember();
       events.leave();
     });
     stage.addEventListener("pointermove", (event) => {
@@ -138,6 +140,11 @@ export class Scene {
         if (event.pointerType === "touch") events.hover(this, now.x, now.y);
       }
       if (event.type === "pointerup" && dragged && start?.shift) this.zoomToFrame(start, now);
+      // The browser has taken the finger to scroll the page: what it moved here before that is taken back.
+      if (event.type === "pointercancel") {
+        back();
+        events.view();
+      }
       this.frame.hidden = true;
       start = null;
     };

@@ -3,6 +3,7 @@
 import uPlot from "uplot";
 import { between } from "./cutter";
 import type { Series } from "./decode";
+import { framedByFinger } from "./finger";
 import { fixed } from "./format";
 import { limitsOf, type Limits } from "./limits";
 import type { Model, Quantity } from "./model";
@@ -107,6 +108,7 @@ export class Traces {
     playhead.className = "playhead";
     plot.over.append(playhead);
     this.pointer(plot);
+    framedByFinger(plot, (range) => this.events.range(range));
     return { plot, panel, head, values, playhead };
   }
 

@@ -67,6 +67,12 @@ export class View {
     this.follows = false;
   }
 
+  /** Remembers what is shown; what is returned shows it again. */
+  remember(): () => void {
+    const { cx, cy, scale, follows } = this;
+    return () => Object.assign(this, { cx, cy, scale, follows });
+  }
+
   private scaleFor(box: Box): number {
     const room = (size: number) => size - 2 * Math.min(EDGE, size * 0.12);
     const wide = Math.max(box.x1 - box.x0, 1e-3);

@@ -2,6 +2,9 @@
 import "./speed.test.mjs";
 import "./values.test.mjs";
 import "./scene.test.mjs";
+import "./deep.test.mjs";
+import "./touch.test.mjs";
+import "./layout.test.mjs";
 import "./cutter.test.mjs";
 import "./page.test.mjs";
 import "./partial.test.mjs";
