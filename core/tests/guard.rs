@@ -2,8 +2,8 @@
 mod corner;
 use corner::*;
 use truepath_core::correct::{
-    Band, Damped, Design, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Target, Update, commanded, design,
-    guarded_design, guarded_given, profile,
+    Band, Damped, Design, DesignWorkspace, Guarded, InOrder, Law, Node, Predicted, Profile, Target, Update, commanded,
+    design, guarded_design, guarded_given, profile,
 };
 use truepath_core::cut::*;
 use truepath_core::geometry::Vector;
@@ -90,6 +90,7 @@ impl Case {
             updates: &mut vec![Update::default(); n],
             best: &mut vec![Node::default(); n],
             residual: &[],
+            reader: InOrder,
         };
         let mut nodes = vec![Node::default(); n];
         let (mut unguarded, mut predicted) = (nodes.clone(), vec![Predicted::default(); n]);

@@ -3,7 +3,7 @@
 mod corner;
 use corner::*;
 use proptest::prelude::*;
-use truepath_core::correct::{self, Band, Design, DesignWorkspace, Node, Predicted, Profile, Target, Update};
+use truepath_core::correct::{self, Band, Design, DesignWorkspace, InOrder, Node, Predicted, Profile, Target, Update};
 use truepath_core::cut::*;
 use truepath_core::geometry::{Block, Curve, Point, Shape, Side, Vector};
 use truepath_core::identify::{Fit, Observation, PredictionWorkspace, Prior, identify};
@@ -107,6 +107,7 @@ fn designed(machine: &Loop) -> Vec<Node> {
         updates: &mut vec![Update::default(); n],
         best: &mut vec![Node::default(); n],
         residual: &[],
+        reader: InOrder,
     };
     correct::design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
     nodes

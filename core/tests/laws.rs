@@ -2,7 +2,8 @@
 mod corner;
 use corner::*;
 use truepath_core::correct::{
-    Band, Design, DesignWorkspace, Law, Node, PaperRatio, PaperTransfer, Predicted, Profile, Target, Update, design,
+    Band, Design, DesignWorkspace, InOrder, Law, Node, PaperRatio, PaperTransfer, Predicted, Profile, Target, Update,
+    design,
 };
 use truepath_core::cut::*;
 use truepath_core::geometry::{Block, Curve, Vector};
@@ -42,6 +43,7 @@ fn left_by(law: &str, blocks: &[Block]) -> (f64, f64) {
         updates: &mut vec![Update::default(); n],
         best: &mut vec![Node::default(); n],
         residual: &[],
+        reader: InOrder,
     };
     let wanted = Design { law, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
     design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace);

@@ -2,18 +2,20 @@
 //! reports.
 
 use truepath_core::correct::{
-    Band, Damped, Design, DesignStep, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Update, add_residual,
-    commanded, guarded_design, guarded_given, profile,
+    Band, Damped, Design, DesignStep, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Update, WallReader,
+    add_residual, commanded, guarded_design, guarded_given,
 };
 use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{Fit, Observation, PredictionWorkspace, Prior};
+use truepath_core::identify::{Fit, Observation, Prior};
 use truepath_core::job;
 use truepath_core::units::{Offset, hypot_nm};
 
 use crate::diagnostics::Failure;
+use crate::identification::{Found, Points, asked, found};
 use crate::measurement::Measurement;
 use crate::pass::Pass;
+use crate::wall_halves::Halves;
 
 /// What the probe points say about machine and material.
 #[derive(Clone, Debug)]
@@ -55,12 +57,11 @@ pub fn identified(
     measurement: &Measurement,
     mut progress: impl FnMut(f64),
 ) -> Result<Identified, Failure> {
-    let mut observations = measurement.observations()?;
-    let needed = path.working().len() + 1;
-    let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
-    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
-    let mut share = |permille| progress(f64::from(permille) / 1000.0);
-    let core = job::identified(&pass.core, path, &mut observations, &mut workspace, &mut share);
+    let observations = measurement.observations()?;
+    let points = Points { earlier: &[], observations: &observations };
+    let law = asked(pass.core.job.force.model);
+    let uncorrected = |_, _| Vector::ZERO;
+    let Found { core, observations, .. } = found(&pass.core, path, law, points, uncorrected, &mut progress);
     core.check(&observations).map_err(|error| pass.refused(&error))?;
     Ok(Identified { core, observations })
 }
@@ -162,6 +163,7 @@ pub struct Buffers {
     profiles: Vec<Profile>,
     updates: Vec<Update>,
     best: Vec<Node>,
+    halves: Halves,
 }
 
 impl Buffers {
@@ -174,11 +176,12 @@ impl Buffers {
             profiles: vec![Profile::default(); count],
             updates: vec![Update::default(); count],
             best: vec![Node::default(); count],
+            halves: Halves::of(path),
         }
     }
 
     /// Lends it.
-    pub fn workspace<'a>(&'a mut self, residual: &'a [Offset]) -> DesignWorkspace<'a> {
+    pub fn workspace<'a>(&'a mut self, residual: &'a [Offset]) -> DesignWorkspace<'a, &'a mut Halves> {
         DesignWorkspace {
             states: &mut self.states,
             displacements: &mut self.displacements,
@@ -186,6 +189,7 @@ impl Buffers {
             updates: &mut self.updates,
             best: &mut self.best,
             residual,
+            reader: &mut self.halves,
         }
     }
 }
@@ -198,7 +202,7 @@ pub fn walls(machine: &Loop, band: Band, nodes: &[Node], residual: &[Offset]) ->
     let passage = machine.run(working.start, &mut states, |i| commanded(path, nodes, i));
     let mut displacements = vec![Vector::ZERO; working.len()];
     let mut walls = vec![Profile::default(); path.count()];
-    profile(machine, &states, band, &mut displacements, &mut walls);
+    Halves::of(path).profile(machine, &states, band, &mut displacements, &mut walls);
     add_residual(&mut walls, residual);
     (walls, passage)
 }

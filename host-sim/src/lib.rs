@@ -1,6 +1,7 @@
 #![doc = include_str!("../../README.md")]
 
 pub mod bench;
+mod beside;
 pub mod bore;
 pub mod canon;
 pub mod cli;
@@ -10,6 +11,7 @@ pub mod correction;
 pub mod diagnostics;
 pub mod feature;
 pub mod feed;
+pub mod identification;
 pub mod image;
 pub mod inspection;
 pub mod job;
@@ -31,4 +33,5 @@ pub mod setpoints;
 pub mod study;
 pub mod surface;
 pub mod verification;
+mod wall_halves;
 pub mod workshop;

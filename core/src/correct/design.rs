@@ -2,7 +2,8 @@
 
 use super::node::{Node, commanded};
 use super::paper::PaperTransfer;
-use super::profile::{Band, Profile, Target, add_residual, deepen, profile};
+use super::profile::{Band, Profile, Target, add_residual, deepen};
+use super::reader::{InOrder, WallReader};
 use super::refine::{Update, refine, settle_ends};
 use crate::cut::{Loop, Passage, Path, State};
 use crate::geometry::Vector;
@@ -44,7 +45,7 @@ pub struct Design {
 /// Buffers lent by the caller: `states` and `displacements` as long as the path's working range, `profiles`,
 /// `updates` and `best` as long as the contour's own samples.
 #[derive(Debug)]
-pub struct DesignWorkspace<'a> {
+pub struct DesignWorkspace<'a, R = InOrder> {
     /// States of the elastic loop.
     pub states: &'a mut [State],
     /// Cutter positions at a height.
@@ -58,6 +59,8 @@ pub struct DesignWorkspace<'a> {
     /// Wall error that parts have shown beside what the model predicts, as long as the contour's own samples; empty where
     /// none is known. The correction cancels it as well.
     pub residual: &'a [Offset],
+    /// Who reads the walls.
+    pub reader: R,
 }
 
 /// Refinements on the predicted wall error.
@@ -91,24 +94,24 @@ pub fn design(
     wanted: &Design,
     nodes: &mut [Node],
     predicted: &mut [Predicted],
-    workspace: &mut DesignWorkspace,
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
 ) -> Passage {
     design_observed(machine, wanted, nodes, predicted, workspace, &mut |_| ())
 }
 
 /// As [`design`], observed; `predicted` may be empty where the predictions are not needed one by one. On return
 /// `workspace.profiles` holds the corrected wall.
-pub fn design_observed(
+pub fn design_observed<R: WallReader>(
     machine: &Loop,
     wanted: &Design,
     nodes: &mut [Node],
     predicted: &mut [Predicted],
-    workspace: &mut DesignWorkspace,
+    workspace: &mut DesignWorkspace<'_, R>,
     observe: &mut dyn FnMut(DesignStep<'_>),
 ) -> Passage {
     let path = machine.path;
     let mut passes = 0u16;
-    let mut pass = |nodes: &[Node], workspace: &mut DesignWorkspace, observe: &mut dyn FnMut(DesignStep<'_>)| {
+    let mut pass = |nodes: &[Node], workspace: &mut DesignWorkspace<'_, R>, observe: &mut dyn FnMut(DesignStep<'_>)| {
         let passage = pass(machine, wanted, nodes, workspace, &mut |share| {
             observe(DesignStep::Done { passes, permille: permille(passes, share) });
         });
@@ -180,7 +183,7 @@ pub(super) fn pass(
     machine: &Loop,
     wanted: &Design,
     nodes: &[Node],
-    workspace: &mut DesignWorkspace,
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
     observe: &mut dyn FnMut(u16),
 ) -> Passage {
     let path = machine.path;
@@ -195,9 +198,9 @@ pub(super) fn pass(
 }
 
 /// Reads the walls off the states of the workspace.
-pub(super) fn walls(machine: &Loop, wanted: &Design, workspace: &mut DesignWorkspace) {
+pub(super) fn walls(machine: &Loop, wanted: &Design, workspace: &mut DesignWorkspace<'_, impl WallReader>) {
     let (states, displacements) = (&*workspace.states, &mut *workspace.displacements);
-    profile(machine, states, wanted.band, displacements, workspace.profiles);
+    workspace.reader.profile(machine, states, wanted.band, displacements, workspace.profiles);
     if wanted.max_gouge.is_some() || wanted.band != Band::WHOLE {
         deepen(machine, states, wanted.band, displacements, workspace.profiles);
     }

@@ -11,6 +11,7 @@ use super::design::{Design, DesignStep, DesignWorkspace, Law, Predicted, copy, d
 use super::node::Node;
 use super::profile::Profile;
 use super::prudence::{Damped, damp};
+use super::reader::WallReader;
 use super::refine::settle_ends;
 use super::uncertainty::{deviations, of_aim, of_deepest};
 use crate::cut::{Loop, Passage};
@@ -51,7 +52,7 @@ pub fn guarded_design(
     belief: (&Prior, &Fit),
     wanted: &Design,
     made: &mut Guarded<'_>,
-    workspace: &mut DesignWorkspace,
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
     observe: &mut dyn FnMut(DesignStep<'_>),
 ) -> Passage {
     let limit = limit(wanted);
@@ -124,7 +125,7 @@ pub fn guarded_given(
     wanted: &Design,
     given: &[Node],
     made: &mut Guarded<'_>,
-    workspace: &mut DesignWorkspace,
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
 ) -> Passage {
     made.damped = None;
     workspace.profiles.fill(Profile::default());
@@ -158,7 +159,7 @@ fn finish(
     wanted: &Design,
     (mut known, mut passage): (bool, Passage),
     made: &mut Guarded<'_>,
-    workspace: &mut DesignWorkspace,
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
 ) -> Passage {
     for _ in 0..LIFTS {
         let Some(limit) = limit(wanted) else { break };
@@ -194,7 +195,7 @@ fn missed(wall: &Profile, limit: Offset) -> Offset {
 
 /// Takes the cutter back from the wall where it was deeper than allowed, at the positions that made it so, and less and
 /// less beside them. What it no longer cuts bends it less: half as much again is taken back.
-fn lift(machine: &Loop, limit: Offset, nodes: &mut [Node], workspace: &mut DesignWorkspace) {
+fn lift(machine: &Loop, limit: Offset, nodes: &mut [Node], workspace: &mut DesignWorkspace<'_, impl WallReader>) {
     let amount = |slot: &Node| slot.chip.x;
     workspace.best.fill(Node::default());
     for (index, wall) in workspace.profiles.iter().enumerate() {
@@ -223,7 +224,13 @@ fn lift(machine: &Loop, limit: Offset, nodes: &mut [Node], workspace: &mut Desig
 
 /// Sets the margin of every wall to [`GUARD_SIGMAS`] standard deviations of its deepest height. The workspace holds the
 /// walls of the correction before, and its [`deviations`] afterwards.
-fn margins(machine: &Loop, belief: (&Prior, &Fit), wanted: &Design, nodes: &[Node], workspace: &mut DesignWorkspace) {
+fn margins(
+    machine: &Loop,
+    belief: (&Prior, &Fit),
+    wanted: &Design,
+    nodes: &[Node],
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
+) {
     deviations(machine, belief, wanted, nodes, workspace);
     for (wall, slot) in workspace.profiles.iter_mut().zip(workspace.best.iter()) {
         wall.set_margin(of_deepest(slot).scaled(Real::from_int(GUARD_SIGMAS)));

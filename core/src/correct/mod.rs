@@ -11,6 +11,7 @@ mod node;
 mod paper;
 mod profile;
 mod prudence;
+mod reader;
 mod refine;
 mod uncertainty;
 
@@ -18,6 +19,7 @@ pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design, de
 pub use guard::{GUARD_SIGMAS, Guarded, guarded_design, guarded_given};
 pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};
-pub use profile::{Band, Profile, Target, add_residual, profile};
+pub use profile::{Band, HEIGHTS, Profile, Target, add_residual, begin, finish, profile, read_slices};
 pub use prudence::Damped;
+pub use reader::{InOrder, WallReader};
 pub use refine::Update;

@@ -101,6 +101,16 @@ impl Profile {
         let zero = self.aim(target, None);
         (self.highest - zero).max(zero - self.lowest)
     }
+    /// Adds what was read of other slices.
+    pub fn join(&mut self, other: &Self) {
+        self.mean += other.mean;
+        self.lowest = self.lowest.min(other.lowest);
+        self.highest = self.highest.max(other.highest);
+        for (own, theirs) in self.made_by.iter_mut().zip(other.made_by) {
+            // Either is zero where it has not read the slice.
+            *own |= theirs;
+        }
+    }
     /// Moves the wall, where there is one, by the same at every height.
     fn shift(&mut self, by: Offset) {
         if self.on_wall {
@@ -130,30 +140,48 @@ pub fn add_residual(profiles: &mut [Profile], residual: &[Offset]) {
 /// `states` belong to the path's working range; `profiles` to the contour's own samples; `displacements` is as long
 /// as `states`.
 pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut [Vector], profiles: &mut [Profile]) {
-    let path = machine.path;
-    let first = path.first();
-    for (p, sample) in profiles.iter_mut().zip(path.samples().iter().skip(first)) {
+    begin(machine, profiles);
+    read_slices(machine, states, band, 0..HEIGHTS, displacements, profiles);
+    finish(machine, states, displacements, profiles);
+}
+
+/// Begins to read profiles: nothing is known of the walls but where there are any.
+pub fn begin(machine: &Loop, profiles: &mut [Profile]) {
+    for (p, sample) in profiles.iter_mut().zip(machine.path.samples().iter().skip(machine.path.first())) {
         let (margin, on_wall) = (p.margin, sample.on_wall);
         *p = Profile { lowest: Offset::MAX, highest: -Offset::MAX, margin, on_wall, ..Profile::default() };
     }
-    for k in 0..=HEIGHTS {
-        let tip = k == HEIGHTS;
-        let height = if tip { Real::ZERO } else { band.at(k) };
-        read(machine, states, height, displacements, profiles, |index, p, wall| {
-            if tip {
-                p.tip = wall.error;
-                p.deepen(wall.error);
-            } else {
-                if let Some(slot) = p.made_by.get_mut(k as usize) {
-                    let shift = (wall.made_by as i64).saturating_sub(index as i64);
-                    *slot = shift.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-                }
-                p.mean += wall.error;
-                p.lowest = p.lowest.min(wall.error);
-                p.highest = p.highest.max(wall.error);
+}
+
+/// Reads some of the [`HEIGHTS`] slices of the band. They do not depend on each other: read in parts and
+/// [joined](Profile::join) they are the same.
+pub fn read_slices(
+    machine: &Loop,
+    states: &[State],
+    band: Band,
+    slices: core::ops::Range<i64>,
+    displacements: &mut [Vector],
+    profiles: &mut [Profile],
+) {
+    for k in slices {
+        read(machine, states, band.at(k), displacements, profiles, |index, p, wall| {
+            if let Some(slot) = p.made_by.get_mut(k as usize) {
+                let shift = (wall.made_by as i64).saturating_sub(index as i64);
+                *slot = shift.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
             }
+            p.mean += wall.error;
+            p.lowest = p.lowest.min(wall.error);
+            p.highest = p.highest.max(wall.error);
         });
     }
+}
+
+/// Ends with the tip, when all slices are read.
+pub fn finish(machine: &Loop, states: &[State], displacements: &mut [Vector], profiles: &mut [Profile]) {
+    read(machine, states, Real::ZERO, displacements, profiles, |_, p, wall| {
+        p.tip = wall.error;
+        p.deepen(wall.error);
+    });
     for p in profiles.iter_mut() {
         if !p.on_wall {
             *p = Profile { margin: p.margin, ..Profile::default() };

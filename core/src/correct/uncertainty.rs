@@ -3,6 +3,7 @@
 use super::design::{Design, DesignWorkspace, walls};
 use super::node::{Node, commanded};
 use super::profile::Profile;
+use super::reader::WallReader;
 use crate::cut::{ForceTable, Loop};
 use crate::geometry::Vector;
 use crate::identify::{Fit, Prior};
@@ -19,7 +20,7 @@ pub(super) fn deviations(
     belief: (&Prior, &Fit),
     wanted: &Design,
     nodes: &[Node],
-    workspace: &mut DesignWorkspace,
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
 ) {
     let best = core::mem::take(&mut workspace.best);
     for (slot, wall) in best.iter_mut().zip(workspace.profiles.iter()) {
@@ -54,7 +55,7 @@ fn spread(
     (prior, fit): (&Prior, &Fit),
     wanted: &Design,
     nodes: &[Node],
-    workspace: &mut DesignWorkspace,
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
     take: &mut dyn FnMut(usize, &Profile),
 ) {
     let path = machine.path;
@@ -69,6 +70,10 @@ fn spread(
             *t += *c;
         }
         let parameters = prior.at(&moved);
+        // The last columns move nothing but the datum of the part that was probed: the wall stays where it is.
+        if parameters.machine(path, &table).cuts_as(machine) {
+            continue;
+        }
         if parameters.coefficients.size_exponent != table.size_exponent() {
             table.tabulate(parameters.coefficients.size_exponent);
         }

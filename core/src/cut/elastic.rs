@@ -101,6 +101,12 @@ impl Loop<'_> {
         (state, MAX_ITERATIONS)
     }
 
+    /// Whether another machine cuts the same wall on the same path.
+    pub fn cuts_as(&self, other: &Self) -> bool {
+        let facts = |machine: &Self| (machine.coefficients, machine.compliance, machine.undersize);
+        facts(self) == facts(other)
+    }
+
     fn mean(&self, engaged: Real) -> SplitForce {
         self.table.mean(self.path.setup(), &self.coefficients, engaged)
     }

@@ -121,14 +121,19 @@ fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
     let Some(along) = chord.direction() else { return a.stock };
     let sagitta = along.right().times(chord.length().scaled(turn * Real::ratio(1, 8)));
     let at = |u: Real| a.stock + chord.scaled(u) + sagitta.scaled(u * (Real::ONE - u) * Real::from_int(4));
-    // The chord gives the start; where stock and circle meet at a small angle its bulge takes a few Newton steps.
+    // The chord gives the start; where stock and circle meet at a small angle its bulge takes a few Newton steps. A step
+    // that changes nothing is the last: every further one would be the same.
     let (mut u, mut point) = (u, at(u));
     for _ in 0..CROSSING_STEPS {
         let reach = point.from(centre);
         let Some(out) = reach.direction() else { break };
         let tangent = chord + sagitta.scaled((Real::ONE - u - u) * Real::from_int(4));
         let miss = reach.length() - radius;
-        u = (u - miss.over(tangent.along(out))).max(Real::ZERO).min(Real::ONE);
+        let next = (u - miss.over(tangent.along(out))).max(Real::ZERO).min(Real::ONE);
+        if next == u {
+            break;
+        }
+        u = next;
         point = at(u);
     }
     point

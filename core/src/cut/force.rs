@@ -182,7 +182,9 @@ impl ForceTable {
                 break;
             }
             if high > low {
-                sum = sum.plus(self.antiderivative(high).minus(self.antiderivative(low)));
+                // The antiderivative from 0 to 0 is nothing.
+                let below = if low > Real::ZERO { self.antiderivative(low) } else { Basis::default() };
+                sum = sum.plus(self.antiderivative(high).minus(below));
             }
         }
         sum.scaled(helix.mm_per_lag).force(setup.milling, coefficients)

@@ -56,5 +56,10 @@ pub fn identify_law_parts(
     };
     let mean = under(WallLaw::Mean, observations, 0);
     let helical = under(WallLaw::Helical, observations, 1);
-    if mean.2.evidence > helical.2.evidence + DECISIVE { under(WallLaw::Mean, observations, 2) } else { helical }
+    if speaks_for_mean(&mean.2, &helical.2) { under(WallLaw::Mean, observations, 2) } else { helical }
+}
+
+/// Whether the points speak decisively for the mean law, after a fit under it and one under the helical law.
+pub fn speaks_for_mean(mean: &Fit, helical: &Fit) -> bool {
+    mean.evidence > helical.evidence + DECISIVE
 }

@@ -17,7 +17,7 @@ mod spread;
 mod tails;
 
 pub use fit::{identify, identify_observed, identify_parts};
-pub use law::{identify_law, identify_law_observed, identify_law_parts};
+pub use law::{identify_law, identify_law_observed, identify_law_parts, speaks_for_mean};
 pub use observation::{Observation, PredictionWorkspace, predict};
 pub use outcome::Fit;
 pub use parameters::{COUNT, Parameter, Parameters, Prior};

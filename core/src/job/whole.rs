@@ -7,7 +7,7 @@ use super::workspace::room;
 use super::{
     Buffer, Counts, Identified, Job, JobError, Pass, Stage, Workspace, array, correction, identification, measure,
 };
-use crate::correct::{DesignStep, DesignWorkspace, Guarded, Node, Profile, Target, guarded_design};
+use crate::correct::{DesignStep, DesignWorkspace, Guarded, InOrder, Node, Profile, Target, guarded_design};
 use crate::cut::{ForceTable, Path, WallLaw};
 use crate::identify::PredictionWorkspace;
 use crate::probe::Contact;
@@ -106,6 +106,7 @@ pub fn image(
         updates: workspace.updates.get_mut(..count).unwrap_or_default(),
         best: workspace.best.get_mut(..count).unwrap_or_default(),
         residual: &[],
+        reader: InOrder,
     };
     let designed = designed(&pass, &path, &identified, contacts, nodes, &mut lent, &mut |permille| {
         gauge.tell(Stage::Design, permille);

@@ -5,14 +5,15 @@
 //! trustworthy as the model is for the deflection that the correction cancelled: a hundredth of it counts as noise.
 
 use truepath_core::correct::{Node, commanded};
-use truepath_core::cut::{Path, State, WallLaw};
+use truepath_core::cut::{Path, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{EarlierPart, Observation, PredictionWorkspace, identify_law_parts, identify_parts};
-use truepath_core::job::{self, ForceModel};
+use truepath_core::identify::{EarlierPart, Observation};
+use truepath_core::job;
 use truepath_core::units::{Offset, Real, hypot_nm};
 
 use super::history::Part;
 use super::points::nm;
+use crate::identification::{Found, Points, asked, found};
 use crate::pass::Pass;
 use crate::report::{float, mm};
 
@@ -80,37 +81,20 @@ pub fn joint(
     law: Option<WallLaw>,
     progress: &mut dyn FnMut(f64),
 ) -> Joint {
-    let mut all: Vec<Observation> = parts.iter().flat_map(|p| p.observations.iter().copied()).collect();
+    let all: Vec<Observation> = parts.iter().flat_map(|p| p.observations.iter().copied()).collect();
     let (earlier, _) = parts.split_at(parts.len().saturating_sub(1));
-    let mut earlier: Vec<EarlierPart> = earlier.iter().map(|p| EarlierPart::new(p.observations.len())).collect();
-    let needed = path.working().len() + 1;
-    let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
-    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
-    let asked =
+    let earlier: Vec<EarlierPart> = earlier.iter().map(|p| EarlierPart::new(p.observations.len())).collect();
+    let points = Points { earlier: &earlier, observations: &all };
+    let law = law.or(asked(pass.core.job.force.model));
+    let by_program =
         |part: usize, sample: usize| parts.get(part).map_or(Vector::ZERO, |p| commanded(path, &p.nodes, sample));
-    let mut share = |permille| progress(f64::from(permille) / 1000.0);
-    let law = law.or(match pass.core.job.force.model {
-        ForceModel::Auto => None,
-        ForceModel::Mean => Some(WallLaw::Mean),
-        ForceModel::Helical => Some(WallLaw::Helical),
-    });
-    let (law, prior, fit) = match law {
-        None => {
-            let around = |law| pass.core.prior(law);
-            identify_law_parts(path, around, &mut earlier, &mut all, asked, &mut workspace, &mut share)
-        }
-        Some(law) => {
-            let prior = pass.core.prior(law);
-            let path = path.with_law(law);
-            let fit = identify_parts(&path, &prior, &mut earlier, &mut all, asked, &mut workspace, &mut share);
-            (law, prior, fit)
-        }
-    };
+    let Found { core, earlier, observations: all } = found(&pass.core, path, law, points, by_program, progress);
+    let job::Identified { prior, fit, .. } = &core;
     let mut rest = all.into_iter();
     let observations = parts.iter().map(|p| rest.by_ref().take(p.observations.len()).collect()).collect();
     let [.., sigma_x, sigma_y] = prior.sigma.map(float);
     let shares = |d: Vector| [mm(d.x) / sigma_x.max(1e-9), mm(d.y) / sigma_y.max(1e-9)];
     let last = [fit.parameters.datum];
-    let datums = earlier.iter().map(|part| part.datum(&prior)).chain(last).take(parts.len()).map(shares).collect();
-    Joint { core: job::Identified { law, prior, fit }, observations, datums }
+    let datums = earlier.iter().map(|part| part.datum(prior)).chain(last).take(parts.len()).map(shares).collect();
+    Joint { core, observations, datums }
 }

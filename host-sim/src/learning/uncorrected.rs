@@ -62,8 +62,15 @@ pub(crate) fn refuse_corrected(pass: &Pass, path: &Path, history: &History, new:
         nodes.iter().any(|node| *node != Node::default())
     };
     let known = history.parts.iter().find(|part| part.probe_crc32 == new.probe_crc32);
-    if let Some(part) = known.filter(|part| is_corrected(part)) {
-        return refused(format!("this probe file is that of part {}, which was cut with a correction", part.number));
+    if let Some(part) = known {
+        if is_corrected(part) {
+            return refused(format!(
+                "this probe file is that of part {}, which was cut with a correction",
+                part.number
+            ));
+        }
+        // The same points, corrected once more: their history says that the program itself has cut them.
+        return Ok(());
     }
     let given = Part { correction: Some(history.next.correction.clone()), ..new.clone() };
     let known: Option<Vec<PartPoints>> =
