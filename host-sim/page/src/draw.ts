@@ -29,8 +29,6 @@ type Context = CanvasRenderingContext2D;
 const MARGIN = 60;
 
 export function drawStill(c: Context, view: View, picture: Picture, colours: Palette): void {
-  c.fillStyle = colours.ground;
-  c.fillRect(0, 0, view.width, view.height);
   gridLines(c, view, colours);
   const { model } = picture;
   c.lineJoin = "round";

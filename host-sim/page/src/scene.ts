@@ -17,6 +17,9 @@ export interface SceneEvents {
   toggle(): void;
 }
 
+/** Two scenes share one view and may differ by a pixel in size: so many more are cleared. */
+const BESIDE = 2;
+
 export class Scene {
   readonly element: HTMLElement;
   readonly caption: HTMLElement;
@@ -61,6 +64,8 @@ export class Scene {
 
   drawStill(picture: Picture, colours: Palette): void {
     const context = this.context(this.still);
+    context.fillStyle = colours.ground;
+    context.fillRect(0, 0, this.view.width + BESIDE, this.view.height + BESIDE);
     drawStill(context, this.view, picture, colours);
     // On a screen that is touched the page scrolls over a picture that is seen whole; a part of it moves under the finger.
     this.stage.style.touchAction = this.view.fitted ? "pan-y" : "none";
@@ -70,7 +75,7 @@ export class Scene {
   drawMoving(picture: Picture, colours: Palette, place: number, largestForce: number, hovered: number | null): void {
     // On paper canvases are replayed as strokes, and clearing one would take away what lies below it.
     const context = this.context(this.paper ? this.still : this.moving);
-    if (!this.paper) context.clearRect(0, 0, this.view.width, this.view.height);
+    if (!this.paper) context.clearRect(0, 0, this.view.width + BESIDE, this.view.height + BESIDE);
     drawMoving(context, this.view, picture, colours, place, largestForce, hovered);
   }
 

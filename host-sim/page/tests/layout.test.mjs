@@ -15,6 +15,25 @@ test("side by side both pictures stand at one height, whatever their captions sa
   }
 });
 
+test("side by side no column of an older picture is left standing", async () => {
+  for (const width of [1440, 1441, 1442, 1443]) {
+    const { page, close } = await open(await report("demo/pocket"), { viewport: { width, height: 900 } });
+    await page.click('label[for="shown-both"]');
+    await page.fill("#scrub", "620");
+    await page.locator(".stage:visible").first().focus();
+    for (let k = 0; k < 6; k++) await page.keyboard.press("+");
+    // Inside the pocket nothing is drawn but the grid, and its lines have one colour along the edge.
+    const left = await page.locator(".stage:visible").evaluateAll((all) => all.flatMap((stage) => [...stage.querySelectorAll("canvas")].map((canvas, layer) => {
+      const [from, high] = [Math.round(canvas.height * 0.3), Math.round(canvas.height * 0.4)];
+      const { data } = canvas.getContext("2d").getImageData(canvas.width - 1, from, 1, high);
+      const drawn = (k) => (layer === 0 ? data[4 * k] < 200 || data[4 * k] - data[4 * k + 2] > 20 : data[4 * k + 3] > 0);
+      return Array.from({ length: high }, (_, k) => k).filter(drawn).length;
+    })));
+    assert.deepEqual(left, [0, 0, 0, 0], `${width}`);
+    await close();
+  }
+});
+
 test("no figure of a trace and no control of the cutter is cut off in a narrow column", async () => {
   for (const width of [965, 1024, 1200]) {
     const { page, close } = await open(await report("demo/pocket"), { viewport: { width, height: 768 } });
