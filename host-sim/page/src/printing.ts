@@ -23,22 +23,20 @@ function sheets(report: Report): HTMLStyleElement {
 
 /** Room on a sheet between its margins, of A4 and Letter the smaller, in pixels of the style sheet. */
 const SHEET = 940;
-/** Height of a trace on paper with its head, of what stands around all of them, and of a picture. */
-const TRACE = 60;
-const AROUND = 70;
-const PICTURE = { least: 220, most: 440 };
+/** Height of a trace on paper with its head: enough for three numbers on its axis. */
+const TRACE = 92;
+/** Height of a picture there. */
+const PICTURE = { least: 220, most: 560 };
 
-/** Pictures as high as the first sheet has room for: below head and figures, with what belongs to them, with the traces and what little follows them where that fits. */
-function pictureHeight(stage: Stage, traces: Traces | null): number {
+/** Pictures as high as the first sheet has room for, below head and figures and with what belongs to them. */
+function pictureHeight(stage: Stage): number {
   const high = (element: Element | null | undefined) => element?.getBoundingClientRect().height ?? 0;
-  const [picture, beside] = [stage.element.closest(".picture"), document.querySelector(".beside")];
+  const picture = stage.element.closest(".picture");
   const all = [...stage.element.querySelectorAll(".stage")].map(high).filter((height) => height > 0);
   if (!picture || all.length === 0) return PICTURE.most;
   const above = picture.getBoundingClientRect().top - document.body.getBoundingClientRect().top;
-  const room = SHEET - above - (high(picture) - all.reduce((a, b) => a + b)) - high(beside?.querySelector("#statements"));
-  const each = (left: number) => Math.min(PICTURE.most, Math.floor(left / all.length));
-  const withTraces = traces ? each(room - TRACE * traces.count - AROUND - high(document.querySelector(".below.alone"))) : 0;
-  return withTraces >= PICTURE.least ? withTraces : Math.max(PICTURE.least, each(room));
+  const room = SHEET - above - (high(picture) - all.reduce((a, b) => a + b)) - high(document.querySelector(".beside #statements"));
+  return Math.max(PICTURE.least, Math.min(PICTURE.most, Math.floor(room / all.length)));
 }
 
 export function printing(report: Report, stage: Stage, store: Store, traces: Traces | null, recolour: () => void, both: boolean): void {
@@ -53,10 +51,11 @@ export function printing(report: Report, stage: Stage, store: Store, traces: Tra
     store.set({ playing: false, range: null, ...(both ? { shown: "both" } : {}) });
     for (const details of document.querySelectorAll<HTMLDetailsElement>("details.warnings")) details.open = true;
     stage.view.fit();
-    root.style.setProperty("--paper-stage", `${pictureHeight(stage, traces)}px`);
+    root.style.setProperty("--paper-stage", `${pictureHeight(stage)}px`);
     stage.layout(3);
     recolour();
     traces?.resize(TRACE - 20);
+    traces?.place(store.state.place);
     stage.layout(3);
   });
   window.addEventListener("afterprint", () => {

@@ -24,6 +24,9 @@ export interface TraceEvents {
 export class Traces {
   private shown: Shown[] = [];
   private quiet = false;
+  private axis: HTMLElement | null = null;
+  /** The arc length shown, mm. */
+  private stretch: [number, number] = [0, 1];
 
   constructor(private readonly element: HTMLElement, private readonly model: Model, private readonly events: TraceEvents) {}
 
@@ -36,6 +39,7 @@ export class Traces {
     const axis = document.createElement("p");
     axis.className = "axis";
     axis.textContent = "arc length s, mm";
+    this.axis = axis;
     this.element.append(axis);
     this.place(state.place);
   }
@@ -48,11 +52,14 @@ export class Traces {
   /** Moves the playheads and the figures beside the titles. */
   place(place: number, figures = true): void {
     const s = between(this.model.s.values, place);
-    for (const { plot, panel, values, playhead } of this.shown) {
-      const px = plot.valToPos(s, "x");
-      const inside = px >= 0 && px <= plot.over.clientWidth;
-      playhead.style.display = inside ? "" : "none";
-      playhead.style.transform = `translateX(${px.toFixed(2)}px)`;
+    // Paper has no table of the figures at the cutter: what stands beside the traces says where it is of.
+    if (figures && this.axis) this.axis.dataset.at = fixed(this.model.s.values[Math.round(place)], 3);
+    // As a share of the width: a plot just built or resized does not know its own yet.
+    const [from, to] = this.stretch;
+    const share = (s - from) / (to - from);
+    for (const { panel, values, playhead } of this.shown) {
+      playhead.style.display = share >= 0 && share <= 1 ? "" : "none";
+      playhead.style.transform = `translateX(${(100 * share).toFixed(3)}%)`;
       if (figures) panel.curves.forEach((curve, i) => {
         const text = fixed(curve.series.values[Math.round(place)], curve.series.decimals);
         if (values[i].textContent !== text) values[i].textContent = text;
@@ -63,6 +70,7 @@ export class Traces {
   zoom(range: [number, number] | null): void {
     const s = this.model.s.values;
     const [min, max] = range ?? [s[0], s[s.length - 1]];
+    this.stretch = [min, max];
     this.quiet = true;
     for (const { plot } of this.shown) plot.setScale("x", { min, max });
     this.quiet = false;
@@ -126,6 +134,7 @@ export class Traces {
   private options(panel: Panel, state: State, colours: Palette, height: number, last: boolean): uPlot.Options {
     const s = this.model.s.values;
     const [min, max] = state.range ?? [s[0], s[s.length - 1]];
+    this.stretch = [min, max];
     const font = `11px ${colours.font}`;
     const axis = { stroke: colours.quiet, font, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false } };
     const series: uPlot.Series[] = [{}];

@@ -54,6 +54,31 @@ test("verdict and figures stand in two rows and leave the first screen to the pi
   await close();
 });
 
+test("on paper the traces say where their figures are of, and have numbers on every axis", async () => {
+  const { page, close } = await open(await report("demo/pocket"));
+  await page.evaluate(() => {
+    globalThis.written = new Map();
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function kept(text, x, y) {
+      const trace = [...document.querySelectorAll(".trace canvas")].indexOf(this.canvas);
+      if (trace >= 0) globalThis.written.set(trace, [...(globalThis.written.get(trace) ?? []), [text, x]]);
+      fillText.call(this, text, x, y);
+    };
+  });
+  await page.fill("#scrub", "620");
+  const numbersOf = await page.evaluate(async () => {
+    window.dispatchEvent(new Event("beforeprint"));
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    return [...globalThis.written.values()].map((all) => new Set(all.map(([text]) => text)).size);
+  });
+  assert.equal(numbersOf.length, 7);
+  for (const count of numbersOf) assert.ok(count >= 3, `${numbersOf}`);
+  assert.equal(await page.locator(".axis").evaluate((e) => getComputedStyle(e, "::before").content.replaceAll('"', "").replace("attr(data-at)", e.dataset.at)), "figures at s 61.983 mm");
+  assert.ok(await page.locator(".playhead").first().isVisible());
+  await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
+  await close();
+});
+
 for (const name of ["correct", "demo/corner", "simulate-core"]) {
   test(`${name} on paper: the first sheet holds head, figures and the pictures`, async () => {
     const { page, close } = await open(await report(name));

@@ -223,6 +223,27 @@ test("keys zoom and move the traces, and while playing their stretch turns with 
   await close();
 });
 
+test("the line of the cutter in the traces stays when another pass, another theme or paper is asked for", async () => {
+  const { page, close } = await pocket();
+  await page.fill("#scrub", "966");
+  const middle = () => page.locator(".playhead").evaluateAll((all) => all.map((line) => {
+    const [at, within] = [line, line.parentElement].map((e) => e.getBoundingClientRect());
+    return at.width > 0 && Math.abs((at.left - within.left) / within.width - 0.5) < 0.01;
+  }));
+  for (const change of ['label[for="shown-after"]', 'label[for="shown-both"]', "#theme"]) {
+    await page.click(change);
+    assert.deepEqual(await middle(), Array(7).fill(true), change);
+  }
+  await page.setViewportSize({ width: 1200, height: 900 });
+  await page.waitForFunction(() => document.querySelector(".u-over").clientWidth < 460);
+  assert.deepEqual(await middle(), Array(7).fill(true), "another width");
+  await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+  assert.deepEqual(await middle(), Array(7).fill(true), "paper");
+  await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
+  await page.setViewportSize({ width: 1440, height: 900 });
+  await close();
+});
+
 test("the picture follows the cutter when told to", async () => {
   const { page, close } = await pocket();
   await page.locator(".stage:visible").focus();
