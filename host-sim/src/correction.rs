@@ -120,8 +120,28 @@ pub fn corrected(
     wish: &Wish,
     mut progress: impl FnMut(f64),
 ) -> Result<Correction, Failure> {
-    let path = machine.path;
     let wanted = pass.job.numbers.design(wish.law);
+    let correction = made(machine, identified, wanted, wish, &mut progress);
+    job::check_clamp(&pass.job.numbers, machine.path, &correction.nodes).map_err(|error| pass.refused(&error))?;
+    progress(1.0);
+    Ok(correction)
+}
+
+/// What a correction that a part was cut with does, as the machine is known now: nothing of it is taken back.
+pub fn foretold(pass: &Pass, machine: &Loop, identified: &Identified, nodes: &[Node], wish: &Wish) -> Correction {
+    let wanted = Design { max_gouge: None, ..pass.job.numbers.design(wish.law) };
+    made(machine, identified, wanted, &Wish { kept: Some(nodes), ..*wish }, &mut |_| ())
+}
+
+/// A correction by its design and wish.
+fn made(
+    machine: &Loop,
+    identified: &Identified,
+    wanted: Design,
+    wish: &Wish,
+    progress: &mut dyn FnMut(f64),
+) -> Correction {
+    let path = machine.path;
     let count = path.count();
     let mut buffers = Buffers::of(path);
     let mut workspace = buffers.workspace(wish.residual);
@@ -146,13 +166,11 @@ pub fn corrected(
         }),
     };
     let damped = made.damped;
-    job::check_clamp(&pass.job.numbers, path, &nodes).map_err(|error| pass.refused(&error))?;
     for (sigma, more) in sigma.iter_mut().zip(wish.residual_sigma) {
         *sigma = hypot_nm(*sigma, *more);
     }
-    progress(1.0);
     let used_again = wish.kept.is_some();
-    Ok(Correction { nodes, unguarded, predicted, sigma, damped, used_again, wanted, passage })
+    Correction { nodes, unguarded, predicted, sigma, damped, used_again, wanted, passage }
 }
 
 /// Memory of a design.

@@ -139,13 +139,41 @@ export interface Result {
   note?: string;
 }
 
+/** A run of cutting moves of the program. */
+export interface ProgramCut {
+  /** "finish", "spring", "semi", "rough", "other tool". */
+  role: string;
+  first_line: number;
+  last_line: number;
+  tool?: number | null;
+  z_mm?: number | null;
+  length_mm: number;
+  closed: boolean;
+  /** Why it has its role. */
+  why: string;
+  /** Shown here; given the same correction; left as it is; not the business of this command. */
+  became: "shown" | "corrected" | "unchanged" | "elsewhere";
+}
+
+/** The part program; of one with several cuts, which of them the page shows and what became of the others. */
+export interface Program {
+  name: string;
+  crc32?: string;
+  /** The cut that is shown, and why that one. */
+  shown?: string;
+  why?: string;
+  other_features?: string[];
+  cuts?: ProgramCut[];
+  cuts_left_out?: number;
+}
+
 export interface Report {
   version: 1;
   kind: "simulate" | "correct" | "learn" | "inspect";
   title: string;
   /** Program of this page, such as "truepath 1.0.0". */
   by?: string;
-  program?: { name: string; crc32?: string };
+  program?: Program;
   job?: {
     wall?: "left" | "right";
     milling?: "climb" | "conventional";

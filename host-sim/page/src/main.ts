@@ -10,7 +10,7 @@ import { part, signature, statements } from "./inspection";
 import { limitsOf } from "./limits";
 import { Model } from "./model";
 import { palette } from "./palette";
-import { head, job, parameters, points, results } from "./panels";
+import { head, job, parameters, points, program, results } from "./panels";
 import { Player } from "./player";
 import { placeText, Readout } from "./readout";
 import { Stage } from "./stage";
@@ -73,7 +73,10 @@ function show(report: Report, main: HTMLElement): void {
   const factor = (shown: Shown): number => {
     const seen = passes.filter((pass) => compared.includes(pass) || pass.name === shown);
     const errors = seen.map((pass) => largest(pass.series.error_mm?.values));
-    return fittingFactor(Math.max(...errors, largest(report.points?.map((p) => p.error_mm ?? 0))), Math.min(x1 - x0, y1 - y0));
+    const size = Math.min(x1 - x0, y1 - y0);
+    // The commanded path stays near the part, also where little is left of a large correction.
+    const room = Math.max(...seen.map((pass) => largest(pass.correction?.across)), 0) / 4;
+    return fittingFactor(Math.max(...errors, largest(report.points?.map((p) => p.error_mm ?? 0)), room), size);
   };
   let fitting = factor(store.state.shown);
   store.state.magnify = fitting;
@@ -121,7 +124,7 @@ function show(report: Report, main: HTMLElement): void {
       if (passes.length > 1 && store.state.shown !== "both") store.set({ shown: stage.touched });
       stage.showPoint(index);
       picture.scrollIntoView({ block: "nearest" });
-    }) : null].filter((block) => block !== null);
+    }) : null, report.program ? program(report.program) : null].filter((block) => block !== null);
   const side = [readout?.element, beside?.contains(facts) ? null : facts].filter((block) => block);
   const below = el("div", { class: side.length && wide.length ? "below" : "below alone" },
     side.length ? el("div", { class: "side" }, ...side) : null, wide.length ? el("div", { class: "wide" }, ...wide) : null);

@@ -1,6 +1,6 @@
 /** The blocks in words and figures: head, results, job, parameters, probe points, warnings. */
 
-import type { Parameter, ProbePoint, Report } from "./data";
+import type { Parameter, ProbePoint, Program, Report } from "./data";
 import { card, el, table } from "./dom";
 import { decimalsFor, fixed, NO_VALUE, signed, withUnit } from "./format";
 import { decimalsTelling, limitDecimals, limitsOf, limitsText, standing, verdictWord, type Limits } from "./limits";
@@ -12,7 +12,7 @@ const KINDS = { simulate: "simulated pass", correct: "correction", learn: "corre
 export function head(report: Report, tools: HTMLElement): Node[] {
   const source = [
     KINDS[report.kind], report.program?.name,
-    report.program?.crc32 ? `CRC-32 ${report.program.crc32}` : undefined, report.by,
+    report.program?.crc32 ? `CRC-32 ${report.program.crc32}` : undefined, report.program?.shown, report.by,
   ].filter((v) => v !== undefined).join(" · ");
   return [el("div", { class: "title" }, el("h1", {}, report.title), el("p", { class: "source" }, source)), warnings(report), tools];
 }
@@ -59,6 +59,24 @@ export function job(report: Report): HTMLElement | null {
   const known = rows.filter((row): row is [string, string] => row[1] !== undefined);
   if (known.length === 0) return null;
   return card("job", "Job", el("dl", { class: "facts" }, ...known.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)])));
+}
+
+/** Which of the cuts of a program the page shows, and what became of the others. */
+export function program(of: Program): HTMLElement | null {
+  const { cuts = [], other_features: features = [], cuts_left_out: left = 0 } = of;
+  if (cuts.length === 0) return null;
+  const words = { shown: "this page", corrected: "same correction", unchanged: "stays as it is", elsewhere: NO_VALUE };
+  const rows = cuts.map((cut) => {
+    const lines = cut.first_line === cut.last_line ? String(cut.first_line) : `${cut.first_line}–${cut.last_line}`;
+    const became = cut.became === "shown" ? el("strong", {}, words.shown) : words[cut.became];
+    return [lines, cut.role, cut.tool == null ? NO_VALUE : `T${cut.tool}`, fixed(cut.z_mm ?? undefined, 3), fixed(cut.length_mm, 3),
+      cut.closed ? "closed" : "open", became, cut.why];
+  });
+  const notes = [of.shown && of.why ? `${of.shown}: ${of.why}.` : "",
+    features.length ? `Other features of the program, each with a report of its own: ${features.join(", ")}.` : "",
+    left ? `${left} more cuts are in summary.json.` : ""].filter(Boolean);
+  return card("program", `Cuts of the program: ${cuts.length + left}`, ...notes.map((text) => el("p", { class: "at" }, text)),
+    table("Cuts of the program", ["lines", "cut", "tool", "Z mm", "length mm", "path", "outcome", "why"], rows, [0, 1, 2, 5, 6, 7]));
 }
 
 export function parameters(list: Parameter[]): HTMLElement {

@@ -23,11 +23,14 @@ export class Readout {
 
   constructor(private readonly model: Model) {
     const { passes } = model;
+    // Three columns of figures leave no room for one of units.
+    const narrow = passes.length > 2;
     const body = el("tbody");
     const add = (key: Quantity | "cx" | "cy", title: string, unit: string, count: number) => {
       const cells = Array.from({ length: count }, () => el("td", { class: "number" }));
       if (count < passes.length) cells[0].colSpan = passes.length;
-      body.append(el("tr", {}, el("th", { scope: "row", class: "text" }, title), ...cells, el("td", { class: "text unit" }, unit)));
+      body.append(el("tr", {}, el("th", { scope: "row", class: "text" }, title, narrow ? el("span", { class: "unit" }, ` ${unit}`) : null), ...cells,
+        narrow ? null : el("td", { class: "text unit" }, unit)));
       this.cells.push([key, cells]);
     };
     for (const [quantity, title, unit] of ROWS) {
@@ -41,8 +44,8 @@ export class Readout {
     }
     this.place = el("p", { class: "at" });
     const heads = [el("th", { scope: "col", class: "text" }, "quantity"), ...passes.map((pass) => el("th", { scope: "col", class: "number" }, passes.length > 1 ? pass.title : "value")),
-      el("th", { scope: "col", class: "text" }, "unit")];
-    this.element = el("section", { class: "card", id: "readout", "aria-labelledby": "readout-title" },
+      ...(narrow ? [] : [el("th", { scope: "col", class: "text" }, "unit")])];
+    this.element = el("section", { class: narrow ? "card narrow" : "card", id: "readout", "aria-labelledby": "readout-title" },
       this.title, this.place,
       el("table", {}, el("thead", {}, el("tr", {}, ...heads)), body));
   }
@@ -82,14 +85,18 @@ export function flagLines(model: Model, index: number, height: number | null): [
   for (const pass of model.passes) {
     const error = model.error(pass.name, height);
     if (error) lines.push([model.of("error", pass), Number.isNaN(error[index]) ? NO_VALUE : `${signed(error[index], pass.series.error_mm?.decimals ?? 6)} mm`]);
+    if (!model.compared.includes(pass)) continue;
     const { sigma_mm: sigma, force_n: force, arc_deg: arc } = pass.series;
     if (sigma) lines.push(["± σ", `${fixed(sigma.values[index], sigma.decimals)} mm`]);
     if (force) lines.push([model.of("force", pass), `${fixed(force.values[index], force.decimals)} N`]);
-    if (arc && pass === model.passes[0]) lines.push(["arc", `${fixed(arc.values[index], arc.decimals)}°`]);
+    if (arc && pass === model.compared[0]) lines.push(["arc", `${fixed(arc.values[index], arc.decimals)}°`]);
   }
-  if (model.correction) {
-    const { x, y } = model.correction;
-    lines.push(["correction x, y", `${signed(x.values[index], x.decimals)}, ${signed(y.values[index], y.decimals)} mm`]);
+  const corrected = model.passes.filter((pass) => pass.correction);
+  const corrections = corrected.length > 1 ? corrected.map((pass) => [`correction, ${pass.title}`, pass.correction] as const) : [["correction x, y", model.correction] as const];
+  for (const [name, correction] of corrections) {
+    if (!correction) continue;
+    const { x, y } = correction;
+    lines.push([name, `${signed(x.values[index], x.decimals)}, ${signed(y.values[index], y.decimals)} mm`]);
   }
   return lines;
 }

@@ -6,6 +6,7 @@ import "./deep.test.mjs";
 import "./touch.test.mjs";
 import "./layout.test.mjs";
 import "./cutter.test.mjs";
+import "./learn.test.mjs";
 import "./page.test.mjs";
 import "./partial.test.mjs";
 import "./inspection.test.mjs";

@@ -40,7 +40,8 @@ async function hovered(page, rows, check) {
 /** The figures in words and digits at the cutter, by name: one for each pass. */
 async function readout(page) {
   const rows = await page.locator("#readout tbody tr").evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
-  return Object.fromEntries(rows.map(([name, ...cells]) => [name, cells]));
+  // Beside three passes the unit stands with the name.
+  return Object.fromEntries(rows.map(([name, ...cells]) => [name.replace(/ (mm|mm²|mm\/min|N|°)$/, ""), cells]));
 }
 
 const QUANTITIES = {
@@ -73,25 +74,28 @@ for (const name of ["simulate-core", "simulate-plant", "island"]) {
   });
 }
 
-for (const name of ["correct", "learn"]) {
+/** What the passes of a page are called under the pointer, and the columns at the cutter that show correction.csv. */
+const CALLED = { correct: [" before", " after", 0, 1, 0], learn: [", uncorrected", ", part 3", 0, 2, 2] };
+
+for (const [name, [before, after, first, last, own]] of Object.entries(CALLED)) {
   test(`${name}: pointer and figures at the cutter show correction.csv`, async () => {
     const rows = await table(`${name}/correction.csv`);
     const { page, complaints, close } = await open(await report(name));
     await hovered(page, rows, (shown, row) => {
-      same(shown["error before"], rows.predicted_error_before_mm[row], `error before in row ${row}`);
-      same(shown["error after"], rows.predicted_error_after_mm[row], `error after in row ${row}`);
+      same(shown[`error${before}`], rows.predicted_error_before_mm[row], `error before in row ${row}`);
+      same(shown[`error${after}`], rows.predicted_error_after_mm[row], `error after in row ${row}`);
       same(shown["± σ"], rows.sigma_mm[row], `sigma in row ${row}`);
-      const [cx, cy] = shown["correction x, y"].split(",");
+      const [cx, cy] = (shown["correction x, y"] ?? shown[`correction${after}`]).split(",");
       same(cx, rows.dx_mm[row], `correction x in row ${row}`);
       same(cy, rows.dy_mm[row], `correction y in row ${row}`);
     });
     for (let i = 5; i < rows.s_mm.length; i += 211) {
       await page.fill("#scrub", String(i));
       const shown = await readout(page);
-      same(shown["wall error"][0], rows.predicted_error_before_mm[i], `error before in row ${i}`);
-      same(shown["wall error"][1], rows.predicted_error_after_mm[i], `error after in row ${i}`);
-      same(shown["correction x"][0], rows.dx_mm[i], `correction x in row ${i}`);
-      same(shown["correction y"][0], rows.dy_mm[i], `correction y in row ${i}`);
+      same(shown["wall error"][first], rows.predicted_error_before_mm[i], `error before in row ${i}`);
+      same(shown["wall error"][last], rows.predicted_error_after_mm[i], `error after in row ${i}`);
+      same(shown["correction x"][own], rows.dx_mm[i], `correction x in row ${i}`);
+      same(shown["correction y"][own], rows.dy_mm[i], `correction y in row ${i}`);
     }
     assert.deepEqual(complaints, []);
     await close();

@@ -58,12 +58,13 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
 }
 
 fn words(s: &LearnSummary) -> String {
-    let v = &s.verdict;
+    let (v, whole) = (&s.verdict, &s.whole_contour_error_mm);
     let mut text = format!(
         "part {} at {} places, error of the target      largest      rms\n\
          \x20 measured                           {:>12.4} {:>8.4} mm\n\
          \x20 part {} there                       {:>12.4} {:>8.4} mm\n\
-         \x20 promised                           {:>12.4}          mm, {} of {} places within 2 sigma\n",
+         \x20 promised                           {:>12.4}          mm, {} of {} places within 2 sigma\n\
+         \x20 whole contour, by the model        {:>12.4}          mm, at s = {:.1} mm, sigma {:.4} mm\n",
         v.part,
         v.measured_error_mm.places,
         v.measured_error_mm.max_mm,
@@ -74,6 +75,9 @@ fn words(s: &LearnSummary) -> String {
         v.promise.max_mm,
         v.promise.within_two_sigma,
         v.promise.places,
+        whole.max_mm,
+        whole.s_mm,
+        whole.sigma_mm,
     );
     if let Some(held) = &v.holdout_residual_mm {
         text += &format!(

@@ -7,6 +7,7 @@ use truepath_core::cut::Path;
 use truepath_core::job;
 use truepath_core::units::Offset;
 
+use super::correction_files::{FILES, HISTORY, write};
 use super::doubts::{cut_corrected, doubts, kinked, misread};
 use super::feeds;
 use super::levels::{self, Levels};
@@ -25,34 +26,8 @@ use crate::pass::{Pass, PathBuffer};
 use crate::program::{BlockEdit, Origin, RewriteOptions, Rewritten, first_pass_of, rewrite_program};
 use crate::report::page::render;
 use crate::report::{
-    CorrectSummary, block_edits, correct_summary, correction_csv, correction_rows, json, mm, points_csv, wall_csv,
+    CorrectSummary, block_edits, correct_summary, correction_csv, correction_rows, json, mm, wall_csv,
 };
-
-/// The parts so far; see [`learning`](crate::learning).
-pub(super) const HISTORY: &str = "history.json";
-/// Files this command may write.
-pub(super) const FILES: &[&str] = &[
-    HISTORY,
-    "corrected.nc",
-    "difference.txt",
-    "correction.tpi",
-    "correction.csv",
-    "wall.csv",
-    "points.csv",
-    "summary.json",
-    "correction.svg",
-    REPORT,
-    "probe-raw.txt",
-    "first-pass-surface.csv",
-    "correction-pass-1.tpi",
-    "correction-pass-2.tpi",
-    "correction-pass-3.tpi",
-    "correction-pass-4.tpi",
-    "correction-pass-5.tpi",
-    "correction-pass-6.tpi",
-    "correction-pass-7.tpi",
-    "correction-pass-8.tpi",
-];
 
 /// What is corrected.
 #[derive(Clone, Debug)]
@@ -86,6 +61,8 @@ pub struct Corrected {
     pub schedule: Option<Schedule>,
     /// Wall error beside the model, one entry per sample of the contour; empty where none is known.
     pub residual: Vec<Offset>,
+    /// Its standard deviation, the same way.
+    pub residual_sigma: Vec<Offset>,
     /// The summary.
     pub summary: CorrectSummary,
     /// The corrected program, when that is a route.
@@ -190,8 +167,19 @@ pub(super) fn design(
     let tables = [correction_csv(&rows)?, wall_csv(&rows)?];
     let picture = crate::plot::predicted_error(&crate::plot::View::default(), &rows, &[])?;
     progress(1.0);
-    let (schedule, residual) = (feeds.schedule, wish.residual.to_vec());
-    Ok(Corrected { identified, correction, schedule, residual, summary, program, image, other_images, tables, picture })
+    Ok(Corrected {
+        identified,
+        correction,
+        schedule: feeds.schedule,
+        residual: wish.residual.to_vec(),
+        residual_sigma: wish.residual_sigma.to_vec(),
+        summary,
+        program,
+        image,
+        other_images,
+        tables,
+        picture,
+    })
 }
 
 /// Corrects and writes the outputs.
@@ -252,30 +240,6 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     folder.write(REPORT, &render(&page::corrected(&pass, &measurement, &done, points)?)?)?;
     folder.commit()?;
     Ok(done.summary)
-}
-
-/// Writes what a correction in memory holds beside its summary.
-pub(super) fn write(
-    folder: &OutputFolder,
-    pass: &Pass,
-    measurement: &Measurement,
-    done: &Corrected,
-) -> Result<(), Failure> {
-    if let Some(text) = &done.program {
-        folder.write("corrected.nc", text)?;
-        folder.write("difference.txt", done.summary.difference(pass.program.name()).as_bytes())?;
-    }
-    if let Some(bytes) = &done.image {
-        folder.write("correction.tpi", bytes)?;
-    }
-    for (number, bytes) in &done.other_images {
-        folder.write(&format!("correction-pass-{number}.tpi"), bytes)?;
-    }
-    folder.write("correction.csv", &done.tables[0])?;
-    folder.write("wall.csv", &done.tables[1])?;
-    folder.write("points.csv", &points_csv(measurement, &done.identified.observations)?)?;
-    folder.write("correction.svg", &done.picture)?;
-    Ok(())
 }
 
 fn corrected_program(pass: &Pass, probe: u32, edits: &[BlockEdit]) -> Result<Rewritten, Failure> {

@@ -6,7 +6,9 @@ use truepath_core::checksum::crc32;
 use truepath_core::correct::Law;
 use truepath_core::job::LawName;
 
-use super::correct::{Corrected, FILES, HISTORY, design, write};
+use super::as_milled::{AsMilled, WholeContour};
+use super::correct::{Corrected, design};
+use super::correction_files::{FILES, HISTORY, MILLED, write};
 use super::page::{REPORT, learned};
 use super::remarks::Remarks;
 use crate::correction::{Identified, Wish};
@@ -17,7 +19,7 @@ use crate::measurement::Measurement;
 use crate::output::OutputFolder;
 use crate::pass::{Pass, PathBuffer};
 use crate::report::page::render;
-use crate::report::{CorrectSummary, json};
+use crate::report::{CorrectSummary, correction_csv, json};
 
 /// What is learned from.
 #[derive(Clone, Debug)]
@@ -60,6 +62,8 @@ pub struct LearnSummary {
     /// Of the part that was measured.
     #[serde(flatten)]
     pub verdict: Verdict,
+    /// The part that was measured, along the whole contour, as the model of all parts has it.
+    pub whole_contour_error_mm: WholeContour,
 }
 
 /// Learns from the part that was cut with the history's correction, in memory, for one or both routes.
@@ -155,12 +159,18 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
         }
         failure => failure,
     })?;
-    let page = learned(&pass, &measurement, &done.corrected, &done.verdict)?;
-    let summary = LearnSummary { correct: done.corrected.summary.clone(), verdict: done.verdict };
+    let milled = AsMilled::of(&pass, &history, &done.corrected)?;
+    let summary = LearnSummary {
+        correct: done.corrected.summary.clone(),
+        verdict: done.verdict,
+        whole_contour_error_mm: milled.whole_contour(),
+    };
+    let page = learned(&pass, &measurement, &done.corrected, &milled, &summary)?;
     folder.write("probe-raw.txt", file.bytes())?;
     folder.write("summary.json", &json(&summary)?)?;
     folder.write(HISTORY, &done.history.text()?)?;
     write(&folder, &pass, &measurement, &done.corrected)?;
+    folder.write(MILLED, &correction_csv(&milled.rows)?)?;
     folder.write(REPORT, &render(&page)?)?;
     folder.commit()?;
     Ok(summary)

@@ -1,11 +1,13 @@
 //! What the commands do, apart from how they are called (`cli`) and printed.
 
+pub mod as_milled;
 pub mod bore;
 mod bore_error;
 mod bore_files;
 mod bore_summary;
 pub mod compare;
 pub mod correct;
+mod correction_files;
 pub mod demo;
 pub mod device;
 mod doubts;

@@ -7,7 +7,7 @@
 
 use std::path::Path as FilePath;
 
-use super::correct::HISTORY;
+use super::correction_files::HISTORY;
 use crate::diagnostics::{Failure, Source};
 use crate::learning::{History, Part, refuse_corrected};
 use crate::measurement::Measurement;

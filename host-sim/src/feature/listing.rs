@@ -62,6 +62,9 @@ pub struct FeatureSummary {
     pub passes: Vec<PassRow>,
     /// Passes whose correction was written; empty where nothing is corrected.
     pub passes_corrected: Vec<u32>,
+    /// Names of the other features of the program; each of them is a correction of its own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub other_features: Vec<String>,
     /// What else lies in the program, or on the lines of the feature.
     pub candidates: Vec<Row>,
 }
@@ -133,14 +136,55 @@ pub(super) fn listed<'r>(rows: impl Iterator<Item = &'r Row>) -> String {
     text
 }
 
+impl FeatureSummary {
+    /// What it is called in sentences.
+    fn name(&self) -> String {
+        self.id.as_ref().map_or_else(|| "the finishing contour".to_owned(), |id| format!("feature \"{id}\""))
+    }
+
+    /// Its finishing passes.
+    fn finishing(&self) -> impl Iterator<Item = &PassRow> {
+        self.passes.iter().filter(|p| p.role == "finish")
+    }
+
+    /// The pass that was simulated, inspected or corrected, among how many, and where it is.
+    pub fn in_words(&self) -> String {
+        let mut text = self.name();
+        if let Some(own) = self.finishing().find(|p| p.pass == self.pass) {
+            let levels = self.finishing().count();
+            if levels > 1 {
+                text += &format!(", pass {} of {levels}", self.pass);
+            }
+            text += &own.z_mm.map_or_else(String::new, |z| format!(", Z {z} mm"));
+            text += &format!(", {}", lines_of(LineRange { first: own.first_line, last: own.last_line }));
+        }
+        text
+    }
+}
+
+impl FeatureSummary {
+    /// What a report on this pass says nothing of; `None` when the program makes no other wall that is known.
+    pub fn not_judged(&self) -> Option<String> {
+        let place =
+            |p: &PassRow| p.z_mm.map_or_else(|| format!("pass {}", p.pass), |z| format!("pass {} (Z {z} mm)", p.pass));
+        let passes = self.finishing().filter(|p| p.pass != self.pass).map(place);
+        let features = self.other_features.iter().map(|id| format!("feature \"{id}\""));
+        let others: Vec<String> = passes.chain(features).collect();
+        (!others.is_empty())
+            .then(|| format!("Judged is the wall of {}; not those of {}.", self.in_words(), others.join(", ")))
+    }
+}
+
 /// What was chosen and why, for people.
 pub fn listing(feature: &FeatureSummary) -> String {
-    let name = feature.id.as_ref().map_or_else(|| "the finishing contour".to_owned(), |id| format!("feature \"{id}\""));
-    let mut text = format!("{name}, by {}: {}\n", feature.chosen_by, feature.why);
+    let mut text = format!("{}, by {}: {}\n", feature.name(), feature.chosen_by, feature.why);
+    if !feature.other_features.is_empty() {
+        text += &format!("  other features, each a correction of its own: {}\n", feature.other_features.join(", "));
+    }
     for row in &feature.candidates {
         text += &format!("  {}  {}\n", row.short(), row.why);
     }
-    let levels = feature.passes.iter().filter(|p| p.role == "finish").count();
+    let levels = feature.finishing().count();
     text += &format!("pass {} of {levels}", feature.pass);
     if feature.passes_corrected.is_empty() {
         text += "\n\n";
@@ -169,6 +213,7 @@ impl Plan {
             pass,
             passes: self.passes.iter().map(row).collect(),
             passes_corrected: corrected.to_vec(),
+            other_features: self.others.clone(),
             candidates: self.rows.clone(),
         }
     }

@@ -50,6 +50,8 @@ pub struct Plan {
     pub allowance: Option<Offset>,
     /// Its passes, in the order of execution.
     pub passes: Vec<FeaturePass>,
+    /// Names of the other features of the program.
+    pub others: Vec<String>,
     /// The runs that were looked at.
     pub rows: Vec<Row>,
     /// What deserves a look.
@@ -110,6 +112,7 @@ pub fn plan(job: &Job, program: &Source) -> Result<Option<Plan>, Failure> {
         wall: region.wall,
         allowance: region.allowance,
         passes,
+        others: regions.iter().filter(|r| r.number != region.number).filter_map(|r| r.id.clone()).collect(),
         rows: rows(&runs, mm(allowance)),
         warnings: doubts(&runs, allowance),
     }))

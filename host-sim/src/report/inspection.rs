@@ -86,6 +86,8 @@ pub fn inspect_summary(
     let part = &pass.job.part;
     let errors: Vec<f64> = contacts.iter().map(|c| mm(c.error)).collect();
     let n = errors.len().max(1) as f64;
+    let feature = pass.feature(&[]);
+    let beyond = feature.as_ref().and_then(FeatureSummary::not_judged);
     InspectSummary {
         version: 1,
         part: part.names.clone(),
@@ -103,9 +105,9 @@ pub fn inspect_summary(
         uncertainty_mm: part.uncertainty.map(mm),
         verdict: judgement.verdict.clone(),
         points_by_verdict: judgement.count,
-        statements: judgement.statements.clone(),
+        statements: judgement.statements.iter().cloned().chain(beyond).collect(),
         coverage,
-        feature: pass.feature(&[]),
+        feature,
         warnings,
     }
 }

@@ -1,7 +1,6 @@
-//! Pages of a second pass, of scheduled feeds, of one of several depths.
+//! Pages of a second pass, and of scheduled feeds.
 
 use std::fs;
-use std::path::Path;
 
 use truepath::command::{simulate, split};
 use truepath::job::{Job, Which};
@@ -55,24 +54,4 @@ fn pocket_force(pass: &str) -> f64 {
     let part = pocket("");
     part.correct("probe.txt", "out", None);
     full(&data(&part.at("out/report.html"))["contour"][pass]["force_n"]).into_iter().fold(0.0, f64::max)
-}
-
-#[test]
-fn the_page_says_which_of_several_depths_it_is_of() {
-    let folder = tempfile::tempdir().unwrap();
-    let job = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/features/pocket.toml"));
-    let out = folder.path().join("out");
-    let which = Which { pass: Some(2), ..Which::default() };
-    shown(simulate::run(&simulate::Options {
-        job,
-        plant: None,
-        out: &out,
-        recording: None,
-        probed_wall: false,
-        force: false,
-        which,
-    }));
-    let page = data(&out.join("report.html"));
-    let facts = page["job"]["facts"].to_string();
-    assert!(facts.contains("pass 2 of 2, Z -12 mm"), "{facts}");
 }

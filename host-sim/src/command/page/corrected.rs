@@ -1,6 +1,7 @@
 //! The page of `correct`: the wall without and with the correction, as the identified model foretells both.
 
 use truepath_core::correct::{Band, Target};
+use truepath_core::cut::Loop;
 
 use super::expected::judge;
 use super::{of_pass, told};
@@ -8,7 +9,7 @@ use crate::command::correct::Corrected;
 use crate::diagnostics::Failure;
 use crate::measurement::Measurement;
 use crate::pass::{Pass, PathBuffer};
-use crate::report::page::{Fact, Figure, Kind, Page, Parameter, points, predicted};
+use crate::report::page::{Along, Fact, Figure, Foretold, Kind, Page, Parameter, Program, Words, points, predicted};
 use crate::report::{CorrectSummary, float};
 
 /// Which part the probe points are of.
@@ -32,22 +33,42 @@ pub(in crate::command) fn corrected(
     done: &Corrected,
     of: Points,
 ) -> Result<Page, Failure> {
+    let words = |label: &str| Words { name: None, label: format!("{label}, predicted by the identified model") };
+    let passes = Foretold {
+        before: Some(words("without correction")),
+        milled: None,
+        after: words("with the correction"),
+        correction: &done.correction,
+        residual: &done.residual,
+    };
+    of_correction(pass, measurement, done, of, |machine| predicted(machine, &passes))
+}
+
+/// A page of a correction, with the passes that `along` makes of the identified machine.
+///
+/// # Errors
+/// As [`Pass::sample`].
+pub(super) fn of_correction(
+    pass: &Pass,
+    measurement: &Measurement,
+    done: &Corrected,
+    of: Points,
+    along: impl FnOnce(&Loop) -> Along,
+) -> Result<Page, Failure> {
     let mut buffer = PathBuffer::default();
     let path = pass.sample_fed(&mut buffer, done.schedule.as_ref())?.with_law(done.identified.law());
     let table = done.identified.table();
     let machine = done.identified.machine(&path, &table);
-    let labels = [
-        "without correction, predicted by the identified model",
-        "with the correction, predicted by the identified model",
-    ];
-    let along = predicted(&machine, &done.correction, &done.residual, labels);
+    let along = along(&machine);
     let (points, left_out) = points(pass, measurement, &done.identified.observations);
     let mut page = of_pass(Kind::Correct, "Correction of".to_owned(), pass);
+    page.program =
+        Some(Program::of(pass, Some(done.summary.feature.as_ref().map_or(&[], |f| &f.passes_corrected[..]))));
     page.contour = Some(along.contour);
     page.heights = along.heights;
     page.points = points;
     page.parameters = parameters(&done.summary);
-    page.results = figures(&done.summary);
+    page.results = figures(&done.summary, &["largest error without correction", "largest error with it"]);
     page.warnings =
         told(pass, Some(&measurement.file), done.summary.warnings.iter().cloned().chain(along.note).chain(left_out));
     if let Some(job) = &mut page.job {
@@ -63,14 +84,15 @@ fn parameters(summary: &CorrectSummary) -> Vec<Parameter> {
     each.map(|(name, of)| Parameter { name: (*name).to_owned(), of: of.clone() }).collect()
 }
 
-/// The head figures, all of them predictions.
-pub(super) fn figures(s: &CorrectSummary) -> Vec<Figure> {
+/// The head figures, all of them predictions; `largest` names the errors without and with the correction.
+pub(super) fn figures(s: &CorrectSummary, largest: &[impl AsRef<str>; 2]) -> Vec<Figure> {
+    let [without, with] = largest.each_ref().map(AsRef::as_ref);
     let used =
         format!("{} points used, {} outlying, {} set aside", s.points_used, s.points_outlying, s.points_rejected);
     let at = format!("at s = {:.1} mm", s.max_error_after_s_mm);
     let figures = [
-        Figure::mm("largest error without correction", s.max_error_before_mm).map(|f| f.noted("predicted")),
-        Figure::mm("largest error with it", s.max_error_after_mm).map(|f| f.noted(format!("predicted, {at}"))),
+        Figure::mm(without, s.max_error_before_mm).map(|f| f.noted("predicted")),
+        Figure::mm(with, s.max_error_after_mm).map(|f| f.noted(format!("predicted, {at}"))),
         Figure::mm("standard deviation there", s.sigma_at_max_error_mm),
         Figure::mm("largest standard deviation", s.max_sigma_mm).map(|f| f.noted("what the points leave open")),
         Figure::mm("left over the height", s.axial_form_error_mm).map(|f| f.noted("beyond X and Y")),

@@ -24,7 +24,7 @@ pub(super) const REPORT: &str = "report.html";
 /// A page of a pass: program, job, stock.
 fn of_pass(kind: Kind, title: String, pass: &Pass) -> Page {
     let mut page = Page::new(kind, format!("{title} {}", subject(pass)));
-    page.program = Some(Program::of(pass));
+    page.program = Some(Program::of(pass, None));
     page.job = Some(JobFacts::of(pass));
     page.outlines = Outlines::of(pass);
     page

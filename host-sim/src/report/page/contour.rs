@@ -28,7 +28,10 @@ pub struct Contour {
     /// The pass without the correction, or the only one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub before: Option<PassColumns>,
-    /// The pass with it.
+    /// The pass of a part that was cut with an earlier correction and measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub milled: Option<PassColumns>,
+    /// The pass with the correction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<PassColumns>,
 }
@@ -36,6 +39,9 @@ pub struct Contour {
 /// One pass along the path, columns of its length.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PassColumns {
+    /// What it is called in buttons and tables; otherwise the page says before and after.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// What this pass is and who says so.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
@@ -69,6 +75,12 @@ pub struct PassColumns {
     /// Feed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feed_mm_per_min: Option<Column>,
+    /// The correction it was cut with, where that is not the one of the contour.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub correction_x_mm: Option<Column>,
+    /// The same.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub correction_y_mm: Option<Column>,
 }
 
 /// Lines that the page draws instead of its own.
@@ -101,7 +113,10 @@ pub struct Heights {
     /// Without the correction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub before: Option<Column>,
-    /// With it.
+    /// Of the part that was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub milled: Option<Column>,
+    /// With the correction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<Column>,
 }

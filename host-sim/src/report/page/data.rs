@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use super::{Contour, Heights, Inspected, JobFacts, Limits, Outlines, Point};
+use super::{Contour, Heights, Inspected, JobFacts, Limits, Outlines, Point, Program};
 
 /// Which command made the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -97,16 +97,6 @@ impl Page {
             warnings: Vec::new(),
         }
     }
-}
-
-/// The part program.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Program {
-    /// File name, without its folder.
-    pub name: String,
-    /// CRC-32, eight hexadecimal digits.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub crc32: Option<String>,
 }
 
 /// An identified quantity.

@@ -41,22 +41,29 @@ pub(super) fn errors_at_heights(machine: &Loop, states: &[State], residual: &[Of
     errors
 }
 
-/// The errors of one or two passes; `None` where no pass has a wall that varies over the height.
-pub(super) fn heights(path: &Path, kept: &Kept, before: Vec<f64>, after: Option<Vec<f64>>) -> Option<Heights> {
-    of_depth(float(path.setup().axial_depth), kept, before, after)
+/// Wall errors over the height of the passes of a page: before, milled, after.
+pub(super) type OfPasses = [Option<Vec<f64>>; 3];
+
+/// The errors of the passes; `None` where no pass has a wall that varies over the height.
+pub(super) fn heights(path: &Path, kept: &Kept, passes: OfPasses) -> Option<Heights> {
+    of_depth(float(path.setup().axial_depth), kept, passes)
 }
 
 /// The same, of an engaged depth in mm.
-pub(super) fn of_depth(depth_mm: f64, kept: &Kept, before: Vec<f64>, after: Option<Vec<f64>>) -> Option<Heights> {
+pub(super) fn of_depth(depth_mm: f64, kept: &Kept, passes: OfPasses) -> Option<Heights> {
     let varies = |errors: &[f64]| {
         let (nodes, _) = errors.as_chunks::<HEIGHTS>();
         nodes.iter().any(|node| node.iter().any(|e| (e - node[0]).abs() > 1e-9))
     };
-    let any = varies(&before) || after.as_deref().is_some_and(varies);
-    any.then(|| Heights {
+    if !passes.iter().flatten().any(|errors| varies(errors)) {
+        return None;
+    }
+    let [before, milled, after] = passes.map(|errors| errors.map(|errors| Column::of(errors, FINE)));
+    Some(Heights {
         z_mm: (0..HEIGHTS).map(|k| crate::report::rounded(depth_mm * fraction(k), 6)).collect(),
         stride: kept.stride(),
-        before: Some(Column::of(before, FINE)),
-        after: after.map(|after| Column::of(after, FINE)),
+        before,
+        milled,
+        after,
     })
 }

@@ -1,25 +1,14 @@
-//! Job and program of a pass, as the page tells them.
+//! The job of a pass, as the page tells it.
 
 use truepath_core::geometry::Side;
 
-use super::{Column, Cut, Fact, JobFacts, Outlines, Polyline, Program, Stock, Tool};
+use super::program::file_name;
+use super::{Column, Cut, Fact, JobFacts, Outlines, Polyline, Stock, Tool};
 use crate::pass::{Pass, milling_name};
 use crate::report::{float, mm, rounded};
 
 /// Points of an outline at most; beyond that every n-th.
 const MOST_OUTLINE: usize = 20_000;
-
-impl Program {
-    /// Of a pass: the name without its folder.
-    pub fn of(pass: &Pass) -> Self {
-        Self { name: file_name(pass), crc32: Some(format!("{:08x}", pass.core.program_crc)) }
-    }
-}
-
-fn file_name(pass: &Pass) -> String {
-    let name = pass.program.name();
-    name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned()
-}
 
 /// What a page is about: the name of the part, else of the feature, else of the program.
 pub fn subject(pass: &Pass) -> String {
@@ -41,7 +30,6 @@ impl JobFacts {
             facts.push(Fact::new("feed", format!("{} to {} mm/min", rounded(least, 3), rounded(most, 3))));
         }
         facts.push(Fact::new("contour", format!("{:.3} mm long", mm(pass.core.contour.length))));
-        facts.extend(depths(pass));
         if let Some(probe) = &pass.job.numbers.probe {
             facts.push(Fact::new("probe ball", format!("⌀ {} mm", mm(probe.ball_diameter))));
         }
@@ -71,14 +59,6 @@ impl JobFacts {
             facts,
         }
     }
-}
-
-/// Which of several depths the page is of.
-fn depths(pass: &Pass) -> Option<Fact> {
-    let plan = pass.plan.as_ref()?;
-    let (level, levels) = (pass.level(), plan.levels().len());
-    let z = pass.core.contour.z.nm() as f64 / 1e6;
-    (levels > 1).then(|| Fact::new("depth", format!("pass {level} of {levels}, Z {z} mm: this page is of that one")))
 }
 
 /// The name of the material, where the job gives one.

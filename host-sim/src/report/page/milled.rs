@@ -75,11 +75,12 @@ pub fn milled(pass: &Milled, trace: &Trace, label: &str) -> Along {
         correction_x_mm: None,
         correction_y_mm: None,
         before: Some(PassColumns { feed_mm_per_min: Some(feeds), ..columns(label, rows) }),
+        milled: None,
         after: None,
     };
     let errors = over_height(pass);
     let nodes = kept.nodes().flat_map(|i| errors.iter().map(move |row| row[i])).collect();
-    Along { contour, heights: of_depth(cut.axial_depth_mm, &kept, nodes, None), note: kept.note() }
+    Along { contour, heights: of_depth(cut.axial_depth_mm, &kept, [Some(nodes), None, None]), note: kept.note() }
 }
 
 /// Puts two passes in place of those of a contour, and gives their walls over the height. Within `trim_mm` of the ends, where the
@@ -108,7 +109,7 @@ pub fn milled_twice(contour: &mut Contour, passes: [(&Milled, &str); 2], trim_mm
     });
     (contour.before, contour.after) = (Some(first.0), Some(second.0));
     let depth_mm = passes[0].0.cut.axial_depth_mm;
-    of_depth(depth_mm, &kept, first.1, Some(second.1))
+    of_depth(depth_mm, &kept, [Some(first.1), None, Some(second.1)])
 }
 
 /// Wall errors, for each height those of every nominal sample.

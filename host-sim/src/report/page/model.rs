@@ -31,35 +31,75 @@ pub(super) const FEED: u32 = 3;
 /// Of unit vectors.
 pub(super) const UNIT: u32 = 9;
 
-/// The pass without and with a correction, as a machine on its path cuts it; `residual` is the wall error beside the model,
-/// one entry per sample of the contour, empty where none is known.
-pub fn predicted(machine: &Loop, correction: &Correction, residual: &[Offset], labels: [&str; 2]) -> Along {
+/// What a pass is called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Words {
+    /// In buttons and tables; `None` where before and after say it.
+    pub name: Option<String>,
+    /// What it is and who says so.
+    pub label: String,
+}
+
+/// The passes of a page that the identified machine foretells.
+#[derive(Clone, Debug)]
+pub struct Foretold<'a> {
+    /// The one without any correction, where it is shown.
+    pub before: Option<Words>,
+    /// The one of a part that was cut with an earlier correction and measured, with that correction.
+    pub milled: Option<(Words, &'a Correction)>,
+    /// The one with the correction that was made.
+    pub after: Words,
+    /// That correction.
+    pub correction: &'a Correction,
+    /// Wall error beside the model, one entry per sample of the contour; empty where none is known.
+    pub residual: &'a [Offset],
+}
+
+/// The passes as a machine cuts them on its path.
+pub fn predicted(machine: &Loop, passes: &Foretold) -> Along {
     let path = machine.path;
     let kept = Kept::of(path.count());
-    let target = correction.wanted.target;
-    let aim = |p: &Profile| if p.on_wall { mm(p.aim(target, None)) } else { f64::NAN };
+    let correction = passes.correction;
+    let aim = |p: &Profile| if p.on_wall { mm(p.aim(correction.wanted.target, None)) } else { f64::NAN };
     let start = path.working().start;
     let mut states = vec![State::REST; path.working().len()];
-    let mut pass = |label: &str, shift: &dyn Fn(usize) -> Vector, errors: Vec<f64>| {
+    let mut pass = |words: &Words, shift: &dyn Fn(usize) -> Vector, errors: Vec<f64>| {
         machine.run(start, &mut states, shift);
-        let columns = pass_columns(label, path, &trace(machine, &states, &errors), &kept);
-        (columns, errors_at_heights(machine, &states, residual, &kept))
+        let columns = pass_columns(&words.label, path, &trace(machine, &states, &errors), &kept);
+        let name = words.name.clone();
+        (PassColumns { name, ..columns }, errors_at_heights(machine, &states, passes.residual, &kept))
     };
-    let before = correction.predicted.iter().map(|p| aim(&p.before)).collect();
-    let after = correction.predicted.iter().map(|p| aim(&p.after)).collect();
-    let (before, low) = pass(labels[0], &|_| Vector::ZERO, before);
-    let (mut after, high) = pass(labels[1], &|i| commanded(path, &correction.nodes, i), after);
-    let sigma = |i: usize| correction.predicted[i].after.on_wall.then(|| mm(correction.sigma[i]));
-    after.sigma_mm = Some(Column::partly(kept.indices().map(sigma), FINE));
-    let total = |axis: fn(Vector) -> Offset| kept.indices().map(move |i| mm(axis(correction.nodes[i].total())));
+    let mut with = |words: &Words, of: &Correction| {
+        let errors = of.predicted.iter().map(|p| aim(&p.after)).collect();
+        let (columns, heights) = pass(words, &|i| commanded(path, &of.nodes, i), errors);
+        let sigma = |i: usize| of.predicted[i].after.on_wall.then(|| mm(of.sigma[i]));
+        let sigma_mm = Some(Column::partly(kept.indices().map(sigma), FINE));
+        (PassColumns { sigma_mm, ..columns }, heights)
+    };
+    let total = |of: &Correction, axis: fn(Vector) -> Offset| {
+        Some(Column::of(kept.indices().map(|i| mm(axis(of.nodes[i].total()))), FINE))
+    };
+    let (after, high) = with(&passes.after, correction);
+    let milled = passes.milled.as_ref().map(|(words, of)| {
+        let (columns, heights) = with(words, of);
+        let (correction_x_mm, correction_y_mm) = (total(of, |v| v.x), total(of, |v| v.y));
+        (PassColumns { correction_x_mm, correction_y_mm, ..columns }, heights)
+    });
+    let before = passes.before.as_ref().map(|words| {
+        let errors = correction.predicted.iter().map(|p| aim(&p.before)).collect();
+        pass(words, &|_| Vector::ZERO, errors)
+    });
+    let (before, low) = before.unzip();
+    let (milled, middle) = milled.unzip();
     let contour = Contour {
-        correction_x_mm: Some(Column::of(total(|v| v.x), FINE)),
-        correction_y_mm: Some(Column::of(total(|v| v.y), FINE)),
-        before: Some(before),
+        correction_x_mm: total(correction, |v| v.x),
+        correction_y_mm: total(correction, |v| v.y),
+        before,
+        milled,
         after: Some(after),
         ..contour(path, &kept)
     };
-    Along { contour, heights: heights(path, &kept, low, Some(high)), note: kept.note() }
+    Along { contour, heights: heights(path, &kept, [low, middle, Some(high)]), note: kept.note() }
 }
 
 /// A single pass in states of the elastic loop, with its trace.
@@ -69,7 +109,7 @@ pub fn simulated(machine: &Loop, states: &[State], trace: &Trace, label: &str) -
     let before = Some(pass_columns(label, path, trace, &kept));
     let errors = errors_at_heights(machine, states, &[], &kept);
     let contour = Contour { before, ..contour(path, &kept) };
-    Along { contour, heights: heights(path, &kept, errors, None), note: kept.note() }
+    Along { contour, heights: heights(path, &kept, [Some(errors), None, None]), note: kept.note() }
 }
 
 /// The path alone.
@@ -96,6 +136,7 @@ pub(super) fn contour(path: &Path, kept: &Kept) -> Contour {
         correction_x_mm: None,
         correction_y_mm: None,
         before: None,
+        milled: None,
         after: None,
     }
 }
@@ -113,6 +154,7 @@ pub(super) fn columns(label: &str, rows: impl Iterator<Item = Option<TraceRow>> 
     let column =
         |of: fn(TraceRow) -> f64, decimals| Some(Column::partly(rows.clone().map(|row| row.map(of)), decimals));
     PassColumns {
+        name: None,
         label: Some(label.to_owned()),
         error_mm: column(|r| r.error_mm, FINE),
         sigma_mm: None,
@@ -124,5 +166,7 @@ pub(super) fn columns(label: &str, rows: impl Iterator<Item = Option<TraceRow>> 
         dx_mm: column(|r| r.dx_mm, FINE),
         dy_mm: column(|r| r.dy_mm, FINE),
         feed_mm_per_min: None,
+        correction_x_mm: None,
+        correction_y_mm: None,
     }
 }

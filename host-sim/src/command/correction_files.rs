@@ -1,0 +1,62 @@
+//! The files of a correction: what `correct` and `learn` may write, and what a correction in memory holds beside its summary.
+
+use super::correct::Corrected;
+use super::page::REPORT;
+use crate::diagnostics::Failure;
+use crate::measurement::Measurement;
+use crate::output::OutputFolder;
+use crate::pass::Pass;
+use crate::report::points_csv;
+
+/// The parts so far; see [`learning`](crate::learning).
+pub(super) const HISTORY: &str = "history.json";
+/// The measured part as it was milled; `learn` writes it.
+pub(super) const MILLED: &str = "milled.csv";
+/// Files that these commands may write.
+pub(super) const FILES: &[&str] = &[
+    HISTORY,
+    "corrected.nc",
+    "difference.txt",
+    "correction.tpi",
+    "correction.csv",
+    MILLED,
+    "wall.csv",
+    "points.csv",
+    "summary.json",
+    "correction.svg",
+    REPORT,
+    "probe-raw.txt",
+    "first-pass-surface.csv",
+    "correction-pass-1.tpi",
+    "correction-pass-2.tpi",
+    "correction-pass-3.tpi",
+    "correction-pass-4.tpi",
+    "correction-pass-5.tpi",
+    "correction-pass-6.tpi",
+    "correction-pass-7.tpi",
+    "correction-pass-8.tpi",
+];
+
+/// Writes what a correction in memory holds beside its summary.
+pub(super) fn write(
+    folder: &OutputFolder,
+    pass: &Pass,
+    measurement: &Measurement,
+    done: &Corrected,
+) -> Result<(), Failure> {
+    if let Some(text) = &done.program {
+        folder.write("corrected.nc", text)?;
+        folder.write("difference.txt", done.summary.difference(pass.program.name()).as_bytes())?;
+    }
+    if let Some(bytes) = &done.image {
+        folder.write("correction.tpi", bytes)?;
+    }
+    for (number, bytes) in &done.other_images {
+        folder.write(&format!("correction-pass-{number}.tpi"), bytes)?;
+    }
+    folder.write("correction.csv", &done.tables[0])?;
+    folder.write("wall.csv", &done.tables[1])?;
+    folder.write("points.csv", &points_csv(measurement, &done.identified.observations)?)?;
+    folder.write("correction.svg", &done.picture)?;
+    Ok(())
+}

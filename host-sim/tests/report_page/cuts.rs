@@ -1,0 +1,125 @@
+//! Programs with several cuts: which one the page shows, and what became of the others.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use truepath::command::{correct, inspect, simulate};
+use truepath::job::{Job, PartFlags, ProbeFlags, Which};
+use truepath::pass::Pass;
+use truepath::plant::Machine;
+use truepath::workshop;
+
+use super::part::shown;
+use super::reading::data;
+
+const MACHINE: &str = "ktc_n_per_mm2 = 700\nkrc_n_per_mm2 = 210\nkte_n_per_mm = 14\nkre_n_per_mm = 14\nstiffness_x_n_per_mm = 1500\nstiffness_y_n_per_mm = 2000\n";
+
+/// A copy of a program with several cuts, with its job.
+fn copied(name: &str) -> (tempfile::TempDir, PathBuf) {
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/features");
+    let folder = tempfile::tempdir().unwrap();
+    for ending in ["toml", "nc"] {
+        let file = format!("{name}.{ending}");
+        fs::copy(from.join(&file), folder.path().join(&file)).unwrap();
+    }
+    let job = folder.path().join(format!("{name}.toml"));
+    (folder, job)
+}
+
+fn simulated(job: &Path, out: &Path, which: Which) -> Value {
+    let options = simulate::Options { job, plant: None, out, recording: None, probed_wall: false, force: false, which };
+    shown(simulate::run(&options));
+    data(&out.join("report.html"))
+}
+
+/// Role, level and outcome of every cut.
+fn outcomes(page: &Value) -> Vec<(String, Option<u64>, String)> {
+    let text = |v: &Value| v.as_str().unwrap().to_owned();
+    let cuts = page["program"]["cuts"].as_array().unwrap().iter();
+    cuts.map(|cut| (text(&cut["role"]), cut["level"].as_u64(), text(&cut["became"]))).collect()
+}
+
+fn of_walls(page: &Value) -> Vec<(u64, String)> {
+    outcomes(page).into_iter().filter(|(role, ..)| role == "finish").map(|(_, level, b)| (level.unwrap(), b)).collect()
+}
+
+#[test]
+fn a_page_of_one_of_several_depths_names_it_and_lists_the_others() {
+    let (folder, job) = copied("pocket");
+    let which = Which { pass: Some(2), ..Which::default() };
+    let page = simulated(&job, &folder.path().join("out"), which);
+    let program = &page["program"];
+    assert_eq!(program["shown"], "the finishing contour, pass 2 of 2, Z -12 mm, lines 86-94");
+    assert!(program["why"].as_str().unwrap().contains("whose wall no other run takes away"));
+    assert_eq!(of_walls(&page), [(1, "elsewhere".to_owned()), (2, "shown".to_owned())]);
+    assert_eq!(outcomes(&page).len(), 9);
+    let summary: Value = serde_json::from_slice(&fs::read(folder.path().join("out/summary.json")).unwrap()).unwrap();
+    for (cut, told) in
+        program["cuts"].as_array().unwrap().iter().zip(summary["feature"]["candidates"].as_array().unwrap())
+    {
+        for key in ["role", "first_line", "last_line", "z_mm", "length_mm", "why"] {
+            assert_eq!(cut[key], told[key]);
+        }
+    }
+}
+
+#[test]
+fn a_correction_tells_which_depths_got_it_and_an_inspection_which_it_judged() {
+    let (folder, job) = copied("pocket");
+    let at = |name: &str| folder.path().join(name);
+    let pass = shown(Job::read(&job).map_err(Into::into).and_then(Pass::read));
+    let machine: Machine = toml::from_str(MACHINE).unwrap();
+    let milled = shown(workshop::mill(&pass, &machine, None));
+    let places: Vec<f64> = [0.1, 0.35, 0.6, 0.9].iter().map(|share| share * milled.path.length_mm).collect();
+    fs::write(at("probe.txt"), shown(workshop::probe(&pass, &milled, &places, &[0.3, 0.8], 4.0))).unwrap();
+    shown(correct::run(
+        &correct::Options {
+            job: &job,
+            probe: &at("probe.txt"),
+            out: &at("out"),
+            force: false,
+            route: None,
+            first_pass: None,
+            probe_flags: ProbeFlags::default(),
+            which: Which::default(),
+        },
+        &mut |_| (),
+    ));
+    let page = data(&at("out/report.html"));
+    assert_eq!(of_walls(&page), [(1, "shown".to_owned()), (2, "corrected".to_owned())]);
+    let others: Vec<String> = outcomes(&page).into_iter().filter(|(role, ..)| role != "finish").map(|o| o.2).collect();
+    assert!(others.len() == 7 && others.iter().all(|became| became == "unchanged"), "{others:?}");
+
+    let told = shown(inspect::run(&inspect::Options {
+        job: &job,
+        probe: &at("probe.txt"),
+        out: Some(&at("inspected")),
+        force: false,
+        part: PartFlags::default(),
+        probe_flags: ProbeFlags::default(),
+        which: Which::default(),
+    }));
+    let limits = "Judged is the wall of the finishing contour, pass 1 of 2, Z -6 mm, lines 71-79; not those of pass 2 (Z -12 mm).";
+    assert!(told.summary.statements.iter().any(|s| s == limits), "{:?}", told.summary.statements);
+    let page = data(&at("inspected/report.html"));
+    assert_eq!(page["statements"].as_array().unwrap().iter().filter(|s| *s == limits).count(), 1);
+}
+
+#[test]
+fn a_marked_feature_is_named_with_the_others_of_the_program() {
+    let (folder, job) = copied("markers");
+    let which = Which { feature: Some("boss".to_owned()), ..Which::default() };
+    // The tool of the job is that of one feature.
+    let page = simulated(&job, &folder.path().join("out"), which);
+    assert!(page["program"]["shown"].as_str().unwrap().starts_with("feature \"boss\", Z "), "{}", page["program"]);
+    assert_eq!(page["program"]["other_features"], serde_json::json!(["pocket"]));
+}
+
+#[test]
+fn a_program_with_one_cut_needs_no_list() {
+    let part = super::part::pocket("");
+    part.simulate(false, "out");
+    let program = &data(&part.at("out/report.html"))["program"];
+    assert_eq!(program.as_object().unwrap().keys().collect::<Vec<_>>(), ["crc32", "name"]);
+}
