@@ -108,6 +108,12 @@ fn the_command_line_stands_in_for_the_job_and_its_mistakes_are_its_own() {
         (["--serial", "a\nb"], "--serial on the command line"),
         (["--serial", &long], "1 to 100 characters"),
         (["--date", "\u{202e}1202"], "--date on the command line"),
+        (
+            ["--serial", "\u{200b}"],
+            "--serial on the command line is \"\\u{200b}\"; expected 1 to 100 characters on one line, none",
+        ),
+        (["--serial", "1\u{2060}7"], "--serial on the command line is \"1\\u{2060}7\""),
+        (["--serial", "1\u{200d}7"], "none of them invisible"),
     ] {
         let failed = inspect(desk.path(), &flags);
         assert_eq!(failed.status.code(), Some(1), "{flags:?}");

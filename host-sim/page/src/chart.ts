@@ -5,7 +5,8 @@
  */
 
 import type { Report } from "./data";
-import { card, el } from "./dom";
+import { card, el, svg } from "./dom";
+import { face } from "./face";
 import { fixed, signed } from "./format";
 import { limitDecimals, limitsOf, standing, type Limits, type Standing } from "./limits";
 import { markPath } from "./marks";
@@ -13,15 +14,6 @@ import { roundStep } from "./view";
 
 const HEIGHT = 210;
 const EDGE = { left: 54, right: 64, top: 8, bottom: 34 };
-const SPACE = "http://www.w3.org/2000/svg";
-
-function svg(tag: string, attributes: Record<string, string | number>, text?: string): SVGElement {
-  const element = document.createElementNS(SPACE, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
-  if (text !== undefined) element.textContent = text;
-  return element;
-}
-
 interface Scale { px(s: number): number; py(e: number): number }
 
 export class Chart {
@@ -64,7 +56,7 @@ export class Chart {
       const where = standing(p, limits);
       picture.append(svg("path", { class: `mark ${where}`, d: markPath(where, x, y, 4) }));
     }
-    this.box.replaceChildren(picture, this.key(guard));
+    this.box.replaceChildren(picture, this.key(guard), ...face(this.report, width, EDGE, scale.px));
   }
 
   /** What the signs are. */

@@ -118,7 +118,19 @@ export interface GivenLimits {
 export interface Coverage {
   reach_mm: number;
   length_mm: number;
-  stretches: { from_mm: number; to_mm: number }[];
+  stretches: Stretch[];
+  face?: Face;
+}
+
+/** Of the contour, or of the height of its wall. */
+export interface Stretch { from_mm: number; to_mm: number }
+
+/** The wall unrolled, contour by height above the tip of the cutter: in each layer the stretches that no point speaks for. */
+export interface Face {
+  depth_mm: number;
+  /** How far up and down a point speaks for. */
+  reach_mm: number;
+  layers: (Stretch & { stretches: Stretch[] })[];
 }
 
 export interface Parameter {

@@ -129,6 +129,7 @@ function show(report: Report, main: HTMLElement): void {
   const below = el("div", { class: side.length && wide.length ? "below" : "below alone" },
     side.length ? el("div", { class: "side" }, ...side) : null, wide.length ? el("div", { class: "wide" }, ...wide) : null);
   picture.hidden = !seen;
+  if (!model) document.getElementById("keys-cutter")?.remove();
   const figures = results(report);
   const [named, signed] = [part(report), signature(report)];
   main.append(...(figures ? [figures] : []), ...(named ? [named] : []), work, below, ...(signed ? [signed] : []));

@@ -32,7 +32,33 @@ test("each point of an inspection has its verdict in words and as a shape, with 
   assert.deepEqual(await page.locator("#deviations .limit-text").allTextContents(), ["+0.0200", "0.0000"]);
   assert.match(await page.locator(".results").textContent(), /tolerance0\.0000 … \+0\.0200 mmuncertainty ±0\.0020 mm, k = 2; as asked for on the command line/);
   assert.deepEqual(await page.locator("#statements li").allTextContents(), made.statements);
+  assert.doesNotMatch(await page.locator("#keys").textContent(), /cutter|Traces/, "nothing is said of what is not there");
   assert.deepEqual(await page.locator("#part dd").allTextContents(), ["cover <3>", "17", 'Example "Ltd"', "cover.nc · CRC-32 00c0ffee", "probe.txt · CRC-32 12345678"]);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("the wall unrolled shows at which heights it was touched and what no point speaks for", async () => {
+  const heights = [1, 6, 11, 6];
+  const touched = points.map((p, i) => (i < 4 ? { ...p, z_mm: heights[i] } : p));
+  const layers = [
+    { from_mm: 0, to_mm: 3, stretches: [{ from_mm: 9, to_mm: 30 }] },
+    { from_mm: 3, to_mm: 9, stretches: [{ from_mm: 0, to_mm: 6 }, { from_mm: 24, to_mm: 30 }] },
+  ];
+  const coverage = { ...made.coverage, face: { depth_mm: 12, reach_mm: 3, layers } };
+  const { page, complaints, close } = await open(await write("face", { ...made, points: touched, coverage }));
+  const face = page.locator("#deviations svg.face");
+  assert.match(await face.getAttribute("aria-label"), /^The wall unrolled, arc length by height: 4 points/);
+  const box = async (of) => of.evaluateAll((all) => all.map((e) => { const r = e.getBBox(); return [r.x, r.y, r.x + r.width, r.y + r.height]; }));
+  const open3 = await box(face.locator("rect.unmeasured"));
+  const marks = await box(face.locator("path.mark"));
+  const [[left, top, right, bottom]] = await box(face.locator("path.tick"));
+  const s = (x) => ((x - left) / (right - left)) * 30;
+  const z = (y) => ((bottom - y) / (bottom - top)) * 12;
+  assert.deepEqual(open3.map(([x0, y0, x1, y1]) => [s(x0), s(x1), z(y1), z(y0)].map((v) => Math.round(v * 100) / 100)),
+    [[9, 30, 0, 3], [0, 6, 3, 9], [24, 30, 3, 9]]);
+  assert.deepEqual(marks.map(([x0, y0, x1, y1]) => [Math.round(s((x0 + x1) / 2)), Math.round(z((y0 + y1) / 2))]), [[5, 1], [10, 6], [15, 11], [20, 6]]);
+  assert.match(await page.locator("#deviations .chart-key").last().textContent(), /farther than 4 mm along the contour or 3 mm in height/);
   assert.deepEqual(complaints, []);
   await close();
 });

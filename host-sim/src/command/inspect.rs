@@ -2,13 +2,13 @@
 
 use std::path::Path as FilePath;
 
-use truepath_core::probe::CutWith;
+use truepath_core::probe::{Contact, CutWith};
 use truepath_core::units::Offset;
 
 use super::doubts::misread;
 use super::page::{REPORT, inspected};
 use crate::diagnostics::{Failure, Source};
-use crate::inspection::{PointVerdict, Rule, SetAside, coverage, judge};
+use crate::inspection::{Extent, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge};
 use crate::job::{Job, PartFlags, ProbeFlags, Which};
 use crate::measurement::Measurement;
 use crate::output::OutputFolder;
@@ -89,19 +89,24 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let warnings = [pass.warnings.clone(), measurement.remarks(&file), doubts].concat();
     let (part, contour) = (&pass.job.part, pass.path_contour());
     let rule = part.tolerance.map(|tolerance| Rule { tolerance, uncertainty: part.uncertainty });
-    let reach = part.reach.unwrap_or(pass.job.numbers.tool.diameter);
-    let places = measurement.contacts.iter().map(|c| c.s);
-    let coverage = coverage(places, pass.core.contour.length, reach, contour.is_closed());
+    let depth = pass.job.numbers.cut.axial_depth;
+    let wall = Extent { length: pass.core.contour.length, depth, closed: contour.is_closed() };
+    let reach = Reach {
+        along: part.reach.unwrap_or(pass.job.numbers.tool.diameter),
+        height: part.reach_height.unwrap_or(Offset::from_nm(depth.nm() / 4)),
+    };
+    let height = |c: &Contact| Offset::from_nm((crate::report::float(c.height) * depth.nm() as f64).round() as i64);
+    let places: Vec<Touched> = measurement.contacts.iter().map(|c| Touched { s: c.s, height: height(c) }).collect();
+    let coverage = coverage(&places, wall, reach);
     let deviations: Vec<Offset> = measurement.contacts.iter().map(|c| c.error).collect();
     let aside = SetAside::of(measurement.rejected.iter().map(|r| &r.reason), pass.job.numbers.tool.diameter);
     let judgement = judge(rule, &deviations, aside, &coverage);
-    let depth = mm(pass.job.numbers.cut.axial_depth);
     let contacts = measurement.contacts.iter().enumerate().map(|(at, c)| Point {
         line: c.line,
         s_mm: mm(c.s),
         x_mm: c.point.x.nm() as f64 / 1e6,
         y_mm: c.point.y.nm() as f64 / 1e6,
-        height_mm: crate::report::float(c.height) * depth,
+        height_mm: crate::report::float(c.height) * mm(depth),
         error_mm: mm(c.error),
         verdict: judgement.points.get(at).copied(),
     });

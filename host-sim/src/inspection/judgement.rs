@@ -89,6 +89,7 @@ pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, coverag
         );
     }
     statements.push(coverage.words());
+    statements.push(coverage.face.words(coverage.length_mm));
     let decimals = rule.map_or(4, |rule| rule.decimals(deviations));
     Judgement { verdict, points, count, decimals, statements }
 }
@@ -136,16 +137,21 @@ fn verdict(rule: &Rule, count: Count, deviations: &[Offset], aside: SetAside) ->
 
 #[cfg(test)]
 mod tests {
-    use super::super::coverage::coverage;
+    use super::super::coverage::{Extent, Reach, coverage};
     use super::*;
     use crate::job::Tolerance;
+
+    /// Of a wall of ten by ten millimetres that nobody touched.
+    fn untouched() -> Coverage {
+        let far = Offset::from_um(10_000);
+        coverage(&[], Extent { length: far, depth: far, closed: false }, Reach { along: far, height: far })
+    }
 
     fn judged(uncertainty: Option<i64>, nm: &[i64]) -> Judgement {
         let tolerance = Tolerance { lower: Offset::ZERO, upper: Offset::from_nm(20_000), from_command_line: false };
         let rule = Rule { tolerance, uncertainty: uncertainty.map(Offset::from_nm) };
         let deviations: Vec<Offset> = nm.iter().map(|v| Offset::from_nm(*v)).collect();
-        let far = Offset::from_um(10_000);
-        judge(Some(rule), &deviations, SetAside::default(), &coverage([], far, far, false))
+        judge(Some(rule), &deviations, SetAside::default(), &untouched())
     }
 
     #[test]
@@ -171,10 +177,9 @@ mod tests {
     fn a_verdict_says_that_readings_were_not_judged() {
         let rule = |tolerance| Rule { tolerance, uncertainty: None };
         let tolerance = Tolerance { lower: Offset::ZERO, upper: Offset::from_nm(20_000), from_command_line: false };
-        let far = Offset::from_um(10_000);
         let judged = |all, doubtful| {
             let aside = SetAside { all, doubtful };
-            judge(Some(rule(tolerance)), &[far - far], aside, &coverage([], far, far, false)).verdict
+            judge(Some(rule(tolerance)), &[Offset::ZERO], aside, &untouched()).verdict
         };
         let text = |all| judged(all, 0).text;
         assert!(
@@ -204,8 +209,7 @@ mod tests {
 
     #[test]
     fn the_statements_name_rule_readings_set_aside_and_what_was_not_touched() {
-        let far = Offset::from_um(10_000);
-        let none = judge(None, &[Offset::ZERO], SetAside { all: 2, doubtful: 0 }, &coverage([], far, far, false));
+        let none = judge(None, &[Offset::ZERO], SetAside { all: 2, doubtful: 0 }, &untouched());
         assert_eq!(none.verdict.text, "open: no tolerance given");
         assert!(none.points.is_empty() && none.count.is_none());
         let said = none.statements.join("\n");
@@ -213,6 +217,7 @@ mod tests {
             "at the one measured place only",
             "2 readings were set aside",
             "10.0 of 10.0 mm of the contour lie farther",
+            "No height of the wall was touched",
         ] {
             assert!(said.contains(words), "{words}: {said}");
         }

@@ -1,7 +1,7 @@
 //! The judgement of a milled wall from its probe points: tolerance, uncertainty, verdict, and what it does not cover.
 //!
 //! `rule` judges one deviation, `judgement` the part; `set_aside` says which readings are not judged and leave a doubt,
-//! `coverage` which stretches of the contour no point speaks for. Comparisons are of whole nanometres, so that a value on
+//! `coverage` which stretches of the contour no point speaks for, and `face` over the height. Comparisons are of whole nanometres, so that a value on
 //! a limit lies within it on every computer.
 //!
 //! Source of the rule: ISO 14253-1, acceptance and rejection zones reduced by the expanded uncertainty on both sides.
@@ -10,11 +10,13 @@
 //! not measured.
 
 mod coverage;
+mod face;
 mod judgement;
 mod rule;
 mod set_aside;
 
-pub use coverage::{Coverage, Stretch, coverage};
+pub use coverage::{Coverage, Extent, Reach, Stretch, Touched, coverage};
+pub use face::{Face, Layer};
 pub use judgement::{Count, Judgement, State, Verdict, judge};
 pub use rule::{PointVerdict, Rule};
 pub use set_aside::SetAside;

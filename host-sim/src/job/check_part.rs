@@ -12,7 +12,7 @@ use crate::diagnostics::{InputError, Source};
 
 /// Longest text, characters.
 const LONGEST: usize = 100;
-const TEXT_EXPECTED: &str = "1 to 100 characters on one line";
+const TEXT_EXPECTED: &str = "1 to 100 characters on one line, none of them invisible";
 const HALF_WIDTH: Limits = Limits::within("0.0001", "10", "mm");
 const LIMIT: Limits = Limits::within("-10", "10", "mm");
 
@@ -44,6 +44,8 @@ pub struct PartTable {
     pub uncertainty: Option<Offset>,
     /// How far along the contour a point speaks for the wall, 0.1…1000 mm; otherwise the cutter's diameter.
     pub reach: Option<Offset>,
+    /// How far up and down a point speaks for the wall, 0.01…1000 mm; otherwise a quarter of the depth of cut.
+    pub reach_height: Option<Offset>,
 }
 
 /// Limits of the wall error, both allowed.
@@ -106,11 +108,28 @@ impl PartFlags {
     }
 }
 
-/// Whether a text can stand in one line of a report.
+/// Whether a text can stand in one line of a report: nothing in it is unseen, so that two parts whose names look the same are the
+/// same.
 fn is_text(text: &str) -> bool {
-    // Marks that turn the direction of writing could show another text than the one that is there.
-    let turns = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{2028}' | '\u{2029}');
-    !text.trim().is_empty() && text.chars().count() <= LONGEST && !text.chars().any(|c| c.is_control() || turns(c))
+    let letters = || text.chars().zip(std::iter::once(' ').chain(text.chars()));
+    let unseen = letters().any(|(c, before)| c.is_control() || is_unseen(c) || (is_joiner(c) && before.is_ascii()));
+    !text.trim().is_empty() && text.chars().count() <= LONGEST && !unseen
+}
+
+/// Letters that take no room or show nothing, and marks that turn the direction of writing: with them a text could look like
+/// another one.
+const fn is_unseen(c: char) -> bool {
+    matches!(
+        c,
+        '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}'
+            | '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{2800}'
+            | '\u{3164}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{ffa0}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e0fff}'
+    )
+}
+
+/// Persian and the scripts of India are written with these; after a Latin letter or a digit they only hide.
+const fn is_joiner(c: char) -> bool {
+    matches!(c, '\u{200c}' | '\u{200d}')
 }
 
 /// What the table says.
@@ -137,6 +156,7 @@ pub(super) fn part(source: &Source, section: Option<&Section<'_>>) -> Result<Par
         tolerance: tolerance(source, section)?,
         uncertainty: length("uncertainty_mm", Limits::within("0.00001", "1", "mm"))?,
         reach: length("reach_mm", Limits::within("0.1", "1000", "mm"))?,
+        reach_height: length("reach_height_mm", Limits::within("0.01", "1000", "mm"))?,
     };
     section.close()?;
     Ok(table)

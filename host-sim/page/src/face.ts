@@ -1,0 +1,46 @@
+/** The wall unrolled under the deviations: where it was touched, contour by height, and what no point speaks for. */
+
+import type { Report } from "./data";
+import { el, svg } from "./dom";
+import { fixed } from "./format";
+import { limitsOf, standing } from "./limits";
+import { markPath } from "./marks";
+import { roundStep } from "./view";
+
+const HEIGHT = 116;
+const TOP = 8;
+const BOTTOM = 20;
+
+/** Heading, drawing and its key; nothing where the heights are not known. `px` is the place of an arc length. */
+export function face(report: Report, width: number, edge: { left: number; right: number }, px: (s: number) => number): Element[] {
+  const { coverage, points = [] } = report;
+  const wall = coverage?.face;
+  if (!coverage || !wall || !(wall.depth_mm > 0)) return [];
+  const touched = points.filter((p) => p.s_mm !== undefined && p.error_mm !== undefined && p.z_mm !== undefined);
+  const floor = HEIGHT - BOTTOM;
+  const py = (z: number) => TOP + (1 - z / wall.depth_mm) * (floor - TOP);
+  const open = wall.layers.flatMap((layer) => layer.stretches.map((stretch) => ({ layer, stretch })));
+  const picture = svg("svg", { class: "face", width, height: HEIGHT, viewBox: `0 0 ${width} ${HEIGHT}`, role: "img",
+    "aria-label": `The wall unrolled, arc length by height: ${touched.length} points${open.length ? ", grey where no point speaks for it" : ", all of it within reach of one"}` });
+  for (const { layer, stretch } of open) {
+    picture.append(svg("rect", { class: "unmeasured", x: px(stretch.from_mm), width: Math.max(0, px(stretch.to_mm) - px(stretch.from_mm)),
+      y: py(layer.to_mm), height: py(layer.from_mm) - py(layer.to_mm) }));
+  }
+  const step = roundStep(wall.depth_mm / 3);
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  for (let k = 0; k * step <= wall.depth_mm * (1 + 1e-9); k++) {
+    picture.append(svg("path", { class: "rule", d: `M${edge.left} ${py(k * step)}H${width - edge.right}` }));
+    picture.append(svg("text", { x: edge.left - 6, y: py(k * step) + 4, "text-anchor": "end" }, fixed(k * step, decimals)));
+  }
+  picture.append(svg("path", { class: "tick", d: `M${edge.left} ${TOP}V${floor}H${width - edge.right}V${TOP}Z` }));
+  const limits = limitsOf(report);
+  for (const p of touched) {
+    const where = standing(p, limits);
+    picture.append(svg("path", { class: `mark ${where}`, d: markPath(where, px(p.s_mm as number), py(p.z_mm as number), 4) }));
+  }
+  picture.append(svg("text", { x: edge.left, y: HEIGHT - 5 }, "height above the cutter's tip, mm, over the same arc length"));
+  const key = svg("svg", { width: 16, height: 12, "aria-hidden": "true" });
+  key.append(svg("rect", { class: "unmeasured", width: 16, height: 12 }));
+  const words = `farther than ${coverage.reach_mm} mm along the contour or ${wall.reach_mm} mm in height from every measured place`;
+  return [el("h3", {}, "Where the wall was touched"), picture, ...(open.length ? [el("p", { class: "chart-key" }, el("span", {}, key, words))] : [])];
+}
