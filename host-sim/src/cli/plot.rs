@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use super::which::WhichArguments;
 use super::{Terminal, print};
 use crate::command::plot::{Kind, Options, run as plot};
-use crate::diagnostics::Failure;
+use crate::diagnostics::{Failure, InputError};
 use crate::plot::{Column, View};
 use crate::report::json;
 
@@ -53,6 +54,11 @@ enum Which {
         /// How many times larger than the wall its error is drawn; otherwise the largest is a tenth of the part.
         #[arg(long, value_name = "TIMES", allow_negative_numbers = true)]
         magnify: Option<f64>,
+        /// The job of the tables; without it the nominal wall is that of the wall.csv beside each of them.
+        #[arg(long, value_name = "JOB.toml")]
+        job: Option<PathBuf>,
+        #[command(flatten)]
+        which: WhichArguments,
         #[command(flatten)]
         picture: Picture,
     },
@@ -97,8 +103,14 @@ pub(super) fn run(arguments: Arguments, terminal: &Terminal) -> Result<(), Failu
     let (kind, magnify, picture) = match arguments.kind {
         Which::Trace { tables, names, columns, picture } => (Kind::Trace { tables, names, columns }, None, picture),
         Which::Correction { table, picture } => (Kind::Correction(table), None, picture),
-        Which::Error { tables, names, points, magnify, picture } => {
-            (Kind::Error { tables, names, points }, magnify, picture)
+        Which::Error { tables, names, points, magnify, job, which, picture } => {
+            let which = which.which();
+            if job.is_none() && which != Default::default() {
+                let help = "give --job, the job of the tables, or leave --feature and --pass out";
+                return Err(InputError::new("Z012", "--feature and --pass without --job", "a job", help).into());
+            }
+            let job = job.map(|job| (job, which));
+            (Kind::Error { tables, names, points, job }, magnify, picture)
         }
         Which::Compare { folder, picture } => (Kind::Compare(folder), None, picture),
     };

@@ -189,6 +189,7 @@ fn picture(
     let wall = |milled: &Milled, what: &str, score: &Score, colour| {
         Wall::of_milled(format!("{what}: largest error {:.3} mm", score.max_error_mm), colour, milled)
     };
-    let walls = [wall(first, "first part", before, plot::BEFORE), wall(second, "corrected part", after, plot::AFTER)];
+    let walls =
+        [wall(first, "first part", before, plot::INK_BEFORE), wall(second, "corrected part", after, plot::INK_AFTER)];
     plot::error(&View::default(), story.title, &walls, None, &[])
 }

@@ -3,8 +3,8 @@
 //! | code | meaning |
 //! |---|---|
 //! | Z011 | an output that ends neither in .svg nor in .png; `--scale` for an SVG |
-//! | Z012 | a folder without the table, a table without its wall.csv |
-//! | Z013 | too many tables, too many laws, or tables that do not go together |
+//! | Z012 | a folder without the table, a table without its wall.csv and without a job |
+//! | Z013 | too many tables, too many laws, tables that do not go together, or a table of another job |
 //! | Z014 | a summary.json that is not one of `compare` |
 //!
 //! Others: [`View`], [`png`], `report::sheet`.
@@ -13,10 +13,14 @@ use std::io::Write;
 use std::path::{Path as FilePath, PathBuf};
 
 use crate::diagnostics::{Failure, InputError, Source};
+use crate::job::Which;
 use crate::output::OutputFile;
 use crate::plot::{self, Column, Compared, LawWall, PASSES, Place, Probed, View, Wall, png};
 use crate::report::sheet::{names as names_of, read_bounded};
-use crate::report::{Trace, WallRow, read_correction, read_points, read_trace, read_wall, read_walls};
+use crate::report::{Trace, read_correction, read_points, read_trace, read_walls};
+
+mod wall;
+pub use wall::OfJob;
 
 /// Most laws of a comparison.
 const LAWS: usize = 12;
@@ -45,6 +49,8 @@ pub enum Kind {
         names: Vec<String>,
         /// Probed places; without it those beside the first table, if there are any.
         points: Option<PathBuf>,
+        /// The job of the tables, in place of the wall.csv beside them, and which cut of its program.
+        job: Option<(PathBuf, Which)>,
     },
     /// A comparison of laws.
     Compare(PathBuf),
@@ -121,7 +127,7 @@ fn format(output: &FilePath) -> Result<&'static str, InputError> {
 fn drawn(kind: &Kind, view: &View) -> Result<Vec<u8>, Failure> {
     match kind {
         Kind::Trace { tables, names, columns } => {
-            let traces = traces(tables, names, |_, source| read_trace(source, None))?;
+            let traces = traces(tables, names, |_, source| Ok(read_trace(source, None)?))?;
             let passes: Vec<_> = traces.iter().map(|(name, trace)| (name.as_str(), trace.as_slice())).collect();
             plot::trace(view, &passes, columns)
         }
@@ -129,7 +135,10 @@ fn drawn(kind: &Kind, view: &View) -> Result<Vec<u8>, Failure> {
             let source = read_bounded(&table_in(table, &["correction.csv"])?)?;
             plot::correction(view, &read_correction(&source, None)?)
         }
-        Kind::Error { tables, names, points } => error(view, tables, names, points.as_deref()),
+        Kind::Error { tables, names, points, job } => {
+            let job = job.as_ref().map(|(job, which)| OfJob { job, which });
+            error(view, (tables, names), points.as_deref(), job.as_ref())
+        }
         Kind::Compare(folder) => plot::compare(view, &compared(folder)?),
     }
 }
@@ -138,12 +147,12 @@ fn drawn(kind: &Kind, view: &View) -> Result<Vec<u8>, Failure> {
 fn traces(
     tables: &[PathBuf],
     names: &[String],
-    read: impl Fn(&FilePath, &Source) -> Result<Trace, InputError>,
-) -> Result<Vec<(String, Trace)>, InputError> {
+    read: impl Fn(&FilePath, &Source) -> Result<Trace, Failure>,
+) -> Result<Vec<(String, Trace)>, Failure> {
     if tables.len() > PASSES || names.len() > tables.len() {
         let found = format!("there are {} tables and {} names", tables.len(), names.len());
         let help = "one name a table, in their order";
-        return Err(InputError::new("Z013", found, format!("at most {PASSES} tables"), help));
+        return Err(InputError::new("Z013", found, format!("at most {PASSES} tables"), help).into());
     }
     let each = tables.iter().enumerate().map(|(k, table)| {
         let file = table_in(table, &["trace.csv"])?;
@@ -172,7 +181,12 @@ fn table_in(path: &FilePath, wanted: &[&str]) -> Result<PathBuf, InputError> {
     })
 }
 
-fn error(view: &View, tables: &[PathBuf], names: &[String], points: Option<&FilePath>) -> Result<Vec<u8>, Failure> {
+fn error(
+    view: &View,
+    (tables, names): (&[PathBuf], &[String]),
+    points: Option<&FilePath>,
+    job: Option<&OfJob>,
+) -> Result<Vec<u8>, Failure> {
     let files = tables.iter().map(|t| table_in(t, &["correction.csv", "trace.csv"])).collect::<Result<Vec<_>, _>>()?;
     let beside = files.first().map(|f| f.with_file_name("points.csv")).filter(|f| f.is_file());
     let probed = match points.map(FilePath::to_owned).or(beside) {
@@ -182,28 +196,19 @@ fn error(view: &View, tables: &[PathBuf], names: &[String], points: Option<&File
     if let [file] = files.as_slice() {
         let source = read_bounded(file)?;
         if names_of(&source).iter().any(|name| name == "predicted_error_before_mm") {
-            return plot::predicted_error(view, &read_correction(&source, Some(&wall_beside(file)?))?, &probed);
+            let wall = wall::wall(file, &source, job)?;
+            return plot::predicted_error(view, &read_correction(&source, Some(&wall))?, &probed);
         }
     }
-    let passes = traces(&files, names, |file, source| read_trace(source, Some(&wall_beside(file)?)))?;
+    let read = |file: &FilePath, source: &Source| Ok(read_trace(source, Some(&wall::wall(file, source, job)?))?);
+    let passes = traces(&files, names, read)?;
+    let alone = passes.len() == 1;
     let walls: Vec<Wall> = passes
         .iter()
-        .zip(plot::IN_ORDER)
-        .map(|((name, trace), colour)| Wall::of_trace(&**name, colour, trace))
+        .zip(plot::INKS)
+        .map(|((name, trace), ink)| Wall::of_trace(&**name, if alone { ink.colour.into() } else { ink }, trace))
         .collect();
     plot::error(view, "The wall", &walls, None, &probed)
-}
-
-/// The nominal wall of a table.
-fn wall_beside(table: &FilePath) -> Result<Vec<WallRow>, InputError> {
-    let file = table.with_file_name("wall.csv");
-    if !file.is_file() {
-        let found = format!("there is no wall.csv beside {}", table.display());
-        let help = "the wall to scale needs the wall.csv that simulate, correct and learn write beside their table: name \
-                    their folder, or run them again";
-        return Err(InputError::new("Z012", found, "a folder with both tables", help).in_file(&file));
-    }
-    read_wall(&read_bounded(&file)?)
 }
 
 fn probed(source: &Source) -> Result<Vec<Probed>, InputError> {

@@ -3,7 +3,7 @@
 use super::axis::number;
 use super::curve::{Band, Curve};
 use super::panel::{Panel, panels};
-use super::style::{AFTER, ALONG_Y, BEFORE, DARK, IN_ORDER};
+use super::style::{INK_AFTER, INK_BEFORE, INKS, Ink};
 use super::view::View;
 use crate::diagnostics::Failure;
 
@@ -35,15 +35,15 @@ pub struct Compared {
 }
 
 impl LawWall {
-    /// Colour of a law, the same whichever laws there are.
-    fn colour(&self, at: usize) -> plotters::style::RGBColor {
+    /// Colour and dashes of a law, the same whichever laws there are.
+    fn ink(&self, at: usize) -> Ink {
         match self.law.as_str() {
-            "none" => DARK,
-            "constant" => IN_ORDER[4],
-            "mirror" => ALONG_Y,
-            "paper" => BEFORE,
-            "model" => AFTER,
-            _ => IN_ORDER[at % IN_ORDER.len()],
+            "none" => INKS[6],
+            "constant" => INKS[4],
+            "mirror" => INKS[3],
+            "paper" => INK_BEFORE,
+            "model" => INK_AFTER,
+            _ => INKS[at % INKS.len()],
         }
     }
 
@@ -55,7 +55,7 @@ impl LawWall {
     fn curve(&self, at: usize, trim_mm: f64) -> Curve {
         let largest = self.max_error_mm.map_or_else(String::new, |max| format!(": largest {} mm", number(max, 3)));
         let points = self.judged(trim_mm).map(|p| (p[0], p[1])).collect();
-        Curve::new(format!("{}{largest}", self.title), self.colour(at), points)
+        Curve::new(format!("{}{largest}", self.title), self.ink(at), points)
     }
 }
 
@@ -76,7 +76,7 @@ pub fn compare(view: &View, compared: &Compared) -> Result<Vec<u8>, Failure> {
     near.band = compared.laws.last().filter(|law| law.judged(compared.trim_mm).any(|p| spread(&p))).map(|law| Band {
         name: format!("{}: over the height", law.title),
         edges: law.judged(compared.trim_mm).map(|p| (p[0], p[2], p[3])).collect(),
-        colour: law.colour(compared.laws.len() - 1),
+        colour: law.ink(compared.laws.len() - 1).colour,
     });
     let on = if compared.on_plant { "on a virtual machine" } else { "on the identified machine" };
     let whole = Panel::new("wall error (mm)", all);

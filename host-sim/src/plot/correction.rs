@@ -3,7 +3,7 @@
 use super::curve::Curve;
 use super::error::uncertainty;
 use super::panel::{Panel, panels};
-use super::style::{ALONG_X, ALONG_Y};
+use super::style::{ALONG_X, INK_ALONG_Y};
 use super::view::View;
 use super::wall::Wall;
 use crate::diagnostics::Failure;
@@ -16,8 +16,8 @@ use crate::report::CorrectionRow;
 pub fn correction(view: &View, rows: &[CorrectionRow]) -> Result<Vec<u8>, Failure> {
     let over = |f: fn(&CorrectionRow) -> f64| rows.iter().map(|r| (r.s_mm, f(r))).collect::<Vec<_>>();
     let path =
-        vec![Curve::new("along X", ALONG_X, over(|r| r.dx_mm)), Curve::new("along Y", ALONG_Y, over(|r| r.dy_mm))];
-    let errors = Wall::of_correction(rows).map(|wall| Curve::new(&*wall.name, wall.colour, wall.errors()));
+        vec![Curve::new("along X", ALONG_X, over(|r| r.dx_mm)), Curve::new("along Y", INK_ALONG_Y, over(|r| r.dy_mm))];
+    let errors = Wall::of_correction(rows).map(|wall| Curve::new(&*wall.name, wall.ink, wall.errors()));
     let mut wall = Panel::new("wall error (mm)", errors.into());
     wall.band = Some(uncertainty(rows));
     panels(view, "Correction of the path and predicted wall", &[Panel::new("correction (mm)", path), wall])

@@ -1,10 +1,10 @@
 //! The wall of a part to scale with its error magnified, and below it the error along the contour.
 
-use super::chart::RIGHT;
+use super::chart::{RIGHT, room};
 use super::curve::{Band, Curve};
 use super::legend::{Entry, Legend, Sign};
-use super::page::{picture, title_height, units};
-use super::panel::{Mark, Panel, along};
+use super::page::{picture, thick, title_height, units};
+use super::panel::{Mark, Panel, along, columns};
 use super::part::Part;
 use super::style::AFTER;
 use super::view::{View, short};
@@ -12,11 +12,13 @@ use super::wall::{Probed, Wall};
 use crate::diagnostics::Failure;
 use crate::report::CorrectionRow;
 
-/// Usual and least height, px.
-const HEIGHT: u32 = 760;
+/// Least height, px.
 const LEAST: u32 = 320;
-/// Share of the diagram below.
-const DIAGRAM: f64 = 0.32;
+/// Height of the diagram below, and its share of a height that is asked for.
+const DIAGRAM: f64 = 230.0;
+const SHARE: f64 = 0.32;
+/// Height of the part to scale, whatever its shape: from that of a narrow strip to that of half a page.
+const PART: std::ops::RangeInclusive<f64> = 200.0..=500.0;
 
 /// Walls of one part, the first of which also gives the nominal one; the places that were probed.
 ///
@@ -34,27 +36,31 @@ pub fn error(
     let marks = probed.iter().map(|p| Mark { s_mm: p.place.s_mm, value: p.place.error_mm, outlying: p.outlying });
     let panel = Panel {
         unit: "wall error (mm)".to_owned(),
-        curves: walls.iter().map(|w| Curve::new(&*w.name, w.colour, w.errors())).collect(),
+        curves: walls.iter().map(|w| Curve::new(&*w.name, w.ink, w.errors())).collect(),
         band,
         marks: marks.collect(),
     };
     let window = view.window(panel.extent().unwrap_or((0.0, 1.0)))?;
-    let size = view.size(HEIGHT, LEAST)?;
-    let (width, height) = (f64::from(size.0), f64::from(size.1));
     let part = Part::new(walls, probed, window, view)?;
+    let (width, _) = view.size(LEAST, 0)?;
+    let fitting = part.height(f64::from(width)).clamp(*PART.start(), *PART.end());
+    let size = view.size((title_height(title) + 40.0 + fitting + DIAGRAM).round() as u32, LEAST)?;
+    let (width, height) = (f64::from(size.0), f64::from(size.1));
     let banded = panel.band.as_ref().map(|b| Entry { sign: Sign::Band, colour: b.colour, text: b.name.clone() });
     let top = title_height(title);
-    let lower = (height - top) * DIAGRAM;
+    let lower = if view.height.is_some() { (height - top) * SHARE } else { DIAGRAM };
     // How many rows the legend takes is known only with the scale, which depends on it a little.
     let upper = |legend: f64| height - top - lower - legend;
-    let (_, _, left, per_px) = part.axes(width, upper(20.0));
-    let room = part.legend(banded.clone(), per_px, width - left - RIGHT).height();
-    let (x, y, left, per_px) = part.axes(width, upper(room));
+    // The numbers of the diagram below need room as well.
+    let least = room([&panel.scale(window, columns(thick(width)))]);
+    let (_, _, left, per_px) = part.axes(width, upper(20.0), least);
+    let rows = part.legend(banded.clone(), per_px, width - left - RIGHT).height();
+    let (x, y, left, per_px) = part.axes(width, upper(rows), least);
     let legend = part.legend(banded, per_px, width - left - RIGHT);
     picture(size, title, |root| {
         legend.draw(root, left, top)?;
         let area = |from: f64, high: f64| root.clone().shrink((0, units(from)), (units(width), units(high)));
-        part.draw(&area(top + room, upper(room)), left, (&x, &y), per_px)?;
+        part.draw(&area(top + rows, upper(rows)), left, (&x, &y), per_px)?;
         let below = area(height - lower, lower);
         let along = along(window);
         panel.draw(&below, &Legend::default(), left, (&along, window), true)

@@ -5,18 +5,16 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::letters;
 use super::page::{Area, SMALL, fitted, lettering, thick, units};
-use super::style::{DARK, failed};
+use super::style::{DARK, Ink, failed};
 use crate::diagnostics::Failure;
 
 /// What stands before a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Sign {
-    /// A line.
-    Line,
+    /// A line with these dashes.
+    Line(&'static [f64]),
     /// A broad line.
     Broad,
-    /// A line of dashes.
-    Dashes,
     /// A band.
     Band,
     /// A full point.
@@ -40,10 +38,16 @@ const ROW: f64 = 19.0;
 const GAP: f64 = 22.0;
 
 impl Entry {
+    /// Of a line.
+    pub(super) fn line(ink: Ink, text: &str) -> Self {
+        Self { sign: Sign::Line(ink.dashes), colour: ink.colour, text: text.to_owned() }
+    }
+
     fn sign_width(&self) -> f64 {
         match self.sign {
             Sign::Point | Sign::Ring => 12.0,
             Sign::Bar(length) => length.min(200.0),
+            Sign::Line(_) => 32.0,
             _ => 24.0,
         }
     }
@@ -93,9 +97,22 @@ impl Legend {
                 area.draw(&line).map_err(failed)
             };
             match entry.sign {
-                Sign::Line => line(x, end, 2.5)?,
+                Sign::Line([]) => line(x, end, 2.5)?,
+                Sign::Line(dashes) => {
+                    line(x, end, 0.8)?;
+                    let mut from = x;
+                    for (k, length) in dashes.iter().cycle().enumerate() {
+                        let to = (from + length).min(end);
+                        if k % 2 == 0 {
+                            line(from, to, 2.8)?;
+                        }
+                        if to >= end {
+                            break;
+                        }
+                        from = to;
+                    }
+                }
                 Sign::Broad => line(x, end, 5.0)?,
-                Sign::Dashes => [0.0, 9.0, 18.0].into_iter().try_for_each(|d| line(x + d, x + d + 5.0, 2.0))?,
                 Sign::Band => {
                     let band = Rectangle::new([at(x, y - 5.0), at(end, y + 5.0)], entry.colour.mix(0.22).filled());
                     area.draw(&band).map_err(failed)?;

@@ -4,7 +4,7 @@ use plotters::prelude::*;
 
 use super::axis::Scale;
 use super::chart::{BELOW, RIGHT, chart, room};
-use super::curve::{self, Band, Curve, Stroke};
+use super::curve::{self, Band, Curve};
 use super::legend::{Entry, Legend, Sign, dot};
 use super::page::{Area, SMALL, fitted, picture, thick, title_height, units};
 use super::style::{DARK, ZERO, failed};
@@ -16,6 +16,8 @@ const ALONG: &str = "along the contour (mm)";
 /// Usual height of one, two, three or more diagrams each, and the least, px.
 const HEIGHTS: [f64; 4] = [300.0, 220.0, 180.0, 150.0];
 const LEAST: f64 = 60.0;
+/// Change of a value, as a share of it, below which it counts as constant.
+const LEVEL: f64 = 1e-4;
 /// Room between diagrams, px.
 const BETWEEN: f64 = 12.0;
 
@@ -50,8 +52,7 @@ impl Panel {
     }
 
     fn entries(&self) -> Vec<Entry> {
-        let sign = |curve: &Curve| if curve.dashed { Sign::Dashes } else { Sign::Line };
-        let curves = self.curves.iter().map(|c| Entry { sign: sign(c), colour: c.colour, text: c.name.clone() });
+        let curves = self.curves.iter().map(|c| Entry::line(c.ink, &c.name));
         let band = self.band.iter().map(|b| Entry { sign: Sign::Band, colour: b.colour, text: b.name.clone() });
         curves.chain(band).filter(|entry| !entry.text.is_empty()).collect()
     }
@@ -73,10 +74,15 @@ impl Panel {
         if low > high {
             return Scale::new(0.0, 1.0, 5);
         }
-        let span = (high - low).max(1e-6);
-        let low = if low > 0.0 && low < 2.0 * span { 0.0 } else { low };
-        let high = if high < 0.0 && -high < 2.0 * span { 0.0 } else { high };
-        let margin = (high - low).max(1e-6) * 0.07;
+        if (low, high) == (0.0, 0.0) {
+            return Scale::new(0.0, 1.0, 5);
+        }
+        let span = high - low;
+        // What does not change is a level, seen from zero: no digit of rounding is drawn as large as the diagram.
+        let level = span < LEVEL * low.abs().max(high.abs());
+        let low = if low > 0.0 && (low < 2.0 * span || level) { 0.0 } else { low };
+        let high = if high < 0.0 && (-high < 2.0 * span || level) { 0.0 } else { high };
+        let margin = (high - low) * 0.07;
         Scale::new(if low == 0.0 { low } else { low - margin }, if high == 0.0 { high } else { high + margin }, 6)
     }
 
@@ -107,7 +113,8 @@ impl Panel {
         }
         for each in &self.curves {
             let points = curve::within(&each.points, window, columns);
-            curve::line(&mut chart, &points, each.colour, if each.dashed { Stroke::Dashed } else { Stroke::Full })?;
+            let wide = f64::from(width) / super::page::FINE - left;
+            curve::line(&mut chart, &points, each.ink, |at| points.get(at).map_or(0.0, |p| x.share(p.0) * wide))?;
         }
         for mark in self.marks.iter().filter(|m| m.s_mm >= window.0 && m.s_mm <= window.1) {
             chart.draw_series([dot((mark.s_mm, mark.value), DARK, !mark.outlying)]).map_err(failed)?;
@@ -160,4 +167,27 @@ pub fn panels(view: &View, title: &str, panels: &[Panel]) -> Result<Vec<u8>, Fai
         }
         Ok(())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::style::DARK;
+
+    #[test]
+    fn a_constant_is_drawn_over_zero_with_round_numbers_and_not_as_its_rounding() {
+        let scale = |values: &[f64]| {
+            let points = values.iter().enumerate().map(|(k, v)| (k as f64, *v)).collect();
+            let scale = Panel::new("", vec![Curve::new("", DARK, points)]).scale((0.0, 9.0), 100);
+            (scale.low, scale.high, scale.ticks.iter().map(|t| scale.label(*t)).collect::<Vec<_>>())
+        };
+        assert_eq!(scale(&[40.0, 40.0, 40.0 + 1e-9]).2, ["0", "10", "20", "30", "40"]);
+        let (low, high, ticks) = scale(&[-0.05, -0.05]);
+        assert!(low < -0.05 && high == 0.0, "{low} {high}");
+        assert_eq!(ticks, ["−0.04", "−0.02", "0.00"]);
+        assert_eq!(scale(&[0.0, 0.0]).2.first().map(String::as_str), Some("0.0"));
+        // A small change of a small value is a change.
+        let (low, high, _) = scale(&[1e-6, 3e-6, 2e-6]);
+        assert!(low == 0.0 && high < 4e-6, "{low} {high}");
+    }
 }

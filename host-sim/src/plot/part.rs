@@ -6,7 +6,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::axis::{Scale, number, plain, round_below};
 use super::chart::{BELOW, Chart, RIGHT, chart, room};
-use super::curve::{Stroke, line};
+use super::curve::{broad, line};
 use super::legend::{Entry, Legend, Sign, dot};
 use super::letters;
 use super::page::{Area, FINE, SMALL, lettering, thick, units};
@@ -63,7 +63,7 @@ impl<'a> Part<'a> {
     pub(super) fn legend(&self, band: Option<Entry>, per_px: f64, width: f64) -> Legend {
         let entry = |sign, colour, text: &str| Entry { sign, colour, text: text.to_owned() };
         let mut entries = vec![entry(Sign::Broad, NOMINAL, "nominal wall")];
-        entries.extend(self.walls.iter().map(|w| entry(Sign::Line, w.colour, &w.name)));
+        entries.extend(self.walls.iter().map(|w| Entry::line(w.ink, &w.name)));
         entries.extend(band);
         if self.probed.iter().any(|p| !p.outlying) {
             entries.push(entry(Sign::Point, DARK, "probed (deviation in mm)"));
@@ -94,18 +94,25 @@ impl<'a> Part<'a> {
         ((x.1 - x.0) / width).max((y.1 - y.0) / height).max(1e-9) * around
     }
 
+    /// The height at which a picture of a width, in pixels, leaves no empty room beside or above the part.
+    pub(super) fn height(&self, width: f64) -> f64 {
+        let (x, y) = self.box_mm();
+        let (w, h) = ((x.1 - x.0).max(1e-9), (y.1 - y.0).max(1e-9));
+        (width - 60.0 - RIGHT).max(1.0) * (h / w).min(1e3) + BELOW
+    }
+
     /// Draws it into an area, leaving `left` pixels for the vertical axis.
     pub(super) fn draw(&self, area: &Area, left: f64, (x, y): (&Scale, &Scale), per_px: f64) -> Result<(), Failure> {
         let mut chart = chart(area, left, (x, Some("X (mm)")), (y, "Y (mm)"))?;
         let stands = |p: &Place| if p.error_mm.is_finite() { (p.wall[0], p.wall[1]) } else { (f64::NAN, f64::NAN) };
         if let Some(first) = self.walls.first() {
             let nominal: Vec<(f64, f64)> = self.places(first, per_px).into_iter().map(stands).collect();
-            line(&mut chart, &nominal, NOMINAL, Stroke::Broad)?;
+            broad(&mut chart, &nominal, NOMINAL)?;
         }
         for wall in self.walls {
-            let milled: Vec<(f64, f64)> =
-                self.places(wall, per_px).into_iter().map(|p| p.milled(self.magnify)).collect();
-            line(&mut chart, &milled, wall.colour, Stroke::Full)?;
+            let places = self.places(wall, per_px);
+            let milled: Vec<(f64, f64)> = places.iter().map(|p| p.milled(self.magnify)).collect();
+            line(&mut chart, &milled, wall.ink, |at| places.get(at).map_or(0.0, |p| p.s_mm / per_px))?;
         }
         self.draw_probed(area, &mut chart)
     }
@@ -119,6 +126,9 @@ impl<'a> Part<'a> {
         }
         let base = area.get_base_pixel();
         let mut taken: Vec<[f64; 4]> = Vec::new();
+        let (across, down) = chart.plotting_area().get_pixel_range();
+        let of = |v: i32, base: i32| f64::from(v - base) / FINE;
+        let frame = [of(across.start, base.0), of(down.start, base.1), of(across.end, base.0), of(down.end, base.1)];
         for spot in self.probed.chunk_by(|a, b| (a.place.s_mm - b.place.s_mm).abs() < SPOT).take(WRITTEN) {
             let Some(place) = spot.first().map(|p| p.place) else { continue };
             let text = deviations(spot.iter().map(|p| p.place.error_mm));
@@ -127,32 +137,42 @@ impl<'a> Part<'a> {
             // On paper Y points down.
             let into = [-place.free[0], place.free[1]];
             let width = letters::width(&text, SMALL - 1.0);
-            let middle = [at[0] + into[0] * (width / 2.0 + 7.0), at[1] + into[1] * (HIGH / 2.0 + 7.0)];
-            let (left, top) = (middle[0] - width / 2.0, middle[1] - HIGH / 2.0);
-            let (right, low) = (left + width, top + HIGH);
-            if taken.iter().any(|t| right >= t[0] && left <= t[2] && low >= t[1] && top <= t[3]) {
-                continue;
-            }
-            taken.push([left, top, right, low]);
+            // The text stands beside the wall as a box does beside a line; where another one stands already, shifted along the
+            // wall or farther out.
+            let half = into[0].abs() * width / 2.0 + into[1].abs() * HIGH / 2.0;
+            let aside = (into[1].abs() * width + into[0].abs() * HIGH) / 2.0;
+            let spot = (0..9).find_map(|at_try| {
+                let far = 7.0 + half + f64::from(at_try / 3) * (2.0 * half + 3.0);
+                let shift = [0.0, aside, -aside][at_try as usize % 3];
+                let middle = [at[0] + into[0] * far + into[1] * shift, at[1] + into[1] * far - into[0] * shift];
+                let (left, top) = (middle[0] - width / 2.0, middle[1] - HIGH / 2.0);
+                let (right, low) = (left + width, top + HIGH);
+                let free = !taken.iter().any(|t| right >= t[0] && left <= t[2] && low >= t[1] && top <= t[3]);
+                let inside = left >= frame[0] && top >= frame[1] && right <= frame[2] && low <= frame[3];
+                (free && inside).then_some(([left, top, right, low], middle))
+            });
+            let Some((place, middle)) = spot else { continue };
+            let left = place[0];
+            taken.push(place);
             let style = lettering(SMALL - 1.0, DARK).pos(Pos::new(HPos::Left, VPos::Center));
             area.draw(&Text::new(text, (units(left), units(middle[1])), style)).map_err(failed)?;
         }
         Ok(())
     }
 
-    /// The axes of an area of so many pixels, and the room left of them.
-    pub(super) fn axes(&self, width: f64, height: f64) -> (Scale, Scale, f64, f64) {
+    /// The axes of an area of so many pixels, and the room left of them, `least` or more.
+    pub(super) fn axes(&self, width: f64, height: f64, least: f64) -> (Scale, Scale, f64, f64) {
         let (x, y) = self.box_mm();
         let middle = |range: (f64, f64)| (range.0 + range.1) / 2.0;
         let scale = |range, half: f64, px: f64, each: f64| {
             Scale::new(middle(range) - half, middle(range) + half, (px / each) as usize + 2)
         };
-        let mut left = 60.0;
+        let mut left = least.max(60.0);
         // The room for the numbers depends on the scale, and a little the other way round.
         for _ in 0..2 {
             let (w, h) = ((width - left - RIGHT).max(1.0), (height - BELOW).max(1.0));
             let per_px = self.per_px(w, h);
-            let ys = scale(y, per_px * h / 2.0, h, 60.0);
+            let ys = scale(y, per_px * h / 2.0, h, 45.0);
             let needed = room([&ys]);
             if needed <= left {
                 return (scale(x, per_px * w / 2.0, w, 90.0), ys, left, per_px);
@@ -161,7 +181,7 @@ impl<'a> Part<'a> {
         }
         let (w, h) = ((width - left - RIGHT).max(1.0), (height - BELOW).max(1.0));
         let per_px = self.per_px(w, h);
-        (scale(x, per_px * w / 2.0, w, 90.0), scale(y, per_px * h / 2.0, h, 60.0), left, per_px)
+        (scale(x, per_px * w / 2.0, w, 90.0), scale(y, per_px * h / 2.0, h, 45.0), left, per_px)
     }
 }
 

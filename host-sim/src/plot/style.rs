@@ -1,6 +1,7 @@
 //! What all pictures share: colours, letters, legend.
 //!
-//! Colours are those of Okabe and Ito, distinguishable by colour-blind readers and in grey.
+//! Colours are those of Okabe and Ito, distinguishable by colour-blind readers. Some of them are the same grey: lines that are drawn
+//! over each other also differ in their dashes.
 
 use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
@@ -26,6 +27,41 @@ pub(crate) const LIGHT: RGBColor = RGBColor(225, 225, 225);
 /// Of things of one kind in their order.
 pub(crate) const IN_ORDER: [RGBColor; 7] =
     [BEFORE, AFTER, ALONG_X, ALONG_Y, RGBColor(230, 159, 0), RGBColor(86, 180, 233), DARK];
+/// How a line is drawn: told by its colour, and by its dashes where all is grey.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ink {
+    /// Colour.
+    pub colour: RGBColor,
+    /// Lengths of strokes and gaps in turn, px; none for a full line.
+    pub dashes: &'static [f64],
+}
+
+impl From<RGBColor> for Ink {
+    fn from(colour: RGBColor) -> Self {
+        Self { colour, dashes: &[] }
+    }
+}
+
+/// Strokes and gaps of a dashed line, px.
+pub(crate) const DASHES: &[f64] = &[8.0, 5.0];
+/// Of lines of one kind in their order.
+pub(crate) const INKS: [Ink; IN_ORDER.len()] = [
+    Ink { colour: IN_ORDER[0], dashes: DASHES },
+    Ink { colour: IN_ORDER[1], dashes: &[] },
+    Ink { colour: IN_ORDER[2], dashes: &[12.0, 4.0, 2.0, 4.0] },
+    Ink { colour: IN_ORDER[3], dashes: &[2.0, 4.0] },
+    Ink { colour: IN_ORDER[4], dashes: &[18.0, 6.0] },
+    Ink { colour: IN_ORDER[5], dashes: &[12.0, 4.0, 2.0, 4.0, 2.0, 4.0] },
+    Ink { colour: IN_ORDER[6], dashes: &[2.0, 10.0] },
+];
+/// The line before the correction.
+pub(crate) const INK_BEFORE: Ink = INKS[0];
+/// The line after it.
+pub(crate) const INK_AFTER: Ink = INKS[1];
+/// Along y, beside a full line along x.
+pub(crate) const INK_ALONG_Y: Ink = Ink { colour: ALONG_Y, dashes: DASHES };
+/// What has no direction, beside its parts along x and y.
+pub(crate) const INK_MAGNITUDE: Ink = Ink { colour: DARK, dashes: &[2.0, 4.0] };
 /// Letters: the first of these a reader has. All but the last have the same widths as the font the PNG pictures are drawn with.
 pub(crate) const FONT: &str = "Arimo, Arial, Helvetica, Liberation Sans, sans-serif";
 

@@ -1,10 +1,8 @@
 //! The traces of a pass over the contour; those of several passes over each other.
 
-use plotters::style::RGBColor;
-
 use super::curve::Curve;
 use super::panel::{Panel, panels};
-use super::style::{AFTER, ALONG_X, ALONG_Y, DARK, IN_ORDER};
+use super::style::{ALONG_X, DARK, INK_AFTER, INK_ALONG_Y, INK_MAGNITUDE, INKS, Ink};
 use super::view::View;
 use crate::diagnostics::Failure;
 use crate::report::TraceRow;
@@ -33,6 +31,7 @@ impl Column {
     /// What is drawn when nothing is said.
     pub const USUAL: [Self; 4] = [Self::Arc, Self::Force, Self::Deflection, Self::Error];
 
+    /// The values with their unit.
     const fn unit(self) -> &'static str {
         match self {
             Self::Arc => "engagement (°)",
@@ -43,37 +42,38 @@ impl Column {
         }
     }
 
-    /// Curves of a single pass, each with its own colour.
-    fn single(self) -> Vec<(&'static str, RGBColor, Of)> {
+    /// Curves of a single pass in one diagram.
+    fn single(self) -> Vec<(&'static str, Ink, Of)> {
+        let x = Ink::from(ALONG_X);
         match self {
-            Self::Arc => vec![("engagement angle", DARK, |r| r.arc_deg)],
-            Self::Chip => vec![("b·f·(1 − cos φ)", DARK, |r| r.chip_area_mm2)],
+            Self::Arc => vec![("engagement angle", DARK.into(), |r| r.arc_deg)],
+            Self::Chip => vec![("b·f·(1 − cos φ)", DARK.into(), |r| r.chip_area_mm2)],
             Self::Force => vec![
-                ("magnitude", DARK, |r| r.force_n),
-                ("along X", ALONG_X, |r| r.fx_n),
-                ("along Y", ALONG_Y, |r| r.fy_n),
+                ("magnitude", INK_MAGNITUDE, |r| r.force_n),
+                ("along X", x, |r| r.fx_n),
+                ("along Y", INK_ALONG_Y, |r| r.fy_n),
             ],
-            Self::Components => vec![("along X", ALONG_X, |r| r.fx_n), ("along Y", ALONG_Y, |r| r.fy_n)],
-            Self::Deflection => vec![("along X", ALONG_X, |r| r.dx_mm), ("along Y", ALONG_Y, |r| r.dy_mm)],
-            Self::Error => vec![("material left (+), gouge (−)", AFTER, |r| r.error_mm)],
+            Self::Components => vec![("along X", x, |r| r.fx_n), ("along Y", INK_ALONG_Y, |r| r.fy_n)],
+            Self::Deflection => vec![("along X", x, |r| r.dx_mm), ("along Y", INK_ALONG_Y, |r| r.dy_mm)],
+            Self::Error => vec![("material left (+), gouge (−)", INK_AFTER, |r| r.error_mm)],
         }
     }
 
-    /// Curves of one of several passes: what each is named after the pass, and whether it is dashed.
-    fn one_of_several(self) -> Vec<(&'static str, bool, Of)> {
+    /// Diagrams of several passes: each shows one value of them all, so that every curve is a pass.
+    fn several(self) -> Vec<(&'static str, Of)> {
         match self {
-            Self::Arc => vec![("", false, |r| r.arc_deg)],
-            Self::Chip => vec![("", false, |r| r.chip_area_mm2)],
-            Self::Force => vec![("", false, |r| r.force_n)],
-            Self::Components => vec![(", X", false, |r| r.fx_n), (", Y", true, |r| r.fy_n)],
-            Self::Deflection => vec![(", X", false, |r| r.dx_mm), (", Y", true, |r| r.dy_mm)],
-            Self::Error => vec![("", false, |r| r.error_mm)],
+            Self::Arc => vec![(self.unit(), |r| r.arc_deg)],
+            Self::Chip => vec![(self.unit(), |r| r.chip_area_mm2)],
+            Self::Force => vec![(self.unit(), |r| r.force_n)],
+            Self::Components => vec![("mean force X (N)", |r| r.fx_n), ("mean force Y (N)", |r| r.fy_n)],
+            Self::Deflection => vec![("deflection X (mm)", |r| r.dx_mm), ("deflection Y (mm)", |r| r.dy_mm)],
+            Self::Error => vec![(self.unit(), |r| r.error_mm)],
         }
     }
 }
 
 /// Most passes over each other: one for each colour that can be told apart.
-pub const PASSES: usize = IN_ORDER.len();
+pub const PASSES: usize = INKS.len();
 
 /// Draws the columns of passes with their names; a single one needs none.
 ///
@@ -81,24 +81,18 @@ pub const PASSES: usize = IN_ORDER.len();
 /// As [`panels`].
 pub fn trace(view: &View, passes: &[(&str, &[TraceRow])], columns: &[Column]) -> Result<Vec<u8>, Failure> {
     let over = |rows: &[TraceRow], f: Of| rows.iter().map(|r| (r.s_mm, f(r))).collect::<Vec<_>>();
-    let curves = |column: &Column| match passes {
+    let diagrams = |column: &Column| match passes {
         [(_, rows)] => {
-            let curve = |(name, colour, f): (&'static str, _, _)| Curve::new(name, colour, over(rows, f));
-            column.single().into_iter().map(curve).collect()
+            let curve = |(name, ink, f): (&'static str, Ink, Of)| Curve::new(name, ink, over(rows, f));
+            vec![Panel::new(column.unit(), column.single().into_iter().map(curve).collect())]
         }
-        several => several
-            .iter()
-            .zip(IN_ORDER)
-            .flat_map(|((name, rows), colour)| {
-                column.one_of_several().into_iter().map(move |(what, dashed, f)| Curve {
-                    name: format!("{name}{what}"),
-                    dashed,
-                    ..Curve::new("", colour, over(rows, f))
-                })
-            })
-            .collect(),
+        several => {
+            let curves =
+                |f: Of| several.iter().zip(INKS).map(move |((name, rows), ink)| Curve::new(*name, ink, over(rows, f)));
+            column.several().into_iter().map(|(unit, f)| Panel::new(unit, curves(f).collect())).collect()
+        }
     };
     let title = if passes.len() == 1 { "One pass along the contour" } else { "Passes along the contour" };
-    let rows: Vec<Panel> = columns.iter().map(|column| Panel::new(column.unit(), curves(column))).collect();
+    let rows: Vec<Panel> = columns.iter().flat_map(diagrams).collect();
     panels(view, title, &rows)
 }

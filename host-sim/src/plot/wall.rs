@@ -1,8 +1,6 @@
 //! The wall of a part, place by place, as the tables of the commands describe it.
 
-use plotters::prelude::RGBColor;
-
-use super::style::{AFTER, BEFORE};
+use super::style::{INK_AFTER, INK_BEFORE, Ink};
 use crate::plant::{Milled, judged_trim_mm};
 use crate::report::{CorrectionRow, TraceRow};
 
@@ -39,21 +37,21 @@ impl Place {
 pub struct Wall {
     /// Name in the legend.
     pub name: String,
-    /// Colour.
-    pub colour: RGBColor,
+    /// Colour and dashes.
+    pub ink: Ink,
     /// In the order of the contour.
     pub places: Vec<Place>,
 }
 
 impl Wall {
     /// What a pass leaves.
-    pub fn of_trace(name: impl Into<String>, colour: RGBColor, trace: &[TraceRow]) -> Self {
+    pub fn of_trace(name: impl Into<String>, ink: Ink, trace: &[TraceRow]) -> Self {
         let place = |r: &TraceRow| Place::new(r.s_mm, [r.wall_x_mm, r.wall_y_mm], [r.x_mm, r.y_mm], r.error_mm);
-        Self { name: name.into(), colour, places: trace.iter().map(place).collect() }
+        Self { name: name.into(), ink, places: trace.iter().map(place).collect() }
     }
 
     /// What the virtual machine milled, where it is judged: not at the ends, where the cutter comes and goes.
-    pub fn of_milled(name: impl Into<String>, colour: RGBColor, milled: &Milled) -> Self {
+    pub fn of_milled(name: impl Into<String>, ink: Ink, milled: &Milled) -> Self {
         let (path, radius) = (&milled.path, milled.cut.radius_mm);
         let trim = judged_trim_mm(radius);
         let judged = |s: f64| s > trim && s < path.length_mm - trim;
@@ -62,20 +60,20 @@ impl Wall {
             let wall = [centre[0] + normal[0] * radius, centre[1] + normal[1] * radius];
             Place::new(*s, wall, *centre, if judged(*s) { error } else { f64::NAN })
         });
-        Self { name: name.into(), colour, places: places.collect() }
+        Self { name: name.into(), ink, places: places.collect() }
     }
 
     /// What is predicted without and with a correction.
     pub fn of_correction(rows: &[CorrectionRow]) -> [Self; 2] {
-        let wall = |name: &str, colour, error: fn(&CorrectionRow) -> Option<f64>| {
+        let wall = |name: &str, ink, error: fn(&CorrectionRow) -> Option<f64>| {
             let place = |r: &CorrectionRow| {
                 Place::new(r.s_mm, [r.wall_x_mm, r.wall_y_mm], [r.x_mm, r.y_mm], error(r).unwrap_or(f64::NAN))
             };
-            Self { name: name.to_owned(), colour, places: rows.iter().map(place).collect() }
+            Self { name: name.to_owned(), ink, places: rows.iter().map(place).collect() }
         };
         [
-            wall("without correction", BEFORE, |r| r.predicted_error_before_mm),
-            wall("with correction", AFTER, |r| r.predicted_error_after_mm),
+            wall("without correction", INK_BEFORE, |r| r.predicted_error_before_mm),
+            wall("with correction", INK_AFTER, |r| r.predicted_error_after_mm),
         ]
     }
 

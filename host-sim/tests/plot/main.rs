@@ -1,6 +1,7 @@
 //! Pictures of what the commands wrote: every kind, the values in them, their files, what is refused.
 
 mod drawing;
+mod job;
 mod refused;
 
 use std::fs;
