@@ -7,6 +7,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use monitor_support::cable::Cable;
 use monitor_support::{OnTerminal, Served, image};
 use truepath::bench::Faults;
 use truepath::command::hil::{Kind, Options, Source, open, run};
@@ -98,6 +99,25 @@ fn a_device_that_falls_silent_is_lost_until_it_answers_and_lost_when_left_is_an_
     view.is_as_before();
     let said = view.text();
     assert!(said.contains("H003") && said.contains("when the view was left"), "{said}");
+}
+
+#[test]
+fn a_cable_that_is_pulled_out_is_lost_until_it_is_plugged_in_again() {
+    let served = Served::start();
+    let mut cable = Cable::to(&served.config);
+    let port = cable.port();
+    let mut view = on_terminal(&["device", "--port", port.to_str().unwrap(), "monitor", "--every-ms", "50"]);
+    view.shows("O F F");
+    cable.pull();
+    view.shows("L O S T");
+    cable.plug();
+    view.shows("O F F");
+    cable.pull();
+    view.shows("L O S T");
+    view.press("\x03");
+    assert_eq!(view.ends().exit_code(), 1);
+    view.is_as_before();
+    assert!(view.text().contains("H003") || view.text().contains("H001"), "{}", view.text());
 }
 
 #[test]

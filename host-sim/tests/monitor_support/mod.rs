@@ -1,6 +1,8 @@
 //! A device behind two sockets that can fall silent, an image for it, and the program on a terminal of its own.
 #![allow(dead_code)]
 
+pub mod cable;
+
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
