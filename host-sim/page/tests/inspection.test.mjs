@@ -111,7 +111,9 @@ test("the inspection that the program wrote names its files and what no point sp
   assert.deepEqual(data.files.map((f) => f.what), ["program", "probe file", "job"]);
   const { page, close } = await open(await write("inspect-written", data));
   assert.deepEqual(await page.locator("#statements li").allTextContents(), data.statements);
-  const shaded = await page.locator("#deviations rect.unmeasured").evaluateAll((all) => all.filter((r) => r.hasAttribute("x")).length);
-  assert.equal(shaded, data.coverage.stretches.length);
+  const shaded = (of) => page.locator(`${of} rect.unmeasured`).evaluateAll((all) => all.filter((r) => r.hasAttribute("x")).length);
+  assert.equal(await shaded("#deviations .chart > svg:not(.face)"), data.coverage.stretches.length);
+  assert.equal(await shaded("#deviations svg.face"), data.coverage.face.layers.reduce((sum, layer) => sum + layer.stretches.length, 0));
+  assert.equal(await page.locator("#deviations svg.face path.mark").count(), data.points.filter((p) => p.z_mm !== undefined).length);
   await close();
 });

@@ -18,6 +18,9 @@ const PARTS: i64 = 100;
 /// Heights that lie no farther apart than so many of these parts are told as one.
 const ALIKE: i64 = 5;
 
+/// Stretches of the contour.
+type Spans = Vec<(Offset, Offset)>;
+
 /// What no point speaks for over the height.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Face {
@@ -54,7 +57,7 @@ pub(super) fn face(places: &[Touched], wall: Extent, reach: Reach) -> Face {
         by_height.entry((height * PARTS + depth.nm() / 2) / depth.nm().max(1)).or_default().push(place.s);
     }
     // Of each height what is reached, without overlaps: a few stretches, however many points there are.
-    let levels: Vec<(Offset, Vec<(Offset, Offset)>)> = by_height
+    let levels: Vec<(Offset, Spans)> = by_height
         .iter()
         .map(|(k, s)| {
             let open = left_open(reached(s.iter().copied(), wall, reach.along), wall.length);
@@ -66,7 +69,7 @@ pub(super) fn face(places: &[Touched], wall: Extent, reach: Reach) -> Face {
     edges.extend([Offset::ZERO, depth]);
     edges.sort_unstable();
     edges.dedup();
-    let mut layers: Vec<(Offset, Offset, Vec<(Offset, Offset)>)> = Vec::new();
+    let mut layers: Vec<(Offset, Offset, Spans)> = Vec::new();
     for edge in edges.windows(2) {
         let &[low, high] = edge else { continue };
         let counts = |height: &Offset| *height - reach.height <= low && *height + reach.height >= high;
@@ -80,7 +83,7 @@ pub(super) fn face(places: &[Touched], wall: Extent, reach: Reach) -> Face {
     }
     let area: f64 = layers.iter().map(|(low, high, open)| mm(*high - *low) * mm(together(open))).sum();
     let whole = mm(depth) * mm(wall.length);
-    let layer = |(low, high, open): (Offset, Offset, Vec<(Offset, Offset)>)| Layer {
+    let layer = |(low, high, open): (Offset, Offset, Spans)| Layer {
         from_mm: mm(low),
         to_mm: mm(high),
         stretches: open.into_iter().map(Stretch::of).collect(),
@@ -179,7 +182,10 @@ mod tests {
         face(&places, wall, Reach { along: Offset::from_nm(50 * MM), height: Offset::from_nm(3 * MM) })
     }
 
-    fn layers(face: &Face) -> Vec<(f64, f64, Vec<(f64, f64)>)> {
+    /// Height from and to, and the stretches of the contour.
+    type Told = (f64, f64, Vec<(f64, f64)>);
+
+    fn layers(face: &Face) -> Vec<Told> {
         let stretches = |l: &Layer| l.stretches.iter().map(|s| (s.from_mm, s.to_mm)).collect();
         face.layers.iter().map(|l| (l.from_mm, l.to_mm, stretches(l))).collect()
     }

@@ -62,7 +62,7 @@ fn of_job(table: &FilePath, source: &Source, of: &OfJob) -> Result<Vec<WallRow>,
         let centre = [line.number(1)?, line.number(2)?];
         let at = along(samples, &mut next, s);
         let apart = at.map_or(f64::INFINITY, |at| (at.centre[0] - centre[0]).hypot(at.centre[1] - centre[1]));
-        if !(apart <= NEAR) {
+        if apart > NEAR || apart.is_nan() {
             strange.get_or_insert((s, centre, at));
         }
         let [nx, ny] = at.map_or([f64::NAN; 2], |at| at.normal);
