@@ -74,7 +74,7 @@ export class View {
   }
 
   private scaleFor(box: Box): number {
-    const room = (size: number) => size - 2 * Math.min(EDGE, size * 0.12);
+    const room = (size: number) => size - 2 * Math.min(EDGE, size * 0.15);
     const wide = Math.max(box.x1 - box.x0, 1e-3);
     const high = Math.max(box.y1 - box.y0, 1e-3);
     return Math.min(room(this.width) / wide, room(this.height) / high);
