@@ -54,16 +54,32 @@ pub fn read_wall(source: &Source) -> Result<Vec<WallRow>, InputError> {
     Ok(rows)
 }
 
+/// The rows of a table along a contour: `row` makes one of a line, its arc length and the wall beside it.
+fn along_contour<R>(
+    source: &Source,
+    columns: &[&str],
+    wall: Option<&[WallRow]>,
+    row: impl Fn(&Line, f64, [f64; 2]) -> Result<R, InputError>,
+) -> Result<Vec<R>, InputError> {
+    let mut rows = Vec::new();
+    let (mut first, mut last) = (None, None);
+    each_line(source, columns, |line| {
+        let s_mm = line.along(0, last)?;
+        rows.push(row(line, s_mm, beside(line, wall, rows.len(), s_mm)?)?);
+        (first, last) = (first.or(Some(s_mm)), Some(s_mm));
+        Ok(())
+    })?;
+    enough(source, first, last)?;
+    Ok(rows)
+}
+
 /// `trace.csv`, with the places of its `wall.csv` where they are needed.
 ///
 /// # Errors
 /// See the table of `sheet`; `Z013` when the wall is of another table.
 pub fn read_trace(source: &Source, wall: Option<&[WallRow]>) -> Result<Trace, InputError> {
-    let mut rows: Trace = Vec::new();
-    each_line(source, &TRACE, |line| {
-        let s_mm = line.along(0, rows.last().map(|r| r.s_mm))?;
-        let [wall_x_mm, wall_y_mm] = beside(line, wall, rows.len(), s_mm)?;
-        rows.push(TraceRow {
+    along_contour(source, &TRACE, wall, |line, s_mm, [wall_x_mm, wall_y_mm]| {
+        Ok(TraceRow {
             s_mm,
             x_mm: line.number(1)?,
             y_mm: line.number(2)?,
@@ -77,11 +93,8 @@ pub fn read_trace(source: &Source, wall: Option<&[WallRow]>) -> Result<Trace, In
             error_mm: line.known(10)?,
             wall_x_mm,
             wall_y_mm,
-        });
-        Ok(())
-    })?;
-    enough(source, rows.first().map(|r| r.s_mm), rows.last().map(|r| r.s_mm))?;
-    Ok(rows)
+        })
+    })
 }
 
 /// `correction.csv`; `wall` as in [`read_trace`].
@@ -89,12 +102,9 @@ pub fn read_trace(source: &Source, wall: Option<&[WallRow]>) -> Result<Trace, In
 /// # Errors
 /// See the table of `sheet`; `Z013` when the wall is of another table.
 pub fn read_correction(source: &Source, wall: Option<&[WallRow]>) -> Result<Vec<CorrectionRow>, InputError> {
-    let mut rows: Vec<CorrectionRow> = Vec::new();
-    each_line(source, &CORRECTION, |line| {
-        let s_mm = line.along(0, rows.last().map(|r| r.s_mm))?;
-        let [wall_x_mm, wall_y_mm] = beside(line, wall, rows.len(), s_mm)?;
+    along_contour(source, &CORRECTION, wall, |line, s_mm, [wall_x_mm, wall_y_mm]| {
         let known = |column| line.known(column).map(|v| v.is_finite().then_some(v));
-        rows.push(CorrectionRow {
+        Ok(CorrectionRow {
             s_mm,
             x_mm: line.number(1)?,
             y_mm: line.number(2)?,
@@ -105,11 +115,8 @@ pub fn read_correction(source: &Source, wall: Option<&[WallRow]>) -> Result<Vec<
             sigma_mm: known(7)?,
             wall_x_mm,
             wall_y_mm,
-        });
-        Ok(())
-    })?;
-    enough(source, rows.first().map(|r| r.s_mm), rows.last().map(|r| r.s_mm))?;
-    Ok(rows)
+        })
+    })
 }
 
 /// A reading of `points.csv` that lies on the wall.

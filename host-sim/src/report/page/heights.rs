@@ -4,8 +4,8 @@ use truepath_core::cut::{Envelope, Loop, Path, State};
 use truepath_core::geometry::Vector;
 use truepath_core::units::{Offset, Real};
 
+use super::by_core::{FINE, samples};
 use super::kept::Kept;
-use super::model::{FINE, samples};
 use super::{Column, Heights};
 use crate::report::{float, mm};
 

@@ -5,6 +5,8 @@
 //! table beside the page has, so that figures in page and table are the same. The same data give the same bytes:
 //! nothing of clock, machine or folder enters.
 
+mod by_core;
+mod by_plant;
 mod column;
 mod contour;
 mod data;
@@ -14,11 +16,11 @@ mod heights;
 mod inspection;
 mod job;
 mod kept;
-mod milled;
-mod model;
 mod points;
 mod program;
 
+pub use by_core::{Along, Foretold, Words, nominal, predicted, simulated};
+pub use by_plant::{milled, milled_twice, trace_of};
 pub use column::Column;
 pub use contour::{Contour, Heights, Outlines, PassColumns, Polyline};
 pub use data::{Figure, Kind, Page, Parameter, State, Verdict};
@@ -27,7 +29,5 @@ pub use facts::{Cut, Fact, JobFacts, Stock, Tool};
 pub use inspection::{InputFile, Inspected, Limits};
 pub use job::subject;
 pub use kept::MOST_SAMPLES;
-pub use milled::{milled, milled_twice, trace_of};
-pub use model::{Along, Foretold, Words, nominal, predicted, simulated};
 pub use points::{MOST_SHOWN, Point, PointStatus, judged_points, points};
-pub use program::{Became, Chosen, Cut as ProgramCut, Program};
+pub use program::{Became, Chosen, Program, ProgramCut};

@@ -35,7 +35,7 @@ pub struct Chosen {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub other_features: Vec<String>,
     /// Its cuts in the order of execution.
-    pub cuts: Vec<Cut>,
+    pub cuts: Vec<ProgramCut>,
     /// Cuts that are not listed.
     #[serde(skip_serializing_if = "is_zero")]
     pub cuts_left_out: usize,
@@ -43,7 +43,7 @@ pub struct Chosen {
 
 /// A run of cutting moves.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Cut {
+pub struct ProgramCut {
     /// The fields of `feature.candidates` in `summary.json`.
     #[serde(flatten)]
     pub row: Row,
@@ -88,21 +88,22 @@ impl Chosen {
             _ => Became::Elsewhere,
         };
         let shown = feature.in_words();
-        let cuts: Vec<Cut> = feature.candidates.into_iter().map(|row| Cut { became: became(&row), row }).collect();
+        let cuts: Vec<ProgramCut> =
+            feature.candidates.into_iter().map(|row| ProgramCut { became: became(&row), row }).collect();
         let all = cuts.len();
         // Where there are too many, those that make a wall come before the others.
         let mut others = MOST_CUTS.saturating_sub(cuts.iter().filter(|cut| cut.makes_wall()).count());
-        let mut listed = |cut: &Cut| {
+        let mut listed = |cut: &ProgramCut| {
             let room = cut.makes_wall() || others > 0;
             others = others.saturating_sub(usize::from(!cut.makes_wall()));
             room
         };
-        let cuts: Vec<Cut> = cuts.into_iter().filter(|cut| listed(cut)).take(MOST_CUTS).collect();
+        let cuts: Vec<ProgramCut> = cuts.into_iter().filter(|cut| listed(cut)).take(MOST_CUTS).collect();
         Self { shown, why: feature.why, other_features: feature.other_features, cuts_left_out: all - cuts.len(), cuts }
     }
 }
 
-impl Cut {
+impl ProgramCut {
     fn makes_wall(&self) -> bool {
         matches!(self.row.role, "finish" | "spring")
     }

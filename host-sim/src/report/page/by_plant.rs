@@ -4,9 +4,9 @@
 //! beside a correction its values are taken linearly between its samples at the arc lengths of the correction. Limits: a place of
 //! a corrected pass belongs to the nominal place that its commanded centre passes nearest to.
 
+use super::by_core::{Along, FEED, FINE, UNIT, columns};
 use super::heights::{HEIGHTS, fraction, of_depth};
 use super::kept::Kept;
-use super::model::{Along, FEED, FINE, UNIT, columns};
 use super::{Column, Contour, Heights, PassColumns};
 use crate::plant::{Milled, Sample};
 use crate::report::{Trace, TraceRow};
