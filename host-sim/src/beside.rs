@@ -12,7 +12,7 @@ pub(crate) fn both<L: Send, A: Send, B>(lent: L, other: impl Fn(L) -> A + Sync, 
     let lent = Mutex::new(Some(lent));
     let take = || lent.lock().ok().and_then(|mut lent| lent.take()).map(&other);
     scope(|threads| {
-        let thread = Builder::new().spawn_scoped(threads, &take);
+        let thread = Builder::new().spawn_scoped(threads, take);
         let own = own();
         let other = match thread {
             Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
