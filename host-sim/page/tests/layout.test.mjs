@@ -54,6 +54,16 @@ test("verdict and figures stand in two rows and leave the first screen to the pi
   await close();
 });
 
+test("in a row of figures all values stand on one line, however long their names are", async () => {
+  for (const width of [360, 1024, 1440]) {
+    const { page, close } = await open(await report("demo/pocket"), { viewport: { width, height: 900 } });
+    const lines = await page.locator(".result").evaluateAll((all) => all.map((e) => [e.offsetTop, e.querySelector("dd").offsetTop]));
+    const rows = new Map(lines);
+    assert.ok(rows.size > 0 && lines.every(([row, value]) => rows.get(row) === value), `${width}: ${JSON.stringify(lines)}`);
+    await close();
+  }
+});
+
 test("on paper the traces say where their figures are of, and have numbers on every axis", async () => {
   const { page, close } = await open(await report("demo/pocket"));
   await page.evaluate(() => {

@@ -95,7 +95,7 @@ pub(super) fn figures(s: &CorrectSummary, largest: &[impl AsRef<str>; 2]) -> Vec
         Figure::mm(with, s.max_error_after_mm).map(|f| f.noted(format!("predicted, {at}"))),
         Figure::mm("standard deviation there", s.sigma_at_max_error_mm),
         Figure::mm("largest standard deviation", s.max_sigma_mm).map(|f| f.noted("what the points leave open")),
-        Figure::mm("left over the height", s.axial_form_error_mm).map(|f| f.noted("beyond X and Y")),
+        Figure::mm("left over the height", s.axial_form_error_mm).map(|f| f.noted("no X Y shift cures it")),
         Figure::mm("deepest cut at any height", s.worst_gouge_mm).map(|f| f.noted("predicted")),
         Figure::mm("largest correction", s.max_correction_mm).map(|f| f.noted("along an axis")),
         Figure::mm("residual of the fit", s.fit_residual_mm).map(|f| f.noted(used)),

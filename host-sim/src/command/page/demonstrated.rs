@@ -44,12 +44,12 @@ fn figures(before: &Score, after: &Score, done: &Corrected) -> Vec<Figure> {
     let rms = |score: &Score| format!("cut, rms {:.4} mm", score.rms_error_mm);
     let s = &done.summary;
     let figures = [
-        Figure::mm("largest error of the first part", before.max_error_mm).map(|f| f.noted(rms(before))),
-        Figure::mm("largest error of the corrected part", after.max_error_mm).map(|f| f.noted(rms(after))),
-        Figure::mm("expected from the points", s.max_error_after_mm).map(|f| f.noted("predicted")),
+        Figure::mm("largest error, first part", before.max_error_mm).map(|f| f.noted(rms(before))),
+        Figure::mm("largest error, corrected part", after.max_error_mm).map(|f| f.noted(rms(after))),
+        Figure::mm("largest error, predicted", s.max_error_after_mm).map(|f| f.noted("from the points")),
         Figure::mm("standard deviation there", s.sigma_at_max_error_mm),
-        Figure::mm("left over the height", after.axial_form_mm).map(|f| f.noted("cut, beyond X and Y")),
-        Figure::mm("deepest cut", after.gouge_mm.max(0.0)).map(|f| f.noted("corrected part, mean over the height")),
+        Figure::mm("left over the height", after.axial_form_mm).map(|f| f.noted("cut; no X Y shift cures it")),
+        Figure::mm("deepest cut", after.gouge_mm.max(0.0)).map(|f| f.noted("cut, mean over the height")),
         Figure::mm("largest correction", s.max_correction_mm).map(|f| f.noted("along an axis")),
         Figure::mm("residual of the fit", s.fit_residual_mm).map(|f| f.noted(format!("{} points used", s.points_used))),
     ];
