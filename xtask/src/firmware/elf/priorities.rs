@@ -64,8 +64,9 @@ const TOLD: &[&str] = &["Work>::run::{closure#0}>::{closure#2}", "Work>::run::{c
 /// Of one of the fits under both wall laws.
 const LAW: &str = "identified::{closure#0}>::{closure#0}>::{closure#0}::{closure#0}";
 const FIT: &str = ">::settle::{closure#";
-/// Of a design: under the guard, and of the whole.
-const DESIGN: &[&str] = &["guarded_design::{closure#", "whole::designed::{closure#0}"];
+/// Of a design, which reads the walls in order: under the guard, and of the whole.
+const DESIGN: &[&str] =
+    &["guarded_design::<truepath_core::correct::reader::InOrder>::{closure#", "whole::designed::{closure#0}"];
 
 pub const INDIRECT: &[Indirect] = &[
     ("interrupts::config_executor", &["__config_task_task_inner_function::{closure#0}>>::poll"]),
@@ -100,7 +101,7 @@ pub const INDIRECT: &[Indirect] = &[
     (">::linearise", &[FIT]),
     (FIT, &[">::fit::{closure#0}", LAW, TOLD[0], TOLD[1]]),
     (LAW, TOLD),
-    ("correct::design::pass", &["design_observed::{closure#0}"]),
+    ("correct::design::pass", &["design_observed::<truepath_core::correct::reader::InOrder>::{closure#0}"]),
     ("design_observed", DESIGN),
     (DESIGN[0], &[DESIGN[1]]),
     (DESIGN[1], TOLD),
