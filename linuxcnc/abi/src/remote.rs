@@ -14,8 +14,9 @@
 use truepath_core::rewrite::{Flags, Mode, Reason, Setpoint};
 
 use crate::board::{Board, BoardSettings, BoardSettingsError, Cause, Counters, Driven, PACKET_BYTES};
-use crate::convert::{added, removed, units};
-use crate::pc::{Inputs, JOINTS, Joints, Limits, OfferError, Outputs, PROBING, Running, Signals, Switches, WorkFrame};
+use crate::pc::{
+    Inputs, JOINTS, Joints, Limits, OfferError, Outputs, PROBING, Running, Shift, Signals, Switches, WorkFrame,
+};
 
 /// Why there is no link to a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +47,7 @@ impl RemoteError {
 #[derive(Debug)]
 pub struct Remote {
     board: Board,
-    joints: Joints,
+    shift: Shift,
     signals: Signals,
     frame: WorkFrame,
     /// The setpoint of this period; the one before it when a position is no length.
@@ -55,12 +56,9 @@ pub struct Remote {
     before: Switches,
     /// State of the board in the period before.
     mode: Mode,
-    /// Added to each joint in the last period, machine units.
-    correction: [f64; JOINTS],
     armed_serial: u32,
-    /// What is armed or on is for this, and in this unit.
+    /// What is armed or on is for this.
     running: Option<Running>,
-    nm_per_unit: f64,
     /// A correction was on in the last period.
     on: bool,
     /// What ends an arming and was said in periods without an answer.
@@ -88,16 +86,14 @@ impl Remote {
         };
         Ok(Self {
             board: Board::new(settings).map_err(RemoteError::Board)?,
-            joints,
+            shift: Shift::new(joints),
             signals: Signals::default(),
             frame: WorkFrame::new(),
             setpoint: Setpoint::default(),
             before: Switches::default(),
             mode: Mode::Off,
-            correction: [0.0; JOINTS],
             armed_serial: 0,
             running: None,
-            nm_per_unit: limits.nm_per_unit,
             on: false,
             unheard: Flags::default(),
         })
@@ -105,9 +101,7 @@ impl Remote {
 
     /// Before the motion controller: the measured position of each joint without the correction of the last period.
     pub fn feedback(&self, measured: &[f64; JOINTS], plain: &mut [f64; JOINTS]) {
-        for ((to, &from), &correction) in plain.iter_mut().zip(measured).zip(&self.correction) {
-            *to = removed(from, correction);
-        }
+        self.shift.feedback(measured, plain);
     }
 
     /// Behind the motion controller: the bytes to send. None are sent when a position is no length; the link is lost
@@ -119,7 +113,7 @@ impl Remote {
         let ended = self.signals.flags(inputs, self.mode).with(self.endings(inputs, kept));
         let flags = ended.with(self.unheard);
         self.unheard = Flags(flags.0 & ENDINGS.0);
-        let setpoint = self.joints.setpoint(inputs, flags, self.frame.crc(), 0);
+        let setpoint = self.shift.joints().setpoint(inputs, flags, self.frame.crc(), 0);
         let sent = setpoint.is_some();
         self.setpoint = setpoint.unwrap_or(Setpoint { flags, ..self.setpoint });
         let bytes = self.board.begin(&self.setpoint, inputs.switches.has(Switches::DRIVES_ON), packet);
@@ -154,11 +148,7 @@ impl Remote {
 
     /// The pins with the unit that what is armed or on is in, and whether that is the one of the pins.
     fn in_unit(&mut self, pins: &Inputs) -> (Inputs, bool) {
-        if matches!(self.mode, Mode::Off | Mode::Bypass) && !self.on {
-            self.nm_per_unit = pins.nm_per_unit;
-        }
-        let kept = self.nm_per_unit.to_bits() == pins.nm_per_unit.to_bits();
-        (Inputs { nm_per_unit: self.nm_per_unit, ..*pins }, kept)
+        self.shift.in_unit(pins, matches!(self.mode, Mode::Off | Mode::Bypass) && !self.on)
     }
 
     /// What ends an arming from this side.
@@ -180,23 +170,13 @@ impl Remote {
     }
 
     fn put(&mut self, inputs: &Inputs, driven: &Driven, outputs: &mut Outputs) {
-        let nm = |axis: usize| driven.correction_nm.get(axis).copied().unwrap_or(0);
-        let unit = self.nm_per_unit;
-        let length = |nm| if nm == 0 { 0.0 } else { units(nm, unit) };
-        for (joint, correction) in self.correction.iter_mut().enumerate() {
-            *correction = self.joints.axis(joint).map_or(0.0, |axis| length(nm(axis)));
-        }
-        for ((to, &from), &correction) in
-            outputs.motor_pos_cmd.iter_mut().zip(&inputs.motor_pos_cmd).zip(&self.correction)
-        {
-            *to = added(from, correction);
-        }
+        self.shift.put(inputs, &driven.correction_nm, outputs);
         self.on = driven.correction_nm != [0; JOINTS];
         let (state, reason) = told(driven);
         *outputs = Outputs {
             motor_pos_cmd: outputs.motor_pos_cmd,
-            correction_nm: [0, 1, 2].map(nm),
-            correction: [0, 1, 2].map(nm).map(length),
+            correction_nm: outputs.correction_nm,
+            correction: outputs.correction,
             state: state as u32,
             reason: reason.code().into(),
             fault: reason.is_fault().into(),

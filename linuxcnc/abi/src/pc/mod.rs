@@ -18,6 +18,7 @@ mod refusal;
 mod running;
 mod servo;
 mod setpoint;
+mod shift;
 mod signals;
 mod work_frame;
 
@@ -29,6 +30,7 @@ pub use pins::{Inputs, JOINTS, Outputs, Switches};
 pub use refusal::Refused;
 pub use running::Running;
 pub use servo::Servo;
+pub use shift::Shift;
 pub use signals::{PROBING, Signals};
 pub use work_frame::WorkFrame;
 

@@ -15,14 +15,14 @@ use super::mailboxes::{Loaded, ServoEnds};
 use super::pins::{Inputs, JOINTS, Outputs, Switches};
 use super::refusal::Refused;
 use super::running::{Arming, Running};
+use super::shift::Shift;
 use super::signals::{PROBING, Signals};
 use super::work_frame::WorkFrame;
-use crate::convert::{added, removed, units};
 
 /// The servo side.
 pub struct Servo {
     ends: ServoEnds,
-    joints: Joints,
+    shift: Shift,
     period_ns: &'static AtomicU32,
     /// Passes positions on while there is no image.
     bare: Rewriter<'static>,
@@ -33,11 +33,8 @@ pub struct Servo {
     sequence: u32,
     /// The switches of the period before.
     before: Switches,
-    /// The correction of the last period, nm, and added to each joint, machine units.
+    /// The correction of the last period, nm.
     correction_nm: [i32; AXES],
-    correction: [f64; JOINTS],
-    /// Nanometres of a machine unit; taken from the pins only where nothing is armed or on.
-    nm_per_unit: f64,
     /// What the last part was armed for.
     running: Option<Running>,
     /// An arming that waits for the ledger.
@@ -56,7 +53,7 @@ impl Servo {
     ) -> Self {
         Self {
             ends,
-            joints,
+            shift: Shift::new(joints),
             period_ns,
             bare,
             loaded: None,
@@ -66,8 +63,6 @@ impl Servo {
             sequence: 0,
             before: Switches::default(),
             correction_nm: [0; AXES],
-            correction: [0.0; JOINTS],
-            nm_per_unit: 0.0,
             running: None,
             arming: None,
             refusal: 0,
@@ -77,9 +72,7 @@ impl Servo {
 
     /// Before the motion controller: the measured position of each joint without the correction of the last period.
     pub fn feedback(&self, measured: &[f64; JOINTS], plain: &mut [f64; JOINTS]) {
-        for ((to, &from), &correction) in plain.iter_mut().zip(measured).zip(&self.correction) {
-            *to = removed(from, correction);
-        }
+        self.shift.feedback(measured, plain);
     }
 
     /// Behind the motion controller: a period.
@@ -94,7 +87,7 @@ impl Servo {
         let flags = self.signals.flags(inputs, self.state.mode()).with(self.ended(inputs, kept));
         self.frame.update(inputs);
         self.commands(inputs, flags);
-        match self.joints.setpoint(inputs, flags, self.frame.crc(), self.sequence) {
+        match self.shift.joints().setpoint(inputs, flags, self.frame.crc(), self.sequence) {
             Some(setpoint) => {
                 let output = self.tick(&setpoint);
                 if output.mode == Mode::Off && !inputs.switches.has(Switches::DRIVES_ON) {
@@ -109,11 +102,7 @@ impl Servo {
     /// The pins with the unit that what is armed or on is in, and whether that is the one of the pins.
     fn in_unit(&mut self, pins: &Inputs) -> (Inputs, bool) {
         let idle = matches!(self.state.mode(), Mode::Off | Mode::Bypass) && self.correction_nm == [0; AXES];
-        if idle && self.arming.is_none() {
-            self.nm_per_unit = pins.nm_per_unit;
-        }
-        let kept = self.nm_per_unit.to_bits() == pins.nm_per_unit.to_bits();
-        (Inputs { nm_per_unit: self.nm_per_unit, ..*pins }, kept)
+        self.shift.in_unit(pins, idle && self.arming.is_none())
     }
 
     /// What ends an arming because it was for something else.
@@ -262,19 +251,7 @@ impl Servo {
         if output.mode != Mode::Off || !inputs.switches.has(Switches::DRIVES_ON) {
             self.correction_nm = output.correction_nm;
         }
-        let (held, unit) = (self.correction_nm, self.nm_per_unit);
-        let nm = |axis: usize| held.get(axis).copied().unwrap_or(0);
-        let length = |nm| if nm == 0 { 0.0 } else { units(nm, unit) };
-        for (joint, correction) in self.correction.iter_mut().enumerate() {
-            *correction = self.joints.axis(joint).map_or(0.0, |axis| length(nm(axis)));
-        }
-        for ((to, &from), &correction) in
-            outputs.motor_pos_cmd.iter_mut().zip(&inputs.motor_pos_cmd).zip(&self.correction)
-        {
-            *to = added(from, correction);
-        }
-        outputs.correction_nm = [0, 1, 2].map(nm);
-        outputs.correction = outputs.correction_nm.map(length);
+        self.shift.put(inputs, &self.correction_nm, outputs);
         // After an acknowledgement the state is already that of the next period.
         outputs.state = self.state.mode() as u32;
         outputs.reason = self.state.reason().code().into();
