@@ -4,7 +4,9 @@ use super::Work;
 use super::corner::{coefficients, corner as papers_corner, path, real, setup};
 use super::part;
 use std::hint::black_box;
-use truepath_core::correct::{self, Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Target, Update};
+use truepath_core::correct::{
+    self, Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Target, Update,
+};
 use truepath_core::cut::{Coefficients, Compliance, ForceTable, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{self as fit, Observation, PredictionWorkspace, Prior};
