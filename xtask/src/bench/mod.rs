@@ -26,6 +26,9 @@ pub fn time(no_run: bool, write: bool, arguments: &[String]) -> Outcome {
         command.arg("--").args(arguments);
     }
     run(&mut command)?;
+    if no_run {
+        build_counter()?;
+    }
     if write {
         let rows = kernels()?.into_iter().filter_map(|(name, _)| {
             // Criterion keeps its results in a folder named like the benchmark.
@@ -65,7 +68,7 @@ pub fn count(write: bool) -> Outcome {
 
 /// Builds the counter and asks it for its kernels and the calls each needs.
 fn kernels() -> Result<Vec<(String, u32)>, Failure> {
-    run(cargo().args(["build", "--package", "truepath-core", "--release", "--example", "count"]))?;
+    build_counter()?;
     let said = read(&mut counter())?;
     let kernels: Vec<_> = said
         .lines()
@@ -75,6 +78,10 @@ fn kernels() -> Result<Vec<(String, u32)>, Failure> {
         })
         .collect();
     if kernels.is_empty() { Err(Failure::found("the counter knows no kernels")) } else { Ok(kernels) }
+}
+
+fn build_counter() -> Result<(), Failure> {
+    run(cargo().args(["build", "--package", "truepath-core", "--release", "--example", "count"]))
 }
 
 fn counter() -> Command {
