@@ -10,13 +10,13 @@ mod job_support;
 
 /// Files that are whole.
 const FILES: [(Format, &[u8]); 7] = [
-    (Format::Linuxcnc, include_bytes!("../../host-sim/tests/data/probe/linuxcnc.txt")),
-    (Format::LinuxcncLog, include_bytes!("../../host-sim/tests/data/probe/linuxcnc-log.txt")),
-    (Format::Grbl, include_bytes!("../../host-sim/tests/data/probe/grbl.txt")),
-    (Format::Inspection, include_bytes!("../../host-sim/tests/data/probe/inspection.txt")),
-    (Format::Dprnt, include_bytes!("../../host-sim/tests/data/probe/dprnt.txt")),
-    (Format::Dprnt, include_bytes!("../../host-sim/tests/data/probe/dprnt-words.txt")),
-    (Format::Columns, include_bytes!("../../host-sim/tests/data/probe/columns-centre.csv")),
+    (Format::Linuxcnc, include_bytes!("../../host-sim/job/tests/data/probe/linuxcnc.txt")),
+    (Format::LinuxcncLog, include_bytes!("../../host-sim/job/tests/data/probe/linuxcnc-log.txt")),
+    (Format::Grbl, include_bytes!("../../host-sim/job/tests/data/probe/grbl.txt")),
+    (Format::Inspection, include_bytes!("../../host-sim/job/tests/data/probe/inspection.txt")),
+    (Format::Dprnt, include_bytes!("../../host-sim/job/tests/data/probe/dprnt.txt")),
+    (Format::Dprnt, include_bytes!("../../host-sim/job/tests/data/probe/dprnt-words.txt")),
+    (Format::Columns, include_bytes!("../../host-sim/job/tests/data/probe/columns-centre.csv")),
 ];
 
 fn given(format: Format, layout: Layout) -> Given {

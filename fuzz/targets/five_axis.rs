@@ -5,12 +5,10 @@
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use truepath::diagnostics::Source;
-use truepath::multiaxis::machine::Coordinates;
-use truepath::multiaxis::program::{
-    CentrePoint, Digits, Outcome, PassError, Reading, Report, Settings, Sinks, Splitter, UnrollOptions, run, unroll,
-};
-use truepath::multiaxis::{Joints, Machine, Rule, chord_error};
+use truepath_ground::diagnostics::Source;
+use truepath_multiaxis::machine::Coordinates;
+use truepath_multiaxis::program::{CentrePoint, Digits, Outcome, PassError, Reading, Report, Settings, Sinks, Splitter, UnrollOptions, run, unroll};
+use truepath_multiaxis::{Joints, Machine, Rule, chord_error};
 use truepath_core::gcode::{Dialect, PointlessLength, Units};
 
 /// A trunnion and a fork head.

@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use truepath::diagnostics::Source;
-use truepath::job::Job;
+use truepath_ground::diagnostics::Source;
+use truepath_job::job::Job;
 
 fuzz_target!(|bytes: &[u8]| {
     // The compact form comes over the wire.

@@ -6,10 +6,10 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use libfuzzer_sys::fuzz_target;
-use truepath::diagnostics::Source;
-use truepath::job::Job;
-use truepath::measurement::Measurement;
-use truepath::pass::Pass;
+use truepath_ground::diagnostics::Source;
+use truepath_job::job::Job;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
 
 const FORMATS: [&str; 6] = ["linuxcnc", "linuxcnc-log", "grbl", "inspection", "dprnt", "columns"];
 

@@ -5,8 +5,8 @@
 use std::cell::RefCell;
 
 use libfuzzer_sys::fuzz_target;
-use truepath::canon::{CanonOptions, write_canon};
-use truepath::diagnostics::Source;
+use truepath_program::canon::{CanonOptions, write_canon};
+use truepath_ground::diagnostics::Source;
 use truepath_core::gcode::{ContourOptions, DeviceMemory, GcodeError, Lines, Program, Words, find_contours};
 
 thread_local! {

@@ -1,37 +1,4 @@
 #![doc = include_str!("../../README.md")]
 
-pub mod bench;
-mod beside;
-pub mod bore;
-pub mod canon;
 pub mod cli;
 pub mod command;
-pub mod compare;
-pub mod correction;
-pub mod diagnostics;
-pub mod feature;
-pub mod feed;
-pub mod identification;
-pub mod image;
-pub mod inspection;
-pub mod job;
-pub mod learning;
-pub mod library;
-pub mod measurement;
-pub mod multiaxis;
-pub mod output;
-pub mod pass;
-pub mod plant;
-pub mod plot;
-pub mod pocket;
-pub mod program;
-pub mod recorded;
-pub mod refusal;
-pub mod replay;
-pub mod report;
-pub mod setpoints;
-pub mod study;
-pub mod surface;
-pub mod verification;
-mod wall_halves;
-pub mod workshop;

@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
-use truepath::command::correct::{Corrected, correct as corrected_in_memory};
 use truepath::command::{correct, inspect, simulate};
-use truepath::diagnostics::{Failure, Form, InputError, Source};
-use truepath::job::{Job, PartFlags, ProbeFlags, Route, Which};
-use truepath::measurement::Measurement;
-use truepath::pass::Pass;
-use truepath::plant::Machine;
-use truepath::workshop;
 use truepath_core::image::Image;
+use truepath_correction::correct::{Corrected, correct as corrected_in_memory};
+use truepath_ground::diagnostics::{Failure, Form, InputError, Source};
+use truepath_job::job::{Job, PartFlags, ProbeFlags, Route, Which};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_plant::Machine;
+use truepath_trial::virtual_mill;
 
 const PLANT: &str = "ktc_n_per_mm2 = 700\nkrc_n_per_mm2 = 210\nkte_n_per_mm = 14\nkre_n_per_mm = 14\nstiffness_x_n_per_mm = 1500\nstiffness_y_n_per_mm = 2000\n";
 
@@ -39,10 +39,10 @@ fn refused(result: Result<Pass, Failure>) -> (InputError, String) {
 /// Mills the pass, probes it and corrects by both routes.
 fn corrected(pass: &Pass, ball: f64) -> (Pass, Corrected) {
     let machine: Machine = toml::from_str(PLANT).unwrap();
-    let milled = workshop::mill(pass, &machine, None).unwrap();
+    let milled = virtual_mill::mill(pass, &machine, None).unwrap();
     let length = pass.core.contour.length.nm() as f64 / 1e6;
     let places: Vec<f64> = [0.1, 0.35, 0.6, 0.9].iter().map(|share| share * length).collect();
-    let probe = workshop::probe(pass, &milled, &places, &[0.3, 0.8], ball).unwrap();
+    let probe = virtual_mill::probe(pass, &milled, &places, &[0.3, 0.8], ball).unwrap();
     let file = Source::new("probe.txt", probe.into_bytes());
     let mut asked = pass.job.clone();
     asked.which.pass = None;
@@ -124,7 +124,7 @@ fn what_is_chosen_is_told_with_its_reasons() {
         feature.passes.iter().map(|p| (p.pass, p.role)).collect::<Vec<_>>(),
         [(1, "finish"), (2, "finish"), (2, "spring")]
     );
-    let text = truepath::feature::listing(&feature);
+    let text = truepath_job::feature::listing(&feature);
     assert!(text.contains("by search: the only path of tool 1"), "{text}");
     assert!(text.contains("0.500 mm all along farther from the wall than lines 71-79"), "{text}");
     assert!(pass.warnings.iter().all(|w| !w.contains("leaves")), "{:?}", pass.warnings);
@@ -265,8 +265,8 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
     assert!(!at("never").exists());
 
     let pass = job_of("pocket.toml", Some(2));
-    let milled = workshop::mill(&pass, &toml::from_str(PLANT).unwrap(), None).unwrap();
-    let probe = workshop::probe(&pass, &milled, &[15.0, 60.0, 95.0, 140.0], &[0.3, 0.8], 4.0).unwrap();
+    let milled = virtual_mill::mill(&pass, &toml::from_str(PLANT).unwrap(), None).unwrap();
+    let probe = virtual_mill::probe(&pass, &milled, &[15.0, 60.0, 95.0, 140.0], &[0.3, 0.8], 4.0).unwrap();
     std::fs::write(at("probe.txt"), probe).unwrap();
     let (job, probe, which) = (at("pocket.toml"), at("probe.txt"), Which::default());
     let flags = ProbeFlags::default();

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use truepath::command::{correct, learn};
-use truepath::diagnostics::{Failure, Source};
-use truepath::job::{Job, ProbeFlags, Which};
-use truepath::pass::Pass;
-use truepath::plant::Machine;
-use truepath::workshop;
+use truepath_correction::learn::LearnSummary;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_job::job::{Job, ProbeFlags, Which};
+use truepath_job::pass::Pass;
+use truepath_plant::Machine;
+use truepath_trial::virtual_mill;
 
 const DEMO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/demo/corner-helix");
 
@@ -24,8 +25,8 @@ static BENCH: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     let machine: Machine = toml::from_str(&plant).unwrap();
     let pass = Pass::read(Job::read(&at("job.toml")).unwrap()).unwrap();
     let probe = |commanded: Option<&[[f64; 2]]>, places: &[f64], name: &str| {
-        let milled = workshop::mill(&pass, &machine, commanded).unwrap();
-        fs::write(at(name), workshop::probe(&pass, &milled, places, &[0.1, 0.5, 0.9], 6.0).unwrap()).unwrap();
+        let milled = virtual_mill::mill(&pass, &machine, commanded).unwrap();
+        fs::write(at(name), virtual_mill::probe(&pass, &milled, places, &[0.1, 0.5, 0.9], 6.0).unwrap()).unwrap();
     };
     probe(None, &[20.0, 32.0, 68.0, 80.0], "part-1.txt");
     probe(None, &[21.0, 32.5, 49.0, 68.5, 80.5], "uncorrected.txt");
@@ -40,7 +41,7 @@ static BENCH: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
         which: Which::default(),
     };
     correct::run(&options, &mut |_| ()).unwrap();
-    let commanded = workshop::commanded(&pass, &fs::read(at("first/corrected.nc")).unwrap()).unwrap();
+    let commanded = virtual_mill::commanded(&pass, &fs::read(at("first/corrected.nc")).unwrap()).unwrap();
     probe(Some(&commanded), &[21.0, 32.5, 49.0, 68.5, 80.5], "part-2.txt");
     folder
 });
@@ -66,7 +67,7 @@ fn edit(file: &Path, from: &str, to: &str) {
     fs::write(file, text.replacen(from, to, 1)).unwrap();
 }
 
-fn run(folder: &Path, probe: &str, from: &str, out: &str) -> Result<learn::LearnSummary, Failure> {
+fn run(folder: &Path, probe: &str, from: &str, out: &str) -> Result<LearnSummary, Failure> {
     let options = learn::Options {
         job: &folder.join("job.toml"),
         probe: &folder.join(probe),
@@ -105,7 +106,7 @@ fn a_whole_folder_is_written_and_the_next_part_goes_on_from_it() {
         assert!(!told[key].is_null(), "{key}");
     }
     let history = Source::new("history.json", read("history.json"));
-    let history = truepath::learning::History::read(&history).unwrap();
+    let history = truepath_correction::learning::History::read(&history).unwrap();
     assert_eq!((history.parts.len(), history.next_number()), (2, 3));
     // The corrected program is made from the original one.
     let text = String::from_utf8(read("corrected.nc")).unwrap();

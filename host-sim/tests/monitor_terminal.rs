@@ -9,8 +9,8 @@ use std::process::{Command, Stdio};
 
 use monitor_support::cable::Cable;
 use monitor_support::{OnTerminal, Served, image};
-use truepath::bench::Faults;
 use truepath::command::hil::{Kind, Options, Source, open, run};
+use truepath_bench::Faults;
 
 const LARGE: (u16, u16) = (24, 80);
 

@@ -8,8 +8,8 @@ mod multiaxis_support;
 use std::path::{Path, PathBuf};
 
 use multiaxis_support::{Machine as Independent, feeds, matched, truepath};
-use truepath::diagnostics::Source;
-use truepath::multiaxis::Machine;
+use truepath_ground::diagnostics::Source;
+use truepath_multiaxis::Machine;
 
 const CASES: [(&str, &str, &str, bool); 2] = [
     ("sine-trunnion", "trunnion", "SINE SURFACE, A C TRUNNION", false),

@@ -108,10 +108,10 @@ fn the_straight_walls_of_the_finishing_pass_stay_and_its_corners_are_shifted() {
         assert_eq!((&corner["shifted"], &corner["in_band_after"]), (&Value::Bool(true), &Value::Bool(true)));
     }
     // Away from the corners the corrected program runs on the very path of the original.
-    let job = truepath::job::Job::read(&desk.path().join("job.toml")).expect("a job");
-    let pass = truepath::pass::Pass::read(job).expect("a pass");
+    let job = truepath_job::job::Job::read(&desk.path().join("job.toml")).expect("a job");
+    let pass = truepath_job::pass::Pass::read(job).expect("a pass");
     let text = std::fs::read(desk.path().join("out/corrected.nc")).expect("a program");
-    let path = truepath::workshop::commanded(&pass, &text).expect("a contour");
+    let path = truepath_trial::virtual_mill::commanded(&pass, &text).expect("a contour");
     let walls = path.iter().filter(|p| p[0].abs() < 24.0 || p[1].abs() < 14.0);
     let off = walls.map(|p| if p[0].abs() < 24.0 { (p[1].abs() - 20.0).abs() } else { (p[0].abs() - 30.0).abs() });
     // A written path lies within correct.tolerance_mm, 1 µm, of the wanted one.

@@ -4,11 +4,12 @@
 use std::path::Path;
 use std::process::Command;
 
-use truepath::job::Job;
-use truepath::pass::Pass;
-use truepath::plant::{self, Cut, Machine, Point, Segment, Side, Spindle, WallLaw};
-use truepath::pocket;
-use truepath::workshop;
+use truepath_job::job::Job;
+use truepath_job::pass::Pass;
+use truepath_plant as plant;
+use truepath_plant::{Cut, Machine, Point, Segment, Side, Spindle, WallLaw};
+use truepath_pocket as pocket;
+use truepath_trial::virtual_mill;
 
 struct Example {
     pass: Pass,
@@ -68,8 +69,8 @@ fn an_independent_machine_cuts_the_compensated_finishing_pass_within_the_band() 
     let example = example("finish");
     let walls = |force: f64| {
         let machine = example.machine(force);
-        let before = workshop::mill(&example.pass, &machine, None).expect("milled");
-        let after = workshop::mill_program(&example.pass, &machine, &example.corrected).expect("milled");
+        let before = virtual_mill::mill(&example.pass, &machine, None).expect("milled");
+        let after = virtual_mill::mill_program(&example.pass, &machine, &example.corrected).expect("milled");
         [before, after].map(|milled| {
             let errors = milled.mean_errors();
             let along: Vec<(f64, f64)> = milled.path.s_mm.iter().copied().zip(errors).collect();
@@ -115,7 +116,7 @@ fn solid(half: [f64; 2], beyond: f64) -> Vec<Point> {
 #[test]
 fn an_independent_machine_cuts_both_walls_of_the_compensated_slot_within_the_band() {
     let example = example("slot");
-    let commanded = workshop::commanded(&example.pass, &example.corrected).expect("a path");
+    let commanded = virtual_mill::commanded(&example.pass, &example.corrected).expect("a path");
     // Both walls of the slot, each in its own cut: the side decides which wall is looked at.
     let walls = |force: f64| {
         let machine = example.machine(force);

@@ -5,12 +5,12 @@ use std::fmt::Write;
 use std::path::Path;
 
 use truepath::command::simulate::{Options, Recording, run};
-use truepath::diagnostics::{Failure, Source};
-use truepath::job::Which;
-use truepath::replay::Placement;
-use truepath::report::SimulateSummary;
-use truepath::setpoints::Setpoints;
 use truepath_core::units::Real;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_job::job::Which;
+use truepath_report::SimulateSummary;
+use truepath_trial::replay::Placement;
+use truepath_trial::setpoints::Setpoints;
 
 const PROGRAM: &str = "G21 G17 G90 G94\nT1 M6\nS1500 M3\nG0 X34 Y80\nG1 Z-15 F400\nG1 X34 Y35\n\
                        G3 X39 Y30 I5 J0\nG1 X90 Y30\nG0 Z30\nM30\n";

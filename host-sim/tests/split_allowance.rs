@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use truepath::command::{correct, split};
-use truepath::diagnostics::Failure;
-use truepath::job::{Job, ProbeFlags, Route, Which};
-use truepath::pass::Pass;
+use truepath_ground::diagnostics::Failure;
+use truepath_job::job::{Job, ProbeFlags, Route, Which};
+use truepath_job::pass::Pass;
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/features");
 

@@ -2,11 +2,11 @@
 //! everything on it.
 
 use truepath::command::study::{Options, cases, run};
-use truepath::study::case::Case;
-use truepath::study::families::FAMILIES;
-use truepath::study::id::{Axis, CaseId};
-use truepath::study::ledger::NAME;
-use truepath::study::seeds::Set;
+use truepath_study::case::Case;
+use truepath_study::families::FAMILIES;
+use truepath_study::id::{Axis, CaseId};
+use truepath_study::ledger::NAME;
+use truepath_study::seeds::Set;
 
 fn options<'a>(out: &'a std::path::Path, families: &'a [String]) -> Options<'a> {
     Options {
@@ -40,7 +40,7 @@ fn two_cases_go_the_whole_way_and_an_interrupted_study_goes_on() {
     let mut steps = Vec::new();
     let again = run(&asked, &mut |done, all| steps.push((done, all))).expect("the rest");
     assert_eq!(steps, [(1, 2), (2, 2)], "one case was left to do");
-    let without_time = |outcomes: &[truepath::study::outcome::Outcome]| -> Vec<String> {
+    let without_time = |outcomes: &[truepath_study::outcome::Outcome]| -> Vec<String> {
         outcomes.iter().map(|o| format!("{} {:?} {:?}", o.case, o.after_mm, o.learned_mm)).collect()
     };
     assert_eq!(without_time(&again.outcomes), without_time(&studied.outcomes), "a case is the same every time");

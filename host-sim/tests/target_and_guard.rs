@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use truepath::command::compare::{self, CompareSummary};
-use truepath::command::correct::{Corrected, correct};
-use truepath::diagnostics::{Failure, Form, Source};
-use truepath::job::{Job, ProbeFlags, Route, Which};
-use truepath::measurement::Measurement;
-use truepath::pass::Pass;
-use truepath::plant::{Machine, Milled};
-use truepath::workshop;
+use truepath::command::compare;
+use truepath::command::compare::CompareSummary;
+use truepath_correction::correct::{Corrected, correct};
+use truepath_ground::diagnostics::{Failure, Form, Source};
+use truepath_job::job::{Job, ProbeFlags, Route, Which};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_plant::{Machine, Milled};
+use truepath_trial::virtual_mill;
 
 const JOB: &str = include_str!("../demo/corner-helix/job.toml");
 const PLANT: &str = include_str!("../demo/corner-helix/plant.toml");
@@ -34,8 +35,8 @@ fn pass(correct: &str) -> Pass {
 }
 
 fn probed(pass: &Pass) -> String {
-    let milled = shown(workshop::mill(pass, &machine(), None));
-    shown(workshop::probe(pass, &milled, &PLACES, &HEIGHTS, 6.0))
+    let milled = shown(virtual_mill::mill(pass, &machine(), None));
+    shown(virtual_mill::probe(pass, &milled, &PLACES, &HEIGHTS, 6.0))
 }
 
 /// The correction, and the part that is milled with it.
@@ -45,7 +46,7 @@ fn milled(keys: &str) -> (Corrected, Milled) {
     let measurement = shown(Measurement::read(&pass, &file));
     let done = shown(correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ()));
     let text = done.program.as_deref().unwrap();
-    let part = shown(workshop::mill(&pass, &machine(), Some(&shown(workshop::commanded(&pass, text)))));
+    let part = shown(virtual_mill::mill(&pass, &machine(), Some(&shown(virtual_mill::commanded(&pass, text)))));
     (done, part)
 }
 

@@ -11,8 +11,8 @@ use std::hint::black_box;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use truepath::multiaxis::machine::{Letter, Machine, Rotary, Sense, Side, Tool};
-use truepath::multiaxis::{Joints, Rule, chord_error, chord_estimate, divide, insert};
+use truepath_multiaxis::machine::{Letter, Machine, Rotary, Sense, Side, Tool};
+use truepath_multiaxis::{Joints, Rule, chord_error, chord_estimate, divide, insert};
 
 /// Moves of the pass.
 const MOVES: usize = 20_000;

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use truepath::canon::{CanonOptions, ParameterFile, ToolTable, write_canon};
-use truepath::diagnostics::Source;
 use truepath_core::gcode::Units;
+use truepath_ground::diagnostics::Source;
+use truepath_program::canon::{CanonOptions, ParameterFile, ToolTable, write_canon};
 
 /// Programs whose motion is another on purpose, and why.
 const OTHERWISE: [(&str, &str); 2] = [

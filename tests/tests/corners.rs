@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use truepath::command::correct::{Corrected, correct};
-use truepath::diagnostics::{Failure, Source};
-use truepath::job::{Job, Route};
-use truepath::measurement::Measurement;
-use truepath::pass::Pass;
-use truepath::plant::{Machine, Milled};
-use truepath::workshop;
+use truepath_correction::correct::{Corrected, correct};
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_job::job::{Job, Route};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_plant::{Machine, Milled};
+use truepath_report::correction_csv;
+use truepath_trial::virtual_mill;
 
 const PLANT: &str = "ktc_n_per_mm2 = 1147.7\nkrc_n_per_mm2 = 344.3\nstiffness_x_n_per_mm = 1150\nstiffness_y_n_per_mm = 1150\nlaw = \"mean\"\n";
 
@@ -33,13 +34,13 @@ struct Told {
 
 fn told(pass: Pass, places: &[f64]) -> Told {
     let machine: Machine = toml::from_str(PLANT).unwrap();
-    let first = workshop::mill(&pass, &machine, None).unwrap();
-    let probe = workshop::probe(&pass, &first, places, &[0.5], 6.0).unwrap();
+    let first = virtual_mill::mill(&pass, &machine, None).unwrap();
+    let probe = virtual_mill::probe(&pass, &first, places, &[0.5], 6.0).unwrap();
     let measurement = Measurement::read(&pass, &Source::new("probe.txt", probe.into_bytes())).unwrap();
     let corrected = correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ())
-        .unwrap_or_else(|e: Failure| panic!("{}", e.render(truepath::diagnostics::Form::Plain)));
-    let commanded = workshop::commanded(&pass, corrected.program.as_deref().unwrap()).unwrap();
-    let second = workshop::mill(&pass, &machine, Some(&commanded)).unwrap();
+        .unwrap_or_else(|e: Failure| panic!("{}", e.render(truepath_ground::diagnostics::Form::Plain)));
+    let commanded = virtual_mill::commanded(&pass, corrected.program.as_deref().unwrap()).unwrap();
+    let second = virtual_mill::mill(&pass, &machine, Some(&commanded)).unwrap();
     Told { pass, first, corrected, second }
 }
 
@@ -57,8 +58,7 @@ fn an_outside_corner_cut_with_two_lines_is_corrected_up_to_its_edge() {
     let legs = |m: &Milled| worst(m, 8.0, 43.0).max(worst(m, 58.0, 92.0));
     assert!(legs(&told.first) > 0.08 && legs(&told.second) < 0.01, "{} -> {}", legs(&told.first), legs(&told.second));
     assert!(told.corrected.summary.max_correction_mm < 0.3, "{}", told.corrected.summary.max_correction_mm);
-    let [table, _] = told.corrected.tables;
-    let table = String::from_utf8(table).unwrap();
+    let table = String::from_utf8(correction_csv(&told.corrected.rows).unwrap()).unwrap();
     assert!(table.lines().any(|line| line.ends_with(",,,")), "places without a wall are empty in the table");
 }
 

@@ -7,11 +7,9 @@ use std::io;
 use std::time::{Duration, Instant};
 
 use hil_support::{image, probability, serve};
-use truepath::bench::{
-    Arrival, BenchError, Bulk, Chance, Client, InProcess, Probability, Wire,
-    records::{self, Channel, Records},
-};
 use truepath::command::hil::{Kind, Options, Source, open, run};
+use truepath_bench::records::{Channel, Records};
+use truepath_bench::{Arrival, BenchError, Bulk, Chance, Client, InProcess, Probability, Wire, records};
 use truepath_core::checksum::crc32;
 use truepath_core::image::Image;
 use truepath_core::link::{Ask, Denial, DeviceSettings, Item, Reply, ResetCause, SetpointFrame, Slot};
@@ -175,7 +173,7 @@ fn a_device_behind_sockets_is_driven_frame_by_frame() {
     serve(folder.path());
     let name = |file: &str| folder.path().join(file).display().to_string();
     let kind = Kind::Ports { names: [name("setpoint.sock"), name("config.sock")], baud: 0 };
-    let faults = truepath::bench::Faults {
+    let faults = truepath_bench::Faults {
         drop: probability(0.02),
         corrupt: probability(0.05),
         reorder: probability(0.02),

@@ -4,8 +4,8 @@
 mod hil_support;
 
 use hil_support::{everything, host_board, image, options};
-use truepath::bench::{BenchError, Board, BulkBoard, Client, Event, Exchange, InProcess, Wire};
 use truepath::command::hil::{Options, Source, run};
+use truepath_bench::{BenchError, Board, BulkBoard, Client, Event, Exchange, InProcess, Wire};
 
 /// A board that looks at the time before every frame.
 struct Watched {

@@ -10,9 +10,9 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use hil_support::{image, options, part, serve};
-use truepath::bench::{Board, Faults};
 use truepath::command::device::{Recorded, recording, recording_table};
 use truepath::command::hil::{Kind, Source, open, run};
+use truepath_bench::{Board, Faults};
 use truepath_core::image::Image;
 use truepath_core::link::{Ask, SetpointFrame};
 use truepath_core::rewrite::{Flags, Frame, Setpoint};

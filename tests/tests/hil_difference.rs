@@ -3,8 +3,8 @@
 mod hil_support;
 
 use hil_support::{host_board, image, options};
-use truepath::bench::{BenchError, Board, BulkBoard, Client, Event, Exchange, Faults, InProcess, Wire};
 use truepath::command::hil::{Report, Source, run};
+use truepath_bench::{BenchError, Board, BulkBoard, Client, Event, Exchange, Faults, InProcess, Wire};
 
 /// A board with a mistake in what it sends back.
 struct Faulty<M> {

@@ -4,8 +4,8 @@
 mod hil_support;
 
 use hil_support::{host_board, image, on, on_host, options, part};
-use truepath::bench::Faults;
 use truepath::command::hil::{Options, Source, run};
+use truepath_bench::Faults;
 use truepath_core::link::DeviceSettings;
 use truepath_core::rewrite::Mode;
 
@@ -70,12 +70,12 @@ fn a_recorded_file_gives_what_replay_gives() {
         let z = window.z_low.nm() + height;
         text += &format!("{}.{:03},{:.6},{:.6},{:.6}\n", tick / 1000, tick % 1000, mm(x), mm(y), mm(z));
     }
-    let source = truepath::diagnostics::Source::new("in.csv", text.into_bytes());
-    let setpoints = truepath::setpoints::Setpoints::parse(&source).unwrap();
-    let settings = truepath::replay::settings(setpoints.period_ns);
-    let run_file = truepath::replay::Run { placement: Default::default(), part_serial: 1, settings };
+    let source = truepath_ground::diagnostics::Source::new("in.csv", text.into_bytes());
+    let setpoints = truepath_trial::setpoints::Setpoints::parse(&source).unwrap();
+    let settings = truepath_trial::replay::settings(setpoints.period_ns);
+    let run_file = truepath_trial::replay::Run { placement: Default::default(), part_serial: 1, settings };
     let mut largest = 0;
-    let replayed = truepath::replay::replay(image, &setpoints, &run_file, |_, output| {
+    let replayed = truepath_trial::replay::replay(image, &setpoints, &run_file, |_, output| {
         largest = largest.max(output.correction_nm.iter().map(|nm| nm.abs()).max().unwrap_or(0));
         Ok(())
     })

@@ -4,8 +4,8 @@
 mod hil_support;
 
 use hil_support::{everything, on_host, options, probability};
-use truepath::bench::Faults;
 use truepath::command::hil::{Report, Source};
+use truepath_bench::Faults;
 
 const FRAMES: u64 = 10_000;
 

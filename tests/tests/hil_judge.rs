@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use truepath::bench::traffic::Command;
-use truepath::bench::{Happened, Judge, Violation};
+use truepath_bench::traffic::Command;
+use truepath_bench::{Happened, Judge, Violation};
 use truepath_core::image::{Binding, CorrectionLimits};
 use truepath_core::rewrite::{ArmRequest, Frame, Limits, Mode, Output, Place, Reason, Setpoint, Status};
 use truepath_core::units::Offset;

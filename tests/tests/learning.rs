@@ -52,7 +52,9 @@ fn a_pocket_is_closer_after_every_part_and_the_history_survives_its_file() {
     let (corrected, history) = shop.first(&places);
     let first = shop.error(Some(&corrected));
     let text = history.text().unwrap();
-    let read = truepath::learning::History::read(&truepath::diagnostics::Source::new("history.json", text)).unwrap();
+    let read =
+        truepath_correction::learning::History::read(&truepath_ground::diagnostics::Source::new("history.json", text))
+            .unwrap();
     assert_eq!(read, history);
     let more = [15.0, 29.0, 45.0, 66.0, 90.0, 126.0, 140.0, 180.0];
     let learned = shop.next(&read, &corrected, &more);
@@ -135,10 +137,10 @@ fn what_is_learned_turns_with_the_part_to_the_last_bit() {
     let texts = [shop.probe(None, &STRAIGHT, 41), shop.probe(Some(&corrected), &WITH_CORNER, 42)];
     let nodes = |shop: &Shop, texts: &[String]| {
         let measurement = shop.measured(&texts[0]);
-        let routes = [truepath::job::Route::Program];
+        let routes = [truepath_job::job::Route::Program];
         let corrected =
-            truepath::command::correct::correct(&shop.pass, &measurement, &[], &routes, &mut |_| ()).unwrap();
-        let history = truepath::learning::History::first(&shop.pass, &measurement, &corrected).unwrap();
+            truepath_correction::correct::correct(&shop.pass, &measurement, &[], &routes, &mut |_| ()).unwrap();
+        let history = truepath_correction::learning::History::first(&shop.pass, &measurement, &corrected).unwrap();
         let learned = shop.learn(&history, &texts[1]).unwrap();
         let vectors = learned.corrected.correction.nodes.iter().map(|n| {
             let v = n.total();

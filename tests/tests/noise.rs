@@ -3,13 +3,13 @@
 
 use std::path::Path;
 
-use truepath::command::correct::correct;
-use truepath::diagnostics::Source;
-use truepath::job::{Job, Route};
-use truepath::measurement::Measurement;
-use truepath::pass::Pass;
-use truepath::plant::Machine;
-use truepath::workshop;
+use truepath_correction::correct::correct;
+use truepath_ground::diagnostics::Source;
+use truepath_job::job::{Job, Route};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_plant::Machine;
+use truepath_trial::virtual_mill;
 
 const PROGRAM: &str = include_str!("../../host-sim/demo/corner/program.nc");
 const JOB: &str = include_str!("../../host-sim/demo/corner/job.toml");
@@ -32,17 +32,17 @@ fn left(changes: &[(&str, &str)], places: &[f64]) -> Vec<f64> {
     };
     let pass = pass(&job);
     let mut machine: Machine = toml::from_str(PLANT).unwrap();
-    let first = workshop::mill(&pass, &machine, None).unwrap();
+    let first = virtual_mill::mill(&pass, &machine, None).unwrap();
     let mut after: Vec<f64> = (0..SEEDS)
         .map(|seed| {
             machine.seed = 1000 + seed;
             let mut touched = first.clone();
             touched.machine.seed = machine.seed;
-            let probe = workshop::probe(&pass, &touched, places, &[0.5], 6.0).unwrap();
+            let probe = virtual_mill::probe(&pass, &touched, places, &[0.5], 6.0).unwrap();
             let measurement = Measurement::read(&pass, &source("probe.txt", probe)).unwrap();
             let corrected = correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
-            let commanded = workshop::commanded(&pass, &corrected.program.unwrap()).unwrap();
-            workshop::mill(&pass, &machine, Some(&commanded)).unwrap().score().max_error_mm
+            let commanded = virtual_mill::commanded(&pass, &corrected.program.unwrap()).unwrap();
+            virtual_mill::mill(&pass, &machine, Some(&commanded)).unwrap().score().max_error_mm
         })
         .collect();
     after.sort_by(f64::total_cmp);

@@ -3,14 +3,16 @@
 use std::fs;
 use std::path::Path;
 
-use truepath::command::{correct, second_pass, split};
-use truepath::diagnostics::{Failure, Source};
-use truepath::job::{Job, ProbeFlags, Route};
-use truepath::measurement::Measurement;
-use truepath::pass::Pass;
-use truepath::plant::{self, Milled};
-use truepath::surface::Surface;
-use truepath::workshop;
+use truepath::command::{correct, split};
+use truepath_correction::second_pass;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_job::job::{Job, ProbeFlags, Route};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_job::surface::Surface;
+use truepath_plant as plant;
+use truepath_plant::Milled;
+use truepath_trial::virtual_mill;
 
 const DEMO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../host-sim/demo");
 
@@ -29,8 +31,8 @@ fn pass(job: &Path) -> Pass {
 /// Mills what a program leaves of the actual surface of an earlier pass.
 fn mill_over(pass: &Pass, machine: &plant::Machine, surface: Vec<[f64; 2]>, text: Option<&[u8]>) -> Milled {
     let pass = pass.clone().over(Surface::new(surface).unwrap()).unwrap();
-    let centres = text.map(|text| workshop::commanded(&pass, text).unwrap());
-    workshop::mill(&pass, machine, centres.as_deref()).unwrap()
+    let centres = text.map(|text| virtual_mill::commanded(&pass, text).unwrap());
+    virtual_mill::mill(&pass, machine, centres.as_deref()).unwrap()
 }
 
 /// Largest error of a single part: split, milled, probed, corrected; and of the second pass without correction.
@@ -42,9 +44,9 @@ fn single_part(name: &str, places: &[f64], levels: &[f64]) -> (f64, f64) {
         split::run(&split::Options { job: &job, out: &out, force: false, which: Default::default() }).unwrap();
     let (whole, first) = (pass(&job), pass(&written.job));
     let machine = machine(name);
-    let milled = workshop::mill(&first, &machine, None).unwrap();
+    let milled = virtual_mill::mill(&first, &machine, None).unwrap();
     let ball = first.job.require_probe().unwrap().ball_diameter.nm() as f64 / 1e6;
-    let probe = workshop::probe(&first, &milled, places, levels, ball).unwrap();
+    let probe = virtual_mill::probe(&first, &milled, places, levels, ball).unwrap();
     fs::write(folder.path().join("probe.txt"), &probe).unwrap();
 
     let result = folder.path().join("second");
@@ -120,8 +122,8 @@ fn a_sharp_inside_corner_cannot_be_split_and_other_jobs_are_no_first_pass() {
     let other =
         Job::parse(Source::new("other.toml", text.replace("teeth = 6", "teeth = 4").into_bytes()), &demo("corner"));
     let other = Pass::read(other.unwrap()).unwrap();
-    let milled = workshop::mill(&other, &machine("corner"), None).unwrap();
-    let probe = workshop::probe(&other, &milled, &[30.0, 75.0], &[0.5], 6.0).unwrap();
+    let milled = virtual_mill::mill(&other, &machine("corner"), None).unwrap();
+    let probe = virtual_mill::probe(&other, &milled, &[30.0, 75.0], &[0.5], 6.0).unwrap();
     let measurement = Measurement::read(&other, &Source::new("probe.txt", probe.into_bytes())).unwrap();
     let refused = second_pass::correct(&whole, &other, &measurement, &[], &[Route::Program], &mut |_| ());
     let Err(Failure::Input(error)) = refused else { panic!("two machines' passes were taken for one part's") };

@@ -4,11 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use truepath::command::correct::{self, Options};
-use truepath::command::demo;
-use truepath::diagnostics::Failure;
-use truepath::job::{ProbeFlags, Route, Which};
+use truepath::command::correct::Options;
+use truepath::command::{correct, demo};
 use truepath_core::image::Image;
+use truepath_ground::diagnostics::Failure;
+use truepath_job::job::{ProbeFlags, Route, Which};
 
 fn told(folder: &Path) -> Vec<demo::Outcome> {
     demo::run(folder, true, &mut |_| ()).unwrap()
@@ -144,7 +144,7 @@ fn a_correction_beyond_the_clamp_is_an_error_that_proposes_one_and_writes_nothin
     };
     let Err(Failure::Input(error)) = correct::run(&options, &mut |_| ()) else { panic!("clamped in silence") };
     assert_eq!(error.code(), "J017");
-    let shown = Failure::Input(error).render(truepath::diagnostics::Form::Plain);
+    let shown = Failure::Input(error).render(truepath_ground::diagnostics::Form::Plain);
     assert!(shown.contains("set clamp_mm = 0."), "{shown}");
     assert!(!out.exists());
 }

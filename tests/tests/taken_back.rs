@@ -29,7 +29,7 @@ fn a_correction_that_is_used_again_stands_under_the_guard_of_the_job() {
     let correction = &worse.corrected.correction;
     assert_eq!(correction.unguarded, corrected.correction.nodes);
     assert_ne!(correction.nodes, corrected.correction.nodes);
-    let deepest = |correction: &truepath::correction::Correction| {
+    let deepest = |correction: &truepath_correction::correction::Correction| {
         let walls = correction.predicted.iter().map(|p| p.after).filter(|wall| wall.on_wall);
         walls.map(|wall| (wall.margin() - wall.deepest()).nm() as f64 / 1e6).fold(0.0, f64::max)
     };

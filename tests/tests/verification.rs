@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use truepath::command::correct::correct;
-use truepath::diagnostics::Source;
-use truepath::job::{Job, Route};
-use truepath::measurement::Measurement;
-use truepath::pass::Pass;
-use truepath::verification::{Settings, plan};
-use truepath::workshop;
+use truepath_correction::correct::correct;
+use truepath_correction::verification::{Settings, plan};
+use truepath_ground::diagnostics::Source;
+use truepath_job::job::{Job, Route};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_trial::virtual_mill;
 
 fn demo(name: &str, file: &str) -> Vec<u8> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/demo").join(name);
@@ -20,13 +20,13 @@ fn corrected(name: &str, places: &[f64], levels: &[f64]) -> (f64, f64) {
     let job = Job::parse(Source::new("job.toml", demo(name, "job.toml")), Path::new("")).unwrap();
     let pass = Pass::new(job, Source::new("program.nc", demo(name, "program.nc"))).unwrap();
     let plant = toml::from_str(std::str::from_utf8(&demo(name, "plant.toml")).unwrap()).unwrap();
-    let first = workshop::mill(&pass, &plant, None).unwrap();
+    let first = virtual_mill::mill(&pass, &plant, None).unwrap();
     let ball = pass.job.require_probe().unwrap().ball_diameter.nm() as f64 / 1e6;
-    let text = workshop::probe(&pass, &first, places, levels, ball).unwrap();
+    let text = virtual_mill::probe(&pass, &first, places, levels, ball).unwrap();
     let measurement = Measurement::read(&pass, &Source::new("probe.txt", text.into_bytes())).unwrap();
     let done = correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
     let program = done.program.unwrap();
-    let second = workshop::mill(&pass, &plant, Some(&workshop::commanded(&pass, &program).unwrap())).unwrap();
+    let second = virtual_mill::mill(&pass, &plant, Some(&virtual_mill::commanded(&pass, &program).unwrap())).unwrap();
     (first.score().max_error_mm, second.score().max_error_mm)
 }
 

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use truepath_bore::motion::Cutter;
+use truepath_bore::setup::{FeedAt, Setup};
+use truepath_bore::texture::Cutoffs;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
 
 use super::{Terminal, bore_text, print};
-use crate::bore::motion::Cutter;
-use crate::bore::setup::{FeedAt, Setup};
-use crate::bore::texture::Cutoffs;
 use crate::command::bore::{Options, run as bore};
-use crate::diagnostics::Failure;
-use crate::report::json;
 
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]

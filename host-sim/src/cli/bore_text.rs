@@ -1,6 +1,7 @@
 //! A bore in words.
 
-use crate::bore::setup::FeedAt;
+use truepath_bore::setup::FeedAt;
+
 use crate::command::bore::{BoreSummary, Roots};
 
 /// What `truepath bore` prints for people.

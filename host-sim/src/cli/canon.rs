@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use truepath_core::gcode::{Dialect, PointlessLength, Units};
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::output::OutputFile;
+use truepath_program::canon::{CanonOptions, ParameterFile, ToolTable, write_canon};
 
 use super::{Terminal, print};
-use crate::canon::{CanonOptions, ParameterFile, ToolTable, write_canon};
-use crate::diagnostics::{Failure, InputError, Source};
-use crate::output::OutputFile;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
 
 use super::{Terminal, print, probe_flags, which};
 use crate::command::compare::{CompareSummary, Options, run as compare};
-use crate::diagnostics::Failure;
-use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

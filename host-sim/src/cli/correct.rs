@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use truepath_correction::summary::CorrectSummary;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
+use truepath_job::feature::listing;
+use truepath_job::job::Route;
 
 use super::{Terminal, pocket, print, probe_flags, which};
 use crate::command::correct::{Options, run as correct};
 use crate::command::pocket as compensation;
-use crate::diagnostics::Failure;
-use crate::feature::listing;
-use crate::job::Route;
-use crate::report::CorrectSummary;
-use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

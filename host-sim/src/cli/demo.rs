@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
 
 use super::{Terminal, print};
 use crate::command::demo::{Outcome, run as demo};
-use crate::diagnostics::Failure;
-use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

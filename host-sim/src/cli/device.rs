@@ -8,23 +8,22 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;
 
+use arguments::Task;
 use serde::Serialize;
+use truepath_bench::{BenchError, Client, Ingredients, Line, compute};
 use truepath_core::link::{Ask, DeviceStatus, Slot};
 use truepath_core::rewrite::Reason;
-
-pub(super) use arguments::Arguments;
-use arguments::Task;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::output::{json, write_file};
+use truepath_job::job::Job;
 
 use super::monitor::{Known, Looked, device as view, wanted};
 use super::{Terminal, image, print};
-use crate::bench::{BenchError, Client, Ingredients, Line, compute};
 use crate::command::device::{activate, info, recording, recording_setpoints, recording_table, upload};
 use crate::command::hil::Counts;
 use crate::command::settings::{NoSuchSetting, changed, named, paced};
-use crate::diagnostics::{Failure, Source};
-use crate::job::Job;
-use crate::output::write_file;
-use crate::report::json;
+
+pub(super) use arguments::Arguments;
 
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
     let mut client = connect(arguments.port.as_deref(), arguments.baud)?;

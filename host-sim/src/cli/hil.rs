@@ -6,16 +6,15 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-
 use onlooker::Onlooker;
+use truepath_bench::{BenchError, Faults, Probability, RoundTrip};
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::output::json;
 
 use super::{Terminal, image, print};
-use crate::bench::{BenchError, Faults, Probability, RoundTrip};
 use crate::command::hil::{
     Kind, Options, Report, STREAM_HZ, Source, on_board, open, recorded, run_watched as hil, settings,
 };
-use crate::diagnostics::{Failure, InputError};
-use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use truepath_core::image::{Image, ImageError, dump};
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::output::write_file;
 
 use super::{Terminal, print};
-use crate::diagnostics::{Failure, InputError};
-use crate::output::write_file;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use truepath_correction::inspection::PointVerdict;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
+use truepath_job::feature::listing;
+use truepath_job::job::PartFlags;
 
 use super::{Terminal, print, probe_flags, which};
 use crate::command::inspect::{Inspection, Options, run as inspect};
-use crate::diagnostics::Failure;
-use crate::feature::listing;
-use crate::inspection::PointVerdict;
-use crate::job::PartFlags;
-use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use truepath_correction::learn::LearnSummary;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
+use truepath_job::job::Route;
 
 use super::correct::{RouteArgument, words as correction};
 use super::{Terminal, print, probe_flags, which};
-use crate::command::learn::{LearnSummary, Options, run as learn};
-use crate::diagnostics::Failure;
-use crate::job::Route;
-use crate::report::json;
+use crate::command::learn::{Options, run as learn};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

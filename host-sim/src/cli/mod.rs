@@ -33,8 +33,7 @@ use std::io::{BufWriter, Write};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-
-use crate::diagnostics::{Failure, InputError};
+use truepath_ground::diagnostics::{Failure, InputError};
 
 pub use terminal::{Progress, Terminal};
 

@@ -4,16 +4,16 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use truepath_core::gcode::{Dialect, PointlessLength, Units};
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
+use truepath_multiaxis::Rule;
+use truepath_multiaxis::machine::Coordinates;
+use truepath_multiaxis::program::{CentrePoint, Digits};
+use truepath_multiaxis::statistics::Figures;
 
 use super::canon::{Control, FileUnits, Pointless};
 use super::{Terminal, print};
 use crate::command::multiaxis::{MultiaxisSummary, Options, run as multiaxis};
-use crate::diagnostics::Failure;
-use crate::multiaxis::Rule;
-use crate::multiaxis::machine::Coordinates;
-use crate::multiaxis::program::{CentrePoint, Digits};
-use crate::multiaxis::statistics::Figures;
-use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

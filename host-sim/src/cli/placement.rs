@@ -2,11 +2,10 @@
 
 use clap::Args;
 use truepath_core::units::Real;
-
-use crate::diagnostics::{InputError, Source};
-use crate::job::Decimal;
-use crate::replay::Placement;
-use crate::setpoints::{Frame, Setpoints};
+use truepath_ground::decimal::Decimal;
+use truepath_ground::diagnostics::{InputError, Source};
+use truepath_trial::replay::Placement;
+use truepath_trial::setpoints::{Frame, Setpoints};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct PlacementArguments {

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use truepath_chart::view::View;
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::output::json;
+use truepath_report::plot::Column;
 
 use super::which::WhichArguments;
 use super::{Terminal, print};
 use crate::command::plot::{Kind, Options, run as plot};
-use crate::diagnostics::{Failure, InputError};
-use crate::plot::{Column, View};
-use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
+use truepath_job::job::{Mode, PerSection};
+use truepath_pocket::{PocketSummary, materials, materials_text, sections_text};
 
 use super::{Terminal, print, which};
 use crate::command::pocket::{Options, run as pocket};
-use crate::diagnostics::Failure;
-use crate::pocket::{Mode, PerSection, PocketSummary, materials, materials_text, sections_text};
-use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -4,12 +4,12 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
+use truepath_correction::verification::{Dialect, Settings};
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
 
 use super::{Terminal, print, probe_flags, which};
 use crate::command::probe::{Evidence, Options, Report, run as probe};
-use crate::diagnostics::Failure;
-use crate::report::json;
-use crate::verification::{Dialect, Settings};
 
 #[derive(Debug, Args)]
 #[group(id = "probe_arguments")]

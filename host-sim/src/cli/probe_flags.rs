@@ -3,8 +3,7 @@
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use truepath_core::probe::Columns;
-
-use crate::job::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
+use truepath_job::job::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
 
 #[derive(Debug, Args)]
 #[group(id = "probe_flags")]

@@ -4,14 +4,14 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::output::OutputFile;
+use truepath_trial::replay::{Run, Summary, replay, settings};
+use truepath_trial::setpoints::{Frame, Setpoints};
 
 use super::placement::PlacementArguments;
 use super::{Terminal, image, print};
 use crate::command::settings::changed;
-use crate::diagnostics::{Failure, InputError, Source};
-use crate::output::OutputFile;
-use crate::replay::{Run, Summary, replay, settings};
-use crate::setpoints::{Frame, Setpoints};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::output::json;
+use truepath_job::feature::listing;
+use truepath_trial::replay::Placement;
+use truepath_trial::setpoints::Setpoints;
 
 use super::placement::PlacementArguments;
 use super::{Terminal, print, which};
 use crate::command::simulate::{Options, Recording, run as simulate};
-use crate::diagnostics::{Failure, Source};
-use crate::feature::listing;
-use crate::replay::Placement;
-use crate::report::json;
-use crate::setpoints::Setpoints;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

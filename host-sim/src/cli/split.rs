@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
+use truepath_job::job::Which;
 
 use super::{Terminal, print};
 use crate::command::split::{Options, run as split};
-use crate::diagnostics::Failure;
-use crate::job::Which;
-use crate::report::json;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -4,17 +4,16 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::json;
+use truepath_study::id::{Axis, CaseId};
+use truepath_study::reference::words as words_of_goals;
+use truepath_study::seeds::Set;
+use truepath_study::summary::{Row, Summary};
+use truepath_study::{export, pool};
 
 use super::{Terminal, print};
 use crate::command::study::{Options, reference, run as study};
-use crate::diagnostics::Failure;
-use crate::report::json;
-use crate::study::export;
-use crate::study::id::{Axis, CaseId};
-use crate::study::pool;
-use crate::study::reference::words as words_of_goals;
-use crate::study::seeds::Set;
-use crate::study::summary::{Row, Summary};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

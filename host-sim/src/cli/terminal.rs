@@ -4,8 +4,7 @@ use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
-use crate::diagnostics::{Failure, Form};
+use truepath_ground::diagnostics::{Failure, Form};
 
 /// Standard error and how to write on it.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,7 @@
 //! `--feature` and `--pass`: which cut of a program with several.
 
 use clap::Args;
-
-use crate::job::Which;
+use truepath_job::job::Which;
 
 #[derive(Debug, Args)]
 pub(super) struct WhichArguments {

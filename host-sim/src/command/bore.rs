@@ -2,18 +2,20 @@
 
 use std::path::Path;
 
+use truepath_bore::dependence::TeethRow;
+use truepath_bore::envelope::{Profile, cutting_teeth};
+use truepath_bore::roots::roots;
+use truepath_bore::setup::{Setup, cusp_formula};
+use truepath_bore::texture::{Cutoffs, texture};
+use truepath_bore::wanted::feed_for;
+use truepath_bore::{dependence, depth};
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::OutputFolder;
+
 use super::bore_error::refused;
 use super::bore_files::{FILES, write};
+
 pub use super::bore_summary::{BoreSummary, Roots, Wanted};
-use crate::bore::dependence::{self, TeethRow};
-use crate::bore::depth;
-use crate::bore::envelope::{Profile, cutting_teeth};
-use crate::bore::roots::roots;
-use crate::bore::setup::{Setup, cusp_formula};
-use crate::bore::texture::{Cutoffs, texture};
-use crate::bore::wanted::feed_for;
-use crate::diagnostics::Failure;
-use crate::output::OutputFolder;
 
 /// Teeth in the table of dependence, at least.
 const TEETH: u32 = 8;
@@ -128,8 +130,8 @@ fn wanted(options: &Options, wanted_mm: f64) -> Result<Wanted, Failure> {
 }
 
 fn listed(profile: &Profile, phi_deg: f64) -> Result<Roots, Failure> {
-    crate::bore::Refusal::unless_in("angle of the ray", "°", phi_deg, -3600.0, 3600.0).map_err(|e| refused(&e))?;
-    let phi = crate::bore::passes::around(phi_deg.to_radians());
+    truepath_bore::Refusal::unless_in("angle of the ray", "°", phi_deg, -3600.0, 3600.0).map_err(|e| refused(&e))?;
+    let phi = truepath_bore::passes::around(phi_deg.to_radians());
     let list = roots(&profile.passes, phi);
     let on_ray = list.iter().filter(|r| r.on_ray).count();
     Ok(Roots { phi_deg, radius_mm: profile.at(phi).0, on_ray, opposite: list.len() - on_ray, list })
@@ -138,7 +140,7 @@ fn listed(profile: &Profile, phi_deg: f64) -> Result<Roots, Failure> {
 fn warnings(setup: &Setup, profile: &Profile) -> Vec<String> {
     let mut said = Vec::new();
     let passes = &profile.passes;
-    let seamless = crate::bore::passes::Passes::laps_without_seam(&passes.motion);
+    let seamless = truepath_bore::passes::Passes::laps_without_seam(&passes.motion);
     if passes.laps < seamless {
         said.push(format!(
             "{} laps leave a seam where the last mark meets the first; from {seamless:.4} laps on there is none",

@@ -1,7 +1,7 @@
 //! Refusals of a bore as errors of the command line.
 
-use crate::bore::Refusal;
-use crate::diagnostics::{Failure, InputError};
+use truepath_bore::Refusal;
+use truepath_ground::diagnostics::{Failure, InputError};
 
 /// The error with its code, what was expected and what to do.
 pub(super) fn refused(refusal: &Refusal) -> Failure {

@@ -1,14 +1,13 @@
 //! The files of `bore`: tables, pictures, summary.
 
+use truepath_bore::envelope::Profile;
+use truepath_bore::setup::Setup;
+use truepath_bore::{depth, picture, tables};
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::{OutputFolder, json};
+
 use super::bore_error::refused;
 use super::bore_summary::BoreSummary;
-use crate::bore::depth;
-use crate::bore::envelope::Profile;
-use crate::bore::setup::Setup;
-use crate::bore::{picture, tables};
-use crate::diagnostics::Failure;
-use crate::output::OutputFolder;
-use crate::report::json;
 
 /// Files this command may write.
 pub(super) const FILES: &[&str] = &[

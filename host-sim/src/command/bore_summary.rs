@@ -1,10 +1,10 @@
 //! What `bore` computed, as it is printed with `--json` and written to `summary.json`.
 
-use crate::bore::dependence::{FeedRow, HelixRow, RunoutRow, TeethRow};
-use crate::bore::depth::Level;
-use crate::bore::roots::Root;
-use crate::bore::setup::FeedAt;
-use crate::bore::texture::Texture;
+use truepath_bore::dependence::{FeedRow, HelixRow, RunoutRow, TeethRow};
+use truepath_bore::depth::Level;
+use truepath_bore::roots::Root;
+use truepath_bore::setup::FeedAt;
+use truepath_bore::texture::Texture;
 
 /// The bore as computed.
 #[derive(Clone, Debug, serde::Serialize)]

@@ -2,15 +2,17 @@
 
 use std::path::Path as FilePath;
 
-use crate::compare::{Row, Walls, candidates, identified as by_model, row, virtual_machine};
-use crate::correction::identified;
-use crate::diagnostics::{Failure, Source};
-use crate::job::{Job, ProbeFlags, Which};
-use crate::measurement::Measurement;
-use crate::output::OutputFolder;
-use crate::pass::{Pass, PathBuffer};
-use crate::plot::{self, Compared, LawWall, View};
-use crate::report::{compare_csv, float, json, mm, walls_csv};
+use truepath_chart::view::View;
+use truepath_correction::correction::identified;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::output::{OutputFolder, json};
+use truepath_ground::units::{float, mm};
+use truepath_job::job::{Job, ProbeFlags, Which};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::{Pass, PathBuffer};
+use truepath_report::plot::{Compared, LawWall};
+use truepath_report::{compare_csv, plot, walls_csv};
+use truepath_trial::compare::{Row, Walls, candidates, identified as by_model, row, virtual_machine};
 
 use super::simulate::read_machine;
 

@@ -2,32 +2,23 @@
 
 use std::path::Path as FilePath;
 
-use truepath_core::checksum::crc32;
-use truepath_core::cut::Path;
-use truepath_core::job;
-use truepath_core::units::Offset;
+use truepath_correction::correct::correct;
+use truepath_correction::doubts::misread;
+use truepath_correction::learning::History;
+use truepath_correction::second_pass;
+use truepath_correction::summary::CorrectSummary;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::output::{OutputFolder, json};
+use truepath_job::job::{Job, ProbeFlags, Route, Which};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_program::first_pass_of;
+use truepath_report::page::render;
+use truepath_report::pages;
+use truepath_report::pages::{Points, REPORT};
 
 use super::correction_files::{FILES, HISTORY, write};
-use super::doubts::{cut_corrected, doubts, kinked, misread};
-use super::feeds;
-use super::levels::{self, Levels};
-use super::page::{self, Points, REPORT};
-use super::remarks::Remarks;
 use super::replaced::refuse_replacing;
-use super::second_pass;
-use crate::correction::{Correction, Identified, Wish, corrected, identified};
-use crate::diagnostics::{Failure, Source};
-use crate::feed::Schedule;
-use crate::job::{Job, ProbeFlags, Route, Which};
-use crate::learning::History;
-use crate::measurement::Measurement;
-use crate::output::OutputFolder;
-use crate::pass::{Pass, PathBuffer};
-use crate::program::{BlockEdit, Origin, RewriteOptions, Rewritten, first_pass_of, rewrite_program};
-use crate::report::page::render;
-use crate::report::{
-    CorrectSummary, block_edits, correct_summary, correction_csv, correction_rows, json, mm, wall_csv,
-};
 
 /// What is corrected.
 #[derive(Clone, Debug)]
@@ -48,138 +39,6 @@ pub struct Options<'a> {
     pub probe_flags: ProbeFlags,
     /// Which cut of the program.
     pub which: Which,
-}
-
-/// A correction in memory: everything the command writes follows from it.
-#[derive(Clone, Debug)]
-pub struct Corrected {
-    /// Machine and material.
-    pub identified: Identified,
-    /// The correction.
-    pub correction: Correction,
-    /// Feeds in place of the programmed ones, where the job wants any.
-    pub schedule: Option<Schedule>,
-    /// Wall error beside the model, one entry per sample of the contour; empty where none is known.
-    pub residual: Vec<Offset>,
-    /// Its standard deviation, the same way.
-    pub residual_sigma: Vec<Offset>,
-    /// The summary.
-    pub summary: CorrectSummary,
-    /// The corrected program, when that is a route.
-    pub program: Option<Vec<u8>>,
-    /// The image of the probed depth, when that is a route.
-    pub image: Option<Vec<u8>>,
-    /// Images of the other depths with their numbers.
-    pub other_images: Vec<(u32, Vec<u8>)>,
-    /// `correction.csv` and `wall.csv`.
-    pub tables: [Vec<u8>; 2],
-    /// `correction.svg`.
-    pub picture: Vec<u8>,
-}
-
-/// Corrects a pass from a measurement, in memory, for one or both routes.
-///
-/// # Errors
-/// What is wrong with program or measurement, and a correction beyond the clamp.
-pub fn correct(
-    pass: &Pass,
-    measurement: &Measurement,
-    remarks: &[String],
-    routes: &[Route],
-    progress: &mut dyn FnMut(f64),
-) -> Result<Corrected, Failure> {
-    let mut buffer = PathBuffer::default();
-    let sampled = pass.sample(&mut buffer)?;
-    let identified = identified(pass, &sampled, measurement, |share| progress(0.2 * share))?;
-    let remarks = Remarks::of(measurement, remarks);
-    let path = sampled.with_law(identified.law());
-    let table = identified.table();
-    let law = job::law(&pass.core, &identified.machine(&path, &table), &measurement.contacts);
-    let mut done = design(pass, &sampled, identified, &Wish::of(law), remarks, routes, progress)?;
-    done.summary.warnings.extend(cut_corrected(&done.identified, &done.correction));
-    Ok(done)
-}
-
-/// Designs the correction of a pass for an identified machine and writes it for the routes.
-///
-/// # Errors
-/// A correction beyond the clamp, a contour that cannot be written.
-pub(super) fn design(
-    pass: &Pass,
-    sampled: &Path,
-    identified: Identified,
-    wish: &Wish<'_>,
-    remarks: Remarks<'_>,
-    routes: &[Route],
-    progress: &mut dyn FnMut(f64),
-) -> Result<Corrected, Failure> {
-    progress(0.2);
-    let path = sampled.with_law(identified.law());
-    let table = identified.table();
-    let machine = identified.machine(&path, &table);
-    let mut feeds = feeds::planned(pass, &machine, &identified, remarks.of_this_pass, routes)?;
-    feeds.compare(pass, &machine, &identified, wish);
-    let mut fed = PathBuffer::default();
-    let path = match &feeds.schedule {
-        Some(schedule) => pass.sample_fed(&mut fed, Some(schedule))?.with_law(identified.law()),
-        None => path,
-    };
-    let machine = identified.machine(&path, &table);
-    let correction = corrected(pass, &machine, &identified, wish, |share| progress(0.2 + 0.7 * share))?;
-    let mut warnings = pass.warnings.clone();
-    warnings.extend(remarks.texts.iter().cloned());
-    warnings.extend(doubts(pass, &identified, &correction, &machine));
-    warnings.extend(feeds.doubts(mm(correction.sigma.iter().copied().max().unwrap_or_default())));
-    let mut summary = correct_summary(pass, &identified, &correction, remarks.set_aside, warnings);
-    summary.place(&path, &correction);
-    summary.feed = feeds.summary;
-    let (mut program, mut image, mut other_images) = (None, None, Vec::new());
-    let mut levels = Levels::default();
-    for route in routes {
-        match route {
-            Route::Program => {
-                let mut edits = Vec::new();
-                levels = levels::each(pass, &path, |_, pass, path| {
-                    edits.extend(block_edits(pass, path, &correction.nodes, feeds.schedule.as_ref()));
-                    Ok(())
-                })?;
-                let written = corrected_program(pass, remarks.probe, &edits)?;
-                summary.warnings.extend(kinked(&written.difference));
-                summary.program = Some(written.difference);
-                program = Some(written.text);
-            }
-            Route::Coprocessor => {
-                levels = levels::each(pass, &path, |number, other, path| {
-                    let bytes = crate::image::build(other, &identified, path, &correction)?;
-                    if number == pass.level() {
-                        image = Some(bytes);
-                    } else {
-                        other_images.push((number, bytes));
-                    }
-                    Ok(())
-                })?;
-            }
-        }
-    }
-    summary.warnings.append(&mut levels.left);
-    summary.feature = pass.feature(&levels.written);
-    let rows = correction_rows(&machine, &correction);
-    let tables = [correction_csv(&rows)?, wall_csv(&rows)?];
-    let picture = crate::plot::predicted_error(&crate::plot::View::default(), &rows, &[])?;
-    progress(1.0);
-    Ok(Corrected {
-        identified,
-        correction,
-        schedule: feeds.schedule,
-        residual: wish.residual.to_vec(),
-        residual_sigma: wish.residual_sigma.to_vec(),
-        summary,
-        program,
-        image,
-        other_images,
-        tables,
-        picture,
-    })
 }
 
 /// Corrects and writes the outputs.
@@ -237,20 +96,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
         folder.write(HISTORY, &History::first(&pass, &measurement, &done)?.text()?)?;
     }
     write(&folder, &pass, &measurement, &done)?;
-    folder.write(REPORT, &render(&page::corrected(&pass, &measurement, &done, points)?)?)?;
+    folder.write(REPORT, &render(&pages::corrected(&pass, &measurement, &done, points)?)?)?;
     folder.commit()?;
     Ok(done.summary)
-}
-
-fn corrected_program(pass: &Pass, probe: u32, edits: &[BlockEdit]) -> Result<Rewritten, Failure> {
-    let origin = Origin { job: Some(crc32(pass.job.source().bytes())), probe: Some(probe) };
-    let options = RewriteOptions {
-        tolerance: pass.job.tolerance,
-        max_arc_radius: pass.job.max_arc_radius,
-        max_kink_deg: pass.job.max_kink_deg,
-        program: pass.job.numbers.program_options(),
-        origin,
-        ..RewriteOptions::default()
-    };
-    rewrite_program(&pass.program, edits, &options)
 }

@@ -1,14 +1,16 @@
 //! The files of a correction: what `correct` and `learn` may write, and what a correction in memory holds beside its summary.
 
-use super::correct::Corrected;
-use super::page::REPORT;
-use crate::diagnostics::Failure;
-use crate::measurement::Measurement;
-use crate::output::OutputFolder;
-use crate::pass::Pass;
-use crate::report::points_csv;
+use truepath_chart::view::View;
+use truepath_correction::correct::Corrected;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::OutputFolder;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_report::pages::REPORT;
+use truepath_report::plot::predicted_error;
+use truepath_report::{correction_csv, points_csv, wall_csv};
 
-/// The parts so far; see [`learning`](crate::learning).
+/// The parts so far; see [`learning`](truepath_correction::learning).
 pub(super) const HISTORY: &str = "history.json";
 /// The measured part as it was milled; `learn` writes it.
 pub(super) const MILLED: &str = "milled.csv";
@@ -54,9 +56,9 @@ pub(super) fn write(
     for (number, bytes) in &done.other_images {
         folder.write(&format!("correction-pass-{number}.tpi"), bytes)?;
     }
-    folder.write("correction.csv", &done.tables[0])?;
-    folder.write("wall.csv", &done.tables[1])?;
+    folder.write("correction.csv", &correction_csv(&done.rows)?)?;
+    folder.write("wall.csv", &wall_csv(&done.rows)?)?;
     folder.write("points.csv", &points_csv(measurement, &done.identified.observations)?)?;
-    folder.write("correction.svg", &done.picture)?;
+    folder.write("correction.svg", &predicted_error(&View::default(), &done.rows, &[])?)?;
     Ok(())
 }

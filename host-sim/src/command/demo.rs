@@ -3,18 +3,19 @@
 
 use std::path::{Path as FilePath, PathBuf};
 
-use crate::command::correct::{Corrected, correct};
-use crate::command::page::{REPORT, demonstrated};
-use crate::diagnostics::{Failure, Source};
-use crate::job::{Job, Route};
-use crate::measurement::Measurement;
-use crate::output::OutputFolder;
-use crate::pass::Pass;
-use crate::plant::{Milled, Score};
-use crate::plot::{self, View, Wall};
-use crate::report::page::render;
-use crate::report::{json, points_csv};
-use crate::workshop;
+use truepath_chart::view::View;
+use truepath_correction::correct::{Corrected, correct};
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::output::{OutputFolder, json};
+use truepath_job::job::{Job, Route};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_plant::{Milled, Score};
+use truepath_report::page::render;
+use truepath_report::pages::{REPORT, demonstrated};
+use truepath_report::plot::Wall;
+use truepath_report::{correction_csv, plot, points_csv, wall_csv};
+use truepath_trial::virtual_mill;
 
 /// A part of the story.
 struct Story {
@@ -107,7 +108,7 @@ pub struct Outcome {
 /// # Errors
 /// Outputs that cannot be written.
 pub fn run(out: &FilePath, force: bool, progress: &mut dyn FnMut(f64)) -> Result<Vec<Outcome>, Failure> {
-    std::fs::create_dir_all(out).map_err(|e| crate::diagnostics::InputError::unwritable(out, &e))?;
+    std::fs::create_dir_all(out).map_err(|e| truepath_ground::diagnostics::InputError::unwritable(out, &e))?;
     let mut outcomes = Vec::new();
     for (k, story) in STORIES.iter().enumerate() {
         let done = |share: f64| (k as f64 + share) / STORIES.len() as f64;
@@ -123,10 +124,10 @@ fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(
     let machine = toml::from_str(story.plant).map_err(|e| Failure::Internal(format!("demo plant: {e}")))?;
     let pass = Pass::new(job, source("program.nc", story.program))?;
 
-    let first = workshop::mill(&pass, &machine, None)?;
+    let first = virtual_mill::mill(&pass, &machine, None)?;
     progress(0.3);
-    let ball = crate::report::mm(pass.job.require_probe()?.ball_diameter);
-    let probe = workshop::probe(&pass, &first, story.places, story.levels, ball)?;
+    let ball = truepath_ground::units::mm(pass.job.require_probe()?.ball_diameter);
+    let probe = virtual_mill::probe(&pass, &first, story.places, story.levels, ball)?;
     let file = source("probe.txt", &probe);
     let measurement = Measurement::read(&pass, &file)?;
 
@@ -135,7 +136,7 @@ fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(
     let routes = [Route::Program, Route::Coprocessor];
     let corrected = correct(&pass, &measurement, &remarks, &routes, &mut |share| progress(0.3 + 0.3 * share))?;
     let text = corrected.program.as_deref().unwrap_or_default();
-    let second = workshop::mill(&pass, &machine, Some(&workshop::commanded(&pass, text)?))?;
+    let second = virtual_mill::mill(&pass, &machine, Some(&virtual_mill::commanded(&pass, text)?))?;
     progress(0.9);
     let (before, after) = (first.score(), second.score());
 
@@ -146,8 +147,8 @@ fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(
     out.write("corrected.nc", text)?;
     out.write("difference.txt", corrected.summary.difference("program.nc").as_bytes())?;
     out.write("correction.tpi", corrected.image.as_deref().unwrap_or_default())?;
-    out.write("correction.csv", &corrected.tables[0])?;
-    out.write("wall.csv", &corrected.tables[1])?;
+    out.write("correction.csv", &correction_csv(&corrected.rows)?)?;
+    out.write("wall.csv", &wall_csv(&corrected.rows)?)?;
     out.write("summary.json", &json(&corrected.summary)?)?;
     out.write("before-after.svg", &picture(story, (&first, &before), (&second, &after))?)?;
     out.write("points.csv", &points_csv(&measurement, &corrected.identified.observations)?)?;
@@ -189,7 +190,9 @@ fn picture(
     let wall = |milled: &Milled, what: &str, score: &Score, colour| {
         Wall::of_milled(format!("{what}: largest error {:.3} mm", score.max_error_mm), colour, milled)
     };
-    let walls =
-        [wall(first, "first part", before, plot::INK_BEFORE), wall(second, "corrected part", after, plot::INK_AFTER)];
+    let walls = [
+        wall(first, "first part", before, truepath_chart::style::INK_BEFORE),
+        wall(second, "corrected part", after, truepath_chart::style::INK_AFTER),
+    ];
     plot::error(&View::default(), story.title, &walls, None, &[])
 }

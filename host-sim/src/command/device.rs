@@ -3,10 +3,9 @@
 use std::fmt::Write;
 
 use serde::Serialize;
+use truepath_bench::{BenchError, Client, Committed, Wire};
 use truepath_core::link::{Ask, Item, Reply, ResetCause, SetpointFrame, Slot, setpoint_bytes};
 use truepath_core::rewrite::{AXES, Setpoint};
-
-use crate::bench::{BenchError, Client, Committed, Wire};
 
 /// Identity and sizes of a device.
 #[derive(Clone, Debug, Serialize)]
@@ -196,8 +195,8 @@ mod tests {
         let frames: Vec<Recorded> =
             (0..4).map(|k| Recorded::Setpoint(setpoint(u32::MAX.wrapping_add(k), -1_500_000 + i64::from(k)))).collect();
         let text = recording_setpoints(&frames, 1000);
-        let source = crate::diagnostics::Source::new("recording.csv", text.into_bytes());
-        let read = crate::setpoints::Setpoints::parse(&source).expect("setpoints");
+        let source = truepath_ground::diagnostics::Source::new("recording.csv", text.into_bytes());
+        let read = truepath_trial::setpoints::Setpoints::parse(&source).expect("setpoints");
         assert_eq!(read.period_ns, 1_000_000);
         assert_eq!(read.rows[3].position_nm, [-1_499_997, -1, 2_000_000]);
         assert_eq!((read.rows[3].flags, read.rows[3].frame_crc), (Flags::EMERGENCY_STOP, Some(7)));

@@ -4,17 +4,17 @@ use std::path::Path as FilePath;
 
 use truepath_core::probe::{Contact, CutWith};
 use truepath_core::units::Offset;
-
-use super::doubts::misread;
-use super::page::{REPORT, inspected};
-use crate::diagnostics::{Failure, Source};
-use crate::inspection::{Extent, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge};
-use crate::job::{Job, PartFlags, ProbeFlags, Which};
-use crate::measurement::Measurement;
-use crate::output::OutputFolder;
-use crate::pass::Pass;
-use crate::report::page::render;
-use crate::report::{InspectSummary, inspect_summary, json, judged_points_csv, mm, points_csv};
+use truepath_correction::doubts::misread;
+use truepath_correction::inspection::{Extent, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge};
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::output::{OutputFolder, json};
+use truepath_ground::units::mm;
+use truepath_job::job::{Job, PartFlags, ProbeFlags, Which};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_report::page::render;
+use truepath_report::pages::{REPORT, inspected};
+use truepath_report::{InspectSummary, inspect_summary, judged_points_csv, points_csv};
 
 /// One contact, for the list that is printed.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -95,7 +95,8 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
         along: part.reach.unwrap_or(pass.job.numbers.tool.diameter),
         height: part.reach_height.unwrap_or(Offset::from_nm(depth.nm() / 4)),
     };
-    let height = |c: &Contact| Offset::from_nm((crate::report::float(c.height) * depth.nm() as f64).round() as i64);
+    let height =
+        |c: &Contact| Offset::from_nm((truepath_ground::units::float(c.height) * depth.nm() as f64).round() as i64);
     let places: Vec<Touched> = measurement.contacts.iter().map(|c| Touched { s: c.s, height: height(c) }).collect();
     let coverage = coverage(&places, wall, reach);
     let deviations: Vec<Offset> = measurement.contacts.iter().map(|c| c.error).collect();
@@ -106,7 +107,7 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
         s_mm: mm(c.s),
         x_mm: c.point.x.nm() as f64 / 1e6,
         y_mm: c.point.y.nm() as f64 / 1e6,
-        height_mm: crate::report::float(c.height) * mm(depth),
+        height_mm: truepath_ground::units::float(c.height) * mm(depth),
         error_mm: mm(c.error),
         verdict: judgement.points.get(at).copied(),
     });

@@ -6,21 +6,19 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path as FilePath;
 
+use summary::summary;
 use truepath_core::gcode::{Dialect, PointlessLength, Units};
-
-use crate::diagnostics::{Failure, InputError, Source};
-use crate::multiaxis::ball::Contacts;
-use crate::multiaxis::machine::{Coordinates, Kind, Letter};
-use crate::multiaxis::program::{
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::output::{OutputFile, OutputFolder, json};
+use truepath_multiaxis::ball::Contacts;
+use truepath_multiaxis::machine::{Coordinates, Kind, Letter};
+use truepath_multiaxis::program::{
     At, CentrePoint, Digits, Outcome, PassError, Reading, Report, Settings, Sinks, Splitter, UnrollOptions, picture,
     run as pass, unroll,
 };
-use crate::multiaxis::{Machine, Rule};
-use crate::output::{OutputFile, OutputFolder};
-use crate::report::json;
+use truepath_multiaxis::{Machine, Rule};
 
 pub use summary::MultiaxisSummary;
-use summary::summary;
 
 /// Files of `--report`.
 const FILES: &[&str] = &["moves.csv", "summary.json", "errors.svg"];

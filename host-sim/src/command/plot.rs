@@ -12,12 +12,14 @@
 use std::io::Write;
 use std::path::{Path as FilePath, PathBuf};
 
-use crate::diagnostics::{Failure, InputError, Source};
-use crate::job::Which;
-use crate::output::OutputFile;
-use crate::plot::{self, Column, Compared, LawWall, PASSES, Place, Probed, View, Wall, png};
-use crate::report::sheet::{names as names_of, read_bounded};
-use crate::report::{Trace, read_correction, read_points, read_trace, read_walls};
+use truepath_chart::raster::png;
+use truepath_chart::view::View;
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::output::OutputFile;
+use truepath_ground::sheet::{names as names_of, read_bounded};
+use truepath_job::job::Which;
+use truepath_report::plot::{Column, Compared, LawWall, PASSES, Place, Probed, Wall};
+use truepath_report::{Trace, plot, read_correction, read_points, read_trace, read_walls};
 
 mod wall;
 pub use wall::OfJob;
@@ -102,7 +104,7 @@ pub fn run(options: &Options) -> Result<PlotSummary, Failure> {
     let bytes = match format {
         "svg" => svg,
         _ => {
-            warnings.extend(plot::unknown_letters(&svg));
+            warnings.extend(truepath_chart::letters::unknown_letters(&svg));
             png(&svg, options.scale.unwrap_or(SCALE))?
         }
     };
@@ -205,7 +207,7 @@ fn error(
     let alone = passes.len() == 1;
     let walls: Vec<Wall> = passes
         .iter()
-        .zip(plot::INKS)
+        .zip(truepath_chart::style::INKS)
         .map(|((name, trace), ink)| Wall::of_trace(&**name, if alone { ink.colour.into() } else { ink }, trace))
         .collect();
     plot::error(view, "The wall", &walls, None, &probed)

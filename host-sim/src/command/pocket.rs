@@ -7,18 +7,18 @@ use truepath_core::correct::Node;
 use truepath_core::cut::Path;
 use truepath_core::geometry::{Side, Vector};
 use truepath_core::units::Offset;
-
-use super::levels;
-use crate::diagnostics::Failure;
-use crate::job::{Job, PocketTable, Which};
-use crate::output::OutputFolder;
-use crate::pass::{Pass, PathBuffer, read_blocks};
-use crate::pocket::{
-    Designed, Machine, Mode, PerSection, PocketError, PocketSummary, Process, Told, Wanted, before_after,
-    correction_csv, design, edits, finishing, pocket_summary, section_rows, sections_csv, sensitivity, slotting,
+use truepath_correction::edits::block_edits;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::{OutputFolder, json};
+use truepath_ground::units::mm;
+use truepath_job::job::{Job, Mode, PerSection, PocketTable, Which};
+use truepath_job::levels;
+use truepath_job::pass::{Pass, PathBuffer, read_blocks};
+use truepath_pocket::{
+    Designed, Machine, PocketError, PocketSummary, Process, Told, Wanted, before_after, correction_csv, design, edits,
+    finishing, pocket_summary, section_rows, sections_csv, sensitivity, slotting,
 };
-use crate::program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
-use crate::report::{block_edits, json, mm};
+use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
 
 /// Files this command may write.
 const FILES: &[&str] =

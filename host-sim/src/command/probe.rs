@@ -2,12 +2,13 @@
 
 use std::path::Path as FilePath;
 
+use truepath_correction::verification::{Dialect, Gained, KeptOff, Plan, Settings, Unknown, plan, write};
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::output::OutputFile;
+use truepath_job::job::{Job, ProbeFlags, Which};
+use truepath_job::pass::Pass;
+
 use super::probe_next;
-use crate::diagnostics::{Failure, InputError};
-use crate::job::{Job, ProbeFlags, Which};
-use crate::output::OutputFile;
-use crate::pass::Pass;
-use crate::verification::{Dialect, Gained, KeptOff, Plan, Settings, Unknown, plan, write};
 
 /// What is asked for.
 #[derive(Clone, Debug)]

@@ -11,17 +11,18 @@ use std::path::Path as FilePath;
 use truepath_core::correct::{Law, Node};
 use truepath_core::cut::Path;
 use truepath_core::job;
+use truepath_correction::correction::{Identified, Wish, corrected, identified};
+use truepath_correction::feeds;
+use truepath_correction::learn::refuse_feeds;
+use truepath_correction::learning::{History, Part, PartPoints, Residual, joint, refuse_uncorrected};
+use truepath_correction::verification::{Goal, Measured, Plan, Settings, plan_next};
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::units::mm;
+use truepath_job::job::Route;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::{Pass, PathBuffer};
 
-use super::feeds;
-use super::learn::{history_in, refuse_feeds};
-use crate::correction::{Identified, Wish, corrected, identified};
-use crate::diagnostics::{Failure, InputError, Source};
-use crate::job::Route;
-use crate::learning::{History, Part, PartPoints, Residual, joint, refuse_uncorrected};
-use crate::measurement::Measurement;
-use crate::pass::{Pass, PathBuffer};
-use crate::report::mm;
-use crate::verification::{Goal, Measured, Plan, Settings, plan_next};
+use super::learn::history_in;
 
 /// Plans further touches from files. `progress` is told the share done, 0…1.
 ///

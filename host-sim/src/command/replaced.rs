@@ -7,11 +7,12 @@
 
 use std::path::Path as FilePath;
 
+use truepath_correction::learning::{History, Part, refuse_corrected};
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::{Pass, PathBuffer};
+
 use super::correction_files::HISTORY;
-use crate::diagnostics::{Failure, Source};
-use crate::learning::{History, Part, refuse_corrected};
-use crate::measurement::Measurement;
-use crate::pass::{Pass, PathBuffer};
 
 /// Refuses points that lie where the correction in the output folder leaves the wall.
 ///

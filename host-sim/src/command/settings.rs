@@ -62,9 +62,9 @@ pub fn changed<S: Serialize + DeserializeOwned>(settings: &S, changes: &[String]
 }
 
 /// Settings for a controller that sends a setpoint each `period_us`: what is counted in ticks, and the largest step, become
-/// those of [`replay`](crate::replay::settings); an answer within half a period, silence after 20. The rest stays.
+/// those of [`replay`](truepath_trial::replay::settings); an answer within half a period, silence after 20. The rest stays.
 pub fn paced(settings: &DeviceSettings, period_us: u32) -> DeviceSettings {
-    let paced = crate::replay::settings(i64::from(period_us) * 1000);
+    let paced = truepath_trial::replay::settings(i64::from(period_us) * 1000);
     DeviceSettings {
         rewriter: Settings {
             tick_hz: paced.tick_hz,
@@ -115,7 +115,7 @@ mod tests {
         for period_us in [10, 1_000, 10_000, 100_000] {
             let new = paced(&old, period_us);
             assert_eq!(new.check(), Ok(()), "{period_us} us");
-            let mut expected = crate::replay::settings(i64::from(period_us) * 1000);
+            let mut expected = truepath_trial::replay::settings(i64::from(period_us) * 1000);
             expected.joint_limits_nm = old.rewriter.joint_limits_nm;
             expected.require_spindle_load = true;
             assert_eq!((new.rewriter, new.axes), (expected, 4));

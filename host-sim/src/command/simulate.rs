@@ -3,23 +3,24 @@
 use std::fmt::Write;
 use std::path::Path as FilePath;
 
+use truepath_chart::view::View;
 use truepath_core::correct::{Band, Profile, profile};
 use truepath_core::cut::{ForceTable, State};
 use truepath_core::geometry::Vector;
-
-use super::page::{REPORT, simulated};
-use crate::diagnostics::{Failure, InputError, Source};
-use crate::job::{Job, Which};
-use crate::output::OutputFolder;
-use crate::pass::{Pass, PathBuffer};
-use crate::plant::{self, Milled};
-use crate::plot::{self, Column, View};
-use crate::recorded;
-use crate::replay::Placement;
-use crate::report::page::{self, Along};
-use crate::report::{SimulateSummary, Trace, json, mm, simulate_summary, trace, trace_csv, wall_csv};
-use crate::setpoints::Setpoints;
-use crate::workshop;
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::output::{OutputFolder, json};
+use truepath_ground::units::mm;
+use truepath_job::job::{Job, Which};
+use truepath_job::pass::{Pass, PathBuffer};
+use truepath_plant as plant;
+use truepath_plant::Milled;
+use truepath_report::page::Along;
+use truepath_report::pages::{REPORT, simulated};
+use truepath_report::plot::Column;
+use truepath_report::{SimulateSummary, Trace, page, plot, simulate_summary, trace, trace_csv, wall_csv};
+use truepath_trial::replay::Placement;
+use truepath_trial::setpoints::Setpoints;
+use truepath_trial::{recorded, virtual_mill};
 
 /// Files this command may write.
 const FILES: &[&str] = &["trace.csv", "wall.csv", PROBED, "summary.json", "trace.svg", REPORT];
@@ -136,9 +137,9 @@ fn milled(
     warnings: &mut Vec<String>,
 ) -> Result<Done, Failure> {
     let (milled, facts) = match recording {
-        None => (workshop::mill(pass, machine, None)?, None),
+        None => (virtual_mill::mill(pass, machine, None)?, None),
         Some(Recording { setpoints, placement }) => {
-            let (milled, facts) = workshop::mill_recorded(pass, machine, setpoints, placement)?;
+            let (milled, facts) = virtual_mill::mill_recorded(pass, machine, setpoints, placement)?;
             if facts.passes > 1 {
                 warnings.push(format!(
                     "the recording passes the contour {} times; taken is the pass nearest to it, {:.3} to {:.3} s",

@@ -9,15 +9,14 @@ use std::path::{Path as FilePath, PathBuf};
 
 use toml_edit::{Array, DocumentMut, Item, value};
 use truepath_core::units::Offset;
-
-use super::first_pass;
-use crate::diagnostics::{Failure, InputError};
-use crate::feature::lines_named;
-use crate::job::{Job, Which};
-use crate::output::OutputFolder;
-use crate::pass::Pass;
-use crate::program::{Purpose, RewriteOptions, Rewritten, rewrite_program};
-use crate::report::mm;
+use truepath_correction::first_pass;
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::output::OutputFolder;
+use truepath_ground::units::mm;
+use truepath_job::feature::lines_named;
+use truepath_job::job::{Job, Which};
+use truepath_job::pass::Pass;
+use truepath_program::{Purpose, RewriteOptions, Rewritten, rewrite_program};
 
 /// The program of the first pass.
 const PROGRAM: &str = "first-pass.nc";

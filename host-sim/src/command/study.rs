@@ -3,19 +3,18 @@
 use std::io::Write;
 use std::path::Path as FilePath;
 
-use crate::diagnostics::{Failure, InputError, Source};
-use crate::output::OutputFile;
-use crate::report::json;
-use crate::study::families::{FAMILIES, Family, family};
-use crate::study::id::{Axis, CaseId, Cell};
-use crate::study::ledger::{Ledger, program_key};
-use crate::study::markdown::{results, written_into};
-use crate::study::outcome::Outcome;
-use crate::study::page::page;
-use crate::study::reference::{Reached, reference as goals};
-use crate::study::seeds::Set;
-use crate::study::summary::{Summary, summary};
-use crate::study::{carry, pool};
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::output::{OutputFile, json};
+use truepath_study::families::{FAMILIES, Family, family};
+use truepath_study::id::{Axis, CaseId, Cell};
+use truepath_study::ledger::{Ledger, program_key};
+use truepath_study::markdown::{results, written_into};
+use truepath_study::outcome::Outcome;
+use truepath_study::page::page;
+use truepath_study::reference::{Reached, reference as goals};
+use truepath_study::seeds::Set;
+use truepath_study::summary::{Summary, summary};
+use truepath_study::{carry, pool};
 
 /// File of the reference goals.
 const GOALS: &str = "reference.json";

@@ -13,8 +13,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
-use truepath::bench::records::{self, Channel, Records};
-use truepath::bench::{Bulk, InProcess};
+use truepath_bench::records::{Channel, Records};
+use truepath_bench::{Bulk, InProcess, records};
 use truepath_core::geometry::Point;
 use truepath_core::image::{
     Binding, CorrectionLimits, FeedLaw, FineOffset, ImageNode, ImageSettings, PathWindow, build, image_bytes,

@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use truepath::multiaxis::Machine;
+use truepath_multiaxis::Machine;
 
 const AMPLITUDE: f64 = 4.0;
 const WAVE: f64 = 40.0;

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use truepath::command::{correct, inspect, simulate};
-use truepath::job::{Job, PartFlags, ProbeFlags, Which};
-use truepath::pass::Pass;
-use truepath::plant::Machine;
-use truepath::workshop;
+use truepath_job::job::{Job, PartFlags, ProbeFlags, Which};
+use truepath_job::pass::Pass;
+use truepath_plant::Machine;
+use truepath_trial::virtual_mill;
 
 use super::part::shown;
 use super::reading::data;
@@ -70,9 +70,9 @@ fn a_correction_tells_which_depths_got_it_and_an_inspection_which_it_judged() {
     let at = |name: &str| folder.path().join(name);
     let pass = shown(Job::read(&job).map_err(Into::into).and_then(Pass::read));
     let machine: Machine = toml::from_str(MACHINE).unwrap();
-    let milled = shown(workshop::mill(&pass, &machine, None));
+    let milled = shown(virtual_mill::mill(&pass, &machine, None));
     let places: Vec<f64> = [0.1, 0.35, 0.6, 0.9].iter().map(|share| share * milled.path.length_mm).collect();
-    fs::write(at("probe.txt"), shown(workshop::probe(&pass, &milled, &places, &[0.3, 0.8], 4.0))).unwrap();
+    fs::write(at("probe.txt"), shown(virtual_mill::probe(&pass, &milled, &places, &[0.3, 0.8], 4.0))).unwrap();
     shown(correct::run(
         &correct::Options {
             job: &job,

@@ -4,12 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use truepath::command::{correct, learn, simulate};
-use truepath::diagnostics::{Failure, Form};
-use truepath::job::{Job, ProbeFlags, Route, Which};
-use truepath::pass::Pass;
-use truepath::plant::Milled;
-use truepath::report::mm;
-use truepath::workshop;
+use truepath_ground::diagnostics::{Failure, Form};
+use truepath_ground::units::mm;
+use truepath_job::job::{Job, ProbeFlags, Route, Which};
+use truepath_job::pass::Pass;
+use truepath_plant::Milled;
+use truepath_trial::virtual_mill;
 
 const DEMO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/demo");
 
@@ -48,8 +48,8 @@ impl Part {
         let machine = shown(simulate::read_machine(&self.at("plant.toml")));
         let pass = self.pass();
         match corrected {
-            None => shown(workshop::mill(&pass, &machine, None)),
-            Some(name) => shown(workshop::mill_program(&pass, &machine, &fs::read(self.at(name)).unwrap())),
+            None => shown(virtual_mill::mill(&pass, &machine, None)),
+            Some(name) => shown(virtual_mill::mill_program(&pass, &machine, &fs::read(self.at(name)).unwrap())),
         }
     }
 
@@ -61,7 +61,7 @@ impl Part {
     /// The same along another pass.
     pub fn touched_along(&self, pass: &Pass, milled: &Milled, places: &[f64], file: &str) {
         let ball_mm = mm(pass.job.require_probe().unwrap().ball_diameter);
-        let text = shown(workshop::probe(pass, milled, places, &[0.1, 0.5, 0.9], ball_mm));
+        let text = shown(virtual_mill::probe(pass, milled, places, &[0.1, 0.5, 0.9], ball_mm));
         fs::write(self.at(file), text).unwrap();
     }
 

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 use truepath::command::demo;
-use truepath::plant::judged_trim_mm;
+use truepath_plant::judged_trim_mm;
 
 use super::part::{Part, pocket};
 use super::reading::{column, data, full, table};

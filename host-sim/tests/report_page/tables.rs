@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use truepath::job::Route;
+use truepath_job::job::Route;
 
 use super::part::{Part, pocket};
 use super::reading::{column, data, table, words};

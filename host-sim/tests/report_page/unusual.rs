@@ -3,9 +3,9 @@
 use std::fs;
 
 use truepath::command::{simulate, split};
-use truepath::job::{Job, Which};
-use truepath::pass::Pass;
-use truepath::workshop;
+use truepath_job::job::{Job, Which};
+use truepath_job::pass::Pass;
+use truepath_trial::virtual_mill;
 
 use super::part::{Part, ROUND, pocket, shown};
 use super::reading::{column, data, full, table};
@@ -17,7 +17,7 @@ fn a_second_pass_is_shown_over_the_surface_that_the_first_has_left() {
     let first = shown(split::run(&split::Options { job: &job, out: &out, force: false, which: Which::default() })).job;
     let pass = shown(Job::read(&first).map_err(Into::into).and_then(Pass::read));
     let machine = shown(simulate::read_machine(&part.at("plant.toml")));
-    part.touched_along(&pass, &shown(workshop::mill(&pass, &machine, None)), &ROUND, "probe.txt");
+    part.touched_along(&pass, &shown(virtual_mill::mill(&pass, &machine, None)), &ROUND, "probe.txt");
     part.correct_after(Some(&first), "probe.txt", "out", None);
     let page = data(&part.at("out/report.html"));
     let stock = &page["outlines"]["stock"][0];

@@ -1,16 +1,16 @@
 //! Further places, given what was measured.
 
-use truepath::command::correct::correct;
 use truepath::command::probe_next::{next, next_part};
-use truepath::diagnostics::{Form, Source};
-use truepath::job::Route;
-use truepath::learning::History;
-use truepath::measurement::Measurement;
-use truepath::pass::Pass;
-use truepath::plant::{Machine, Milled};
-use truepath::verification::{Dialect, Plan, Settings, write};
-use truepath::workshop;
 use truepath_core::checksum::crc32;
+use truepath_correction::correct::correct;
+use truepath_correction::learning::History;
+use truepath_correction::verification::{Dialect, Plan, Settings, write};
+use truepath_ground::diagnostics::{Form, Source};
+use truepath_job::job::Route;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_plant::{Machine, Milled};
+use truepath_trial::virtual_mill;
 
 use super::parts::{HELIX, pass};
 
@@ -29,11 +29,11 @@ struct Shop {
 impl Shop {
     fn open() -> Self {
         let (pass, machine) = (pass(HELIX, &[]), toml::from_str(PLANT).unwrap());
-        let milled = workshop::mill(&pass, &machine, None).unwrap();
+        let milled = virtual_mill::mill(&pass, &machine, None).unwrap();
         Self { pass, machine, milled }
     }
     fn measured(&self, places: &[f64]) -> Measurement {
-        let text = workshop::probe(&self.pass, &self.milled, places, &HEIGHTS, 6.0).unwrap();
+        let text = virtual_mill::probe(&self.pass, &self.milled, places, &HEIGHTS, 6.0).unwrap();
         Measurement::read(&self.pass, &Source::new("probe.txt", text.into_bytes())).unwrap()
     }
     fn next(&self, places: &[f64], count: u32) -> Plan {
@@ -45,7 +45,7 @@ impl Shop {
     fn corrected(&self, places: &[f64]) -> f64 {
         let done = correct(&self.pass, &self.measured(places), &[], &[Route::Program], &mut |_| ()).unwrap();
         let text = done.program.unwrap();
-        workshop::mill_program(&self.pass, &self.machine, &text).unwrap().score().max_error_mm
+        virtual_mill::mill_program(&self.pass, &self.machine, &text).unwrap().score().max_error_mm
     }
 }
 
@@ -104,8 +104,8 @@ fn on_the_next_part_the_places_are_chosen_from_the_history_and_its_datum_is_open
         assert!(!write(&same, dialect, "log.txt").unwrap().contains(&crc), "{dialect:?}");
     }
     // Touched once, the second part is touched elsewhere.
-    let second = workshop::mill_program(&shop.pass, &shop.machine, done.program.as_deref().unwrap()).unwrap();
-    let text = workshop::probe(&shop.pass, &second, &[46.0, 48.5], &HEIGHTS, 6.0).unwrap();
+    let second = virtual_mill::mill_program(&shop.pass, &shop.machine, done.program.as_deref().unwrap()).unwrap();
+    let text = virtual_mill::probe(&shop.pass, &second, &[46.0, 48.5], &HEIGHTS, 6.0).unwrap();
     let points = Measurement::read(&shop.pass, &Source::new("probe-2.txt", text.into_bytes())).unwrap();
     let plan = planned(Some(&points)).unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)));
     assert!(plan.wall_sigma_mm[0] < 0.5 * same.wall_sigma_mm[0], "{:?}", plan.wall_sigma_mm);

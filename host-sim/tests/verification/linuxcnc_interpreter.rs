@@ -5,7 +5,7 @@
 
 use std::process::{Command, Stdio};
 
-use truepath::verification::{Dialect, Plan, Settings, write};
+use truepath_correction::verification::{Dialect, Plan, Settings, write};
 
 use super::parts::{PARTS, pass, planned, pocket_in_inches};
 

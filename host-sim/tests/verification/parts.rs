@@ -4,10 +4,10 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{LazyLock, Mutex};
 
-use truepath::diagnostics::Source;
-use truepath::job::Job;
-use truepath::pass::Pass;
-use truepath::verification::{Plan, Settings, plan};
+use truepath_correction::verification::{Plan, Settings, plan};
+use truepath_ground::diagnostics::Source;
+use truepath_job::job::Job;
+use truepath_job::pass::Pass;
 
 pub const CORNER: [&str; 2] =
     [include_str!("../../demo/corner/job.toml"), include_str!("../../demo/corner/program.nc")];

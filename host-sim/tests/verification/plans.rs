@@ -1,7 +1,7 @@
 //! Where the plans go, and where they keep off.
 
-use truepath::diagnostics::Failure;
-use truepath::verification::{KeptOff, Settings, plan};
+use truepath_correction::verification::{KeptOff, Settings, plan};
+use truepath_ground::diagnostics::Failure;
 
 use super::parts::{CORNER, HELIX, PARTS, POCKET, pass, planned};
 use super::wall::Wall;

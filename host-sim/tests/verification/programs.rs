@@ -1,6 +1,6 @@
 //! What stands in the programs, and what never does.
 
-use truepath::verification::{Dialect, Settings, write};
+use truepath_correction::verification::{Dialect, Settings, write};
 
 use super::parts::{PARTS, POCKET, pass, planned, pocket_in_inches};
 

@@ -1,9 +1,9 @@
 //! Programs executed beside a wall with a known error; what they print gives that error back.
 
-use truepath::diagnostics::Source;
-use truepath::measurement::Measurement;
-use truepath::pass::Pass;
-use truepath::verification::{Dialect, Settings, write};
+use truepath_correction::verification::{Dialect, Settings, write};
+use truepath_ground::diagnostics::Source;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
 
 use super::control::{Control, Printed};
 use super::parts::{PARTS, POCKET, pass, planned, pocket_in_inches};

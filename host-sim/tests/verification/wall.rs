@@ -1,8 +1,8 @@
 //! A wall with a known error, and the ball that meets it: geometry of its own, no code of the planner.
 
-use truepath::pass::Pass;
 use truepath_core::geometry::Side;
 use truepath_core::units::Offset;
+use truepath_job::pass::Pass;
 
 pub type Xy = [f64; 2];
 

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex};
 use std::thread;
 
-use truepath::bench::records::{self, Channel, Records};
-use truepath::bench::{Board, Bulk, BulkBoard, Faults, InProcess, Probability};
 use truepath::command::demo;
 use truepath::command::hil::{Options, Report, Source, run};
+use truepath_bench::records::{Channel, Records};
+use truepath_bench::{Board, Bulk, BulkBoard, Faults, InProcess, Probability, records};
 
 /// The parts of the demonstration, made once.
 pub static PARTS: LazyLock<(tempfile::TempDir, Vec<PathBuf>)> = LazyLock::new(|| {

@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
-use truepath::command::correct::{Corrected, correct};
-use truepath::command::learn::{Learned, learn};
-use truepath::diagnostics::{Failure, Source};
-use truepath::job::{Job, Route};
-use truepath::learning::History;
-use truepath::measurement::Measurement;
-use truepath::pass::Pass;
-use truepath::plant::{Machine, Milled};
-use truepath::workshop;
+use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::learn::{Learned, learn};
+use truepath_correction::learning::History;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_job::job::{Job, Route};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_plant::{Machine, Milled};
+use truepath_trial::virtual_mill;
 
 /// Heights at which every place is touched.
 pub const LEVELS: [f64; 3] = [0.1, 0.5, 0.9];
@@ -37,8 +37,8 @@ impl Shop {
     /// Mills a part, uncorrected or with a correction.
     pub fn mill(&self, corrected: Option<&Corrected>) -> Milled {
         let text = corrected.map(|c| c.program.clone().unwrap());
-        let commanded = text.map(|text| workshop::commanded(&self.pass, &text).unwrap());
-        workshop::mill(&self.pass, &self.machine, commanded.as_deref()).unwrap()
+        let commanded = text.map(|text| virtual_mill::commanded(&self.pass, &text).unwrap());
+        virtual_mill::mill(&self.pass, &self.machine, commanded.as_deref()).unwrap()
     }
 
     /// Largest wall error of a part, mean over height, mm.
@@ -50,7 +50,7 @@ impl Shop {
     pub fn probe(&self, corrected: Option<&Corrected>, places: &[f64], noise: u64) -> String {
         let mut milled = self.mill(corrected);
         milled.machine.seed = noise;
-        workshop::probe(&self.pass, &milled, places, &LEVELS, self.ball_mm).unwrap()
+        virtual_mill::probe(&self.pass, &milled, places, &LEVELS, self.ball_mm).unwrap()
     }
 
     pub fn measured(&self, text: &str) -> Measurement {

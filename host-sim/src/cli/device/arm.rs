@@ -7,13 +7,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use truepath_bench::{BenchError, Client, Line};
 use truepath_core::image::Binding;
 use truepath_core::link::Slot;
 use truepath_core::rewrite::{ArmRequest, AxisMap, Frame, TURN_ONE};
+use truepath_ground::diagnostics::Failure;
 
-use crate::bench::{BenchError, Client, Line};
 use crate::cli::image;
-use crate::diagnostics::Failure;
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ArmArguments {

@@ -3,12 +3,12 @@
 use std::io::Write;
 use std::time::{Duration, Instant};
 
+use truepath_bench::{BenchError, Client, Wire};
 use truepath_core::link::{Ask, DeviceStatus, Reply, TraceSample};
 use truepath_core::rewrite::Status;
+use truepath_ground::diagnostics::Failure;
 
-use crate::bench::{BenchError, Client, Wire};
 use crate::cli::{Terminal, print};
-use crate::diagnostics::Failure;
 
 /// Shows the device until `end`, or until standard output is closed.
 pub(super) fn run<W: Wire>(

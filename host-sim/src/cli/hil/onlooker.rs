@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::bench::{Sight, Watch};
+use truepath_bench::{Sight, Watch};
+
 use crate::cli::monitor::{HilView, Step, wanted};
 use crate::cli::{Progress, Terminal};
 

@@ -7,19 +7,18 @@ mod report;
 use std::path::Path;
 use std::sync::Arc;
 
+use report::report;
+use truepath_bench::traffic::{Command, Controller, Manner, Recorded};
+use truepath_bench::{Board, Campaign, Faults, Plan, Probability, Sight, Traffic, Watch, identify, prepare, to_off};
 use truepath_core::image::Image;
 use truepath_core::link::{Ask, DeviceSettings};
 use truepath_core::rewrite::{ArmRequest, Mode};
-
-use crate::bench::traffic::{Command, Controller, Manner, Recorded};
-use crate::bench::{Board, Campaign, Faults, Plan, Probability, Sight, Traffic, Watch, identify, prepare, to_off};
-use crate::diagnostics::{Failure, InputError};
-use crate::replay;
-use crate::setpoints::{Frame, Setpoints};
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_trial::replay;
+use truepath_trial::setpoints::{Frame, Setpoints};
 
 pub use on_board::{OnBoard, on_board};
 pub use place::{Kind, open};
-use report::report;
 pub use report::{Counts, Report};
 
 /// What the controller sends.
@@ -162,7 +161,7 @@ fn traffic(image: Image<'_>, options: &Options) -> Box<dyn Traffic> {
 /// # Errors
 /// As [`Setpoints::parse`]; `H007` for a file in machine coordinates.
 pub fn recorded(path: &Path) -> Result<Setpoints, InputError> {
-    let source = crate::diagnostics::Source::read(path)?;
+    let source = truepath_ground::diagnostics::Source::read(path)?;
     let setpoints = Setpoints::parse(&source)?;
     if setpoints.frame == Frame::Machine {
         let found = "the setpoints are in machine coordinates";

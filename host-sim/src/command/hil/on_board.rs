@@ -4,16 +4,15 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
+use truepath_bench::{BenchError, Board, Ingredients, Load, RoundTrip, begin, configure, look, stage, too_long};
 use truepath_core::image::Image;
 use truepath_core::link::{Computed, DeviceSettings};
 use truepath_core::rewrite::SettingsError;
-
-use crate::bench::{BenchError, Board, Ingredients, Load, RoundTrip, begin, configure, look, stage, too_long};
-use crate::command::correct::correct;
-use crate::diagnostics::{Failure, Source};
-use crate::job::{Job, Route};
-use crate::measurement::Measurement;
-use crate::pass::Pass;
+use truepath_correction::correct::correct;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_job::job::{Job, Route};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
 
 /// An image made twice.
 #[derive(Clone, Debug, Serialize)]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::bench::{BenchError, Board, BulkBoard, Emulator, InProcess, Line, UartBoard, find_elf};
+use truepath_bench::{BenchError, Board, BulkBoard, Emulator, InProcess, Line, UartBoard, find_elf};
 
 /// Which board.
 #[derive(Clone, Debug)]

@@ -1,11 +1,11 @@
 //! What came of a run, for people and machines.
 
 use serde::Serialize;
+use truepath_bench::{Board, Identity, Injected, Outcome, RoundTrip};
 use truepath_core::link::Counters;
 use truepath_core::rewrite::{Mode, Reason};
 
 use super::OnBoard;
-use crate::bench::{Board, Identity, Injected, Outcome, RoundTrip};
 
 /// What came of it.
 #[derive(Clone, Debug, Serialize)]

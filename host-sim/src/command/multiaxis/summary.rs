@@ -1,10 +1,10 @@
 //! What `multiaxis` tells of a program: the figures before and after, and what the user should know.
 
-use crate::multiaxis::Machine;
-use crate::multiaxis::ball::{ContactSpan, Contacts};
-use crate::multiaxis::machine::{Coordinates, Kind};
-use crate::multiaxis::program::{Left, Places, Report, Settings};
-use crate::multiaxis::statistics::Figures;
+use truepath_multiaxis::Machine;
+use truepath_multiaxis::ball::{ContactSpan, Contacts};
+use truepath_multiaxis::machine::{Coordinates, Kind};
+use truepath_multiaxis::program::{Left, Places, Report, Settings};
+use truepath_multiaxis::statistics::Figures;
 
 use super::Options;
 

@@ -7,12 +7,12 @@
 use std::path::Path as FilePath;
 
 use truepath_core::cut::Sample;
-
-use crate::diagnostics::{Failure, InputError, Source};
-use crate::job::{Job, Which};
-use crate::pass::{Pass, PathBuffer};
-use crate::report::sheet::{each_line, read_bounded};
-use crate::report::{WallRow, float, mm, read_wall};
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::sheet::{each_line, read_bounded};
+use truepath_ground::units::{float, mm};
+use truepath_job::job::{Job, Which};
+use truepath_job::pass::{Pass, PathBuffer};
+use truepath_report::{WallRow, read_wall};
 
 /// Arc lengths are told apart to half of the last digit of a table, mm.
 const SAME: f64 = 1e-6;

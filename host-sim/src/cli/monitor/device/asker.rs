@@ -6,10 +6,10 @@ use std::ops::ControlFlow;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
+use truepath_bench::{BenchError, Client, Wire};
 use truepath_core::link::{ActiveImage, Ask, Reply, TraceSample};
 
 use super::model::Message;
-use crate::bench::{BenchError, Client, Wire};
 use crate::command::device::info;
 
 /// Time for an answer.

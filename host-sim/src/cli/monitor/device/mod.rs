@@ -15,14 +15,15 @@ use std::sync::mpsc::{TryRecvError, channel};
 use std::time::{Duration, Instant};
 
 use asker::{Asker, Told};
-pub use model::Known;
 use model::ViewModel;
+use truepath_bench::{BenchError, Client, Wire};
+use truepath_ground::diagnostics::Failure;
 
 use super::screen::Screen;
 use super::theme::Theme;
 use super::wording::time;
-use crate::bench::{BenchError, Client, Wire};
-use crate::diagnostics::Failure;
+
+pub use model::Known;
 
 /// Time between two pictures.
 const FRAME: Duration = Duration::from_millis(100);

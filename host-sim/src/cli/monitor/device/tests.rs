@@ -12,7 +12,8 @@ use truepath_core::rewrite::{Mode, Place, Reason, Status};
 
 use super::draw::draw;
 use super::model::{Known, Message, ViewModel};
-use crate::cli::monitor::pictures::{self, text};
+use crate::cli::monitor::pictures;
+use crate::cli::monitor::pictures::text;
 use crate::cli::monitor::screen::Key;
 use crate::cli::monitor::theme::Theme;
 use crate::command::device::Info;

@@ -6,10 +6,10 @@ use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders, Gauge, Sparkline};
+use truepath_bench::TRAIL_EVERY;
 use truepath_core::rewrite::{Mode, Reason};
 
 use super::model::{Model, RoundTrips};
-use crate::bench::TRAIL_EVERY;
 use crate::cli::monitor::state::Shown;
 use crate::cli::monitor::theme::{Theme, Tone};
 use crate::cli::monitor::wording::{grouped, rate, short_time, time};

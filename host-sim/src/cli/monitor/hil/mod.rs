@@ -16,10 +16,10 @@ use std::time::{Duration, Instant};
 
 use draw::{Ending, draw};
 use model::{Model, RoundTrips};
+use truepath_bench::{Sight, Watch};
 
 use super::screen::{Key, Screen};
 use super::theme::Theme;
-use crate::bench::{Sight, Watch};
 
 /// Time between two pictures.
 const FRAME: Duration = Duration::from_millis(100);

@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use hdrhistogram::Histogram;
+use truepath_bench::{Injected, Sight};
 use truepath_core::link::Counters;
 use truepath_core::rewrite::Output;
 
-use crate::bench::{Injected, Sight};
 use crate::cli::monitor::growth::Growth;
 
 /// Samples of the correction that are kept.

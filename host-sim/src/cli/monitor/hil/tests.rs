@@ -4,13 +4,14 @@ use std::time::Duration;
 
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
+use truepath_bench::{Injected, RoundTrip, Sight};
 use truepath_core::link::Counters;
 use truepath_core::rewrite::{AXES, Mode, Output, Place, Reason, Status};
 
 use super::draw::{Ending, draw};
 use super::model::{Model, RoundTrips};
-use crate::bench::{Injected, RoundTrip, Sight};
-use crate::cli::monitor::pictures::{self, text};
+use crate::cli::monitor::pictures;
+use crate::cli::monitor::pictures::text;
 use crate::cli::monitor::theme::Theme;
 
 fn output(sequence: u32) -> Output {

@@ -1,0 +1,115 @@
+//! What can go wrong between bench and board.
+//!
+//! | code | meaning |
+//! |---|---|
+//! | H001 | a port, socket or file cannot be opened |
+//! | H002 | the emulator or the firmware is missing |
+//! | H003 | the device does not answer |
+//! | H004 | the device refuses a request; what to do follows from its reason |
+//! | H005 | the device speaks another version |
+//! | H006 | device and host differ |
+//! | H007 | an option does not fit |
+//! | H008 | a run was stopped before its end |
+
+use truepath_core::link::Denial;
+use truepath_core::rewrite::{Mode, Refusal};
+use truepath_ground::diagnostics::{Failure, InputError};
+
+/// An error between bench and board.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum BenchError {
+    /// Something cannot be opened.
+    #[error("{what} cannot be opened ({reason})")]
+    Open {
+        /// What.
+        what: String,
+        /// Why.
+        reason: String,
+    },
+    /// A tool or a file is missing.
+    #[error("{what} is missing")]
+    Missing {
+        /// What.
+        what: String,
+        /// How to get it.
+        remedy: String,
+    },
+    /// Nothing came back.
+    #[error("the device does not answer ({0})")]
+    Silent(String),
+    /// The device refuses.
+    #[error("the device refuses: {0}")]
+    Denied(Denial),
+    /// The answer cannot be understood.
+    #[error("the device answers something else: {0}")]
+    Foreign(String),
+    /// Device and host differ.
+    #[error("device and host differ: {0}")]
+    Differs(String),
+    /// Somebody ended the run.
+    #[error("the run was stopped {0}")]
+    Stopped(String),
+    /// An option that does not fit.
+    #[error("{found}")]
+    Option {
+        /// What was found.
+        found: String,
+        /// What to do.
+        help: String,
+    },
+}
+
+impl BenchError {
+    /// Something that cannot be opened.
+    pub fn open(what: impl Into<String>, error: &std::io::Error) -> Self {
+        Self::Open { what: what.into(), reason: error.to_string() }
+    }
+}
+
+impl From<BenchError> for InputError {
+    fn from(error: BenchError) -> Self {
+        let (code, help) = match &error {
+            BenchError::Open { .. } => ("H001", "check the name, the permissions, and that nobody else uses it"),
+            BenchError::Missing { remedy, .. } => ("H002", remedy.as_str()),
+            BenchError::Silent(_) => ("H003", "check cable, port and baud rate, and that the board is powered"),
+            BenchError::Denied(denial) => ("H004", remedy(denial)),
+            BenchError::Foreign(_) => ("H005", "use firmware and program of the same version"),
+            BenchError::Differs(_) => ("H006", "do not drive axes with this firmware; report it with the command line"),
+            BenchError::Stopped(_) => ("H008", "run it again to its end; a shorter run has a smaller --count"),
+            BenchError::Option { help, .. } => ("H007", help.as_str()),
+        };
+        Self::new(code, error.to_string(), "", help)
+    }
+}
+
+/// What to do when the device refuses.
+fn remedy(denial: &Denial) -> &'static str {
+    match denial {
+        Denial::Refused(refusal) => match refusal {
+            Refusal::State(Mode::Off) => "disable the drives, then: truepath device acknowledge",
+            Refusal::State(_) => "bring the device into the mode in which it takes this request",
+            Refusal::NoImage => "truepath device upload FILE --activate",
+            Refusal::DrivesEnabled => "disable the drives (machine off), then ask again",
+            Refusal::NoSetpoints => "start the controller: it has to send setpoints, with the drives disabled",
+            Refusal::Identity { .. } => {
+                "load the program, tool and set-up of the image, or activate the image of this program"
+            }
+            Refusal::PartRepeated { .. } => "give each part its own number, higher than the one before",
+            Refusal::FrameDamaged { .. } | Refusal::FrameNotRigid { .. } => {
+                "send cosine and sine of one angle, units of 2^-30"
+            }
+            Refusal::FrameAxes { .. } => "name three axes that the controller sends",
+            Refusal::FrameRate { .. } => "set rewriter.tick_hz to the servo rate, or wait until 33 setpoints have come",
+        },
+        Denial::NoImage { .. } => "truepath device upload FILE --activate",
+        Denial::NotConfigured => "truepath device settings NAME=VALUE, with the limits of this machine",
+        Denial::Busy => "wait until the upload or the computation has ended",
+        _ => "bring the device into the mode in which it takes this request",
+    }
+}
+
+impl From<BenchError> for Failure {
+    fn from(error: BenchError) -> Self {
+        InputError::from(error).into()
+    }
+}

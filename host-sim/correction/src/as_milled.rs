@@ -1,0 +1,68 @@
+//! The measured part of `learn` as it was milled: what the correction it was cut with left along the whole contour.
+//!
+//! A probe touches a few places. Between them the model of all parts says how the part came out, with what the parts have
+//! shown beside the model. Limits: where the part was set aside, the model knows nothing of it.
+
+use truepath_core::correct::{Law, Node};
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::units::mm;
+use truepath_job::pass::{Pass, PathBuffer};
+
+use crate::correct::Corrected;
+use crate::correction::{Correction, Wish, foretold};
+use crate::learning::History;
+use crate::rows::{CorrectionRow, correction_rows};
+
+/// The measured part, along the contour.
+#[derive(Clone, Debug)]
+pub struct AsMilled {
+    /// The correction it was cut with, and the walls that leaves.
+    pub correction: Correction,
+    /// `milled.csv`: the columns of `correction.csv`, of this part.
+    pub rows: Vec<CorrectionRow>,
+}
+
+/// Its largest error.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct WholeContour {
+    /// Magnitude, mm.
+    pub max_mm: f64,
+    /// Where it is, mm along the contour.
+    pub s_mm: f64,
+    /// Standard deviation there, mm.
+    pub sigma_mm: f64,
+}
+
+impl AsMilled {
+    /// Of the part that was cut with the correction of a history, by the machine that was learned from it.
+    ///
+    /// # Errors
+    /// As [`Pass::sample`].
+    pub fn of(pass: &Pass, history: &History, done: &Corrected) -> Result<Self, Failure> {
+        let mut buffer = PathBuffer::default();
+        let path = pass.sample(&mut buffer)?.with_law(done.identified.law());
+        let table = done.identified.table();
+        let machine = done.identified.machine(&path, &table);
+        let (residual, residual_sigma) = (&done.residual[..], &done.residual_sigma[..]);
+        let wish = Wish { law: Law::Model, residual, residual_sigma, kept: None };
+        let nodes = history.next.correction.nodes().unwrap_or_default();
+        let correction = foretold(pass, &machine, &done.identified, &nodes, &wish);
+        let rows = correction_rows(&machine, &correction);
+        Ok(Self { correction, rows })
+    }
+
+    /// Whether it was cut with any correction.
+    pub fn corrected(&self) -> bool {
+        self.correction.nodes.iter().any(|node| *node != Node::default())
+    }
+
+    /// Its largest error.
+    pub fn whole_contour(&self) -> WholeContour {
+        let target = self.correction.wanted.target;
+        let walls = self.correction.predicted.iter().zip(&self.correction.sigma).zip(&self.rows);
+        let errors = walls.map(|((wall, sigma), row)| (wall.after.aim(target, None).abs(), *sigma, row.s_mm));
+        let largest = errors.max_by_key(|(error, _, _)| *error);
+        let (error, sigma, s_mm) = largest.unwrap_or_default();
+        WholeContour { max_mm: mm(error), s_mm, sigma_mm: mm(sigma) }
+    }
+}

@@ -1,0 +1,226 @@
+//! From a measured pass to its correction: the steps of [`truepath_core::job`], with what lies between them kept for the
+//! reports.
+
+use truepath_core::correct::{
+    Band, Damped, Design, DesignStep, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Update, WallReader,
+    add_residual, commanded, guarded_design, guarded_given,
+};
+use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
+use truepath_core::geometry::Vector;
+use truepath_core::identify::{Fit, Observation, Prior};
+use truepath_core::job;
+use truepath_core::units::{Offset, hypot_nm};
+use truepath_ground::diagnostics::Failure;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+
+use crate::identification::{Found, Points, asked, found};
+use crate::wall_halves::Halves;
+
+/// What the probe points say about machine and material.
+#[derive(Clone, Debug)]
+pub struct Identified {
+    /// The result of the core.
+    pub core: job::Identified,
+    /// The points with predictions and weights.
+    pub observations: Vec<Observation>,
+}
+
+/// A correction and what it is expected to do, one entry per sample of the contour.
+#[derive(Clone, Debug)]
+pub struct Correction {
+    /// The correction.
+    pub nodes: Vec<Node>,
+    /// What the target alone wants: the same where no guard forbids it.
+    pub unguarded: Vec<Node>,
+    /// Predicted wall errors.
+    pub predicted: Vec<Predicted>,
+    /// Standard deviation of the predicted error after.
+    pub sigma: Vec<Offset>,
+    /// Where only a share of it is applied, if anywhere.
+    pub damped: Option<Damped>,
+    /// Whether it was used before; `unguarded` is then what it was.
+    pub used_again: bool,
+    /// What it was designed for.
+    pub wanted: Design,
+    /// How the elastic loop fared.
+    pub passage: Passage,
+}
+
+/// Fits machine and material to the measurement of an uncorrected part. `progress` is told the share done, 0…1.
+///
+/// # Errors
+/// Points most of which do not fit.
+pub fn identified(
+    pass: &Pass,
+    path: &Path,
+    measurement: &Measurement,
+    mut progress: impl FnMut(f64),
+) -> Result<Identified, Failure> {
+    let observations = measurement.observations()?;
+    let points = Points { earlier: &[], observations: &observations };
+    let law = asked(pass.core.job.force.model);
+    let uncorrected = |_, _| Vector::ZERO;
+    let Found { core, observations, .. } = found(&pass.core, path, law, points, uncorrected, &mut progress);
+    core.check(&observations).map_err(|error| pass.refused(&error))?;
+    Ok(Identified { core, observations })
+}
+
+impl Identified {
+    /// The wall law, given or found.
+    pub const fn law(&self) -> WallLaw {
+        self.core.law
+    }
+    /// What was believed before.
+    pub const fn prior(&self) -> &Prior {
+        &self.core.prior
+    }
+    /// What is known now.
+    pub const fn fit(&self) -> &Fit {
+        &self.core.fit
+    }
+    /// The force table of the identified cutter.
+    pub fn table(&self) -> ForceTable {
+        self.core.table()
+    }
+    /// The identified machine on a path.
+    pub const fn machine<'a>(&self, path: &'a Path<'a>, table: &'a ForceTable) -> Loop<'a> {
+        self.core.machine(path, table)
+    }
+}
+
+/// What a correction is made from, beside the machine.
+#[derive(Clone, Copy, Debug)]
+pub struct Wish<'a> {
+    /// How it is made.
+    pub law: Law,
+    /// Wall error beside the model, one entry per sample of the contour; empty where none is known.
+    pub residual: &'a [Offset],
+    /// Its standard deviation, the same way.
+    pub residual_sigma: &'a [Offset],
+    /// A correction that is used again instead of a new one, as far as the guard allows.
+    pub kept: Option<&'a [Node]>,
+}
+
+impl Wish<'_> {
+    /// By a law, of what the model predicts alone.
+    pub const fn of(law: Law) -> Self {
+        Self { law, residual: &[], residual_sigma: &[], kept: None }
+    }
+}
+
+/// Designs the correction of an identified pass. `progress` is told the share done, 0…1.
+///
+/// # Errors
+/// A correction beyond the clamp.
+pub fn corrected(
+    pass: &Pass,
+    machine: &Loop,
+    identified: &Identified,
+    wish: &Wish,
+    mut progress: impl FnMut(f64),
+) -> Result<Correction, Failure> {
+    let wanted = pass.job.numbers.design(wish.law);
+    let correction = made(machine, identified, wanted, wish, &mut progress);
+    job::check_clamp(&pass.job.numbers, machine.path, &correction.nodes).map_err(|error| pass.refused(&error))?;
+    progress(1.0);
+    Ok(correction)
+}
+
+/// What a correction that a part was cut with does, as the machine is known now: nothing of it is taken back.
+pub fn foretold(pass: &Pass, machine: &Loop, identified: &Identified, nodes: &[Node], wish: &Wish) -> Correction {
+    let wanted = Design { max_gouge: None, ..pass.job.numbers.design(wish.law) };
+    made(machine, identified, wanted, &Wish { kept: Some(nodes), ..*wish }, &mut |_| ())
+}
+
+/// A correction by its design and wish.
+fn made(
+    machine: &Loop,
+    identified: &Identified,
+    wanted: Design,
+    wish: &Wish,
+    progress: &mut dyn FnMut(f64),
+) -> Correction {
+    let path = machine.path;
+    let count = path.count();
+    let mut buffers = Buffers::of(path);
+    let mut workspace = buffers.workspace(wish.residual);
+    let mut nodes = vec![Node::default(); count];
+    let mut unguarded = nodes.clone();
+    let mut predicted = vec![Predicted::default(); count];
+    let mut sigma = vec![Offset::ZERO; count];
+    let belief = (identified.prior(), identified.fit());
+    let mut made = Guarded {
+        nodes: &mut nodes,
+        unguarded: &mut unguarded,
+        predicted: &mut predicted,
+        sigma: &mut sigma,
+        damped: None,
+    };
+    let passage = match wish.kept {
+        Some(kept) => guarded_given(machine, belief, &wanted, kept, &mut made, &mut workspace),
+        None => guarded_design(machine, belief, &wanted, &mut made, &mut workspace, &mut |step| {
+            if let DesignStep::Done { permille, .. } = step {
+                progress(0.9 * f64::from(permille) / 1000.0);
+            }
+        }),
+    };
+    let damped = made.damped;
+    for (sigma, more) in sigma.iter_mut().zip(wish.residual_sigma) {
+        *sigma = hypot_nm(*sigma, *more);
+    }
+    let used_again = wish.kept.is_some();
+    Correction { nodes, unguarded, predicted, sigma, damped, used_again, wanted, passage }
+}
+
+/// Memory of a design.
+#[derive(Clone, Debug)]
+pub struct Buffers {
+    states: Vec<State>,
+    displacements: Vec<Vector>,
+    profiles: Vec<Profile>,
+    updates: Vec<Update>,
+    best: Vec<Node>,
+    halves: Halves,
+}
+
+impl Buffers {
+    /// For a path.
+    pub fn of(path: &Path) -> Self {
+        let (count, working) = (path.count(), path.working().len());
+        Self {
+            states: vec![State::REST; working],
+            displacements: vec![Vector::ZERO; working],
+            profiles: vec![Profile::default(); count],
+            updates: vec![Update::default(); count],
+            best: vec![Node::default(); count],
+            halves: Halves::of(path),
+        }
+    }
+
+    /// Lends it.
+    pub fn workspace<'a>(&'a mut self, residual: &'a [Offset]) -> DesignWorkspace<'a, &'a mut Halves> {
+        DesignWorkspace {
+            states: &mut self.states,
+            displacements: &mut self.displacements,
+            profiles: &mut self.profiles,
+            updates: &mut self.updates,
+            best: &mut self.best,
+            residual,
+            reader: &mut self.halves,
+        }
+    }
+}
+
+/// The wall beside every sample of the contour that a machine leaves with a correction, empty for none.
+pub fn walls(machine: &Loop, band: Band, nodes: &[Node], residual: &[Offset]) -> (Vec<Profile>, Passage) {
+    let path = machine.path;
+    let working = path.working();
+    let mut states = vec![State::REST; working.len()];
+    let passage = machine.run(working.start, &mut states, |i| commanded(path, nodes, i));
+    let mut displacements = vec![Vector::ZERO; working.len()];
+    let mut walls = vec![Profile::default(); path.count()];
+    Halves::of(path).profile(machine, &states, band, &mut displacements, &mut walls);
+    add_residual(&mut walls, residual);
+    (walls, passage)
+}

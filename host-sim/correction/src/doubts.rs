@@ -1,0 +1,178 @@
+//! What the user of a correction should doubt: points that do not fit, corners, backlash, gouges, uncertainty.
+
+use truepath_core::cut::Loop;
+use truepath_core::identify::Parameter;
+use truepath_core::probe::Contact;
+use truepath_core::units::Offset;
+use truepath_ground::units::mm;
+use truepath_job::pass::Pass;
+use truepath_program::Difference;
+
+use crate::correction::{Correction, Identified};
+use crate::damped::damped_summary;
+use crate::guard::guard_summary;
+
+/// What the user should doubt.
+pub fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
+    let mut out = Vec::new();
+    if identified.fit().outliers > 0 {
+        let lines: Vec<String> = identified
+            .observations
+            .iter()
+            .filter(|o| truepath_ground::units::float(o.weight) < 0.3)
+            .map(|o| format!("s = {:.2} mm (measured {:.4}, model {:.4} mm)", mm(o.s), mm(o.error), mm(o.predicted)))
+            .collect();
+        out.push(format!("{} points do not fit and were given little weight: {}", lines.len(), lines.join("; ")));
+    }
+    if correction.passage.unsettled > 0 {
+        out.push(format!(
+            "the elastic loop did not settle at {} places (worst residual {:.4} mm): the machine is too soft for this cut",
+            correction.passage.unsettled,
+            mm(correction.passage.worst_residual)
+        ));
+    }
+    let held = machine.path.samples().iter().filter(|s| s.near_corner).count();
+    if held > 0 {
+        let line =
+            machine.path.samples().iter().find(|s| s.near_corner).and_then(|s| pass.blocks.get(s.block as usize));
+        out.push(format!(
+            "a sharp inside corner near line {}: the load changes there the moment the direction does, so the correction of the straight wall is held and up to {:.3} mm stay; give the path an arc there",
+            line.map_or(0, |b| b.line),
+            correction.predicted.iter().map(|p| mm(p.after.mean.abs())).fold(0.0, f64::max)
+        ));
+    }
+    if let Some(guard) = guard_summary(machine.path, correction) {
+        if !guard.heeded && guard.deepest_mm > guard.max_gouge_mm {
+            out.push(format!(
+                "max_gouge_mm = {} is not kept: {:.4} mm are predicted (only law = \"model\" heeds it)",
+                guard.max_gouge_mm, guard.deepest_mm
+            ));
+        } else if guard.deepest_with_confidence_mm > guard.max_gouge_mm + 0.001 {
+            out.push(format!(
+                "max_gouge_mm = {} is not kept with three standard deviations to spare: up to {:.4} mm may be cut too deep, {:.4} mm are predicted",
+                guard.max_gouge_mm, guard.deepest_with_confidence_mm, guard.deepest_mm
+            ));
+        }
+        if let Some(most) = guard.places.iter().max_by(|a, b| a.moved_mm().total_cmp(&b.moved_mm())) {
+            out.push(format!(
+                "max_gouge_mm = {} holds the cutter back at {} places, most at s = {:.2} mm: {} {:.4} mm towards the wall, {:.4} mm are allowed",
+                guard.max_gouge_mm,
+                guard.places.len(),
+                most.at_s_mm,
+                if correction.used_again { "the correction that is used again goes" } else { "the target wants" },
+                most.wanted_mm,
+                most.allowed_mm
+            ));
+        }
+    }
+    let far =
+        identified.fit().theta.iter().zip(Parameter::ALL).filter(|(t, _)| truepath_ground::units::float(t.abs()) > 2.5);
+    for (theta, parameter) in far {
+        out.push(format!(
+            "{} came out {:.1} standard deviations from what the job says: check the job, or probe more places",
+            parameter.name(),
+            truepath_ground::units::float(theta.abs())
+        ));
+    }
+    let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
+    let sigma = correction.sigma.iter().copied().max().unwrap_or_default();
+    if let Some(damped) = damped_summary(machine.path, correction) {
+        out.push(damped.text());
+    } else if sigma.nm() * 8 > peak.nm() {
+        out.push(format!(
+            "the points leave the corrected wall uncertain by {:.4} mm (one sigma); probe more places, best in the corners",
+            mm(sigma)
+        ));
+    }
+    if let Some(reversal) = reversal(pass, machine, correction) {
+        out.push(reversal);
+    }
+    out
+}
+
+/// A correction that a part was cut with takes off nearly the same everywhere: the fit finds a cutter that is too large.
+pub fn cut_corrected(identified: &Identified, correction: &Correction) -> Option<String> {
+    let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
+    let undersize = identified.fit().parameters.undersize;
+    let is_far = Parameter::ALL
+        .iter()
+        .zip(&identified.fit().theta)
+        .any(|(parameter, theta)| *parameter == Parameter::Undersize && truepath_ground::units::float(*theta) < -2.5);
+    (is_far && undersize.nm() * -4 > peak.nm()).then(|| {
+        format!(
+            "Q008: the points look like those of a part that was cut with a correction, as if the cutter were {:.3} mm larger in radius: if it was, do not use this correction, which would take the place of that one, but learn from the part with truepath learn --from its folder",
+            mm(-undersize)
+        )
+    })
+}
+
+/// What the points of a pass may be of instead: a wall milled twice, or the first of two passes.
+pub fn misread(measured: &Pass, first_pass: bool, contacts: &[Contact]) -> Vec<String> {
+    let mut out = Vec::new();
+    let passes = || measured.plan.iter().flat_map(|plan| &plan.passes);
+    let height = passes().find(|p| !p.spring && p.number == measured.level()).and_then(|p| p.z);
+    if let Some(spring) = passes().find(|p| p.spring && p.z == height) {
+        out.push(format!(
+            "the spring pass of lines {}-{} goes over the probed wall: the points must have been touched before it. A wall milled twice shows too little of the force, and too little would be corrected",
+            spring.lines.first, spring.lines.last
+        ));
+    }
+    let allowance = measured.job.numbers.allowance;
+    let mut errors: Vec<Offset> = contacts.iter().map(|contact| contact.error).collect();
+    errors.sort_unstable();
+    // An allowance below 0.1 mm is of the size of ordinary errors.
+    if let Some(&median) = errors.get(errors.len() / 2)
+        && !first_pass
+        && allowance > Offset::from_um(100)
+        && median.nm() * 5 > allowance.nm() * 2
+    {
+        out.push(format!(
+            "the wall stands {:.3} mm off its place, {:.0} % of allowance_mm = {}: if that is the stock a first pass left, give --first-pass with its job; otherwise look at the probe and the origin",
+            mm(median),
+            100.0 * mm(median) / mm(allowance),
+            mm(allowance)
+        ));
+    }
+    out
+}
+
+/// A kink of the written path beyond the one asked for.
+pub fn kinked(difference: &Difference) -> Option<String> {
+    let reason = if difference.largest_kink_beyond_path_deg > difference.max_kink_deg {
+        "correct.tolerance_mm allows no smoother path"
+    } else {
+        "the correction itself changes that fast there"
+    };
+    (difference.largest_kink_deg > difference.max_kink_deg).then(|| {
+        format!(
+            "corrected.nc:{}: the path turns by {:.2} degrees on the spot (correct.max_kink_deg = {}): {reason}",
+            difference.largest_kink_line, difference.largest_kink_deg, difference.max_kink_deg
+        )
+    })
+}
+
+/// Where the correction reverses an axis that the program does not reverse, backlash acts.
+fn reversal(pass: &Pass, machine: &Loop, correction: &Correction) -> Option<String> {
+    let path = machine.path;
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    for axis in 0..2 {
+        let backlash = pass.job.backlash[axis];
+        if backlash.nm() == 0 {
+            continue;
+        }
+        for (i, pair) in samples.windows(2).enumerate() {
+            let nominal = pair[1].point.from(pair[0].point);
+            let change = correction.nodes[i + 1].total() - correction.nodes[i].total();
+            let (n, c) = if axis == 0 { (nominal.x.nm(), change.x.nm()) } else { (nominal.y.nm(), change.y.nm()) };
+            if n.abs() > 1_000 && (n + c).signum() == -n.signum() {
+                return Some(format!(
+                    "near s = {:.2} mm the correction reverses {} against the program: its backlash of {} mm acts there",
+                    mm(pair[0].s),
+                    ["X", "Y"][axis],
+                    mm(backlash)
+                ));
+            }
+        }
+    }
+    None
+}

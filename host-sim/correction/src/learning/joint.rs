@@ -1,0 +1,100 @@
+//! Machine and material from the points of all parts together.
+//!
+//! Machine, cutter and material are the same for all parts; the correction each was cut with is known, and each has a
+//! datum of its own ([`identify_parts`]). A part that was cut with a good correction shows a small error, and is as
+//! trustworthy as the model is for the deflection that the correction cancelled: a hundredth of it counts as noise.
+
+use truepath_core::correct::{Node, commanded};
+use truepath_core::cut::{Path, WallLaw};
+use truepath_core::geometry::Vector;
+use truepath_core::identify::{EarlierPart, Observation};
+use truepath_core::job;
+use truepath_core::units::{Offset, Real, hypot_nm};
+use truepath_ground::units::{float, mm};
+use truepath_job::pass::Pass;
+
+use super::history::Part;
+use super::points::nm;
+use crate::identification::{Found, Points, asked, found};
+
+/// A part as the fit takes it.
+#[derive(Clone, Debug)]
+pub struct PartPoints {
+    /// Its number.
+    pub number: u32,
+    /// Its points.
+    pub observations: Vec<Observation>,
+    /// The correction it was cut with, beside every sample of the contour; empty for none.
+    pub nodes: Vec<Node>,
+    /// Standard deviation of one reading.
+    pub noise: Offset,
+}
+
+/// What all parts together say.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Machine and material.
+    pub core: job::Identified,
+    /// The points of every part with predictions, weights and sensitivities.
+    pub observations: Vec<Vec<Observation>>,
+    /// The datum of every part, prior standard deviations.
+    pub datums: Vec<[f64; 2]>,
+}
+
+/// Share of a cancelled deflection that the model may miss.
+const MODEL_SHARE: Real = Real::ratio(1, 100);
+
+impl PartPoints {
+    /// Of a part of a history; `None` when its correction is not one of this contour.
+    pub fn of(part: &Part, path: &Path) -> Option<Self> {
+        let nodes = match &part.correction {
+            None => Vec::new(),
+            Some(correction) => correction.nodes().filter(|nodes| nodes.len() == path.count())?,
+        };
+        let noise = nm(part.noise_mm);
+        let observed = part.points.iter().map(|point| {
+            let mut o = point.observation(noise);
+            let cancelled = commanded(path, &nodes, path.index_at(o.s)).along(o.normal);
+            o.noise = hypot_nm(noise, cancelled.scaled(MODEL_SHARE));
+            o
+        });
+        Some(Self { number: part.number, observations: observed.collect(), nodes, noise })
+    }
+
+    /// Its places: ranges of points at one arc length.
+    pub fn places(&self) -> Vec<std::ops::Range<usize>> {
+        let mut end = 0;
+        let groups = self.observations.chunk_by(|a, b| a.s == b.s);
+        let range = |group: &[Observation]| {
+            end += group.len();
+            end - group.len()..end
+        };
+        groups.map(range).collect()
+    }
+}
+
+/// Fits machine and material to all parts; the wall law is the one given, or found. `progress` is told the share done.
+pub fn joint(
+    pass: &Pass,
+    path: &Path,
+    parts: &[PartPoints],
+    law: Option<WallLaw>,
+    progress: &mut dyn FnMut(f64),
+) -> Joint {
+    let all: Vec<Observation> = parts.iter().flat_map(|p| p.observations.iter().copied()).collect();
+    let (earlier, _) = parts.split_at(parts.len().saturating_sub(1));
+    let earlier: Vec<EarlierPart> = earlier.iter().map(|p| EarlierPart::new(p.observations.len())).collect();
+    let points = Points { earlier: &earlier, observations: &all };
+    let law = law.or(asked(pass.core.job.force.model));
+    let by_program =
+        |part: usize, sample: usize| parts.get(part).map_or(Vector::ZERO, |p| commanded(path, &p.nodes, sample));
+    let Found { core, earlier, observations: all } = found(&pass.core, path, law, points, by_program, progress);
+    let job::Identified { prior, fit, .. } = &core;
+    let mut rest = all.into_iter();
+    let observations = parts.iter().map(|p| rest.by_ref().take(p.observations.len()).collect()).collect();
+    let [.., sigma_x, sigma_y] = prior.sigma.map(float);
+    let shares = |d: Vector| [mm(d.x) / sigma_x.max(1e-9), mm(d.y) / sigma_y.max(1e-9)];
+    let last = [fit.parameters.datum];
+    let datums = earlier.iter().map(|part| part.datum(prior)).chain(last).take(parts.len()).map(shares).collect();
+    Joint { core, observations, datums }
+}

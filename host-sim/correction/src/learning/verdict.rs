@@ -1,0 +1,169 @@
+//! The verdict on a measured part: how it came out, whether that was foreseen, what was made of it.
+
+use truepath_core::correct::Node;
+use truepath_core::cut::Path;
+use truepath_core::units::Offset;
+use truepath_ground::units::mm;
+
+use super::holdout::Residuals;
+use super::joint::PartPoints;
+use super::monitor::{Monitor, PartError};
+
+/// How a part came out.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Verdict {
+    /// Its number; the correction is that of the next one.
+    pub part: u32,
+    /// Error of the target quantity at its places.
+    pub measured_error_mm: PartError,
+    /// The part before at the same places: measured there, or by the model of all parts.
+    pub previous_error_mm: PartError,
+    /// The earlier parts, each at its own places.
+    pub earlier_parts: Vec<PartError>,
+    /// What was promised for it.
+    pub promise: Promise,
+    /// Places that a first fit has not seen; absent when fewer than four were touched.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holdout_residual_mm: Option<Residuals>,
+    /// What was learned beside the model; absent when the points fit the model within their noise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residual: Option<Beside>,
+    /// Whether the next part goes back to what an earlier one was cut with.
+    pub rolled_back: bool,
+    /// What is used again instead of a new correction; absent when the correction is a new one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub used_again: Option<UsedAgain>,
+    /// Why, and other remarks on the part.
+    #[serde(skip)]
+    remarks: Vec<String>,
+}
+
+/// What a part was cut with and the next one is cut with again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct UsedAgain {
+    /// Number of the part.
+    pub part: u32,
+    /// Whether that was a correction: the first part is cut with none.
+    pub corrected: bool,
+}
+
+/// A prediction held against the measurement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Promise {
+    /// Largest predicted magnitude at the places, mm.
+    pub max_mm: f64,
+    /// Largest standard deviation there, with that of the measurement, mm.
+    pub max_sigma_mm: f64,
+    /// Places at which measured − predicted is within two standard deviations.
+    pub within_two_sigma: usize,
+    /// Places in all.
+    pub places: usize,
+}
+
+/// The wall error that parts have shown beside the model.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Beside {
+    /// Largest magnitude along the contour, mm.
+    pub max_mm: f64,
+    /// Standard deviation of what holds around a place only, mm.
+    pub local_mm: f64,
+    /// Standard deviation of what holds wherever the cutter is engaged alike, mm.
+    pub keyed_mm: f64,
+}
+
+impl Beside {
+    pub(super) fn of([local_mm, keyed_mm]: [f64; 2], along: &[Offset]) -> Self {
+        Self { max_mm: mm(along.iter().map(|r| r.abs()).max().unwrap_or_default()), local_mm, keyed_mm }
+    }
+}
+
+impl UsedAgain {
+    fn of(part: &PartPoints) -> Self {
+        Self { part: part.number, corrected: part.nodes.iter().any(|node| *node != Node::default()) }
+    }
+
+    /// What the next part is cut with.
+    pub fn words(&self) -> String {
+        if self.corrected {
+            format!("the correction that part {} was cut with is used again", self.part)
+        } else {
+            format!("the next part is cut without correction, as part {} was: along the path of the program", self.part)
+        }
+    }
+}
+
+impl Promise {
+    /// `promised` has the predicted error and its standard deviation beside every sample of the contour.
+    pub fn of(path: &Path, monitor: &Monitor, promised: &[(Offset, Offset)]) -> Self {
+        let mut promise = Self { places: monitor.places.len(), ..Self::default() };
+        for place in &monitor.places {
+            let at = path.index_at(place.s).saturating_sub(path.first());
+            let Some((predicted, sigma)) = promised.get(at) else { continue };
+            let sigma = mm(*sigma).hypot(mm(place.noise));
+            promise.max_mm = promise.max_mm.max(mm(predicted.abs()));
+            promise.max_sigma_mm = promise.max_sigma_mm.max(sigma);
+            promise.within_two_sigma += usize::from((mm(place.error) - mm(*predicted)).abs() <= 2.0 * sigma);
+        }
+        promise
+    }
+}
+
+impl Verdict {
+    pub(super) fn of(
+        parts: &[PartPoints],
+        monitor: &Monitor,
+        promise: Promise,
+        holdout: Option<Residuals>,
+        again: Option<usize>,
+        fits: bool,
+    ) -> Self {
+        let (now, before) = (monitor.now, monitor.before);
+        let mut remarks = Vec::new();
+        let rolled_back = again.is_some_and(|again| again + 1 < parts.len());
+        let used_again = again.and_then(|again| parts.get(again)).map(UsedAgain::of);
+        if let Some(used) = used_again {
+            let why = if fits {
+                format!(
+                    "it came out worse ({:.4} mm after {:.4} mm, rms at its places) and the updated model does not foretell the places it was not shown",
+                    now.rms_mm, before.rms_mm
+                )
+            } else {
+                "most points contradict those of the parts before".to_owned()
+            };
+            remarks.push(format!(
+                "part {} is set aside and {}: {why}; look at clamping, datum, cutter and probe before the next part",
+                now.part,
+                used.words()
+            ));
+        } else if monitor.is_worse() {
+            remarks.push(format!(
+                "part {} came out worse than part {} ({:.4} mm after {:.4} mm, rms at its places), and the updated model foretells the places it was not shown: the next correction is a new one",
+                now.part, before.part, now.rms_mm, before.rms_mm
+            ));
+        }
+        if promise.within_two_sigma * 4 < promise.places * 3 {
+            remarks.push(format!(
+                "only {} of {} places of part {} came out within two standard deviations of what was promised",
+                promise.within_two_sigma, promise.places, now.part
+            ));
+        }
+        let earlier_parts = monitor.parts.split_last().map(|(_, earlier)| earlier.to_vec()).unwrap_or_default();
+        Self {
+            part: now.part,
+            measured_error_mm: now,
+            previous_error_mm: before,
+            earlier_parts,
+            promise,
+            holdout_residual_mm: holdout,
+            residual: None,
+            rolled_back,
+            used_again,
+            remarks,
+        }
+    }
+
+    /// What the user should know of the part, a sentence each.
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
+}

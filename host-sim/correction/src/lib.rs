@@ -1,0 +1,32 @@
+//! From a measurement to a correction, and from part to part.
+//!
+//! | step | where |
+//! |---|---|
+//! | machine and material from the points | [`identification`] |
+//! | the correction of an identified machine | [`correction`] |
+//! | a whole correction with its programs, images and figures | [`correct`], [`summary`] |
+//! | the second of two passes | [`first_pass`], [`second_pass`] |
+//! | the next part | [`learning`], [`learn`], [`as_milled`] |
+//! | where to touch, and the program that does | [`verification`] |
+//! | accuracy from the measurement alone | [`inspection`] |
+
+pub mod as_milled;
+pub mod correct;
+pub mod correction;
+pub mod damped;
+pub mod doubts;
+pub mod edits;
+pub mod feeds;
+pub mod first_pass;
+pub mod guard;
+pub mod identification;
+pub mod image;
+pub mod inspection;
+pub mod learn;
+pub mod learning;
+pub mod remarks;
+pub mod rows;
+pub mod second_pass;
+pub mod summary;
+pub mod verification;
+mod wall_halves;

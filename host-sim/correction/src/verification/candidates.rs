@@ -1,0 +1,188 @@
+//! Places of the contour that may be touched, and why the others may not.
+//!
+//! A place is kept off when its wall is not final (the rest of the path cuts it away, as at outside
+//! corners), near the ends of the contour and on its leads (plunge and lift leave marks there), near a sharp inside corner, where engagement or
+//! deflection changes abruptly (there a shift of a tenth of a millimetre along the wall would look like an error of the
+//! machine), and where the ball's way is not proved free.
+
+use std::collections::HashMap;
+
+use truepath_core::cut::{ForceTable, Path, Sample, State};
+use truepath_core::geometry::{Point, Shape};
+use truepath_core::units::{Offset, Real};
+use truepath_ground::units::{float, mm};
+use truepath_job::pass::Pass;
+
+use super::approach::{Ball, Xy, along, distance};
+use super::belief::Belief;
+use super::leads::milled_once;
+
+/// Why a place is not touched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum KeptOff {
+    /// Near an end of the contour, on a lead, or milled twice.
+    End,
+    /// No final wall there.
+    NoWall,
+    /// Near a sharp inside corner.
+    SharpCorner,
+    /// Engagement or deflection changes abruptly.
+    Unsteady,
+    /// The way of the ball is not proved free.
+    Unproved,
+}
+
+impl KeptOff {
+    /// In words.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::End => "near an end of the contour or on its leads, where the cutter plunges, lifts or passes twice",
+            Self::NoWall => "without a final wall: the rest of the path cuts it away",
+            Self::SharpCorner => "near a sharp inside corner",
+            Self::Unsteady => "where the engagement changes abruptly",
+            Self::Unproved => "where the way of the ball is not proved free",
+        }
+    }
+}
+
+/// The form of the path at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Form {
+    Straight,
+    /// Radius of the wall, mm.
+    InsideArc(f64),
+    /// Radius of the wall, mm.
+    OutsideArc(f64),
+}
+
+/// A place that may be touched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Site {
+    pub(super) s: Offset,
+    pub(super) wall: Xy,
+    /// Towards the wall.
+    pub(super) normal: Xy,
+    pub(super) form: Form,
+    pub(super) line: u32,
+    /// What a touch a tenth of a millimetre beside the place would read otherwise, where the load is not steady.
+    pub(super) unsteady: Offset,
+}
+
+/// Distance between places looked at: a fraction of the contour, at least the second number, mm.
+const SPACING: (f64, f64) = (1.0 / 240.0, 0.5);
+/// How far along the wall a touch may lie from where it is meant to, mm.
+const ALONG: Offset = Offset::from_um(500);
+/// How far along the wall a touch is taken to lie from where it is meant to, where the load is not steady, mm.
+const BESIDE: f64 = 0.1;
+/// Change of the engaged angle over twice [`ALONG`] from which it is abrupt, degrees.
+const ABRUPT_DEG: f64 = 2.5;
+/// Change of the deflection along the normal over twice [`ALONG`] from which it is abrupt, share of the largest one.
+const ABRUPT_SHARE: f64 = 0.04;
+/// How much nearer than its radius the cutter must come to a wall for it to count as cut away, mm; above what rounded
+/// coordinates and facets make.
+const CUT_AWAY: f64 = 0.02;
+
+/// Sorts the places of a pass. `unsteady` ones are kept off, or taken with what they are worth.
+pub(super) fn candidates(
+    pass: &Pass,
+    path: &Path,
+    belief: &Belief,
+    ball: Ball,
+    (noise, unsteady): (f64, bool),
+) -> (Vec<Site>, Vec<KeptOff>) {
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    let radius = mm(path.setup().radius);
+    let walls: Vec<Option<Xy>> = final_walls(path, samples, radius);
+    let standing: Vec<Xy> = walls.iter().copied().flatten().collect();
+    let states = states(path, belief);
+    let start = path.working().start;
+    let state = |sample: usize| states.get(sample.saturating_sub(start)).copied().unwrap_or(State::REST);
+    let deflection = |sample: usize| {
+        let state = state(sample);
+        mm(state.displacement.along(path.samples()[sample].normal))
+    };
+    let largest = (0..samples.len()).map(|k| deflection(path.first() + k).abs()).fold(0.0, f64::max);
+    let abrupt = (ABRUPT_SHARE * largest).max(4.0 * noise);
+    let length = mm(path.length());
+    let from_ends = radius + ball.radius;
+    let (once_from, once_to) = milled_once(samples, Offset::from_nm(4 * path.setup().radius.nm()));
+    let (first, last) = (mm(once_from) + from_ends, mm(once_to) - from_ends);
+
+    let step = (length * SPACING.0).max(SPACING.1);
+    let count = (length / step).floor() as u32;
+    let (mut sites, mut kept_off) = (Vec::new(), Vec::new());
+    for k in 0..=count {
+        let s = Offset::from_nm((f64::from(k) * step * 1e6) as i64);
+        let index = path.index_at(s).clamp(path.first(), path.first() + path.count() - 1);
+        let sample = &path.samples()[index];
+        let (before, after) = (path.index_at(sample.s - ALONG), path.index_at(sample.s + ALONG));
+        let turn = float(state(after).engaged - state(before).engaged).abs().to_degrees();
+        let normal = [float(sample.normal.x), float(sample.normal.y)];
+        let change = (deflection(after) - deflection(before)).abs();
+        let is_unsteady = turn > ABRUPT_DEG || change > abrupt;
+        let verdict = match walls[index - path.first()] {
+            _ if mm(sample.s) < first || mm(sample.s) > last => Err(KeptOff::End),
+            None => Err(KeptOff::NoWall),
+            Some(_) if sample.near_corner => Err(KeptOff::SharpCorner),
+            Some(_) if is_unsteady && !unsteady => Err(KeptOff::Unsteady),
+            Some(wall) if !ball.is_free(wall, normal, &standing) => Err(KeptOff::Unproved),
+            Some(wall) => Ok(wall),
+        };
+        match verdict {
+            Err(reason) => kept_off.push(reason),
+            Ok(wall) => {
+                let block = &pass.blocks[sample.block as usize];
+                let beside = if is_unsteady { change * BESIDE / (2.0 * mm(ALONG)) } else { 0.0 };
+                let unsteady = Offset::from_nm((beside * 1e6).round() as i64);
+                let form = form(pass, block, radius);
+                sites.push(Site { s: sample.s, wall, normal, form, line: block.line, unsteady });
+            }
+        }
+    }
+    (sites, kept_off)
+}
+
+/// The states of the elastic loop along the path, by what is believed of machine and material.
+fn states(path: &Path, belief: &Belief) -> Vec<State> {
+    let parameters = belief.parameters();
+    let table = ForceTable::new(parameters.coefficients.size_exponent);
+    let machine = parameters.machine(path, &table);
+    let working = path.working();
+    let mut states = vec![State::REST; working.len()];
+    machine.run(working.start, &mut states, |i| belief.commanded(path, i));
+    states
+}
+
+/// The wall beside each sample, where no other part of the path cuts it away.
+fn final_walls(path: &Path, samples: &[Sample], radius: f64) -> Vec<Option<Xy>> {
+    let cell = |p: Xy| ((p[0] / radius).floor() as i64, (p[1] / radius).floor() as i64);
+    let mut cells: HashMap<(i64, i64), Vec<Xy>> = HashMap::new();
+    for sample in samples {
+        let p = coordinates(sample.point);
+        cells.entry(cell(p)).or_default().push(p);
+    }
+    let cut_away = |wall: Xy| {
+        let (x, y) = cell(wall);
+        let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j)));
+        around.filter_map(|c| cells.get(&c)).flatten().any(|p| distance(*p, wall) < radius - CUT_AWAY)
+    };
+    let wall = |sample: &Sample| {
+        let wall = along(coordinates(sample.point), [float(sample.normal.x), float(sample.normal.y)], radius);
+        (sample.on_wall && !cut_away(wall)).then_some(wall)
+    };
+    debug_assert_eq!(samples.len(), path.count());
+    samples.iter().map(wall).collect()
+}
+
+fn form(pass: &Pass, block: &truepath_core::geometry::Block, radius: f64) -> Form {
+    let Shape::Arc { sweep, .. } = block.curve.shape() else { return Form::Straight };
+    let turns_left = sweep > Real::ZERO;
+    let towards_wall = turns_left == (pass.core.setup.wall == truepath_core::geometry::Side::Left);
+    let path_radius = block.curve.signed_radius().map_or(0.0, |r| mm(r.abs()));
+    if towards_wall { Form::OutsideArc(path_radius - radius) } else { Form::InsideArc(path_radius + radius) }
+}
+
+fn coordinates(p: Point) -> Xy {
+    [p.x.nm() as f64 / 1e6, p.y.nm() as f64 / 1e6]
+}

@@ -1,0 +1,134 @@
+//! What every plan stands on: part, probe, heights, the ball and its room, and the places that may be touched.
+
+use std::collections::BTreeMap;
+
+use truepath_core::cut::Path;
+use truepath_core::job::Probe;
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::units::{float, mm};
+use truepath_job::pass::Pass;
+
+use super::approach::Ball;
+use super::belief::Belief;
+use super::candidates::{KeptOff, Site, candidates};
+use super::heights::{Height, heights};
+use super::plan::{Place, Plan};
+use super::settings::Settings;
+use super::shop::Shop;
+
+/// Part, probe and ball.
+pub(super) struct Ground {
+    shop: Shop,
+    pub(super) probe: Probe,
+    pub(super) heights: Vec<Height>,
+    ball: Ball,
+    safe_z_mm: f64,
+}
+
+/// Between two places, at least: the ball's radius and this much more, mm, so that they are two places of the wall.
+const APART: f64 = 1.0;
+/// Above the engaged depth, when neither user nor program says how high is safe, mm.
+const SAFE_ABOVE: f64 = 50.0;
+
+impl Ground {
+    /// Of a pass.
+    ///
+    /// # Errors
+    /// A job without probe, settings out of range, a ball without room (`V002`, `V003`), and whatever is wrong with the
+    /// program.
+    pub(super) fn of(pass: &Pass, settings: &Settings) -> Result<Self, Failure> {
+        settings.check()?;
+        let probe = pass.job.require_probe()?;
+        let shop = Shop::read(pass)?;
+        let heights = heights(pass, &probe, settings)?;
+        let ball = Ball { radius: mm(probe.ball_diameter) / 2.0, clearance: settings.clearance };
+        let free = settings.free_width.unwrap_or(2.0 * mm(pass.core.setup.radius));
+        if ball.width() > free + 1e-9 {
+            return Err(no_width(ball, free, settings).into());
+        }
+        let safe_z_mm = safe_z(pass, settings, &shop)?;
+        Ok(Self { shop, probe, heights, ball, safe_z_mm })
+    }
+
+    /// The places that may be touched, `unsteady` ones too or not, and how many may not, by reason.
+    ///
+    /// # Errors
+    /// `V004` without any.
+    pub(super) fn sites(
+        &self,
+        pass: &Pass,
+        path: &Path,
+        belief: &Belief,
+        unsteady: bool,
+    ) -> Result<(Vec<Site>, BTreeMap<KeptOff, usize>), InputError> {
+        let (sites, kept_off) = candidates(pass, path, belief, self.ball, (mm(self.probe.noise), unsteady));
+        let mut counts = BTreeMap::new();
+        for reason in kept_off {
+            *counts.entry(reason).or_insert(0) += 1;
+        }
+        if sites.is_empty() { Err(no_place(&counts)) } else { Ok((sites, counts)) }
+    }
+
+    /// Between two places, at least, mm.
+    pub(super) fn apart(&self) -> f64 {
+        self.ball.radius + APART
+    }
+
+    /// A plan of these places, which are put into the order of the contour; nothing is said yet of what they tell.
+    pub(super) fn plan(self, pass: &Pass, settings: &Settings, mut places: Vec<Place>) -> Plan {
+        places.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
+        Plan {
+            shop: self.shop,
+            correction: None,
+            settings: settings.clone(),
+            ball_mm: 2.0 * self.ball.radius,
+            z_is_tip: self.probe.z_reference == truepath_core::job::ZReference::Tip,
+            safe_z_mm: self.safe_z_mm,
+            places,
+            heights: self.heights,
+            kept_off: BTreeMap::new(),
+            unknowns: Vec::new(),
+            wall_sigma_mm: [0.0; 2],
+            warnings: pass.warnings.clone(),
+        }
+    }
+}
+
+/// Height of the moves between places: above the engaged depth, and no lower than the part's program ever moved.
+fn safe_z(pass: &Pass, settings: &Settings, shop: &Shop) -> Result<f64, InputError> {
+    let top = pass.core.contour.z.nm() as f64 / 1e6 + float(pass.core.setup.axial_depth);
+    let highest = shop.highest_nm.map_or(f64::NEG_INFINITY, |z| z as f64 / 1e6);
+    match settings.safe_z {
+        None => Ok((top + SAFE_ABOVE).max(highest)),
+        Some(z) if z > top => Ok(z),
+        Some(z) => Err(InputError::new(
+            "V001",
+            format!("--safe-z {z} is not above the wall, which ends at Z{top}"),
+            format!("a height above Z{top} and above every clamp"),
+            "give a higher one, or leave it out",
+        )),
+    }
+}
+
+fn no_width(ball: Ball, free: f64, settings: &Settings) -> InputError {
+    let (found, help) = if settings.free_width.is_some() {
+        (format!("--free-width {free}"), "use a smaller ball, or a smaller --clearance")
+    } else {
+        (
+            format!("the pass has cleared {free} mm before the wall, the cutter's diameter"),
+            "use a smaller ball or a smaller --clearance, or say with --free-width how much is free before the wall",
+        )
+    };
+    let expected = format!("{} mm: the ball of {} mm and its clearance", ball.width(), 2.0 * ball.radius);
+    InputError::new("V003", found, expected, help)
+}
+
+fn no_place(kept_off: &BTreeMap<KeptOff, usize>) -> InputError {
+    let reasons: Vec<String> = kept_off.iter().map(|(reason, n)| format!("{n} {}", reason.words())).collect();
+    InputError::new(
+        "V004",
+        format!("no place of the contour may be touched; of those looked at, {}", reasons.join(", ")),
+        "a place where wall and engagement are steady and the ball's way is free",
+        "use a smaller ball or a smaller --clearance, or probe by hand",
+    )
+}

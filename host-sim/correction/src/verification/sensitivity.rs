@@ -1,0 +1,107 @@
+//! What a touch would tell, by the model at what is believed.
+//!
+//! Difference quotients of the predicted readings about the parameters believed: those the job states before anything
+//! is measured, those of the fit afterwards. A machine far from them is probed at places that are a little less telling,
+//! never at wrong ones.
+
+use truepath_core::cut::{ForceTable, Path, State};
+use truepath_core::geometry::{Direction, Vector};
+use truepath_core::identify::{COUNT, Observation, Parameter, PredictionWorkspace, predict};
+use truepath_core::units::{Offset, Real, hypot_nm};
+use truepath_ground::units::{float, mm};
+
+use super::belief::{Belief, of_measurement};
+use super::candidates::Site;
+use super::heights::Height;
+use super::knowledge::Row;
+
+/// What the touches of one place would tell.
+#[derive(Clone, Debug)]
+pub(super) struct Telling {
+    /// Sensitivities of the readings, one row a height.
+    pub(super) rows: Vec<Row>,
+    /// Change of the wall itself, mm, one row a height: without the unknowns of the measurement.
+    pub(super) wall: Vec<Row>,
+}
+
+/// Step of the difference quotients, in standard deviations of what the job states.
+const DIFFERENCE: Real = Real::ratio(1, 32);
+
+/// The telling of every site, in their order. `progress` is told the share done, 0…1.
+pub(super) fn tellings(
+    path: &Path,
+    belief: &Belief,
+    sites: &[Site],
+    heights: &[Height],
+    noise: Offset,
+    progress: &mut dyn FnMut(f64),
+) -> Vec<Telling> {
+    let needed = PredictionWorkspace::needed(path);
+    let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
+    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
+    let blank = |site: &Site, height: &Height| {
+        let height = Real::from_bits((height.fraction * 4_294_967_296.0) as i64);
+        let normal = Direction { x: real(site.normal[0]), y: real(site.normal[1]) };
+        Observation::new(site.s, height, Offset::ZERO, hypot_nm(noise, site.unsteady), normal)
+    };
+    let mut touches: Vec<Observation> =
+        sites.iter().flat_map(|site| heights.iter().map(move |height| blank(site, height))).collect();
+    let mut readings = |touches: &mut [Observation], parameters: &_, table: &ForceTable| {
+        predict(path, table, parameters, |i| belief.commanded(path, i), touches, &mut workspace);
+        touches.iter().map(|o| o.predicted).collect::<Vec<_>>()
+    };
+    let believed = belief.parameters();
+    let table = ForceTable::new(believed.coefficients.size_exponent);
+    let expected = readings(&mut touches, &believed, &table);
+    for (touch, expected) in touches.iter_mut().zip(&expected) {
+        touch.error = *expected;
+    }
+    let deviations: Vec<f64> = touches.iter().map(|o| mm(o.deviation())).collect();
+    let mut rows = vec![[0.0; COUNT]; touches.len()];
+    for (k, parameter) in Parameter::ALL.into_iter().enumerate() {
+        progress(k as f64 / COUNT as f64);
+        let sigma = float(belief.prior.sigma[k]);
+        if sigma == 0.0 {
+            continue;
+        }
+        if of_measurement(parameter) {
+            for ((row, touch), deviation) in rows.iter_mut().zip(&touches).zip(&deviations) {
+                row[k] = sigma / deviation * direct(parameter, touch);
+            }
+            continue;
+        }
+        let mut at = |by: Real| {
+            let moved = belief.displaced(k, by);
+            let exponent = moved.coefficients.size_exponent;
+            let other = (exponent != table.size_exponent()).then(|| ForceTable::new(exponent));
+            readings(&mut touches, &moved, other.as_ref().unwrap_or(&table))
+        };
+        let (above, below) = (at(DIFFERENCE), at(-DIFFERENCE));
+        for (((row, a), b), deviation) in rows.iter_mut().zip(&above).zip(&below).zip(&deviations) {
+            row[k] = mm(*a - *b) / (2.0 * float(DIFFERENCE)) / deviation;
+        }
+    }
+    let telling = |(rows, deviations): (&[Row], &[f64])| {
+        let wall = rows.iter().zip(deviations).map(|(row, deviation)| wall_row(row, *deviation)).collect();
+        Telling { rows: rows.to_vec(), wall }
+    };
+    rows.chunks(heights.len()).zip(deviations.chunks(heights.len())).map(telling).collect()
+}
+
+/// What a unit of an unknown of the measurement does to a reading.
+fn direct(parameter: Parameter, touch: &Observation) -> f64 {
+    match parameter {
+        Parameter::DatumX => -float(touch.normal.x),
+        Parameter::DatumY => -float(touch.normal.y),
+        _ => 1.0,
+    }
+}
+
+fn real(value: f64) -> Real {
+    Real::from_bits((value * 4_294_967_296.0).round() as i64)
+}
+
+/// Change of the wall: in mm, without what acts on the measurement alone.
+fn wall_row(row: &Row, deviation: f64) -> Row {
+    std::array::from_fn(|k| if of_measurement(Parameter::ALL[k]) { 0.0 } else { row[k] * deviation })
+}

@@ -1,0 +1,112 @@
+//! What the user may choose about a verification program, checked before anything is planned.
+
+use std::ops::RangeInclusive;
+
+use truepath_ground::diagnostics::InputError;
+
+/// Choices; lengths in millimetres, feeds in mm/min whatever the unit of the program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Places along the contour, 1…64.
+    pub places: u32,
+    /// Heights at each place, 1…9.
+    pub heights: u32,
+    /// From the ball's surface at the stand-off to the nominal wall, 1…50 mm.
+    pub clearance: f64,
+    /// How far beyond the nominal wall a touch is searched, 0.1…5 mm.
+    pub overtravel: f64,
+    /// From the lowest point of the ball to the floor, 0…50 mm.
+    pub floor_clearance: f64,
+    /// Width of what is free before the wall; the cutter's diameter, which the pass itself has cleared, when not given.
+    pub free_width: Option<f64>,
+    /// Height for moves between places, program coordinates.
+    pub safe_z: Option<f64>,
+    /// Feed of moves that should touch nothing, 1…10,000 mm/min.
+    pub feed_move: f64,
+    /// Feed of the first touch, 1…2,000 mm/min.
+    pub feed_fast: f64,
+    /// Feed of the second touch, 1…500 mm/min.
+    pub feed_slow: f64,
+    /// Number of the probe in the tool table, 1…99,999; without it the operator puts the probe in.
+    pub probe_tool: Option<u32>,
+}
+
+/// What a wall may be off without the ball meeting it before the last approach, mm.
+pub(super) const MARGIN: f64 = 1.0;
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            places: 8,
+            heights: 3,
+            clearance: 2.0,
+            overtravel: 1.0,
+            floor_clearance: 0.5,
+            free_width: None,
+            safe_z: None,
+            feed_move: 1000.0,
+            feed_fast: 300.0,
+            feed_slow: 50.0,
+            probe_tool: None,
+        }
+    }
+}
+
+impl Settings {
+    /// Holds every value against its range.
+    ///
+    /// # Errors
+    /// `V001` at the first that is outside.
+    pub fn check(&self) -> Result<(), InputError> {
+        within("--points", f64::from(self.places), 1.0..=64.0, "")?;
+        within("--heights", f64::from(self.heights), 1.0..=9.0, "")?;
+        within("--clearance", self.clearance, MARGIN..=50.0, " mm")?;
+        within("--overtravel", self.overtravel, 0.1..=5.0, " mm")?;
+        within("--floor-clearance", self.floor_clearance, 0.0..=50.0, " mm")?;
+        within("--free-width", self.free_width.unwrap_or(1.0), 0.1..=10_000.0, " mm")?;
+        within("--safe-z", self.safe_z.unwrap_or(0.0), -4_000.0..=4_000.0, " mm")?;
+        within("--feed-move", self.feed_move, 1.0..=10_000.0, " mm/min")?;
+        within("--feed-fast", self.feed_fast, 1.0..=2_000.0, " mm/min")?;
+        within("--feed-slow", self.feed_slow, 1.0..=500.0, " mm/min")?;
+        within("--probe-tool", f64::from(self.probe_tool.unwrap_or(1)), 1.0..=99_999.0, "")?;
+        if self.feed_slow > self.feed_fast {
+            return Err(InputError::new(
+                "V001",
+                format!("--feed-slow {} is faster than --feed-fast {}", self.feed_slow, self.feed_fast),
+                "a second touch no faster than the first",
+                "exchange the two, or give both",
+            ));
+        }
+        Ok(())
+    }
+}
+
+fn within(option: &str, value: f64, range: RangeInclusive<f64>, unit: &str) -> Result<(), InputError> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let expected = format!("{} to {}{unit}", range.start(), range.end());
+    Err(InputError::new(
+        "V001",
+        format!("{option} is {value}"),
+        expected,
+        format!("give {option} a value in this range"),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_are_in_range_and_what_is_not_is_named() {
+        Settings::default().check().unwrap();
+        let refused = |settings: Settings| settings.check().unwrap_err().to_string();
+        assert_eq!(refused(Settings { places: 0, ..Settings::default() }), "--points is 0; expected 1 to 64");
+        assert_eq!(
+            refused(Settings { overtravel: f64::NAN, ..Settings::default() }),
+            "--overtravel is NaN; expected 0.1 to 5 mm"
+        );
+        assert!(refused(Settings { feed_slow: 400.0, ..Settings::default() }).starts_with("--feed-slow 400 is faster"));
+    }
+}

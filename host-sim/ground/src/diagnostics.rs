@@ -1,0 +1,213 @@
+//! Errors as the user meets them: what was found and where, what was expected, what to do.
+//!
+//! Two kinds exist. An [`InputError`] is the user's to mend (exit code 1) and always says all three; an internal
+//! [`Failure`] is ours (exit code 2). On a terminal an input error is drawn with the offending text underlined, in a
+//! pipe it is the same without colour or box characters, and with `--json` it is one object on standard error:
+//! `{"error":{"code","message","file","line","column","found","expected","help"}}`. In every form the place reads
+//! `file:line:column`, lines and columns counted from 1, columns in characters.
+
+mod source;
+
+use std::ops::Range;
+use std::path::Path;
+use std::{fmt, io};
+
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan};
+use truepath_core::gcode::GcodeError;
+
+pub use source::Source;
+
+/// An error in what the user gave.
+#[derive(Clone, Debug)]
+pub struct InputError(Box<Body>);
+
+#[derive(Clone, Debug)]
+struct Body {
+    code: String,
+    found: String,
+    expected: String,
+    help: String,
+    file: Option<String>,
+    place: Option<(Source, Range<usize>)>,
+    label: Option<String>,
+}
+
+impl InputError {
+    /// `code` is stable; `found` is a clause naming what is there, `expected` a noun phrase (empty when
+    /// `found` says it), `help` an instruction.
+    pub fn new(
+        code: impl Into<String>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self(Box::new(Body {
+            code: code.into(),
+            found: found.into(),
+            expected: expected.into(),
+            help: help.into(),
+            file: None,
+            place: None,
+            label: None,
+        }))
+    }
+    /// The same, pointing at a byte span of a text.
+    #[must_use]
+    pub fn at(mut self, source: &Source, span: Range<usize>) -> Self {
+        self.0.file = Some(source.name().to_owned());
+        self.0.place = Some((source.clone(), span));
+        self
+    }
+    /// The same, naming a file it has no place in.
+    #[must_use]
+    pub fn in_file(mut self, path: &Path) -> Self {
+        self.0.file = Some(path.display().to_string());
+        self
+    }
+    /// The words written beside the underlined text.
+    #[must_use]
+    pub fn labelled(mut self, label: impl Into<String>) -> Self {
+        self.0.label = Some(label.into());
+        self
+    }
+    /// A file that cannot be read (`F001`).
+    pub fn unreadable(path: &Path, error: &io::Error) -> Self {
+        let found = format!("{} cannot be read ({})", path.display(), plain_reason(error));
+        Self::new("F001", found, "a readable file", "check the name and the permissions").in_file(path)
+    }
+    /// A file that cannot be written (`F002`).
+    pub fn unwritable(path: &Path, error: &io::Error) -> Self {
+        let found = format!("{} cannot be written ({})", path.display(), plain_reason(error));
+        Self::new("F002", found, "a writable place", "check that the folder exists and may be written to").in_file(path)
+    }
+    /// The clause naming what was found.
+    pub fn found(&self) -> &str {
+        &self.0.found
+    }
+    /// The stable code.
+    pub fn code(&self) -> &str {
+        &self.0.code
+    }
+    /// An error of a program, with the place the core names.
+    pub fn of_program(source: &Source, error: &GcodeError) -> Self {
+        let sentence = error.kind.to_string();
+        let (found, help) = sentence.split_once("; ").unwrap_or((&sentence, "correct the program"));
+        let span = error.span();
+        Self::new(error.kind.code(), found, "", help).at(source, span.start..span.end())
+    }
+    /// Line and column, both from 1, when the error has a place.
+    pub fn line_column(&self) -> Option<(usize, usize)> {
+        self.0.place.as_ref().map(|(source, span)| source.line_column(span.start))
+    }
+    /// The object printed with `--json`.
+    pub fn to_json(&self) -> serde_json::Value {
+        let place = self.line_column();
+        serde_json::json!({"error": {
+            "code": self.0.code,
+            "message": self.to_string(),
+            "file": self.0.file,
+            "line": place.map(|p| p.0),
+            "column": place.map(|p| p.1),
+            "found": self.0.found,
+            "expected": (!self.0.expected.is_empty()).then_some(&self.0.expected),
+            "help": self.0.help,
+        }})
+    }
+}
+
+/// The sentence without its place and without the help: what was found; what was expected.
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.found)?;
+        if self.0.expected.is_empty() { Ok(()) } else { write!(f, "; expected {}", self.0.expected) }
+    }
+}
+
+impl std::error::Error for InputError {}
+
+impl miette::Diagnostic for InputError {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(format!("error[{}]", self.0.code)))
+    }
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(&self.0.help))
+    }
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let (source, span) = self.0.place.as_ref()?;
+        let span = source.readable_span(span);
+        Some(Box::new(std::iter::once(LabeledSpan::new(self.0.label.clone(), span.start, span.len()))))
+    }
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        self.0.place.as_ref().map(|(source, _)| source as &dyn miette::SourceCode)
+    }
+}
+
+/// Why a command did not do its work.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The user's to mend: exit code 1.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A wrong command line, with the text that explains it: exit code 1.
+    #[error("{0}")]
+    Usage(String),
+    /// A fault of the program: exit code 2.
+    #[error("internal error: {0}")]
+    Internal(String),
+}
+
+impl Failure {
+    /// 1 for wrong input, 2 for an internal error.
+    pub const fn exit_code(&self) -> u8 {
+        match self {
+            Self::Input(_) | Self::Usage(_) => 1,
+            Self::Internal(_) => 2,
+        }
+    }
+
+    /// What is printed on standard error, ending in a line feed.
+    pub fn render(&self, form: Form) -> String {
+        match (self, form) {
+            (Self::Input(error), Form::Json) => format!("{}\n", error.to_json()),
+            (Self::Internal(message), Form::Json) => {
+                let error = serde_json::json!({"error": {
+                    "code": "X001", "message": self.to_string(), "file": null, "line": null, "column": null,
+                    "found": message, "expected": null, "help": REPORT_IT}});
+                format!("{error}\n")
+            }
+            (Self::Usage(text), _) => text.clone(),
+            (Self::Internal(_), _) => format!("error[X001]: {self}\n  help: {REPORT_IT}\n"),
+            (Self::Input(error), Form::Colour) => drawn(error, GraphicalTheme::unicode(), 120),
+            (Self::Input(error), Form::Plain) => drawn(error, GraphicalTheme::none(), 1000),
+        }
+    }
+}
+
+const REPORT_IT: &str = "this is a fault of the program: please report it with the command and its input files";
+
+/// How an error is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Drawn, for a terminal.
+    Colour,
+    /// The same without colour and without box characters.
+    Plain,
+    /// One JSON object on one line.
+    Json,
+}
+
+fn drawn(error: &InputError, theme: GraphicalTheme, width: usize) -> String {
+    let mut text = String::new();
+    let handler = GraphicalReportHandler::new_themed(theme).with_links(false).with_width(width);
+    // Formatting into a String cannot fail; a report that did would still leave the sentence.
+    if handler.render_report(&mut text, error).is_err() {
+        text = format!("{error}\n");
+    }
+    text
+}
+
+/// The operating system's reason without its number.
+fn plain_reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_lowercase()
+}

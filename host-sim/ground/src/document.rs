@@ -1,0 +1,300 @@
+//! A job file before its values mean anything: tables, keys and source spans.
+//!
+//! A [`Section`] hands out the values of one table by key and remembers which keys were asked for; what is left over
+//! when the section is [`closed`](Section::close) is an unknown key. Every value's span is kept, so that layers above
+//! can point at it later.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::decimal::Decimal;
+use super::limits::Limits;
+use crate::diagnostics::{InputError, Source};
+
+/// Where the value of a key stands; keys are written with their table, `tool.diameter_mm`.
+pub type Spans = BTreeMap<String, Range<usize>>;
+
+/// One table of the file.
+pub struct Section<'d> {
+    source: &'d Source,
+    name: &'static str,
+    span: Range<usize>,
+    table: &'d DeTable<'d>,
+    asked: RefCell<Vec<&'static str>>,
+    spans: &'d RefCell<Spans>,
+}
+
+/// A value with its place.
+pub struct Value<'d> {
+    /// Its key with the table, `tool.diameter_mm`.
+    pub path: String,
+    /// Its bytes in the file.
+    pub span: Range<usize>,
+    /// As it was read.
+    pub raw: &'d DeValue<'d>,
+}
+
+impl<'d> Section<'d> {
+    /// The table outside of any other; the places of its values go to `spans`.
+    pub fn root(source: &'d Source, table: &'d Spanned<DeTable<'d>>, spans: &'d RefCell<Spans>) -> Self {
+        Self { source, name: "", span: 0..0, table: table.get_ref(), asked: RefCell::default(), spans }
+    }
+
+    fn path(&self, key: &str) -> String {
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+    }
+
+    /// The value of a key, if it is there.
+    pub fn value(&self, key: &'static str) -> Option<Value<'d>> {
+        self.asked.borrow_mut().push(key);
+        let value = self.table.get(key)?;
+        let path = self.path(key);
+        self.spans.borrow_mut().insert(path.clone(), value.span());
+        Some(Value { path, span: value.span(), raw: value.get_ref() })
+    }
+
+    /// A sub-table, if it is there.
+    pub fn section(&self, key: &'static str) -> Result<Option<Section<'d>>, InputError> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        let Some(table) = value.raw.as_table() else {
+            return Err(self.wrong_type(&value, "a table", &format!("write it as [{key}] with one key a line")));
+        };
+        Ok(Some(Section {
+            source: self.source,
+            name: key,
+            span: value.span,
+            table,
+            asked: RefCell::default(),
+            spans: self.spans,
+        }))
+    }
+
+    /// The tables of a list written as `[[key]]`, in order.
+    pub fn sections(&self, key: &'static str) -> Result<Vec<Section<'d>>, InputError> {
+        let Some(value) = self.value(key) else { return Ok(Vec::new()) };
+        let help = format!("write every one of them as [[{key}]] with one key a line");
+        let Some(list) = value.raw.as_array() else { return Err(self.wrong_type(&value, "a list of tables", &help)) };
+        let table = |entry: &'d Spanned<DeValue<'d>>| {
+            let Some(table) = entry.get_ref().as_table() else {
+                return Err(self.wrong_type(&value, "a list of tables", &help));
+            };
+            let (source, spans) = (self.source, self.spans);
+            Ok(Section { source, name: key, span: entry.span(), table, asked: RefCell::default(), spans })
+        };
+        list.iter().map(table).collect()
+    }
+
+    /// A sub-table that must be there; `needs` lists what belongs in it.
+    pub fn required_section(&self, key: &'static str, needs: &str) -> Result<Section<'d>, InputError> {
+        match self.section(key)? {
+            Some(section) => Ok(section),
+            None => Err(self.missing_or_misspelt(
+                key,
+                format!("[{key}] is missing"),
+                &format!("a table [{key}]"),
+                format!("add [{key}] with {needs}"),
+                self.end(),
+            )),
+        }
+    }
+
+    /// A number within limits, if the key is there.
+    pub fn number(&self, key: &'static str, limits: Limits) -> Result<Option<Decimal>, InputError> {
+        self.value(key).map(|value| self.number_in(&value, limits)).transpose()
+    }
+
+    /// A number within limits that must be there.
+    pub fn required_number(&self, key: &'static str, limits: Limits) -> Result<Decimal, InputError> {
+        self.number(key, limits)?.ok_or_else(|| self.missing(key, &format!("a number, {}", limits.phrase())))
+    }
+
+    /// The number a value holds.
+    pub fn number_in(&self, value: &Value<'_>, limits: Limits) -> Result<Decimal, InputError> {
+        let text = match value.raw {
+            DeValue::Integer(i) if i.radix() == 10 => i.as_str().to_owned(),
+            DeValue::Float(f) => f.as_str().to_owned(),
+            _ => {
+                let help =
+                    if value.raw.is_str() { "remove the quotation marks" } else { "write a plain decimal number" };
+                return Err(self.wrong_type(value, &format!("a number, {}", limits.phrase()), help));
+            }
+        };
+        let number = Decimal::parse(&text);
+        match number {
+            Some(n) if limits.admits(n) => Ok(n),
+            Some(_) => Err(self.out_of_range(
+                value,
+                &limits.phrase(),
+                "check the value and its unit: the key's name carries it",
+            )),
+            None => {
+                Err(self.out_of_range(value, &limits.phrase(), "write a plain decimal number with at most 36 digits"))
+            }
+        }
+    }
+
+    /// A whole number within limits, if the key is there.
+    pub fn whole<T: TryFrom<i64>>(
+        &self,
+        key: &'static str,
+        limits: Limits,
+        help: &str,
+    ) -> Result<Option<T>, InputError> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        let whole = self.number_in(&value, limits)?.as_whole().and_then(|n| T::try_from(n).ok());
+        let expected = || format!("a whole number, {}", limits.phrase());
+        whole.map(Some).ok_or_else(|| self.out_of_range(&value, &expected(), help))
+    }
+
+    /// A text, if the key is there.
+    pub fn text(&self, key: &'static str) -> Result<Option<(&'d str, Value<'d>)>, InputError> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        match value.raw.as_str() {
+            Some(text) => Ok(Some((text, value))),
+            None => Err(self.wrong_type(&value, "a text in quotation marks", "put the value between quotation marks")),
+        }
+    }
+
+    /// One of a list of names, if the key is there.
+    pub fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Result<Option<T>, InputError> {
+        let Some((text, value)) = self.text(key)? else { return Ok(None) };
+        match choices.iter().find(|(name, _)| *name == text) {
+            Some((_, choice)) => Ok(Some(*choice)),
+            None => {
+                let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+                let help = match nearest(text, &names) {
+                    Some(name) => format!("did you mean \"{name}\"?"),
+                    None => "write one of these names exactly".to_owned(),
+                };
+                Err(InputError::new("J007", format!("{} is \"{text}\"", value.path), one_of(&names), help)
+                    .at(self.source, value.span))
+            }
+        }
+    }
+
+    /// An error at a value that is well formed but not allowed.
+    pub fn out_of_range(&self, value: &Value<'_>, expected: &str, help: &str) -> InputError {
+        let found = format!("{} is {}", value.path, self.source.excerpt(value.span.clone()));
+        InputError::new("J006", found, expected, help).at(self.source, value.span.clone())
+    }
+
+    /// An error at a value that another one excludes.
+    pub fn contradiction(&self, value: &Value<'_>, found: &str, expected: &str, help: &str) -> InputError {
+        InputError::new("J008", found, expected, help).at(self.source, value.span.clone())
+    }
+
+    /// An error at a value of the wrong type.
+    pub fn wrong_type(&self, value: &Value<'_>, expected: &str, help: &str) -> InputError {
+        let article = match value.raw.type_str() {
+            kind @ ("integer" | "array") => format!("an {kind}"),
+            "string" => "a text".to_owned(),
+            "datetime" => "a date".to_owned(),
+            kind => format!("a {kind}"),
+        };
+        InputError::new("J005", format!("{} is {article}", value.path), expected, help)
+            .at(self.source, value.span.clone())
+    }
+
+    /// The error of a key that must be there.
+    pub fn missing(&self, key: &'static str, expected: &str) -> InputError {
+        let place =
+            if self.name.is_empty() { "at the top of the file".to_owned() } else { format!("under [{}]", self.name) };
+        self.missing_or_misspelt(
+            key,
+            format!("{} is missing", self.path(key)),
+            expected,
+            format!("add {key} {place}"),
+            self.span.clone(),
+        )
+    }
+
+    /// Points at a key nobody knows whose name is close to the missing one, else at `place`.
+    fn missing_or_misspelt(
+        &self,
+        key: &'static str,
+        found: String,
+        expected: &str,
+        help: String,
+        place: Range<usize>,
+    ) -> InputError {
+        let misspelt = self.table.keys().find(|k| nearest(k.get_ref(), &[key]).is_some());
+        let (help, place) = match misspelt {
+            Some(k) => (format!("did you mean {key} where {} is written?", k.get_ref()), k.span()),
+            None => (help, place),
+        };
+        InputError::new("J004", found, expected, help).at(self.source, place)
+    }
+
+    /// Ends the reading of this table.
+    ///
+    /// # Errors
+    /// `J003` at the first key nobody asked for.
+    pub fn close(&self) -> Result<(), InputError> {
+        let asked = self.asked.borrow();
+        let unknown =
+            self.table.keys().filter(|key| !asked.contains(&key.get_ref().as_ref())).min_by_key(|key| key.span().start);
+        let Some(key) = unknown else { return Ok(()) };
+        let (name, place) = (
+            key.get_ref(),
+            if self.name.is_empty() { "the top of the file".to_owned() } else { format!("[{}]", self.name) },
+        );
+        let help = match nearest(name, &asked) {
+            Some(known) => format!("did you mean {known}?"),
+            None => "remove it, or correct its name".to_owned(),
+        };
+        let mut known = asked.clone();
+        known.sort_unstable();
+        known.dedup();
+        Err(InputError::new("J003", format!("{name} is no key of {place}"), one_of(&known), help)
+            .at(self.source, key.span()))
+    }
+
+    /// The text of the file at a span.
+    pub fn text_at(&self, span: Range<usize>) -> String {
+        self.source.excerpt(span)
+    }
+
+    fn end(&self) -> Range<usize> {
+        let end = self.source.bytes().len();
+        let trimmed = self.source.bytes().iter().rposition(|b| !b.is_ascii_whitespace()).map_or(end, |last| last + 1);
+        trimmed..trimmed
+    }
+}
+
+fn one_of(names: &[&str]) -> String {
+    match names {
+        [only] => (*only).to_owned(),
+        _ => format!("one of {}", names.join(", ")),
+    }
+}
+
+/// The known name closest to a mistyped one, when it is close at all (a third of its letters).
+fn nearest<'n>(text: &str, names: &[&'n str]) -> Option<&'n str> {
+    let text = text.to_lowercase();
+    let distance = |name: &str| edit_distance(&text, &name.to_lowercase());
+    let best = names.iter().min_by_key(|name| distance(name))?;
+    (distance(best) * 3 <= best.len().max(text.len())).then_some(best)
+}
+
+/// Letters inserted, left out, changed or swapped with their neighbour between two words.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+    let mut rows: Vec<Vec<usize>> = vec![(0..=b.len()).collect()];
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let mut cost =
+                (rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1])).min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                cost = cost.min(rows[i - 2][j - 2] + 1);
+            }
+            row.push(cost);
+        }
+        rows.push(row);
+    }
+    rows[a.len()][b.len()]
+}

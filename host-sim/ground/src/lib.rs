@@ -1,0 +1,16 @@
+//! What every room of the host stands on: units at the edge of the fixed-point core, errors with their place in a file,
+//! files read and written whole, and the notation of the TOML files a user writes.
+//!
+//! Lowest room of the host; it knows the core's units and nothing of milling.
+
+pub mod beside;
+pub mod decimal;
+pub mod diagnostics;
+pub mod document;
+pub mod library;
+pub mod limits;
+pub mod notation;
+pub mod output;
+pub mod sheet;
+pub mod table;
+pub mod units;

@@ -1,0 +1,19 @@
+//! Fixed-point quantities of the core as floating-point numbers, for reports and the virtual machine.
+
+use truepath_core::units::{Offset, Real};
+
+/// Millimetres of a length.
+pub const fn mm(v: Offset) -> f64 {
+    v.nm() as f64 / 1e6
+}
+
+/// A number of the model, in its own unit.
+pub const fn float(v: Real) -> f64 {
+    v.bits() as f64 / 4_294_967_296.0
+}
+
+/// A value rounded to so many decimals: nanometres and nanoradians are enough for any reader.
+pub fn rounded(v: f64, digits: i32) -> f64 {
+    let scale = 10f64.powi(digits);
+    (v * scale).round() / scale
+}

@@ -1,0 +1,3 @@
+//! Files written whole or not at all.
+
+mod output_files;

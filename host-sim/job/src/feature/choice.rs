@@ -1,0 +1,116 @@
+//! Which of several features a command is about.
+
+use std::ops::Range;
+
+use truepath_core::gcode::{Found, LineRange, Role};
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+
+use super::listing::{listed, rows};
+use super::region::{Origin, Region};
+use super::survey::Survey;
+use crate::job::{FeatureRole, Job};
+
+/// The feature named by the user, or the only one that can be meant.
+pub(super) fn chosen<'r>(job: &Job, regions: &'r [Region], survey: &Survey) -> Result<&'r Region, Failure> {
+    let region = match &job.which.feature {
+        Some(id) => named(regions, id)?,
+        None => only(job, regions, survey)?,
+    };
+    if region.role != FeatureRole::Finish {
+        let found = format!("{} is not a finishing cut", region.name());
+        let help = "roughing, semi-finishing and spring passes stay as they are; name a feature with role = \"finish\"";
+        return Err(region.error(InputError::new("N011", found, "a feature to be corrected", help)).into());
+    }
+    if let (Some(tool), Some(cutter)) = (region.tool, job.numbers.tool.number)
+        && tool != cutter
+    {
+        let found = format!("{} is cut with tool {tool}, and [tool] describes number {cutter}", region.name());
+        let help = "give the feature a job of its own with its cutter in [tool], or correct one of the two numbers";
+        return Err(region.tool_error(InputError::new("J008", found, "the same tool in both", help)).into());
+    }
+    Ok(region)
+}
+
+fn named<'r>(regions: &'r [Region], id: &str) -> Result<&'r Region, Failure> {
+    if let Some(region) = regions.iter().find(|r| r.id.as_deref() == Some(id)) {
+        return Ok(region);
+    }
+    let known: Vec<&str> = regions.iter().filter_map(|r| r.id.as_deref()).collect();
+    let (expected, help) = if known.is_empty() {
+        ("a program with markers, or a job with [[feature]]".to_owned(), "leave --feature out: the program is searched")
+    } else {
+        (format!("one of {}", known.join(", ")), "write one of these names exactly")
+    };
+    Err(InputError::new("N002", format!("there is no feature \"{id}\""), expected, help).into())
+}
+
+fn only<'r>(job: &Job, regions: &'r [Region], survey: &Survey) -> Result<&'r Region, Failure> {
+    if let [only] = regions {
+        return Ok(only);
+    }
+    let finishing: Vec<&Region> = regions.iter().filter(|r| r.role == FeatureRole::Finish).collect();
+    let cutter = job.numbers.tool.number;
+    let fits = |r: &&Region| cutter.is_some() && tool(r, survey) == cutter;
+    let fitting: Vec<_> = finishing.iter().copied().filter(fits).collect();
+    match (&finishing[..], &fitting[..]) {
+        ([only], _) | (_, [only]) => Ok(only),
+        ([], _) => {
+            let help = "give the cut to be corrected role = \"finish\"";
+            Err(InputError::new("N011", "no feature is a finishing cut", "a feature to be corrected", help)
+                .at(job.source(), job.span("feature"))
+                .into())
+        }
+        _ => {
+            let mut found = format!("{} features can be corrected, one at a time:", finishing.len());
+            for region in &finishing {
+                let runs = region.lines.map(|lines| survey.within(lines)).unwrap_or_default();
+                let table = rows(&runs, 0.0);
+                let tool = tool(region, survey).map_or_else(String::new, |t| format!(", tool {t}"));
+                let lines = region.lines.unwrap_or(LineRange { first: 1, last: 1 });
+                let length: f64 = table.iter().map(|r| r.length_mm).sum();
+                found += &format!(
+                    "\n  {}{tool}, lines {}-{}, {} runs of cutting moves, {length:.3} mm",
+                    region.name(),
+                    lines.first,
+                    lines.last,
+                    runs.len()
+                );
+            }
+            let help = "add --feature and one of these names; each of them is a correction of its own";
+            Err(InputError::new("N001", found, "", help).into())
+        }
+    }
+}
+
+/// The tool of a feature, as named or as the program has it.
+fn tool(region: &Region, survey: &Survey) -> Option<u32> {
+    region.tool.or_else(|| survey.within(region.lines?).first()?.run.tool)
+}
+
+/// The error of a region that holds several finishing contours.
+pub(super) fn ambiguous(region: &Region, program: &Source, runs: &[Found], count: u32, allowance_mm: f64) -> Failure {
+    let table = rows(runs, allowance_mm);
+    let walls = table.iter().filter(|r| r.role == "finish");
+    let others = table.iter().filter(|r| r.role != "finish");
+    let rest = match others.clone().count() {
+        0 => String::new(),
+        n => format!("\nbesides {n} other runs:{}", listed(others)),
+    };
+    let found = format!("{count} finishing contours in {}, one is needed:{}{rest}", region.name(), listed(walls));
+    let help = "name one: [[feature]] with id and blocks (or lines) in the job, or (TRUEPATH BEGIN id) … (TRUEPATH END) around it in the program; a pocket and its island are two features";
+    let error = InputError::new(if region.origin == Origin::Search { "G071" } else { "N010" }, found, "", help);
+    if region.origin != Origin::Search {
+        return region.error(error).into();
+    }
+    let second = runs.iter().find(|f| matches!(f.role, Role::Finish { contour: 2, .. }));
+    let line = second.map_or(1, |f| f.run.lines.first);
+    error.at(program, line_span(program, line)).into()
+}
+
+/// A line without its end.
+fn line_span(program: &Source, line: u32) -> Range<usize> {
+    let start = program.span_at(line, 1, 0).start;
+    let rest = program.bytes().get(start..).unwrap_or_default();
+    let len = rest.iter().take_while(|b| !matches!(b, b'\n' | b'\r')).count();
+    start..start + len
+}

@@ -1,0 +1,174 @@
+//! From tables and keys to a [`Job`]: presence, ranges, choices and contradictions.
+
+use std::cell::RefCell;
+use std::path::Path;
+
+use truepath_core::gcode::{Dialect, PointlessLength};
+use truepath_core::geometry::Side;
+use truepath_core::job::{Cut, Force, ForceModel, Machine};
+use truepath_core::units::{Offset, Real};
+use truepath_ground::decimal::Decimal;
+use truepath_ground::diagnostics::{InputError, Source};
+use truepath_ground::document::{Section, Spans};
+use truepath_ground::limits::Limits;
+use truepath_ground::notation;
+
+use super::check_correct::correct;
+use super::check_feature::features;
+use super::check_feed::feed;
+use super::check_part::part;
+use super::check_pocket::{Mode, pocket};
+use super::check_probe::probe;
+use super::check_stock::{Stock, stock};
+use super::check_tool::{reach, tool};
+use super::material::MATERIALS;
+use super::{Job, Which};
+
+/// The stiffest machine a job can state; where none is stated only the cutter bends.
+const RIGID: Machine = Machine { stiffness_x: Real::from_int(1_000_000), stiffness_y: Real::from_int(1_000_000) };
+
+/// Names of the controls a program may be written for.
+const DIALECTS: [(&str, Dialect); 5] = [
+    ("linuxcnc", Dialect::Linuxcnc),
+    ("fanuc", Dialect::Fanuc),
+    ("haas", Dialect::Haas),
+    ("siemens", Dialect::Siemens),
+    ("mach", Dialect::Mach),
+];
+
+/// What a length without a point may be.
+const DECIMALS: [(&str, PointlessLength); 2] =
+    [("calculator", PointlessLength::Calculator), ("least", PointlessLength::Least)];
+
+/// Reads the whole job.
+pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
+    let table = notation::parse(&source, "the job file")?;
+    let spans = RefCell::new(Spans::new());
+    let root = Section::root(&source, &table, &spans);
+    notation::version(&source, &root)?;
+    let program = root.text("program")?.ok_or_else(|| root.missing("program", "the file name of a G-code program"))?;
+    if program.0.is_empty() {
+        return Err(root.out_of_range(
+            &program.1,
+            "the file name of a G-code program",
+            "name the program, relative to this file",
+        ));
+    }
+    let wall = root.choice("wall", &[("left", Side::Left), ("right", Side::Right)])?;
+    let dialect = root.choice("dialect", &DIALECTS)?.unwrap_or_default();
+    let decimal = root.choice("decimal", &DECIMALS)?.unwrap_or_default();
+    let tool_section = root.required_section("tool", "diameter_mm, teeth and helix_deg")?;
+    let (tool, shank) = tool(&source, &tool_section)?;
+    let features = features(&source, &root, tool.diameter)?;
+    let pocket = root.section("pocket")?.map(|section| pocket(&section)).transpose()?;
+    let stock = match root.section("stock")? {
+        // A slot is cut at full immersion: there is no allowance to state.
+        None if pocket.is_some_and(|p| p.mode == Mode::Slot) => Stock::of_a_slot(tool.diameter),
+        _ => stock(&root.required_section("stock", "allowance_mm")?, tool.diameter)?,
+    };
+    let cut = cut(&root.required_section("cut", "axial_depth_mm")?)?;
+    reach(&source, &tool_section, (&tool, &shank), &cut)?;
+    let force = force(&source, &root.required_section("force", "the four coefficients, or material = \"steel-40\"")?)?;
+    let probe = root.section("probe")?.map(|section| probe(&source, &section)).transpose()?;
+    let (machine, backlash) = match root.section("machine")? {
+        // Without a probe a pocket may be compensated for the cutter alone.
+        None if pocket.is_some() && probe.is_none() => (RIGID, [Offset::ZERO; 2]),
+        _ => machine(&root.required_section("machine", "stiffness_x_n_per_mm and stiffness_y_n_per_mm")?)?,
+    };
+    let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
+    let feed = feed(root.section("feed")?.as_ref())?;
+    let part = part(&source, root.section("part")?.as_ref())?;
+    root.close()?;
+    let program = folder.join(program.0);
+    let Stock { allowance, surface } = stock;
+    let surface = surface.map(|name| folder.join(name));
+    drop(root);
+    Ok(Job {
+        program,
+        numbers: truepath_core::job::Job {
+            dialect,
+            decimal,
+            wall,
+            allowance,
+            tool,
+            cut,
+            force,
+            machine,
+            probe,
+            correct,
+            part: None,
+        },
+        backlash,
+        tolerance: writing.tolerance,
+        max_arc_radius: writing.max_arc_radius,
+        max_kink_deg: writing.max_kink_deg,
+        route: writing.route,
+        feed,
+        part,
+        pocket,
+        shank,
+        surface,
+        features,
+        which: Which::default(),
+        spans: spans.into_inner(),
+        source: source.clone(),
+    })
+}
+
+fn cut(section: &Section<'_>) -> Result<Cut, InputError> {
+    let axial_depth = section.required_number("axial_depth_mm", Limits::above("0", "200", "mm"))?.as_mm();
+    let spindle_rpm = section.number("spindle_rpm", Limits::within("1", "200000", "rev/min"))?.map(Decimal::as_real);
+    let feed_mm_per_min =
+        section.number("feed_mm_per_min", Limits::within("0.1", "100000", "mm/min"))?.map(Decimal::as_real);
+    section.close()?;
+    Ok(Cut { axial_depth, spindle_rpm, feed_mm_per_min })
+}
+
+fn force(source: &Source, section: &Section<'_>) -> Result<Force, InputError> {
+    const MODELS: [(&str, ForceModel); 3] =
+        [("auto", ForceModel::Auto), ("helical", ForceModel::Helical), ("mean", ForceModel::Mean)];
+    const KEYS: [&str; 4] = ["ktc_n_per_mm2", "krc_n_per_mm2", "kte_n_per_mm", "kre_n_per_mm"];
+    let model = section.choice("model", &MODELS)?.unwrap_or(ForceModel::Auto);
+    let materials: Vec<(&str, usize)> = MATERIALS.iter().enumerate().map(|(i, m)| (m.name, i)).collect();
+    let Some(index) = section.choice("material", &materials)? else {
+        let ktc = section.required_number(KEYS[0], Limits::above("0", "20000", "N/mm²"))?.as_real();
+        let krc = section.required_number(KEYS[1], Limits::within("0", "20000", "N/mm²"))?.as_real();
+        let edge = Limits::within("0", "500", "N/mm");
+        let kte = section.required_number(KEYS[2], edge)?.as_real();
+        let kre = section.required_number(KEYS[3], edge)?.as_real();
+        section.close()?;
+        return Ok(Force { ktc, krc, kte, kre, model });
+    };
+    if let Some(value) = KEYS.into_iter().find_map(|key| section.value(key)) {
+        let found = format!("{} is given as well as force.material", value.path);
+        let help = "remove material to use your own coefficients, or remove the coefficients";
+        return Err(
+            InputError::new("J008", found, "either a material or the four coefficients", help).at(source, value.span)
+        );
+    }
+    section.close()?;
+    let [ktc, krc, kte, kre] =
+        MATERIALS[index].coefficients.map(|text| Decimal::parse(text).map_or(Real::ZERO, Decimal::as_real));
+    Ok(Force { ktc, krc, kte, kre, model })
+}
+
+/// Stiffness, and the backlash of both axes.
+fn machine(section: &Section<'_>) -> Result<(Machine, [Offset; 2]), InputError> {
+    let stiffness = Limits::within("10", "1000000", "N/mm");
+    let machine = Machine {
+        stiffness_x: section.required_number("stiffness_x_n_per_mm", stiffness)?.as_real(),
+        stiffness_y: section.required_number("stiffness_y_n_per_mm", stiffness)?.as_real(),
+    };
+    let backlash = |key| {
+        let number = section.number(key, Limits::within("0", "1", "mm"))?;
+        Ok::<_, InputError>(number.map_or(Offset::ZERO, Decimal::as_mm))
+    };
+    let backlash = [backlash("backlash_x_mm")?, backlash("backlash_y_mm")?];
+    section.close()?;
+    Ok((machine, backlash))
+}
+
+/// Millimetres as a person writes them.
+pub(super) fn text_of(length: Offset) -> String {
+    format!("{}", length.nm() as f64 / 1e6)
+}

@@ -1,0 +1,54 @@
+//! The `[stock]` table: an even allowance, or the surface that the pass before left.
+
+use truepath_core::units::Offset;
+use truepath_ground::decimal::Decimal;
+use truepath_ground::diagnostics::InputError;
+use truepath_ground::document::Section;
+use truepath_ground::limits::Limits;
+
+use super::check::text_of;
+
+/// What the table says.
+pub(super) struct Stock {
+    /// The nominal allowance; where only a surface is given, a fifth of the diameter until the surface has been read.
+    pub(super) allowance: Offset,
+    /// File of the actual surface.
+    pub(super) surface: Option<String>,
+}
+
+impl Stock {
+    /// Before a slot: the whole of the cutter is in the material, half of it towards either wall.
+    pub(super) const fn of_a_slot(diameter: Offset) -> Self {
+        Self { allowance: Offset::from_nm(diameter.nm() / 2), surface: None }
+    }
+}
+
+/// What the table says.
+pub(super) fn stock(section: &Section<'_>, diameter: Offset) -> Result<Stock, InputError> {
+    let limits = Limits::above("0", "100", "mm");
+    let surface = section.text("surface")?;
+    let Some(value) = section.value("allowance_mm") else {
+        let Some((name, place)) = surface else {
+            return Err(section.missing("allowance_mm", &format!("a number, {}, or surface", limits.phrase())));
+        };
+        if name.is_empty() {
+            let expected = "the file name of a table with the columns x_mm and y_mm";
+            return Err(section.out_of_range(&place, expected, "name the surface, relative to this file"));
+        }
+        section.close()?;
+        return Ok(Stock { allowance: Offset::from_nm(diameter.nm() / 5), surface: Some(name.to_owned()) });
+    };
+    let allowance = section.number_in(&value, limits).map(Decimal::as_mm)?;
+    if let Some((_, place)) = surface {
+        let found = "stock.surface is given as well as stock.allowance_mm";
+        let help = "remove allowance_mm: it follows from the surface";
+        return Err(section.contradiction(&place, found, "an even allowance or an actual surface", help));
+    }
+    if allowance >= diameter {
+        let expected = format!("less than the cutter's diameter, {} mm", text_of(diameter));
+        let help = "take the stock off in more passes, or correct tool.diameter_mm";
+        return Err(section.out_of_range(&value, &expected, help));
+    }
+    section.close()?;
+    Ok(Stock { allowance, surface: None })
+}

@@ -1,0 +1,91 @@
+//! The `[tool]` table.
+
+use truepath_core::cut::ToolMaterial;
+use truepath_core::job::{Compensation, Cut, Stickout, Tool};
+use truepath_ground::decimal::Decimal;
+use truepath_ground::diagnostics::{InputError, Source};
+use truepath_ground::document::Section;
+use truepath_ground::limits::Limits;
+
+use super::check::text_of;
+use super::check_shank::{Shank, shank, within_stickout};
+
+/// Where numbers of tools and their offsets come from.
+const TABLE: &str = "take the number from the tool table of the control";
+
+/// What the table says of the cutter, and of its shape as a beam.
+pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<(Tool, Shank), InputError> {
+    let diameter = section.required_number("diameter_mm", Limits::within("0.1", "100", "mm"))?.as_mm();
+    let measured = section.value("measured_diameter_mm");
+    let measured_diameter = match &measured {
+        None => None,
+        Some(value) => {
+            let measured = section.number_in(value, Limits::within("0.1", "110", "mm"))?.as_mm();
+            if (measured - diameter).abs().nm() > diameter.nm() / 10 {
+                let expected = format!("a diameter within 10 % of diameter_mm, {} mm", text_of(diameter));
+                return Err(section.out_of_range(value, &expected, "check which of the two is mistyped"));
+            }
+            Some(measured)
+        }
+    };
+    let limits = Limits::within("1", "12", "");
+    let Some(teeth) = section.whole("teeth", limits, "count the cutter's teeth")? else {
+        return Err(section.missing("teeth", "a whole number, 1 to 12"));
+    };
+    let number = section.whole("number", Limits::within("1", "99999", ""), TABLE)?;
+    let offset_number = section.whole("offset_number", Limits::within("0", "99999", ""), TABLE)?.unwrap_or(0);
+    let helix_deg = section.required_number("helix_deg", Limits::within("0", "60", "degrees"))?.as_real();
+    let stickout = section.number("stickout_mm", Limits::above("0", "500", "mm"))?.map(Decimal::as_mm);
+    let materials = [("HSS", ToolMaterial::HighSpeedSteel), ("carbide", ToolMaterial::Carbide)];
+    let material = section.choice("material", &materials)?;
+    let cantilever = match (stickout, material) {
+        (Some(length), Some(material)) => Some(Stickout { length, material }),
+        (None, None) => None,
+        (given, _) => {
+            let (there, other) =
+                if given.is_some() { ("stickout_mm", "material") } else { ("material", "stickout_mm") };
+            let place = section.value(there).map_or(0..0, |v| v.span);
+            let help = format!("add {other}, or remove {there}");
+            let found = format!("tool.{there} is given without tool.{other}");
+            return Err(InputError::new(
+                "J008",
+                found,
+                "both or neither: the cutter's own compliance needs both",
+                help,
+            )
+            .at(source, place));
+        }
+    };
+    let choices = [("centre", Compensation::Centre), ("radius", Compensation::Radius)];
+    let compensation = section.choice("compensation", &choices)?.unwrap_or_default();
+    let shank = shank(section)?;
+    section.close()?;
+    let tool = Tool { diameter, measured_diameter, teeth, helix_deg, cantilever, number, offset_number, compensation };
+    within_stickout(section, &tool, &shank)?;
+    Ok((tool, shank))
+}
+
+/// The cutter must stick out, and have flutes, at least as far as it cuts deep.
+pub(super) fn reach(
+    source: &Source,
+    section: &Section<'_>,
+    (tool, shank): (&Tool, &Shank),
+    cut: &Cut,
+) -> Result<(), InputError> {
+    if let (Some(length), Some(value)) = (shank.flute_length, section.value("flute_length_mm"))
+        && length < cut.axial_depth
+    {
+        let expected = format!("at least cut.axial_depth_mm, {} mm", text_of(cut.axial_depth));
+        let help = "flutes shorter than the cut is deep do not cut at its top: correct one of them";
+        return Err(section.contradiction(&value, "the flutes are shorter than the cut is deep", &expected, help));
+    }
+    match (tool.cantilever, section.value("stickout_mm")) {
+        (Some(c), Some(value)) if c.length < cut.axial_depth => {
+            let expected = format!("at least cut.axial_depth_mm, {} mm", text_of(cut.axial_depth));
+            let found = format!("tool.stickout_mm is {}", source.excerpt(value.span.clone()));
+            Err(InputError::new("J008", found, expected, "measure from the collet to the cutter's tip")
+                .at(source, value.span))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,223 @@
+//! The job file: what is cut, with what, how it is probed and how it is to be corrected.
+//!
+//! Reading has two stages. `document` turns the text into tables, keys and spans; `check` turns those into a [`Job`]
+//! in which every quantity is in range, in the units of the core, and every choice is made. Lengths come out as exact
+//! nanometres of the decimal text. Unknown keys are errors. Every error names file, line and column, what was found,
+//! what was expected and what to do; the codes are
+//!
+//! | code | meaning |
+//! |---|---|
+//! | J001 | a file named by the job cannot be read |
+//! | J002 | not TOML |
+//! | J003 | unknown key |
+//! | J004 | missing key or table |
+//! | J005 | value of the wrong type |
+//! | J006 | value out of range |
+//! | J007 | unknown name |
+//! | J008 | keys that contradict each other |
+//! | J009 | recognised, not supported |
+//! | J010 | version of the format |
+//!
+//! Limits: one cutter and one correction a job; of several features one is corrected at a time.
+
+mod check;
+mod check_correct;
+mod check_feature;
+mod check_feed;
+mod check_part;
+mod check_pocket;
+mod check_probe;
+mod check_shank;
+mod check_stock;
+mod check_tool;
+mod material;
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use truepath_core::job::Probe;
+use truepath_core::units::Offset;
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+
+use crate::surface::Surface;
+
+pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
+pub use check_feed::{FeedTable, ForceLimit};
+pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
+pub use check_pocket::{Mode, PerSection, PocketTable};
+pub use check_probe::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
+pub use check_shank::Shank;
+pub use material::{MATERIALS, Material};
+
+pub(crate) use check_feature::is_id;
+
+/// A checked job.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// The program, as a path that can be opened.
+    pub program: PathBuf,
+    /// What the correction follows from, as the device takes it; without a probe when the job has no `[probe]`.
+    pub numbers: truepath_core::job::Job,
+    /// Backlash of the x and the y axis, 0…1 mm.
+    pub backlash: [Offset; 2],
+    /// How far the written path may leave the computed one, 0.0001…0.1 mm.
+    pub tolerance: Offset,
+    /// Arcs of a larger radius are written as lines, 10…100,000 mm.
+    pub max_arc_radius: Offset,
+    /// Kinks of the written path where the program is smooth are kept below this, 0.1…10 degrees.
+    pub max_kink_deg: f64,
+    /// Where the correction is applied.
+    pub route: Route,
+    /// How far the feeds along the contour may be changed; `None` leaves every F word.
+    pub feed: Option<FeedTable>,
+    /// What the customer of the part is told; empty without `[part]`.
+    pub part: PartTable,
+    /// What `truepath pocket` cuts; `None` without `[pocket]`.
+    pub pocket: Option<PocketTable>,
+    /// The cutter's shape as a beam, beside stick-out and material.
+    pub shank: Shank,
+    /// The actual surface of the stock, as a path that can be opened; its allowance follows from it.
+    pub surface: Option<PathBuf>,
+    /// The `[[feature]]` tables.
+    pub features: Vec<FeatureTable>,
+    /// Which feature and pass the command is about.
+    pub which: Which,
+    source: Source,
+    spans: truepath_ground::document::Spans,
+}
+
+/// Which cut of a program with several a command is about.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Which {
+    /// The name of a feature; needed when the job has several finishing features.
+    pub feature: Option<String>,
+    /// The level of the feature, from 1; otherwise that of the probe points, or the first.
+    pub pass: Option<u32>,
+}
+
+/// Where the correction is applied; a job is corrected in one place only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Route {
+    /// In the program text.
+    Program,
+    /// In the coprocessor.
+    Coprocessor,
+}
+
+impl Job {
+    /// Reads and checks a job file.
+    ///
+    /// # Errors
+    /// An [`InputError`] at the first thing that is wrong.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(Source::read(path)?, folder)
+    }
+
+    /// Checks the text of a job whose relative paths start at `folder`.
+    ///
+    /// # Errors
+    /// An [`InputError`] at the first thing that is wrong.
+    pub fn parse(source: Source, folder: &Path) -> Result<Self, InputError> {
+        check::job(source, folder)
+    }
+
+    /// Reads the program.
+    ///
+    /// # Errors
+    /// `J001`, pointing at the key `program`.
+    pub fn read_program(&self) -> Result<Source, InputError> {
+        let bytes = std::fs::read(&self.program).map_err(|error| {
+            let reason = InputError::unreadable(&self.program, &error);
+            InputError::new(
+                "J001",
+                reason.found(),
+                "a readable program",
+                "correct the name: it is taken relative to the job file's folder",
+            )
+            .at(&self.source, self.span("program"))
+        })?;
+        Ok(Source::new(self.program.display().to_string(), bytes))
+    }
+
+    /// Reads the surface of the stock, when the job names one.
+    ///
+    /// # Errors
+    /// `J001`, pointing at the key `stock.surface`, and whatever is wrong with the file.
+    pub fn read_surface(&self) -> Result<Option<Surface>, InputError> {
+        let Some(path) = &self.surface else { return Ok(None) };
+        let bytes = std::fs::read(path).map_err(|error| {
+            let reason = InputError::unreadable(path, &error);
+            let help = "correct the name: it is taken relative to the job file's folder";
+            InputError::new("J001", reason.found(), "a readable surface", help)
+                .at(&self.source, self.span("stock.surface"))
+        })?;
+        Surface::read(&Source::new(path.display().to_string(), bytes)).map(Some)
+    }
+
+    /// The compact form for a device that makes its own image.
+    ///
+    /// # Errors
+    /// `J009` when the stock is an actual surface, which stays on the host.
+    pub fn compact(&self) -> Result<Vec<u8>, Failure> {
+        if self.surface.is_some() {
+            let found = "stock.surface is given: a device takes an even allowance only";
+            let help = "make the image here, with truepath correct --route coprocessor, and upload it";
+            let error = InputError::new("J009", found, "stock.allowance_mm", help);
+            return Err(error.at(&self.source, self.span("stock.surface")).into());
+        }
+        let mut compact = [0; truepath_core::job::COMPACT_BYTES];
+        let compact = self.numbers.to_compact(&mut compact).map_err(|e| Failure::Internal(e.to_string()))?;
+        Ok(compact.to_vec())
+    }
+
+    /// The `[probe]` table.
+    ///
+    /// # Errors
+    /// `J004` when the job has none.
+    pub fn require_probe(&self) -> Result<Probe, InputError> {
+        self.numbers.probe.ok_or_else(|| {
+            let end = self.source.bytes().len();
+            InputError::new(
+                "J004",
+                "[probe] is missing",
+                "a table [probe]",
+                "add [probe] with ball_diameter_mm, format and z_reference",
+            )
+            .at(&self.source, end..end)
+        })
+    }
+
+    /// Puts what the command line says of the probe file in place of what the job says.
+    ///
+    /// # Errors
+    /// `J004` when the job has no `[probe]`, `C001` for flags that contradict each other or the job.
+    pub fn override_probe(&mut self, flags: &ProbeFlags) -> Result<(), InputError> {
+        if *flags != ProbeFlags::default() {
+            self.numbers.probe = Some(flags.over(self.require_probe()?)?);
+        }
+        Ok(())
+    }
+
+    /// Puts what the command line says of the part in place of what the job says.
+    ///
+    /// # Errors
+    /// `C001` for a flag that says nothing usable.
+    pub fn override_part(&mut self, flags: &PartFlags) -> Result<(), InputError> {
+        self.part = flags.over(std::mem::take(&mut self.part))?;
+        Ok(())
+    }
+
+    /// Where the value of a key stands, `tool.diameter_mm`; the start of the file for a key that is not given.
+    pub fn span(&self, key: &str) -> Range<usize> {
+        self.spans.get(key).cloned().unwrap_or(0..0)
+    }
+    /// Whether the file gives a key.
+    pub fn gives(&self, key: &str) -> bool {
+        self.spans.contains_key(key)
+    }
+    /// The file's text.
+    pub const fn source(&self) -> &Source {
+        &self.source
+    }
+}

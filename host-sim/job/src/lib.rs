@@ -1,0 +1,21 @@
+//! What is cut and what was measured: the job file, the cut it means in a program of many, its contour and stock, and the
+//! probe file of the milled part.
+//!
+//! | step | where |
+//! |---|---|
+//! | the job file, checked | [`job`] |
+//! | the cuts of a program, and which of them the job means | [`feature`] |
+//! | the surface the stock really has | [`surface`] |
+//! | feeds in place of the programmed ones | [`feed`] |
+//! | contour, cut and machine as the core takes them | [`pass`], at every depth [`levels`] |
+//! | the points of a probe file on that contour | [`measurement`] |
+//! | what refuses a job, a program or a point, as an error with its place | [`refusal`] |
+
+pub mod feature;
+pub mod feed;
+pub mod job;
+pub mod levels;
+pub mod measurement;
+pub mod pass;
+pub mod refusal;
+pub mod surface;

@@ -1,0 +1,123 @@
+//! A probe file → contacts on the wall, and what was set aside.
+
+use truepath_core::checksum::crc32;
+use truepath_core::geometry::Direction;
+use truepath_core::identify::Observation;
+use truepath_core::job;
+use truepath_core::probe::{Contact, Reading, Rejected};
+use truepath_core::units::{Offset, Position, Real};
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+
+use crate::feature::Plan;
+use crate::pass::Pass;
+use crate::refusal::why;
+
+/// Readings kept at most.
+const LARGEST_FILE: usize = 1 << 20;
+/// Points that machine and material are identified from at most: the fit cuts the contour around every place some hundred
+/// times, which takes a minute for as many. A tenth of them says all that the model has room for.
+pub const MOST_POINTS: usize = 2_000;
+
+/// A reading set aside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Aside {
+    /// Its line.
+    pub line: u32,
+    /// Where the probe was, work coordinates.
+    pub position: [Position; 3],
+    /// Why it is not used.
+    pub reason: Rejected,
+}
+
+/// What a probe file says about a pass.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// Contacts in the order of the contour, then of height.
+    pub contacts: Vec<Contact>,
+    /// Readings set aside, in the order of the file.
+    pub rejected: Vec<Aside>,
+    /// Standard deviation of one reading.
+    pub noise: Offset,
+    /// CRC-32 of the file.
+    pub crc: u32,
+    /// Its name.
+    pub file: String,
+}
+
+impl Measurement {
+    /// Reads a probe file.
+    ///
+    /// # Errors
+    /// What is wrong with the file, and a wrong unit, frame or ball, named, when most readings are off the wall.
+    pub fn read(pass: &Pass, file: &Source) -> Result<Self, Failure> {
+        let probe = pass.job.require_probe()?;
+        let lines = file.bytes().iter().filter(|b| matches!(b, b'\n' | b'\r')).count() + 1;
+        let most = lines.min(LARGEST_FILE);
+        let mut readings = vec![Reading::default(); most];
+        let mut contacts = vec![Contact::BLANK; most];
+        let mut rejected = Vec::new();
+        let contour = pass.path_contour();
+        let set_aside = |reading: &Reading, reason| {
+            rejected.push(Aside { line: reading.line, position: reading.position, reason });
+        };
+        let used = job::contacts(&pass.core, contour, file.bytes(), &mut readings, &mut contacts, set_aside)
+            .map_err(|error| pass.refused_of(file, &error))?;
+        contacts.truncate(used);
+        rejected.sort_by_key(|aside| aside.line);
+        let (crc, file) = (crc32(file.bytes()), file.name().to_owned());
+        Ok(Self { contacts, rejected, noise: probe.noise, crc, file })
+    }
+
+    /// Reads a probe file that may be of any depth of the pass's feature: the one with most readings on its wall is
+    /// given with them. A depth that the user names is kept.
+    ///
+    /// # Errors
+    /// As [`Self::read`], when it cannot be used with any of them.
+    pub fn of_any_depth(pass: Pass, file: &Source) -> Result<(Pass, Self), Failure> {
+        let levels = pass.plan.as_ref().map(Plan::levels).unwrap_or_default();
+        if pass.job.which.pass.is_some() || levels.len() < 2 {
+            let measurement = Self::read(&pass, file)?;
+            return Ok((pass, measurement));
+        }
+        let mut best: Option<(Pass, Self)> = None;
+        let mut refused = None;
+        for level in levels {
+            let pass = pass.at_level(level)?;
+            match Self::read(&pass, file) {
+                Ok(found) if best.as_ref().is_none_or(|(_, b)| b.contacts.len() < found.contacts.len()) => {
+                    best = Some((pass, found));
+                }
+                Ok(_) => {}
+                Err(failure) => refused = refused.or(Some(failure)),
+            }
+        }
+        let none = || Failure::Internal("a feature without a finishing pass".to_owned());
+        best.ok_or_else(|| refused.unwrap_or_else(none))
+    }
+
+    /// The contacts as observations for the fit.
+    ///
+    /// # Errors
+    /// `M040` for more than [`MOST_POINTS`].
+    pub fn observations(&self) -> Result<Vec<Observation>, Failure> {
+        if self.contacts.len() > MOST_POINTS {
+            let found = format!("{} holds {} points on the wall", self.file, self.contacts.len());
+            let expected = format!("at most {MOST_POINTS} to identify machine and material from");
+            let help = "keep every n-th reading of a scan: some places on each wall and in every corner, each at several heights, tell all there is; truepath inspect takes the whole file";
+            return Err(InputError::new("M040", found, expected, help).in_file(self.file.as_ref()).into());
+        }
+        let blank = Observation::new(Offset::ZERO, Real::ZERO, Offset::ZERO, Offset::ZERO, Direction::X);
+        let mut observations = vec![blank; self.contacts.len()];
+        job::observations(&self.contacts, self.noise, &mut observations)
+            .map_err(|error| Failure::Internal(error.to_string()))?;
+        Ok(observations)
+    }
+
+    /// One sentence for every reading set aside.
+    pub fn remarks(&self, file: &Source) -> Vec<String> {
+        self.rejected
+            .iter()
+            .map(|aside| format!("{}:{}: set aside: {}", file.name(), aside.line, why(&aside.reason)))
+            .collect()
+    }
+}

@@ -1,0 +1,301 @@
+//! One pass of the cutter as job and program describe it, in memory that grows with them.
+//!
+//! What decides numbers is [`truepath_core::job`], which the device runs as well; here it is given buffers, and what it
+//! refuses becomes a diagnostic.
+
+use truepath_core::cut::{Milling, Path, Sample};
+use truepath_core::gcode::{
+    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, HostMemory, Program, Spindle, read_contour,
+};
+use truepath_core::geometry::{Block, Contour, Point, Side};
+use truepath_core::job::{self, JobError};
+use truepath_core::units::Offset;
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::units::mm;
+
+use crate::feature;
+use crate::feature::{FeaturePass, FeatureSummary, Plan};
+use crate::feed::Schedule;
+use crate::job::Job;
+use crate::refusal::Inputs;
+use crate::surface::{Surface, stock_point};
+
+/// Blocks a program may hold before the buffer is enlarged.
+const FIRST_BUFFER: usize = 1 << 12;
+/// Blocks a program may hold at all.
+const LARGEST_BUFFER: usize = 1 << 24;
+
+/// A pass: what the core needs to know of it, and where it comes from.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// The job.
+    pub job: Job,
+    /// The program.
+    pub program: Source,
+    /// Job and program in numbers.
+    pub core: job::Pass,
+    /// The contour, with the feed of the job where it gives one.
+    pub blocks: Vec<Block>,
+    /// The actual surface of the stock; without one the stock is the parallel curve at the allowance.
+    pub surface: Option<Surface>,
+    /// The feature it belongs to; `None` in a program with one cut and no names.
+    pub plan: Option<Plan>,
+    /// Things the user should know, in the order in which they were noticed.
+    pub warnings: Vec<String>,
+}
+
+/// Buffer for the samples of a path.
+#[derive(Clone, Debug, Default)]
+pub struct PathBuffer(Vec<Sample>);
+
+impl Pass {
+    /// Reads job and program.
+    ///
+    /// # Errors
+    /// Whatever is wrong with either, and what they contradict each other in.
+    pub fn read(job: Job) -> Result<Self, Failure> {
+        let program = job.read_program()?;
+        Self::new(job, program)
+    }
+
+    /// From a job and a program already read.
+    ///
+    /// # Errors
+    /// As [`Pass::read`].
+    pub fn new(mut job: Job, program: Source) -> Result<Self, Failure> {
+        let plan = feature::plan(&job, &program)?;
+        let level = job.which.pass.unwrap_or(1);
+        job.numbers.part = plan.as_ref().map(|plan| plan.level(level).map(|pass| pass.part)).transpose()?;
+        Self::of_part(job, program, plan)
+    }
+
+    /// Reads the part of the program that the job names by now.
+    fn of_part(mut job: Job, program: Source, plan: Option<Plan>) -> Result<Self, Failure> {
+        if let Some(plan) = &plan {
+            let numbers = &mut job.numbers;
+            numbers.wall = plan.wall.or(numbers.wall);
+            numbers.allowance = plan.allowance.unwrap_or(numbers.allowance);
+            numbers.tool.number = plan.tool.or(numbers.tool.number);
+        }
+        let read = |blocks: &mut [Block]| {
+            let mut memory = Box::new(HostMemory::new());
+            job::Pass::read(&job.numbers, program.bytes(), &mut memory.lend(), blocks)
+        };
+        let too_long = |e: &JobError| matches!(e, JobError::Program(e) if is_too_long(e));
+        let (mut blocks, core) = with_enough_blocks(read, too_long)
+            .map_err(|error| Inputs { job: &job, program: &program, probe: None }.refused(&error))?;
+        blocks.truncate(core.contour.blocks);
+        let warnings = core.contour.summary.warnings.as_slice().iter();
+        let mut warnings: Vec<String> = warnings.map(|w| format!("{}: {w}", program.name())).collect();
+        if core.contour.spindle == Spindle::Stopped {
+            warnings.push(format!(
+                "{}: neither M3 nor M4 before the contour: a clockwise spindle is assumed, on which climb or conventional depends",
+                program.name()
+            ));
+        }
+        warnings.extend(plan.iter().flat_map(|p| p.warnings.iter().cloned()));
+        let surface = job.read_surface()?;
+        let pass = Self { job, program, core, blocks, surface: None, plan, warnings };
+        match surface {
+            Some(surface) => pass.over(surface),
+            None => Ok(pass),
+        }
+    }
+
+    /// The same pass over an actual surface: its allowance becomes the median distance of the surface from the finished
+    /// wall.
+    ///
+    /// # Errors
+    /// `K002` when the surface is not beside the contour, or not between the finished wall and the cutter's far side.
+    pub fn over(mut self, surface: Surface) -> Result<Self, Failure> {
+        let mut buffer = PathBuffer::default();
+        let mut allowances: Vec<f64> = {
+            let path = self.sample(&mut buffer)?;
+            let radius = mm(self.core.setup.radius);
+            let contour = &path.samples()[path.first()..path.first() + path.count()];
+            let beside = surface
+                .beside(contour, radius)
+                .ok_or_else(|| self.no_stock("lies nowhere beside the contour".to_owned()))?;
+            let worst = beside
+                .iter()
+                .zip(contour)
+                .map(|(d, sample)| (radius - d, sample))
+                .find(|(a, _)| *a <= 0.0 || *a >= 2.0 * radius);
+            if let Some((allowance, sample)) = worst {
+                let [x, y] = [sample.point.x, sample.point.y].map(|p| p.nm() as f64 / 1e6);
+                return Err(
+                    self.no_stock(format!("leaves {allowance:.3} mm on the finished wall beside X{x:.3} Y{y:.3}"))
+                );
+            }
+            beside.iter().map(|d| radius - d).collect()
+        };
+        allowances.sort_by(f64::total_cmp);
+        let median = allowances.get(allowances.len() / 2).copied().unwrap_or_default();
+        let allowance = Offset::from_nm((median * 1e6).round() as i64);
+        self.job.numbers.allowance = allowance;
+        self.core.job.allowance = allowance;
+        self.core.setup.allowance = allowance;
+        self.surface = Some(surface);
+        Ok(self)
+    }
+
+    fn no_stock(&self, found: String) -> Failure {
+        let expected = "a surface along the whole contour, between the finished wall and the far side of the cutter";
+        let help = "check frame and unit of the surface, and that it belongs to this program";
+        let error = InputError::new("K002", format!("the surface of the stock {found}"), expected, help);
+        match &self.job.surface {
+            Some(path) => error.in_file(path).into(),
+            None => error.into(),
+        }
+    }
+
+    /// The level of the feature, from 1.
+    pub fn level(&self) -> u32 {
+        self.job.numbers.part.map_or(1, |part| part.pass)
+    }
+
+    /// What is told of the feature; `corrected` are the levels whose correction was written.
+    pub fn feature(&self, corrected: &[u32]) -> Option<FeatureSummary> {
+        self.plan.as_ref().map(|plan| plan.summary(self.level(), corrected))
+    }
+
+    /// The moves that lead to the contour and away from it, where they are known.
+    pub fn leads(&self) -> [&[Block]; 2] {
+        let pass = self.plan.as_ref().and_then(|plan| plan.level(self.level()).ok());
+        pass.map_or([&[], &[]], |pass| [&pass.leads[0], &pass.leads[1]])
+    }
+
+    /// The same pass, whose measured parts have to be cut with a correction.
+    #[must_use]
+    pub const fn cut_with(mut self, correction: truepath_core::probe::CutWith) -> Self {
+        self.core.cut_with = correction;
+        self
+    }
+
+    /// The same feature at another level.
+    ///
+    /// # Errors
+    /// As [`Pass::read`], and when there is no such level.
+    pub fn at_level(&self, number: u32) -> Result<Self, Failure> {
+        let mut job = self.job.clone();
+        job.which.pass = Some(number);
+        Ok(Self::new(job, self.program.clone())?.cut_with(self.core.cut_with))
+    }
+
+    /// One of the passes of the same feature, spring passes included. `wall` is the side of its own travel; `None` where
+    /// the program says it.
+    ///
+    /// # Errors
+    /// As [`Pass::read`].
+    pub fn along(&self, pass: &FeaturePass, wall: Option<Side>) -> Result<Self, Failure> {
+        let mut job = self.job.clone();
+        job.numbers.part = Some(pass.part);
+        job.numbers.wall = wall;
+        let plan = self.plan.clone().map(|plan| Plan { wall, ..plan });
+        Self::of_part(job, self.program.clone(), plan)
+    }
+
+    /// The failure for an error of the core, pointing into job or program.
+    pub fn refused(&self, error: &JobError) -> Failure {
+        self.inputs(None).refused(error)
+    }
+
+    /// The same, pointing into a probe file where the error is there.
+    pub fn refused_of(&self, probe: &Source, error: &JobError) -> Failure {
+        self.inputs(Some(probe)).refused(error)
+    }
+
+    const fn inputs<'a>(&'a self, probe: Option<&'a Source>) -> Inputs<'a> {
+        Inputs { job: &self.job, program: &self.program, probe }
+    }
+
+    /// The contour.
+    pub fn path_contour(&self) -> Contour<'_> {
+        Contour::new(&self.blocks).unwrap_or_else(|| unreachable!("the reader gives blocks end to end"))
+    }
+
+    /// Samples the path into a buffer.
+    ///
+    /// # Errors
+    /// When an outside arc is so tight that it leaves no wall.
+    pub fn sample<'a>(&self, buffer: &'a mut PathBuffer) -> Result<Path<'a>, Failure> {
+        self.sample_fed(buffer, None)
+    }
+
+    /// Samples the path with the feeds of a schedule, where there is one, in place of those of the program.
+    ///
+    /// # Errors
+    /// As [`Pass::sample`].
+    pub fn sample_fed<'a>(&self, buffer: &'a mut PathBuffer, schedule: Option<&Schedule>) -> Result<Path<'a>, Failure> {
+        let contour = self.path_contour();
+        let needed = Path::samples_needed(&contour, &self.core.setup, self.core.step());
+        let fed = |sample: &mut Sample| {
+            if let Some(schedule) = schedule {
+                sample.feed = schedule.feed(sample.s, sample.feed);
+            }
+        };
+        let Some(surface) = &self.surface else {
+            buffer.0 = vec![Sample::BLANK; needed];
+            return self.core.sample_shaped(&contour, &mut buffer.0, fed).map_err(|error| self.refused(&error));
+        };
+        let mut even = vec![Sample::BLANK; needed];
+        let stock: Vec<Point> = {
+            let path = self.core.sample(&contour, &mut even).map_err(|error| self.refused(&error))?;
+            let samples = path.samples();
+            let beside = surface.beside(samples, mm(self.core.setup.radius));
+            let beside = beside.ok_or_else(|| self.no_stock("lies nowhere beside the contour".to_owned()))?;
+            samples.iter().zip(beside).map(|(sample, d)| stock_point(sample, d)).collect()
+        };
+        buffer.0 = even;
+        // The walk gives the samples in the same order again.
+        let mut next = stock.into_iter();
+        let shape = |sample: &mut Sample| {
+            sample.stock = next.next().unwrap_or(sample.stock);
+            fed(sample);
+        };
+        self.core.sample_shaped(&contour, &mut buffer.0, shape).map_err(|error| self.refused(&error))
+    }
+}
+
+/// Reads the contour of a program, whatever its length.
+///
+/// # Errors
+/// Whatever is wrong with the program.
+pub fn read_blocks(program: &Source) -> Result<(Vec<Block>, ContourProgram), Failure> {
+    let read = |blocks: &mut [Block]| {
+        let mut memory = Box::new(HostMemory::new());
+        read_contour(&Program::new(program.bytes()), &mut memory.lend(), blocks, &ContourOptions::default())
+    };
+    let (mut blocks, contour) =
+        with_enough_blocks(read, is_too_long).map_err(|error| InputError::of_program(program, &error))?;
+    blocks.truncate(contour.blocks);
+    Ok((blocks, contour))
+}
+
+const fn is_too_long(error: &GcodeError) -> bool {
+    matches!(error.kind, GcodeErrorKind::ContourTooLong { .. })
+}
+
+/// Reads into a buffer, and again into larger ones while it is too short.
+fn with_enough_blocks<T, E>(
+    read: impl Fn(&mut [Block]) -> Result<T, E>,
+    too_long: impl Fn(&E) -> bool,
+) -> Result<(Vec<Block>, T), E> {
+    let mut capacity = FIRST_BUFFER;
+    loop {
+        let mut blocks = vec![Block::BLANK; capacity];
+        match read(&mut blocks) {
+            Ok(value) => return Ok((blocks, value)),
+            Err(error) if too_long(&error) && capacity < LARGEST_BUFFER => capacity *= 8,
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// Climb or conventional, in words.
+pub const fn milling_name(milling: Milling) -> &'static str {
+    match milling {
+        Milling::Climb => "climb",
+        Milling::Conventional => "conventional",
+    }
+}

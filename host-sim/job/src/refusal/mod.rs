@@ -1,0 +1,167 @@
+//! What the core refuses in job, program or measurement, as the user meets it: with the place in the file, what was
+//! expected and what to do.
+
+use truepath_core::image::MAX_CLAMP_NM;
+use truepath_core::job::JobError;
+use truepath_core::units::Offset;
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::units::mm;
+
+use crate::job::Job;
+
+mod readings;
+
+use readings::{line_span, of_contacts, of_probe};
+
+pub use readings::why;
+
+/// The files an error may point into.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The job.
+    pub job: &'a Job,
+    /// Its program.
+    pub program: &'a Source,
+    /// The probe file, once there is one.
+    pub probe: Option<&'a Source>,
+}
+
+impl Inputs<'_> {
+    /// The failure for an error of the core.
+    pub fn refused(&self, error: &JobError) -> Failure {
+        let at_job = |e: InputError, key: &str| Failure::from(e.at(self.job.source(), self.job.span(key)));
+        let at_line = |e: InputError, line: u32| Failure::from(e.at(self.program, self.program.span_at(line, 1, 1)));
+        match *error {
+            JobError::Program(error) => InputError::of_program(self.program, &error).into(),
+            JobError::NoFeed { line } => at_line(of_job(error), line),
+            JobError::Undercut { line } => at_line(of_job(error), line),
+            JobError::Measurement(error) => {
+                self.probe.map_or_else(|| Failure::Internal(error.to_string()), |file| of_probe(file, &error).into())
+            }
+            JobError::OffTheWall { line, .. } | JobError::NoContact { line, .. } => {
+                let error = of_contacts(error, self.job);
+                match self.probe {
+                    Some(file) => error.at(file, line_span(file, line)).into(),
+                    None => error.into(),
+                }
+            }
+            JobError::Corrected => at_job(of_job(error), "program"),
+            JobError::WallsDiffer | JobError::NoWall => at_job(of_job(error), "wall"),
+            JobError::NoSpeed | JobError::FeedPerTooth => at_job(of_job(error), "cut"),
+            JobError::ToolsDiffer { .. } => at_job(of_job(error), "tool.number"),
+            JobError::NoTool => at_job(of_job(error), "tool"),
+            JobError::Flutes => at_job(of_job(error), "cut.axial_depth_mm"),
+            JobError::Unfit { .. } => at_job(of_correction(error), "probe.ball_diameter_mm"),
+            JobError::BeyondClamp { .. } | JobError::NoFeedWindow { .. } => {
+                at_job(of_correction(error), "correct.clamp_mm")
+            }
+            JobError::TooManyNodes { .. } | JobError::Image(_) => at_job(of_correction(error), "correct"),
+            JobError::Range { .. } | JobError::NoProbe => at_job(of_job(error), ""),
+            JobError::Compact | JobError::Full { .. } => Failure::Internal(error.to_string()),
+        }
+    }
+}
+
+/// What job and program lack or contradict each other in.
+fn of_job(error: &JobError) -> InputError {
+    let (expected, help) = match error {
+        JobError::Corrected => (
+            "the original program",
+            "name the original program in the job: correcting a correction would move the wall twice",
+        ),
+        JobError::NoFeed { .. } => {
+            ("a feed rate", "add an F word to the program, or feed_mm_per_min to [cut] of the job")
+        }
+        JobError::Undercut { .. } => (
+            "an outside arc of the path at least as wide as the cutter's radius",
+            "check the side (wall = \"left\" or \"right\") and the cutter's diameter in the job",
+        ),
+        JobError::WallsDiffer => (
+            "the same side in both",
+            "remove wall from the job: G41 means the wall is on the right of travel, G42 on the left",
+        ),
+        JobError::NoWall => (
+            "wall = \"left\" or wall = \"right\", as seen in the direction of travel",
+            "add wall to the job (inside pockets cut counter-clockwise have it on the right)",
+        ),
+        JobError::NoSpeed => {
+            ("an S word before the contour, or spindle_rpm in [cut]", "add spindle_rpm to [cut] of the job")
+        }
+        JobError::ToolsDiffer { .. } => (
+            "the same tool in both",
+            "correct number in [tool] of the job, or remove it: the T word before M6 of the program is used then",
+        ),
+        JobError::NoTool => (
+            "the number that the controller sends when it arms",
+            "add number to [tool] of the job, or T and M6 to the program; route = \"program\" needs neither",
+        ),
+        JobError::Flutes => {
+            ("at most 64 flutes in the stock at once", "check axial_depth_mm, diameter_mm, teeth and helix_deg")
+        }
+        JobError::FeedPerTooth => ("a feed per tooth up to 8 mm", "check feed, spindle speed and number of teeth"),
+        _ => ("", "correct the job"),
+    };
+    let sentence = error.to_string();
+    let found = error.line().and_then(|line| sentence.strip_prefix(&format!("line {line}: "))).unwrap_or(&sentence);
+    InputError::new(error.code(), found, expected, help)
+}
+
+/// A correction that must not be made.
+fn of_correction(error: &JobError) -> InputError {
+    let code = error.code();
+    match *error {
+        JobError::Unfit { s, measured, fitting, .. } => InputError::new(
+            code,
+            format!(
+                "{error}; at s = {:.2} mm {:.4} mm were measured, {:.4} mm would fit",
+                mm(s),
+                mm(measured),
+                mm(fitting)
+            ),
+            "probe points of one part cut by this program",
+            "check ball_diameter_mm, allowance_mm, the side of the wall and that the probed part is the one of this program",
+        ),
+        JobError::BeyondClamp { reach, clamp, at } => InputError::new(
+            code,
+            format!(
+                "the correction reaches {:.3} mm at X{:.3} Y{:.3}, beyond clamp_mm = {}",
+                mm(reach),
+                at.x.nm() as f64 / 1e6,
+                at.y.nm() as f64 / 1e6,
+                mm(clamp)
+            ),
+            "a correction inside the clamp",
+            clamp_help(reach),
+        ),
+        JobError::NoFeedWindow { reach, clamp } => InputError::new(
+            code,
+            format!(
+                "at 110 % of the programmed feed the correction reaches {:.3} mm, beyond clamp_mm = {}",
+                mm(reach),
+                mm(clamp)
+            ),
+            "a correction that leaves room for a feed override of 110 %",
+            clamp_help(reach),
+        ),
+        JobError::TooManyNodes { limit, .. } => InputError::new(
+            code,
+            error.to_string(),
+            format!("at most {limit} nodes: about {:.1} m of contour at 0.1 mm", f64::from(limit) / 10_000.0),
+            "cut the contour in two programs, or correct in the program instead (route = \"program\")",
+        ),
+        _ => InputError::new(code, error.to_string(), "", "correct in the program instead (route = \"program\")"),
+    }
+}
+
+/// What to do about a correction beyond the clamp: the peak and a tenth of it, rounded up to a hundredth, where that may
+/// be a deflection at all.
+fn clamp_help(peak: Offset) -> String {
+    let proposal = (mm(peak) * 110.0).ceil() / 100.0;
+    if proposal > mm(Offset::from_nm(MAX_CLAMP_NM)) {
+        return "no cutter deflects that much: check the side of the wall, the cutter's diameter and the probe file"
+            .to_owned();
+    }
+    format!(
+        "if a correction that large is meant, set clamp_mm = {proposal} in [correct]; otherwise check the probe file and the cut"
+    )
+}

@@ -1,0 +1,8 @@
+//! Jobs, programs and probe files: what is read, and what is refused with its place.
+
+mod cut_with;
+mod job_errors;
+mod measurement;
+mod probe_files;
+mod probe_formats;
+mod probe_refused;

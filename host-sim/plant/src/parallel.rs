@@ -1,0 +1,112 @@
+//! The raw surface as a parallel curve of the nominal centre path, at `r − h` towards the wall.
+//!
+//! On an inside corner or a tight concave arc the curve is longer than the path and gets points of its own; at an outside corner
+//! it is cut where its two legs cross. The allowance may vary along the path, smoothly and by chance.
+//!
+//! Limit: a corner at the seam of a closed path is bevelled.
+
+use std::f64::consts::TAU;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use super::machine::Machine;
+use super::path::{Path, Side};
+use super::setup::Cut;
+use super::vector::{Point, along, cross, dot, mix, sub, turn, turned};
+
+/// A turn of more than this between two samples is a corner of the path.
+const CORNER_RAD: f64 = 0.25;
+/// Turn between points of the surface where it is longer than the path.
+const FAN_RAD: f64 = 0.01;
+
+/// The parallel curve on which the raw surface lies.
+pub(super) fn parallel_curve(path: &Path, cut: &Cut, machine: &Machine) -> Vec<Point> {
+    let wave = AllowanceWave::new(machine);
+    let offset = |i: usize| cut.radius_mm - (cut.allowance_mm + wave.at(path.s_mm[i]));
+    let mut curve: Vec<Point> = Vec::with_capacity(path.len());
+    let count = if path.closed { path.len() - 1 } else { path.len() };
+    for i in 0..count {
+        let here = path.wall(i, offset(i));
+        if i > 0 {
+            let angle = turn(path.normal[i - 1], path.normal[i]);
+            // A turn away from the wall spreads the parallel curve, unless the curve lies beyond the centre path.
+            let spreads = ((angle > 0.0) == (path.side == Side::Right)) == (offset(i) > 0.0);
+            let corner = angle.abs() > CORNER_RAD;
+            if spreads {
+                let fan = (angle.abs() / FAN_RAD).ceil().max(1.0);
+                for k in usize::from(!corner)..fan as usize {
+                    let u = k as f64 / fan;
+                    let centre = if corner { path.centre[i] } else { mix(path.centre[i - 1], path.centre[i], u) };
+                    curve.push(along(centre, turned(path.normal[i - 1], angle * u), offset(i)));
+                }
+            } else if corner {
+                let reach = (offset(i).abs() * (0.5 * angle.abs()).tan() * 2.0).max(1.0);
+                return_to_crossing(&mut curve, path, i, reach, &offset);
+            }
+        }
+        // After an outside corner the parallel curve runs backwards up to the crossing: such points are left out.
+        let forwards = |&last: &Point| dot(sub(here, last), path.tangent[i]) > 0.0;
+        if curve.last().is_none_or(forwards) {
+            curve.push(here);
+        }
+    }
+    curve
+}
+
+/// Cuts the end of `curve` back to where the curve after the corner at `i` crosses it.
+fn return_to_crossing(curve: &mut Vec<Point>, path: &Path, i: usize, reach: f64, offset: &dyn Fn(usize) -> f64) {
+    let ahead: Vec<Point> = (i..path.len())
+        .take_while(|&k| path.s_mm[k] - path.s_mm[i] <= reach)
+        .map(|k| path.wall(k, offset(k)))
+        .collect();
+    let back = (reach / path.step_mm).ceil() as usize + 1;
+    for end in (curve.len().saturating_sub(back).max(1)..curve.len()).rev() {
+        let (a, b) = (curve[end - 1], curve[end]);
+        for w in ahead.windows(2) {
+            if let Some(p) = crossing(a, b, w[0], w[1]) {
+                curve.truncate(end);
+                curve.push(p);
+                return;
+            }
+        }
+    }
+}
+
+fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> {
+    let (u, v, w) = (sub(b, a), sub(d, c), sub(c, a));
+    let det = cross(u, v);
+    if det.abs() < 1e-18 {
+        return None;
+    }
+    let (x, y) = (cross(w, v) / det, cross(w, u) / det);
+    ((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y)).then(|| along(a, u, x))
+}
+
+/// Smooth deviation of the allowance: a few waves of random phase, never more than the stated amplitude.
+struct AllowanceWave {
+    waves: Vec<(f64, f64, f64)>,
+}
+
+impl AllowanceWave {
+    /// Lengths of the waves as multiples of the shortest; not commensurate, so that the sum does not repeat.
+    const LENGTHS: [f64; 4] = [1.0, 1.618, 2.639, 4.236];
+
+    fn new(machine: &Machine) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(machine.seed);
+        rng.set_stream(1);
+        let amplitude = machine.stock_variation_mm / Self::LENGTHS.len() as f64;
+        let waves = Self::LENGTHS
+            .iter()
+            .map(|l| {
+                let phase = TAU * f64::from(rng.next_u32()) / 2f64.powi(32);
+                (amplitude, TAU / (l * machine.stock_wavelength_mm), phase)
+            })
+            .collect();
+        Self { waves }
+    }
+
+    fn at(&self, s: f64) -> f64 {
+        self.waves.iter().map(|(a, k, p)| a * (k * s + p).sin()).sum()
+    }
+}

@@ -1,0 +1,239 @@
+//! The corrected program: the original text in which only the contour moves.
+//!
+//! Each line of the contour becomes one or more lines and arcs fitted to the corrected centre path ([`fit`]). Block
+//! numbers, comments, spelling and line ends stay, and so do feeds, unless others are asked for (`feed`); every other line keeps its bytes, except that
+//! * the moves that lead to the contour's start end at the corrected start,
+//! * lead-in and lead-out arcs outside the contour are displaced as a whole, so that they stay tangent,
+//! * the first straight XY move after the contour returns to its own place, an axis it does not name being added,
+//! * where the control compensates the contour (G41, G42) it becomes the path of the centre (`centre_path`),
+//! * a move that relied on the modal code of the last contour line gets that code written out, and
+//! * a comment marks the program, and a marked program is refused: a correction must never be applied twice.
+//!
+//! The written text is then read back and proved (`proof`) to differ from the original in the contour and in nothing
+//! else; what fails the proof is not written. [`Difference`] reports what was counted on the way.
+//!
+//! The contour may come in several stretches (passes), each written once: a line that is executed several times is
+//! refused.
+//!
+//! Limits: G17; coordinates are written with four decimals of a millimetre or six of an inch.
+
+mod approach;
+mod assemble;
+pub mod canon;
+mod centre_path;
+mod departure;
+mod deviation;
+mod difference;
+mod feed;
+mod fit;
+mod grid;
+mod header;
+mod line;
+mod pen;
+mod proof;
+mod spacing;
+mod stretch;
+mod survey;
+mod unproved;
+mod vector;
+mod writer;
+
+use std::ops::Range;
+
+use truepath_core::gcode::{LineRange, Options, is_marked_corrected};
+use truepath_core::units::Offset;
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+
+pub use difference::{Difference, Shift};
+pub use fit::{Piece, Samples, Shape, fit};
+pub use grid::Grid;
+pub use header::{Origin, first_pass_of};
+
+/// The corrected path of one line of the contour.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BlockEdit {
+    /// The line of the original program, counted from 1.
+    pub line: u32,
+    /// Points of the corrected centre path in program coordinates, nm, from the start of the block to its end and about
+    /// 0.1 mm apart. The first one is the last one of the block before.
+    pub samples: Vec<[i64; 2]>,
+    /// Where along the samples the feed changes, in order and from the first sample on; empty where every feed stays that
+    /// of the program.
+    pub feeds: Vec<FeedFrom>,
+}
+
+/// A feed from a point of a corrected path on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FeedFrom {
+    /// Index of the sample.
+    pub sample: usize,
+    /// Percent of the programmed feed.
+    pub percent: u16,
+}
+
+impl BlockEdit {
+    /// The corrected path of a line at the feed of the program.
+    pub const fn new(line: u32, samples: Vec<[i64; 2]>) -> Self {
+        Self { line, samples, feeds: Vec::new() }
+    }
+}
+
+/// What a program is rewritten for; it decides the comment at its head.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Purpose {
+    /// It is corrected, and must never be corrected again.
+    #[default]
+    Correction,
+    /// It leaves stock on the wall for a second pass.
+    FirstPass {
+        /// Stock it leaves.
+        left: Offset,
+    },
+}
+
+/// How the corrected program is written.
+#[derive(Clone, Debug)]
+pub struct RewriteOptions {
+    /// How far the written path may leave the samples, 0.1 µm…0.1 mm. The rounding of the coordinates (50 nm) is
+    /// taken from it.
+    pub tolerance: Offset,
+    /// What the program does not say.
+    pub program: Options<'static>,
+    /// Arcs of a larger radius are written as lines, 1 mm…100 m: controls refuse or distort arcs whose centre is far.
+    pub max_arc_radius: Offset,
+    /// Kinks larger than this, in places where the original is smooth, are avoided; 0.01…10 degrees.
+    pub max_kink_deg: f64,
+    /// What the head of the program names beside the original.
+    pub origin: Origin,
+    /// Remarks for the head of the program, one comment each.
+    pub notes: Vec<String>,
+    /// What it is written for.
+    pub purpose: Purpose,
+}
+
+impl Default for RewriteOptions {
+    /// 1 µm, arcs up to 1 m, kinks up to 1 degree.
+    fn default() -> Self {
+        Self {
+            tolerance: Offset::from_um(1),
+            program: Options::default(),
+            max_arc_radius: Offset::from_um(1_000_000),
+            max_kink_deg: 1.0,
+            origin: Origin::default(),
+            notes: Vec::new(),
+            purpose: Purpose::default(),
+        }
+    }
+}
+
+/// The corrected program and what it took.
+#[derive(Clone, Debug)]
+pub struct Rewritten {
+    /// The bytes of the file.
+    pub text: Vec<u8>,
+    /// What is different.
+    pub difference: Difference,
+    /// Lines of the original behind which lines were added, with their number, in order.
+    pub added: Vec<(u32, u32)>,
+}
+
+impl Rewritten {
+    /// Where lines of the original stand in the written text, with everything they have become.
+    pub fn lines(&self, original: LineRange) -> LineRange {
+        let behind = |holds: &dyn Fn(u32) -> bool| {
+            self.added.iter().filter(|(line, _)| holds(*line)).map(|(_, count)| count).sum::<u32>()
+        };
+        let [first, last] = [original.first, original.last];
+        LineRange { first: first + behind(&|line| line < first), last: last + behind(&|line| line <= last) }
+    }
+}
+
+/// Writes a corrected program. `edits` are in the order of the program, one for every line of the contour.
+///
+/// # Errors
+/// `P001` for a program that is corrected already, `P002` when no move that can be displaced leads to the start of the
+/// contour, `P003` when one that cannot be displaced (a G18 arc, a probing move) begins at its end, `P004` when a line
+/// of the contour is executed several times, `P005` when the origin is set at the displaced end, `P006` for lines that
+/// cannot be divided (G93, arcs of several turns), `P007` when the control's
+/// cutter compensation cannot be taken out,
+/// the interpreter's own errors; internal when the edits do not belong to the program or the text fails the proof.
+pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOptions) -> Result<Rewritten, Failure> {
+    let original = source.bytes();
+    if is_marked_corrected(original) {
+        let help = "correct the original program; its CRC-32 is in the comment";
+        return Err(InputError::new(
+            "P001",
+            "the program carries the mark TRUEPATH CORRECTED",
+            "an uncorrected program",
+            help,
+        )
+        .at(source, mark(original))
+        .into());
+    }
+    let moves = survey::survey(original, options.program).map_err(|e| InputError::of_program(source, &e))?;
+    let (written, proof) = within_kinks(source, &moves, edits, options)?;
+    let changed = (written.touched.keys().copied(), written.unchanged, written.centre_path);
+    let difference = Difference::new(original, &moves, edits, changed, &proof, options);
+    let head = String::from_utf8_lossy(&written.head.1).lines().count();
+    let mut added: Vec<(u32, u32)> = written.touched.iter().map(|(&line, &parts)| (line, parts as u32 - 1)).collect();
+    added.push((written.head.0, head as u32));
+    added.sort_unstable();
+    Ok(Rewritten { text: written.text, difference, added })
+}
+
+/// Attempts to keep kinks below the limit.
+const ATTEMPTS: usize = 6;
+
+/// Writes, and again with a smaller tolerance for the lines whose kinks are too large: the heading steps between fitted
+/// pieces shrink with it. The text within the limit is taken, else the first one: shorter pieces that turn as much are worth nothing.
+fn within_kinks(
+    source: &Source,
+    moves: &[survey::Move],
+    edits: &[BlockEdit],
+    options: &RewriteOptions,
+) -> Result<(writer::Written, proof::Proof), Failure> {
+    let step = moves.iter().map(|m| Grid::of(m.modal.units).step_nm()).fold(0.0, f64::max);
+    let mut tolerances = vec![options.tolerance.nm() as f64; edits.len()];
+    let mut first = None;
+    for _ in 0..ATTEMPTS {
+        let written = writer::write(source, moves, edits, &tolerances, options)?;
+        let claim = proof::Claim {
+            original: source.bytes(),
+            written: &written.text,
+            touched: &written.touched,
+            head: (written.head.0, &written.head.1),
+            edits,
+            program: options.program,
+            tolerance: options.tolerance.nm() as f64,
+            step,
+            centre_path: written.centre_path,
+        };
+        let proof =
+            proof::prove(&claim).map_err(|what| unproved::failure(source, edits, written.centre_path, &what))?;
+        let mut largest = 0.0f64;
+        let before = tolerances.clone();
+        for kink in proof.kinks.iter().filter(|k| k.beyond > options.max_kink_deg) {
+            largest = largest.max(kink.beyond);
+            let from = if kink.at_start { kink.edit.saturating_sub(1) } else { kink.edit };
+            for edit in from..=kink.edit {
+                tolerances[edit] = (0.5 * before[edit]).max(2.0 * step);
+            }
+        }
+        if largest == 0.0 {
+            return Ok((written, proof));
+        }
+        first.get_or_insert((written, proof));
+        if tolerances == before {
+            break;
+        }
+    }
+    first.ok_or_else(|| Failure::Internal("no attempt to write the program was made".to_owned()))
+}
+
+/// Where the mark stands.
+fn mark(program: &[u8]) -> Range<usize> {
+    let word = b"TRUEPATH";
+    let upper = program.to_ascii_uppercase();
+    let at = upper.windows(word.len()).position(|w| w == word).unwrap_or(0);
+    at..(at + word.len()).min(program.len())
+}

@@ -1,0 +1,22 @@
+//! What a run shows: tables (CSV), summaries (JSON), plots (SVG), and the page (`report.html`).
+//!
+//! Nothing is computed here that decides a correction.
+
+mod compare;
+mod inspection;
+pub mod page;
+pub mod pages;
+pub mod plot;
+mod points;
+mod reading;
+mod summary;
+mod tables;
+mod wall;
+
+pub use compare::{compare_csv, walls_csv};
+pub use inspection::{InspectSummary, ToleranceSummary, inspect_summary};
+pub use points::{judged_points_csv, points_csv};
+pub use reading::{LawPlaces, PointRow, read_correction, read_points, read_trace, read_wall, read_walls};
+pub use summary::{SimulateSummary, simulate_summary};
+pub use tables::{Trace, TraceRow, correction_csv, trace, trace_csv};
+pub use wall::{WallRow, wall_csv};

@@ -1,0 +1,69 @@
+//! The wall error over the height, at nodes along the contour.
+
+use truepath_core::cut::{Envelope, Loop, Path, State};
+use truepath_core::geometry::Vector;
+use truepath_core::units::{Offset, Real};
+use truepath_ground::units::{float, mm};
+
+use super::by_core::{FINE, samples};
+use super::kept::Kept;
+use super::{Column, Heights};
+
+/// Heights: the tip, the top of the engaged depth, and between them every eighth.
+pub(super) const HEIGHTS: usize = 9;
+
+/// A height as a fraction of the engaged depth.
+pub(super) fn fraction(k: usize) -> f64 {
+    k as f64 / (HEIGHTS - 1) as f64
+}
+
+/// The wall errors that states of the elastic loop leave: node after node, in each every height; NaN where no wall stands.
+pub(super) fn errors_at_heights(machine: &Loop, states: &[State], residual: &[Offset], kept: &Kept) -> Vec<f64> {
+    let path = machine.path;
+    let contour = samples(path);
+    let mut errors = vec![f64::NAN; kept.nodes().count() * HEIGHTS];
+    let mut displacements = vec![Vector::ZERO; states.len()];
+    for row in 0..HEIGHTS {
+        let height = Real::ratio(row as i64, HEIGHTS as i64 - 1);
+        Envelope::displace(machine, states, height, &mut displacements);
+        let envelope = Envelope::new(path, path.working().start, &displacements);
+        // The wall beside a node is made about as far before or behind it as beside the node before.
+        let mut ahead = 0isize;
+        for (node, i) in kept.nodes().enumerate() {
+            let index = path.first() + i;
+            let guess = index.saturating_add_signed(ahead);
+            let Some(wall) = envelope.error(index, guess).filter(|_| contour[i].on_wall) else { continue };
+            ahead = wall.made_by as isize - index as isize;
+            let beside = residual.get(i).copied().unwrap_or_default();
+            errors[node * HEIGHTS + row] = mm(wall.error + machine.undersize + beside);
+        }
+    }
+    errors
+}
+
+/// Wall errors over the height of the passes of a page: before, milled, after.
+pub(super) type OfPasses = [Option<Vec<f64>>; 3];
+
+/// The errors of the passes; `None` where no pass has a wall that varies over the height.
+pub(super) fn heights(path: &Path, kept: &Kept, passes: OfPasses) -> Option<Heights> {
+    of_depth(float(path.setup().axial_depth), kept, passes)
+}
+
+/// The same, of an engaged depth in mm.
+pub(super) fn of_depth(depth_mm: f64, kept: &Kept, passes: OfPasses) -> Option<Heights> {
+    let varies = |errors: &[f64]| {
+        let (nodes, _) = errors.as_chunks::<HEIGHTS>();
+        nodes.iter().any(|node| node.iter().any(|e| (e - node[0]).abs() > 1e-9))
+    };
+    if !passes.iter().flatten().any(|errors| varies(errors)) {
+        return None;
+    }
+    let [before, milled, after] = passes.map(|errors| errors.map(|errors| Column::of(errors, FINE)));
+    Some(Heights {
+        z_mm: (0..HEIGHTS).map(|k| truepath_ground::units::rounded(depth_mm * fraction(k), 6)).collect(),
+        stride: kept.stride(),
+        before,
+        milled,
+        after,
+    })
+}

@@ -1,0 +1,146 @@
+//! The page of `correct`: the wall without and with the correction, as the identified model foretells both.
+
+use truepath_core::correct::{Band, Target};
+use truepath_core::cut::Loop;
+use truepath_correction::correct::Corrected;
+use truepath_correction::summary::CorrectSummary;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::units::float;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::{Pass, PathBuffer};
+
+use super::expected::judge;
+use super::{of_pass, told};
+use crate::page::{Along, Fact, Figure, Foretold, Kind, Page, Parameter, Program, Words, points, predicted};
+
+/// Which part the probe points are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Points {
+    /// The part as its program says, without correction.
+    ThisPass,
+    /// The pass before the one that is corrected.
+    FirstPass,
+    /// A part that was cut with a correction, by its number.
+    Corrected(u32),
+}
+
+/// The page of a correction.
+///
+/// # Errors
+/// As [`Pass::sample`].
+pub fn corrected(pass: &Pass, measurement: &Measurement, done: &Corrected, of: Points) -> Result<Page, Failure> {
+    let words = |label: &str| Words { name: None, label: format!("{label}, predicted by the identified model") };
+    let passes = Foretold {
+        before: Some(words("without correction")),
+        milled: None,
+        after: words("with the correction"),
+        correction: &done.correction,
+        residual: &done.residual,
+    };
+    of_correction(pass, measurement, done, of, |machine| predicted(machine, &passes))
+}
+
+/// A page of a correction, with the passes that `along` makes of the identified machine.
+///
+/// # Errors
+/// As [`Pass::sample`].
+pub(super) fn of_correction(
+    pass: &Pass,
+    measurement: &Measurement,
+    done: &Corrected,
+    of: Points,
+    along: impl FnOnce(&Loop) -> Along,
+) -> Result<Page, Failure> {
+    let mut buffer = PathBuffer::default();
+    let path = pass.sample_fed(&mut buffer, done.schedule.as_ref())?.with_law(done.identified.law());
+    let table = done.identified.table();
+    let machine = done.identified.machine(&path, &table);
+    let along = along(&machine);
+    let (points, left_out) = points(pass, measurement, &done.identified.observations);
+    let mut page = of_pass(Kind::Correct, "Correction of".to_owned(), pass);
+    page.program =
+        Some(Program::of(pass, Some(done.summary.feature.as_ref().map_or(&[], |f| &f.passes_corrected[..]))));
+    page.contour = Some(along.contour);
+    page.heights = along.heights;
+    page.points = points;
+    page.parameters = parameters(&done.summary);
+    page.results = figures(&done.summary, &["largest error without correction", "largest error with it"]);
+    page.warnings =
+        told(pass, Some(&measurement.file), done.summary.warnings.iter().cloned().chain(along.note).chain(left_out));
+    if let Some(job) = &mut page.job {
+        job.facts.extend(facts(pass, done, of));
+    }
+    judge(&mut page, pass.job.part.tolerance, &done.correction);
+    Ok(page)
+}
+
+/// Identified quantities, by name.
+fn parameters(summary: &CorrectSummary) -> Vec<Parameter> {
+    let each = summary.identified.iter();
+    each.map(|(name, of)| Parameter { name: (*name).to_owned(), of: of.clone() }).collect()
+}
+
+/// The head figures, all of them predictions; `largest` names the errors without and with the correction.
+pub(super) fn figures(s: &CorrectSummary, largest: &[impl AsRef<str>; 2]) -> Vec<Figure> {
+    let [without, with] = largest.each_ref().map(AsRef::as_ref);
+    let used =
+        format!("{} points used, {} outlying, {} set aside", s.points_used, s.points_outlying, s.points_rejected);
+    let at = format!("at s = {:.1} mm", s.max_error_after_s_mm);
+    let figures = [
+        Figure::mm(without, s.max_error_before_mm).map(|f| f.noted("predicted")),
+        Figure::mm(with, s.max_error_after_mm).map(|f| f.noted(format!("predicted, {at}"))),
+        Figure::mm("standard deviation there", s.sigma_at_max_error_mm),
+        Figure::mm("largest standard deviation", s.max_sigma_mm).map(|f| f.noted("what the points leave open")),
+        Figure::mm("left over the height", s.axial_form_error_mm).map(|f| f.noted("no X Y shift cures it")),
+        Figure::mm("deepest cut at any height", s.worst_gouge_mm).map(|f| f.noted("predicted")),
+        Figure::mm("largest correction", s.max_correction_mm).map(|f| f.noted("along an axis")),
+        Figure::mm("residual of the fit", s.fit_residual_mm).map(|f| f.noted(used)),
+    ];
+    figures.into_iter().flatten().collect()
+}
+
+fn facts(pass: &Pass, done: &Corrected, of: Points) -> Vec<Fact> {
+    let (s, wanted) = (&done.summary, &done.correction.wanted);
+    let mut facts = vec![
+        Fact::new("law", format!("{}; the wall follows the {} force", s.law, s.wall_law)),
+        Fact::new("error shown", shown(wanted.target, wanted.band, float(pass.core.setup.axial_depth))),
+    ];
+    let route = match (&done.program, &done.image) {
+        (Some(_), Some(_)) => "program and coprocessor",
+        (None, Some(_)) => "coprocessor: the program stays as it is",
+        (_, None) => "corrected program",
+    };
+    facts.push(Fact::new("route", route));
+    match of {
+        Points::ThisPass => {}
+        Points::FirstPass => {
+            facts.push(Fact::new("probe points", "of the first pass, which left the stock of this one"))
+        }
+        Points::Corrected(part) => {
+            facts.push(Fact::new("probe points", format!("of part {part}, as cut with the correction made for it")));
+        }
+    }
+    if let Some(guard) = &s.guard {
+        facts.push(Fact::new("deepest cut allowed", format!("{:.4} mm", guard.max_gouge_mm)));
+    }
+    if let Some(feed) = s.feed.as_ref().filter(|_| done.schedule.is_some()) {
+        let [low, high] = feed.used_percent;
+        facts.push(Fact::new("scheduled feed", format!("{low} to {high} % of the programmed one, in both passes")));
+    }
+    let corrected = s.feature.as_ref().map_or(0, |feature| feature.passes_corrected.len());
+    if corrected > 1 {
+        facts.push(Fact::new("depths corrected", format!("{corrected}, all with this correction")));
+    }
+    facts
+}
+
+/// What the error along the contour is of.
+fn shown(target: Target, band: Band, depth_mm: f64) -> String {
+    let [from, to] =
+        [band.from, band.to].map(|fraction| truepath_ground::units::rounded(float(fraction) * depth_mm, 4));
+    match target {
+        Target::Mean => format!("mean over {from} to {to} mm above the tip"),
+        Target::Tip => "at the tip of the cutter".to_owned(),
+        Target::Minimax => format!("middle between largest and smallest, {from} to {to} mm above the tip"),
+    }
+}

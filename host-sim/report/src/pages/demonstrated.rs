@@ -1,0 +1,58 @@
+//! The page of a part of `demo`: the first and the corrected part as the virtual machine cut them, no predictions.
+
+use truepath_correction::correct::Corrected;
+use truepath_ground::diagnostics::Failure;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_plant::{Milled, Score, judged_trim_mm};
+
+use super::corrected::{Points, corrected};
+use crate::page::{Fact, Figure, Page, milled_twice};
+
+/// The page of a part that was cut without and with its correction.
+///
+/// # Errors
+/// As [`corrected`].
+pub fn demonstrated(
+    title: &str,
+    pass: &Pass,
+    measurement: &Measurement,
+    done: &Corrected,
+    cut: [(&Milled, &Score); 2],
+) -> Result<Page, Failure> {
+    let mut page = corrected(pass, measurement, done, Points::ThisPass)?;
+    title.clone_into(&mut page.title);
+    let [(first, before), (second, after)] = cut;
+    let labels = ["first part, cut by the virtual machine", "corrected part, cut by the virtual machine"];
+    let trim_mm = judged_trim_mm(first.cut.radius_mm);
+    if let Some(contour) = &mut page.contour {
+        page.heights = milled_twice(contour, [(first, labels[0]), (second, labels[1])], trim_mm);
+    }
+    page.results = figures(before, after, done);
+    // What was foretold of a part that has been cut is not its verdict.
+    (page.tolerance_mm, page.verdict) = (None, None);
+    if let Some(job) = &mut page.job {
+        job.facts.retain(|fact| fact.name != "error shown");
+        let shown = format!(
+            "mean over the engaged depth; the {trim_mm} mm at both ends, where the cutter plunges and lifts, are not judged"
+        );
+        job.facts.push(Fact::new("error shown", shown));
+    }
+    Ok(page)
+}
+
+fn figures(before: &Score, after: &Score, done: &Corrected) -> Vec<Figure> {
+    let rms = |score: &Score| format!("cut, rms {:.4} mm", score.rms_error_mm);
+    let s = &done.summary;
+    let figures = [
+        Figure::mm("largest error, first part", before.max_error_mm).map(|f| f.noted(rms(before))),
+        Figure::mm("largest error, corrected part", after.max_error_mm).map(|f| f.noted(rms(after))),
+        Figure::mm("largest error, predicted", s.max_error_after_mm).map(|f| f.noted("from the points")),
+        Figure::mm("standard deviation there", s.sigma_at_max_error_mm),
+        Figure::mm("left over the height", after.axial_form_mm).map(|f| f.noted("cut; no X Y shift cures it")),
+        Figure::mm("deepest cut", after.gouge_mm.max(0.0)).map(|f| f.noted("cut, mean over the height")),
+        Figure::mm("largest correction", s.max_correction_mm).map(|f| f.noted("along an axis")),
+        Figure::mm("residual of the fit", s.fit_residual_mm).map(|f| f.noted(format!("{} points used", s.points_used))),
+    ];
+    figures.into_iter().flatten().collect()
+}

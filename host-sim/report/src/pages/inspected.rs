@@ -1,0 +1,89 @@
+//! The page of `inspect`: a part for its customer. Deviations are those of the points; no model enters.
+
+use truepath_correction::inspection;
+use truepath_correction::inspection::Judgement;
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::units::mm;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::{Pass, PathBuffer};
+
+use super::{of_pass, told};
+use crate::InspectSummary;
+use crate::page::{Figure, InputFile, Inspected, Kind, Limits, Page, State, Verdict, judged_points, nominal};
+
+/// The page of an inspection. `warnings` are those of the summary without one for every reading set aside: these stand in the
+/// table of points.
+pub fn inspected(
+    pass: &Pass,
+    measurement: &Measurement,
+    judgement: &Judgement,
+    summary: &InspectSummary,
+    warnings: &[String],
+) -> Result<Page, Failure> {
+    let mut page = of_pass(Kind::Inspect, "Inspection report:".to_owned(), pass);
+    if let Some(name) = &summary.part.name {
+        page.title = format!("Inspection report: {name}");
+    }
+    let mut buffer = PathBuffer::default();
+    let mut notes = Vec::new();
+    // A contour that leaves no wall at some tight corner can still be touched elsewhere.
+    match pass.sample(&mut buffer) {
+        Ok(path) => {
+            let along = nominal(&path);
+            page.contour = Some(along.contour);
+            notes.extend(along.note);
+        }
+        Err(Failure::Input(error)) => notes.push(format!("the contour is not drawn: {error}")),
+        Err(failure) => return Err(failure),
+    }
+    let (points, left_out) = judged_points(pass, measurement, &judgement.points);
+    page.points = points;
+    page.results = figures(summary, measurement, judgement.decimals);
+    page.verdict = Some(Verdict {
+        state: match summary.verdict.state {
+            inspection::State::Pass => State::Pass,
+            inspection::State::Fail => State::Fail,
+            inspection::State::Open => State::Open,
+        },
+        text: summary.verdict.text.clone(),
+    });
+    page.limits = Limits::of(summary);
+    page.inspected = Some(Inspected {
+        part: summary.part.clone(),
+        files: vec![
+            InputFile::new("program", pass.program.name(), &summary.program_crc32),
+            InputFile::new("probe file", &measurement.file, &summary.probe_crc32),
+            InputFile::new("job", pass.job.source().name(), &summary.job_crc32),
+        ],
+        statements: summary.statements.clone(),
+        coverage: summary.coverage.clone(),
+    });
+    page.warnings = told(pass, Some(&measurement.file), warnings.iter().cloned().chain(notes).chain(left_out));
+    Ok(page)
+}
+
+fn figures(s: &InspectSummary, measurement: &Measurement, decimals: usize) -> Vec<Figure> {
+    let told = |name: &str, value: f64| Figure::of(name, value, u32::try_from(decimals).unwrap_or(6), "mm");
+    let (most, least) = (
+        if s.max_error_mm > 0.0 { "most material left" } else { "shallowest cut" },
+        if s.min_error_mm < 0.0 { "deepest cut" } else { "least material left" },
+    );
+    let points = |state: &str, count: usize| Figure::of(format!("points {state}"), count as f64, 0, "");
+    let touched = measurement.contacts.iter().map(|c| c.s).min().zip(measurement.contacts.iter().map(|c| c.s).max());
+    let between = touched.map(|(from, to)| format!("between s = {:.1} and {:.1} mm", mm(from), mm(to)));
+    let count = s.points_by_verdict.unwrap_or_default();
+    let judged = s.points_by_verdict.is_some();
+    let figures = [
+        Figure::mm("mean", s.mean_error_mm).map(|f| f.noted("a wear offset removes it")),
+        told("largest", s.max_error_mm).map(|f| f.noted(most)),
+        told("smallest", s.min_error_mm).map(|f| f.noted(least)),
+        Figure::mm("root mean square", s.rms_error_mm),
+        Figure::mm("spread over the height", s.spread_over_height_mm).map(|f| f.noted("largest of one place")),
+        points("measured", s.points).map(|f| f.noted(between.unwrap_or_default())),
+        points("within", count.pass).filter(|_| judged),
+        points("outside", count.fail).filter(|_| judged),
+        points("undecided", count.open).filter(|_| judged),
+        points("set aside", s.points_rejected),
+    ];
+    figures.into_iter().flatten().collect()
+}

@@ -1,0 +1,96 @@
+//! The page of `learn`: the measured part as it was milled, beside the next one and the one without any correction.
+
+use truepath_correction::as_milled::AsMilled;
+use truepath_correction::correct::Corrected;
+use truepath_correction::learn::LearnSummary;
+use truepath_correction::learning::Verdict;
+use truepath_ground::diagnostics::Failure;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+
+use super::corrected::{Points, figures, of_correction};
+use crate::page;
+use crate::page::{Fact, Figure, Foretold, Kind, Page, Words, predicted, subject};
+
+/// The page of what was learned.
+///
+/// # Errors
+/// As [`Pass::sample`].
+pub fn learned(
+    pass: &Pass,
+    measurement: &Measurement,
+    done: &Corrected,
+    milled: &AsMilled,
+    summary: &LearnSummary,
+) -> Result<Page, Failure> {
+    let verdict = &summary.verdict;
+    let [before, cut, next] = words(verdict, milled.corrected());
+    let passes = Foretold {
+        // A part that was cut without correction is the uncorrected one.
+        before: milled.corrected().then_some(before),
+        milled: Some((cut, &milled.correction)),
+        after: next,
+        correction: &done.correction,
+        residual: &done.residual,
+    };
+    let points = Points::Corrected(verdict.part);
+    let mut page = of_correction(pass, measurement, done, points, |machine| predicted(machine, &passes))?;
+    page.kind = Kind::Learn;
+    // Judged is the part that is not milled yet.
+    page.verdict =
+        page.verdict.map(|v| page::Verdict { text: format!("part {}, {}", next_part(verdict), v.text), ..v });
+    page.title =
+        format!("{}: part {} measured, correction of part {}", subject(pass), verdict.part, next_part(verdict));
+    page.results = came_out(summary).into_iter().chain(figures(&done.summary, &names(verdict))).collect();
+    if let Some(job) = &mut page.job {
+        job.facts.extend(verdict.used_again.map(|again| Fact::new("next part", again.words())));
+    }
+    Ok(page)
+}
+
+const fn next_part(verdict: &Verdict) -> u32 {
+    verdict.part.saturating_add(1)
+}
+
+/// What the largest errors of the part without correction and of the next one are called.
+fn names(verdict: &Verdict) -> [String; 2] {
+    ["uncorrected, largest error".to_owned(), format!("part {}, largest error", next_part(verdict))]
+}
+
+/// The three passes: without correction, the part that was measured, the next one.
+fn words(verdict: &Verdict, corrected: bool) -> [Words; 3] {
+    let words = |name: String, label: String| Words { name: Some(name), label };
+    let with = if corrected { "with its correction" } else { "without correction" };
+    let by = if verdict.used_again.is_some() {
+        "by the model of the parts before; this one is set aside"
+    } else {
+        "by the model of all parts"
+    };
+    let next = match verdict.used_again {
+        None => "with the new correction".to_owned(),
+        Some(again) if again.corrected => format!("with the correction of part {} again", again.part),
+        Some(_) => "without correction".to_owned(),
+    };
+    [
+        words("uncorrected".to_owned(), "along the path of the program, predicted".to_owned()),
+        words(format!("part {}", verdict.part), format!("as milled {with}, {by}")),
+        words(format!("part {}", next_part(verdict)), format!("the next one, {next}, predicted")),
+    ]
+}
+
+/// How the part came out, and whether that was foreseen.
+fn came_out(summary: &LearnSummary) -> Vec<Figure> {
+    let (v, whole) = (&summary.verdict, &summary.whole_contour_error_mm);
+    let (now, before, promise) = (&v.measured_error_mm, &v.previous_error_mm, &v.promise);
+    let places = format!("at {} places, rms {:.4} mm", now.places, now.rms_mm);
+    let along = format!("by the model, at s = {:.1} mm, σ {:.4} mm", whole.s_mm, whole.sigma_mm);
+    let earlier = format!("at the same places, rms {:.4} mm", before.rms_mm);
+    let promised = format!("{} of {} places within 2σ", promise.within_two_sigma, promise.places);
+    let figures = [
+        Figure::mm(format!("part {} measured, largest error", now.part), now.max_mm).map(|f| f.noted(places)),
+        Figure::mm(format!("part {}, whole contour", now.part), whole.max_mm).map(|f| f.noted(along)),
+        Figure::mm(format!("part {}, largest error", before.part), before.max_mm).map(|f| f.noted(earlier)),
+        Figure::mm(format!("promised for part {}", now.part), promise.max_mm).map(|f| f.noted(promised)),
+    ];
+    figures.into_iter().flatten().collect()
+}

@@ -1,0 +1,43 @@
+//! `report.html` of the commands: what each of them puts on its page. Everything shown is what the tables and the summary
+//! beside the page hold, with the same digits; nothing is computed for the page alone but the passes over the whole
+//! contour that the tables hold in part.
+
+mod corrected;
+mod demonstrated;
+mod expected;
+mod inspected;
+mod learned;
+mod simulated;
+
+use truepath_job::pass::Pass;
+
+use crate::page::{JobFacts, Kind, Outlines, Page, Program, subject};
+
+pub use corrected::{Points, corrected};
+pub use demonstrated::demonstrated;
+pub use inspected::inspected;
+pub use learned::learned;
+pub use simulated::simulated;
+
+/// File of the page.
+pub const REPORT: &str = "report.html";
+
+/// A page of a pass: program, job, stock.
+fn of_pass(kind: Kind, title: String, pass: &Pass) -> Page {
+    let mut page = Page::new(kind, format!("{title} {}", subject(pass)));
+    page.program = Some(Program::of(pass, None));
+    page.job = Some(JobFacts::of(pass));
+    page.outlines = Outlines::of(pass);
+    page
+}
+
+/// Warnings as the page tells them: files without their folders, which are nobody's business who receives the page.
+fn told(pass: &Pass, probe: Option<&str>, warnings: impl Iterator<Item = String>) -> Vec<String> {
+    let files = [Some(pass.program.name()), Some(pass.job.source().name()), probe];
+    let folder = |name: &str| name.rfind(['/', '\\']).map(|end| name[..=end].to_owned());
+    // A folder of one mark ("/") stands in other texts as well.
+    let mut folders: Vec<String> = files.into_iter().flatten().filter_map(folder).filter(|f| f.len() > 1).collect();
+    // The longest first: one may be the beginning or the end of another.
+    folders.sort_unstable_by_key(|folder| std::cmp::Reverse(folder.len()));
+    warnings.map(|text| folders.iter().fold(text, |text, folder| text.replace(folder, ""))).collect()
+}

@@ -1,0 +1,32 @@
+//! The page of `simulate`: one pass, with who computed it.
+
+use truepath_job::pass::Pass;
+
+use super::{of_pass, told};
+use crate::SimulateSummary;
+use crate::page::{Along, Fact, Figure, Kind, Page};
+
+/// The page of a simulated pass.
+pub fn simulated(pass: &Pass, along: Along, summary: &SimulateSummary) -> Page {
+    let mut page = of_pass(Kind::Simulate, "Pass of".to_owned(), pass);
+    page.contour = Some(along.contour);
+    page.heights = along.heights;
+    page.results = figures(summary);
+    page.warnings = told(pass, None, summary.warnings.iter().cloned().chain(along.note));
+    if let Some(job) = &mut page.job {
+        job.facts.push(Fact::new("error shown", "mean over the engaged depth"));
+    }
+    page
+}
+
+fn figures(s: &SimulateSummary) -> Vec<Figure> {
+    let figures = [
+        Figure::mm("largest wall error", s.max_error_mm).map(|f| f.noted("mean over the height")),
+        Figure::mm("root mean square", s.rms_error_mm),
+        Figure::of("largest engagement", s.max_arc_deg, 2, "°"),
+        Figure::of("largest mean force", s.max_force_n, 1, "N"),
+        Figure::of("largest chip area", s.max_chip_area_mm2, 4, "mm²").map(|f| f.noted("per tooth")),
+        Figure::of("length of the contour", s.length_mm, 3, "mm"),
+    ];
+    figures.into_iter().flatten().collect()
+}

@@ -1,0 +1,67 @@
+//! `summary.json` of `simulate`.
+
+use truepath_ground::units::mm;
+use truepath_job::feature::FeatureSummary;
+use truepath_job::pass::{Pass, milling_name};
+use truepath_plant::Score;
+use truepath_trial::recorded;
+
+use super::tables::TraceRow;
+
+/// Summary of `simulate`.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct SimulateSummary {
+    /// Version of this file.
+    pub version: u32,
+    /// Who cut: `core` or `plant`.
+    pub by: &'static str,
+    /// Length of the contour, mm.
+    pub length_mm: f64,
+    /// Largest magnitude of the wall error, mean over height, mm.
+    pub max_error_mm: f64,
+    /// Its root mean square, mm.
+    pub rms_error_mm: f64,
+    /// Largest engagement angle, degrees.
+    pub max_arc_deg: f64,
+    /// Largest mean force, N.
+    pub max_force_n: f64,
+    /// Largest chip area per tooth (P23's analogue of the removal rate), mm².
+    pub max_chip_area_mm2: f64,
+    /// Largest volume per tooth, chip area × cutter radius, mm³.
+    pub max_chip_volume_mm3: f64,
+    /// Climb or conventional.
+    pub milling: &'static str,
+    /// The wall away from its ends, where the cutter plunges and lifts; by the plant only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub judged: Option<Score>,
+    /// The recorded pass that was cut along, if one was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<recorded::Facts>,
+    /// The feature it is about; absent in a program with one cut and no names.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub feature: Option<FeatureSummary>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Makes the summary of `simulate`.
+pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warnings: Vec<String>) -> SimulateSummary {
+    let most = |f: fn(&TraceRow) -> f64| trace.iter().map(f).filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let finite: Vec<f64> = trace.iter().map(|r| r.error_mm).filter(|e| e.is_finite()).collect();
+    SimulateSummary {
+        version: 1,
+        by,
+        length_mm: mm(pass.core.contour.length),
+        max_error_mm: most(|r| r.error_mm.abs()),
+        rms_error_mm: (finite.iter().map(|e| e * e).sum::<f64>() / finite.len().max(1) as f64).sqrt(),
+        max_arc_deg: most(|r| r.arc_deg),
+        max_force_n: most(|r| r.force_n),
+        max_chip_area_mm2: most(|r| r.chip_area_mm2),
+        max_chip_volume_mm3: most(|r| r.chip_area_mm2) * mm(pass.core.setup.radius),
+        milling: milling_name(pass.core.setup.milling),
+        judged: None,
+        recorded: None,
+        feature: pass.feature(&[]),
+        warnings,
+    }
+}

@@ -1,0 +1,106 @@
+//! Tables. Column names carry their units; their order is part of the contract.
+
+use truepath_core::cut::{Loop, State, chip_area};
+use truepath_correction::rows::{CorrectionRow, wall_mm};
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::table::table;
+use truepath_ground::units::{float, mm, rounded};
+
+/// One place of a simulated pass.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct TraceRow {
+    /// Arc length of the contour.
+    pub s_mm: f64,
+    /// Nominal centre.
+    pub x_mm: f64,
+    /// Nominal centre.
+    pub y_mm: f64,
+    /// Engagement angle.
+    pub arc_deg: f64,
+    /// P23's analogue of the removal rate, b·f·(1 − cos φ₁), per tooth.
+    pub chip_area_mm2: f64,
+    /// Mean force over a revolution.
+    pub force_n: f64,
+    /// Its component along x, on the tool.
+    pub fx_n: f64,
+    /// Its component along y, on the tool.
+    pub fy_n: f64,
+    /// Mean deflection along x.
+    pub dx_mm: f64,
+    /// Mean deflection along y.
+    pub dy_mm: f64,
+    /// Wall error, mean over the height: positive, material left; not a number where no wall stands.
+    pub error_mm: f64,
+    /// Nominal wall beside it; in `wall.csv`.
+    #[serde(skip)]
+    pub wall_x_mm: f64,
+    /// Nominal wall beside it; in `wall.csv`.
+    #[serde(skip)]
+    pub wall_y_mm: f64,
+}
+
+/// A simulated pass.
+pub type Trace = Vec<TraceRow>;
+
+/// The trace of a pass in states of the elastic loop over the path's working range, with the wall error of each
+/// sample of the contour.
+pub fn trace(machine: &Loop, states: &[State], errors_mm: &[f64]) -> Trace {
+    let path = machine.path;
+    let skipped = path.first() - path.working().start;
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    let rows = samples.iter().zip(&states[skipped..]).zip(errors_mm);
+    rows.map(|((sample, state), error)| {
+        let (n, t) = machine.mean_force(state);
+        let heading = path.setup().wall.heading(state.normal);
+        let (n, t) = (float(n), float(t));
+        let fx_n = n * float(state.normal.x) + t * float(heading.x);
+        let fy_n = n * float(state.normal.y) + t * float(heading.y);
+        let feed = path.setup().feed_per_tooth(sample.feed);
+        let wall = wall_mm(path, sample);
+        TraceRow {
+            s_mm: mm(sample.s),
+            x_mm: sample.point.x.nm() as f64 / 1e6,
+            y_mm: sample.point.y.nm() as f64 / 1e6,
+            arc_deg: float(state.engaged).to_degrees(),
+            chip_area_mm2: float(chip_area(path.setup(), feed, state.engaged)),
+            force_n: n.hypot(t),
+            fx_n,
+            fy_n,
+            dx_mm: mm(state.displacement.x),
+            dy_mm: mm(state.displacement.y),
+            error_mm: *error,
+            wall_x_mm: wall[0],
+            wall_y_mm: wall[1],
+        }
+    })
+    .collect()
+}
+
+/// `trace.csv`.
+///
+/// # Errors
+/// Internal, when memory cannot be written.
+pub fn trace_csv(trace: &Trace) -> Result<Vec<u8>, Failure> {
+    table(trace.iter().map(|r| TraceRow {
+        s_mm: rounded(r.s_mm, 6),
+        x_mm: rounded(r.x_mm, 6),
+        y_mm: rounded(r.y_mm, 6),
+        arc_deg: rounded(r.arc_deg, 6),
+        chip_area_mm2: rounded(r.chip_area_mm2, 6),
+        force_n: rounded(r.force_n, 4),
+        fx_n: rounded(r.fx_n, 4),
+        fy_n: rounded(r.fy_n, 4),
+        dx_mm: rounded(r.dx_mm, 6),
+        dy_mm: rounded(r.dy_mm, 6),
+        error_mm: rounded(r.error_mm, 6),
+        ..*r
+    }))
+}
+
+/// `correction.csv`.
+///
+/// # Errors
+/// Internal, when memory cannot be written.
+pub fn correction_csv(rows: &[CorrectionRow]) -> Result<Vec<u8>, Failure> {
+    table(rows)
+}

@@ -1,0 +1,177 @@
+//! A case: what a user would have on the bench, and the machine that nobody knows.
+//!
+//! Drawing a case uses the plant only. The machine is as soft as it takes for the uncorrected part to come out about as
+//! wrong as the family wants, so every case has something to correct.
+
+use std::path::Path as FilePath;
+
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::units::mm;
+use truepath_job::job::Job;
+use truepath_job::pass::Pass;
+use truepath_plant::{Judged, Machine, Milled, judged_trim_mm};
+use truepath_trial::virtual_mill;
+
+use super::belief::Mistakes;
+use super::draw::Draw;
+use super::families::family;
+use super::id::{Axis, CaseId};
+use super::machine::{Drawn, Width, machine};
+use super::part::Part;
+use super::seeds::Set;
+use super::{places, text};
+
+/// The error aimed at is met to this share.
+const CLOSE: f64 = 0.15;
+
+/// Parts milled at most to meet it.
+const TRIALS: usize = 5;
+
+/// No machine with its cutter yields more than this on the mean of x and y, mm/N.
+const SOFTEST: f64 = 1.0 / 250.0;
+
+/// No height of the wall is farther off than this share of the allowance.
+const FARTHEST: f64 = 0.5;
+
+/// The cutter is nowhere pushed farther than this by the mean force on the uncorrected part, mm: the jobs state a clamp of
+/// 1 mm, which a corrected part, cut to its full depth, then has room in.
+const PUSHED_MM: f64 = 0.6;
+
+/// Standard deviation of the datum shift between cut and probe, in x and in y, mm.
+const DATUM_MM: f64 = 0.0015;
+
+/// Least wall error worth a case, mm.
+const LEAST_MM: f64 = 0.045;
+
+/// Draws at most until a machine within these bounds spoils the part enough; the last is taken as it is.
+const DRAWS: usize = 8;
+
+/// A case, its first part milled.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Its name.
+    pub id: CaseId,
+    /// What is milled.
+    pub part: Part,
+    /// Program text.
+    pub program: String,
+    /// Job text.
+    pub job: String,
+    /// Job and program as read.
+    pub pass: Pass,
+    /// The machine while the first part is cut.
+    pub machine: Machine,
+    /// Places of the first probing, mm along the contour.
+    pub places_mm: Vec<f64>,
+    /// Places added after the first correction.
+    pub more_mm: Vec<f64>,
+    /// Heights, shares of the depth.
+    pub levels: Vec<f64>,
+    /// The first part.
+    pub first: Milled,
+    /// Its wall.
+    pub before: Judged,
+}
+
+impl Case {
+    /// Draws a case and mills its first part.
+    ///
+    /// # Errors
+    /// What job, program or plant refuse: a family that draws what cannot be milled.
+    pub fn draw(id: &CaseId) -> Result<Self, Failure> {
+        let family = family(&id.family).ok_or_else(|| Failure::Internal(format!("no family {}", id.family)))?;
+        let width = if id.set() == Set::Random { Width::Wild } else { Width::Usual };
+        let mut attempt = 0;
+        loop {
+            attempt += 1;
+            let chance = |what: &str| Draw::new(&format!("{}/{what}/{attempt}", family.name), id.seed);
+            let part = (family.draw)(&mut chance("part"));
+            let drawn = machine(&mut chance("machine"), &part, width);
+            let mistakes = Mistakes::draw(&mut chance("belief"), width);
+            let case = Self::of(id, part, drawn, &mistakes, &mut chance("places"))?;
+            if case.before.score.max_error_mm >= LEAST_MM || attempt == DRAWS {
+                return Ok(case);
+            }
+        }
+    }
+
+    fn of(id: &CaseId, part: Part, mut drawn: Drawn, mistakes: &Mistakes, chance: &mut Draw) -> Result<Self, Failure> {
+        let program = text::program(&part, &id.family);
+        let read = |job: &str| {
+            let source = |name: &str, text: &str| Source::new(format!("{id}/{name}"), text.as_bytes().to_vec());
+            Pass::new(Job::parse(source("job.toml", job), FilePath::new(""))?, source("program.nc", &program))
+        };
+        let trial = read(&text::job(&part, &mistakes.about(&drawn.machine, 1.0)))?;
+        let (mut first, before) = scaled(&trial, &mut drawn)?;
+
+        let changed = |axis: Axis| id.cell.filter(|cell| cell.axis == axis).map(|cell| cell.value);
+        let job = text::job(&part, &mistakes.about(&drawn.machine, changed(Axis::Prior).unwrap_or(1.0)));
+        let pass = read(&job)?;
+        if let Some(noise) = changed(Axis::Noise) {
+            drawn.machine.probe_noise_mm = noise * 1e-3;
+            first.machine.probe_noise_mm = noise * 1e-3;
+        }
+        let trim = judged_trim_mm(part.cut.radius_mm);
+        let mut levels = part.levels.to_vec();
+        let mut places_mm = part.places_mm.clone();
+        if places_mm.is_empty() {
+            places_mm = places::first(chance, &part.contour, trim);
+        }
+        if let Some(points) = changed(Axis::Points) {
+            (places_mm, levels) = touches(&part, trim, points as usize);
+        }
+        let more_mm = places::more(&part.contour, trim);
+        let machine = drawn.machine;
+        Ok(Self { id: id.clone(), part, program, job, pass, machine, places_mm, more_mm, levels, first, before })
+    }
+
+    /// The machine while part `number` (1, 2, …) is cut: the same, with another blank and other noise of the probe.
+    pub fn machine_of(&self, number: u64) -> Machine {
+        Machine { seed: self.machine.seed.wrapping_add(number - 1), ..self.machine.clone() }
+    }
+
+    /// Touches part `number`. Every part is clamped and its datum taken anew, so the datum shift is another one.
+    ///
+    /// # Errors
+    /// Places without a wall.
+    pub fn probe(&self, number: u64, milled: &Milled, places_mm: &[f64]) -> Result<String, Failure> {
+        let ball = text::ball_diameter_mm(&self.part);
+        let mut chance = Draw::new(&format!("{}/datum/{number}", self.id.family), self.id.seed);
+        let datum_mm = [chance.normal(DATUM_MM), chance.normal(DATUM_MM)];
+        virtual_mill::probe_shifted(&self.pass, milled, places_mm, &self.levels, ball, datum_mm)
+    }
+}
+
+/// So many touches: three heights a place where that comes out even, else mid-height only.
+fn touches(part: &Part, trim: f64, count: usize) -> (Vec<f64>, Vec<f64>) {
+    if count >= 6 && count.is_multiple_of(3) {
+        (places::spread(&part.contour, trim, count / 3), vec![0.1, 0.5, 0.9])
+    } else {
+        (places::spread(&part.contour, trim, count), vec![0.5])
+    }
+}
+
+/// Makes the machine as soft as the case wants and mills the first part.
+fn scaled(pass: &Pass, drawn: &mut Drawn) -> Result<(Milled, Judged), Failure> {
+    let allowance = mm(pass.core.setup.allowance);
+    let mut trials = 0;
+    loop {
+        let milled = virtual_mill::mill(pass, &drawn.machine, None)?;
+        let judged = milled.judge();
+        trials += 1;
+        let ratio = drawn.error_mm / judged.score.max_error_mm.max(1e-6);
+        let c = &drawn.machine.compliance_mm_per_n;
+        let softer = SOFTEST / (0.5 * (c[0][0] + c[1][1]));
+        let farther = FARTHEST * allowance / judged.score.worst_height_mm.max(1e-6);
+        let pushed = milled.samples.iter().map(|s| (s.actual[0] - s.commanded[0]).hypot(s.actual[1] - s.commanded[1]));
+        let pushed = PUSHED_MM / pushed.fold(1e-6, f64::max);
+        // A softer machine also cuts less, so the error grows more slowly than the compliance.
+        let factor = ratio.min(softer).min(farther).min(pushed).clamp(0.05, 4.0);
+        if trials == TRIALS || (factor - 1.0).abs() < CLOSE {
+            return Ok((milled, judged));
+        }
+        for value in drawn.machine.compliance_mm_per_n.iter_mut().flatten() {
+            *value = (*value * factor).clamp(-0.05, 0.05);
+        }
+    }
+}

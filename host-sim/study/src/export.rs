@@ -1,0 +1,175 @@
+//! One case in full: its files, for the ordinary commands, and what machine, user and fit say side by side.
+
+use std::fmt::Write;
+use std::path::Path as FilePath;
+
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::OutputFolder;
+use truepath_plant::Judged;
+
+use super::carry::{Carried, Taught, described, first, second};
+use super::case::Case;
+use super::id::CaseId;
+use super::outcome::Outcome;
+
+/// Files an export may write.
+const FILES: &[&str] =
+    &["program.nc", "job.toml", "plant.toml", "probe.txt", "corrected.nc", "probe-2.txt", "learned.nc", "errors.csv"];
+
+/// A case carried through as far as it goes.
+#[derive(Debug)]
+pub struct Detail {
+    /// The case.
+    pub case: Case,
+    /// Its outcome.
+    pub outcome: Outcome,
+    /// The correction, when there is one, or why not.
+    pub carried: Result<Carried, Failure>,
+    /// What was learned from the corrected part, or why nothing.
+    pub taught: Option<Result<Taught, Failure>>,
+}
+
+/// Carries one case through.
+///
+/// # Errors
+/// A case that cannot be drawn.
+pub fn detail(id: &CaseId) -> Result<Detail, Failure> {
+    let case = Case::draw(id)?;
+    let mut outcome = described(&case);
+    let carried = first(&case, &mut outcome);
+    if let Err(failure) = &carried {
+        outcome.failure = failure.to_string();
+    }
+    let taught = carried.as_ref().ok().map(|carried| second(&case, carried, &mut outcome));
+    if let Some(Err(failure)) = &taught {
+        outcome.learn_failure = failure.to_string();
+    }
+    Ok(Detail { case, outcome, carried, taught })
+}
+
+/// Writes the files of a case.
+///
+/// # Errors
+/// A folder that cannot be written, or holds something and `force` is not set.
+pub fn export(detail: &Detail, folder: &FilePath, force: bool) -> Result<(), Failure> {
+    let case = &detail.case;
+    let out = OutputFolder::create(folder, force, FILES)?;
+    out.write("program.nc", case.program.as_bytes())?;
+    out.write("job.toml", case.job.as_bytes())?;
+    let plant = toml::to_string(&case.machine).map_err(|e| Failure::Internal(format!("plant.toml: {e}")))?;
+    out.write("plant.toml", plant.as_bytes())?;
+    out.write("probe.txt", case.probe(1, &case.first, &case.places_mm)?.as_bytes())?;
+    if let Ok(carried) = &detail.carried {
+        if let Some(program) = &carried.corrected.program {
+            out.write("corrected.nc", program)?;
+        }
+        let taught = detail.taught.as_ref().and_then(|taught| taught.as_ref().ok());
+        if let Some(taught) = taught {
+            out.write("probe-2.txt", taught.probe.as_bytes())?;
+            out.write("learned.nc", taught.learned.corrected.program.as_deref().unwrap_or_default())?;
+        }
+        let mut errors = "s_mm,before_mm,after_mm,learned_mm\n".to_owned();
+        for (k, (s, before)) in case.before.mean_mm.iter().enumerate() {
+            let at = |judged: &Judged| judged.mean_mm.get(k).map_or(f64::NAN, |(_, error)| *error);
+            let learned = taught.map_or(f64::NAN, |taught| at(&taught.after));
+            let _ = writeln!(errors, "{s:.4},{before:.6},{:.6},{learned:.6}", at(&carried.after));
+        }
+        out.write("errors.csv", errors.as_bytes())?;
+    }
+    out.commit()?;
+    Ok(())
+}
+
+/// The detail in words.
+pub fn words(detail: &Detail) -> String {
+    let (case, o) = (&detail.case, &detail.outcome);
+    let (machine, cut) = (&case.machine, &case.part.cut);
+    let mut text = format!(
+        "{}: {:?} wall, {:?} spindle, {:.1} mm\n",
+        case.id, case.part.contour.side, case.part.spindle, case.first.path.length_mm
+    );
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<22} {value}");
+    };
+    line("cutter", format!("radius {} mm, {} teeth, {} degrees", cut.radius_mm, cut.teeth, cut.helix_deg));
+    line(
+        "cut",
+        format!("depth {} mm, allowance {} mm, S{} F{}", cut.depth_mm, cut.allowance_mm, cut.rpm, cut.feed_mm_per_min),
+    );
+    line("places", format!("{:?} mm at {:?}", case.places_mm, case.levels));
+    line("places added later", format!("{:?} mm", case.more_mm));
+    line(
+        "Kt, Kr, Kte, Kre, m",
+        format!(
+            "{:.0} {:.0} {:.1} {:.1} {:.2}",
+            machine.ktc_n_per_mm2,
+            machine.krc_n_per_mm2,
+            machine.kte_n_per_mm,
+            machine.kre_n_per_mm,
+            machine.size_exponent
+        ),
+    );
+    let c = machine.compliance_mm_per_n.map(|row| row.map(|v| (v * 1e9).round() / 1e6));
+    line("compliance", format!("{c:?} µm/N, bend {:.2}", machine.bend));
+    let runout: Vec<f64> = machine.runout_mm.iter().map(|r| (r * 1e5).round() / 1e2).collect();
+    line("runout", format!("{runout:?} µm"));
+    line(
+        "wear, stock, noise",
+        format!(
+            "{:.2} per m, {:.3} mm, {:.4} mm",
+            machine.edge_wear_per_m, machine.stock_variation_mm, machine.probe_noise_mm
+        ),
+    );
+    let mm = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.4} mm"));
+    line("error before", format!("{} (worst height {})", mm(o.before_mm), mm(o.worst_height_before_mm)));
+    match &detail.carried {
+        Err(failure) => line("refused", failure.to_string()),
+        Ok(carried) => {
+            line(
+                "error after",
+                format!(
+                    "{}, factor {:.1}, predicted {}, sigma up to {}",
+                    mm(o.after_mm),
+                    o.factor.unwrap_or_default(),
+                    mm(o.predicted_mm),
+                    mm(o.sigma_mm)
+                ),
+            );
+            line("within 2 sigma", format!("{:.1} % of the contour", 100.0 * o.coverage.unwrap_or_default()));
+            line("wall law found", o.law.clone());
+            for (name, p) in &carried.corrected.summary.identified {
+                let seen = if p.observable { "" } else { "  (not decided)" };
+                line(
+                    name,
+                    format!(
+                        "{:.5} ± {:.5}, prior {:.5} ± {:.5} {}{seen}",
+                        p.value, p.sigma, p.prior, p.prior_sigma, p.unit
+                    ),
+                );
+            }
+            for warning in &carried.corrected.summary.warnings {
+                line("warning", warning.clone());
+            }
+        }
+    }
+    match &detail.taught {
+        None => {}
+        Some(Err(failure)) => line("learning refused", failure.to_string()),
+        Some(Ok(taught)) => {
+            line(
+                "after learning",
+                format!(
+                    "{}, factor {:.1}, predicted {}",
+                    mm(o.learned_mm),
+                    o.learned_factor.unwrap_or_default(),
+                    mm(o.learned_predicted_mm)
+                ),
+            );
+            line("within 2 sigma", format!("{:.1} % of the contour", 100.0 * o.learned_coverage.unwrap_or_default()));
+            for remark in taught.learned.verdict.remarks() {
+                line("remark", remark.clone());
+            }
+        }
+    }
+    text
+}

@@ -1,0 +1,115 @@
+//! What a law leaves, in numbers.
+
+use std::ops::RangeInclusive;
+
+use truepath_core::units::Offset;
+use truepath_ground::units::mm;
+
+use super::Candidate;
+
+/// The wall beside one place of the contour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Along the contour, mm.
+    pub s_mm: f64,
+    /// Error of the target quantity, mm: positive, material left; not a number where no wall stands.
+    pub error_mm: f64,
+    /// Smallest error at any height of the engaged depth, mm.
+    pub lowest_mm: f64,
+    /// Largest error at any height, mm.
+    pub highest_mm: f64,
+}
+
+/// A wall along the contour.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Walls {
+    /// In the order of the contour.
+    pub places: Vec<Place>,
+}
+
+/// One line of the comparison.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Row {
+    /// Name of the law.
+    pub law: &'static str,
+    /// What it is.
+    pub title: &'static str,
+    /// Largest error of the target quantity, mm; absent when the machine could not cut it.
+    pub max_error_mm: Option<f64>,
+    /// Its root mean square, mm.
+    pub rms_error_mm: Option<f64>,
+    /// Largest error at any height of the engaged depth, mm.
+    pub worst_height_mm: Option<f64>,
+    /// Deepest cut at any height, mm (positive; 0 where material is left everywhere).
+    pub gouge_mm: Option<f64>,
+    /// Largest error without correction over that with it.
+    pub factor: Option<f64>,
+    /// Largest correction along an axis, mm.
+    pub max_correction_mm: f64,
+    /// Whether that is beyond the clamp of the job: `correct` would refuse it.
+    pub beyond_clamp: bool,
+    /// What is to be known about it.
+    pub remark: String,
+}
+
+impl Walls {
+    /// The places that are judged: away from the ends where the contour is long enough to have a middle.
+    pub fn judged(&self, trim_mm: f64) -> impl Iterator<Item = &Place> {
+        let stretch = judged(self.places.last().map_or(0.0, |p| p.s_mm), trim_mm);
+        self.places.iter().filter(move |p| stretch.contains(&p.s_mm) && p.error_mm.is_finite())
+    }
+}
+
+/// The stretch of a contour of a length that is judged, mm.
+pub fn judged(length_mm: f64, trim_mm: f64) -> RangeInclusive<f64> {
+    let trim = if length_mm > 2.5 * trim_mm { trim_mm } else { 0.0 };
+    trim..=length_mm - trim
+}
+
+/// The line of a law. `walls` is what it leaves, or why that is not known; `none_mm` is the largest error without
+/// correction, `trim_mm` what is left out at the ends.
+pub fn row(
+    candidate: &Candidate,
+    walls: Result<&Walls, &str>,
+    none_mm: Option<f64>,
+    trim_mm: f64,
+    clamp: Offset,
+) -> Row {
+    let largest = truepath_core::job::largest(&candidate.nodes);
+    let beyond_clamp = largest > clamp;
+    let mut remarks = vec![candidate.remark.clone()];
+    if beyond_clamp {
+        remarks.push(format!("beyond the clamp of {} mm: correct would refuse it", mm(clamp)));
+    }
+    let mut row = Row {
+        law: candidate.law,
+        title: candidate.title,
+        max_error_mm: None,
+        rms_error_mm: None,
+        worst_height_mm: None,
+        gouge_mm: None,
+        factor: None,
+        max_correction_mm: mm(largest),
+        beyond_clamp,
+        remark: String::new(),
+    };
+    match walls {
+        Err(reason) => remarks.push(format!("the machine could not cut it: {reason}")),
+        Ok(walls) => {
+            let most =
+                |f: fn(&Place) -> f64| walls.judged(trim_mm).map(f).filter(|v| v.is_finite()).fold(0.0, f64::max);
+            let (squares, count) = walls.judged(trim_mm).fold((0.0, 0u32), |(s, n), p| (s + p.error_mm.powi(2), n + 1));
+            if count > 0 {
+                let max = most(|p| p.error_mm.abs());
+                row.max_error_mm = Some(max);
+                row.rms_error_mm = Some((squares / f64::from(count)).sqrt());
+                row.worst_height_mm = Some(most(|p| p.lowest_mm.abs().max(p.highest_mm.abs())));
+                row.gouge_mm = Some(most(|p| -p.lowest_mm));
+                row.factor = Some(none_mm.unwrap_or(max) / max.max(1e-6));
+            }
+        }
+    }
+    remarks.retain(|text| !text.is_empty());
+    row.remark = remarks.join("; ");
+    row
+}

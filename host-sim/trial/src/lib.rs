@@ -1,0 +1,8 @@
+//! Trial cuts: a pass on the virtual machine, recorded setpoints through the code of the device, and laws of correction
+//! compared on one machine.
+
+pub mod compare;
+pub mod recorded;
+pub mod replay;
+pub mod setpoints;
+pub mod virtual_mill;
