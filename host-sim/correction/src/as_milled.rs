@@ -9,7 +9,7 @@ use truepath_ground::units::mm;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::correct::Corrected;
-use crate::correction::{Correction, Wish, foretold};
+use crate::correction::{Correction, DesignRequest, evaluate};
 use crate::learning::History;
 use crate::rows::{CorrectionRow, correction_rows};
 
@@ -44,9 +44,9 @@ impl AsMilled {
         let table = done.identified.table();
         let machine = done.identified.machine(&path, &table);
         let (residual, residual_sigma) = (&done.residual[..], &done.residual_sigma[..]);
-        let wish = Wish { law: Law::Model, residual, residual_sigma, kept: None };
+        let request = DesignRequest { law: Law::Model, residual, residual_sigma, kept: None };
         let nodes = history.next.correction.nodes().unwrap_or_default();
-        let correction = foretold(pass, &machine, &done.identified, &nodes, &wish);
+        let correction = evaluate(pass, &machine, &done.identified, &nodes, &request);
         let rows = correction_rows(&machine, &correction);
         Ok(Self { correction, rows })
     }

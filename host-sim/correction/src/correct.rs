@@ -13,12 +13,12 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
 
-use crate::correction::{Correction, Identified, Wish, corrected, identified};
-use crate::doubts::{cut_corrected, doubts, kinked};
+use crate::correction::{Correction, DesignRequest, Identified, design_correction, identify};
 use crate::edits::block_edits;
 use crate::remarks::Remarks;
 use crate::rows::{CorrectionRow, correction_rows};
 use crate::summary::{CorrectSummary, correct_summary};
+use crate::warnings::{cut_corrected, kinked, model_warnings};
 use crate::{feeds, image};
 
 /// A correction in memory: everything the command writes follows from it.
@@ -59,12 +59,12 @@ pub fn correct(
 ) -> Result<Corrected, Failure> {
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
-    let identified = identified(pass, &sampled, measurement, |share| progress(0.2 * share))?;
+    let identified = identify(pass, &sampled, measurement, |share| progress(0.2 * share))?;
     let remarks = Remarks::of(measurement, remarks);
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let law = job::law(&pass.core, &identified.machine(&path, &table), &measurement.contacts);
-    let mut done = design(pass, &sampled, identified, &Wish::of(law), remarks, routes, progress)?;
+    let mut done = design(pass, &sampled, identified, &DesignRequest::of(law), remarks, routes, progress)?;
     done.summary.warnings.extend(cut_corrected(&done.identified, &done.correction));
     Ok(done)
 }
@@ -77,7 +77,7 @@ pub fn design(
     pass: &Pass,
     sampled: &Path,
     identified: Identified,
-    wish: &Wish<'_>,
+    request: &DesignRequest<'_>,
     remarks: Remarks<'_>,
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
@@ -87,18 +87,18 @@ pub fn design(
     let table = identified.table();
     let machine = identified.machine(&path, &table);
     let mut feeds = feeds::planned(pass, &machine, &identified, remarks.of_this_pass, routes)?;
-    feeds.compare(pass, &machine, &identified, wish);
+    feeds.compare(pass, &machine, &identified, request);
     let mut fed = PathBuffer::default();
     let path = match &feeds.schedule {
         Some(schedule) => pass.sample_fed(&mut fed, Some(schedule))?.with_law(identified.law()),
         None => path,
     };
     let machine = identified.machine(&path, &table);
-    let correction = corrected(pass, &machine, &identified, wish, |share| progress(0.2 + 0.7 * share))?;
+    let correction = design_correction(pass, &machine, &identified, request, |share| progress(0.2 + 0.7 * share))?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.texts.iter().cloned());
-    warnings.extend(doubts(pass, &identified, &correction, &machine));
-    warnings.extend(feeds.doubts(mm(correction.sigma.iter().copied().max().unwrap_or_default())));
+    warnings.extend(model_warnings(pass, &identified, &correction, &machine));
+    warnings.extend(feeds.warnings(mm(correction.sigma.iter().copied().max().unwrap_or_default())));
     let mut summary = correct_summary(pass, &identified, &correction, remarks.set_aside, warnings);
     summary.place(&path, &correction);
     summary.feed = feeds.summary;
@@ -138,8 +138,8 @@ pub fn design(
         identified,
         correction,
         schedule: feeds.schedule,
-        residual: wish.residual.to_vec(),
-        residual_sigma: wish.residual_sigma.to_vec(),
+        residual: request.residual.to_vec(),
+        residual_sigma: request.residual_sigma.to_vec(),
         summary,
         program,
         image,

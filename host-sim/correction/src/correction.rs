@@ -15,7 +15,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
 use crate::identification::{Found, Points, asked, found};
-use crate::wall_halves::Halves;
+use crate::parallel_walls::ParallelWalls;
 
 /// What the probe points say about machine and material.
 #[derive(Clone, Debug)]
@@ -51,7 +51,7 @@ pub struct Correction {
 ///
 /// # Errors
 /// Points most of which do not fit.
-pub fn identified(
+pub fn identify(
     pass: &Pass,
     path: &Path,
     measurement: &Measurement,
@@ -91,7 +91,7 @@ impl Identified {
 
 /// What a correction is made from, beside the machine.
 #[derive(Clone, Copy, Debug)]
-pub struct Wish<'a> {
+pub struct DesignRequest<'a> {
     /// How it is made.
     pub law: Law,
     /// Wall error beside the model, one entry per sample of the contour; empty where none is known.
@@ -102,7 +102,7 @@ pub struct Wish<'a> {
     pub kept: Option<&'a [Node]>,
 }
 
-impl Wish<'_> {
+impl DesignRequest<'_> {
     /// By a law, of what the model predicts alone.
     pub const fn of(law: Law) -> Self {
         Self { law, residual: &[], residual_sigma: &[], kept: None }
@@ -113,38 +113,44 @@ impl Wish<'_> {
 ///
 /// # Errors
 /// A correction beyond the clamp.
-pub fn corrected(
+pub fn design_correction(
     pass: &Pass,
     machine: &Loop,
     identified: &Identified,
-    wish: &Wish,
+    request: &DesignRequest,
     mut progress: impl FnMut(f64),
 ) -> Result<Correction, Failure> {
-    let wanted = pass.job.numbers.design(wish.law);
-    let correction = made(machine, identified, wanted, wish, &mut progress);
+    let wanted = pass.job.numbers.design(request.law);
+    let correction = guarded_correction(machine, identified, wanted, request, &mut progress);
     job::check_clamp(&pass.job.numbers, machine.path, &correction.nodes).map_err(|error| pass.refused(&error))?;
     progress(1.0);
     Ok(correction)
 }
 
 /// What a correction that a part was cut with does, as the machine is known now: nothing of it is taken back.
-pub fn foretold(pass: &Pass, machine: &Loop, identified: &Identified, nodes: &[Node], wish: &Wish) -> Correction {
-    let wanted = Design { max_gouge: None, ..pass.job.numbers.design(wish.law) };
-    made(machine, identified, wanted, &Wish { kept: Some(nodes), ..*wish }, &mut |_| ())
+pub fn evaluate(
+    pass: &Pass,
+    machine: &Loop,
+    identified: &Identified,
+    nodes: &[Node],
+    request: &DesignRequest,
+) -> Correction {
+    let wanted = Design { max_gouge: None, ..pass.job.numbers.design(request.law) };
+    guarded_correction(machine, identified, wanted, &DesignRequest { kept: Some(nodes), ..*request }, &mut |_| ())
 }
 
-/// A correction by its design and wish.
-fn made(
+/// A correction by its design and request.
+fn guarded_correction(
     machine: &Loop,
     identified: &Identified,
     wanted: Design,
-    wish: &Wish,
+    request: &DesignRequest,
     progress: &mut dyn FnMut(f64),
 ) -> Correction {
     let path = machine.path;
     let count = path.count();
     let mut buffers = Buffers::of(path);
-    let mut workspace = buffers.workspace(wish.residual);
+    let mut workspace = buffers.workspace(request.residual);
     let mut nodes = vec![Node::default(); count];
     let mut unguarded = nodes.clone();
     let mut predicted = vec![Predicted::default(); count];
@@ -157,7 +163,7 @@ fn made(
         sigma: &mut sigma,
         damped: None,
     };
-    let passage = match wish.kept {
+    let passage = match request.kept {
         Some(kept) => guarded_given(machine, belief, &wanted, kept, &mut made, &mut workspace),
         None => guarded_design(machine, belief, &wanted, &mut made, &mut workspace, &mut |step| {
             if let DesignStep::Done { permille, .. } = step {
@@ -166,10 +172,10 @@ fn made(
         }),
     };
     let damped = made.damped;
-    for (sigma, more) in sigma.iter_mut().zip(wish.residual_sigma) {
+    for (sigma, more) in sigma.iter_mut().zip(request.residual_sigma) {
         *sigma = hypot_nm(*sigma, *more);
     }
-    let used_again = wish.kept.is_some();
+    let used_again = request.kept.is_some();
     Correction { nodes, unguarded, predicted, sigma, damped, used_again, wanted, passage }
 }
 
@@ -181,7 +187,7 @@ pub struct Buffers {
     profiles: Vec<Profile>,
     updates: Vec<Update>,
     best: Vec<Node>,
-    halves: Halves,
+    walls: ParallelWalls,
 }
 
 impl Buffers {
@@ -194,12 +200,12 @@ impl Buffers {
             profiles: vec![Profile::default(); count],
             updates: vec![Update::default(); count],
             best: vec![Node::default(); count],
-            halves: Halves::of(path),
+            walls: ParallelWalls::of(path),
         }
     }
 
     /// Lends it.
-    pub fn workspace<'a>(&'a mut self, residual: &'a [Offset]) -> DesignWorkspace<'a, &'a mut Halves> {
+    pub fn workspace<'a>(&'a mut self, residual: &'a [Offset]) -> DesignWorkspace<'a, &'a mut ParallelWalls> {
         DesignWorkspace {
             states: &mut self.states,
             displacements: &mut self.displacements,
@@ -207,7 +213,7 @@ impl Buffers {
             updates: &mut self.updates,
             best: &mut self.best,
             residual,
-            reader: &mut self.halves,
+            reader: &mut self.walls,
         }
     }
 }
@@ -220,7 +226,7 @@ pub fn walls(machine: &Loop, band: Band, nodes: &[Node], residual: &[Offset]) ->
     let passage = machine.run(working.start, &mut states, |i| commanded(path, nodes, i));
     let mut displacements = vec![Vector::ZERO; working.len()];
     let mut walls = vec![Profile::default(); path.count()];
-    Halves::of(path).profile(machine, &states, band, &mut displacements, &mut walls);
+    ParallelWalls::of(path).profile(machine, &states, band, &mut displacements, &mut walls);
     add_residual(&mut walls, residual);
     (walls, passage)
 }

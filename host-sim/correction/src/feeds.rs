@@ -7,7 +7,7 @@ use truepath_job::feed::{FeedSummary, Schedule, Unscheduled, Wanted, largest_for
 use truepath_job::job::{ForceLimit, Route};
 use truepath_job::pass::Pass;
 
-use crate::correction::{Identified, Wish, corrected};
+use crate::correction::{DesignRequest, Identified, design_correction};
 use crate::summary::correct_summary;
 
 /// The feeds along a contour.
@@ -88,10 +88,10 @@ fn contradiction(pass: &Pass, key: &str, found: &str, expected: &str, help: &str
 
 impl Feeds {
     /// Notes what a correction at the feeds of the program would leave; `machine` is on the path with these.
-    pub fn compare(&mut self, pass: &Pass, machine: &Loop, identified: &Identified, wish: &Wish<'_>) {
+    pub fn compare(&mut self, pass: &Pass, machine: &Loop, identified: &Identified, request: &DesignRequest<'_>) {
         let (Some(_), Some(summary)) = (&self.schedule, &mut self.summary) else { return };
         // Beyond the clamp there is none.
-        let Ok(plain) = corrected(pass, machine, identified, wish, |_| ()) else { return };
+        let Ok(plain) = design_correction(pass, machine, identified, request, |_| ()) else { return };
         let told = correct_summary(pass, identified, &plain, 0, Vec::new());
         summary.unscheduled = Some(Unscheduled {
             max_error_after_mm: told.max_error_after_mm,
@@ -102,17 +102,17 @@ impl Feeds {
     }
 
     /// What the user should know of the feeds, given the standard deviation of the corrected wall at them, mm.
-    pub fn doubts(&self, sigma_mm: f64) -> Vec<String> {
+    pub fn warnings(&self, sigma_mm: f64) -> Vec<String> {
         let Some(summary) = &self.summary else { return Vec::new() };
         let unused = self.schedule.is_none();
-        let mut doubts: Vec<String> = summary.doubt().into_iter().collect();
-        doubts.extend(unused.then(|| "[feed] changes nothing: the force is within the limit everywhere".to_owned()));
+        let mut warnings: Vec<String> = summary.doubt().into_iter().collect();
+        warnings.extend(unused.then(|| "[feed] changes nothing: the force is within the limit everywhere".to_owned()));
         if let Some(plain) = summary.unscheduled.filter(|plain| sigma_mm > 1.2 * plain.max_sigma_mm) {
-            doubts.push(format!(
+            warnings.push(format!(
                 "at the scheduled feeds the corrected wall is less certain ({sigma_mm:.4} mm, {:.4} mm at those of the program, one sigma): the points were cut at one feed, and what edge and chip have in the force is not told apart; probe the part cut with these feeds, or raise feed.min_percent",
                 plain.max_sigma_mm
             ));
         }
-        doubts
+        warnings
     }
 }

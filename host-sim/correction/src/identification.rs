@@ -7,8 +7,6 @@ use truepath_core::cut::{Path, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{EarlierPart, Observation, PredictionWorkspace, identify_parts, speaks_for_mean};
 use truepath_core::job::{ForceModel, Identified, Pass};
-use truepath_ground::beside::both;
-
 /// What a fit has found, with the points as it left them.
 #[derive(Clone, Debug)]
 pub struct Found {
@@ -63,6 +61,11 @@ pub fn found(
     if let Some(law) = law {
         return under(law, progress);
     }
-    let (mean, helical) = both((), |()| under(WallLaw::Mean, &mut |_| ()), || under(WallLaw::Helical, progress));
+    let mut mean = None;
+    let helical = rayon::in_place_scope(|threads| {
+        threads.spawn(|_| mean = Some(under(WallLaw::Mean, &mut |_| ())));
+        under(WallLaw::Helical, progress)
+    });
+    let Some(mean) = mean else { return helical };
     if speaks_for_mean(&mean.core.fit, &helical.core.fit) { mean } else { helical }
 }

@@ -9,7 +9,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::as_milled::WholeContour;
 use crate::correct::{Corrected, design};
-use crate::correction::{Identified, Wish};
+use crate::correction::{DesignRequest, Identified};
 use crate::learning::{History, MOST_PARTS, Part, PartPoints, Update, Verdict, update};
 use crate::remarks::Remarks;
 use crate::summary::CorrectSummary;
@@ -71,7 +71,8 @@ pub fn learn(
     part.set_aside = set_aside;
     let observations = joint.observations.last().cloned().unwrap_or_default();
     let identified = Identified { core: joint.core, observations };
-    let wish = Wish { law: Law::Model, residual: &residual, residual_sigma: &residual_sigma, kept: kept.as_deref() };
+    let request =
+        DesignRequest { law: Law::Model, residual: &residual, residual_sigma: &residual_sigma, kept: kept.as_deref() };
     let mut texts = remarks.to_vec();
     texts.extend_from_slice(verdict.remarks());
     if let Some(oldest) = history.parts.first().filter(|_| history.parts.len() >= MOST_PARTS) {
@@ -79,7 +80,7 @@ pub fn learn(
     }
     let texts = Remarks::of(measurement, &texts);
     let later = &mut |share| progress(0.5 + 0.5 * share);
-    let corrected = design(pass, &sampled, identified, &wish, texts, routes, later)?;
+    let corrected = design(pass, &sampled, identified, &request, texts, routes, later)?;
     let history = history.with(part, &corrected);
     Ok(Learned { corrected, history, verdict })
 }

@@ -20,7 +20,7 @@ use truepath_program::first_pass_of;
 
 use super::remarks::Remarks;
 use crate::correct::{Corrected, design};
-use crate::correction::{Identified, Wish, identified};
+use crate::correction::{DesignRequest, Identified, identify};
 
 /// Corrects the second pass from a measurement of the first, in memory; gives the surface it is made over as well.
 ///
@@ -37,7 +37,7 @@ pub fn correct(
     agree(second, first)?;
     let mut buffer = PathBuffer::default();
     let sampled = first.sample(&mut buffer)?;
-    let known = identified(first, &sampled, measurement, |share| progress(0.2 * share))?;
+    let known = identify(first, &sampled, measurement, |share| progress(0.2 * share))?;
     let surface = left_by(&sampled, &known);
     let second = second.clone().over(surface.clone())?;
     let mut buffer = PathBuffer::default();
@@ -46,7 +46,7 @@ pub fn correct(
     let path = sampled.with_law(known.law());
     let table = known.table();
     let law = job::law(&second.core, &known.machine(&path, &table), &[]);
-    let done = design(&second, &sampled, known, &Wish::of(law), remarks, routes, progress)?;
+    let done = design(&second, &sampled, known, &DesignRequest::of(law), remarks, routes, progress)?;
     Ok((done, surface))
 }
 

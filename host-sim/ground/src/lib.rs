@@ -3,7 +3,6 @@
 //!
 //! Lowest room of the host; it knows the core's units and nothing of milling.
 
-pub mod beside;
 pub mod decimal;
 pub mod diagnostics;
 pub mod document;

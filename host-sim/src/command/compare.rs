@@ -3,7 +3,7 @@
 use std::path::Path as FilePath;
 
 use truepath_chart::view::View;
-use truepath_correction::correction::identified;
+use truepath_correction::correction::identify;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm};
@@ -74,7 +74,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CompareSu
     let folder = options.out.map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
-    let identified = identified(&pass, &sampled, &measurement, |share| progress(0.3 * share))?;
+    let identified = identify(&pass, &sampled, &measurement, |share| progress(0.3 * share))?;
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let machine = identified.machine(&path, &table);

@@ -3,10 +3,10 @@
 use std::path::Path as FilePath;
 
 use truepath_correction::correct::correct;
-use truepath_correction::doubts::misread;
 use truepath_correction::learning::History;
 use truepath_correction::second_pass;
 use truepath_correction::summary::CorrectSummary;
+use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::{Job, ProbeFlags, Route, Which};

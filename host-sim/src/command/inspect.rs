@@ -4,8 +4,8 @@ use std::path::Path as FilePath;
 
 use truepath_core::probe::{Contact, CutWith};
 use truepath_core::units::Offset;
-use truepath_correction::doubts::misread;
 use truepath_correction::inspection::{Extent, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge};
+use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
@@ -84,9 +84,9 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let pass = Pass::read(job)?.cut_with(CutWith::Anything);
     let file = Source::read(options.probe)?;
     let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
-    let doubts = misread(&pass, false, &measurement.contacts);
-    let told: Vec<String> = pass.warnings.iter().chain(&doubts).cloned().collect();
-    let warnings = [pass.warnings.clone(), measurement.remarks(&file), doubts].concat();
+    let misreadings = misread(&pass, false, &measurement.contacts);
+    let told: Vec<String> = pass.warnings.iter().chain(&misreadings).cloned().collect();
+    let warnings = [pass.warnings.clone(), measurement.remarks(&file), misreadings].concat();
     let (part, contour) = (&pass.job.part, pass.path_contour());
     let rule = part.tolerance.map(|tolerance| Rule { tolerance, uncertainty: part.uncertainty });
     let depth = pass.job.numbers.cut.axial_depth;

@@ -11,7 +11,7 @@ use std::path::Path as FilePath;
 use truepath_core::correct::{Law, Node};
 use truepath_core::cut::Path;
 use truepath_core::job;
-use truepath_correction::correction::{Identified, Wish, corrected, identified};
+use truepath_correction::correction::{DesignRequest, Identified, design_correction, identify};
 use truepath_correction::feeds;
 use truepath_correction::learn::refuse_feeds;
 use truepath_correction::learning::{History, Part, PartPoints, Residual, joint, refuse_uncorrected};
@@ -73,17 +73,17 @@ pub fn next(
 ) -> Result<Plan, Failure> {
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
-    let known = identified(pass, &sampled, measurement, |share| progress(0.2 * share))?;
+    let known = identify(pass, &sampled, measurement, |share| progress(0.2 * share))?;
     let path = sampled.with_law(known.law());
     let table = known.table();
     let machine = known.machine(&path, &table);
-    let wish = Wish::of(job::law(&pass.core, &machine, &measurement.contacts));
+    let request = DesignRequest::of(job::law(&pass.core, &machine, &measurement.contacts));
     // The wall that counts is cut at the feeds the correction is for.
     let feeds = feeds::planned(pass, &machine, &known, true, &[Route::Program])?;
     let mut fed = PathBuffer::default();
     let to_cut = pass.sample_fed(&mut fed, feeds.schedule.as_ref())?.with_law(known.law());
     let machine = known.machine(&to_cut, &table);
-    let correction = corrected(pass, &machine, &known, &wish, |share| progress(0.2 + 0.3 * share))?;
+    let correction = design_correction(pass, &machine, &known, &request, |share| progress(0.2 + 0.3 * share))?;
     let goal = Goal::of(&to_cut, &known, &correction.wanted, &correction.nodes, &mut |s| progress(0.5 + 0.2 * s));
     let touched = places(measurement);
     let measured =

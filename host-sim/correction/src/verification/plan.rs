@@ -149,7 +149,7 @@ pub fn plan(pass: &Pass, settings: &Settings, progress: &mut dyn FnMut(f64)) -> 
         wall_sigma_mm: chosen.wall_sigma,
         ..ground.plan(pass, settings, places)
     };
-    plan.warnings.extend(doubts(&plan, law));
+    plan.warnings.extend(plan_warnings(&plan, law));
     progress(1.0);
     Ok(plan)
 }
@@ -158,7 +158,7 @@ pub fn plan(pass: &Pass, settings: &Settings, progress: &mut dyn FnMut(f64)) -> 
 const TELLING: (f64, f64) = (0.005, 0.1);
 
 /// What the user should know of a plan.
-fn doubts(plan: &Plan, law: WallLaw) -> Vec<String> {
+fn plan_warnings(plan: &Plan, law: WallLaw) -> Vec<String> {
     let mut out = Vec::new();
     let (found, wanted) = (plan.places.len(), plan.settings.places as usize);
     if found < wanted {

@@ -114,7 +114,7 @@ pub fn plan(job: &Job, program: &Source) -> Result<Option<Plan>, Failure> {
         passes,
         others: regions.iter().filter(|r| r.number != region.number).filter_map(|r| r.id.clone()).collect(),
         rows: rows(&runs, mm(allowance)),
-        warnings: doubts(&runs, allowance),
+        warnings: plan_warnings(&runs, allowance),
     }))
 }
 
@@ -185,7 +185,7 @@ fn why(region: &Region, runs: &[Found], tool: Option<u32>) -> String {
 }
 
 /// Roughing that leaves something else than the job says.
-fn doubts(runs: &[Found], allowance: Offset) -> Vec<String> {
+fn plan_warnings(runs: &[Found], allowance: Offset) -> Vec<String> {
     let finish = |index: usize| runs.get(index).is_some_and(|f| matches!(f.role, Role::Finish { .. }));
     let gaps = runs.iter().filter_map(|f| match f.role {
         Role::Rough { nearer, gap, parallel: true } if finish(nearer) => Some((gap, f.run.lines)),

@@ -43,7 +43,7 @@ pub struct Words {
 
 /// The passes of a page that the identified machine foretells.
 #[derive(Clone, Debug)]
-pub struct Foretold<'a> {
+pub struct PredictedPasses<'a> {
     /// The one without any correction, where it is shown.
     pub before: Option<Words>,
     /// The one of a part that was cut with an earlier correction and measured, with that correction.
@@ -57,7 +57,7 @@ pub struct Foretold<'a> {
 }
 
 /// The passes as a machine cuts them on its path.
-pub fn predicted(machine: &Loop, passes: &Foretold) -> Along {
+pub fn predicted(machine: &Loop, passes: &PredictedPasses) -> Along {
     let path = machine.path;
     let kept = Kept::of(path.count());
     let correction = passes.correction;

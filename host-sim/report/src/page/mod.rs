@@ -19,7 +19,7 @@ mod kept;
 mod points;
 mod program;
 
-pub use by_core::{Along, Foretold, Words, nominal, predicted, simulated};
+pub use by_core::{Along, PredictedPasses, Words, nominal, predicted, simulated};
 pub use by_plant::{milled, milled_twice, trace_of};
 pub use column::Column;
 pub use contour::{Contour, Heights, Outlines, PassColumns, Polyline};

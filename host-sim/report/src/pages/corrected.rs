@@ -10,8 +10,8 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use super::expected::judge;
-use super::{of_pass, told};
-use crate::page::{Along, Fact, Figure, Foretold, Kind, Page, Parameter, Program, Words, points, predicted};
+use super::{of_pass, page_warnings};
+use crate::page::{Along, Fact, Figure, Kind, Page, Parameter, PredictedPasses, Program, Words, points, predicted};
 
 /// Which part the probe points are of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub enum Points {
 /// As [`Pass::sample`].
 pub fn corrected(pass: &Pass, measurement: &Measurement, done: &Corrected, of: Points) -> Result<Page, Failure> {
     let words = |label: &str| Words { name: None, label: format!("{label}, predicted by the identified model") };
-    let passes = Foretold {
+    let passes = PredictedPasses {
         before: Some(words("without correction")),
         milled: None,
         after: words("with the correction"),
@@ -65,8 +65,11 @@ pub(super) fn of_correction(
     page.points = points;
     page.parameters = parameters(&done.summary);
     page.results = figures(&done.summary, &["largest error without correction", "largest error with it"]);
-    page.warnings =
-        told(pass, Some(&measurement.file), done.summary.warnings.iter().cloned().chain(along.note).chain(left_out));
+    page.warnings = page_warnings(
+        pass,
+        Some(&measurement.file),
+        done.summary.warnings.iter().cloned().chain(along.note).chain(left_out),
+    );
     if let Some(job) = &mut page.job {
         job.facts.extend(facts(pass, done, of));
     }

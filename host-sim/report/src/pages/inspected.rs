@@ -7,7 +7,7 @@ use truepath_ground::units::mm;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
-use super::{of_pass, told};
+use super::{of_pass, page_warnings};
 use crate::InspectSummary;
 use crate::page::{Figure, InputFile, Inspected, Kind, Limits, Page, State, Verdict, judged_points, nominal};
 
@@ -58,7 +58,7 @@ pub fn inspected(
         statements: summary.statements.clone(),
         coverage: summary.coverage.clone(),
     });
-    page.warnings = told(pass, Some(&measurement.file), warnings.iter().cloned().chain(notes).chain(left_out));
+    page.warnings = page_warnings(pass, Some(&measurement.file), warnings.iter().cloned().chain(notes).chain(left_out));
     Ok(page)
 }
 

@@ -10,7 +10,7 @@ use truepath_job::pass::Pass;
 
 use super::corrected::{Points, figures, of_correction};
 use crate::page;
-use crate::page::{Fact, Figure, Foretold, Kind, Page, Words, predicted, subject};
+use crate::page::{Fact, Figure, Kind, Page, PredictedPasses, Words, predicted, subject};
 
 /// The page of what was learned.
 ///
@@ -25,7 +25,7 @@ pub fn learned(
 ) -> Result<Page, Failure> {
     let verdict = &summary.verdict;
     let [before, cut, next] = words(verdict, milled.corrected());
-    let passes = Foretold {
+    let passes = PredictedPasses {
         // A part that was cut without correction is the uncorrected one.
         before: milled.corrected().then_some(before),
         milled: Some((cut, &milled.correction)),

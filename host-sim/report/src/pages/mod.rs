@@ -32,7 +32,7 @@ fn of_pass(kind: Kind, title: String, pass: &Pass) -> Page {
 }
 
 /// Warnings as the page tells them: files without their folders, which are nobody's business who receives the page.
-fn told(pass: &Pass, probe: Option<&str>, warnings: impl Iterator<Item = String>) -> Vec<String> {
+fn page_warnings(pass: &Pass, probe: Option<&str>, warnings: impl Iterator<Item = String>) -> Vec<String> {
     let files = [Some(pass.program.name()), Some(pass.job.source().name()), probe];
     let folder = |name: &str| name.rfind(['/', '\\']).map(|end| name[..=end].to_owned());
     // A folder of one mark ("/") stands in other texts as well.

@@ -2,7 +2,7 @@
 
 use truepath_job::pass::Pass;
 
-use super::{of_pass, told};
+use super::{of_pass, page_warnings};
 use crate::SimulateSummary;
 use crate::page::{Along, Fact, Figure, Kind, Page};
 
@@ -12,7 +12,7 @@ pub fn simulated(pass: &Pass, along: Along, summary: &SimulateSummary) -> Page {
     page.contour = Some(along.contour);
     page.heights = along.heights;
     page.results = figures(summary);
-    page.warnings = told(pass, None, summary.warnings.iter().cloned().chain(along.note));
+    page.warnings = page_warnings(pass, None, summary.warnings.iter().cloned().chain(along.note));
     if let Some(job) = &mut page.job {
         job.facts.push(Fact::new("error shown", "mean over the engaged depth"));
     }

@@ -10,7 +10,7 @@ use truepath_core::geometry::Vector;
 use truepath_core::identify::PredictionWorkspace;
 use truepath_core::job;
 use truepath_core::units::Offset;
-use truepath_correction::correction::{Buffers, Wish, corrected, identified};
+use truepath_correction::correction::{Buffers, DesignRequest, design_correction, identify};
 use truepath_ground::diagnostics::Source;
 use truepath_job::job::Job;
 use truepath_job::measurement::Measurement;
@@ -50,7 +50,7 @@ fn the_fits_under_both_laws_at_once_find_what_the_core_finds_one_after_the_other
     let path = pass.sample(&mut buffer).unwrap();
     for (level, law) in [(false, WallLaw::Helical), (true, WallLaw::Mean)] {
         let measurement = measured(&pass, level);
-        let both = identified(&pass, &path, &measurement, |_| ()).unwrap();
+        let both = identify(&pass, &path, &measurement, |_| ()).unwrap();
         let mut observations = measurement.observations().unwrap();
         let needed = path.working().len() + 1;
         let mut workspace = PredictionWorkspace {
@@ -70,11 +70,11 @@ fn a_design_that_reads_half_of_the_heights_elsewhere_is_the_one_that_reads_them_
         let pass = pass(keys);
         let mut buffer = PathBuffer::default();
         let sampled = pass.sample(&mut buffer).unwrap();
-        let identified = identified(&pass, &sampled, &measured(&pass, false), |_| ()).unwrap();
+        let identified = identify(&pass, &sampled, &measured(&pass, false), |_| ()).unwrap();
         let path = sampled.with_law(identified.law());
         let table = identified.table();
         let machine = identified.machine(&path, &table);
-        let halves = corrected(&pass, &machine, &identified, &Wish::of(Law::Model), |_| ()).unwrap();
+        let halves = design_correction(&pass, &machine, &identified, &DesignRequest::of(Law::Model), |_| ()).unwrap();
         let (count, working) = (path.count(), path.working().len());
         let mut workspace = DesignWorkspace {
             states: &mut vec![State::REST; working],
@@ -107,7 +107,7 @@ fn a_profile_read_in_halves_is_the_one_read_in_order_also_where_no_wall_stands()
     let pass = pass("");
     let mut buffer = PathBuffer::default();
     let path = pass.sample(&mut buffer).unwrap();
-    let identified = identified(&pass, &path, &measured(&pass, false), |_| ()).unwrap();
+    let identified = identify(&pass, &path, &measured(&pass, false), |_| ()).unwrap();
     let table = identified.table();
     let machine = identified.machine(&path, &table);
     let working = path.working();

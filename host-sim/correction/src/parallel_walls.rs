@@ -6,16 +6,15 @@
 use truepath_core::correct::{Band, HEIGHTS, Profile, WallReader, begin, finish, read_slices};
 use truepath_core::cut::{Loop, Path, State};
 use truepath_core::geometry::Vector;
-use truepath_ground::beside::both;
 
 /// Memory for the other half of the heights.
 #[derive(Clone, Debug)]
-pub struct Halves {
+pub struct ParallelWalls {
     displacements: Vec<Vector>,
     profiles: Vec<Profile>,
 }
 
-impl Halves {
+impl ParallelWalls {
     /// For a path.
     pub(crate) fn of(path: &Path) -> Self {
         let (count, working) = (path.count(), path.working().len());
@@ -23,7 +22,7 @@ impl Halves {
     }
 }
 
-impl WallReader for Halves {
+impl WallReader for ParallelWalls {
     fn profile(
         &mut self,
         machine: &Loop,
@@ -35,11 +34,9 @@ impl WallReader for Halves {
         let half = HEIGHTS / 2;
         begin(machine, profiles);
         begin(machine, &mut self.profiles);
-        let theirs = (&mut self.displacements, &mut self.profiles);
-        both(
-            theirs,
-            |(displacements, profiles)| read_slices(machine, states, band, half..HEIGHTS, displacements, profiles),
+        rayon::join(
             || read_slices(machine, states, band, 0..half, displacements, profiles),
+            || read_slices(machine, states, band, half..HEIGHTS, &mut self.displacements, &mut self.profiles),
         );
         for (own, other) in profiles.iter_mut().zip(&self.profiles) {
             own.join(other);

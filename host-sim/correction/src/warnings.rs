@@ -13,7 +13,7 @@ use crate::damped::damped_summary;
 use crate::guard::guard_summary;
 
 /// What the user should doubt.
-pub fn doubts(pass: &Pass, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
+pub fn model_warnings(pass: &Pass, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
     let mut out = Vec::new();
     if identified.fit().outliers > 0 {
         let lines: Vec<String> = identified
