@@ -14,6 +14,7 @@ mod judge;
 mod linuxcnc;
 mod page;
 mod repository;
+mod rooms;
 mod step;
 mod toolchain;
 
@@ -51,6 +52,14 @@ enum Task {
         /// Handed to `cargo test`, for instance `-p truepath-core engagement`.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
+    },
+    /// Imports between crates and modules: none in a circle, none against the order of the README's diagram.
+    Rooms {
+        /// Name every import of a circle instead of the first few.
+        #[arg(long)]
+        all: bool,
+        /// Only what holds this text, for instance `truepath::job` or `src/plot`.
+        part: Option<String>,
     },
     /// Builds the core for the microcontroller and checks what is in it.
     Device,
@@ -168,6 +177,7 @@ fn main() -> ExitCode {
         Task::Lint => report.run(Step::new("lint", checks::lint)),
         Task::Doc => report.run(Step::new("doc", checks::doc)),
         Task::TestOnly { arguments } => report.run(Step::new("test-only", || checks::tests(&arguments))),
+        Task::Rooms { all, part } => report.run(Step::new("rooms", || rooms::check(all, part.as_deref()))),
         Task::Device => report.run(Step::new("device", device::check)),
         Task::Firmware { board, write } => report.run(Step::new("firmware", || firmware::build(board, write))),
         Task::Hil => report.run(Step::new("hil", hil::check)),

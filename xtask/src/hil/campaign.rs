@@ -5,9 +5,9 @@
 
 use std::fmt::Write;
 
+use super::bench::Bench;
 use super::program::Run;
-use super::{Bench, command};
-use crate::repository::{read, root};
+use crate::repository::{program as command, read, root};
 use crate::step::{Failure, Outcome, Passed};
 
 /// A kind of fault.
@@ -55,7 +55,7 @@ const UART: u64 = 2_000;
 const DOCUMENT: &str = "docs/campaign.md";
 
 /// The short campaign.
-pub(super) fn short(bench: &Bench) -> Result<(), Failure> {
+pub fn short(bench: &Bench) -> Result<(), Failure> {
     print!("{}", table(bench, "bulk", |_| SHORT)?);
     Ok(())
 }

@@ -3,47 +3,15 @@
 //!
 //! Nothing here depends on how fast this machine is.
 
+mod bench;
 mod campaign;
 mod program;
 
-use crate::firmware::Board;
-use crate::repository::{may_install, program as command, succeeds};
-use crate::step::{Failure, Outcome, Passed};
-use crate::toolchain::{Toolchain, install};
-use program::{Parts, Program, Run};
+use crate::step::{Outcome, Passed};
+use bench::Bench;
 
 pub use campaign::run as campaign;
 
-const QEMU: &str = "qemu-system-arm";
-
-/// Runs whose digests have to be equal on all three; together above 10⁶ setpoints.
-const EQUAL: [(&str, &[&str]); 5] = [
-    ("corner", &["--count", "250000", "--seed", "1"]),
-    ("pocket", &["--count", "250000", "--seed", "2"]),
-    ("corner-helix", &["--random", "200000", "--seed", "3"]),
-    ("corner", &["--random", "200000", "--axes", "6", "--rate", "10000", "--seed", "4"]),
-    (
-        "pocket",
-        &[
-            "--random",
-            "200000",
-            "--seed",
-            "5",
-            "--drop",
-            "0.02",
-            "--corrupt",
-            "0.02",
-            "--reorder",
-            "0.02",
-            "--repeat",
-            "0.02",
-            "--pause",
-            "0.0005",
-            "--jitter",
-            "500",
-        ],
-    ),
-];
 /// Over the UARTs, frame by frame.
 const OVER_UART: [(&str, &[&str]); 2] = [
     ("corner", &["--count", "3000", "--seed", "6"]),
@@ -83,63 +51,4 @@ pub fn check() -> Outcome {
     }
     campaign::short(&bench)?;
     Ok(Passed::Done)
-}
-
-/// Programs, firmware and parts.
-struct Bench {
-    debug: Program,
-    release: Program,
-    firmware: String,
-    parts: Parts,
-}
-
-impl Bench {
-    fn set_up() -> Result<Self, Failure> {
-        let there = || succeeds(command(QEMU).arg("--version"));
-        let installed = || may_install() && install(&[QEMU]).is_ok() && there();
-        if !(there() || installed()) {
-            return Err(Failure::Missing(format!("no emulator of the virtual board: apt-get install {QEMU}")));
-        }
-        let elf = Board::Virtual.image().build(&Toolchain::find()?, &[])?;
-        let [debug, release] = [Program::build(false)?, Program::build(true)?];
-        let parts = Parts::make(&release)?;
-        Ok(Self { debug, release, firmware: elf.display().to_string(), parts })
-    }
-
-    /// A run in QEMU.
-    fn emulated(&self, part: &str, link: &str, arguments: &[&str]) -> Result<Run, Failure> {
-        let image = self.parts.image(part);
-        let board = [image.as_str(), "--board", "virtual", "--link", link, "--elf", &self.firmware];
-        self.release.hil(&[&board[..], arguments].concat())
-    }
-
-    /// All of [`EQUAL`]; gives the setpoints compared.
-    fn equality(&self) -> Result<u64, Failure> {
-        let mut setpoints = 0;
-        for (part, arguments) in EQUAL {
-            let image = self.parts.image(part);
-            let on_host = [&[image.as_str()], arguments].concat();
-            let runs = [
-                ("host debug", self.debug.hil(&on_host)?),
-                ("host release", self.release.hil(&on_host)?),
-                ("emulated", self.emulated(part, "bulk", arguments)?),
-            ];
-            for (name, run) in &runs {
-                println!("{part:<14} {name:<13} {:>8} answers  {}", run.answers, run.digest);
-                if run.digest != runs[0].1.digest {
-                    return Err(Failure::found(format!("{part} {}: {name} differs", arguments.join(" "))));
-                }
-            }
-            setpoints += runs[0].1.setpoints;
-        }
-        Ok(setpoints)
-    }
-
-    /// The image of a part made in QEMU.
-    fn on_board(&self, part: &str, link: &str) -> Result<Run, Failure> {
-        let [job, probe] = [self.parts.file(part, "job.toml"), self.parts.file(part, "probe.txt")];
-        let made = ["--job", &job, "--probe", &probe, "--count", "2000"];
-        let board = ["--board", "virtual", "--link", link, "--elf", &self.firmware];
-        self.release.hil(&[&made[..], &board[..]].concat())
-    }
 }
