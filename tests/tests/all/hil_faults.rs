@@ -1,9 +1,7 @@
 //! Each kind of fault on the cable, ten thousand frames of each: the device treats them as the host's endpoint does,
 //! forwards nothing that was damaged, stays inside the limits, and comes back from every fault.
 
-mod hil_support;
-
-use hil_support::{everything, on_host, options, probability};
+use crate::hil_support::{everything, on_host, options, probability};
 use truepath::command::hil::{Report, Source};
 use truepath_bench::Faults;
 

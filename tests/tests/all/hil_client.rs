@@ -1,12 +1,10 @@
 //! The client of the configuration link on bad wires: nothing is carried out twice, uploads go on where they stopped.
 
-mod hil_support;
-
 use std::collections::VecDeque;
 use std::io;
 use std::time::{Duration, Instant};
 
-use hil_support::{image, probability, serve};
+use crate::hil_support::{image, probability, serve};
 use truepath::command::hil::{Kind, Options, Source, open, run};
 use truepath_bench::records::{Channel, Records};
 use truepath_bench::{Arrival, BenchError, Bulk, Chance, Client, InProcess, Probability, Wire, records};

@@ -10,11 +10,11 @@ use truepath_job::job::Job;
 use truepath_job::pass::Pass;
 
 pub const CORNER: [&str; 2] =
-    [include_str!("../../demo/corner/job.toml"), include_str!("../../demo/corner/program.nc")];
+    [include_str!("../../../demo/corner/job.toml"), include_str!("../../../demo/corner/program.nc")];
 pub const HELIX: [&str; 2] =
-    [include_str!("../../demo/corner-helix/job.toml"), include_str!("../../demo/corner-helix/program.nc")];
+    [include_str!("../../../demo/corner-helix/job.toml"), include_str!("../../../demo/corner-helix/program.nc")];
 pub const POCKET: [&str; 2] =
-    [include_str!("../../demo/pocket/job.toml"), include_str!("../../demo/pocket/program.nc")];
+    [include_str!("../../../demo/pocket/job.toml"), include_str!("../../../demo/pocket/program.nc")];
 pub const PARTS: [[&str; 2]; 3] = [CORNER, HELIX, POCKET];
 
 /// A part's pass with changes to job and program: `(text, replacement)`.

@@ -85,7 +85,7 @@ fn a_wanted_waviness_gives_a_feed_and_a_speed_that_leave_it() {
 
 #[test]
 fn the_example_runs_and_writes_every_file() {
-    let example = include_str!("../../examples/bore/arguments.txt");
+    let example = include_str!("../../../examples/bore/arguments.txt");
     let folder = tempfile::tempdir().expect("a folder");
     for line in example.lines().filter(|l| !l.trim().is_empty() && !l.starts_with('#')) {
         let words: Vec<&str> = line.split_whitespace().collect();

@@ -1,10 +1,8 @@
 //! What `truepath multiaxis` writes, read by an independent reader and sampled densely on independent kinematics.
 
-mod multiaxis_support;
-
 use std::fmt::Write;
 
-use multiaxis_support::{Feed, HEADS, Machine, TABLE_HEAD, TABLES_BC, TRUNNION, feeds, matched, truepath};
+use crate::multiaxis_support::{Feed, HEADS, Machine, TABLE_HEAD, TABLES_BC, TRUNNION, feeds, matched, truepath};
 use tempfile::TempDir;
 
 /// Rounding of what is written: four decimals of a millimetre, six of an inch.

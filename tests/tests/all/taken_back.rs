@@ -1,14 +1,12 @@
 //! What a correction that is taken back to an earlier one is worth: it stands under the guard of the job, and where no
 //! correction is better than any, that is said.
 
-mod learning_support;
-
-use learning_support::{Shop, moved};
+use crate::learning_support::{Shop, moved};
 
 const DEMO: [&str; 3] = [
-    include_str!("../../host-sim/demo/corner-helix/program.nc"),
-    include_str!("../../host-sim/demo/corner-helix/job.toml"),
-    include_str!("../../host-sim/demo/corner-helix/plant.toml"),
+    include_str!("../../../host-sim/demo/corner-helix/program.nc"),
+    include_str!("../../../host-sim/demo/corner-helix/job.toml"),
+    include_str!("../../../host-sim/demo/corner-helix/plant.toml"),
 ];
 const STRAIGHT: [f64; 4] = [20.0, 32.0, 68.0, 80.0];
 const WITH_CORNER: [f64; 7] = [21.0, 33.0, 45.0, 49.0, 53.0, 69.0, 81.0];

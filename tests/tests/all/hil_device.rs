@@ -1,15 +1,13 @@
 //! `truepath device` against a device behind a socket: what an engineer does with a new board, from the first look to the
 //! recording of a fault.
 
-mod hil_support;
-
 use std::fs;
 use std::io::{Read, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use hil_support::{image, options, part, serve};
+use crate::hil_support::{image, options, part, serve};
 use truepath::command::device::{Recorded, recording, recording_table};
 use truepath::command::hil::{Kind, Source, open, run};
 use truepath_bench::{Board, Faults};
@@ -33,7 +31,7 @@ fn device_with_errors(folder: &Path, arguments: &[&str]) -> (u8, String) {
 
 fn called(folder: &Path, arguments: &[&str]) -> (u8, String, String) {
     let Output { status, stdout, stderr } = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "the_command_line_itself", "--nocapture", "--ignored"])
+        .args(["--exact", "hil_device::the_command_line_itself", "--nocapture", "--ignored"])
         .env("TRUEPATH_ARGUMENTS", arguments.join("\n"))
         .env("TRUEPATH_PORT", folder.join("config.sock"))
         .output()
@@ -183,8 +181,8 @@ fn an_image_is_made_on_the_device_from_the_command_line() {
 
 #[test]
 fn the_frames_before_a_fault_are_downloaded_as_they_were_sent() {
-    let mut board = hil_support::host_board();
-    let report = hil_support::on(&mut board, 0, &options(Source::Random, 20_000, Faults::default(), 3));
+    let mut board = crate::hil_support::host_board();
+    let report = crate::hil_support::on(&mut board, 0, &options(Source::Random, 20_000, Faults::default(), 3));
     assert!(report.identical && !report.faults.is_empty(), "{report:?}");
     let frames = recording(&mut board.client(), 3, |_, _| ()).unwrap();
     let sequences: Vec<u32> =

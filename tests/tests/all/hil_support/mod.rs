@@ -1,5 +1,4 @@
 //! Images of the demonstration, runs on the device in process, and a device behind two sockets.
-#![allow(dead_code)]
 
 use std::io::{Read, Write};
 use std::os::unix::net::UnixListener;

@@ -1,13 +1,11 @@
 //! Part after part: what a corrected part teaches about the next, when a correction is taken back, and that all of it
 //! turns with the part.
 
-mod learning_support;
-
-use learning_support::{Shop, moved};
+use crate::learning_support::{Shop, moved};
 
 macro_rules! demo {
     ($part:literal, $file:literal) => {
-        include_str!(concat!("../../host-sim/demo/", $part, "/", $file))
+        include_str!(concat!("../../../host-sim/demo/", $part, "/", $file))
     };
 }
 

@@ -1,8 +1,6 @@
 //! What the bench must find: boards that are wrong in one bit, one answer, one reply.
 
-mod hil_support;
-
-use hil_support::{host_board, image, options};
+use crate::hil_support::{host_board, image, options};
 use truepath::command::hil::{Report, Source, run};
 use truepath_bench::{BenchError, Board, BulkBoard, Client, Event, Exchange, Faults, InProcess, Wire};
 

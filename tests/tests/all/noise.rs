@@ -11,9 +11,9 @@ use truepath_job::pass::Pass;
 use truepath_plant::Machine;
 use truepath_trial::virtual_mill;
 
-const PROGRAM: &str = include_str!("../../host-sim/demo/corner/program.nc");
-const JOB: &str = include_str!("../../host-sim/demo/corner/job.toml");
-const PLANT: &str = include_str!("../../host-sim/demo/corner/plant.toml");
+const PROGRAM: &str = include_str!("../../../host-sim/demo/corner/program.nc");
+const JOB: &str = include_str!("../../../host-sim/demo/corner/job.toml");
+const PLANT: &str = include_str!("../../../host-sim/demo/corner/plant.toml");
 
 /// Noise seeds; the median and the ninth decile are judged over them.
 const SEEDS: u64 = 40;

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-const JOB: &str = include_str!("../demo/corner/job.toml");
-const POCKET: &str = include_str!("../../core/tests/data/pocket-probe.txt");
+const JOB: &str = include_str!("../../demo/corner/job.toml");
+const POCKET: &str = include_str!("../../../core/tests/data/pocket-probe.txt");
 
 fn truepath(arguments: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_truepath")).args(arguments).current_dir(folder).output().expect("the program runs")

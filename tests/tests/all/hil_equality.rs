@@ -1,9 +1,7 @@
 //! The device of the firmware, in this process, answers as the host's own code does, byte for byte, and keeps the rules
 //! that know nothing of that code.
 
-mod hil_support;
-
-use hil_support::{host_board, image, on, on_host, options, part};
+use crate::hil_support::{host_board, image, on, on_host, options, part};
 use truepath::command::hil::{Options, Source, run};
 use truepath_bench::Faults;
 use truepath_core::link::DeviceSettings;

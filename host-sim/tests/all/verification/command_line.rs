@@ -65,7 +65,7 @@ fn further_places_are_listed_without_a_control_and_written_for_one() {
     assert_eq!(refused.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("--probe"));
     let pass = super::parts::pass(POCKET, &[]);
-    let machine = toml::from_str(include_str!("../../demo/pocket/plant.toml")).unwrap();
+    let machine = toml::from_str(include_str!("../../../demo/pocket/plant.toml")).unwrap();
     let milled = truepath_trial::virtual_mill::mill(&pass, &machine, None).unwrap();
     let probe = truepath_trial::virtual_mill::probe(&pass, &milled, &[12.0, 180.0], &[0.3, 0.8], 4.0).unwrap();
     std::fs::write(folder.path().join("probe.txt"), probe).unwrap();

@@ -6,8 +6,8 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-const JOB: &str = include_str!("../demo/corner/job.toml");
-const PROGRAM: &str = include_str!("../demo/corner/program.nc");
+const JOB: &str = include_str!("../../demo/corner/job.toml");
+const PROGRAM: &str = include_str!("../../demo/corner/program.nc");
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()

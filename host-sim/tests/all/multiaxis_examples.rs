@@ -2,12 +2,9 @@
 //!
 //! `BLESS=1 cargo test` writes the programs, the pictures and the printed results anew.
 
-mod multiaxis_example;
-mod multiaxis_support;
-
 use std::path::{Path, PathBuf};
 
-use multiaxis_support::{Machine as Independent, feeds, matched, truepath};
+use crate::multiaxis_support::{Machine as Independent, feeds, matched, truepath};
 use truepath_ground::diagnostics::Source;
 use truepath_multiaxis::Machine;
 
@@ -29,7 +26,7 @@ fn the_example_programs_are_what_the_generator_writes() {
     let folder = root().join("examples/multiaxis");
     for (name, machine, title, inverse_time) in CASES {
         let source = Source::read(&folder.join(format!("{machine}.toml"))).unwrap();
-        let text = multiaxis_example::program(&Machine::from_toml(&source).unwrap(), title, inverse_time);
+        let text = crate::multiaxis_example::program(&Machine::from_toml(&source).unwrap(), title, inverse_time);
         let path = folder.join(format!("{name}.nc"));
         if blesses() {
             std::fs::write(&path, &text).unwrap();

@@ -12,9 +12,9 @@ use truepath_job::pass::Pass;
 use truepath_plant::{Machine, Milled};
 use truepath_trial::virtual_mill;
 
-const JOB: &str = include_str!("../demo/corner-helix/job.toml");
-const PLANT: &str = include_str!("../demo/corner-helix/plant.toml");
-const PROGRAM: &str = include_str!("../demo/corner-helix/program.nc");
+const JOB: &str = include_str!("../../demo/corner-helix/job.toml");
+const PLANT: &str = include_str!("../../demo/corner-helix/plant.toml");
+const PROGRAM: &str = include_str!("../../demo/corner-helix/program.nc");
 const PLACES: [f64; 5] = [20.0, 32.0, 49.0, 68.0, 80.0];
 const HEIGHTS: [f64; 3] = [0.1, 0.5, 0.9];
 /// Left out at either end.

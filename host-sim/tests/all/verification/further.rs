@@ -14,7 +14,7 @@ use truepath_trial::virtual_mill;
 
 use super::parts::{HELIX, pass};
 
-const PLANT: &str = include_str!("../../demo/corner-helix/plant.toml");
+const PLANT: &str = include_str!("../../../demo/corner-helix/plant.toml");
 const HEIGHTS: [f64; 3] = [0.3, 0.6, 0.9];
 /// Straight walls, away from the corner at s = 45 … 52.9 mm.
 const STRAIGHT: [f64; 4] = [20.0, 30.0, 70.0, 85.0];

@@ -1,9 +1,7 @@
 //! The clock of a run: it goes on by at least one tick before every frame, so that a device which watches the rate of its
 //! setpoints sees the rate it was told.
 
-mod hil_support;
-
-use hil_support::{everything, host_board, image, options};
+use crate::hil_support::{everything, host_board, image, options};
 use truepath::command::hil::{Options, Source, run};
 use truepath_bench::{BenchError, Board, BulkBoard, Client, Event, Exchange, InProcess, Wire};
 
