@@ -5,22 +5,25 @@
 //! rewrites interpolated setpoints with it. It is `no_std`, allocates nothing, contains no `unsafe` and computes in
 //! fixed point, so a PC and a microcontroller give the same bits.
 //!
-//! Data flows downwards through the modules; a module never names one below it in this list:
+//! It is the roof of five crates nested in its folder and re-exports the rooms of the other four, so that whoever
+//! builds a whole correction names one crate. Data flows downwards; a crate or module never names one below it:
 //!
-//! | module | what it holds |
-//! |---|---|
-//! | [`checksum`] | CRC-32 of programs, images and frames |
-//! | [`units`] | fixed-point lengths and numbers, the one rounding, trigonometry, roots |
-//! | [`geometry`] | vectors, directions, lines, arcs, contours and their sampling |
-//! | [`gcode`] | bytes → words → modal interpreter → canonical moves → contour |
-//! | [`probe`] | measurement files → contacts on the nominal contour |
-//! | [`cut`] | stock → engagement → force → elastic loop → wall |
-//! | [`identify`] | probe errors and the cut model → compliance, coefficients, covariance |
-//! | [`correct`] | the cut model → correction array |
-//! | [`image`] | correction array ↔ bytes |
-//! | [`job`] | job, program and measurement → image: what the command line and the device both run |
-//! | [`rewrite`] | setpoint → corrected setpoint, the only code in the servo cycle |
-//! | [`link`] | frames and messages of both links, and what becomes of a frame |
+//! | crate | module | what it holds |
+//! |---|---|---|
+//! | `truepath-units` | [`units`] | fixed-point lengths and numbers, the one rounding, trigonometry, roots |
+//! | | [`checksum`] | CRC-32 of programs, images and frames |
+//! | | [`geometry`] | vectors, directions, lines, arcs, contours and their sampling |
+//! | `truepath-rs274` | [`gcode`] | bytes → words → modal interpreter → canonical moves → contour |
+//! | `truepath-model` | [`probe`] | measurement files → contacts on the nominal contour |
+//! | | [`cut`] | stock → engagement → force → elastic loop → wall |
+//! | | [`identify`] | probe errors and the cut model → compliance, coefficients, covariance |
+//! | | [`correct`] | the cut model → correction array |
+//! | `truepath-wire` | [`image`] | correction array ↔ bytes |
+//! | | [`rewrite`] | setpoint → corrected setpoint, the only code in the servo cycle |
+//! | | [`link`] | frames and messages of both links, and what becomes of a frame |
+//! | `truepath-core` | [`job`] | job, program and measurement → image: what the command line and the device both run |
+//!
+//! `truepath-wire` needs `truepath-units` alone: it is all that a servo cycle has to trust.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -36,15 +39,9 @@
 #[cfg(test)]
 extern crate std;
 
-pub mod checksum;
-pub mod correct;
-pub mod cut;
-pub mod gcode;
-pub mod geometry;
-pub mod identify;
-pub mod image;
 pub mod job;
-pub mod link;
-pub mod probe;
-pub mod rewrite;
-pub mod units;
+
+pub use truepath_model::{correct, cut, identify, probe};
+pub use truepath_rs274 as gcode;
+pub use truepath_units::{self as units, checksum, geometry};
+pub use truepath_wire::{image, link, rewrite};

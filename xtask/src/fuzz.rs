@@ -22,7 +22,7 @@ const TARGETS: [Target; 5] = [
     Target {
         name: "program",
         seeds: &[
-            ("core/tests/data", &["nc", "ngc"]),
+            ("core/rs274/tests/data", &["nc", "ngc"]),
             ("host-sim/demo", &["nc"]),
             ("host-sim/tests", &["nc", "ngc"]),
             ("host-sim/program/tests", &["nc", "ngc"]),

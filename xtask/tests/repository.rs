@@ -3,9 +3,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The modules of the core in the order in which data flows; none uses one that comes later.
-const LAYERS: [&str; 12] = [
-    "checksum", "units", "geometry", "gcode", "probe", "cut", "identify", "correct", "image", "job", "rewrite", "link",
+/// The crates of the core, and the modules of those that hold several in the order in which data flows; none uses one
+/// that comes later.
+const CORE: [(&str, &[&str]); 5] = [
+    ("core/units", &["checksum", "geometry"]),
+    ("core/rs274", &[]),
+    ("core/wire", &["image", "rewrite", "link"]),
+    ("core/model", &["probe", "cut", "identify", "correct"]),
+    ("core", &["job"]),
 ];
 /// Names under which unrelated things gather.
 const CATCH_ALL: [&str; 6] = ["util", "utils", "common", "helpers", "manager", "misc"];
@@ -58,10 +63,14 @@ fn is_tests(file: &Path) -> bool {
 #[test]
 fn no_module_of_the_core_uses_one_further_down() {
     let mut wrong = Vec::new();
-    for (place, layer) in LAYERS.iter().enumerate() {
-        for file in sources(&root().join("core/src").join(layer)) {
+    let layers = CORE.iter().flat_map(|(package, layers)| (0..layers.len()).map(move |place| (package, layers, place)));
+    for (package, layers, place) in layers {
+        let source = root().join(package).join("src");
+        let file = source.join(layers[place]).with_extension("rs");
+        let files = if file.exists() { vec![file] } else { sources(&source.join(layers[place])) };
+        for file in files {
             for line in code(&file) {
-                for below in &LAYERS[place + 1..] {
+                for below in &layers[place + 1..] {
                     if line.contains(&format!("crate::{below}::")) || line.contains(&format!("crate::{below};")) {
                         wrong.push(format!("{}: {}", file.display(), line.trim()));
                     }
@@ -74,11 +83,13 @@ fn no_module_of_the_core_uses_one_further_down() {
 
 #[test]
 fn every_module_of_the_core_has_its_place_in_the_order() {
-    let lib = fs::read_to_string(root().join("core/src/lib.rs")).unwrap();
-    let modules: Vec<&str> = lib.lines().filter_map(|l| l.strip_prefix("pub mod ")?.strip_suffix(';')).collect();
-    assert!(!modules.is_empty());
-    for module in modules {
-        assert!(LAYERS.contains(&module), "{module} has no place");
+    for (package, layers) in CORE.iter().filter(|(_, layers)| !layers.is_empty()) {
+        let lib = fs::read_to_string(root().join(package).join("src/lib.rs")).unwrap();
+        let modules: Vec<&str> = lib.lines().filter_map(|l| l.strip_prefix("pub mod ")?.strip_suffix(';')).collect();
+        assert!(!modules.is_empty(), "{package}");
+        for module in modules {
+            assert!(layers.contains(&module), "{package}: {module} has no place");
+        }
     }
 }
 
@@ -134,14 +145,16 @@ fn every_source_file_for_linuxcnc_names_its_licence() {
 
 #[test]
 fn the_core_stays_without_std_and_without_unsafe() {
-    let lib = fs::read_to_string(root().join("core/src/lib.rs")).unwrap();
-    for attribute in ["#![no_std]", "#![forbid(unsafe_code)]", "#![deny(missing_docs)]"] {
-        assert!(lib.lines().any(|l| l == attribute), "{attribute}");
-    }
-    for file in sources(&root().join("core/src")) {
-        for line in code(&file) {
-            let alloc = line.contains("extern crate alloc") || line.contains("alloc::");
-            assert!(!alloc && !line.contains("use std::"), "{}: {line}", file.display());
+    for (package, _) in CORE {
+        let lib = fs::read_to_string(root().join(package).join("src/lib.rs")).unwrap();
+        for attribute in ["#![no_std]", "#![forbid(unsafe_code)]", "#![deny(missing_docs)]"] {
+            assert!(lib.lines().any(|l| l == attribute), "{package}: {attribute}");
+        }
+        for file in sources(&root().join(package).join("src")) {
+            for line in code(&file) {
+                let alloc = line.contains("extern crate alloc") || line.contains("alloc::");
+                assert!(!alloc && !line.contains("use std::"), "{}: {line}", file.display());
+            }
         }
     }
 }

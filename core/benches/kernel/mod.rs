@@ -4,10 +4,10 @@
 //! segments: their cost must not depend on the length. Identification and design are measured whole, on the papers'
 //! corner and on a pocket.
 
-#[path = "../../tests/corner/mod.rs"]
+#[path = "../../model/tests/corner/mod.rs"]
 mod corner;
 mod part;
-#[path = "../../tests/rewrite_support/mod.rs"]
+#[path = "../../wire/tests/rewrite_support/mod.rs"]
 mod rewrite_support;
 mod servo;
 mod whole;

@@ -1,7 +1,7 @@
 //! A device in process with a controller and an operator before it; everything goes over the bytes of the links.
 #![allow(dead_code)]
 
-#[path = "../../../core/tests/rewrite_support/mod.rs"]
+#[path = "../../../core/wire/tests/rewrite_support/mod.rs"]
 pub mod part;
 
 use part::{CLEAR, GATE, MM, PASS, SPINDLE};

@@ -31,7 +31,7 @@ pub struct Code {
 }
 
 impl Function {
-    /// The module of a crate (`truepath_core`) it belongs to; `None` for what the crate instantiates of others.
+    /// The module of a crate (`truepath_wire`) it belongs to; `None` for what the crate instantiates of others.
     pub fn module(&self, crate_name: &str) -> Option<&str> {
         let (_, behind) = self.name.split_once(&format!("{crate_name}::"))?;
         let end = behind.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(behind.len());
@@ -40,23 +40,23 @@ impl Function {
 }
 
 impl Code {
-    /// Reads a library (`.rlib`).
+    /// Adds what a library (`.rlib`) holds.
     ///
     /// # Errors
     /// When the file cannot be read or holds no function.
-    pub fn read(library: &Path) -> Result<Self, Failure> {
+    pub fn read(&mut self, library: &Path) -> Result<(), Failure> {
         let unreadable = |e: &dyn std::fmt::Display| Failure::found(format!("{}: {e}", library.display()));
         let bytes = std::fs::read(library).map_err(|e| unreadable(&e))?;
         let archive = ArchiveFile::parse(bytes.as_slice()).map_err(|e| unreadable(&e))?;
-        let mut code = Self::default();
+        let before = self.functions.len();
         for member in archive.members() {
             let member = member.map_err(|e| unreadable(&e))?;
             if member.name().ends_with(b".o") {
                 let data = member.data(bytes.as_slice()).map_err(|e| unreadable(&e))?;
-                code.add(&object::File::parse(data).map_err(|e| unreadable(&e))?);
+                self.add(&object::File::parse(data).map_err(|e| unreadable(&e))?);
             }
         }
-        if code.functions.is_empty() { Err(unreadable(&"no functions in it")) } else { Ok(code) }
+        if self.functions.len() == before { Err(unreadable(&"no functions in it")) } else { Ok(()) }
     }
 
     fn add(&mut self, file: &object::File) {

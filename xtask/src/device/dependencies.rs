@@ -7,6 +7,10 @@ use crate::toolchain::TARGET;
 /// Crates that may be part of the core's build for the microcontroller, with the reason.
 const ALLOWED: &[(&str, &str)] = &[
     ("truepath-core", "the core itself"),
+    ("truepath-model", "the model of the cut, its identification and the design of a correction"),
+    ("truepath-rs274", "the reading of programs"),
+    ("truepath-units", "fixed-point numbers, geometry, the checksum"),
+    ("truepath-wire", "image, rewriter and links"),
     ("fixed", "fixed-point numbers"),
     ("az", "casts between numbers, for fixed"),
     ("bytemuck", "numbers as bytes, for fixed"),

@@ -6,8 +6,9 @@ mod operations;
 mod rules;
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
-use crate::repository::{run, target};
+use crate::repository::{read, target};
 use crate::step::{Failure, Outcome, Passed};
 use crate::toolchain::{TARGET, Toolchain};
 use code::Code;
@@ -19,29 +20,53 @@ pub fn check() -> Outcome {
     let crates = dependencies::check()?;
     // A directory of its own: another compiler and other flags would rebuild everything else.
     let directory = target().join("device");
-    let representation = directory.join("core.ll");
     let mut build = toolchain.cargo();
-    build.args(["rustc", "--package", "truepath-core", "--lib", "--release", "--target", TARGET, "--target-dir"]);
-    build.arg(&directory);
+    build.args(["build", "--package", "truepath-core", "--lib", "--release", "--target", TARGET, "--target-dir"]);
+    build.arg(&directory).args(["--message-format", "json-render-diagnostics"]);
+    // The intermediate representation lies beside each library; this adds to the flags of the target.
+    build.arg("--config").arg(format!("target.{TARGET}.rustflags=[\"--emit=llvm-ir\"]"));
     // Code in the library itself, in one piece, instead of bitcode for the linker.
     build.env("CARGO_PROFILE_RELEASE_LTO", "off").env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "1");
-    build.arg("--").arg(format!("--emit=llvm-ir={}", representation.display()));
-    run(&mut build)?;
-    let mut code = Code::read(&directory.join(TARGET).join("release/libtruepath_core.rlib"))?;
-    let text = std::fs::read_to_string(&representation)
-        .map_err(|e| Failure::found(format!("{}: {e}", representation.display())))?;
-    code.add_operations(operations::operations(&text))?;
+    let built = read(&mut build)?;
+    let mut code = Code::default();
+    for name in rules::CRATES {
+        let library = library(&built, name).ok_or_else(|| Failure::found(format!("cargo built no library {name}")))?;
+        code.read(&library)?;
+        let representation = representation(&library);
+        let text = std::fs::read_to_string(&representation)
+            .map_err(|e| Failure::found(format!("{}: {e}", representation.display())))?;
+        code.add_operations(operations::operations(&text))?;
+    }
     print!("{}", inventory(&code, crates));
     let said = rules::objections(&code);
     if said.is_empty() { Ok(Passed::Done) } else { Err(Failure::found(said.join("\n"))) }
 }
 
+/// The library of a crate among what cargo says it has built.
+fn library(built: &str, name: &str) -> Option<PathBuf> {
+    built.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok()).find_map(|said| {
+        let own = said["reason"] == "compiler-artifact" && said["target"]["name"] == name;
+        let files = said["filenames"].as_array().filter(|_| own)?;
+        // The library of the package asked for is linked to a second name, without the hash.
+        files.iter().filter_map(|file| file.as_str()).find(|file| file.ends_with(".rlib")).map(PathBuf::from)
+    })
+}
+
+/// The intermediate representation beside a library: `truepath_wire-0123.ll` of `libtruepath_wire-0123.rlib`.
+fn representation(library: &Path) -> PathBuf {
+    let name = library.file_stem().unwrap_or_default().to_string_lossy();
+    library.with_file_name(format!("{}.ll", name.trim_start_matches("lib")))
+}
+
 /// Size of the code by module, before the linker removes what a firmware does not use.
 fn inventory(code: &Code, crates: usize) -> String {
-    let mut modules: BTreeMap<&str, (usize, u64)> = BTreeMap::new();
+    let mut modules: BTreeMap<String, (usize, u64)> = BTreeMap::new();
     for function in code.functions.values() {
-        let entry =
-            modules.entry(function.module(rules::CRATE).unwrap_or("(generic code of other crates)")).or_default();
+        let name = match rules::CRATES.iter().find_map(|name| Some((name, function.module(name)?))) {
+            Some((name, module)) => format!("{name}::{module}"),
+            None => "(generic code of other crates)".to_owned(),
+        };
+        let entry = modules.entry(name).or_default();
         *entry = (entry.0 + 1, entry.1 + function.bytes);
     }
     let mut out = format!("{:<32} {:>9} {:>9}\n", "truepath-core, release", "functions", "bytes");

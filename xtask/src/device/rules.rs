@@ -1,19 +1,19 @@
 //! What the code of the core may do on the microcontroller.
 //!
-//! The core computes in integers: an operation on floats anywhere in it is a fault, but for the module that evaluates the
-//! expressions of G-code programs ([`FLOAT_MODULE`]), which no setpoint passes. In the servo cycle, that is in
+//! The core computes in integers: an operation on floats anywhere in it is a fault, but for the crate that evaluates the
+//! expressions of G-code programs ([`FLOAT_CRATE`]), which no setpoint passes. In the servo cycle, that is in
 //! [`TICK`] and all it calls, there is besides no division in software (its time would depend on the operands), no
 //! 128-bit division or product, no panic and no formatting.
 
 use super::code::{Code, Function};
 use super::operations::FLOAT;
 
-/// The crate under the rules.
-pub const CRATE: &str = "truepath_core";
-/// The module whose functions may compute in floating point.
-pub const FLOAT_MODULE: &str = "gcode";
-/// The function called in every servo cycle: its module, its name.
-const TICK: (&str, &str) = ("rewrite", "tick");
+/// The crates under the rules, a user before what it uses.
+pub const CRATES: [&str; 5] = ["truepath_core", "truepath_model", "truepath_wire", "truepath_rs274", "truepath_units"];
+/// The crate whose functions may compute in floating point.
+pub const FLOAT_CRATE: &str = "truepath_rs274";
+/// The function called in every servo cycle: its crate, its module, its name.
+const TICK: (&str, &str, &str) = ("truepath_wire", "rewrite", "tick");
 
 /// Whether an entry is an operation on floats: an instruction of the intermediate representation, or a routine of the
 /// run-time ABI for ARM (IHI0043, tables 2 to 8).
@@ -48,8 +48,13 @@ pub fn is_panic_or_formatting(entry: &str) -> bool {
     ["core::panicking", "core::fmt::", "_fail"].iter().any(|part| name.contains(part))
 }
 
+/// Whether a function belongs to the module of the servo cycle.
+fn in_servo_cycle(function: &Function) -> bool {
+    function.module(TICK.0) == Some(TICK.1)
+}
+
 fn is_tick(function: &Function) -> bool {
-    function.module(CRATE) == Some(TICK.0) && function.name.ends_with(&format!("::{}", TICK.1))
+    in_servo_cycle(function) && function.name.ends_with(&format!("::{}", TICK.2))
 }
 
 /// Checks the rules; returns what breaks them, one line each.
@@ -59,13 +64,13 @@ pub fn objections(code: &Code) -> Vec<String> {
         said.extend(ways.into_iter().map(|way| format!("{what}: {}", way.join(" → "))));
     };
     let direct = |ways: Vec<Vec<String>>| ways.into_iter().filter(|way| way.len() == 2).collect();
-    object("operation on floats", direct(code.ways(|f| f.module(CRATE) != Some(FLOAT_MODULE), is_float)));
+    object("operation on floats", direct(code.ways(|f| f.module(FLOAT_CRATE).is_none(), is_float)));
     object("division in the servo cycle", code.ways(is_tick, is_division));
     object("128-bit product in the servo cycle", code.ways(is_tick, is_wide_product));
     object("panic or formatting in the servo cycle", code.ways(is_tick, is_panic_or_formatting));
     let mut functions = code.functions.values();
-    if functions.clone().any(|f| f.module(CRATE) == Some(TICK.0)) && !functions.any(is_tick) {
-        said.push(format!("{}::{} is not in the library: the servo cycle was not checked", TICK.0, TICK.1));
+    if functions.clone().any(in_servo_cycle) && !functions.any(is_tick) {
+        said.push(format!("{}::{} is not in the library: the servo cycle was not checked", TICK.1, TICK.2));
     }
     said
 }
@@ -108,31 +113,31 @@ mod tests {
     #[test]
     fn the_servo_cycle_may_not_divide_or_panic_even_in_a_function_it_calls() {
         let said = objections(&code(&[
-            ("truepath_core::rewrite::Rewriter::tick", &["truepath_core::units::ratio", "core::panicking::panic"]),
-            ("truepath_core::rewrite::Rewriter::new", &["llvm sdiv i128"]),
-            ("truepath_core::units::ratio", &["__aeabi_ldivmod", "llvm mul i128"]),
-            ("truepath_core::correct::design", &["__aeabi_ldivmod"]),
+            ("truepath_wire::rewrite::Rewriter::tick", &["truepath_units::round::ratio", "core::panicking::panic"]),
+            ("truepath_wire::rewrite::Rewriter::new", &["llvm sdiv i128"]),
+            ("truepath_units::round::ratio", &["__aeabi_ldivmod", "llvm mul i128"]),
+            ("truepath_model::correct::design", &["__aeabi_ldivmod"]),
         ]));
         assert_eq!(
             said,
             [
-                "division in the servo cycle: truepath_core::rewrite::Rewriter::tick → truepath_core::units::ratio → __aeabi_ldivmod",
-                "128-bit product in the servo cycle: truepath_core::rewrite::Rewriter::tick → truepath_core::units::ratio → llvm mul i128",
-                "panic or formatting in the servo cycle: truepath_core::rewrite::Rewriter::tick → core::panicking::panic",
+                "division in the servo cycle: truepath_wire::rewrite::Rewriter::tick → truepath_units::round::ratio → __aeabi_ldivmod",
+                "128-bit product in the servo cycle: truepath_wire::rewrite::Rewriter::tick → truepath_units::round::ratio → llvm mul i128",
+                "panic or formatting in the servo cycle: truepath_wire::rewrite::Rewriter::tick → core::panicking::panic",
             ]
         );
     }
 
     #[test]
     fn a_float_anywhere_in_the_core_is_named_once_with_its_function() {
-        let expressions = "truepath_core::gcode::expression::evaluate";
+        let expressions = "truepath_rs274::expression::evaluate";
         let said = objections(&code(&[("a", &["b"]), ("b", &["llvm fadd"]), (expressions, &["__aeabi_dadd"])]));
         assert_eq!(said, ["operation on floats: b → llvm fadd"]);
     }
 
     #[test]
     fn a_servo_cycle_that_is_not_in_the_library_is_not_taken_for_a_clean_one() {
-        let said = objections(&code(&[("truepath_core::rewrite::Rewriter::new", &[])]));
+        let said = objections(&code(&[("truepath_wire::rewrite::Rewriter::new", &[])]));
         assert_eq!(said, ["rewrite::tick is not in the library: the servo cycle was not checked"]);
     }
 }

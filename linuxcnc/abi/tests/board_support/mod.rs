@@ -2,7 +2,7 @@
 //! and drives, which look at every tick whether they were made to jump.
 #![allow(dead_code)]
 
-#[path = "../../../../core/tests/rewrite_support/mod.rs"]
+#[path = "../../../../core/wire/tests/rewrite_support/mod.rs"]
 mod rewrite_support;
 pub use rewrite_support::*;
 

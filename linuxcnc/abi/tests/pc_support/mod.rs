@@ -3,7 +3,7 @@
 
 #[path = "../remote_support/mod.rs"]
 mod remote_support;
-#[path = "../../../../core/tests/rewrite_support/mod.rs"]
+#[path = "../../../../core/wire/tests/rewrite_support/mod.rs"]
 pub mod rewrite_support;
 
 pub use remote_support::{ON, inputs, outputs};

@@ -66,7 +66,7 @@ const LAW: &str = "identified::{closure#0}>::{closure#0}>::{closure#0}::{closure
 const FIT: &str = ">::settle::{closure#";
 /// Of a design, which reads the walls in order: under the guard, and of the whole.
 const DESIGN: &[&str] =
-    &["guarded_design::<truepath_core::correct::reader::InOrder>::{closure#", "whole::designed::{closure#0}"];
+    &["guarded_design::<truepath_model::correct::reader::InOrder>::{closure#", "whole::designed::{closure#0}"];
 
 pub const INDIRECT: &[Indirect] = &[
     ("interrupts::config_executor", &["__config_task_task_inner_function::{closure#0}>>::poll"]),
@@ -101,7 +101,7 @@ pub const INDIRECT: &[Indirect] = &[
     (">::linearise", &[FIT]),
     (FIT, &[">::fit::{closure#0}", LAW, TOLD[0], TOLD[1]]),
     (LAW, TOLD),
-    ("correct::design::pass", &["design_observed::<truepath_core::correct::reader::InOrder>::{closure#0}"]),
+    ("correct::design::pass", &["design_observed::<truepath_model::correct::reader::InOrder>::{closure#0}"]),
     ("design_observed", DESIGN),
     (DESIGN[0], &[DESIGN[1]]),
     (DESIGN[1], TOLD),

@@ -77,7 +77,7 @@ mod tests {
             "__aeabi_memcpy",
             "__aeabi_llsl",
             "realtime_receive",
-            "_RNvNtNtCs4HsFktntVZn_13truepath_core7rewrite6locate6locate",
+            "_RNvNtNtCs4HsFktntVZn_13truepath_wire7rewrite6locate6locate",
         ] {
             assert_eq!(forbidden(symbol), None, "{symbol}");
         }

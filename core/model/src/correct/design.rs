@@ -1,0 +1,245 @@
+//! From the identified machine to the correction beside every sample of the contour.
+
+use super::node::{Node, commanded};
+use super::paper::PaperTransfer;
+use super::profile::{Band, Profile, Target, add_residual, deepen};
+use super::reader::{InOrder, WallReader};
+use super::refine::{Update, refine, settle_ends};
+use crate::cut::{Loop, Passage, Path, State};
+use truepath_units::geometry::Vector;
+use truepath_units::{Offset, Real};
+
+/// How the correction is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// From the model at the nominal engagement, refined on the predicted wall error.
+    Model,
+    /// First-order mirror: the deflection of the uncorrected cut, reversed. Leaves about δ²/h on a straight wall.
+    Mirror,
+    /// P23 eqs. (8)–(12) as printed; depends on the origin of the program.
+    Paper(PaperTransfer),
+}
+
+/// Wall errors beside one sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Predicted {
+    /// Without correction.
+    pub before: Profile,
+    /// With it.
+    pub after: Profile,
+}
+
+/// What the correction is to achieve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Design {
+    /// How it is made.
+    pub law: Law,
+    /// What it brings to zero.
+    pub target: Target,
+    /// Heights that count.
+    pub band: Band,
+    /// The deepest cut allowed at any height of the engaged depth.
+    pub max_gouge: Option<Offset>,
+}
+
+/// Buffers lent by the caller: `states` and `displacements` as long as the path's working range, `profiles`,
+/// `updates` and `best` as long as the contour's own samples.
+#[derive(Debug)]
+pub struct DesignWorkspace<'a, R = InOrder> {
+    /// States of the elastic loop.
+    pub states: &'a mut [State],
+    /// Cutter positions at a height.
+    pub displacements: &'a mut [Vector],
+    /// Wall profiles.
+    pub profiles: &'a mut [Profile],
+    /// Changes of the correction.
+    pub updates: &'a mut [Update],
+    /// The best correction so far.
+    pub best: &'a mut [Node],
+    /// Wall error that parts have shown beside what the model predicts, as long as the contour's own samples; empty where
+    /// none is known. The correction cancels it as well.
+    pub residual: &'a [Offset],
+    /// Who reads the walls.
+    pub reader: R,
+}
+
+/// Refinements on the predicted wall error.
+const REFINEMENTS: usize = 24;
+/// The largest wall error at which refinement stops early.
+const SETTLED: Offset = Offset::from_nm(200);
+/// Refinements without a tenth of improvement after which it stops: what is left cannot be reached by this cutter.
+const PATIENCE: usize = 8;
+
+/// What a design tells while it works.
+#[derive(Clone, Copy, Debug)]
+pub enum DesignStep<'a> {
+    /// The walls that the uncorrected cut leaves, one beside each sample of the contour.
+    Uncorrected(&'a [Profile]),
+    /// How far it is.
+    Done {
+        /// Passes of the cutter that are computed.
+        passes: u16,
+        /// Share of the longest possible design, ‰, rising; a design that settles early ends before 1000.
+        permille: u16,
+    },
+}
+
+/// Makes the correction: `nodes` and `predicted` as long as the contour's own samples.
+///
+/// Near a sharp inside corner the correction of the straight wall is held: there the load changes the moment the
+/// direction does, and a correction that followed it would be driven into the wall by a machine that cannot.
+/// Returns the summary of the last pass of the elastic loop.
+pub fn design(
+    machine: &Loop,
+    wanted: &Design,
+    nodes: &mut [Node],
+    predicted: &mut [Predicted],
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
+) -> Passage {
+    design_observed(machine, wanted, nodes, predicted, workspace, &mut |_| ())
+}
+
+/// As [`design`], observed; `predicted` may be empty where the predictions are not needed one by one. On return
+/// `workspace.profiles` holds the corrected wall.
+pub fn design_observed<R: WallReader>(
+    machine: &Loop,
+    wanted: &Design,
+    nodes: &mut [Node],
+    predicted: &mut [Predicted],
+    workspace: &mut DesignWorkspace<'_, R>,
+    observe: &mut dyn FnMut(DesignStep<'_>),
+) -> Passage {
+    let path = machine.path;
+    let mut passes = 0u16;
+    let mut pass = |nodes: &[Node], workspace: &mut DesignWorkspace<'_, R>, observe: &mut dyn FnMut(DesignStep<'_>)| {
+        let passage = pass(machine, wanted, nodes, workspace, &mut |share| {
+            observe(DesignStep::Done { passes, permille: permille(passes, share) });
+        });
+        passes = passes.saturating_add(1);
+        observe(DesignStep::Done { passes, permille: permille(passes, 0) });
+        passage
+    };
+    nodes.fill(Node::default());
+    pass(nodes, workspace, observe);
+    observe(DesignStep::Uncorrected(workspace.profiles));
+    for (p, before) in predicted.iter_mut().zip(workspace.profiles.iter()) {
+        p.before = *before;
+    }
+    match wanted.law {
+        Law::Model => one_shot(machine, wanted.band, nodes, false, workspace.states),
+        Law::Mirror => one_shot(machine, wanted.band, nodes, true, workspace.states),
+        Law::Paper(transfer) => transfer.fill(machine, workspace.states, nodes),
+    }
+    let mut passage = Passage::default();
+    let (mut best, mut is_best) = (Offset::MAX, true);
+    let (mut milestone, mut since) = (Offset::MAX, 0usize);
+    for _ in 0..=REFINEMENTS {
+        settle_ends(path, nodes);
+        passage = pass(nodes, workspace, observe);
+        let largest = worst(wanted, path, workspace.profiles);
+        if largest < milestone.scaled(Real::ratio(9, 10)) {
+            (milestone, since) = (largest, 0);
+        } else {
+            since = since.saturating_add(1);
+        }
+        is_best = largest < best;
+        if is_best {
+            best = largest;
+            copy(nodes, workspace.best);
+        }
+        if wanted.law != Law::Model || largest < SETTLED || since > PATIENCE {
+            break;
+        }
+        refine(path, wanted, nodes, workspace.profiles, workspace.updates);
+    }
+    // Also where the last was the best: it has been refined since, but not cut.
+    copy(workspace.best, nodes);
+    if !is_best {
+        passage = pass(nodes, workspace, observe);
+    }
+    for (p, after) in predicted.iter_mut().zip(workspace.profiles.iter()) {
+        p.after = *after;
+    }
+    passage
+}
+
+pub(super) fn copy(from: &[Node], to: &mut [Node]) {
+    for (slot, node) in to.iter_mut().zip(from) {
+        *slot = *node;
+    }
+}
+
+/// Share of the longest possible design, ‰, after some passes and a share (‰) of the next.
+fn permille(passes: u16, share: u16) -> u16 {
+    // The uncorrected pass, all refinements, and once more the best.
+    const MOST: u32 = REFINEMENTS as u32 + 3;
+    let done = u32::from(passes).saturating_mul(1000).saturating_add(u32::from(share));
+    (done / MOST).min(1000) as u16
+}
+
+/// One pass of the cutter with a correction: states and walls of the workspace. `observe` is told the share of the
+/// elastic loop that is done, ‰.
+pub(super) fn pass(
+    machine: &Loop,
+    wanted: &Design,
+    nodes: &[Node],
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
+    observe: &mut dyn FnMut(u16),
+) -> Passage {
+    let path = machine.path;
+    let working = path.working();
+    let passage = machine.run(working.start, workspace.states, |i| {
+        let done = i.saturating_sub(working.start).saturating_mul(1000);
+        observe(done.checked_div(working.len()).unwrap_or(0).min(1000) as u16);
+        commanded(path, nodes, i)
+    });
+    walls(machine, wanted, workspace);
+    passage
+}
+
+/// Reads the walls off the states of the workspace.
+pub(super) fn walls(machine: &Loop, wanted: &Design, workspace: &mut DesignWorkspace<'_, impl WallReader>) {
+    let (states, displacements) = (&*workspace.states, &mut *workspace.displacements);
+    workspace.reader.profile(machine, states, wanted.band, displacements, workspace.profiles);
+    if wanted.max_gouge.is_some() || wanted.band != Band::WHOLE {
+        deepen(machine, states, wanted.band, displacements, workspace.profiles);
+    }
+    add_residual(workspace.profiles, workspace.residual);
+}
+
+/// −(mean deflection over the band): at the nominal engagement, or at that of the uncorrected cut (mirror).
+fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorrected: &[State]) {
+    let path = machine.path;
+    let skipped = path.first().saturating_sub(path.working().start);
+    let heights = super::profile::HEIGHTS;
+    let mut chip_scale = (None, Real::ZERO);
+    for (i, node) in nodes.iter_mut().enumerate() {
+        let index = path.first().saturating_add(i);
+        let state = if mirror {
+            uncorrected.get(skipped.saturating_add(i)).copied().unwrap_or(State::REST)
+        } else {
+            let Some(sample) = path.samples().get(index) else { break };
+            if chip_scale.0 != Some(sample.feed) {
+                let feed = path.setup().feed_per_tooth(sample.feed);
+                chip_scale = (Some(sample.feed), machine.coefficients.chip_scale(feed));
+            }
+            machine.nominal(index, chip_scale.1)
+        };
+        let (mut chip, mut whole) = (Vector::ZERO, Vector::ZERO);
+        for k in 0..heights {
+            let (c, w) = machine.deflection_parts(&state, band.at(k));
+            chip = chip + c;
+            whole = whole + w;
+        }
+        let mean = |v: Vector| -v.scaled(Real::ratio(1, heights));
+        let chip = mean(chip);
+        let normal = path.samples().get(index).map_or(Vector::ZERO, |s| s.normal.times(machine.undersize));
+        *node = Node { chip, edge: mean(whole) - chip + normal };
+    }
+}
+
+/// The largest error the target sees, away from sharp inside corners, where the correction is held.
+pub(super) fn worst(wanted: &Design, path: &Path, profiles: &[Profile]) -> Offset {
+    let followed = profiles.iter().zip(path.samples().iter().skip(path.first())).filter(|(_, s)| !s.near_corner);
+    followed.map(|(p, _)| p.aim(wanted.target, wanted.max_gouge).abs()).max().unwrap_or_default()
+}

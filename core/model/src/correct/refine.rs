@@ -1,0 +1,111 @@
+//! Refinement of a correction on the predicted wall error, and where it is not refined.
+
+use super::design::Design;
+use super::node::Node;
+use super::profile::Profile;
+use crate::cut::Path;
+use truepath_units::{Offset, Real};
+
+/// What one refinement does to a cutter position.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Update {
+    sum: Offset,
+    count: u32,
+}
+
+impl Update {
+    fn mean(&self) -> Offset {
+        self.sum.scaled(Real::ratio(1, i64::from(self.count.max(1))))
+    }
+}
+
+/// One refinement: every cutter position moves along the normal by the mean error of the wall places it made (over
+/// samples and heights); positions that made none follow their neighbours.
+pub(super) fn refine(path: &Path, wanted: &Design, nodes: &mut [Node], profiles: &[Profile], updates: &mut [Update]) {
+    updates.fill(Update::default());
+    for (index, profile) in profiles.iter().enumerate() {
+        let error = profile.aim(wanted.target, wanted.max_gouge);
+        for maker in profile.makers(index) {
+            if let Some(update) = updates.get_mut(maker) {
+                update.sum += error;
+                update.count = update.count.saturating_add(1);
+            }
+        }
+    }
+    fill_gaps(updates);
+    if wanted.max_gouge.is_some() {
+        // Where the guard begins, neighbours are asked for different things, and single positions would run away.
+        (0..SMOOTHED).for_each(|_| smooth(updates));
+    }
+    let samples = path.samples().iter().skip(path.first());
+    for ((node, update), sample) in nodes.iter_mut().zip(updates.iter()).zip(samples) {
+        // The refinement follows the chip: it comes from the change of load along the path.
+        node.chip = node.chip + sample.normal.times(update.mean());
+    }
+}
+
+/// Times that updates are smoothed under a guard: over about the length on which a circle leaves its tangent by a micrometre.
+const SMOOTHED: usize = 3;
+
+/// Every update becomes half of itself and a quarter of either neighbour; at the ends nothing comes from beyond.
+fn smooth(updates: &mut [Update]) {
+    let mut before: Option<Offset> = None;
+    for at in 0..updates.len() {
+        let behind = updates.get(at.saturating_add(1)).map(Update::mean);
+        let Some(slot) = updates.get_mut(at) else { break };
+        let own = slot.mean();
+        let sum = own + own + before.unwrap_or(own) + behind.unwrap_or(own);
+        *slot = Update { sum: sum.scaled(Real::ratio(1, 4)), count: 1 };
+        before = Some(own);
+    }
+}
+
+/// Gives updates that have no wall of their own the straight line between their neighbours'.
+fn fill_gaps(updates: &mut [Update]) {
+    let mut at = 0usize;
+    while at < updates.len() {
+        let gap = updates.iter().skip(at).take_while(|u| u.count == 0).count();
+        if gap > 0 {
+            let before = at.checked_sub(1).and_then(|i| updates.get(i)).map(Update::mean);
+            let after = updates.get(at.saturating_add(gap)).map(Update::mean);
+            let (from, to) = (before.or(after).unwrap_or_default(), after.or(before).unwrap_or_default());
+            for (k, slot) in updates.iter_mut().skip(at).take(gap).enumerate() {
+                let u = Real::ratio(k.saturating_add(1) as i64, gap.saturating_add(1) as i64);
+                *slot = Update { sum: from + (to - from).scaled(u), count: 1 };
+            }
+        }
+        at = at.saturating_add(gap).saturating_add(1);
+    }
+}
+
+/// Closes a closed correction, and holds it around sharp inside corners: up to the corner that of the wall before, from
+/// it on that of the wall behind.
+pub(super) fn settle_ends(path: &Path, nodes: &mut [Node]) {
+    if path.is_closed()
+        && let Some(&first) = nodes.first()
+        && let Some(last) = nodes.last_mut()
+    {
+        *last = first;
+    }
+    let samples = path.samples().get(path.first()..).unwrap_or_default();
+    let near = |i: usize| samples.get(i).is_some_and(|s| s.near_corner);
+    let turned = |i: usize| {
+        // Both on the spot: the corner lies between them and the samples before.
+        matches!((samples.get(i), samples.get(i.saturating_add(1))), (Some(a), Some(b)) if a.point == b.point)
+    };
+    let mut at = 0usize;
+    while at < nodes.len() {
+        let zone = (at..nodes.len()).take_while(|i| near(*i)).count();
+        let end = at.saturating_add(zone);
+        if zone > 0 {
+            let before = at.checked_sub(1).and_then(|i| nodes.get(i)).copied();
+            let behind = nodes.get(end).copied();
+            let corner = (at..end).find(|i| turned(*i)).unwrap_or(end);
+            for (i, node) in nodes.iter_mut().enumerate().take(end).skip(at) {
+                let held = if i <= corner { before.or(behind) } else { behind.or(before) };
+                *node = held.unwrap_or_default();
+            }
+        }
+        at = end.saturating_add(1);
+    }
+}

@@ -1,0 +1,85 @@
+//! How far the corrected wall may be from where it is predicted, from the covariance of the fit.
+
+use super::design::{Design, DesignWorkspace, walls};
+use super::node::{Node, commanded};
+use super::profile::Profile;
+use super::reader::WallReader;
+use crate::cut::{ForceTable, Loop};
+use crate::identify::{Fit, Prior};
+use truepath_units::geometry::Vector;
+use truepath_units::{Offset, Real, hypot_nm};
+
+/// Standard deviations of the walls that a correction leaves, beside each sample, from the covariance of the fit: of the
+/// error the target aims at and of the deepest height.
+///
+/// The machine is displaced along each column of a square root of the covariance and cut again with the correction
+/// held; the squares add up. `workspace.profiles` must hold the walls of the correction and is overwritten. `workspace.best`
+/// then holds the deviations, see [`of_aim`] and [`of_deepest`]: between two designs the best correction is of no use.
+pub(super) fn deviations(
+    machine: &Loop,
+    belief: (&Prior, &Fit),
+    wanted: &Design,
+    nodes: &[Node],
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
+) {
+    let best = core::mem::take(&mut workspace.best);
+    for (slot, wall) in best.iter_mut().zip(workspace.profiles.iter()) {
+        let of = |x: Offset| Vector { x, y: Offset::ZERO };
+        *slot = Node { chip: of(wall.aim(wanted.target, None)), edge: of(wall.deepest()) };
+    }
+    spread(machine, belief, wanted, nodes, workspace, &mut |index, wall| {
+        if let Some(Node { chip: aimed, edge: deepest }) = best.get_mut(index) {
+            aimed.y = hypot_nm(aimed.y, wall.aim(wanted.target, None) - aimed.x);
+            deepest.y = hypot_nm(deepest.y, wall.deepest() - deepest.x);
+        }
+    });
+    workspace.best = best;
+}
+
+/// The standard deviation of the aimed error that [`deviations`] has put into the place of a best correction.
+pub(super) const fn of_aim(slot: &Node) -> Offset {
+    slot.chip.y
+}
+
+/// The same of the deepest height.
+pub(super) const fn of_deepest(slot: &Node) -> Offset {
+    slot.edge.y
+}
+
+/// Cuts the corrected contour once on every machine that lies a column of the covariance's square root away, and hands
+/// each wall, with its index on the contour, to `take`. The square root of the sum of the squared changes of a quantity is
+/// its standard deviation. The walls of the workspace are overwritten.
+#[inline(never)]
+fn spread(
+    machine: &Loop,
+    (prior, fit): (&Prior, &Fit),
+    wanted: &Design,
+    nodes: &[Node],
+    workspace: &mut DesignWorkspace<'_, impl WallReader>,
+    take: &mut dyn FnMut(usize, &Profile),
+) {
+    let path = machine.path;
+    let mut table = ForceTable::BLANK;
+    table.tabulate(machine.table.size_exponent());
+    for column in crate::identify::square_root(&fit.covariance) {
+        if column.iter().all(|v| v.abs() < Real::ratio(1, 1000)) {
+            continue;
+        }
+        let mut moved = fit.theta;
+        for (t, c) in moved.iter_mut().zip(&column) {
+            *t += *c;
+        }
+        let parameters = prior.at(&moved);
+        // The last columns move nothing but the datum of the part that was probed: the wall stays where it is.
+        if parameters.machine(path, &table).cuts_as(machine) {
+            continue;
+        }
+        if parameters.coefficients.size_exponent != table.size_exponent() {
+            table.tabulate(parameters.coefficients.size_exponent);
+        }
+        let displaced = parameters.machine(path, &table);
+        displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
+        walls(&displaced, wanted, workspace);
+        workspace.profiles.iter().enumerate().for_each(|(index, wall)| take(index, wall));
+    }
+}

@@ -1,0 +1,202 @@
+//! The closed elastic loop: the cut is less deep because the tool yields.
+//!
+//! `a = p + C·F(engagement at a)` (P23 fig. 2; physics of a machine closed through the cut): the force is that of the
+//! actual centre `a`, in the frame of its nominal place. Solved at every sample by a few steps of fixed-point
+//! iteration with a secant (Anderson, depth one), warm-started from the sample before. Every solution reports what is
+//! left; the iteration is bounded and cannot hang.
+
+use super::compliance::Compliance;
+use super::force::{ForceTable, SplitForce};
+use super::path::Path;
+use super::setup::{Coefficients, WallLaw};
+use truepath_units::geometry::{Direction, Vector};
+use truepath_units::{Offset, Real, div_rounded};
+
+/// The cutter at one sample of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct State {
+    /// Commanded displacement from the nominal centre.
+    pub commanded: Vector,
+    /// Displacement by the mean force over a revolution, averaged over the engaged depth.
+    pub displacement: Vector,
+    /// Engagement angle φ₁, rad.
+    pub engaged: Real,
+    /// Normal towards the wall at the nominal place of the actual centre.
+    pub normal: Direction,
+    /// Chip scale of the programmed feed; see [`Coefficients::chip_scale`].
+    pub chip_scale: Real,
+    /// What the elastic loop left unsolved.
+    pub residual: Offset,
+}
+
+/// A machine at work on a path: everything the elastic loop needs.
+#[derive(Clone, Copy, Debug)]
+pub struct Loop<'a> {
+    /// The path and its stock.
+    pub path: &'a Path<'a>,
+    /// Force of the cutter.
+    pub table: &'a ForceTable,
+    /// Force coefficients; their size exponent is the one the table was made for.
+    pub coefficients: Coefficients,
+    /// Compliance of machine and cutter.
+    pub compliance: Compliance,
+    /// How much smaller than stated the cutter makes the wall (worn; negative: runout), the same everywhere. It moves the
+    /// wall; engagement and force do not feel it.
+    pub undersize: Offset,
+}
+
+/// Summary of a run of the loop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Passage {
+    /// Iterations spent, all samples together.
+    pub iterations: u32,
+    /// Samples at which the loop did not reach its tolerance.
+    pub unsettled: u32,
+    /// The largest residual.
+    pub worst_residual: Offset,
+}
+
+/// Iterations of the loop at one sample.
+const MAX_ITERATIONS: u32 = 40;
+/// Residual at which the loop counts as solved.
+const TOLERANCE: Offset = Offset::from_nm(5);
+/// Residual above which a sample is reported as unsettled.
+const UNSETTLED: Offset = Offset::from_nm(500);
+
+impl State {
+    /// Before any sample was solved.
+    pub const REST: Self = Self {
+        commanded: Vector::ZERO,
+        displacement: Vector::ZERO,
+        engaged: Real::ZERO,
+        normal: Direction::X,
+        chip_scale: Real::ZERO,
+        residual: Offset::ZERO,
+    };
+}
+
+impl Loop<'_> {
+    /// Solves the loop at a sample for a commanded displacement, from a first guess of the deflection.
+    /// Returns the state and the number of iterations.
+    pub fn settle(&self, index: usize, commanded: Vector, guess: Vector, chip_scale: Real) -> (State, u32) {
+        let mut x = guess;
+        let mut before: Option<(Vector, Vector)> = None;
+        let mut state = State { commanded, chip_scale, ..State::REST };
+        for iteration in 1..=MAX_ITERATIONS {
+            let Some((engaged, normal, push)) = self.push(index, commanded + x, chip_scale) else {
+                return (state, iteration);
+            };
+            let residual = push - x;
+            state = State { displacement: push, engaged, normal, residual: residual.length(), ..state };
+            if state.residual <= TOLERANCE {
+                return (state, iteration);
+            }
+            let step = match before {
+                None => residual,
+                Some((x0, r0)) => mixed(residual, residual - r0, x - x0),
+            };
+            before = Some((x, residual));
+            x = x + step;
+        }
+        (state, MAX_ITERATIONS)
+    }
+
+    /// Whether another machine cuts the same wall on the same path.
+    pub fn cuts_as(&self, other: &Self) -> bool {
+        let facts = |machine: &Self| (machine.coefficients, machine.compliance, machine.undersize);
+        facts(self) == facts(other)
+    }
+
+    fn mean(&self, engaged: Real) -> SplitForce {
+        self.table.mean(self.path.setup(), &self.coefficients, engaged)
+    }
+
+    /// Engagement, normal and mean deflection for a centre displaced from a sample.
+    fn push(&self, index: usize, displacement: Vector, chip_scale: Real) -> Option<(Real, Direction, Vector)> {
+        let frame = self.path.frame(index, displacement)?;
+        let engaged = self.path.engagement(index, displacement, &frame);
+        let force = self.mean(engaged).total(chip_scale);
+        let push = self.compliance.displacement(frame.normal, frame.heading, force);
+        Some((engaged, frame.normal, push.scaled(self.compliance.mean_factor())))
+    }
+
+    /// Runs the loop over samples `from..from + states.len()`; `commanded` gives the commanded displacement of each.
+    pub fn run(&self, from: usize, states: &mut [State], mut commanded: impl FnMut(usize) -> Vector) -> Passage {
+        let mut passage = Passage::default();
+        let mut guess = Vector::ZERO;
+        let mut feed = None;
+        let mut chip_scale = Real::ZERO;
+        for (k, slot) in states.iter_mut().enumerate() {
+            let index = from.saturating_add(k);
+            let Some(sample) = self.path.samples().get(index) else { break };
+            if feed != Some(sample.feed) {
+                feed = Some(sample.feed);
+                chip_scale = self.coefficients.chip_scale(self.path.setup().feed_per_tooth(sample.feed));
+            }
+            let (state, iterations) = self.settle(index, commanded(index), guess, chip_scale);
+            guess = state.displacement;
+            passage.iterations = passage.iterations.saturating_add(iterations);
+            passage.unsettled = passage.unsettled.saturating_add(u32::from(state.residual > UNSETTLED));
+            passage.worst_residual = passage.worst_residual.max(state.residual);
+            *slot = state;
+        }
+        passage
+    }
+
+    /// The state of an undisplaced cutter: the engagement the program intends.
+    pub fn nominal(&self, index: usize, chip_scale: Real) -> State {
+        let Some((engaged, normal, displacement)) = self.push(index, Vector::ZERO, chip_scale) else {
+            return State::REST;
+        };
+        State { engaged, normal, displacement, chip_scale, ..State::REST }
+    }
+
+    /// Mean force over a revolution in a state, (normal, tangential), N.
+    pub fn mean_force(&self, state: &State) -> (Real, Real) {
+        self.mean(state.engaged).total(state.chip_scale)
+    }
+
+    /// Displacement of the cutter from the nominal centre at the instant it makes the wall at a height, given as a
+    /// fraction 0…1 of the engaged depth above the tip.
+    pub fn at_height(&self, state: &State, fraction: Real) -> Vector {
+        let force = self.force_at(state, fraction).total(state.chip_scale);
+        state.commanded + self.displaced(state, fraction, force)
+    }
+
+    /// Deflection at a height: (its chip part, the whole).
+    pub fn deflection_parts(&self, state: &State, fraction: Real) -> (Vector, Vector) {
+        let force = self.force_at(state, fraction);
+        let chip = (force.chip_n * state.chip_scale, force.chip_t * state.chip_scale);
+        let whole = force.total(state.chip_scale);
+        (self.displaced(state, fraction, chip), self.displaced(state, fraction, whole))
+    }
+
+    /// The force at the instant the wall at a height is made.
+    fn force_at(&self, state: &State, fraction: Real) -> SplitForce {
+        let setup = self.path.setup();
+        match setup.law {
+            WallLaw::Mean => self.mean(state.engaged),
+            WallLaw::Helical => self.table.at_height(
+                (setup, self.path.helix()),
+                &self.coefficients,
+                state.engaged,
+                setup.axial_depth * fraction,
+            ),
+        }
+    }
+
+    /// What a force (normal, tangential) displaces the cutter by at a height.
+    fn displaced(&self, state: &State, fraction: Real, force: (Real, Real)) -> Vector {
+        let heading = self.path.setup().wall.heading(state.normal);
+        self.compliance.displacement(state.normal, heading, force).scaled(self.compliance.height_factor(fraction))
+    }
+}
+
+/// Anderson mixing of depth one: the residual less its share along the last change.
+fn mixed(residual: Vector, change: Vector, last_step: Vector) -> Vector {
+    let norm = change.dot(change);
+    let gamma = Real::narrow(div_rounded(residual.dot(change) << Real::FRACTION_BITS, norm));
+    let limit = Real::from_int(4);
+    let gamma = gamma.min(limit).max(-limit);
+    residual - (last_step + change).scaled(gamma)
+}

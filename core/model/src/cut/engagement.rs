@@ -1,0 +1,140 @@
+//! Engagement angle from geometry: where the cutter circle leaves the stock.
+//!
+//! φ is measured from the wall normal n towards the direction of travel t; the engaged arc is 0…φ₁ and φ₁ is the last
+//! place, going from n towards t, where the circle of the displaced cutter crosses the raw stock. P23 eq. (5) is
+//! wrong as printed (134.4° on its own example); here φ₁ = atan2(q·t, q·n) of the crossing point q. Block boundaries
+//! play no part: the load rises before an arc begins.
+
+use super::path::{Path, Sample};
+use truepath_units::geometry::{Direction, Point, Vector};
+use truepath_units::{Offset, Real, atan2, isqrt_rounded};
+
+/// The nominal place of an actual cutter centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Normal towards the wall.
+    pub normal: Direction,
+    /// Direction of travel.
+    pub heading: Direction,
+    /// Index of the sample at or before it.
+    pub index: usize,
+}
+
+/// Steps along the path by which a displaced centre may be away from its own sample.
+const FRAME_STEPS: usize = 64;
+
+impl Path<'_> {
+    /// The frame at the nominal place of the centre displaced by `displacement` from sample `index`: the force turns
+    /// with the place where the cutter is, not with the place it was sent to.
+    pub fn frame(&self, index: usize, displacement: Vector) -> Option<Frame> {
+        let samples = self.samples();
+        let own = samples.get(index)?;
+        let centre = own.point + displacement;
+        // Where the normal turns on the spot there is no path to be displaced along.
+        let shares = |other: Option<&Sample>| other.is_some_and(|o| o.point == own.point);
+        if shares(samples.get(index.saturating_add(1))) || shares(index.checked_sub(1).and_then(|i| samples.get(i))) {
+            return Some(Frame { normal: own.normal, heading: self.setup().wall.heading(own.normal), index });
+        }
+        let mut at = index;
+        for _ in 0..FRAME_STEPS {
+            let here = samples.get(at)?;
+            let heading = self.setup().wall.heading(here.normal);
+            let along = centre.from(here.point).along(heading);
+            let Some(next) = samples.get(at.saturating_add(1)) else { break };
+            let gap = next.point.from(here.point).along(heading);
+            if along < Offset::ZERO && at > 0 {
+                at = at.saturating_sub(1);
+                // A backward step that lands short of the next sample has found the interval.
+                let behind = samples.get(at)?;
+                let h = self.setup().wall.heading(behind.normal);
+                if centre.from(behind.point).along(h) >= Offset::ZERO {
+                    break;
+                }
+            } else if along > gap && gap > Offset::ZERO {
+                at = at.saturating_add(1);
+            } else {
+                break;
+            }
+        }
+        let (here, next) = (samples.get(at)?, samples.get(at.saturating_add(1)).or(samples.get(at))?);
+        let heading = self.setup().wall.heading(here.normal);
+        let gap = next.point.from(here.point).along(heading);
+        let along = centre.from(here.point).along(heading);
+        let u = along.over(gap).max(Real::ZERO).min(Real::ONE);
+        let blend = |a: Real, b: Real| Real::dot(a, Real::ONE - u, b, u);
+        let normal = Direction { x: blend(here.normal.x, next.normal.x), y: blend(here.normal.y, next.normal.y) };
+        Some(Frame { normal, heading: self.setup().wall.heading(normal), index: at })
+    }
+
+    /// The engagement angle φ₁ (rad, 0…π) of a cutter whose centre is displaced from sample `index`.
+    ///
+    /// Looks at the stock from the sample to 2.2 radii ahead; stretches that cannot reach the circle are stepped
+    /// over, so the cost is bounded by the window and does not depend on the length of the contour.
+    pub fn engagement(&self, index: usize, displacement: Vector, frame: &Frame) -> Real {
+        let samples = self.samples();
+        let Some(here) = samples.get(index) else { return Real::ZERO };
+        let centre = here.point + displacement;
+        let radius = self.setup().radius;
+        let end = here.s + radius + radius + radius.scaled(Real::ratio(1, 5));
+        let stride = self.stock_step().nm().max(1);
+        let mut last_inside: Option<usize> = None;
+        let mut at = frame.index.min(index);
+        while let Some(sample) = samples.get(at) {
+            if sample.s > end {
+                break;
+            }
+            let spoke = sample.stock.from(centre);
+            let depth = radius - spoke.length();
+            if depth > Offset::ZERO && sample.on_surface && spoke.along(frame.heading) > -Offset::from_nm(stride) {
+                last_inside = Some(at);
+            }
+            // The circle is at least |depth| away along the stock: no crossing before that.
+            let skip = depth.abs().nm().checked_div(stride).unwrap_or(0).max(1);
+            at = at.saturating_add(skip.unsigned_abs() as usize);
+        }
+        let Some(inside) = last_inside else { return Real::ZERO };
+        let (Some(a), Some(b)) = (samples.get(inside), samples.get(inside.saturating_add(1))) else {
+            return Real::ZERO;
+        };
+        let exit = crossing(a, b, centre, radius).from(centre);
+        let angle = atan2(exit.along(frame.heading).nm(), exit.along(frame.normal).nm());
+        angle.max(Real::ZERO)
+    }
+}
+
+/// Newton steps for the crossing of the circle with the curved stock between two samples.
+const CROSSING_STEPS: usize = 4;
+
+/// Where the stock between two samples, the first inside the circle and the second outside, crosses it. The stock
+/// bulges from the chord like the arc its normals belong to.
+fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
+    let chord = b.stock.from(a.stock);
+    let spoke = a.stock.from(centre);
+    // |spoke + u·chord|² = r²
+    let (p, q) = (chord.dot(chord), spoke.dot(chord));
+    let c = spoke.dot(spoke).saturating_sub(i128::from(radius.nm()).saturating_mul(radius.nm().into()));
+    let discriminant = q.saturating_mul(q).saturating_sub(p.saturating_mul(c)).max(0);
+    let root = isqrt_rounded(discriminant.unsigned_abs()) as i128;
+    let u = Real::narrow(truepath_units::div_rounded(root.saturating_sub(q) << Real::FRACTION_BITS, p));
+    let u = u.max(Real::ZERO).min(Real::ONE);
+    let turn = a.normal.cross(b.normal);
+    let Some(along) = chord.direction() else { return a.stock };
+    let sagitta = along.right().times(chord.length().scaled(turn * Real::ratio(1, 8)));
+    let at = |u: Real| a.stock + chord.scaled(u) + sagitta.scaled(u * (Real::ONE - u) * Real::from_int(4));
+    // The chord gives the start; where stock and circle meet at a small angle its bulge takes a few Newton steps. A step
+    // that changes nothing is the last: every further one would be the same.
+    let (mut u, mut point) = (u, at(u));
+    for _ in 0..CROSSING_STEPS {
+        let reach = point.from(centre);
+        let Some(out) = reach.direction() else { break };
+        let tangent = chord + sagitta.scaled((Real::ONE - u - u) * Real::from_int(4));
+        let miss = reach.length() - radius;
+        let next = (u - miss.over(tangent.along(out))).max(Real::ZERO).min(Real::ONE);
+        if next == u {
+            break;
+        }
+        u = next;
+        point = at(u);
+    }
+    point
+}

@@ -1,0 +1,208 @@
+//! Force on the tool, in the frame of the wall normal n and the travel direction t.
+//!
+//! Per tooth and unit depth `dFt = Ktc·h + Kte`, `dFr = Krc·h + Kre` with the chip h = f·sin φ (P23 eq. 3 with edge
+//! terms); P23 eq. (1) as printed is the force on the workpiece in one case only. The antiderivatives over the
+//! immersion angle φ are tabulated once per set of coefficients; from them follow, exactly up to interpolation,
+//! * the mean over a revolution, `N·b/2π · G(φ₁)`, and
+//! * the force at the instant the wall at height z is generated, where a tooth at z stands at φ = 0 and every flute
+//!   is a stretch of φ.
+//!
+//! Limits: rigid tooth spacing (no runout); chip thickness from the circular path; 0 ≤ φ₁ ≤ π.
+
+use super::setup::{Coefficients, CutSetup, Helix, MAX_FLUTES, Milling};
+use truepath_units::{Real, pow, sin_cos};
+
+/// Intervals of the table over 0…π. With cubic interpolation the error is below 10⁻⁹ of the coefficients.
+const INTERVALS: usize = 256;
+
+/// A force or its antiderivative, split by origin; N (or N/mm·rad) in the wall frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SplitForce {
+    /// Normal component that scales with the chip.
+    pub chip_n: Real,
+    /// Tangential component that scales with the chip.
+    pub chip_t: Real,
+    /// Normal component of the edge.
+    pub edge_n: Real,
+    /// Tangential component of the edge.
+    pub edge_t: Real,
+}
+
+/// Antiderivatives over the immersion angle of what the force of one tooth is made of. They depend on the size
+/// exponent alone; the coefficients enter when a force is read off.
+#[derive(Clone, Debug)]
+pub struct ForceTable {
+    sums: [Basis; INTERVALS + 1],
+    density: [Basis; INTERVALS + 1],
+    size_exponent: Real,
+}
+
+/// σ sin φ, σ cos φ, sin φ and cos φ with σ = sin^(1−m) φ, or their antiderivatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Basis {
+    chip_sine: Real,
+    chip_cosine: Real,
+    sine: Real,
+    cosine: Real,
+}
+
+impl SplitForce {
+    /// (normal, tangential) for a chip scale from [`Coefficients::chip_scale`].
+    pub fn total(self, chip_scale: Real) -> (Real, Real) {
+        (self.chip_n * chip_scale + self.edge_n, self.chip_t * chip_scale + self.edge_t)
+    }
+}
+
+impl Basis {
+    fn zip(self, o: Self, f: impl Fn(Real, Real) -> Real) -> Self {
+        Self {
+            chip_sine: f(self.chip_sine, o.chip_sine),
+            chip_cosine: f(self.chip_cosine, o.chip_cosine),
+            sine: f(self.sine, o.sine),
+            cosine: f(self.cosine, o.cosine),
+        }
+    }
+    fn plus(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+    fn minus(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+    fn scaled(self, factor: Real) -> Self {
+        self.zip(self, |a, _| a * factor)
+    }
+    fn at(size_exponent: Real, angle: Real) -> Self {
+        let (sine, cosine) = sin_cos(angle);
+        let chip = if size_exponent == Real::ZERO { sine } else { pow(sine, Real::ONE - size_exponent) };
+        Self { chip_sine: chip * sine, chip_cosine: chip * cosine, sine, cosine }
+    }
+    /// The force in the wall frame on the tool (physics of P23 eq. 3; eq. 1 as printed is the force on the workpiece).
+    fn force(self, milling: Milling, k: &Coefficients) -> SplitForce {
+        let part = |tangential: Real, radial: Real, sine: Real, cosine: Real| match milling {
+            Milling::Climb => {
+                (-Real::dot(tangential, sine, radial, cosine), Real::dot(tangential, cosine, -radial, sine))
+            }
+            Milling::Conventional => {
+                (Real::dot(tangential, sine, -radial, cosine), -Real::dot(tangential, cosine, radial, sine))
+            }
+        };
+        let (chip_n, chip_t) = part(k.ktc, k.krc, self.chip_sine, self.chip_cosine);
+        let (edge_n, edge_t) = part(k.kte, k.kre, self.sine, self.cosine);
+        SplitForce { chip_n, chip_t, edge_n, edge_t }
+    }
+}
+
+impl ForceTable {
+    /// An empty table, to be [tabulated](Self::tabulate) where it lies.
+    pub const BLANK: Self = {
+        const NOTHING: Basis =
+            Basis { chip_sine: Real::ZERO, chip_cosine: Real::ZERO, sine: Real::ZERO, cosine: Real::ZERO };
+        Self { sums: [NOTHING; INTERVALS + 1], density: [NOTHING; INTERVALS + 1], size_exponent: Real::ZERO }
+    };
+
+    /// Tabulates the antiderivatives for a size exponent (0…0.5).
+    pub fn new(size_exponent: Real) -> Self {
+        let mut table = Self::BLANK;
+        table.tabulate(size_exponent);
+        table
+    }
+
+    /// Makes it the table for another size exponent, in place: a table takes 16 KiB.
+    #[inline(never)]
+    pub fn tabulate(&mut self, size_exponent: Real) {
+        let step = Real::PI / Real::from_int(INTERVALS as i32);
+        let mut running = Basis::default();
+        for (i, (sum, d)) in self.sums.iter_mut().zip(self.density.iter_mut()).enumerate() {
+            let angle = Real::PI * Real::ratio(i as i64, INTERVALS as i64);
+            *d = Basis::at(size_exponent, angle);
+            *sum = running;
+            running = running.plus(cell(size_exponent, angle, step));
+        }
+        self.size_exponent = size_exponent;
+    }
+
+    /// The size exponent it was made for.
+    pub const fn size_exponent(&self) -> Real {
+        self.size_exponent
+    }
+
+    /// The antiderivatives from 0 to an angle, which is limited to 0…π.
+    fn antiderivative(&self, angle: Real) -> Basis {
+        const PER_RADIAN: Real = Real::from_int(INTERVALS as i32).over(Real::PI);
+        const INTERVAL: Real = Real::PI.over(Real::from_int(INTERVALS as i32));
+        let x = angle.max(Real::ZERO).min(Real::PI) * PER_RADIAN;
+        let index = (x.floor().unsigned_abs() as usize).min(INTERVALS.saturating_sub(1));
+        let u = x - Real::from_int(index as i32);
+        let next = index.saturating_add(1);
+        let (Some(&a), Some(&b), Some(&da), Some(&db)) =
+            (self.sums.get(index), self.sums.get(next), self.density.get(index), self.density.get(next))
+        else {
+            return Basis::default();
+        };
+        // Cubic Hermite interpolation: the slope of the sum is the density.
+        let v = Real::ONE - u;
+        let (u2, v2) = (u * u, v * v);
+        let (wa, wb) = (v2 * (Real::ONE + u + u), u2 * (Real::ONE + v + v));
+        let (wda, wdb) = (INTERVAL * u * v2, -(INTERVAL * v * u2));
+        a.scaled(wa).plus(b.scaled(wb)).plus(da.scaled(wda)).plus(db.scaled(wdb))
+    }
+
+    /// Mean force over a revolution with the arc 0…φ₁ engaged, `N·b/2π · ∫₀^φ₁`, N.
+    pub fn mean(&self, setup: &CutSetup, coefficients: &Coefficients, engaged: Real) -> SplitForce {
+        let share = Real::from_int(setup.teeth.into()) * setup.axial_depth / Real::TAU;
+        self.antiderivative(engaged).scaled(share).force(setup.milling, coefficients)
+    }
+
+    /// Force at the instant the wall at a height (mm above the tip) is generated, N.
+    ///
+    /// In climb milling the tooth that generates height z has its upper part still in the stock, in conventional
+    /// milling its lower part: the stretch of φ above φ = 0 is (b − z) or z high. The other flutes are whole pitches
+    /// away.
+    pub fn at_height(
+        &self,
+        (setup, helix): (&CutSetup, &Helix),
+        coefficients: &Coefficients,
+        engaged: Real,
+        height: Real,
+    ) -> SplitForce {
+        let behind = match setup.milling {
+            Milling::Climb => setup.axial_depth - height,
+            Milling::Conventional => height,
+        };
+        let (lag, pitch) = (helix.lag_per_mm, helix.pitch);
+        let top = behind * lag;
+        let bottom = top - setup.axial_depth * lag;
+        // Flutes whose stretch bottom + k·pitch … top + k·pitch meets 0…φ₁.
+        let first = (top / pitch).floor().saturating_neg();
+        let mut sum = Basis::default();
+        for k in first..first.saturating_add(MAX_FLUTES) {
+            let shift = pitch * Real::from_int(k as i32);
+            let (low, high) = ((bottom + shift).max(Real::ZERO), (top + shift).min(engaged));
+            if bottom + shift >= engaged {
+                break;
+            }
+            if high > low {
+                // The antiderivative from 0 to 0 is nothing.
+                let below = if low > Real::ZERO { self.antiderivative(low) } else { Basis::default() };
+                sum = sum.plus(self.antiderivative(high).minus(below));
+            }
+        }
+        sum.scaled(helix.mm_per_lag).force(setup.milling, coefficients)
+    }
+}
+
+/// Gauss–Legendre quadrature (three points) of the basis over one interval.
+fn cell(size_exponent: Real, from: Real, step: Real) -> Basis {
+    /// √(3/5)/2
+    const NODE: Real = Real::from_bits(1_663_433_681);
+    let middle = from + step * Real::HALF;
+    let at = |offset: Real| Basis::at(size_exponent, middle + step * offset);
+    let ends = at(-NODE).plus(at(NODE)).scaled(step * Real::ratio(5, 18));
+    ends.plus(at(Real::ZERO).scaled(step * Real::ratio(8, 18)))
+}
+
+/// P23's analogue of the removal rate, b·f·(1 − cos φ₁), mm² per tooth.
+pub fn chip_area(setup: &CutSetup, feed_per_tooth: Real, engaged: Real) -> Real {
+    let (_, cosine) = sin_cos(engaged);
+    setup.axial_depth * feed_per_tooth * (Real::ONE - cosine)
+}

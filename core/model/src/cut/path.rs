@@ -1,0 +1,239 @@
+//! The nominal path of the cutter centre as even samples, with the raw stock that lies beside it.
+//!
+//! The raw stock is the surface an earlier pass left: the parallel curve of the path, radius − allowance towards the
+//! wall, or that surface as it was measured. It is held sample by sample beside the path (P23 keeps machined wall, cutting arc and raw stock as three
+//! runs of such arrays), so the walk over it costs the same however long the contour is. A closed contour
+//! runs on into itself; before the first and behind the last block of any other, path and stock are continued straight: a
+//! contour that starts by plunging starts fully engaged.
+
+use super::corner;
+use super::setup::{CutSetup, Helix, WallLaw};
+use super::walk::{closes_smoothly, margin, walk};
+use truepath_units::geometry::{Contour, Direction, Point, Side};
+use truepath_units::{Offset, Real};
+
+/// One sample of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// Arc length from the start of the contour; negative before it.
+    pub s: Offset,
+    /// Nominal cutter centre.
+    pub point: Point,
+    /// Normal towards the wall.
+    pub normal: Direction,
+    /// Raw stock surface beside it.
+    pub stock: Point,
+    /// Programmed feed, mm/min.
+    pub feed: Real,
+    /// Index of the block.
+    pub block: u32,
+    /// Whether `stock` is part of the surface; at a sharp outside corner the parallel curve crosses itself.
+    pub on_surface: bool,
+    /// Whether a wall stands beside it; at a sharp outside corner the rest of the path cuts it away.
+    pub on_wall: bool,
+    /// Whether it lies so near to a sharp inside corner that the load changes faster than a machine can follow.
+    pub near_corner: bool,
+}
+
+impl Sample {
+    /// What a lent buffer is filled with before a path is sampled into it.
+    pub const BLANK: Self = Self {
+        s: Offset::ZERO,
+        point: Point::from_nm(0, 0),
+        normal: Direction::X,
+        stock: Point::from_nm(0, 0),
+        feed: Real::ZERO,
+        block: 0,
+        on_surface: true,
+        on_wall: true,
+        near_corner: false,
+    };
+}
+
+/// The sampled path: a straight run-in, the contour, a straight run-out, in a slice lent by the caller.
+#[derive(Clone, Copy, Debug)]
+pub struct Path<'a> {
+    samples: &'a [Sample],
+    first: usize,
+    count: usize,
+    step: Offset,
+    stock_step: Offset,
+    crowded: bool,
+    closed: bool,
+    setup: CutSetup,
+    helix: Helix,
+}
+
+/// Why a path could not be sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathError {
+    /// The lent slice holds fewer samples than the contour needs.
+    BufferTooShort {
+        /// Samples needed.
+        needed: usize,
+        /// Samples lent.
+        lent: usize,
+    },
+    /// The path turns so tightly away from the wall that the cutter would undercut it.
+    NoWall {
+        /// Line of the program.
+        line: u32,
+    },
+}
+
+/// What programs lose by rounding their coordinates.
+const ROUNDING: Offset = Offset::from_um(2);
+impl<'a> Path<'a> {
+    /// How many samples [`Path::sample`] needs at a step.
+    pub fn samples_needed(contour: &Contour, setup: &CutSetup, step: Offset) -> usize {
+        let mut count = 0usize;
+        walk(contour, setup, step, |_| count = count.saturating_add(1));
+        count
+    }
+
+    /// Samples a contour at about `step` (even on each block).
+    ///
+    /// # Errors
+    /// [`PathError`] when the buffer is too short or an arc leaves no wall.
+    pub fn sample(
+        contour: &Contour,
+        setup: &CutSetup,
+        step: Offset,
+        buffer: &'a mut [Sample],
+    ) -> Result<Self, PathError> {
+        Self::sample_over(contour, setup, step, buffer, |sample| sample.stock)
+    }
+
+    /// Samples a contour beside an uneven stock, such as the wall a first pass left: `surface` gives, for a sample that
+    /// still holds the parallel curve at the allowance, the point of the raw stock on its normal.
+    ///
+    /// # Errors
+    /// As [`Path::sample`].
+    pub fn sample_over(
+        contour: &Contour,
+        setup: &CutSetup,
+        step: Offset,
+        buffer: &'a mut [Sample],
+        mut surface: impl FnMut(&Sample) -> Point,
+    ) -> Result<Self, PathError> {
+        Self::sample_shaped(contour, setup, step, buffer, |sample| sample.stock = surface(sample))
+    }
+
+    /// Samples a contour whose stock and feed `shape` may change, sample by sample: another surface, as in
+    /// [`Path::sample_over`], or a feed that changes within a block.
+    ///
+    /// # Errors
+    /// As [`Path::sample`].
+    pub fn sample_shaped(
+        contour: &Contour,
+        setup: &CutSetup,
+        step: Offset,
+        buffer: &'a mut [Sample],
+        mut shape: impl FnMut(&mut Sample),
+    ) -> Result<Self, PathError> {
+        for block in contour.blocks() {
+            // The wall lies inside an arc that turns towards it: the arc must be as wide as the cutter (and is
+            // exactly that where a control rolls round a sharp corner).
+            if let Some(radius) = block.curve.signed_radius() {
+                let towards_wall = (radius > Offset::ZERO) == (setup.wall == Side::Left);
+                if towards_wall && radius.abs() + ROUNDING < setup.radius {
+                    return Err(PathError::NoWall { line: block.line });
+                }
+            }
+        }
+        let needed = Self::samples_needed(contour, setup, step);
+        let lent = buffer.len();
+        if needed > lent {
+            return Err(PathError::BufferTooShort { needed, lent });
+        }
+        let mut slots = buffer.iter_mut();
+        walk(contour, setup, step, |mut sample| {
+            if let Some(slot) = slots.next() {
+                shape(&mut sample);
+                *slot = sample;
+            }
+        });
+        let used = buffer.get_mut(..needed).unwrap_or_default();
+        corner::mark(used, setup);
+        let samples: &'a [Sample] = used;
+        let inside = |s: &&Sample| s.s >= Offset::ZERO && s.s <= contour.length();
+        let first = samples.iter().take_while(|s| s.s < Offset::ZERO).count();
+        let count = samples.iter().filter(inside).count();
+        let gap = |f: fn(&Sample) -> Point| {
+            samples.iter().zip(samples.iter().skip(1)).map(|(a, b)| f(a).distance(f(b))).max().unwrap_or_default()
+        };
+        let (step, stock_step) = (gap(|s| s.point), gap(|s| s.stock));
+        let crowds = |(a, b): (&Sample, &Sample)| a.point.distance(b.point).nm().saturating_mul(8) < step.nm();
+        let crowded = samples.iter().zip(samples.iter().skip(1)).any(crowds);
+        let (closed, helix) = (closes_smoothly(contour, setup), setup.helix());
+        Ok(Self { samples, first, count, step, stock_step, crowded, closed, setup: *setup, helix })
+    }
+
+    /// The same path under another wall law.
+    pub const fn with_law(mut self, law: WallLaw) -> Self {
+        self.setup.law = law;
+        self
+    }
+    /// All samples, run-in and run-out included.
+    pub const fn samples(&self) -> &'a [Sample] {
+        self.samples
+    }
+    /// The samples on which the cut is computed: the contour and, on either side, as much of the straight run as
+    /// shapes its wall.
+    pub fn working(&self) -> core::ops::Range<usize> {
+        let margin = margin(&self.setup);
+        let end =
+            self.samples.get(self.first.saturating_add(self.count).saturating_sub(1)).map_or(Offset::ZERO, |s| s.s);
+        let from = self.samples.partition_point(|s| s.s < -margin);
+        from..self.samples.partition_point(|s| s.s <= end + margin)
+    }
+    /// Index of the first sample of the contour itself.
+    pub const fn first(&self) -> usize {
+        self.first
+    }
+    /// Number of samples of the contour itself.
+    pub const fn count(&self) -> usize {
+        self.count
+    }
+    /// The largest distance between neighbouring samples of the path.
+    pub const fn step(&self) -> Offset {
+        self.step
+    }
+    /// The largest distance between neighbouring samples of the raw stock.
+    pub const fn stock_step(&self) -> Offset {
+        self.stock_step
+    }
+    /// Whether samples stand much closer together in some places than in others.
+    pub(super) const fn is_crowded(&self) -> bool {
+        self.crowded
+    }
+    /// Whether the end of the contour runs on into its start: there is then no seam.
+    pub const fn is_closed(&self) -> bool {
+        self.closed
+    }
+    /// Length of the contour itself.
+    pub fn length(&self) -> Offset {
+        self.samples.get(self.first.saturating_add(self.count).saturating_sub(1)).map_or(Offset::ZERO, |s| s.s)
+    }
+    /// The cut it was sampled for.
+    pub const fn setup(&self) -> &CutSetup {
+        &self.setup
+    }
+    /// How its cutter's edges wind.
+    pub const fn helix(&self) -> &Helix {
+        &self.helix
+    }
+    /// Nominal wall beside a sample.
+    pub fn wall(&self, sample: &Sample) -> Point {
+        sample.point + sample.normal.times(self.setup.radius)
+    }
+    /// Index of the sample nearest to an arc length of the contour.
+    pub fn index_at(&self, s: Offset) -> usize {
+        let after = self.samples.partition_point(|x| x.s < s).min(self.samples.len().saturating_sub(1));
+        let before = after.saturating_sub(1);
+        match (self.samples.get(before), self.samples.get(after)) {
+            (Some(a), Some(b)) if (s - a.s) < (b.s - s) => before,
+            _ => after,
+        }
+    }
+}

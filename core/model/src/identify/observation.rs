@@ -1,0 +1,148 @@
+//! What was probed, and what the model says the probe should have found there.
+
+use super::parameters::{COUNT, Parameters};
+use crate::cut::{Envelope, ForceTable, Path, State};
+use truepath_units::geometry::{Direction, Vector};
+use truepath_units::{Offset, Real, hypot_nm};
+
+/// One probe point on the contour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Observation {
+    /// Arc length of the contour.
+    pub s: Offset,
+    /// Height above the tip as a fraction 0…1 of the engaged depth.
+    pub height: Real,
+    /// Measured wall error: positive, material left.
+    pub error: Offset,
+    /// Standard deviation of the measurement.
+    pub noise: Offset,
+    /// Nominal normal towards the wall.
+    pub normal: Direction,
+    /// Predicted error of the last evaluation.
+    pub predicted: Offset,
+    /// Prediction at the point about which a fit differentiates.
+    pub(super) base: Offset,
+    /// Weight given by the robust loss, 0…1.
+    pub weight: Real,
+    /// Factor on the deviation of the points of a fit, found by it; 1 before.
+    pub spread: Real,
+    /// Sensitivities: change of the predicted error per prior standard deviation, in standard deviations of the point.
+    pub sensitivity: [Real; COUNT],
+}
+
+impl Observation {
+    /// A measurement that has not been looked at.
+    pub const fn new(s: Offset, height: Real, error: Offset, noise: Offset, normal: Direction) -> Self {
+        Self {
+            s,
+            height,
+            error,
+            noise,
+            normal,
+            predicted: Offset::ZERO,
+            base: Offset::ZERO,
+            weight: Real::ONE,
+            spread: Real::ONE,
+            sensitivity: [Real::ZERO; COUNT],
+        }
+    }
+}
+
+/// The share of an error that the model may miss, added to the noise of a point.
+const MODEL_SHARE: Real = Real::ratio(1, 100);
+
+impl Observation {
+    /// Standard deviation of measured − predicted at the right parameters: probe noise and what the model may miss.
+    pub fn deviation(&self) -> Offset {
+        hypot_nm(self.noise, self.error.scaled(MODEL_SHARE)).scaled(self.spread).max(Offset::from_nm(1))
+    }
+    /// Measured − predicted, in standard deviations.
+    pub fn residual(&self) -> Real {
+        (self.error - self.predicted).over(self.deviation())
+    }
+}
+
+/// Buffers for the prediction of probe points, lent by the caller. Both as long as
+/// [`PredictionWorkspace::needed`] says.
+#[derive(Debug)]
+pub struct PredictionWorkspace<'a> {
+    /// States of the elastic loop around a probed place.
+    pub states: &'a mut [State],
+    /// Cutter positions at a height.
+    pub displacements: &'a mut [Vector],
+}
+
+impl PredictionWorkspace<'_> {
+    /// Length of the buffers for a path: the reach of the envelope to both sides of a place.
+    pub fn needed(path: &Path) -> usize {
+        let reach = reach(path).nm();
+        // Samples may be closer together than the step on short blocks.
+        path.samples()
+            .iter()
+            .enumerate()
+            .map(|(i, s)| {
+                path.index_at(s.s + Offset::from_nm(reach)).saturating_sub(i).saturating_mul(2).saturating_add(4)
+            })
+            .max()
+            .unwrap_or(0)
+    }
+}
+
+/// How far to either side of a place the cutter is followed to predict the wall there.
+fn reach(path: &Path) -> Offset {
+    path.setup().radius.scaled(Real::ratio(3, 10)).max(Offset::from_um(1_000))
+}
+
+/// Predicts the wall error at every observation and writes it into `predicted`. Observations of one place should
+/// stand together: the elastic loop is run once for them.
+///
+/// `commanded` is the displacement the program commanded at each sample of the path (zero for an uncorrected part).
+pub fn predict(
+    path: &Path,
+    table: &ForceTable,
+    parameters: &Parameters,
+    commanded: impl Fn(usize) -> Vector,
+    observations: &mut [Observation],
+    workspace: &mut PredictionWorkspace,
+) {
+    let machine = parameters.machine(path, table);
+    let working = path.working();
+    let mut place: Option<(Offset, usize, usize)> = None;
+    for observation in observations.iter_mut() {
+        let (from, count) = match place {
+            Some((s, from, count)) if s == observation.s => (from, count),
+            _ => {
+                let from = path.index_at(observation.s - reach(path)).max(working.start);
+                let to = path.index_at(observation.s + reach(path)).min(working.end).max(from);
+                let count = to.saturating_sub(from).saturating_add(1).min(workspace.states.len());
+                if let Some(states) = workspace.states.get_mut(..count) {
+                    machine.run(from, states, &commanded);
+                }
+                place = Some((observation.s, from, count));
+                (from, count)
+            }
+        };
+        let states = workspace.states.get(..count).unwrap_or_default();
+        let displacements = workspace.displacements.get_mut(..count).unwrap_or_default();
+        Envelope::displace(&machine, states, observation.height, displacements);
+        let wall = wall_at(path, from, displacements, observation.s);
+        // A datum that moved towards the wall makes the wall look cut deeper by its share along the normal.
+        observation.predicted = wall + parameters.undersize - parameters.datum.along(observation.normal);
+    }
+}
+
+/// The wall error at an arc length, between the two samples that enclose it.
+fn wall_at(path: &Path, from: usize, displacements: &[Vector], s: Offset) -> Offset {
+    let envelope = Envelope::new(path, from, displacements);
+    let after = path.samples().partition_point(|x| x.s <= s);
+    let before = after.saturating_sub(1);
+    let at = |i: usize| envelope.error(i, i).map(|e| e.error);
+    let (Some(a), Some(b)) = (path.samples().get(before), path.samples().get(after)) else {
+        return at(before).unwrap_or_default();
+    };
+    let u = (s - a.s).over(b.s - a.s);
+    match (at(before), at(after)) {
+        (Some(ea), Some(eb)) => ea + (eb - ea).scaled(u),
+        (ea, eb) => ea.or(eb).unwrap_or_default(),
+    }
+}

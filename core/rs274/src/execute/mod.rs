@@ -1,0 +1,225 @@
+//! The machine while it executes a program: modes and positions, and the blocks that change them.
+//!
+//! | file | what |
+//! |---|---|
+//! | `modes.rs` | the codes of a block in their order of execution |
+//! | `rates.rs`, `switches.rs`, `tool.rs`, `saved.rs`, `call.rs` | F and S, M codes, tools, M70 … M73, calls |
+//! | `origin.rs`, `stored.rs` | work offsets, G92, G52, G10; the parameters that keep them |
+//! | `axes.rs` | axis words → places |
+//! | `motion.rs` | which code moves |
+//! | `circle.rs`, `arc.rs` | arcs in the three planes, and where their centres lie |
+//! | `corner.rs`, `compensate.rs` | `,R` and `,C`; G40 … G42 |
+//! | `home.rs`, `probe.rs` | G28, G30, G53; probing and tapping |
+//! | `cycle.rs`, `cycle_words.rs` | canned cycles |
+//! | `curve.rs`, `spline.rs` | splines, and their flattening |
+//! | `modal.rs`, `machine.rs` | the modes; what a machine knows |
+//! | `readout.rs` | parameters that follow the machine |
+
+mod arc;
+mod axes;
+mod call;
+mod circle;
+mod compensate;
+mod corner;
+mod curve;
+mod cycle;
+mod cycle_words;
+mod home;
+mod machine;
+mod modal;
+mod modes;
+mod motion;
+mod origin;
+mod probe;
+mod rates;
+mod readout;
+mod saved;
+mod spline;
+mod stored;
+mod switches;
+mod tool;
+
+use super::block::BlockWords;
+use super::compensation::CompensationStage;
+use super::corner::CornerStage;
+use super::flow::{Next, Sentence};
+use super::parameter::Surroundings;
+use super::{
+    Axes, Canon, Event, GcodeError, GcodeErrorKind, Line, Memory, Options, PointlessLength, Source, Span, Token,
+    WarningKind, Warnings, Words,
+};
+
+use curve::SplineMemory;
+use cycle_words::CycleMemory;
+use saved::{LEVELS, SavedModes};
+use tool::CHANGED_TOOLS;
+
+use truepath_units::Position;
+
+pub use machine::{Machine, Tool};
+pub use modal::{Modal, Motion};
+
+/// The machine.
+pub(super) struct Execution<'p, 's, 'm, S> {
+    pub(super) options: Options<'p>,
+    pub(super) modal: Modal,
+    pub(super) at: Axes,
+    pub(super) units_given: bool,
+    /// Whether it matters that a length has no point.
+    reads_points: bool,
+    /// Whether M99 has ended the main program.
+    pub(super) repeats: bool,
+    pub(super) program_number: Option<u32>,
+    pub(super) end: Option<u32>,
+    pub(super) warnings: Warnings,
+    corner: &'s mut CornerStage<'p>,
+    compensation: &'s mut CompensationStage<'p>,
+    memory: &'s mut Memory<'m>,
+    text: &'p [u8],
+    line: Line<'p>,
+    source: Source,
+    /// Away only while an event is given to it.
+    sink: Option<&'s mut S>,
+    /// Whether the present block gives F.
+    feed_given: bool,
+    cycle: Option<CycleMemory>,
+    /// The line that is being read.
+    reading: u32,
+    /// Whether mist and flood are on.
+    coolant: (bool, bool),
+    /// Where the third axis stood before the first of the cycles that follow each other.
+    initial_level: Option<Position>,
+    splines: SplineMemory,
+    changed_tools: heapless::Vec<Tool, CHANGED_TOOLS>,
+    saved: [Option<SavedModes>; LEVELS],
+    /// Modes that come back before the next block.
+    returning: Option<SavedModes>,
+}
+
+impl<S> Surroundings for Execution<'_, '_, '_, S> {
+    fn change<R>(&mut self, how: impl FnOnce(&mut Memory<'_>) -> R) -> R {
+        how(self.memory)
+    }
+    fn reading(&mut self, line: u32) {
+        self.reading = line;
+    }
+    fn level_ended(&mut self, level: u8) {
+        self.modes_of_level(level);
+    }
+}
+
+impl<'p, 's, 'm, S> Execution<'p, 's, 'm, S>
+where
+    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
+{
+    /// At the start of a program.
+    pub(super) fn new(
+        options: Options<'p>,
+        memory: &'s mut Memory<'m>,
+        (corner, compensation): (&'s mut CornerStage<'p>, &'s mut CompensationStage<'p>),
+        warnings: Warnings,
+        sink: &'s mut S,
+    ) -> Self {
+        let mut execution = Self {
+            options,
+            modal: Modal::initial(options.units),
+            at: options.start,
+            units_given: false,
+            reads_points: options.dialect.has_macro_b() || options.decimal == PointlessLength::Least,
+            repeats: false,
+            program_number: None,
+            end: None,
+            warnings,
+            corner,
+            compensation,
+            memory,
+            text: &[],
+            line: Line { number: 1, start: 0, text: &[] },
+            source: Source::NONE,
+            sink: Some(sink),
+            feed_given: false,
+            cycle: None,
+            reading: 1,
+            coolant: (false, false),
+            initial_level: None,
+            splines: SplineMemory::default(),
+            changed_tools: heapless::Vec::new(),
+            saved: [None; LEVELS],
+            returning: None,
+        };
+        execution.load_machine();
+        execution
+    }
+
+    /// Executes a block; tells where the program goes on.
+    pub(super) fn sentence(&mut self, sentence: &Sentence<'p>) -> Result<Next, GcodeError> {
+        self.text = sentence.text;
+        self.line = sentence.line;
+        self.source = sentence.source;
+        self.restore_returning()?;
+        let mut block = BlockWords::gather(sentence)?;
+        if sentence.has_comments {
+            self.comments()?;
+        }
+        if let Some(span) = sentence.block_delete {
+            if self.options.skip_block_delete {
+                self.warn(WarningKind::BlockDeleteSkipped, span);
+                return Ok(Next::Continue);
+            }
+            self.warn(WarningKind::BlockDeleteExecuted, span);
+        }
+        self.execute(&mut block)
+    }
+
+    fn comments(&mut self) -> Result<(), GcodeError> {
+        for token in Words::new(self.line) {
+            if let Token::Comment { span, body } = token? {
+                self.emit(Canon::Comment(body), span)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives one step to the sink; what it answers is an error at `span`.
+    pub(super) fn emit(&mut self, canon: Canon, span: Span) -> Result<(), GcodeError> {
+        if self.corner.is_waiting() {
+            return self.behind_corner(canon, span);
+        }
+        self.emit_on(canon, span)
+    }
+
+    /// Gives one step on, behind the corners.
+    fn emit_on(&mut self, canon: Canon, span: Span) -> Result<(), GcodeError> {
+        if !self.compensation.is_idle() {
+            return self.compensate(canon, span);
+        }
+        let Some(sink) = self.sink.take() else {
+            return Ok(());
+        };
+        let event = Event { canon, source: self.source, modal: &self.modal, text: self.text, parameters: self };
+        let answer = sink(&event);
+        self.sink = Some(sink);
+        answer.map_err(|kind| self.error(kind, span))
+    }
+
+    pub(super) fn error(&self, kind: GcodeErrorKind, span: Span) -> GcodeError {
+        GcodeError::new(kind, &self.line, span).in_file(self.source.file)
+    }
+
+    pub(super) fn warn(&mut self, kind: WarningKind, span: Span) {
+        let line = self.line;
+        self.warn_at(kind, &line, span);
+    }
+
+    /// Notes something about another line than the present one.
+    pub(super) fn warn_at(&mut self, kind: WarningKind, line: &Line<'_>, span: Span) {
+        self.warnings.note_in(self.source.file, kind, line, span);
+    }
+
+    /// The bytes of the block without the blanks around them.
+    pub(super) fn block_span(&self) -> Span {
+        let text = self.line.text;
+        let lead = text.len().saturating_sub(text.trim_ascii_start().len());
+        Span { start: self.line.start.saturating_add(lead), len: text.trim_ascii().len() }
+    }
+}

@@ -1,0 +1,135 @@
+//! M70 … M73: saving and restoring the modes, per level of call.
+//!
+//! Limits: coolant, overrides and cutter radius compensation are not restored, and a tool offset only when it was off.
+
+use super::super::mcode::MCodes;
+use super::super::{
+    Canon, Event, FeedMode, GcodeError, GcodeErrorKind, Modal, PathControl, Plane, RetractLevel, SettingError, Span,
+    Spindle, Units,
+};
+use super::Execution;
+use truepath_units::Real;
+
+/// Levels of calls, the main program included.
+pub(super) const LEVELS: usize = 11;
+
+/// The modes that M72 brings back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SavedModes {
+    units: Units,
+    plane: Plane,
+    absolute: bool,
+    absolute_centres: bool,
+    feed_mode: FeedMode,
+    retract: RetractLevel,
+    path: Option<PathControl>,
+    feed: Option<Real>,
+    speed: Option<Real>,
+    spindle: Spindle,
+    work_offset: u16,
+    length_offset: bool,
+    /// M73: restored when the level returns.
+    on_return: bool,
+}
+
+impl SavedModes {
+    const fn of(modal: &Modal, on_return: bool) -> Self {
+        Self {
+            units: modal.units,
+            plane: modal.plane,
+            absolute: modal.absolute,
+            absolute_centres: modal.absolute_centres,
+            feed_mode: modal.feed_mode,
+            retract: modal.retract,
+            path: modal.path,
+            feed: modal.feed,
+            speed: modal.speed,
+            spindle: modal.spindle,
+            work_offset: modal.work_offset,
+            length_offset: modal.length_offset,
+            on_return,
+        }
+    }
+}
+
+impl<S> Execution<'_, '_, '_, S> {
+    /// A call level has ended: what M73 saved in it waits to come back.
+    pub(super) fn modes_of_level(&mut self, level: u8) {
+        let saved = self.saved.get_mut(usize::from(level)).and_then(Option::take);
+        self.returning = saved.filter(|saved| saved.on_return).or(self.returning);
+    }
+}
+
+impl<S> Execution<'_, '_, '_, S>
+where
+    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
+{
+    /// M70 saves, M71 forgets, M72 restores, M73 saves and restores on return.
+    pub(super) fn saved_modes(&mut self, m: &MCodes) -> Result<(), GcodeError> {
+        let Some(code) = m.saved else { return Ok(()) };
+        let level = usize::from(self.source.depth);
+        let saved = match code.number {
+            70 | 73 => Some(SavedModes::of(&self.modal, code.number == 73)),
+            71 => None,
+            _ => {
+                let Some(saved) = self.saved.get(level).copied().flatten() else {
+                    return Err(self.error(SettingError::NothingSaved.into(), code.span));
+                };
+                return self.restore(&saved, code.span);
+            }
+        };
+        if let Some(slot) = self.saved.get_mut(level) {
+            *slot = saved;
+        }
+        Ok(())
+    }
+
+    /// Brings back what a call that has ended had saved by M73, before the block behind the call.
+    pub(super) fn restore_returning(&mut self) -> Result<(), GcodeError> {
+        match self.returning.take() {
+            Some(saved) => self.restore(&saved, self.block_span()),
+            None => Ok(()),
+        }
+    }
+
+    fn restore(&mut self, saved: &SavedModes, span: Span) -> Result<(), GcodeError> {
+        let before = SavedModes::of(&self.modal, saved.on_return);
+        self.modal.units = saved.units;
+        self.modal.plane = saved.plane;
+        self.modal.absolute = saved.absolute;
+        self.modal.absolute_centres = saved.absolute_centres;
+        self.modal.feed_mode = saved.feed_mode;
+        self.modal.retract = saved.retract;
+        self.modal.path = saved.path.or(self.modal.path);
+        self.modal.feed = saved.feed;
+        self.modal.speed = saved.speed;
+        if before.units != saved.units {
+            self.emit(Canon::Units(saved.units), span)?;
+        }
+        if before.feed_mode != saved.feed_mode {
+            self.emit(Canon::FeedMode(saved.feed_mode), span)?;
+        }
+        if let Some(feed) = saved.feed.filter(|_| before.feed != saved.feed) {
+            self.emit(Canon::FeedRate(feed), span)?;
+        }
+        if let Some(speed) = saved.speed.filter(|_| before.speed != saved.speed) {
+            self.emit(Canon::SpindleSpeed(speed), span)?;
+        }
+        if before.spindle != saved.spindle {
+            self.turn(saved.spindle, span)?;
+        }
+        if before.plane != saved.plane {
+            self.emit(Canon::Plane(saved.plane), span)?;
+        }
+        if before.length_offset && !saved.length_offset {
+            self.length_off(span)?;
+        }
+        if before.work_offset != saved.work_offset {
+            self.select_work_offset(saved.work_offset, span)?;
+        }
+        match saved.path {
+            Some(path) if before.path != saved.path => self.emit(Canon::PathControl(path), span),
+            _ => Ok(()),
+        }
+    }
+}

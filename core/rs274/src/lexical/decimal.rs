@@ -1,0 +1,189 @@
+//! Numbers as a program writes them: exact decimals, never floating point.
+//!
+//! `X0.0001` in inches is 2540 nm to the last digit because the written digits are kept and converted once. Numbers
+//! have an optional sign, digits and at most one point, no exponent; blanks may stand anywhere between the digits
+//! (RS274/NGC §3.3.2.1). Digits beyond the 18th significant one are dropped: less than 10⁻⁸ nm on any length a
+//! machine can travel.
+
+use truepath_units::{Real, div_rounded};
+
+/// A decimal number, `mantissa / 10^decimals`, as it stands in the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Decimal {
+    mantissa: i64,
+    decimals: u8,
+}
+
+/// Significant digits kept; the mantissa then fits 64 bits.
+const DIGITS: u8 = 18;
+
+/// Powers of ten, all exact.
+const POWERS: [f64; 19] =
+    [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18];
+
+impl Decimal {
+    /// From digits and the number of them behind the point, at most 18.
+    ///
+    /// `None` when `decimals` is larger or the mantissa has more than 18 digits.
+    pub const fn new(mantissa: i64, decimals: u8) -> Option<Self> {
+        const LIMIT: u64 = 1_000_000_000_000_000_000;
+        if decimals > DIGITS || mantissa.unsigned_abs() >= LIMIT { None } else { Some(Self { mantissa, decimals }) }
+    }
+    /// The written digits as a whole number, with the sign.
+    pub const fn mantissa(self) -> i64 {
+        self.mantissa
+    }
+    /// How many of the digits stand behind the point, 0…18.
+    pub const fn decimals(self) -> u8 {
+        self.decimals
+    }
+    /// Whether it is below zero; −0 is not.
+    pub const fn is_negative(self) -> bool {
+        self.mantissa < 0
+    }
+    /// This number times a whole one, rounded once to a whole number.
+    pub const fn times(self, factor: i64) -> i128 {
+        div_rounded((self.mantissa as i128).saturating_mul(factor as i128), self.power())
+    }
+    /// This number times a whole one, when that is a whole number.
+    pub const fn exactly_times(self, factor: i64) -> Option<i64> {
+        let product = (self.mantissa as i128).saturating_mul(factor as i128);
+        match (product.checked_rem(self.power()), product.checked_div(self.power())) {
+            (Some(0), Some(whole)) if whole.unsigned_abs() <= i64::MAX as u128 => Some(whole as i64),
+            _ => None,
+        }
+    }
+    /// This number as a [`Real`], rounded once, saturating at ±2.1 × 10⁹.
+    pub const fn real(self) -> Real {
+        Real::narrow(div_rounded((self.mantissa as i128) << Real::FRACTION_BITS, self.power()))
+    }
+    /// This number times `numerator / denominator` as a [`Real`], rounded once, saturating at ±2.1 × 10⁹.
+    pub const fn real_ratio(self, numerator: i16, denominator: i16) -> Real {
+        let top = ((self.mantissa as i128) << Real::FRACTION_BITS).saturating_mul(numerator as i128);
+        Real::narrow(div_rounded(top, self.power().saturating_mul(denominator as i128)))
+    }
+    /// The nearest 64-bit floating point number: both the digits and the power of ten are exact up to 2⁵³ and 10²².
+    #[expect(clippy::float_arithmetic, reason = "what expressions compute with")]
+    pub fn value(self) -> f64 {
+        self.mantissa as f64 / POWERS.get(usize::from(self.decimals)).copied().unwrap_or(1e18)
+    }
+    const fn power(self) -> i128 {
+        10i128.saturating_pow(self.decimals as u32)
+    }
+}
+
+/// Why the text after a letter is no number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in super::super) enum NumberError {
+    /// No digit.
+    Missing,
+    /// More than 18 digits before the point.
+    TooLarge,
+}
+
+/// A blank between the parts of a block: space, tab, and what punched-tape and DOS files carry (NUL, VT, FF, ^Z).
+pub(in super::super) const fn is_blank(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t' | 0 | 0x0B | 0x0C | 0x1A)
+}
+
+/// The bytes behind the blanks in front.
+pub(in super::super) fn trimmed(text: &[u8]) -> &[u8] {
+    let blanks = text.iter().take_while(|&&b| is_blank(b)).count();
+    text.get(blanks..).unwrap_or(&[])
+}
+
+/// A number, with the blanks before and inside it; what follows it is the rest.
+pub(in super::super) fn number(input: &[u8]) -> (&[u8], Result<Decimal, NumberError>) {
+    let (mut mantissa, mut significant, mut decimals) = (0i64, 0u8, 0u8);
+    let (mut negative, mut signed, mut point, mut any, mut too_large) = (false, false, false, false, false);
+    let mut end = 0usize;
+    for (index, &byte) in input.iter().enumerate() {
+        let digit = byte.wrapping_sub(b'0');
+        if digit < 10 {
+            any = true;
+            if significant < DIGITS && decimals < DIGITS {
+                mantissa = mantissa.wrapping_mul(10).wrapping_add(i64::from(digit));
+                significant = significant.wrapping_add(u8::from(mantissa != 0));
+                decimals = decimals.wrapping_add(u8::from(point));
+            } else {
+                too_large |= !point;
+            }
+        } else if byte == b'.' && !point {
+            point = true;
+        } else if is_blank(byte) {
+            continue;
+        } else if matches!(byte, b'+' | b'-') && !signed && !point && !any {
+            signed = true;
+            negative = byte == b'-';
+        } else {
+            break;
+        }
+        end = index.saturating_add(1);
+    }
+    let value = match (any, too_large) {
+        (false, _) => Err(NumberError::Missing),
+        (true, true) => Err(NumberError::TooLarge),
+        (true, false) => Ok(Decimal { mantissa: if negative { mantissa.wrapping_neg() } else { mantissa }, decimals }),
+    };
+    (input.get(end..).unwrap_or(&[]), value)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::arithmetic_side_effects, clippy::float_arithmetic)]
+    use super::*;
+    use proptest::prelude::*;
+    use std::format;
+
+    fn read(text: &str) -> (Result<Decimal, NumberError>, usize) {
+        let (rest, value) = number(text.as_bytes());
+        (value, rest.len())
+    }
+
+    #[test]
+    fn digits_are_kept_as_written_and_blanks_do_not_matter() {
+        assert_eq!(read("-12.50X"), (Ok(Decimal { mantissa: -1250, decimals: 2 }), 1));
+        assert_eq!(read(" + 1 2 . 5 X"), (Ok(Decimal { mantissa: 125, decimals: 1 }), 2));
+        assert_eq!(read(".5"), (Ok(Decimal { mantissa: 5, decimals: 1 }), 0));
+        assert_eq!(read("7."), (Ok(Decimal { mantissa: 7, decimals: 0 }), 0));
+    }
+
+    #[test]
+    fn a_second_point_is_left_for_the_caller() {
+        assert_eq!(read("1.2.3"), (Ok(Decimal { mantissa: 12, decimals: 1 }), 2));
+    }
+
+    #[test]
+    fn no_digit_or_too_many_digits_is_no_number() {
+        assert_eq!(read("-.").0, Err(NumberError::Missing));
+        assert_eq!(read("").0, Err(NumberError::Missing));
+        assert_eq!(read("1234567890123456789").0, Err(NumberError::TooLarge));
+        assert_eq!(read("0000000000000000000000012").0, Ok(Decimal { mantissa: 12, decimals: 0 }));
+    }
+
+    #[test]
+    fn a_ten_thousandth_of_an_inch_is_2540_nanometres() {
+        assert_eq!(read("0.0001").0.unwrap().times(25_400_000), 2540);
+        assert_eq!(read("0.00000005").0.unwrap().times(25_400_000), 1);
+        assert_eq!(read("-0.0000005").0.unwrap().times(1_000_000), -1);
+    }
+
+    #[test]
+    fn a_whole_number_may_be_written_with_zero_decimals_only() {
+        assert_eq!(read("59.10").0.unwrap().exactly_times(10), Some(591));
+        assert_eq!(read("59.15").0.unwrap().exactly_times(10), None);
+    }
+
+    proptest! {
+        #[test]
+        fn every_written_number_reads_back_as_its_digits(whole in 0u32.., part in 0u32..1_000_000, minus: bool) {
+            let text = format!("{}{whole}.{part:06}", if minus { "-" } else { "" });
+            let value = read(&text).0.unwrap();
+            let expected = i128::from(whole) * 1_000_000 + i128::from(part);
+            prop_assert_eq!(value.times(1_000_000), if minus { -expected } else { expected });
+            let real = value.real().bits() as f64 / 4_294_967_296.0;
+            let float: f64 = text.parse().unwrap();
+            prop_assert!(float.abs() > 2.1e9 || (real - float).abs() < 1e-6);
+        }
+    }
+}

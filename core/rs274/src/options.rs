@@ -1,0 +1,79 @@
+//! What a program does not say: the machine it is for, its dialect, where the axes stand at the start.
+
+use super::{Axes, Dialect, Machine, Tool, Units};
+use truepath_units::Offset;
+
+/// By what G41 and G42 move the path aside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CompensationBy {
+    /// By nothing: the program is the path of the cutter's centre, as it is where D holds wear only, and G41 or G42
+    /// tell the side of the wall. G41.1 and G42.1 still count, as they name their diameter.
+    #[default]
+    Nothing,
+    /// By this radius, whatever D says.
+    Radius(Offset),
+    /// By half of the diameter that the tool table has for D, or for the tool in the spindle.
+    Table,
+}
+
+/// What a length without a point is, `X10`.
+///
+/// It counts for axes, centres, radii, corners and every other length or angle of a block. F, S, P and L are always as
+/// written, and so are parameters and expressions; with [`Self::Least`] an argument of G65 that is a length needs a
+/// point, because controls differ in what they pass on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum PointlessLength {
+    /// In millimetres, inches or degrees, as a calculator reads it.
+    #[default]
+    Calculator,
+    /// In least increments of the control: 0.001 mm, 0.0001 in or 0.001°.
+    Least,
+}
+
+/// What the program does not say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options<'t> {
+    /// The unit until G20 or G21.
+    pub units: Units,
+    /// Where the axes stand at the start; with a machine in its coordinates.
+    pub start: Axes,
+    /// Whether blocks with `/` are skipped.
+    pub skip_block_delete: bool,
+    /// The control the program is written for.
+    pub dialect: Dialect,
+    /// What a length without a point is.
+    pub decimal: PointlessLength,
+    /// How many blocks may be executed beyond as many as the program has lines; loops that run longer are an error.
+    pub block_limit: u32,
+    /// By what G41 and G42 move the path aside.
+    pub compensation: CompensationBy,
+    /// The tool table; empty when it is not known.
+    pub tools: &'t [Tool],
+    /// The machine; `None` when the program is read for any machine, and positions that depend on it are unknown.
+    pub machine: Option<Machine>,
+    /// How far the lines that stand for a spline may lie from it.
+    pub spline_tolerance: Offset,
+    /// Whether splines come as a whole ([`Canon::Spline`](super::Canon::Spline)) instead of as lines.
+    pub whole_splines: bool,
+}
+
+impl Default for Options<'_> {
+    /// Millimetres, positions unknown, `/` blocks executed, LinuxCNC, lengths without a point as a calculator
+    /// reads them, a million blocks more than lines, no
+    /// machine, splines to 1 µm.
+    fn default() -> Self {
+        Self {
+            units: Units::Millimetres,
+            start: Axes::UNKNOWN,
+            skip_block_delete: false,
+            dialect: Dialect::Linuxcnc,
+            decimal: PointlessLength::Calculator,
+            block_limit: 1_000_000,
+            compensation: CompensationBy::Nothing,
+            tools: &[],
+            machine: None,
+            spline_tolerance: Offset::from_um(1),
+            whole_splines: false,
+        }
+    }
+}

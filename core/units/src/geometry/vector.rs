@@ -1,0 +1,177 @@
+//! Points, displacements and directions of the XY plane.
+
+use core::ops::{Add, Neg, Sub};
+
+use crate::{Offset, Position, Real, div_rounded, hypot_nm, isqrt_rounded, sin_cos};
+
+/// A place in the plane, nanometres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Point {
+    /// First coordinate.
+    pub x: Position,
+    /// Second coordinate.
+    pub y: Position,
+}
+
+/// A displacement in the plane, nanometres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Vector {
+    /// First component.
+    pub x: Offset,
+    /// Second component.
+    pub y: Offset,
+}
+
+/// A unit vector, components to 2⁻³².
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Direction {
+    /// First component, −1…1.
+    pub x: Real,
+    /// Second component, −1…1.
+    pub y: Real,
+}
+
+impl Point {
+    /// From nanometres.
+    pub const fn from_nm(x: i64, y: i64) -> Self {
+        Self { x: Position::from_nm(x), y: Position::from_nm(y) }
+    }
+    /// The displacement from `from` to here.
+    pub fn from(self, from: Self) -> Vector {
+        Vector { x: self.x - from.x, y: self.y - from.y }
+    }
+    /// The distance to another point, rounded to the nanometre.
+    pub fn distance(self, other: Self) -> Offset {
+        self.from(other).length()
+    }
+}
+
+impl Add<Vector> for Point {
+    type Output = Self;
+    fn add(self, by: Vector) -> Self {
+        Self { x: self.x + by.x, y: self.y + by.y }
+    }
+}
+impl Sub<Vector> for Point {
+    type Output = Self;
+    fn sub(self, by: Vector) -> Self {
+        Self { x: self.x - by.x, y: self.y - by.y }
+    }
+}
+impl Add for Vector {
+    type Output = Self;
+    fn add(self, by: Self) -> Self {
+        Self { x: self.x + by.x, y: self.y + by.y }
+    }
+}
+impl Sub for Vector {
+    type Output = Self;
+    fn sub(self, by: Self) -> Self {
+        Self { x: self.x - by.x, y: self.y - by.y }
+    }
+}
+impl Neg for Vector {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { x: -self.x, y: -self.y }
+    }
+}
+
+impl Vector {
+    /// No displacement.
+    pub const ZERO: Self = Self { x: Offset::ZERO, y: Offset::ZERO };
+
+    /// From nanometres.
+    pub const fn from_nm(x: i64, y: i64) -> Self {
+        Self { x: Offset::from_nm(x), y: Offset::from_nm(y) }
+    }
+    /// Its length, rounded to the nanometre.
+    pub fn length(self) -> Offset {
+        hypot_nm(self.x, self.y)
+    }
+    /// The square of its length, nm², exact.
+    pub const fn length_squared(self) -> u128 {
+        let (x, y) = (self.x.nm().unsigned_abs() as u128, self.y.nm().unsigned_abs() as u128);
+        x.saturating_mul(x).saturating_add(y.saturating_mul(y))
+    }
+    /// The scalar product with another displacement, nm², exact.
+    pub const fn dot(self, other: Self) -> i128 {
+        let p = (self.x.nm() as i128).saturating_mul(other.x.nm() as i128);
+        p.saturating_add((self.y.nm() as i128).saturating_mul(other.y.nm() as i128))
+    }
+    /// The vector product (z component) with another displacement, nm², exact.
+    pub const fn cross(self, other: Self) -> i128 {
+        let p = (self.x.nm() as i128).saturating_mul(other.y.nm() as i128);
+        p.saturating_sub((self.y.nm() as i128).saturating_mul(other.x.nm() as i128))
+    }
+    /// Its component along a direction, rounded to the nanometre.
+    pub fn along(self, direction: Direction) -> Offset {
+        self.x.blend(direction.x, self.y, direction.y)
+    }
+    /// Times a number.
+    pub fn scaled(self, factor: Real) -> Self {
+        Self { x: self.x.scaled(factor), y: self.y.scaled(factor) }
+    }
+    /// Its direction; `None` for the zero vector. Components are good to one step of 2⁻³².
+    pub fn direction(self) -> Option<Direction> {
+        let (x, y) = (i128::from(self.x.nm()), i128::from(self.y.nm()));
+        let largest = x.unsigned_abs().max(y.unsigned_abs());
+        // Scale up so that the length carries 60 significant bits.
+        let shift = 60u32.saturating_sub(128u32.saturating_sub(largest.leading_zeros()));
+        let (x, y) = (x << shift, y << shift);
+        let (ax, ay) = (x.unsigned_abs(), y.unsigned_abs());
+        let length = isqrt_rounded(ax.saturating_mul(ax).saturating_add(ay.saturating_mul(ay)));
+        if length == 0 {
+            return None;
+        }
+        let part = |v: i128| Real::narrow(div_rounded(v << Real::FRACTION_BITS, length as i128));
+        Some(Direction { x: part(x), y: part(y) })
+    }
+    /// Turned by an angle with the given sine and cosine (counter-clockwise), each component rounded once.
+    pub fn turned(self, sine: Real, cosine: Real) -> Self {
+        Self { x: self.x.blend(cosine, self.y, -sine), y: self.x.blend(sine, self.y, cosine) }
+    }
+}
+
+impl Direction {
+    /// Along x.
+    pub const X: Self = Self { x: Real::ONE, y: Real::ZERO };
+
+    /// A quarter turn counter-clockwise (to the left).
+    pub fn left(self) -> Self {
+        Self { x: -self.y, y: self.x }
+    }
+    /// A quarter turn clockwise (to the right).
+    pub fn right(self) -> Self {
+        Self { x: self.y, y: -self.x }
+    }
+    /// The opposite direction.
+    pub fn reversed(self) -> Self {
+        Self { x: -self.x, y: -self.y }
+    }
+    /// The displacement of the given length along this direction.
+    pub fn times(self, length: Offset) -> Vector {
+        Vector { x: length.scaled(self.x), y: length.scaled(self.y) }
+    }
+    /// Scalar product, the cosine of the angle between.
+    pub fn dot(self, other: Self) -> Real {
+        Real::dot(self.x, other.x, self.y, other.y)
+    }
+    /// Vector product, the sine of the turn from here to `other`.
+    pub fn cross(self, other: Self) -> Real {
+        Real::dot(self.x, other.y, -self.y, other.x)
+    }
+    /// Turned counter-clockwise by an angle in radians.
+    pub fn turned(self, angle: Real) -> Self {
+        let (sine, cosine) = sin_cos(angle);
+        self.turned_by(sine, cosine)
+    }
+    /// Turned counter-clockwise by an angle with the given sine and cosine.
+    pub fn turned_by(self, sine: Real, cosine: Real) -> Self {
+        Self { x: Real::dot(self.x, cosine, -self.y, sine), y: Real::dot(self.x, sine, self.y, cosine) }
+    }
+    /// The angle from here to `other`, −π…π, counter-clockwise positive.
+    pub fn angle_to(self, other: Self) -> Real {
+        crate::atan2(self.cross(other).bits(), self.dot(other).bits())
+    }
+}

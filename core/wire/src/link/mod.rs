@@ -1,0 +1,55 @@
+//! Both links of the coprocessor: the only place that knows their bytes. `docs/link.md` is the specification.
+//!
+//! The **setpoint link** carries one [`SetpointFrame`] each tick and one answer; [`Endpoint`] decides what becomes of a
+//! frame. The **configuration link** carries [`Request`] and [`Response`] in postcard. Both are COBS-encoded on byte
+//! streams and end with a CRC-32. Nothing here does I/O or reads a clock: bytes and times are arguments.
+//!
+//! Everything that is called once a tick ([`Endpoint::frame`], [`Endpoint::answer`], [`Endpoint::watch`], the
+//! deframer, the recorder and the trace) has bounded loops, no division, no 128-bit product, no formatting and no panic.
+//!
+//! ```
+//! use truepath_wire::link::{LinkError, MAX_SETPOINT_BYTES, SetpointFrame, setpoint_bytes};
+//! use truepath_wire::rewrite::Setpoint;
+//!
+//! let setpoint = Setpoint { sequence: 7, axes: [1_000, 2_000, 3_000, 0, 0, 0], ..Setpoint::default() };
+//! let mut raw = [0; MAX_SETPOINT_BYTES];
+//! let bytes = SetpointFrame { axes: 3, setpoint }.encode(&mut raw).unwrap();
+//! assert_eq!(bytes, setpoint_bytes(3));
+//! assert_eq!(SetpointFrame::decode(&raw[..bytes], 3), Ok(setpoint));
+//!
+//! raw[5] ^= 1;
+//! assert!(matches!(SetpointFrame::decode(&raw[..bytes], 3), Err(LinkError::Checksum { .. })));
+//! ```
+
+mod answer;
+mod counters;
+mod denial;
+mod device;
+mod endpoint;
+mod error;
+mod message;
+mod packet;
+mod recorder;
+mod setpoint;
+mod settings;
+mod stream;
+mod stuffing;
+mod trace;
+
+pub use answer::{AnswerFrame, FORWARD, MAX_ANSWER_BYTES, answer_bytes};
+pub use counters::Counters;
+pub use denial::Denial;
+pub use device::{ActiveImage, ComputeFailure, Computed, DeviceStatus, Hello, Item, Progress, ResetCause, Slot, Stage};
+pub use endpoint::{BEHIND, Endpoint, RESTART_AFTER, Verdict};
+pub use error::LinkError;
+pub use message::{Ask, CHUNK_BYTES, MESSAGE_BYTES, PACKET_BYTES, Reply, Request, Response};
+pub use packet::{decode, encode};
+pub use recorder::Recorder;
+pub use setpoint::{MAX_SETPOINT_BYTES, SetpointFrame, setpoint_bytes};
+pub use settings::{DeviceSetting, DeviceSettings, DeviceSettingsError};
+pub use stream::{Deframer, Framed};
+pub use stuffing::{MAX_STUFFED, stuff, unstuff};
+pub use trace::{TRACE_SAMPLES, Trace, TraceSample};
+
+/// Version of both links; a setpoint frame of another version is refused, and `Hello` tells it.
+pub const LINK_VERSION: u8 = 2;

@@ -1,0 +1,152 @@
+#![allow(clippy::arithmetic_side_effects, clippy::unwrap_used, clippy::panic)]
+use proptest::prelude::*;
+
+use super::*;
+use truepath_units::Offset;
+
+fn limits(clamp_nm: i64, slew: u32, acceleration: u64, hz: u32) -> Limits {
+    let given = CorrectionLimits {
+        clamp: Offset::from_nm(clamp_nm),
+        warn: Offset::ZERO,
+        slew_nm_per_s: slew,
+        acceleration_nm_per_s2: acceleration,
+    };
+    Limits::new(&given, hz).unwrap()
+}
+
+/// 0.5 mm, 20 mm/s, 1 m/s² at 1 kHz.
+fn usual() -> Limits {
+    limits(500_000, 20_000_000, 1_000_000_000, 1_000)
+}
+
+/// The way made while braking from a velocity, tick by tick.
+fn braking_way(mut v: i64, a: i64) -> i64 {
+    let mut way = 0;
+    while v > 0 {
+        way += v;
+        v -= a;
+    }
+    way
+}
+
+#[test]
+fn the_braking_table_never_exceeds_the_braking_way_and_is_close_to_it() {
+    for made in [usual(), limits(4_000_000, 4_000_000_000, 3_000_000_000, 1_000), limits(100, 900, 70_000, 2_000)] {
+        let a = i64::from(made.acceleration);
+        let mut distance = 0u32;
+        while distance <= 2 * made.clamp.unsigned_abs() {
+            let v = i64::from(made.braking(distance));
+            assert!(braking_way(v, a) <= i64::from(distance), "{distance} {v}");
+            // A chord over an eighth of an octave of a square root lies at most 1/2048 of it below, 1/64 where the
+            // root meets the velocity limit; where S is a line of few pieces, a part of one more.
+            let more = v + v / 60 + a / 8 + 2;
+            let capped = more >= i64::from(made.velocity);
+            assert!(capped || braking_way(more, a) > i64::from(distance), "{distance} {v}");
+            distance += 1 + distance / 1_000;
+        }
+    }
+}
+
+#[test]
+fn a_change_within_the_limits_is_followed_to_the_last_bit() {
+    let made = usual();
+    let mut axis = AxisState::default();
+    let (mut target, mut speed) = (0, 0);
+    for tick in 0..2_000 {
+        // Accelerates by at most a/2 per tick and stays far from the clamp.
+        speed += if tick % 400 < 100 || tick % 400 >= 300 { 700 } else { -700 };
+        target += speed;
+        made.step(&mut axis, target);
+        assert_eq!(axis.position, target, "tick {tick}");
+    }
+}
+
+#[test]
+fn a_slow_drift_of_a_nanometre_in_a_hundred_ticks_does_not_stick() {
+    let made = usual();
+    let mut axis = AxisState::default();
+    for tick in 0..10_000 {
+        made.step(&mut axis, tick * 256 / 100);
+        assert_eq!(axis.position, tick * 256 / 100);
+    }
+}
+
+#[test]
+fn a_step_of_the_target_is_reached_exactly_and_without_leaving_the_clamp() {
+    for made in [usual(), limits(500_000, 20_000_000, 300_000_000, 4_000), limits(900, 1_000, 8_000, 1_000)] {
+        let mut axis = AxisState::default();
+        for target in [made.clamp, -made.clamp, 1, 0, made.clamp / 3, -7] {
+            let mut ticks = 0;
+            while !(axis.position == target && axis.velocity == 0) {
+                made.step(&mut axis, target);
+                assert!(axis.position.abs() <= made.clamp);
+                ticks += 1;
+                assert!(ticks <= 2 * made.ramp_ticks(), "{target} not reached: {axis:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn limits_that_vanish_are_refused() {
+    let given = CorrectionLimits {
+        clamp: Offset::from_um(500),
+        warn: Offset::ZERO,
+        slew_nm_per_s: 1_000,
+        acceleration_nm_per_s2: 1_000,
+    };
+    assert!(matches!(Limits::new(&given, 1_000), Err(SettingsError::LimitVanishes { acceleration: 0, .. })));
+    assert!(Limits::new(&given, 10).is_ok());
+}
+
+fn any_limits() -> impl Strategy<Value = Limits> {
+    (1i64..4_000_000, 0u32..22, 0u32..32, prop_oneof![Just(1_000u32), Just(400), Just(10_000)]).prop_filter_map(
+        "limits vanish or take long",
+        |(clamp_nm, slew, acceleration, hz)| {
+            let given = CorrectionLimits {
+                clamp: Offset::from_nm(clamp_nm),
+                warn: Offset::ZERO,
+                slew_nm_per_s: 1_000 << slew,
+                acceleration_nm_per_s2: 1_000 << acceleration,
+            };
+            Limits::new(&given, hz).ok().filter(|made| made.ramp_ticks() < 20_000)
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2_000))]
+
+    #[test]
+    fn no_target_leads_outside_the_limits(made in any_limits(), targets in proptest::collection::vec((any::<i32>(), 0u32..32, 1u8..40), 1..40)) {
+        let mut axis = AxisState::default();
+        let mut mirrored = AxisState::default();
+        for (target, shift, ticks) in targets {
+            let target = (target >> shift).max(-i32::MAX);
+            for _ in 0..ticks {
+                let before = axis;
+                made.step(&mut axis, target);
+                made.step(&mut mirrored, -target);
+                prop_assert!(axis.position.abs() <= made.clamp);
+                prop_assert_eq!(axis.position, before.position + axis.velocity);
+                prop_assert!(axis.velocity.abs() <= made.velocity);
+                prop_assert!((axis.velocity - before.velocity).abs() <= made.acceleration);
+                prop_assert_eq!((mirrored.position, mirrored.velocity), (-axis.position, -axis.velocity));
+            }
+        }
+    }
+
+    #[test]
+    fn every_correction_ramps_to_rest_at_zero_in_the_stated_time(made in any_limits(), targets in proptest::collection::vec((any::<i32>(), 1u16..300), 1..6)) {
+        let mut axis = AxisState::default();
+        for (target, ticks) in targets {
+            for _ in 0..ticks {
+                made.step(&mut axis, target);
+            }
+        }
+        for _ in 0..made.ramp_ticks() {
+            made.step(&mut axis, 0);
+        }
+        prop_assert!(axis.is_at_rest_at_zero(), "{:?} after {} ticks", axis, made.ramp_ticks());
+    }
+}
