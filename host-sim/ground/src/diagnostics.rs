@@ -17,6 +17,17 @@ use truepath_core::gcode::GcodeError;
 
 pub use source::Source;
 
+impl Source {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// `F001` when it cannot be read.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let bytes = std::fs::read(path).map_err(|e| InputError::unreadable(path, &e))?;
+        Ok(Self::new(path.display().to_string(), bytes))
+    }
+}
+
 /// An error in what the user gave.
 #[derive(Clone, Debug)]
 pub struct InputError(Box<Body>);

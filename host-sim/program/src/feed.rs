@@ -12,17 +12,7 @@ use truepath_ground::diagnostics::Failure;
 
 use super::BlockEdit;
 use super::survey::Move;
-use super::writer::Writer;
-
-/// The feed in force in the written text where it is not that of the program.
-#[derive(Clone, Debug)]
-pub(super) struct Scheduled {
-    /// As it is written.
-    text: String,
-    /// The line that was written last.
-    line: u32,
-    modal: Modal,
-}
+use super::writer::{Scheduled, Writer};
 
 /// Parts of an edit at one feed each: first and last sample, percent of the programmed feed.
 pub(super) fn spans(edit: &BlockEdit) -> Vec<(usize, usize, u16)> {

@@ -37,6 +37,7 @@ mod survey;
 mod unproved;
 mod vector;
 mod writer;
+mod written;
 
 use std::ops::Range;
 
@@ -191,12 +192,12 @@ fn within_kinks(
     moves: &[survey::Move],
     edits: &[BlockEdit],
     options: &RewriteOptions,
-) -> Result<(writer::Written, proof::Proof), Failure> {
+) -> Result<(written::Written, proof::Proof), Failure> {
     let step = moves.iter().map(|m| Grid::of(m.modal.units).step_nm()).fold(0.0, f64::max);
     let mut tolerances = vec![options.tolerance.nm() as f64; edits.len()];
     let mut first = None;
     for _ in 0..ATTEMPTS {
-        let written = writer::write(source, moves, edits, &tolerances, options)?;
+        let written = written::write(source, moves, edits, &tolerances, options)?;
         let claim = proof::Claim {
             original: source.bytes(),
             written: &written.text,

@@ -1,42 +1,33 @@
-//! Goes through the original line by line and writes the corrected text.
-//!
-//! The contour comes in one or more stretches of consecutive lines (a pass each). Before a stretch the moves that lead
-//! to its start are displaced ([`approach`](super::approach)), on it every line is written anew
-//! ([`stretch`](super::stretch)), after it whatever depended on its end is put right
-//! ([`departure`](super::departure)).
+//! What has been written so far of a corrected program, and what every part of the writing asks of it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use truepath_core::gcode::{Line, Lines, Motion};
+use truepath_core::gcode::{Line, Modal, Motion};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
-use super::assemble::{Replaced, assemble};
-use super::feed::Scheduled;
+use super::RewriteOptions;
+use super::assemble::Replaced;
 use super::line::Block;
 use super::pen::Pen;
 use super::survey::Move;
-use super::{BlockEdit, RewriteOptions, centre_path};
 
-/// The written text and which lines of the original it changes.
-pub(super) struct Written {
-    pub(super) text: Vec<u8>,
-    /// The line of the original after which the mark stands, and the mark.
-    pub(super) head: (u32, Vec<u8>),
-    /// How many lines each changed line has become.
-    pub(super) touched: BTreeMap<u32, usize>,
-    /// Lines of the contour that stay.
-    pub(super) unchanged: usize,
-    /// Whether the control's compensation has been taken out of the contour.
-    pub(super) centre_path: bool,
+/// The feed in force in the written text where it is not that of the program.
+#[derive(Clone, Debug)]
+pub(super) struct Scheduled {
+    /// As it is written.
+    pub(super) text: String,
+    /// The line that was written last.
+    pub(super) line: u32,
+    pub(super) modal: Modal,
 }
 
 /// What has been written so far.
 pub(super) struct Writer<'a> {
-    source: &'a Source,
-    lines: Vec<Line<'a>>,
+    pub(super) source: &'a Source,
+    pub(super) lines: Vec<Line<'a>>,
     pub(super) options: &'a RewriteOptions,
     pub(super) replaced: Replaced,
-    two_digits: bool,
+    pub(super) two_digits: bool,
     /// The motion in force in the written text.
     pub(super) motion: Option<Motion>,
     pub(super) unchanged: usize,
@@ -44,62 +35,6 @@ pub(super) struct Writer<'a> {
     pub(super) centre: BTreeSet<u32>,
     /// The feed in force in the written text, where it is another one than in the program.
     pub(super) feed: Option<Scheduled>,
-}
-
-/// Writes the program; `tolerances` are those of the edits, nm.
-pub(super) fn write(
-    source: &Source,
-    moves: &[Move],
-    edits: &[BlockEdit],
-    tolerances: &[f64],
-    options: &RewriteOptions,
-) -> Result<Written, Failure> {
-    let raw: Vec<Line<'_>> = Lines::new(source.bytes()).collect();
-    let two_digits = raw.iter().map(|&l| Block::new(l, false)).any(|b| b.motion_word().is_some() && b.two_digits());
-    let compensated = centre_path::stretches(moves, edits);
-    let noted = centre_path::noted(options);
-    let options = if compensated.is_empty() { options } else { &noted };
-    let switches = centre_path::without_switches(&raw, moves, &compensated);
-    let stripped = switches.as_ref().cloned().unwrap_or_default();
-    let text = |l: &Line<'_>| stripped.get(&l.number).map(Vec::as_slice);
-    let lines: Vec<Line<'_>> = raw.iter().map(|l| Line { text: text(l).unwrap_or(l.text), ..*l }).collect();
-    let replaced: Replaced = stripped.iter().map(|(&line, text)| (line, vec![text.clone()])).collect();
-    let centre = BTreeSet::new();
-    let mut writer =
-        Writer { source, lines, options, replaced, two_digits, motion: None, unchanged: 0, centre, feed: None };
-    if edits.is_empty() {
-        return Err(Failure::Internal("there is no line to correct".to_owned()));
-    }
-    writer.refuse_repetition(moves, edits.iter().map(|edit| edit.line))?;
-    if let Err(line) = switches {
-        let found = "the control compensates this path (G41, G42), switched on by no line before it";
-        return Err(writer.refuse_compensation(line, found));
-    }
-    writer.write_centre_path(moves, &compensated, edits)?;
-    let mut edits: Vec<_> = edits.iter().zip(tolerances.iter().copied()).collect();
-    edits.reverse();
-    let (mut at, mut end) = (0, None);
-    while let Some(&(edit, _)) = edits.last() {
-        let Some(first) = moves[at..].iter().position(|m| m.line == edit.line && m.cuts()).map(|i| at + i) else {
-            moves.iter().try_for_each(|m| writer.refuse_other_file(m))?;
-            let text = format!("line {} is out of order or does not cut in the plane", edit.line);
-            return Err(Failure::Internal(text));
-        };
-        let displaced = match end {
-            Some(pen) => writer.depart(pen, &moves[at - 1], &moves[at..first])?,
-            None => None,
-        };
-        let mut pen = writer.approach(&moves[at..first], &moves[first], edit, displaced)?;
-        at = writer.stretch(&mut pen, moves, first, &mut edits)?;
-        end = Some(pen);
-    }
-    if let Some(pen) = end {
-        writer.depart(pen, &moves[at - 1], &moves[at..])?;
-    }
-    writer.refuse_repetition(moves, writer.replaced.keys().copied())?;
-    let (text, head) = assemble(source.bytes(), &raw, &writer.replaced, options);
-    let touched = writer.replaced.iter().map(|(&line, parts)| (line, parts.len())).collect();
-    Ok(Written { text, head, touched, unchanged: writer.unchanged, centre_path: !compensated.is_empty() })
 }
 
 impl<'a> Writer<'a> {
@@ -127,7 +62,7 @@ impl<'a> Writer<'a> {
     }
 
     /// A line that the program executes several times, or that stands in another file, cannot be edited in place.
-    fn refuse_repetition(&self, moves: &[Move], lines: impl Iterator<Item = u32>) -> Result<(), Failure> {
+    pub(super) fn refuse_repetition(&self, moves: &[Move], lines: impl Iterator<Item = u32>) -> Result<(), Failure> {
         const HELP: &str = "use --route coprocessor, or post the program without subprograms and loops";
         for line in lines {
             let mut times = moves.iter().filter(|m| m.line == line).map(|m| m.jumps);
@@ -203,30 +138,5 @@ impl<'a> Writer<'a> {
             self.replaced.insert(step.line, vec![text]);
         }
         Some(Pen::new(target, &step.modal))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::survey::survey;
-    use super::*;
-
-    #[test]
-    fn a_line_of_the_contour_that_comes_again_is_refused_and_so_is_one_of_another_file() {
-        let source = Source::new("loop.nc", b"G21 G90 G0 X0 Y0\nG1 X10 F100\nG0 X0\nM2\n".to_vec());
-        let options = RewriteOptions::default();
-        let edits = [BlockEdit::new(2, vec![[0, 100_000], [10_000_000, 100_000]])];
-        let once = survey(source.bytes(), options.program).expect("a readable program");
-        let written = |moves: &[Move]| write(&source, moves, &edits, &[1_000.0], &options);
-        assert!(written(&once).is_ok());
-
-        let again: Vec<Move> =
-            once.iter().chain(&once).enumerate().map(|(i, m)| Move { jumps: i as u32 / 3, ..*m }).collect();
-        let elsewhere: Vec<Move> =
-            once.iter().map(|m| Move { line: if m.line == 1 { 0 } else { m.line }, ..*m }).collect();
-        for (moves, line) in [(again, 2), (elsewhere, 1)] {
-            let Err(Failure::Input(error)) = written(&moves) else { panic!("an input error") };
-            assert_eq!((error.code(), error.line_column()), ("P004", Some((line, 1))), "{error}");
-        }
     }
 }

@@ -27,7 +27,7 @@ fn desk(part: &str, probe: &[u8]) -> tempfile::TempDir {
 }
 
 fn data(name: &str) -> Vec<u8> {
-    fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/probe").join(name)).expect("a probe file")
+    fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("job/tests/data/probe").join(name)).expect("a probe file")
 }
 
 fn errors(output: &Output) -> Vec<f64> {

@@ -10,13 +10,11 @@
 //! not measured.
 
 mod coverage;
-mod face;
 mod judgement;
 mod rule;
 mod set_aside;
 
-pub use coverage::{Coverage, Extent, Reach, Stretch, Touched, coverage};
-pub use face::{Face, Layer};
+pub use coverage::{Coverage, Extent, Face, Layer, Reach, Stretch, Touched, coverage};
 pub use judgement::{Count, Judgement, State, Verdict, judge};
 pub use rule::{PointVerdict, Rule};
 pub use set_aside::SetAside;

@@ -5,7 +5,9 @@ use truepath_ground::units::{float, mm};
 
 use super::joint::{Joint, PartPoints};
 use super::kernel::{Engagement, Feature};
-use super::residual::MOST_PLACES;
+
+/// Places that are looked at.
+pub(super) const MOST_PLACES: usize = 160;
 
 /// Places, one entry each; lengths in mm.
 #[derive(Clone, Debug, Default)]

@@ -9,7 +9,7 @@
 //! Points of one height differ by what the model misses over the height as well; the scatter within the places says how
 //! much that is, and it counts as noise.
 //!
-//! Limits: one residual for all heights; at most [`MOST_PLACES`] places, the newest parts first.
+//! Limits: one residual for all heights; at most [`MOST_PLACES`](super::places::MOST_PLACES) places, the newest parts first.
 
 use truepath_core::correct::commanded;
 use truepath_core::cut::{Path, State};
@@ -26,8 +26,6 @@ use super::places::{Places, places};
 const GRID: [f64; 7] = [0.0, 0.001, 0.002, 0.004, 0.008, 0.016, 0.032];
 /// Gain in evidence (natural logarithm) from which a residual is believed: 7 : 1.
 const DECISIVE: f64 = 2.0;
-/// Places that are looked at.
-pub(super) const MOST_PLACES: usize = 160;
 
 /// A residual along a contour.
 #[derive(Clone, Debug)]

@@ -12,17 +12,16 @@ use super::approach::Ball;
 use super::belief::Belief;
 use super::candidates::{KeptOff, Site, candidates};
 use super::heights::{Height, heights};
-use super::plan::{Place, Plan};
 use super::settings::Settings;
 use super::shop::Shop;
 
 /// Part, probe and ball.
 pub(super) struct Ground {
-    shop: Shop,
+    pub(super) shop: Shop,
     pub(super) probe: Probe,
     pub(super) heights: Vec<Height>,
-    ball: Ball,
-    safe_z_mm: f64,
+    pub(super) ball: Ball,
+    pub(super) safe_z_mm: f64,
 }
 
 /// Between two places, at least: the ball's radius and this much more, mm, so that they are two places of the wall.
@@ -72,25 +71,6 @@ impl Ground {
     /// Between two places, at least, mm.
     pub(super) fn apart(&self) -> f64 {
         self.ball.radius + APART
-    }
-
-    /// A plan of these places, which are put into the order of the contour; nothing is said yet of what they tell.
-    pub(super) fn plan(self, pass: &Pass, settings: &Settings, mut places: Vec<Place>) -> Plan {
-        places.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
-        Plan {
-            shop: self.shop,
-            correction: None,
-            settings: settings.clone(),
-            ball_mm: 2.0 * self.ball.radius,
-            z_is_tip: self.probe.z_reference == truepath_core::job::ZReference::Tip,
-            safe_z_mm: self.safe_z_mm,
-            places,
-            heights: self.heights,
-            kept_off: BTreeMap::new(),
-            unknowns: Vec::new(),
-            wall_sigma_mm: [0.0; 2],
-            warnings: pass.warnings.clone(),
-        }
     }
 }
 

@@ -80,7 +80,7 @@ pub fn plan_next(
         kept_off,
         unknowns: reason::unknowns(after, prior),
         wall_sigma_mm: [before, largest(after, measured.goal).0],
-        ..ground.plan(pass, settings, places)
+        ..Plan::of(ground, pass, settings, places)
     };
     plan.warnings.extend(doubt(&gains, settings, noise));
     progress(1.0);

@@ -111,6 +111,24 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// A plan of these places, which are put into the order of the contour; nothing is said yet of what they tell.
+    pub(super) fn of(ground: Ground, pass: &Pass, settings: &Settings, mut places: Vec<Place>) -> Self {
+        places.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
+        Self {
+            shop: ground.shop,
+            correction: None,
+            settings: settings.clone(),
+            ball_mm: 2.0 * ground.ball.radius,
+            z_is_tip: ground.probe.z_reference == truepath_core::job::ZReference::Tip,
+            safe_z_mm: ground.safe_z_mm,
+            places,
+            heights: ground.heights,
+            kept_off: BTreeMap::new(),
+            unknowns: Vec::new(),
+            wall_sigma_mm: [0.0; 2],
+            warnings: pass.warnings.clone(),
+        }
+    }
     /// Ball's centre at the stand-off of a place, mm.
     pub fn stand_off(&self, place: &Place) -> [f64; 2] {
         along(place.wall, place.normal, self.ball_mm / 2.0 + self.settings.clearance)
@@ -147,7 +165,7 @@ pub fn plan(pass: &Pass, settings: &Settings, progress: &mut dyn FnMut(f64)) -> 
         kept_off,
         unknowns: reason::unknowns(&chosen.known, &prior),
         wall_sigma_mm: chosen.wall_sigma,
-        ..ground.plan(pass, settings, places)
+        ..Plan::of(ground, pass, settings, places)
     };
     plan.warnings.extend(plan_warnings(&plan, law));
     progress(1.0);

@@ -1,10 +1,7 @@
 //! Texts that errors can point into, and the way from bytes to lines and columns.
 
 use std::ops::Range;
-use std::path::Path;
 use std::sync::Arc;
-
-use super::InputError;
 
 /// A text that errors can point into: its name as the user wrote it, and its bytes made readable.
 ///
@@ -20,15 +17,6 @@ struct Inner {
 }
 
 impl Source {
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// `F001` when it cannot be read.
-    pub fn read(path: &Path) -> Result<Self, InputError> {
-        let bytes = std::fs::read(path).map_err(|e| InputError::unreadable(path, &e))?;
-        Ok(Self::new(path.display().to_string(), bytes))
-    }
-
     /// From bytes already at hand.
     pub fn new(name: impl Into<String>, bytes: Vec<u8>) -> Self {
         let text = readable(&bytes);

@@ -3,8 +3,6 @@
 use truepath_core::gcode::{Found, LineRange, Role};
 use truepath_ground::units::mm;
 
-use super::plan::Plan;
-
 /// One run of cutting moves and what it is taken for.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Row {
@@ -193,28 +191,4 @@ pub fn listing(feature: &FeatureSummary) -> String {
         text += &format!("; corrected: {}; every other line of the program stays as it is\n\n", numbers.join(", "));
     }
     text
-}
-
-impl Plan {
-    /// What is told of it, for the level that a command is about.
-    pub fn summary(&self, pass: u32, corrected: &[u32]) -> FeatureSummary {
-        let row = |p: &super::FeaturePass| PassRow {
-            pass: p.number,
-            role: if p.spring { "spring" } else { "finish" },
-            first_line: p.lines.first,
-            last_line: p.lines.last,
-            z_mm: p.z.map(|z| z.nm() as f64 / 1e6),
-        };
-        FeatureSummary {
-            id: self.id.clone(),
-            number: self.number,
-            chosen_by: self.chosen_by,
-            why: self.why.clone(),
-            pass,
-            passes: self.passes.iter().map(row).collect(),
-            passes_corrected: corrected.to_vec(),
-            other_features: self.others.clone(),
-            candidates: self.rows.clone(),
-        }
-    }
 }

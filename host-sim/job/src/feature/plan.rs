@@ -8,7 +8,7 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
 
 use super::choice::{ambiguous, chosen};
-use super::listing::{Row, rows};
+use super::listing::{FeatureSummary, PassRow, Row, rows};
 use super::marker::marked;
 use super::region::{Origin, Region, regions};
 use super::survey::{LARGEST_SEARCH, Survey};
@@ -222,5 +222,29 @@ impl Plan {
     /// Numbers of the finishing passes.
     pub fn levels(&self) -> Vec<u32> {
         self.passes.iter().filter(|p| !p.spring).map(|p| p.number).collect()
+    }
+}
+
+impl Plan {
+    /// What is told of it, for the level that a command is about.
+    pub fn summary(&self, pass: u32, corrected: &[u32]) -> FeatureSummary {
+        let row = |p: &FeaturePass| PassRow {
+            pass: p.number,
+            role: if p.spring { "spring" } else { "finish" },
+            first_line: p.lines.first,
+            last_line: p.lines.last,
+            z_mm: p.z.map(|z| z.nm() as f64 / 1e6),
+        };
+        FeatureSummary {
+            id: self.id.clone(),
+            number: self.number,
+            chosen_by: self.chosen_by,
+            why: self.why.clone(),
+            pass,
+            passes: self.passes.iter().map(row).collect(),
+            passes_corrected: corrected.to_vec(),
+            other_features: self.others.clone(),
+            candidates: self.rows.clone(),
+        }
     }
 }

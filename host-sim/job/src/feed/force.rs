@@ -4,7 +4,14 @@ use truepath_core::cut::{Loop, State};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::units::float;
 
-use super::schedule::Wanted;
+/// What the job allows, with the limit in newtons.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// Lowest and highest feed, percent of the programmed one; 100 lies between them.
+    pub percent: [u16; 2],
+    /// Largest mean force over a revolution, N.
+    pub limit_n: f64,
+}
 
 /// The largest mean force at some places of a contour, at the feeds of the program, N; 0 without any.
 pub fn largest_force(machine: &Loop, places: impl Iterator<Item = Offset>) -> f64 {

@@ -21,6 +21,7 @@ mod schedule;
 mod steps;
 mod summary;
 
-pub use force::largest_force;
-pub use schedule::{Change, Schedule, Wanted, schedule};
+pub use force::{Wanted, largest_force};
+pub use schedule::{Schedule, schedule};
+pub use steps::Change;
 pub use summary::{FeedSummary, Unscheduled};

@@ -3,26 +3,8 @@
 use truepath_core::cut::{Loop, Path, Sample};
 use truepath_core::units::{Offset, Real};
 
-use super::force::Load;
-use super::steps::steps;
-
-/// What the job allows, with the limit in newtons.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wanted {
-    /// Lowest and highest feed, percent of the programmed one; 100 lies between them.
-    pub percent: [u16; 2],
-    /// Largest mean force over a revolution, N.
-    pub limit_n: f64,
-}
-
-/// From a place on, another feed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Change {
-    /// Arc length of the contour.
-    pub from: Offset,
-    /// Percent of the programmed feed from there on.
-    pub percent: u16,
-}
+use super::force::{Load, Wanted};
+use super::steps::{Change, steps};
 
 /// The feeds along a contour. The first change is at its start.
 #[derive(Clone, Debug, PartialEq, Eq)]

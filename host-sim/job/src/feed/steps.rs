@@ -8,7 +8,14 @@
 
 use truepath_core::units::Offset;
 
-use super::schedule::Change;
+/// From a place on, another feed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// Arc length of the contour.
+    pub from: Offset,
+    /// Percent of the programmed feed from there on.
+    pub percent: u16,
+}
 
 /// Least length of a cell, nm.
 const CELL_NM: i64 = 1_000_000;

@@ -4,7 +4,8 @@ use truepath_core::cut::Loop;
 use truepath_ground::units::{float, mm};
 
 use super::force::Load;
-use super::schedule::{Schedule, Wanted};
+use super::force::Wanted;
+use super::schedule::Schedule;
 
 /// What a schedule does, for people and for machines.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]

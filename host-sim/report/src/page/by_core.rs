@@ -7,7 +7,8 @@ use truepath_core::units::Offset;
 use truepath_correction::correction::Correction;
 use truepath_ground::units::{float, mm};
 
-use super::heights::{errors_at_heights, heights};
+use super::column::{FEED, FINE, FORCE, UNIT};
+use super::heights::{errors_at_heights, heights, samples};
 use super::kept::Kept;
 use super::{Column, Contour, Heights, PassColumns};
 use crate::{Trace, TraceRow, trace};
@@ -22,15 +23,6 @@ pub struct Along {
     /// A sentence when not all samples are shown.
     pub note: Option<String>,
 }
-
-/// Digits of lengths and angles, and of forces, in the tables.
-pub(super) const FINE: u32 = 6;
-/// The same of forces.
-const FORCE: u32 = 4;
-/// Of feeds.
-pub(super) const FEED: u32 = 3;
-/// Of unit vectors.
-pub(super) const UNIT: u32 = 9;
 
 /// What a pass is called.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -117,11 +109,6 @@ pub fn simulated(machine: &Loop, states: &[State], trace: &Trace, label: &str) -
 pub fn nominal(path: &Path) -> Along {
     let kept = Kept::of(path.count());
     Along { contour: contour(path, &kept), heights: None, note: kept.note() }
-}
-
-/// The samples of the contour itself.
-pub(super) fn samples<'a>(path: &Path<'a>) -> &'a [Sample] {
-    &path.samples()[path.first()..path.first() + path.count()]
 }
 
 /// The path without passes.

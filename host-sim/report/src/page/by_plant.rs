@@ -6,7 +6,8 @@
 
 use truepath_plant::{Milled, Sample};
 
-use super::by_core::{Along, FEED, FINE, UNIT, columns};
+use super::by_core::{Along, columns};
+use super::column::{FEED, FINE, UNIT};
 use super::heights::{HEIGHTS, fraction, of_depth};
 use super::kept::Kept;
 use super::{Column, Contour, Heights, PassColumns};

@@ -7,6 +7,15 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
+/// Digits of lengths and angles, and of forces, in the tables.
+pub(super) const FINE: u32 = 6;
+/// The same of forces.
+pub(super) const FORCE: u32 = 4;
+/// Of feeds.
+pub(super) const FEED: u32 = 3;
+/// Of unit vectors.
+pub(super) const UNIT: u32 = 9;
+
 /// A column. In it every number is finite or absent.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Column {

@@ -1,13 +1,18 @@
 //! The wall error over the height, at nodes along the contour.
 
-use truepath_core::cut::{Envelope, Loop, Path, State};
+use truepath_core::cut::{Envelope, Loop, Path, Sample, State};
 use truepath_core::geometry::Vector;
 use truepath_core::units::{Offset, Real};
 use truepath_ground::units::{float, mm};
 
-use super::by_core::{FINE, samples};
+use super::column::FINE;
 use super::kept::Kept;
 use super::{Column, Heights};
+
+/// The samples of the contour itself.
+pub(super) fn samples<'a>(path: &Path<'a>) -> &'a [Sample] {
+    &path.samples()[path.first()..path.first() + path.count()]
+}
 
 /// Heights: the tip, the top of the engaged depth, and between them every eighth.
 pub(super) const HEIGHTS: usize = 9;
