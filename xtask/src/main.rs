@@ -6,6 +6,7 @@
 mod bench;
 mod checks;
 mod conformance;
+mod cost;
 mod device;
 mod firmware;
 mod fuzz;

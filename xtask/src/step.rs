@@ -3,7 +3,8 @@
 //! All steps of a run are done even after one failed, so that one run shows everything; the closing table names them.
 
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+
+use crate::cost::{Cost, Meter};
 
 /// How a step ended that did not fail.
 #[derive(Debug)]
@@ -49,36 +50,44 @@ impl<'a> Step<'a> {
 /// The steps of this run.
 #[derive(Debug, Default)]
 pub struct Report {
-    ended: Vec<(&'static str, Outcome, Duration)>,
+    ended: Vec<(&'static str, Outcome, Cost)>,
 }
 
 impl Report {
     /// Does a step, announcing its start and its end.
     pub fn run(&mut self, step: Step) {
         eprintln!("==> {}", step.name);
-        let start = Instant::now();
+        let meter = Meter::start();
         let outcome = (step.work)();
         match &outcome {
             Ok(_) => {}
             Err(Failure::Found(reason)) => eprintln!("==> {} FAILED: {reason}", step.name),
             Err(Failure::Missing(remedy)) => eprintln!("==> {} cannot run: {remedy}", step.name),
         }
-        self.ended.push((step.name, outcome, start.elapsed()));
+        self.ended.push((step.name, outcome, meter.read()));
     }
 
     /// Prints the closing table; the worst step gives the exit code.
     pub fn finish(self) -> ExitCode {
-        eprintln!();
-        for (name, outcome, time) in &self.ended {
-            let said = match outcome {
-                Ok(Passed::Done) => "ok".to_owned(),
-                Ok(Passed::Skipped(reason)) => format!("skipped: {reason}"),
-                Err(Failure::Found(reason)) => format!("FAILED: {}", first_line(reason)),
-                Err(Failure::Missing(remedy)) => format!("CANNOT RUN: {}", first_line(remedy)),
-            };
-            eprintln!("{name:<14} {:>6.1} s  {said}", time.as_secs_f64());
-        }
+        eprintln!("\n{}", self.table());
         ExitCode::from(self.exit_code())
+    }
+
+    /// What became of each step, what it took on the clock and of the processors.
+    fn table(&self) -> String {
+        let width = self.ended.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
+        let row = |name: &str, cost: Cost, said: &str| {
+            let (wall, processor) = (cost.wall.as_secs_f64(), cost.processor.as_secs_f64());
+            format!("{name:<width$} {wall:>8.1} s {processor:>10.1} s  {said}\n")
+        };
+        let mut table = format!("{:<width$} {:>10} {:>12}\n", "step", "time", "processor");
+        for (name, outcome, cost) in &self.ended {
+            table += &row(name, *cost, &said(outcome));
+        }
+        if self.ended.len() > 1 {
+            table += &row("all", self.ended.iter().map(|(.., cost)| *cost).sum(), "");
+        }
+        table.trim_end().to_owned()
     }
 
     fn exit_code(&self) -> u8 {
@@ -93,12 +102,23 @@ impl Report {
     }
 }
 
+fn said(outcome: &Outcome) -> String {
+    match outcome {
+        Ok(Passed::Done) => "ok".to_owned(),
+        Ok(Passed::Skipped(reason)) => format!("skipped: {reason}"),
+        Err(Failure::Found(reason)) => format!("FAILED: {}", first_line(reason)),
+        Err(Failure::Missing(remedy)) => format!("CANNOT RUN: {}", first_line(remedy)),
+    }
+}
+
 fn first_line(text: &str) -> &str {
-    text.lines().next().unwrap_or_default()
+    text.trim_start().lines().next().unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
 
     fn exit_code_of(outcomes: Vec<Outcome>) -> u8 {
@@ -116,6 +136,25 @@ mod tests {
         report.run(Step::new("second", || Ok(Passed::Done)));
         assert_eq!(report.ended.len(), 2);
         assert_eq!(report.exit_code(), 1);
+    }
+
+    #[test]
+    fn the_table_has_every_step_with_its_outcome_and_its_cost() {
+        let cost =
+            |wall, processor| Cost { wall: Duration::from_secs(wall), processor: Duration::from_millis(processor) };
+        let ended = vec![
+            ("lint", Ok(Passed::Done), cost(61, 100_500)),
+            ("page", Err(Failure::found("\nfont missing\nmore")), cost(5, 1_000)),
+            ("judge", Ok(Passed::Skipped("no judge".into())), cost(0, 0)),
+        ];
+        let wanted = [
+            "step        time    processor",
+            "lint      61.0 s      100.5 s  ok",
+            "page       5.0 s        1.0 s  FAILED: font missing",
+            "judge      0.0 s        0.0 s  skipped: no judge",
+            "all       66.0 s      101.5 s",
+        ];
+        assert_eq!(Report { ended }.table().lines().collect::<Vec<_>>(), wanted);
     }
 
     #[test]
