@@ -1,4 +1,5 @@
-//! Set-up, tests and checks of the Truepath repository: `cargo xtask test` is all of them.
+//! Set-up, tests and checks of the Truepath repository: `cargo xtask test` is what a change has to pass, `cargo xtask
+//! test --all` is everything.
 //!
 //! Every check is a step that announces itself. Exit codes: 0 passed, 1 a step failed, 2 wrong command line, 3 a tool
 //! is missing and could not be installed.
@@ -24,6 +25,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use firmware::Board;
 use step::{Report, Step};
 
 /// Set-up, tests and checks of the Truepath repository.
@@ -36,8 +38,15 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Task {
-    /// Everything a change has to pass: fmt, lint, doc, device, firmware, elf, budget, test-only, page, hil.
-    Test,
+    /// What a change has to pass; with --all everything there is.
+    ///
+    /// fmt, lint, doc, test-only, device, firmware, elf, budget and hil, each the same on every repeat. With --all also
+    /// the image of the real board, every case of every test, page, conformance, judge, bench, fuzz and linuxcnc.
+    Test {
+        /// Also what takes long.
+        #[arg(long)]
+        all: bool,
+    },
     /// Formatting of every source file.
     Fmt {
         /// Rewrite the files instead of comparing them.
@@ -50,6 +59,9 @@ enum Task {
     Doc,
     /// The tests of all packages, examples in the documentation included.
     TestOnly {
+        /// Every case: random programs, streams and machines by the thousand instead of by the hundred.
+        #[arg(long)]
+        all: bool,
         /// Handed to `cargo test`, for instance `-p truepath-core engagement`.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
@@ -68,13 +80,17 @@ enum Task {
     Firmware {
         /// Only this board.
         #[arg(long)]
-        board: Option<firmware::Board>,
+        board: Option<Board>,
         /// Write the sizes into docs/firmware.md instead of comparing them.
         #[arg(long)]
         write: bool,
     },
     /// The emulated bench: host debug, host release and the emulated firmware give the same bits, faults included.
-    Hil,
+    Hil {
+        /// Above a million setpoints instead of some ten thousand.
+        #[arg(long)]
+        all: bool,
+    },
     /// The long campaign of faults on the emulated board; writes docs/campaign.md.
     Campaign,
     /// Proofs on the firmware: no panic, no soft float, no division call, no formatting in the setpoint path; worst-case
@@ -162,28 +178,20 @@ enum Task {
 fn main() -> ExitCode {
     let mut report = Report::default();
     match Arguments::parse().task {
-        Task::Test => {
-            report.run(Step::new("fmt", || checks::format(false)));
-            report.run(Step::new("lint", checks::lint));
-            report.run(Step::new("doc", checks::doc));
-            report.run(Step::new("device", device::check));
-            report.run(Step::new("firmware", || firmware::build(None, false)));
-            report.run(Step::new("elf", || firmware::elf::check(false)));
-            report.run(Step::new("budget", || firmware::budget::check(false)));
-            report.run(Step::new("test-only", || checks::tests(&[])));
-            report.run(Step::new("page", || page::check(false)));
-            report.run(Step::new("hil", hil::check));
-        }
+        Task::Test { all } => test(&mut report, all),
         Task::Fmt { write } => report.run(Step::new("fmt", || checks::format(write))),
         Task::Lint => report.run(Step::new("lint", checks::lint)),
         Task::Doc => report.run(Step::new("doc", checks::doc)),
-        Task::TestOnly { arguments } => report.run(Step::new("test-only", || checks::tests(&arguments))),
+        Task::TestOnly { all, arguments } => report.run(Step::new("test-only", || checks::tests(all, &arguments))),
         Task::Rooms { all, part } => report.run(Step::new("rooms", || rooms::check(all, part.as_deref()))),
         Task::Device => report.run(Step::new("device", device::check)),
-        Task::Firmware { board, write } => report.run(Step::new("firmware", || firmware::build(board, write))),
-        Task::Hil => report.run(Step::new("hil", hil::check)),
+        Task::Firmware { board, write } => {
+            let boards = board.map_or(Board::ALL.to_vec(), |board| vec![board]);
+            report.run(Step::new("firmware", || firmware::build(&boards, write)));
+        }
+        Task::Hil { all } => report.run(Step::new("hil", || hil::check(all))),
         Task::Campaign => report.run(Step::new("campaign", hil::campaign)),
-        Task::Elf { write } => report.run(Step::new("elf", || firmware::elf::check(write))),
+        Task::Elf { write } => report.run(Step::new("elf", || firmware::elf::check(&Board::ALL, write))),
         Task::Budget { write } => report.run(Step::new("budget", || firmware::budget::check(write))),
         Task::Bench { count: true, write, .. } => report.run(Step::new("bench --count", || bench::count(write))),
         Task::Bench { reading: true, write, .. } => {
@@ -208,4 +216,26 @@ fn main() -> ExitCode {
         Task::Judge { judge } => report.run(Step::new("judge", || judge::run_all(judge.as_deref()))),
     }
     report.finish()
+}
+
+/// What a change has to pass, or everything.
+fn test(report: &mut Report, all: bool) {
+    let boards: &[Board] = if all { &Board::ALL } else { &[Board::Virtual] };
+    report.run(Step::new("fmt", || checks::format(false)));
+    report.run(Step::new("lint", checks::lint));
+    report.run(Step::new("doc", checks::doc));
+    report.run(Step::new("test-only", || checks::tests(all, &[])));
+    report.run(Step::new("device", device::check));
+    report.run(Step::new("firmware", || firmware::build(boards, false)));
+    report.run(Step::new("elf", || firmware::elf::check(boards, false)));
+    report.run(Step::new("budget", || firmware::budget::check(false)));
+    report.run(Step::new("hil", || hil::check(all)));
+    if all {
+        report.run(Step::new("page", || page::check(false)));
+        report.run(Step::new("conformance", || conformance::check(false)));
+        report.run(Step::new("judge", || judge::run_all(None)));
+        report.run(Step::new("bench", || bench::time(true, false, &[])));
+        report.run(Step::new("fuzz", || fuzz::check(None, fuzz::Length::Seconds(15))));
+        report.run(Step::new("linuxcnc", || linuxcnc::run(None, None, false)));
+    }
 }

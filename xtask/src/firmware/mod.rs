@@ -18,15 +18,13 @@ use crate::bench::table::thousands;
 use crate::step::{Outcome, Passed};
 use crate::toolchain::{TARGET, Toolchain};
 
-/// Builds the images of one board or of all, prints their sizes and compares them with the document, or writes them
-/// there.
-pub fn build(board: Option<Board>, write: bool) -> Outcome {
+/// Builds the images of boards, prints their sizes and compares them with the document, or writes them there.
+pub fn build(boards: &[Board], write: bool) -> Outcome {
     let toolchain = Toolchain::find()?;
     eprintln!("    {TARGET} by {}", toolchain.describe());
-    let boards: Vec<Board> = board.map_or(Board::ALL.to_vec(), |board| vec![board]);
     let mut rows = Vec::new();
     println!("{:<14} {:>10} {:>10} {:>10} {:>10} {:>10}", "board", "text", "data", "bss", "flash", "RAM");
-    for board in boards {
+    for &board in boards {
         let elf: PathBuf = board.image().build(&toolchain, &[])?;
         let sizes = Sizes::read(&elf)?;
         let numbers = [sizes.text, sizes.data, sizes.bss, sizes.flash(), sizes.ram()].map(thousands);

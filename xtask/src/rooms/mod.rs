@@ -249,8 +249,16 @@ mod tests {
     }
 
     #[test]
+    fn folders_in_one_line_are_rooms_and_names_in_braces_share_their_beginning() {
+        let said = |diagram: &str| objections(diagram, "mod part;\nuse x_one::Z;", "pub struct Z;");
+        assert_eq!(said("x/ {one,two} → low\ntop/ above   docs/ text"), Vec::<String>::new());
+        let wanted = "README.md: x/low names x/one, which stands beside it in the diagram in 1 place";
+        assert_eq!(heads(&said("x/ {one,two,low} →\ntop/ above")), [wanted]);
+    }
+
+    #[test]
     fn modules_of_one_crate_keep_the_order_of_the_diagram_as_well() {
-        let readme = format!("{}\n\n```text\na/  b → c →\n    d\n```\n", order::HEADING);
+        let readme = format!("{}\n\n```text\na/  b (is first) → c (is (the)\n    second) → d\n```\n", order::HEADING);
         let forest = forest(&[
             ("a/src/lib.rs", "mod b;\nmod c;\nmod d;"),
             ("a/src/b.rs", "use crate::d::D;\npub struct B;"),

@@ -1,14 +1,14 @@
 //! The order of the rooms, as the diagram of the README has it.
 //!
-//! The diagram is the fenced block behind the heading [`HEADING`]. It is read line by line:
+//! The diagram is the fenced block behind the heading [`HEADING`]:
 //!
 //! * `core/    units → rs274 → wire`: rooms in a folder, in their order. A name is a folder below it with packages, or a
 //!   module of the package that lies in the folder itself, or the name of that package.
-//! * `sister/pocket, sister/bore`: rooms between which there is no import.
-//! * A line without a folder goes on with the folder above.
-//! * `tests/   whole-system tests`: without an arrow the folder is one room, and the rest of the line is prose.
+//! * `pocket, bore`, `sister/{pocket,bore}`: rooms between which there is no import.
+//! * `tests/   whole-system tests`: without an arrow a folder is one room, and the rest is prose.
+//! * What stands in parentheses is prose. A line that begins with a blank goes on with the one above.
 //!
-//! A room names only rooms that stand before it, in its own line or above.
+//! A room names only rooms that stand before it.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -86,24 +86,21 @@ fn diagram(readme: &str) -> Option<&str> {
 /// The rooms in their order, and what cannot be read.
 fn rooms(diagram: &str, forest: &Forest) -> (Vec<Room>, Vec<String>) {
     let (mut rooms, mut said) = (Vec::new(), Vec::new());
-    let (mut folder, mut level) = (PathBuf::new(), 0);
-    for line in diagram.lines().filter(|line| !line.trim().is_empty()) {
-        let mut names = line.trim();
-        if let Some((word, rest)) = names.split_once(char::is_whitespace)
-            && let Some(named) = word.strip_suffix('/')
-        {
-            (folder, names) = (PathBuf::from(named), rest.trim());
-            level += 1;
-            if !names.contains('→') {
-                rooms.push(Room { name: named.to_owned(), level, holds: Holds::Folder(folder.clone()) });
-                continue;
+    let mut level = 0;
+    for line in lines(diagram) {
+        let (folder, names) = line.split_once(char::is_whitespace).unwrap_or((&line, ""));
+        if !names.contains('→') {
+            for named in line.split_whitespace().filter_map(|word| word.strip_suffix('/')) {
+                level += 1;
+                rooms.push(Room { name: named.to_owned(), level, holds: Holds::Folder(named.into()) });
             }
+            continue;
         }
-        // A line that ends or begins with an arrow goes on in the order.
-        for beside in names.split('→').map(str::trim).filter(|names| !names.is_empty()) {
+        let folder = PathBuf::from(folder.trim_end_matches('/'));
+        for beside in names.split('→') {
             level += 1;
-            for name in beside.split(',').map(str::trim) {
-                match holds(forest, &folder, name) {
+            for name in alternatives(beside) {
+                match holds(forest, &folder, &name) {
                     Some(holds) => {
                         rooms.push(Room { name: folder.join(name).display().to_string(), level, holds });
                     }
@@ -116,6 +113,39 @@ fn rooms(diagram: &str, forest: &Forest) -> (Vec<Room>, Vec<String>) {
         }
     }
     (rooms, said)
+}
+
+/// The lines with those that go on with them, without what stands in parentheses.
+fn lines(diagram: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for line in diagram.lines() {
+        match lines.last_mut() {
+            Some(above) if line.starts_with(char::is_whitespace) => *above += &format!(" {}", line.trim()),
+            _ => lines.push(line.to_owned()),
+        }
+    }
+    let without = |line: &String| {
+        let mut depth = 0;
+        let mut outside = |letter: &char| {
+            depth += i32::from(*letter == '(') - i32::from(*letter == ')');
+            depth == 0 && *letter != ')'
+        };
+        line.chars().filter(|letter| outside(letter)).collect::<String>()
+    };
+    lines.iter().map(without).collect()
+}
+
+/// Names between commas; `a/{b,c}` stands for `a/b` and `a/c`.
+fn alternatives(names: &str) -> Vec<String> {
+    if let Some((before, rest)) = names.split_once('{')
+        && let Some((inner, behind)) = rest.split_once('}')
+    {
+        let head = before.rsplit(',').next().unwrap_or_default().trim();
+        let before = &before[..before.rfind(',').unwrap_or(0)];
+        let inner = inner.split(',').map(|name| format!("{head}{}", name.trim()));
+        return alternatives(before).into_iter().chain(inner).chain(alternatives(behind)).collect();
+    }
+    names.split(',').map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect()
 }
 
 /// What a name of the diagram stands for.
