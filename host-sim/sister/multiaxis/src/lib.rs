@@ -16,8 +16,9 @@ pub mod machine;
 pub mod program;
 pub mod singular;
 pub mod statistics;
+pub mod vector;
 
 pub use chord::{ChordError, chord_error, chord_estimate};
 pub use division::{Division, DivisionError, Insertion, Rule, divide, insert};
-pub use kinematics::{Joints, Pose};
-pub use machine::Machine;
+pub use kinematics::Pose;
+pub use machine::{Joints, Machine};

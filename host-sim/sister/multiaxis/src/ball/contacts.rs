@@ -5,9 +5,8 @@
 
 use serde::Serialize;
 
-use super::super::kinematics::Joints;
-use super::super::kinematics::vector::Vector;
-use super::super::machine::Machine;
+use super::super::machine::{Joints, Machine};
+use super::super::vector::Vector;
 use super::BallEnd;
 
 /// The span of what was found.

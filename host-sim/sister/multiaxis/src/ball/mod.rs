@@ -15,8 +15,8 @@ mod contacts;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::kinematics::Pose;
-use super::kinematics::vector::{Vector, add_scaled, angle, unit};
 use super::machine::Machine;
+use super::vector::{Vector, add_scaled, angle, unit};
 
 pub use contacts::{ContactSpan, Contacts};
 

@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::super::kinematics::Jet;
-use super::super::kinematics::vector::Vector;
+use super::super::vector::Vector;
 
 /// Pieces after which the search stops.
 pub(in super::super) const MOST_PIECES: usize = 20_000;

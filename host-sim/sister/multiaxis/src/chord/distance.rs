@@ -1,7 +1,7 @@
 //! Distance of the moving point from its chord, with the bounds a proof needs.
 
-use super::super::kinematics::vector::{Vector, add_scaled, dot, norm, sub, unit};
 use super::super::kinematics::{Course, Jet};
+use super::super::vector::{Vector, add_scaled, dot, norm, sub, unit};
 use super::certified::{Curve, Sample};
 
 /// The distance of a course from the segment between its ends.

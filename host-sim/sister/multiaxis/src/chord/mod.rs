@@ -19,8 +19,9 @@ use certified::stays_within;
 use distance::FromChord;
 
 use super::Machine;
-use super::kinematics::vector::{Vector, add_scaled, dot, norm, sub};
-use super::kinematics::{Course, Joints};
+use super::kinematics::Course;
+use super::machine::Joints;
+use super::vector::{Vector, add_scaled, dot, norm, sub};
 
 pub(super) use certified::{Curve, Sample, largest};
 

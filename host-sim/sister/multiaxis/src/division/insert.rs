@@ -7,7 +7,7 @@
 use super::{DivisionError, MOST_PIECES, Rule, Span, divide, divide_known};
 use crate::Machine;
 use crate::chord::{ChordError, chord_error};
-use crate::kinematics::Joints;
+use crate::machine::Joints;
 use crate::singular::{Passage, follow, orientation_error, passage};
 
 /// What was done about the orientation of a move.

@@ -22,7 +22,7 @@ use span::Span;
 
 use super::Machine;
 use super::chord::chord_error;
-use super::kinematics::Joints;
+use super::machine::Joints;
 
 pub use insert::{Insertion, Orientation, insert};
 

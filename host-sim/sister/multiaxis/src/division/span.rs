@@ -2,8 +2,8 @@
 
 use super::super::Machine;
 use super::super::chord::{chord_error, within};
-use super::super::kinematics::Joints;
-use super::super::kinematics::vector::{Vector, add_scaled, sub};
+use super::super::machine::Joints;
+use super::super::vector::{Vector, add_scaled, sub};
 
 /// A move and its chord.
 #[derive(Clone, Copy, Debug)]

@@ -5,8 +5,8 @@
 //! of the move, so what is built on them is a proof and not a sample.
 
 use super::super::machine::Letter;
+use super::super::vector::{Vector, add, norm, sub};
 use super::chain::Link;
-use super::vector::{Vector, add, norm, sub};
 
 /// Largest lengths of the first, second and third derivative by the parameter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

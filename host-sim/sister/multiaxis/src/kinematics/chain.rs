@@ -5,7 +5,7 @@
 //! `q′ = R(p′ + Ω e×(p−c))`, `q″ = R(p″ + 2Ω e×p′ + Ω² e×(e×(p−c)))`.
 
 use super::super::machine::{Letter, Machine, Side};
-use super::vector::{Vector, add, add_scaled, cross, sub};
+use super::super::vector::{Vector, add, add_scaled, cross, sub};
 
 /// A point and its first two derivatives by the parameter of the move.
 #[derive(Clone, Copy, Debug, PartialEq)]

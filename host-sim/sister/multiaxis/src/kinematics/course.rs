@@ -1,10 +1,10 @@
 //! The way of one point of the tool, in the part's frame, while all five joints move linearly (T eqs 1–2).
 
-use super::super::machine::Machine;
+use super::super::machine::{Joints, Machine};
+use super::super::vector::{Vector, add, add_scaled, norm, sub};
+use super::UPRIGHT;
 use super::bounds::{Bounds, Region};
 use super::chain::{Chain, Jet, Link};
-use super::vector::{Vector, add, add_scaled, norm, sub};
-use super::{Joints, UPRIGHT};
 
 /// A point of the tool, or its axis, over a linear move of the joints; the parameter runs from 0 to 1.
 #[derive(Clone, Debug)]

@@ -10,9 +10,9 @@
 use std::f64::consts::{PI, TAU};
 
 use super::super::machine::{Letter, Machine};
+use super::super::vector::{Vector, add_scaled, cross, dot, norm};
 use super::UPRIGHT;
 use super::chain::Link;
-use super::vector::{Vector, add_scaled, cross, dot, norm};
 
 /// Which of the two solutions a pair of rotary words is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -25,7 +25,7 @@
 mod read;
 mod travel;
 
-use super::kinematics::vector::Vector;
+use super::vector::Vector;
 
 pub use travel::Beyond;
 
@@ -151,6 +151,39 @@ pub struct Tool {
 impl Default for Tool {
     fn default() -> Self {
         Self { length_mm: 0.0, ball_radius_mm: None, helix_deg: 0.0, counted: Counted::Tip }
+    }
+}
+
+/// Positions of the five joints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joints {
+    /// The linear words, mm.
+    pub xyz: [f64; 3],
+    /// The rotary words in the order of [`Machine::rotary`], rad.
+    pub rotary: [f64; 2],
+}
+
+impl Joints {
+    /// From the words of a program: mm and degrees.
+    pub fn from_degrees(xyz: [f64; 3], rotary_deg: [f64; 2]) -> Self {
+        Self { xyz, rotary: rotary_deg.map(f64::to_radians) }
+    }
+    /// The rotary words in degrees.
+    pub fn rotary_deg(&self) -> [f64; 2] {
+        self.rotary.map(f64::to_degrees)
+    }
+    /// Every number is finite.
+    pub fn is_finite(&self) -> bool {
+        self.xyz.iter().chain(&self.rotary).all(|n| n.is_finite())
+    }
+    /// The joints at the parameter `t` of the linear move to `other`.
+    #[must_use]
+    pub fn towards(&self, other: &Self, t: f64) -> Self {
+        let mix = |a: f64, b: f64| if t == 1.0 { b } else { a + (b - a) * t };
+        Self {
+            xyz: std::array::from_fn(|i| mix(self.xyz[i], other.xyz[i])),
+            rotary: std::array::from_fn(|i| mix(self.rotary[i], other.rotary[i])),
+        }
     }
 }
 

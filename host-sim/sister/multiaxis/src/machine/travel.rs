@@ -1,7 +1,6 @@
 //! Travel of the joints: which one a position takes beyond its end.
 
-use super::super::kinematics::Joints;
-use super::Machine;
+use super::{Joints, Machine};
 
 /// Positions beyond the end of a travel by less than this (mm, degrees) are rounding.
 const ROUNDING: f64 = 1e-9;

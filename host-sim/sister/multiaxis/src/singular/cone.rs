@@ -1,8 +1,8 @@
 //! Distance of a tool axis from the great circle between the ends of its move.
 
 use super::super::chord::{Curve, Sample};
-use super::super::kinematics::vector::{Vector, add_scaled, angle, cross, dot, norm, unit};
 use super::super::kinematics::{Course, Jet};
+use super::super::vector::{Vector, add_scaled, angle, cross, dot, norm, unit};
 
 /// A tool axis on its way, and the flat cone spanned by its ends.
 pub(super) struct FromArc<'c> {

@@ -7,8 +7,9 @@
 //! same is tried on the branch of the end, and then given up.
 
 use super::super::Machine;
-use super::super::kinematics::vector::{Vector, add_scaled, angle, scale, unit};
-use super::super::kinematics::{Branch, Joints};
+use super::super::kinematics::Branch;
+use super::super::machine::Joints;
+use super::super::vector::{Vector, add_scaled, angle, scale, unit};
 use super::orientation_error;
 
 /// Rotary words nearer than this, rad, are the same.

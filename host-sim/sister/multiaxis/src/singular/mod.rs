@@ -20,9 +20,9 @@ use cone::FromArc;
 
 use super::Machine;
 use super::chord::largest;
-use super::kinematics::vector::angle;
-use super::kinematics::{Branch, Course, Joints};
-use super::machine::Letter;
+use super::kinematics::{Branch, Course};
+use super::machine::{Joints, Letter};
+use super::vector::angle;
 
 pub(super) use follow::follow;
 

@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use truepath_multiaxis::ball::{BallEnd, Contacts};
-use truepath_multiaxis::kinematics::vector::{Vector, add_scaled, angle, norm, sub, unit};
 use truepath_multiaxis::machine::{Counted, Machine, Tool};
+use truepath_multiaxis::vector::{Vector, add_scaled, angle, norm, sub, unit};
 use truepath_multiaxis::{Joints, Pose, chord_error};
 
 use crate::machines::{Draw, types};

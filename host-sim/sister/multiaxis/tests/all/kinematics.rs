@@ -1,9 +1,9 @@
 //! The kinematics against a second formulation, against the published ones of LinuxCNC, and against their own inverse.
 
 use truepath_multiaxis::Joints;
-use truepath_multiaxis::kinematics::vector::{Vector, norm, sub};
 use truepath_multiaxis::kinematics::{Branch, Course};
 use truepath_multiaxis::machine::{Letter, Machine, Rotary, Sense, Side, Tool};
+use truepath_multiaxis::vector::{Vector, norm, sub};
 
 use crate::machines::{Draw, place_by_matrices, tool_to_part, types};
 

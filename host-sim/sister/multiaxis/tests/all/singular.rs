@@ -1,9 +1,9 @@
 //! Moves near the pole: how they are classified, what the orientation error is, and what can be done about it.
 
 use truepath_multiaxis::division::Orientation;
-use truepath_multiaxis::kinematics::vector::{Vector, angle, cross, dot, unit};
 use truepath_multiaxis::machine::{Letter, Machine, Rotary, Sense, Side, Tool};
 use truepath_multiaxis::singular::{Class, passage};
+use truepath_multiaxis::vector::{Vector, angle, cross, dot, unit};
 use truepath_multiaxis::{Joints, Rule, insert};
 
 use crate::machines::{Draw, from_segment, place_by_matrices, tool_to_part, types};

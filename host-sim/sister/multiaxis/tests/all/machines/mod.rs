@@ -4,8 +4,8 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use truepath_multiaxis::Joints;
-use truepath_multiaxis::kinematics::vector::Vector;
 use truepath_multiaxis::machine::{Counted, Letter, Machine, Rotary, Sense, Side, Tool};
+use truepath_multiaxis::vector::Vector;
 
 pub const LETTERS: [Letter; 3] = [Letter::A, Letter::B, Letter::C];
 pub const SIDES: [[Side; 2]; 3] = [[Side::Table, Side::Table], [Side::Table, Side::Head], [Side::Head, Side::Head]];
