@@ -5,7 +5,7 @@
 
 use truepath_ground::diagnostics::Failure;
 
-use super::BlockEdit;
+use super::edit::BlockEdit;
 use super::pen::{Pen, place};
 use super::survey::{Kind, Move};
 use super::writer::Writer;

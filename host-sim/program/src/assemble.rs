@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use truepath_core::gcode::{Line, program_crc};
 
-use super::{RewriteOptions, header};
+use super::edit::RewriteOptions;
+use super::header;
 
 /// New text of a line: one or more lines without their ends.
 pub(super) type Replaced = BTreeMap<u32, Vec<Vec<u8>>>;

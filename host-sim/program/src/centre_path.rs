@@ -15,12 +15,12 @@ use truepath_core::gcode::{CompensationBy, Line, Motion, Plane};
 use truepath_core::geometry;
 use truepath_ground::diagnostics::Failure;
 
+use super::edit::{BlockEdit, RewriteOptions};
 use super::fit::Shape;
 use super::line::Block;
 use super::pen::{Pen, place};
 use super::survey::{Kind, Move};
 use super::writer::Writer;
-use super::{BlockEdit, RewriteOptions};
 
 const HELP: &str = "use --route coprocessor, or post the program with the path of the cutter's centre";
 

@@ -7,10 +7,10 @@ use std::fmt::Write as _;
 use truepath_core::gcode::Lines;
 
 use super::deviation::distance;
+use super::edit::{BlockEdit, RewriteOptions};
 use super::proof::{Kink, Proof};
 use super::survey::Move;
 use super::vector::length;
-use super::{BlockEdit, RewriteOptions};
 
 /// The largest displacement of the contour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]

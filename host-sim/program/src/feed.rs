@@ -10,7 +10,7 @@ use truepath_core::gcode::{FeedMode, Modal, Units};
 use truepath_core::units::Real;
 use truepath_ground::diagnostics::Failure;
 
-use super::BlockEdit;
+use super::edit::BlockEdit;
 use super::survey::Move;
 use super::writer::{Scheduled, Writer};
 
@@ -122,7 +122,7 @@ impl Writer<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::FeedFrom;
+    use super::super::edit::FeedFrom;
     use super::*;
 
     #[test]

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use truepath_core::gcode::{CORRECTED_MARK, Lines, Token, Words};
 
-use super::{Purpose, RewriteOptions};
+use super::edit::{Purpose, RewriteOptions};
 
 /// How the mark of a first pass begins.
 const FIRST_PASS: &str = "(TRUEPATH FIRST PASS";
@@ -26,15 +26,6 @@ pub(super) fn place(program: &[u8]) -> u32 {
         }
     }
     after
-}
-
-/// What a corrected program was made from, as its head names it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Origin {
-    /// CRC-32 of the job file.
-    pub job: Option<u32>,
-    /// CRC-32 of the probe file.
-    pub probe: Option<u32>,
 }
 
 /// The lines of the mark.

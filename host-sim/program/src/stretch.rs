@@ -5,8 +5,8 @@ use truepath_core::geometry::Curve;
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
 
-use super::BlockEdit;
 use super::deviation::distance;
+use super::edit::BlockEdit;
 use super::feed::spans;
 use super::fit::{Piece, Samples, Shape, fit};
 use super::pen::{Pen, place};

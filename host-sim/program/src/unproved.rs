@@ -6,7 +6,7 @@
 use truepath_core::gcode::Lines;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
-use super::BlockEdit;
+use super::edit::BlockEdit;
 
 /// How a program reads where it stands: LinuxCNC's parameters of the present position.
 const POSITIONS: [&str; 6] = ["#542", "#<_x>", "#<_y>", "#<_abs_x>", "#<_abs_y>", "#[542"];

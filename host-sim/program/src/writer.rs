@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use truepath_core::gcode::{Line, Modal, Motion};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
-use super::RewriteOptions;
 use super::assemble::Replaced;
+use super::edit::RewriteOptions;
 use super::line::Block;
 use super::pen::Pen;
 use super::survey::Move;

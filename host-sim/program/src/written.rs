@@ -11,10 +11,11 @@ use truepath_core::gcode::{Line, Lines};
 use truepath_ground::diagnostics::{Failure, Source};
 
 use super::assemble::{Replaced, assemble};
+use super::centre_path;
+use super::edit::{BlockEdit, RewriteOptions};
 use super::line::Block;
 use super::survey::Move;
 use super::writer::Writer;
-use super::{BlockEdit, RewriteOptions, centre_path};
 
 /// The written text and which lines of the original it changes.
 pub(super) struct Written {

@@ -22,7 +22,7 @@ use inside::{Along, Terms};
 use outside::Bounds;
 use truepath_core::gcode::{Lines, Options};
 
-use super::BlockEdit;
+use super::edit::BlockEdit;
 
 pub(super) use kink::Kink;
 

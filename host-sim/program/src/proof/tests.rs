@@ -83,7 +83,7 @@ const FED: &str = "%\nG21 G90\nM3 S1500\nG0 X0.1 Y0.2 Z10\nG1 Z-5 F300\nN10 G1 X
 
 fn fed(written: &str, second_from: usize) -> Result<Proof, String> {
     let mut edits = edits();
-    let from = |sample, percent| super::super::FeedFrom { sample, percent };
+    let from = |sample, percent| super::super::edit::FeedFrom { sample, percent };
     edits[0].feeds = vec![from(0, 100), from(49, 80)];
     edits[1].feeds = vec![from(0, 80), from(second_from, 90)];
     verdict_of(ORIGINAL, written, &edits, [2, 3])

@@ -25,22 +25,7 @@ use super::chord::chord_error;
 use super::machine::Joints;
 
 pub use insert::{Insertion, Orientation, insert};
-
-/// Pieces of one move, at most.
-pub const MOST_PIECES: usize = 10_000;
-
-/// How locations are inserted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
-    /// Equal pieces.
-    Equal,
-    /// Halving of every piece that errs too much.
-    Midpoint,
-    /// Every piece as long as it can be.
-    Longest,
-    /// The one of the three with the fewest pieces; of several the first.
-    Fewest,
-}
+pub use rules::{DivisionError, MOST_PIECES, Rule};
 
 /// A divided move.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,23 +45,6 @@ impl Division {
     pub fn pieces(&self) -> usize {
         self.inserted.len() + 1
     }
-}
-
-/// Why a move cannot be divided.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum DivisionError {
-    /// A number is not finite.
-    #[error("a position is not a finite number")]
-    NotFinite,
-    /// The tolerance is zero, negative or no number.
-    #[error("the tolerance {0} mm is not above 0")]
-    Tolerance(f64),
-    /// More pieces than allowed.
-    #[error("more than {MOST_PIECES} pieces would be needed")]
-    TooManyPieces,
-    /// The tolerance is below what `f64` resolves at this size.
-    #[error("the tolerance {0} mm is below the rounding of the computation at these positions")]
-    Unprovable(f64),
 }
 
 /// Divides the linear joint move `from` → `to` so that no piece leaves its chord by more than `tolerance_mm`.

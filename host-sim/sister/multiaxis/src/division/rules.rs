@@ -1,7 +1,39 @@
 //! The rules of division: each gives the inner parameters of a division all of whose pieces are proved to fit.
 
 use super::span::Span;
-use super::{DivisionError, MOST_PIECES, Rule};
+
+/// Pieces of one move, at most.
+pub const MOST_PIECES: usize = 10_000;
+
+/// How locations are inserted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// Equal pieces.
+    Equal,
+    /// Halving of every piece that errs too much.
+    Midpoint,
+    /// Every piece as long as it can be.
+    Longest,
+    /// The one of the three with the fewest pieces; of several the first.
+    Fewest,
+}
+
+/// Why a move cannot be divided.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum DivisionError {
+    /// A number is not finite.
+    #[error("a position is not a finite number")]
+    NotFinite,
+    /// The tolerance is zero, negative or no number.
+    #[error("the tolerance {0} mm is not above 0")]
+    Tolerance(f64),
+    /// More pieces than allowed.
+    #[error("more than {MOST_PIECES} pieces would be needed")]
+    TooManyPieces,
+    /// The tolerance is below what `f64` resolves at this size.
+    #[error("the tolerance {0} mm is below the rounding of the computation at these positions")]
+    Unprovable(f64),
+}
 
 /// A piece narrower than this that does not fit will not fit when it is narrower still: rounding is in the way.
 const NARROWEST: f64 = 1e-9;
