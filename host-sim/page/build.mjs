@@ -13,15 +13,16 @@ const script = await build({
   legalComments: "none",
   write: false,
 });
-const style = await build({ entryPoints: ["src/page.css"], bundle: true, minify: true, write: false });
+const style = await build({ entryPoints: ["src/page.css"], bundle: true, minify: true, write: false, loader: { ".woff2": "dataurl" } });
 const page = await readFile("src/page.html", "utf8");
 const code = script.outputFiles[0].text.trim();
 const css = style.outputFiles[0].text.trim();
 if (/<\/script|<!--/i.test(code) || /<\/style/i.test(css)) throw new Error("the bundle would end its own element");
+const [holder] = (await readFile("font/OFL.txt", "utf8")).split("\n");
 const licence = (await readFile("node_modules/uplot/LICENSE", "utf8")).trim();
 const { version } = JSON.parse(await readFile("node_modules/uplot/package.json", "utf8"));
 const html = page
-  .replace("/*style*/", () => css)
+  .replace("/*style*/", () => `/* Letters: Arimo. ${holder}. SIL Open Font License 1.1, openfontlicense.org */\n${css}`)
   .replace("/*script*/", () => `/* Contains uPlot ${version}.\n${licence}\n*/\n${code}`);
 if (html.split('id="truepath-data">null</script>').length !== 2) throw new Error("the place for the data must occur once");
 const file = process.argv[2] ?? "dist/report.html";

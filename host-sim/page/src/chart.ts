@@ -6,14 +6,16 @@
 
 import type { Report } from "./data";
 import { card, el, svg } from "./dom";
-import { face } from "./face";
+import { beside, face } from "./face";
 import { fixed, signed } from "./format";
 import { limitDecimals, limitsOf, standing, type Limits, type Standing } from "./limits";
+import { widest } from "./letters";
 import { markPath } from "./marks";
 import { roundStep } from "./view";
 
-const HEIGHT = 210;
-const EDGE = { left: 54, right: 64, top: 8, bottom: 34 };
+const HEIGHT = 194;
+const EDGE = { left: 54, right: 64, top: 8, bottom: 20 };
+type Edge = typeof EDGE;
 interface Scale { px(s: number): number; py(e: number): number }
 
 export class Chart {
@@ -39,16 +41,21 @@ export class Chart {
     const low = values.reduce((a, b) => Math.min(a, b));
     const high = values.reduce((a, b) => Math.max(a, b));
     const room = 0.06 * Math.max(high - low, 1e-4);
+    const { step, decimals } = stepping(high - low + 2 * room);
+    const written = [low - room, high + room].map((v) => fixed(Math.trunc(v / step) * step, decimals));
+    const bounds = limits ? [limits.upper, limits.lower].map((v) => signed(v, limitDecimals(limits))) : [];
+    // Wide letters get more room.
+    const edge = { ...EDGE, left: Math.max(EDGE.left, widest(written) + 8), right: Math.max(EDGE.right, widest(bounds) + 8) };
     const along = points.map((p) => p.s_mm as number);
     const end = this.report.coverage?.length_mm ?? along.reduce((a, b) => Math.max(a, b), 1);
     const scale = {
-      px: (s: number) => EDGE.left + (s / end) * (width - EDGE.left - EDGE.right),
+      px: (s: number) => edge.left + (s / end) * (width - edge.left - edge.right),
       py: (e: number) => EDGE.top + ((high + room - e) / (high - low + 2 * room)) * (HEIGHT - EDGE.top - EDGE.bottom),
     };
     const picture = svg("svg", { width, height: HEIGHT, viewBox: `0 0 ${width} ${HEIGHT}`, role: "img",
       "aria-label": `Deviation of ${points.length} points over arc length; the table holds the figures` });
     this.unmeasured(picture, scale);
-    this.axes(picture, scale, width, [low - room, high + room], end);
+    this.axes(picture, scale, edge, width, [low - room, high + room], end);
     if (limits) this.limitLines(picture, scale, end, limits, guard);
     for (const p of points) {
       const [x, y] = [scale.px(p.s_mm as number), scale.py(p.error_mm as number)];
@@ -56,7 +63,8 @@ export class Chart {
       const where = standing(p, limits);
       picture.append(svg("path", { class: `mark ${where}`, d: markPath(where, x, y, 4) }));
     }
-    this.box.replaceChildren(picture, this.key(guard), ...face(this.report, width, EDGE, scale.px));
+    const axes = el("p", { class: "chart-axis" }, el("span", {}, "deviation, mm: material left is positive"), el("span", {}, "arc length s, mm"));
+    this.box.replaceChildren(picture, beside(axes, edge), this.key(guard), ...face(this.report, width, edge, scale.px));
   }
 
   /** What the signs are. */
@@ -92,14 +100,14 @@ export class Chart {
     }
   }
 
-  private axes(picture: SVGElement, { px, py }: Scale, width: number, [low, high]: [number, number], end: number): void {
-    const step = roundStep((high - low) / 5);
-    const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  private axes(picture: SVGElement, { px, py }: Scale, edge: Edge, width: number, [low, high]: [number, number], end: number): void {
+    const { step, decimals } = stepping(high - low);
     for (let k = Math.ceil(low / step); k * step <= high; k++) {
       picture.append(svg("path", { class: k === 0 ? "nought" : "rule", d: `M${px(0)} ${py(k * step)}H${px(end)}` }));
       picture.append(svg("text", { x: px(0) - 6, y: py(k * step) + 4, "text-anchor": "end" }, fixed(k * step, decimals)));
     }
-    const along = roundStep(end / Math.max(3, Math.floor(width / 90)));
+    const room = Math.max(90, 1.5 * widest([fixed(end, 0)]));
+    const along = roundStep(end / Math.max(2, Math.min(Math.floor(width / 90), Math.floor((width - edge.left - edge.right) / room))));
     const bottom = HEIGHT - EDGE.bottom;
     const places = Math.max(0, -Math.floor(Math.log10(along) + 1e-9));
     for (let k = 0; k * along <= end; k++) {
@@ -107,7 +115,11 @@ export class Chart {
       picture.append(svg("text", { x: px(k * along), y: bottom + 16, "text-anchor": "middle" }, fixed(k * along, places)));
     }
     picture.append(svg("path", { class: "tick", d: `M${px(0)} ${EDGE.top}V${bottom}H${px(end)}` }));
-    picture.append(svg("text", { x: px(end), y: bottom + 30, "text-anchor": "end" }, "arc length s, mm"));
-    picture.append(svg("text", { x: px(0), y: bottom + 30 }, "deviation, mm: material left is positive"));
   }
+}
+
+/** Spacing of the lines over such a span, and the decimals of their numbers. */
+function stepping(span: number): { step: number; decimals: number } {
+  const step = roundStep(span / 5);
+  return { step, decimals: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
 }

@@ -7,9 +7,16 @@ import { limitsOf, standing } from "./limits";
 import { markPath } from "./marks";
 import { roundStep } from "./view";
 
-const HEIGHT = 116;
+const HEIGHT = 102;
 const TOP = 8;
-const BOTTOM = 20;
+const BOTTOM = 6;
+
+/** A line of words below a drawing, from its left edge to its right one; long ones wrap. */
+export function beside(line: HTMLElement, edge: { left: number; right: number }): HTMLElement {
+  line.style.paddingLeft = `${edge.left}px`;
+  line.style.paddingRight = `${edge.right}px`;
+  return line;
+}
 
 /** Heading, drawing and its key; nothing where the heights are not known. `px` is the place of an arc length. */
 export function face(report: Report, width: number, edge: { left: number; right: number }, px: (s: number) => number): Element[] {
@@ -38,9 +45,9 @@ export function face(report: Report, width: number, edge: { left: number; right:
     const where = standing(p, limits);
     picture.append(svg("path", { class: `mark ${where}`, d: markPath(where, px(p.s_mm as number), py(p.z_mm as number), 4) }));
   }
-  picture.append(svg("text", { x: edge.left, y: HEIGHT - 5 }, "height above the cutter's tip, mm, over the same arc length"));
+  const axis = beside(el("p", { class: "chart-axis" }, "height above the cutter's tip, mm, over the same arc length"), edge);
   const key = svg("svg", { width: 16, height: 12, "aria-hidden": "true" });
   key.append(svg("rect", { class: "unmeasured", width: 16, height: 12 }));
   const words = `farther than ${coverage.reach_mm} mm along the contour or ${wall.reach_mm} mm in height from every measured place`;
-  return [el("h3", {}, "Where the wall was touched"), picture, ...(open.length ? [el("p", { class: "chart-key" }, el("span", {}, key, words))] : [])];
+  return [el("h3", {}, "Where the wall was touched"), picture, axis, ...(open.length ? [el("p", { class: "chart-key" }, el("span", {}, key, words))] : [])];
 }

@@ -202,4 +202,9 @@ function announce(live: HTMLElement, model: Model, place: number): void {
   }, 400);
 }
 
-start();
+/** Letters on a canvas are drawn once: the font of the page comes first. Without it a font of the system does. */
+function lettered(): Promise<unknown> {
+  return Promise.allSettled([400, 600].map((weight) => document.fonts.load(`${weight} 13px ${palette().font}`)));
+}
+
+lettered().then(start);

@@ -42,14 +42,15 @@ function pictureHeight(stage: Stage): number {
 export function printing(report: Report, stage: Stage, store: Store, traces: Traces | null, recolour: () => void, both: boolean): void {
   const root = document.documentElement;
   document.head.append(sheets(report));
-  let kept: { theme: string | undefined; shown: Shown; range: [number, number] | null; cx: number; cy: number; scale: number } | null = null;
+  let kept: { theme: string | undefined; opened: HTMLDetailsElement[]; shown: Shown; range: [number, number] | null; cx: number; cy: number; scale: number } | null = null;
   window.addEventListener("beforeprint", () => {
     const { cx, cy, scale } = stage.view;
-    kept = { theme: root.dataset.theme, shown: store.state.shown, range: store.state.range, cx, cy, scale };
+    const opened = [...document.querySelectorAll<HTMLDetailsElement>("details.warnings:not([open])")];
+    kept = { theme: root.dataset.theme, opened, shown: store.state.shown, range: store.state.range, cx, cy, scale };
     root.dataset.theme = "light";
     root.dataset.printing = "yes";
     store.set({ playing: false, range: null, ...(both ? { shown: "both" } : {}) });
-    for (const details of document.querySelectorAll<HTMLDetailsElement>("details.warnings")) details.open = true;
+    for (const details of opened) details.open = true;
     stage.view.fit();
     root.style.setProperty("--paper-stage", `${pictureHeight(stage)}px`);
     stage.layout(3);
@@ -64,6 +65,7 @@ export function printing(report: Report, stage: Stage, store: Store, traces: Tra
     root.style.removeProperty("--paper-stage");
     if (kept.theme) root.dataset.theme = kept.theme;
     else delete root.dataset.theme;
+    for (const details of kept.opened) details.open = false;
     store.set({ shown: kept.shown, range: kept.range });
     stage.layout();
     Object.assign(stage.view, { cx: kept.cx, cy: kept.cy, scale: kept.scale });

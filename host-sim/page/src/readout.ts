@@ -47,7 +47,7 @@ export class Readout {
       ...(narrow ? [] : [el("th", { scope: "col", class: "text" }, "unit")])];
     this.element = el("section", { class: narrow ? "card narrow" : "card", id: "readout", "aria-labelledby": "readout-title" },
       this.title, this.place,
-      el("table", {}, el("thead", {}, el("tr", {}, ...heads)), body));
+      el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Figures at the cutter" }, el("table", {}, el("thead", {}, el("tr", {}, ...heads)), body)));
   }
 
   show(index: number, hovered = false): void {

@@ -47,17 +47,20 @@ export function gridNumbers(c: Context, view: View, colours: Palette): void {
     c.strokeText(text, px, py);
     c.fillText(text, px, py);
   };
+  const name = "X mm";
+  const right = view.width - 5 - c.measureText(name).width;
   const number = (v: number) => v.toFixed(decimals).replace(/^-(?=0(\.0*)?$)/, "").replace("-", "−");
   c.textBaseline = "bottom";
   for (let k = x[0]; k <= x[1]; k++) {
     const px = view.px(k * step);
-    if (px > 46 && px < view.width - 70) write(number(k * step), px + 3, view.height - 2);
+    const text = number(k * step);
+    if (px > 46 && px + 3 + c.measureText(text).width < right - 8) write(text, px + 3, view.height - 2);
   }
   for (let k = y[0]; k <= y[1]; k++) {
     const py = view.py(k * step);
     if (py < view.height - 22 && py > 26) write(number(k * step), 3, py - 1);
   }
-  write("X mm", view.width - 32, view.height - 2);
+  write(name, right, view.height - 2);
   c.textBaseline = "top";
   write("Y mm", 3, 3);
 }

@@ -5,6 +5,7 @@ import { between } from "./cutter";
 import type { Series } from "./decode";
 import { framedByFinger } from "./finger";
 import { fixed } from "./format";
+import { widest } from "./letters";
 import { limitsOf, type Limits } from "./limits";
 import type { Model, Quantity } from "./model";
 import type { Palette } from "./palette";
@@ -136,6 +137,8 @@ export class Traces {
     const [min, max] = state.range ?? [s[0], s[s.length - 1]];
     this.stretch = [min, max];
     const font = `11px ${colours.font}`;
+    // Numbers as long as any tick's have room beside the axis, and beside each other below it.
+    const number = widest(["−0.00025"]);
     const axis = { stroke: colours.quiet, font, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false } };
     const series: uPlot.Series[] = [{}];
     for (const curve of panel.curves) {
@@ -165,8 +168,8 @@ export class Traces {
       },
       scales: { x: { time: false, min, max, range: (_plot, a, b) => [a, b] }, y: { range: (_plot, a, b) => around(a, b, panel.limits) } },
       axes: [
-        { ...axis, show: last, size: 30, gap: 2, values: (_plot, ticks) => ticks.map((t) => label(t)) },
-        { ...axis, size: 54, gap: 4, space: 16, values: (_plot, ticks) => ticks.map((t) => label(t)) },
+        { ...axis, show: last, size: 30, gap: 5, space: Math.max(50, number), values: (_plot, ticks) => ticks.map((t) => label(t)) },
+        { ...axis, size: Math.max(54, Math.ceil(number) + 8), gap: 4, space: 16, values: (_plot, ticks) => ticks.map((t) => label(t)) },
       ],
       hooks: {
         setScale: [(plot, key) => {

