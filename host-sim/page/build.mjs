@@ -18,7 +18,8 @@ const page = await readFile("src/page.html", "utf8");
 const code = script.outputFiles[0].text.trim();
 const css = style.outputFiles[0].text.trim();
 if (/<\/script|<!--/i.test(code) || /<\/style/i.test(css)) throw new Error("the bundle would end its own element");
-const [holder] = (await readFile("font/OFL.txt", "utf8")).split("\n");
+// Named without its scheme: a page has no address of the network in it.
+const holder = (await readFile("font/OFL.txt", "utf8")).split("\n")[0].replace("https://", "");
 const licence = (await readFile("node_modules/uplot/LICENSE", "utf8")).trim();
 const { version } = JSON.parse(await readFile("node_modules/uplot/package.json", "utf8"));
 const html = page

@@ -59,7 +59,7 @@ fn the_page_loads_nothing_and_sends_nothing() {
     assert!(elsewhere.is_empty(), "{elsewhere:?}");
     // Whatever slips in, the browser refuses it.
     assert!(page.contains(
-        r#"content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:""#
+        r#"content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; font-src data:""#
     ));
 }
 

@@ -84,14 +84,15 @@ export async function write(name, content, { letters = true } = {}) {
   return file;
 }
 
-/** Tabs by the options they were made with: making one costs more than a test. */
+/** Tabs by the kind of screen and clock they were made with: making one costs more than a test. */
 const tabs = new Map();
 
-async function tab(options) {
+/** The tab of its kind, with a window of this size and a reader of these wishes. */
+async function tab({ viewport = { width: 1440, height: 900 }, colorScheme = "light", reducedMotion = "no-preference", ...options }) {
   const key = JSON.stringify(options);
   if (!tabs.has(key)) {
     const { clock, ...given } = options;
-    const context = await (await browser()).newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "light", reducedMotion: "no-preference", ...given });
+    const context = await (await browser()).newContext({ viewport, ...given });
     if (clock) await context.clock.install({ time: 0 });
     const page = await context.newPage();
     const heard = { complaints: [], requests: [] };
@@ -100,6 +101,11 @@ async function tab(options) {
     page.on("request", (request) => { if (!/^(file|data|blob|about):/.test(request.url())) heard.requests.push(request.url()); });
     tabs.set(key, { context, page, heard });
   }
+  const { page } = tabs.get(key);
+  // A test that failed has left its page.
+  if (page.url() !== "about:blank") await page.goto("about:blank");
+  await page.setViewportSize(viewport);
+  await page.emulateMedia({ colorScheme, reducedMotion });
   return tabs.get(key);
 }
 
@@ -112,7 +118,6 @@ export async function open(file, options = {}) {
   const { context, page, heard } = await tab(options);
   heard.complaints = [];
   heard.requests = [];
-  await page.goto("about:blank");
   await page.mouse.move(0, 0);
   if (file !== "about:blank") await show(page, file);
   if (options.clock) await page.clock.pauseAt((await page.evaluate(() => Date.now())) + 3_600_000);

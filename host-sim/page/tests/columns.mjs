@@ -21,3 +21,14 @@ export function numbers({ decimals, offset = 0, data }) {
     return bits === -2147483648 ? NaN : (offset + bits) / 10 ** decimals;
   });
 }
+
+/** A contour with every n-th of its samples: the same columns, sooner drawn. */
+export function thinned(contour, n) {
+  const of = (value) => {
+    if (typeof value?.data !== "string") return value && typeof value === "object" && !Array.isArray(value) ? thinned(value, n) : value;
+    const bytes = Buffer.from(value.data, "base64");
+    const kept = Buffer.concat(Array.from({ length: Math.ceil(bytes.length / (4 * n)) }, (_, k) => bytes.subarray(4 * n * k, 4 * n * k + 4)));
+    return { ...value, data: kept.toString("base64") };
+  };
+  return Object.fromEntries(Object.entries(contour).map(([name, value]) => [name, of(value)]));
+}

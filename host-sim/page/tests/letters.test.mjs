@@ -181,7 +181,6 @@ for (const [letters, font] of [[true, "its own font"], [false, "another one"]]) 
           await settled(page);
           assert.deepEqual((await faults(page)), [], "paper");
           await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
-          await page.setViewportSize({ width: 1440, height: 900 });
         }
         await close();
       }

@@ -1,7 +1,7 @@
 // Each command sends what it has; what is wrong with the data is said by name.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { column } from "./columns.mjs";
+import { column, thinned } from "./columns.mjs";
 import { dataOf, open, show, write } from "./browser.mjs";
 
 async function opened(name, data) {
@@ -25,6 +25,8 @@ test("points alone, a wall as an outline alone, and nothing but a title are show
 
 test("every column of a pass may be missing", async () => {
   const data = await dataOf("demo/corner");
+  data.contour = thinned(data.contour, 20);
+  delete data.heights;
   const { page, complaints, requests, close } = await opened("missing", data);
   for (const name of Object.keys(data.contour.before).filter((key) => key !== "label")) {
     const contour = structuredClone(data.contour);

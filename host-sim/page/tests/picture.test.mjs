@@ -35,8 +35,15 @@ const VIEWS = [
   ["demo/pocket", "phone", PHONE, "after", 560], ["island", "light", SIZE, null, 1500], ["inspect", "light", SIZE, null, null],
 ];
 
+let made;
+
 /** A blank page that reads and makes pictures. */
-async function easel() {
+function easel() {
+  made ??= newEasel();
+  return made;
+}
+
+async function newEasel() {
   const page = await (await browser()).newPage();
   await page.goto("about:blank");
   await page.evaluate(() => {
@@ -119,7 +126,6 @@ for (const view of VIEWS) {
       }
     }
     const share = await changed(desk, now, await readFile(reference + file));
-    await desk.close();
     t.diagnostic(`${percent(share)} differ`);
     assert.ok(share.drawn <= CELLS.drawn && share.other <= CELLS.other, `${percent(share)} of ${pictures}${file} are not as in ${reference}${file}: look at both; cargo xtask page --write renews them`);
     if (shownInReadme) assert.ok((await readFile(readme + file)).length < README, `${file} of the README is too large`);
@@ -184,6 +190,5 @@ test("the comparison notices a layer, a place and a block, and not another rende
     ["letters lower by half a pixel", ...styled(":is(span, p, h1, h2, dt, dd, td, th, b) { position: relative; top: 0.5px }")],
     ["letters of the scenes aside by half a pixel", () => lettered(0.5), () => lettered(0)],
   ]) assert.ok(await share(what, ...ways) < 1 / RENDERED, what);
-  await desk.close();
   await close();
 });

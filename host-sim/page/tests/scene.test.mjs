@@ -239,7 +239,6 @@ test("the line of the cutter in the traces stays when another pass, another them
   await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
   assert.deepEqual(await middle(), Array(7).fill(true), "paper");
   await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
-  await page.setViewportSize({ width: 1440, height: 900 });
   await close();
 });
 
