@@ -143,6 +143,13 @@ fn every_source_file_for_linuxcnc_names_its_licence() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// A build script that asks cargo for something finds nothing on a machine with an empty cargo home.
+#[test]
+fn the_build_script_of_the_firmware_starts_no_program() {
+    let script = fs::read_to_string(root().join("firmware/build.rs")).unwrap();
+    assert!(!script.contains("Command"), "{script}");
+}
+
 #[test]
 fn the_core_stays_without_std_and_without_unsafe() {
     for (package, _) in CORE {
