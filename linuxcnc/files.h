@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 //
-// Whole files of the desk thread, the only one to call this: read at once, written so that there is the new file or the
+// Whole files of the configuration thread, the only one to call this: read at once, written so that there is the new file or the
 // one before.
 
 #ifndef TRUEPATH_FILES_H

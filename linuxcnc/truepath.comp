@@ -42,9 +42,9 @@ pin in s32 motion-type "From motion.motion-type; 5 is probing";
 pin in float spindle-rpm "Speed of the spindle, revolutions per minute; the sign does not matter";
 pin in bit spindle-on "The spindle turns by command";
 pin in bit spindle-loaded = 1 "The spindle is under load; leave it unconnected without a load input";
-pin in bit trivial-kinematics "From truepath-desk: kinematics are trivial";
+pin in bit trivial-kinematics "From truepath-config: kinematics are trivial";
 
-// Frame of the program and identity of what runs, from truepath-desk.
+// Frame of the program and identity of what runs, from truepath-config.
 pin in float offset-x "Machine position of the program's origin: g5x, rotated g92 and tool offset, X";
 pin in float offset-y "The same, Y";
 pin in float offset-z "The same, Z";
@@ -121,11 +121,11 @@ RTAPI_MP_INT(axes, "axes in a frame on that port");
 #define FUNCTION(name) static void name(struct __comp_state *hal, long period)
 
 #include "board.h"
-#include "desk.h"
+#include "config_thread.h"
 
 static struct truepath_block block;
 static struct truepath_sides sides;
-static struct desk desk;
+static struct config config;
 static struct board board;
 static struct __comp_state *component;
 static int joints;
@@ -159,7 +159,7 @@ static int read_coordinates(void) {
     return -EINVAL;
 }
 
-// The parameters, for the desk thread.
+// The parameters, for the configuration thread.
 static void limits(struct truepath_limits *to) {
     for (int j = 0; j < joints; j++) {
         to->least[j] = component->_min_limit[j];
@@ -196,28 +196,28 @@ FUNCTION(command) {
     fed = false;
     write_pins(hal, &out);
     bool reload = *hal->reload;
-    if (reload && !reload_before) atomic_fetch_add(&desk.reloads, 1);
+    if (reload && !reload_before) atomic_fetch_add(&config.reloads, 1);
     reload_before = reload;
 }
 
 int rtapi_app_main(void) {
-    desk.image = image;
-    desk.ledger = ledger;
-    desk.limits = limits;
+    config.image = image;
+    config.ledger = ledger;
+    config.limits = limits;
     int r = read_coordinates();
     board.axis_of_joint = axis_of_joint;
     board.limits = limits;
     board.axes = (unsigned)axes;
-    if (!r && !*port) r = desk_open(&desk, &block, axis_of_joint, &sides);
+    if (!r && !*port) r = config_open(&config, &block, axis_of_joint, &sides);
     if (r) return r;
     comp_id = hal_init("truepath");
     if (comp_id < 0) return comp_id;
     r = export("truepath", 0, joints);
     if (!r) {
         component = __comp_first_inst;
-        desk.error = &component->image_error;
+        config.error = &component->image_error;
         board.clamp_nm = &component->link_clamp_nm;
-        r = *port ? board_start(&board, port, (unsigned)baud) : desk_start(&desk);
+        r = *port ? board_start(&board, port, (unsigned)baud) : config_start(&config);
     }
     if (r) {
         hal_exit(comp_id);
@@ -229,7 +229,7 @@ int rtapi_app_main(void) {
 
 void rtapi_app_exit(void) {
     if (*port) board_stop(&board);
-    else desk_stop(&desk);
+    else config_stop(&config);
     hal_exit(comp_id);
-    desk_free(&desk);
+    config_free(&config);
 }

@@ -47,11 +47,11 @@ struct truepath_block {
 };
 
 struct truepath_servo;
-struct truepath_desk;
+struct truepath_config;
 
 struct truepath_sides {
     struct truepath_servo *servo;
-    struct truepath_desk *desk;
+    struct truepath_config *config;
 };
 
 struct truepath_inputs {
@@ -111,12 +111,12 @@ void truepath_pc_feedback(const struct truepath_servo *servo, const double measu
 void truepath_pc_command(struct truepath_servo *servo, const struct truepath_inputs *inputs,
     struct truepath_outputs *outputs);
 
-/* The desk thread. Images that were taken (0) are lent until they come back. */
-uint32_t truepath_pc_ready(const struct truepath_desk *desk);
-uint32_t truepath_pc_offer(struct truepath_desk *desk, const struct truepath_limits *limits, const uint8_t *image,
+/* The configuration thread. Images that were taken (0) are lent until they come back. */
+uint32_t truepath_pc_ready(const struct truepath_config *config);
+uint32_t truepath_pc_offer(struct truepath_config *config, const struct truepath_limits *limits, const uint8_t *image,
     size_t image_bytes);
-const uint8_t *truepath_pc_returned(struct truepath_desk *desk);
-size_t truepath_pc_spend(struct truepath_desk *desk, uint8_t file[TRUEPATH_LEDGER_BYTES]);
-void truepath_pc_written(struct truepath_desk *desk, uint32_t done);
+const uint8_t *truepath_pc_returned(struct truepath_config *config);
+size_t truepath_pc_spend(struct truepath_config *config, uint8_t file[TRUEPATH_LEDGER_BYTES]);
+void truepath_pc_written(struct truepath_config *config, uint32_t done);
 
 #endif

@@ -76,19 +76,19 @@ def disarm(m: Machine, notes: Notes) -> None:
 
 
 @scenario
-def desk_stopped(m: Machine, notes: Notes) -> None:
-    """truepath-desk hangs in the contour: the watchdog ends the correction, the program goes on."""
+def config_stopped(m: Machine, notes: Notes) -> None:
+    """truepath-config hangs in the contour: the watchdog ends the correction, the program goes on."""
     into_contour(m, notes, POCKET)
-    desk = desk_process()
-    os.kill(desk, signal.SIGSTOP)
+    service = config_process()
+    os.kill(service, signal.SIGSTOP)
     try:
         notes.mark("event")
         until_out(m)
         m.periods(300)
         leave(m, notes)
     finally:
-        os.kill(desk, signal.SIGCONT)
-    m.wait("corrections permitted again", lambda: bool(m.pin("truepath-desk.permitted")))
+        os.kill(service, signal.SIGCONT)
+    m.wait("corrections permitted again", lambda: bool(m.pin("truepath-config.permitted")))
 
 
 @scenario
@@ -107,13 +107,13 @@ def program_changed(m: Machine, notes: Notes) -> None:
     m.open(CORNER)
 
 
-def desk_process() -> int:
-    """Number of the process of truepath-desk, by the name it was started with."""
+def config_process() -> int:
+    """Number of the process of truepath-config, by the name it was started with."""
     for process in Path("/proc").iterdir():
         words = (process / "cmdline").read_bytes().split(b"\0") if process.name.isdecimal() else []
-        if len(words) > 1 and words[1].endswith(b"truepath-desk"):
+        if len(words) > 1 and words[1].endswith(b"truepath-config"):
             return int(process.name)
-    raise Stuck("truepath-desk does not run")
+    raise Stuck("truepath-config does not run")
 
 
 @scenario

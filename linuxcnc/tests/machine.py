@@ -19,7 +19,7 @@ import linuxcnc
 LIMIT = 90.0
 POLL = 0.002
 
-# How truepath-desk answers a request to arm; with the code of the refusal.
+# How truepath-config answers a request to arm; with the code of the refusal.
 ANSWER = re.compile(r"Truepath: (?:refused \((\d+)\)|armed: part)")
 
 OFF, BYPASS, ARMED, ACTIVE, HOLD, FAULT = range(6)
@@ -64,10 +64,10 @@ class Machine:
 
     def enter_serial(self, serial: int) -> None:
         self.serial = serial
-        hal.set_p("truepath-desk.serial-wanted", str(float(serial)))
+        hal.set_p("truepath-config.serial-wanted", str(float(serial)))
 
     def press_arm(self) -> int:
-        """The button on the panel, until truepath-desk says what came of it: 0, or the code of the refusal."""
+        """The button on the panel, until truepath-config says what came of it: 0, or the code of the refusal."""
         self.poll()
         before = len(self.said)
         self.press("arm-button")
@@ -77,14 +77,14 @@ class Machine:
 
     def press(self, button: str) -> None:
         for value in ("0", "1"):
-            hal.set_p(f"truepath-desk.{button}", value)
+            hal.set_p(f"truepath-config.{button}", value)
             self.looks(3)
 
     def looks(self, count: int) -> None:
-        """Lets truepath-desk look at its pins some times."""
+        """Lets truepath-config look at its pins some times."""
         for _ in range(count):
-            before = self.pin("truepath-desk.heartbeat")
-            self.wait("truepath-desk", lambda: self.pin("truepath-desk.heartbeat") != before)
+            before = self.pin("truepath-config.heartbeat")
+            self.wait("truepath-config", lambda: self.pin("truepath-config.heartbeat") != before)
 
     # Waiting
 
@@ -133,7 +133,7 @@ class Machine:
         return s.interp_state == linuxcnc.INTERP_IDLE and executed and bool(s.inpos) and self.is_heard()
 
     def is_heard(self) -> bool:
-        # Messages of truepath-desk are commands as well, with numbers of their own: the echo may be past ours.
+        # Messages of truepath-config are commands as well, with numbers of their own: the echo may be past ours.
         return self.stat.echo_serial_number >= self.command.serial
 
     # Commands
@@ -148,7 +148,7 @@ class Machine:
         self.command.state(linuxcnc.STATE_ESTOP_RESET)
         self.wait("out of emergency stop", lambda: self.stat.task_state != linuxcnc.STATE_ESTOP)
         for _ in range(10):
-            # On Route B truepath-desk tells the board that the drives are off; before, they cannot be switched on, and a
+            # On Route B truepath-config tells the board that the drives are off; before, they cannot be switched on, and a
             # servo thread that is held up takes them away again.
             self.wait("the component ready", lambda: self.state != OFF and not self.pin("truepath.link-lost"))
             self.command.state(linuxcnc.STATE_ON)

@@ -23,7 +23,7 @@ WALL = PROGRAMS.parent / "wall.csv"
 
 def milled(m: Machine, notes: Notes, program: Path) -> None:
     """The whole program without a correction; the frame is that of the cut."""
-    hal.set_p("truepath-desk.enable-switch", "0")
+    hal.set_p("truepath-config.enable-switch", "0")
     try:
         next_part(m, notes, program)
         m.run()
@@ -33,7 +33,7 @@ def milled(m: Machine, notes: Notes, program: Path) -> None:
         notes.pins(*FRAME)
         m.until_idle()
     finally:
-        hal.set_p("truepath-desk.enable-switch", "1")
+        hal.set_p("truepath-config.enable-switch", "1")
 
 
 def touched(m: Machine, notes: Notes, part: str, ball_diameter: float) -> None:

@@ -6,7 +6,7 @@ import unittest
 from dataclasses import replace
 from pathlib import Path
 
-from desk import arming, configuration, image, words
+from package import arming, configuration, image, words
 from test_image import write
 
 SITUATION = arming.Situation(program_crc=1, tool=1, tool_offset=0, mdi=False, external_offset=False, permitted=True)
@@ -14,7 +14,7 @@ REQUEST = arming.Request(feature=1, pass_number=None, serial=7)
 
 
 class Component:
-    """The real-time component, as the desk sees it: takes an image and an arming some rounds after the edge."""
+    """The real-time component, as truepath-config sees it: takes an image and an arming some rounds after the edge."""
 
     def __init__(self, folder):
         self.board = None
@@ -132,7 +132,7 @@ class ArmingTest(unittest.TestCase):
         self.component.deaf, self.component.pins["image-error"] = True, 0
         self.assertEqual(self.arm(request=replace(REQUEST, feature=2))[1].code, arming.IMAGE_NOT_TAKEN)
 
-    def test_what_the_desk_refuses_is_never_sent_to_the_component(self):
+    def test_what_truepath_config_refuses_is_never_sent_to_the_component(self):
         self.configuration.problems.clear()
         cases = (
             (arming.FROM_MDI, replace(SITUATION, mdi=True), REQUEST),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the desk asks of a board, with a program in place of `truepath device` that writes down what it was asked."""
+"""What truepath-config asks of a board, with a program in place of `truepath device` that writes down what it was asked."""
 
 import json
 import tempfile
@@ -8,8 +8,8 @@ import unittest
 from pathlib import Path
 from types import SimpleNamespace
 
-import desk  # noqa: F401 (where the package is)
-from truepath_desk import board
+import package  # noqa: F401 (where the package is)
+from truepath_config import board
 
 ASKED = "#!/bin/sh\nshift 6\necho \"$*\" >> %s/asked\ncase $1 in %s esac\n"
 

@@ -4,7 +4,7 @@
 import unittest
 from pathlib import Path
 
-from desk import configuration as module
+from package import configuration as module
 
 SAMPLE = Path(__file__).resolve().parents[1] / "sim" / "truepath-mill.ini"
 
@@ -76,7 +76,7 @@ class ConfigurationTest(unittest.TestCase):
         self.assertEqual(len(problems), 1, problems)
         self.assertIn("JOINT_2", problems[0])
 
-    def test_what_the_desk_cannot_run_without_is_said(self):
+    def test_what_truepath_config_cannot_run_without_is_said(self):
         for key, value in (("COORDINATES", "XY"), ("COORDINATES", "XYQ"), ("IMAGES", ""), ("IMAGE", ""), ("SETUP", "0")):
             with self.assertRaises(module.Wrong) as caught:
                 load(sample().set("TRUEPATH", key, value))

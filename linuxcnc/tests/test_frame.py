@@ -4,7 +4,7 @@
 import math
 import unittest
 
-from desk import frame as module
+from package import frame as module
 
 frame, TURN_ONE = module.frame, module.TURN_ONE
 ZERO = (0.0, 0.0, 0.0)

@@ -6,7 +6,7 @@ import unittest
 import zlib
 from pathlib import Path
 
-from desk import identity
+from package import identity
 
 TABLE = ((1, (0.0, 0.0, 40.0)), (2, (0.0, 0.0, 35.5)), (3, (0.0, 0.0, 35.5)))
 G43, G49 = (0, 430, 540), (0, 490, 540)

@@ -6,7 +6,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from desk import image as module
+from package import image as module
 
 
 def write(path, program=1, feature=1, pass_number=1, tool=1, tool_offset=0, setup=1, tail=b"\0" * 16):

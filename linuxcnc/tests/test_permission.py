@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The switch, the configuration and a desk that is held up: each takes the permission away, and gives it back."""
+"""The switch, the configuration and a service that is held up: each takes the permission away, and gives it back."""
 
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
 
-from desk import configuration, permission
+from package import configuration, permission
 
 STATUS = SimpleNamespace(identity_kinematics=True, mm_per_unit=1.0)
 TIMEOUT = 1.0
@@ -72,7 +72,7 @@ class PermissionTest(unittest.TestCase):
         self.pins["enable-switch"] = True
         self.assertTrue(self.run_for(0.1))
 
-    def test_a_desk_that_was_held_up_says_so_and_begins_again(self):
+    def test_a_service_that_was_held_up_says_so_and_begins_again(self):
         self.run_for(1)
         self.run_for(2, alive=False)
         self.assertFalse(self.pins["enabled"])

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
-from desk import arming, configuration, requests, words
+from package import arming, configuration, requests, words
 from test_arming import SITUATION, Component
 from test_image import write
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""LinuxCNC's status as truepath-desk reads it."""
+"""LinuxCNC's status as truepath-config reads it."""
 
 import unittest
 from types import SimpleNamespace
 
-import desk  # noqa: F401
-from truepath_desk.status import Source
+import package  # noqa: F401
+from truepath_config.status import Source
 
 
 class StatusTest(unittest.TestCase):

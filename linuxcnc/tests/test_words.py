@@ -5,11 +5,11 @@ import re
 import unittest
 from pathlib import Path
 
-from desk import arming, words
+from package import arming, words
 
 ROOT = Path(__file__).resolve().parents[2]
 CORE = ROOT / "core" / "src"
-COMPONENT = ROOT / "linuxcnc" / "abi" / "src" / "pc" / "refusal.rs"
+COMPONENT = ROOT / "linuxcnc" / "abi" / "src" / "pc" / "arming.rs"
 
 
 def codes(file, pattern):
@@ -30,7 +30,7 @@ class WordsTest(unittest.TestCase):
         shown = [n for end in words.ENDS for n in words.END_OF[end]]
         self.assertEqual(sorted(shown), sorted(words.REASONS))
 
-    def test_every_refusal_of_core_and_component_has_words_and_no_number_is_the_desk_s(self):
+    def test_every_refusal_of_core_and_component_has_words_and_no_number_is_that_of_truepath_config(self):
         found = codes(CORE / "rewrite/refusal.rs", r"=> (\d+),$") | codes(COMPONENT, r"=> (\d+),$")
         self.assertGreater(len(found), 20)
         self.assertEqual(found, set(words.REFUSALS))

@@ -37,14 +37,14 @@ def repeated(m: Machine, notes: Notes) -> None:
 @scenario
 def switched_off(m: Machine, notes: Notes) -> None:
     """Corrections not permitted: M160 lets the program run."""
-    hal.set_p("truepath-desk.enable-switch", "0")
+    hal.set_p("truepath-config.enable-switch", "0")
     try:
         next_part(m, notes, POCKET)
         m.run()
         m.wait("the second side", lambda: m.stat.motion_line >= line_of(POCKET, "G1 X30 Y16"))
         leave(m, notes)
     finally:
-        hal.set_p("truepath-desk.enable-switch", "1")
+        hal.set_p("truepath-config.enable-switch", "1")
 
 
 @scenario

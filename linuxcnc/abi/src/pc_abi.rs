@@ -2,14 +2,14 @@
 //!
 //! The caller keeps the memory: both sides and the mailboxes between them lie in a block of [`PC_WORDS`] 64-bit words,
 //! which [`truepath_pc_new`] fills. It gives a pointer to each side; that of the servo is for the servo thread, that of
-//! the desk for one other thread. Both are good until the block is given up, with both threads gone.
+//! the configuration for one other thread. Both are good until the block is given up, with both threads gone.
 //!
 //! Pointers must be those of C's own objects, aligned and not null; what lies at them is not trusted beyond that.
 
 use core::mem::{MaybeUninit, align_of, size_of};
 use core::sync::atomic::AtomicU32;
 
-use crate::pc::{Desk, Inputs, JOINTS, Joints, LEDGER_BYTES, Limits, Mailboxes, Outputs, Servo, open};
+use crate::pc::{Config, Inputs, JOINTS, Joints, LEDGER_BYTES, Limits, Mailboxes, Outputs, Servo, open};
 
 /// Words of 64 bits of the block.
 pub const PC_WORDS: usize = 2048;
@@ -19,7 +19,7 @@ struct Pc {
     mailboxes: Mailboxes,
     period_ns: AtomicU32,
     servo: MaybeUninit<Servo>,
-    desk: MaybeUninit<Desk>,
+    config: MaybeUninit<Config>,
 }
 
 const _: () = assert!(size_of::<Pc>() <= 8 * PC_WORDS && align_of::<Pc>() <= 8);
@@ -49,8 +49,8 @@ impl Default for Block {
 pub struct Sides {
     /// For the servo thread.
     pub servo: *mut Servo,
-    /// For the desk thread.
-    pub desk: *mut Desk,
+    /// For the configuration thread.
+    pub config: *mut Config,
 }
 
 /// Fills a block. `axis_of_joint` is as in [`Joints`]; the ledger is the content of its file, nothing for a new one. 0, or
@@ -77,13 +77,13 @@ pub unsafe extern "C" fn truepath_pc_new(
         (&mut (*pc).mailboxes, &(*pc).period_ns)
     };
     match open(mailboxes, period_ns, Joints(*axis_of_joint), file) {
-        Ok((servo, desk)) => {
+        Ok((servo, config)) => {
             // SAFETY: as above; these places are not borrowed.
             unsafe {
                 sides.servo = (&raw mut (*pc).servo).cast();
                 sides.servo.write(servo);
-                sides.desk = (&raw mut (*pc).desk).cast();
-                sides.desk.write(desk);
+                sides.config = (&raw mut (*pc).config).cast();
+                sides.config.write(config);
             }
             0
         }
@@ -103,38 +103,43 @@ pub extern "C" fn truepath_pc_command(servo: &mut Servo, inputs: &Inputs, output
     servo.command(inputs, outputs);
 }
 
-/// See [`Desk::is_ready`].
+/// See [`Config::is_ready`].
 #[unsafe(no_mangle)]
-pub extern "C" fn truepath_pc_ready(desk: &Desk) -> u32 {
-    desk.is_ready().into()
+pub extern "C" fn truepath_pc_ready(config: &Config) -> u32 {
+    config.is_ready().into()
 }
 
-/// See [`Desk::offer`]; without an address there is no image. 0, or why it is not used. Only with 0 the bytes are lent, until
+/// See [`Config::offer`]; without an address there is no image. 0, or why it is not used. Only with 0 the bytes are lent, until
 /// [`truepath_pc_returned`] gives them back.
 ///
 /// # Safety
 /// `count` bytes can be read at `image`, and nobody changes them while they are lent.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn truepath_pc_offer(desk: &mut Desk, limits: &Limits, image: *const u8, count: usize) -> u32 {
+pub unsafe extern "C" fn truepath_pc_offer(
+    config: &mut Config,
+    limits: &Limits,
+    image: *const u8,
+    count: usize,
+) -> u32 {
     // SAFETY: the caller's promise.
     let image = (!image.is_null()).then(|| unsafe { core::slice::from_raw_parts(image, count) });
-    desk.offer(limits, image).err().map_or(0, |error| error.code())
+    config.offer(limits, image).err().map_or(0, |error| error.code())
 }
 
-/// See [`Desk::returned`]; null when there is none.
+/// See [`Config::returned`]; null when there is none.
 #[unsafe(no_mangle)]
-pub extern "C" fn truepath_pc_returned(desk: &mut Desk) -> *const u8 {
-    desk.returned().map_or(core::ptr::null(), <[u8]>::as_ptr)
+pub extern "C" fn truepath_pc_returned(config: &mut Config) -> *const u8 {
+    config.returned().map_or(core::ptr::null(), <[u8]>::as_ptr)
 }
 
-/// See [`Desk::spend`].
+/// See [`Config::spend`].
 #[unsafe(no_mangle)]
-pub extern "C" fn truepath_pc_spend(desk: &mut Desk, file: &mut [u8; LEDGER_BYTES]) -> usize {
-    desk.spend(file)
+pub extern "C" fn truepath_pc_spend(config: &mut Config, file: &mut [u8; LEDGER_BYTES]) -> usize {
+    config.spend(file)
 }
 
-/// See [`Desk::written`].
+/// See [`Config::written`].
 #[unsafe(no_mangle)]
-pub extern "C" fn truepath_pc_written(desk: &mut Desk, done: u32) {
-    desk.written(done != 0);
+pub extern "C" fn truepath_pc_written(config: &mut Config, done: u32) {
+    config.written(done != 0);
 }

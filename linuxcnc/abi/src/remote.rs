@@ -1,7 +1,7 @@
 //! Route B: the correction is computed by a board, and this is what the servo thread does for it.
 //!
 //! LinuxCNC's pins become the same setpoint as on the other route ([`Signals`], [`WorkFrame`]); it goes out, and what
-//! comes back is judged by [`Board`]. Arming, images and the ledger are the board's; truepath-desk asks for them over
+//! comes back is judged by [`Board`]. Arming, images and the ledger are the board's; truepath-config asks for them over
 //! the configuration link. What ends an arming here goes as a flag with the setpoint:
 //!
 //! | LinuxCNC | flag |

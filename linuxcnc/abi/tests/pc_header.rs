@@ -48,7 +48,7 @@ fn asked() -> Asked {
     places!(asked, "truepath_outputs", Outputs: motor_pos_cmd, correction, correction_nm, state, reason, fault, status,
         refusal, forward, armed_serial, image_ready, image_crc, node, sequence, flags, feed_inhibit);
     places!(asked, "truepath_limits", Limits: least, greatest, velocity, acceleration, nm_per_unit);
-    places!(asked, "truepath_sides", Sides: servo, desk);
+    places!(asked, "truepath_sides", Sides: servo, config);
     asked.size("truepath_block", size_of::<Block>());
     asked.value("TRUEPATH_PC_WORDS", PC_WORDS);
     asked.value("TRUEPATH_JOINTS", JOINTS);

@@ -92,7 +92,7 @@ fn apply(pc: &mut Pc, event: &Event) {
         Event::Tool => next.tool = -1,
         Event::NoImage => {
             // SAFETY: no image.
-            unsafe { truepath_abi::pc_abi::truepath_pc_offer(pc.desk, &limits(), std::ptr::null(), 0) };
+            unsafe { truepath_abi::pc_abi::truepath_pc_offer(pc.config, &limits(), std::ptr::null(), 0) };
         }
         Event::Jump(_) | Event::Back | Event::Stand => {}
     }

@@ -52,7 +52,7 @@ fn a_ledger_that_cannot_be_written_arms_nothing_and_the_part_may_be_tried_again(
 #[test]
 fn a_damaged_ledger_is_not_forgotten() {
     let pc = Pc::armed();
-    let mut sides = Sides { servo: std::ptr::null_mut(), desk: std::ptr::null_mut() };
+    let mut sides = Sides { servo: std::ptr::null_mut(), config: std::ptr::null_mut() };
     let mut open = |file: &[u8]| {
         let block = Box::leak(Box::new(Block::new()));
         // SAFETY: the block is leaked; the file is a slice.
@@ -133,7 +133,7 @@ fn an_arming_is_refused_with_its_number() {
         (
             |pc| {
                 // SAFETY: no image.
-                assert_eq!(unsafe { truepath_pc_offer(pc.desk, &limits(), std::ptr::null(), 0) }, 0);
+                assert_eq!(unsafe { truepath_pc_offer(pc.config, &limits(), std::ptr::null(), 0) }, 0);
                 pc.period();
             },
             2,
@@ -168,22 +168,22 @@ fn images_change_hands_in_bypass_only_and_the_old_one_comes_back() {
         bytes
     };
     let mut pc = Pc::active();
-    assert_eq!(truepath_pc_ready(pc.desk), 1);
+    assert_eq!(truepath_pc_ready(pc.config), 1);
     assert_eq!(pc.offer(&other), 0);
     for _ in 0..50 {
         assert_eq!(pc.period().image_crc, Pc::crc(&first));
     }
-    assert_eq!((truepath_pc_ready(pc.desk), pc.offer(&other)), (0, 41), "the last one was not taken");
-    assert!(truepath_pc_returned(pc.desk).is_null());
+    assert_eq!((truepath_pc_ready(pc.config), pc.offer(&other)), (0, 41), "the last one was not taken");
+    assert!(truepath_pc_returned(pc.config).is_null());
     pc.set(Switches::DISARM, true);
     pc.period();
     pc.ramp();
     pc.period();
     assert_eq!(pc.last.image_crc, Pc::crc(&other));
-    let back = truepath_pc_returned(pc.desk);
+    let back = truepath_pc_returned(pc.config);
     // SAFETY: it is the leaked first image.
     assert_eq!(unsafe { std::slice::from_raw_parts(back, first.len()) }, &first[..]);
-    assert!(truepath_pc_returned(pc.desk).is_null());
+    assert!(truepath_pc_returned(pc.config).is_null());
 }
 
 #[test]
@@ -201,7 +201,7 @@ fn an_image_without_limits_of_the_machine_or_with_a_flipped_bit_is_not_taken() {
         let mut limits = limits();
         change(&mut limits);
         // SAFETY: leaked.
-        unsafe { truepath_pc_offer(pc.desk, &limits, bytes.as_ptr(), bytes.len()) }
+        unsafe { truepath_pc_offer(pc.config, &limits, bytes.as_ptr(), bytes.len()) }
     };
     assert_eq!(offered(|l| l.least[2] = 500.0), 34);
     assert_eq!(offered(|l| l.velocity[0] = 0.0), 32);

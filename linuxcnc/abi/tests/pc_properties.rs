@@ -15,7 +15,7 @@ enum Event {
     Float(u8, u64),
     /// A pin of type integer has any bits.
     Integer(u8, u32),
-    /// The desk thread does a round; the disk takes it or not.
+    /// The configuration thread does a round; the disk takes it or not.
     Round(bool),
     /// The pin arm goes up and down, with the next part.
     Arm,
@@ -156,10 +156,10 @@ proptest! {
                     } else {
                         // SAFETY: no image.
                         unsafe {
-                            truepath_abi::pc_abi::truepath_pc_offer(pc.desk, &limits(), std::ptr::null(), 0);
+                            truepath_abi::pc_abi::truepath_pc_offer(pc.config, &limits(), std::ptr::null(), 0);
                         }
                     }
-                    truepath_abi::pc_abi::truepath_pc_returned(pc.desk);
+                    truepath_abi::pc_abi::truepath_pc_returned(pc.config);
                 }
             }
             checked(&mut pc, &mut armed);

@@ -16,12 +16,12 @@ const HAL_FILES: &str = "/usr/share/linuxcnc/hallib";
 /// M-codes, to be named in an INI file's `USER_M_PATH`.
 const M_CODES: &str = "/usr/local/share/truepath/mcodes";
 
-/// Python package of `truepath-desk`.
-const DESK: &str = "/usr/local/share/truepath/truepath_desk";
+/// Python package of `truepath-config`.
+const PACKAGE: &str = "/usr/local/share/truepath/truepath_config";
 
 /// Files of `linuxcnc/`, where each goes, and its mode.
 const FILES: [(&str, &str, &str); 4] = [
-    ("truepath-desk", PROGRAMS, "755"),
+    ("truepath-config", PROGRAMS, "755"),
     ("truepath.hal", HAL_FILES, "644"),
     ("mcodes/M160", M_CODES, "755"),
     ("mcodes/M161", M_CODES, "755"),
@@ -43,8 +43,8 @@ pub fn install(component_only: bool) -> Outcome {
             put(&source, folder, mode)?;
         }
     }
-    for source in files_below(&root().join("linuxcnc/truepath_desk"))? {
-        put(&source, DESK, "644")?;
+    for source in files_below(&root().join("linuxcnc/truepath_config"))? {
+        put(&source, PACKAGE, "644")?;
     }
     Ok(Passed::Done)
 }

@@ -176,7 +176,7 @@ mod tests {
     fn what_is_forbidden_is_found_through_a_call() {
         let code = |inner: &str| {
             let roots: String = ROOTS.iter().map(|root| format!("0000 <{root}>:\n 1:\tcall   9 <inner>\n")).collect();
-            format!("{roots}0009 <inner>:\n 9:\t{inner}\n a:\tret\n000b <desk>:\n b:\tmulsd  %xmm0,%xmm1\n")
+            format!("{roots}0009 <inner>:\n 9:\t{inner}\n a:\tret\n000b <outside>:\n b:\tmulsd  %xmm0,%xmm1\n")
         };
         let mut said = Vec::new();
         let proved = servo_side(&functions(&code("mov    %rax,%rbx")), &mut said);

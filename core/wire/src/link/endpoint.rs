@@ -18,7 +18,7 @@ use super::error::LinkError;
 use super::setpoint::SetpointFrame;
 use super::settings::DeviceSettings;
 use super::stuffing::unstuff;
-use crate::rewrite::{AXES, Mode, Output, Place, Reason, Rewriter, Setpoint, SpentList, State, Status};
+use crate::rewrite::{Mode, Output, Reason, Rewriter, Setpoint, SpentList, State};
 
 mod command;
 mod pace;
@@ -31,18 +31,6 @@ pub const BEHIND: u32 = 63;
 /// So many refused frames in a row that follow each other are the controller counting anew, not late ones, provided
 /// they came at a pace at which a controller sends and none was accepted in their time.
 pub const RESTART_AFTER: u32 = 4;
-
-/// Before the first tick.
-const NOTHING: Output = Output {
-    axes: [0; AXES],
-    correction_nm: [0; AXES],
-    forward: false,
-    mode: Mode::Off,
-    reason: Reason::None,
-    status: Status(0),
-    place: Place { node: 0, fraction: 0 },
-    sequence: 0,
-};
 
 /// What became of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,7 +101,7 @@ impl Endpoint {
             counters: Counters::default(),
             last: None,
             heard_us: 0,
-            output: NOTHING,
+            output: Output::NONE,
             due_us: None,
             unanswered: 0,
             given: None,

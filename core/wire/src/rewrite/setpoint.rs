@@ -109,6 +109,17 @@ pub struct Output {
 }
 
 impl Output {
+    /// Before the first tick: that of a device in `Off`, at the origin.
+    pub const NONE: Self = Self {
+        axes: [0; AXES],
+        correction_nm: [0; AXES],
+        forward: false,
+        mode: Mode::Off,
+        reason: Reason::None,
+        status: Status(0),
+        place: Place { node: 0, fraction: 0 },
+        sequence: 0,
+    };
     /// A measured position with the correction taken out again, for feedback, display and probing.
     #[must_use]
     pub fn uncorrected(&self, measured: &[i64; AXES]) -> [i64; AXES] {

@@ -1,4 +1,4 @@
-//! Whether a packet is the answer of this tick, and whether it can be true.
+//! Whether a packet is the answer of this tick, whether it can be true, and how often what happened.
 
 use truepath_core::link::{AnswerFrame, LinkError};
 use truepath_core::rewrite::{AXES, Mode, Output, Setpoint};
@@ -29,6 +29,30 @@ pub enum Fault {
     Correction,
     /// Positions for the drives in `Off`, or none in another state.
     Forward,
+}
+
+/// Counters of the controller's end; each stops at its end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Right answers in their tick.
+    pub answered: u32,
+    /// Ticks without one.
+    pub missed: u32,
+    /// Answers to an earlier tick; dropped.
+    pub late: u32,
+    /// Packets that are no undamaged answer; dropped.
+    pub damaged: u32,
+    /// Undamaged answers that cannot be true, see [`Fault`]; dropped.
+    pub wrong: u32,
+    /// How often the link was lost.
+    pub lost: u32,
+}
+
+impl Counters {
+    /// One more, up to the end.
+    pub(super) fn one_more(counter: &mut u32) {
+        *counter = counter.saturating_add(1);
+    }
 }
 
 /// Judges a frame, COBS taken out, against the setpoint of this tick.

@@ -16,19 +16,10 @@
 //! which still hears ends its correction and its arming by itself.
 
 mod answer;
-mod counters;
 mod follow;
 mod settings;
 mod tick;
 
-pub use answer::{Fault, Verdict};
-pub use counters::Counters;
+pub use answer::{Counters, Fault, Verdict};
 pub use settings::{BoardSettings, BoardSettingsError};
-pub use tick::{Board, Cause, Driven, PACKET_BYTES};
-
-/// Ticks in a row without an answer over which the last correction is held.
-pub const HOLD_TICKS: u32 = 2;
-/// Right answers in a row, with the drives off, after which a lost link is there again.
-pub const RECOVERY_TICKS: u32 = 8;
-/// Bytes that are looked at in one tick: eight answers of six axes. What is behind them waits for the next tick.
-pub const BYTES_A_TICK: usize = 784;
+pub use tick::{BYTES_A_TICK, Board, Cause, Driven, HOLD_TICKS, PACKET_BYTES, RECOVERY_TICKS};

@@ -1,14 +1,18 @@
 //! One tick of the controller's end, and the state that stays between ticks.
 
 use truepath_core::link::{Deframer, Framed, MAX_ANSWER_BYTES, MAX_SETPOINT_BYTES, SetpointFrame, unstuff};
-use truepath_core::rewrite::{AXES, Flags, Limits, Mode, Output, Place, Reason, Setpoint, Status};
+use truepath_core::rewrite::{AXES, Flags, Limits, Mode, Output, Setpoint, Status};
 
-use super::answer::{Fault, Verdict, judge};
-use super::counters::Counters;
+use super::answer::{Counters, Fault, Verdict, judge};
 use super::follow::Follower;
 use super::settings::{BoardSettings, BoardSettingsError};
-use super::{BYTES_A_TICK, HOLD_TICKS, RECOVERY_TICKS};
 
+/// Ticks in a row without an answer over which the last correction is held.
+pub const HOLD_TICKS: u32 = 2;
+/// Right answers in a row, with the drives off, after which a lost link is there again.
+pub const RECOVERY_TICKS: u32 = 8;
+/// Bytes that are looked at in one tick: eight answers of six axes. What is behind them waits for the next tick.
+pub const BYTES_A_TICK: usize = 784;
 /// Room for the bytes to send in one tick: a 0x00 that clears the line, COBS, the frame, 0x00.
 pub const PACKET_BYTES: usize = MAX_SETPOINT_BYTES + 3;
 
@@ -95,7 +99,7 @@ impl Board {
             cause: Cause::Start,
             missed: 0,
             good: 0,
-            last: NOTHING,
+            last: Output::NONE,
         })
     }
 
@@ -260,15 +264,3 @@ impl Board {
         self.good = 0;
     }
 }
-
-/// Before the first answer.
-const NOTHING: Output = Output {
-    axes: [0; AXES],
-    correction_nm: [0; AXES],
-    forward: false,
-    mode: Mode::Off,
-    reason: Reason::None,
-    status: Status(0),
-    place: Place { node: 0, fraction: 0 },
-    sequence: 0,
-};

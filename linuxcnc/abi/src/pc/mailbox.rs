@@ -1,4 +1,5 @@
-//! A place for one item between two threads: one puts, the other takes, neither waits.
+//! Mailboxes, each with room for one item, between two threads: one puts, the other takes, neither waits; and what the
+//! servo side and the configuration side hand to each other.
 //!
 //! Why not `heapless::spsc`: its two ends forget the length of the queue, so each access divides by a number that only
 //! the running program knows, and the division by zero, which never happens, is a panic that the proof finds.
@@ -7,7 +8,9 @@ use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// The place. What is in it when it is given up is forgotten.
+use truepath_core::rewrite::{Rewriter, Spent};
+
+/// A mailbox. What is in it when it is given up is forgotten.
 pub struct Mailbox<T> {
     full: AtomicBool,
     item: UnsafeCell<MaybeUninit<T>>,
@@ -73,6 +76,61 @@ impl<T> Receiver<T> {
         let item = unsafe { (*self.0.item.get()).assume_init_read() };
         self.0.full.store(false, Ordering::Release);
         Some(item)
+    }
+}
+
+/// An image with the rewriter made from it.
+#[derive(Clone, Debug)]
+pub(super) struct Loaded {
+    pub rewriter: Rewriter<'static>,
+    /// What the image lies in, to be given back.
+    pub bytes: &'static [u8],
+}
+
+/// The places between the two sides.
+#[derive(Default)]
+pub struct Mailboxes {
+    /// An image to be used from now on, or none any more. Configuration to servo, taken in `Off` and `Bypass` only.
+    offer: Mailbox<Option<Loaded>>,
+    /// An image that is used no more. Servo to configuration.
+    returned: Mailbox<&'static [u8]>,
+    /// A part that is about to be armed. Servo to configuration.
+    spending: Mailbox<Spent>,
+    /// Whether the ledger remembers it, on the disk. Configuration to servo.
+    written: Mailbox<bool>,
+}
+
+/// The servo's ends.
+pub(super) struct ServoEnds {
+    pub offer: Receiver<Option<Loaded>>,
+    pub returned: Sender<&'static [u8]>,
+    pub spending: Sender<Spent>,
+    pub written: Receiver<bool>,
+}
+
+/// The ends of the configuration side.
+pub(super) struct ConfigEnds {
+    pub offer: Sender<Option<Loaded>>,
+    pub returned: Receiver<&'static [u8]>,
+    pub spending: Receiver<Spent>,
+    pub written: Sender<bool>,
+}
+
+impl Mailboxes {
+    pub(super) fn split(&'static mut self) -> (ServoEnds, ConfigEnds) {
+        let (config_offer, offer) = self.offer.split();
+        let (returned, config_returned) = self.returned.split();
+        let (spending, config_spending) = self.spending.split();
+        let (config_written, written) = self.written.split();
+        (
+            ServoEnds { offer, returned, spending, written },
+            ConfigEnds {
+                offer: config_offer,
+                returned: config_returned,
+                spending: config_spending,
+                written: config_written,
+            },
+        )
     }
 }
 

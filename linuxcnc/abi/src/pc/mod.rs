@@ -1,38 +1,32 @@
 //! Route A: the correction is computed on the PC, in LinuxCNC's servo thread.
 //!
 //! Two sides, as in the firmware. The **servo side** ([`Servo`]) is called once a period before and behind the motion
-//! controller; it is bounded, and holds no allocation, no system call and no panic. The **desk side** ([`Desk`]) runs in
-//! a thread of its own; it checks images, prepares rewriters and keeps the ledger of spent parts. They share nothing but
-//! places for one item ([`Mailboxes`]), each with one sender and one receiver.
+//! controller; it is bounded, and holds no allocation, no system call and no panic. The **configuration side**
+//! ([`Config`]) runs in a thread of its own; it checks images, prepares rewriters and keeps the ledger of spent parts.
+//! They share nothing but mailboxes ([`Mailboxes`]), each with room for one item, one sender and one receiver.
 //!
 //! What LinuxCNC says becomes a setpoint with flags ([`Signals`], [`WorkFrame`]); the other route sends the same
 //! setpoint to a board. The rules are in `linuxcnc/README.md`.
 
-mod desk;
+mod arming;
+mod config;
 mod ledger;
 mod limits;
 mod mailbox;
-mod mailboxes;
 mod pins;
-mod refusal;
-mod running;
 mod servo;
 mod setpoint;
 mod shift;
-mod signals;
-mod work_frame;
 
-pub use desk::Desk;
+pub use arming::{Refused, Running};
+pub use config::Config;
 pub use ledger::{LEDGER_BYTES, LedgerError};
 pub use limits::{Joints, Limits, OfferError};
-pub use mailboxes::Mailboxes;
+pub use mailbox::Mailboxes;
 pub use pins::{Inputs, JOINTS, Outputs, Switches};
-pub use refusal::Refused;
-pub use running::Running;
 pub use servo::Servo;
+pub use setpoint::{PROBING, Signals, WorkFrame};
 pub use shift::Shift;
-pub use signals::{PROBING, Signals};
-pub use work_frame::WorkFrame;
 
 use core::sync::atomic::AtomicU32;
 
@@ -47,10 +41,10 @@ pub fn open(
     period_ns: &'static AtomicU32,
     joints: Joints,
     ledger: &[u8],
-) -> Result<(Servo, Desk), LedgerError> {
+) -> Result<(Servo, Config), LedgerError> {
     let spent = if ledger.is_empty() { SpentList::EMPTY } else { ledger::read(ledger)? };
     // The settings are in range, and without an image there is nothing else that could be refused.
     let bare = Rewriter::new(Settings::at_1_khz(), None).map_err(|_| LedgerError::Damaged)?;
-    let (servo, desk) = mailboxes.split();
-    Ok((Servo::new(servo, joints, period_ns, bare, spent), Desk::new(desk, joints, period_ns, spent)))
+    let (servo, config) = mailboxes.split();
+    Ok((Servo::new(servo, joints, period_ns, bare, spent), Config::new(config, joints, period_ns, spent)))
 }

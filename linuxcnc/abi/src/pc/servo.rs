@@ -10,14 +10,21 @@ use truepath_core::rewrite::{
     AXES, ArmRequest, Flags, Mode, Output, Reason, Refusal, Rewriter, Setpoint, SpentList, State, Status,
 };
 
+use super::arming::{Refused, Running};
 use super::limits::Joints;
-use super::mailboxes::{Loaded, ServoEnds};
+use super::mailbox::{Loaded, ServoEnds};
 use super::pins::{Inputs, JOINTS, Outputs, Switches};
-use super::refusal::Refused;
-use super::running::{Arming, Running};
+use super::setpoint::{PROBING, Signals, WorkFrame};
 use super::shift::Shift;
-use super::signals::{PROBING, Signals};
-use super::work_frame::WorkFrame;
+
+/// An arming that waits for the ledger.
+#[derive(Clone, Copy, Debug)]
+struct Arming {
+    request: ArmRequest,
+    running: Running,
+    /// Something happened that would have ended it.
+    overtaken: bool,
+}
 
 /// The servo side.
 pub struct Servo {

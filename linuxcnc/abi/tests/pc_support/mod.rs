@@ -1,4 +1,4 @@
-//! A LinuxCNC with its desk thread, around the functions of C: positions in, what goes to the drives out.
+//! A LinuxCNC with its configuration thread, around the functions of C: positions in, what goes to the drives out.
 #![allow(dead_code)]
 
 #[path = "../remote_support/mod.rs"]
@@ -8,7 +8,7 @@ pub mod rewrite_support;
 
 pub use remote_support::{ON, inputs, outputs};
 use rewrite_support::*;
-use truepath_abi::pc::{Desk, Inputs, LEDGER_BYTES, Limits, Outputs, Servo, Switches};
+use truepath_abi::pc::{Config, Inputs, LEDGER_BYTES, Limits, Outputs, Servo, Switches};
 use truepath_abi::pc_abi::*;
 use truepath_core::image::{Image, build, image_bytes};
 
@@ -41,7 +41,7 @@ pub fn image() -> Vec<u8> {
 
 pub struct Pc {
     pub servo: &'static mut Servo,
-    pub desk: &'static mut Desk,
+    pub config: &'static mut Config,
     pub next: Inputs,
     pub last: Outputs,
     /// The ledger on the disk.
@@ -53,11 +53,11 @@ impl Pc {
     /// Loaded, with what the disk has.
     pub fn load(disk: &[u8]) -> Self {
         let block = Box::leak(Box::new(Block::new()));
-        let mut sides = Sides { servo: std::ptr::null_mut(), desk: std::ptr::null_mut() };
+        let mut sides = Sides { servo: std::ptr::null_mut(), config: std::ptr::null_mut() };
         // SAFETY: the block is leaked, so it lives as long as its sides; the ledger is a slice.
-        let (servo, desk) = unsafe {
+        let (servo, config) = unsafe {
             assert_eq!(truepath_pc_new(block, &JOINTS, disk.as_ptr(), disk.len(), &mut sides), 0);
-            (&mut *sides.servo, &mut *sides.desk)
+            (&mut *sides.servo, &mut *sides.config)
         };
         let binding = settings().binding;
         let next = Inputs {
@@ -71,7 +71,7 @@ impl Pc {
             switches: Switches(ON & !Switches::DRIVES_ON.0 & !Switches::PROGRAM_RUNNING.0),
             ..inputs()
         };
-        Self { servo, desk, next, last: outputs(), disk: disk.to_vec(), disk_fails: false }
+        Self { servo, config, next, last: outputs(), disk: disk.to_vec(), disk_fails: false }
     }
 
     /// Homed, on, with an image, standing over the start of the path.
@@ -139,15 +139,15 @@ impl Pc {
         self.last
     }
 
-    /// A round of the desk thread.
+    /// A round of the configuration thread.
     pub fn round(&mut self) {
         let mut file = [0; LEDGER_BYTES];
-        let used = truepath_pc_spend(self.desk, &mut file);
+        let used = truepath_pc_spend(self.config, &mut file);
         if used > 0 {
             if !self.disk_fails {
                 self.disk = file[..used].to_vec();
             }
-            truepath_pc_written(self.desk, (!self.disk_fails).into());
+            truepath_pc_written(self.config, (!self.disk_fails).into());
         }
     }
 
@@ -165,7 +165,7 @@ impl Pc {
     pub fn offer(&mut self, bytes: &[u8]) -> u32 {
         let bytes = bytes.to_vec().leak();
         // SAFETY: leaked, and nobody changes them.
-        unsafe { truepath_pc_offer(self.desk, &limits(), bytes.as_ptr(), bytes.len()) }
+        unsafe { truepath_pc_offer(self.config, &limits(), bytes.as_ptr(), bytes.len()) }
     }
 
     pub fn crc(bytes: &[u8]) -> u32 {

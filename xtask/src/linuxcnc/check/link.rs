@@ -7,7 +7,7 @@ const BYPASS: u32 = 1;
 const COMPLETED: u32 = 1;
 /// Periods over which the last correction is held before the link is lost.
 const HELD: usize = 2;
-/// Refusal of truepath-desk: the board refuses.
+/// Refusal of truepath-config: the board refuses.
 const REFUSED_BY_BOARD: f64 = 110.0;
 /// Less than this is no correction that a test could see, nm.
 const VISIBLE: i64 = 10_000;

@@ -41,8 +41,8 @@ pub const ALL: &[Scenario] = &[
     Scenario { name: "emergency-stop", replayed: true, check: |case| ended(case, &STOPPED) },
     Scenario { name: "drives-off", replayed: true, check: |case| ended(case, &[DRIVES_DISABLED]) },
     Scenario { name: "disarm", replayed: false, check: |case| disarmed(case, &[DISARMED]) },
-    Scenario { name: "desk-stopped", replayed: false, check: after_a_while },
-    // Component and truepath-desk both see it, within a period or some.
+    Scenario { name: "config-stopped", replayed: false, check: after_a_while },
+    // Component and truepath-config both see it, within a period or some.
     Scenario { name: "program-changed", replayed: false, check: |case| disarmed(case, &[ABORT, DISARMED]) },
     Scenario { name: "feed-hold", replayed: true, check: feed_hold },
     Scenario { name: "feed-override", replayed: true, check: feed_override },

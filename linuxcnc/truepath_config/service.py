@@ -20,7 +20,7 @@ PERIOD_S = 0.01
 
 
 class Pins:
-    """Pins of truepath, read by name, and the desk's own pins to it."""
+    """Pins of truepath, read by name, and the pins of truepath-config to it."""
 
     def __init__(self, hal: Any, pins: Any, board: Board | None) -> None:
         self._hal, self._pins, self.board = hal, pins, board
@@ -32,11 +32,11 @@ class Pins:
         return self._hal.get_value("truepath." + pin)
 
     def set(self, pin: str, value: int | bool) -> None:
-        """A pin of truepath-desk."""
+        """A pin of truepath-config."""
         self._pins[pin] = value
 
 
-class Desk:
+class Service:
     """Everything between LinuxCNC's status, the component, the panel and the M-codes."""
 
     def __init__(self, hal: Any, pins: Any, source: Source, operator: Operator, configuration: Configuration) -> None:

@@ -33,7 +33,7 @@ class Requests:
         self._ending = False
         self._look_for_image = False
         self.image_crc = 0
-        # Of the last arming that was asked for, the component's or the desk's; 0: none.
+        # Of the last arming that was asked for, the component's or this program's; 0: none.
         self.refusal = 0
 
     @property

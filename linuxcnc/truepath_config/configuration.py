@@ -37,7 +37,7 @@ class Configuration:
 def load(ini: Ini, folder: Path) -> Configuration:
     """Reads it; relative paths count from the folder of the INI file.
 
-    Raises Wrong for what the desk cannot run without. Problems that only forbid arming are listed.
+    Raises Wrong for what truepath-config cannot run without. Problems that only forbid arming are listed.
     """
     coordinates = "".join(_text(ini, "COORDINATES").split()).upper()
     if not coordinates or set(coordinates) - set("XYZABCUVW") or not {"X", "Y", "Z"} <= set(coordinates):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers of the component in words, with what to do. The numbers are those of reason.rs, refusal.rs, error.rs in
-the core; refusals from 64 on are those of refusal.rs in linuxcnc/abi."""
+the core; refusals from 64 on are those of arming.rs in linuxcnc/abi."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ REFUSALS = {
     19: "the image is for another tool than the one in the spindle",
     20: "the image is for another tool offset than the one in force: say offset_number in [tool] of the job",
     21: "the image is for another setup: say setup in [correct] of the job, or SETUP in [TRUEPATH]",
-    64: "corrections are not permitted: see the switch on the panel, and whether truepath-desk runs",
+    64: "corrections are not permitted: see the switch on the panel, and whether truepath-config runs",
     65: "the kinematics are not trivial",
     66: "a probing move runs",
     67: "the ledger cannot be written, so the part would not be remembered: is the disk full, may LinuxCNC write there?",

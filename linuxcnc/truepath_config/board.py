@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Route B: what the desk asks of the board over its configuration link, with `truepath device`.
+"""Route B: what truepath-config asks of the board over its configuration link, with `truepath device`.
 
 One question at a time, each a process of its own, so that a board that does not answer stops nothing here: every
-function is a generator that yields while it waits, once per round of the desk's loop.
+function is a generator that yields while it waits, once per round of its loop.
 """
 
 from __future__ import annotations

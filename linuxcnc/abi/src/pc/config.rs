@@ -1,4 +1,4 @@
-//! The desk side: checks images, prepares rewriters, keeps the ledger. A thread of its own calls it.
+//! The configuration side: checks images, prepares rewriters, keeps the ledger. A thread of its own calls it.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -7,11 +7,11 @@ use truepath_core::rewrite::{Rewriter, Spent, SpentList};
 
 use super::ledger::{self, LEDGER_BYTES};
 use super::limits::{Joints, Limits, OfferError};
-use super::mailboxes::{DeskEnds, Loaded};
+use super::mailbox::{ConfigEnds, Loaded};
 
-/// The desk side.
-pub struct Desk {
-    ends: DeskEnds,
+/// The configuration side.
+pub struct Config {
+    ends: ConfigEnds,
     joints: Joints,
     period_ns: &'static AtomicU32,
     spent: SpentList,
@@ -19,8 +19,8 @@ pub struct Desk {
     next: Option<SpentList>,
 }
 
-impl Desk {
-    pub(super) const fn new(ends: DeskEnds, joints: Joints, period_ns: &'static AtomicU32, spent: SpentList) -> Self {
+impl Config {
+    pub(super) const fn new(ends: ConfigEnds, joints: Joints, period_ns: &'static AtomicU32, spent: SpentList) -> Self {
         Self { ends, joints, period_ns, spent, next: None }
     }
 
@@ -52,7 +52,7 @@ impl Desk {
     }
 
     /// If a part is about to be armed, writes the ledger that remembers it; gives the bytes of the file, 0 otherwise.
-    /// [`Desk::written`] has to follow.
+    /// [`Config::written`] has to follow.
     pub fn spend(&mut self, file: &mut [u8; LEDGER_BYTES]) -> usize {
         let Some(part) = self.ends.spending.take() else {
             return 0;

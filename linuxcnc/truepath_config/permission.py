@@ -3,7 +3,7 @@
 
 LinuxCNC's watchdog lets go when the heartbeat stays away while `enable` is high, and begins again with a rising edge of
 `enable`; a low `enable` alone leaves its output as it is, whatever its manual says. So what forbids a correction stops
-the heartbeat; and as that takes its time, the desk disarms as well, and arms nothing in between.
+the heartbeat; and as that takes its time, the service disarms as well, and arms nothing in between.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Permission:
             self._alive = now
         elif now - self._alive > REST_S:
             # The watchdog has tripped: this process was not heard for too long. A rising edge starts it again.
-            self._operator.warn("truepath-desk was held up; a correction that was on has been ended")
+            self._operator.warn("truepath-config was held up; a correction that was on has been ended")
             self._rest_until = now + REST_S
             pins["enable"] = False
         return self.wanted and bool(pins["enabled"])

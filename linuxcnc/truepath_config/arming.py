@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Handing an image to the component, arming it, and the answer: steps that wait without stopping the desk's loop.
+"""Handing an image to the component, arming it, and the answer: steps that wait without stopping the loop of the service.
 
 Each is a generator: it yields while it waits, once per round of the loop, and returns a Result.
 """
@@ -14,7 +14,7 @@ from .board import Board
 from .configuration import Configuration
 from .image import Image, NoImage
 
-# Refusals of the desk; those of the component are below 100.
+# Refusals of truepath-config; those of the component are below 100.
 CONFIGURATION, NO_IMAGE, IMAGE_NOT_TAKEN, FROM_MDI, NO_ANSWER = 100, 101, 102, 103, 104
 BUSY, EXTERNAL_OFFSET, TOOL_OFFSET, NOT_PERMITTED, SERIAL, BOARD, OFFSETS = 105, 106, 107, 108, 109, 110, 111
 
@@ -58,7 +58,7 @@ class Situation:
 
 
 class Component(Protocol):
-    """The real-time component, and the desk's pins to it; the board when there is one (Route B)."""
+    """The real-time component, and the pins to it; the board when there is one (Route B)."""
 
     board: Board | None
 
@@ -100,7 +100,7 @@ def hand_over(component: Component, clock: Clock, configuration: Configuration, 
 
 
 def forbidden(configuration: Configuration, situation: Situation, request: Request) -> Result | None:
-    """What the desk itself refuses, before the component is asked."""
+    """What truepath-config itself refuses, before the component is asked."""
     if configuration.problems:
         return Result(CONFIGURATION, "; ".join(configuration.problems))
     if situation.mdi:

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pins of truepath-desk. What each is connected to stands in truepath.hal and in the panel's HAL file."""
+"""Pins of truepath-config. What each is connected to stands in truepath.hal and in the panel's HAL file."""
 
 from __future__ import annotations
 
 from typing import Any
 
-COMPONENT = "truepath-desk"
+COMPONENT = "truepath-config"
 
 # To the real-time component.
 FLOATS_OUT = ("offset-x", "offset-y", "offset-z")

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+//
+// The configuration thread: reads the image, keeps the ledger on the disk. It has the scheduling of a normal program and shares
+// nothing with the servo thread but the queues of truepath.h and the counter of reloads.
+
+#ifndef TRUEPATH_CONFIG_THREAD_H
+#define TRUEPATH_CONFIG_THREAD_H
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <time.h>
+
+#include "files.h"
+#include "rtapi.h"
+#include "truepath.h"
+
+enum {
+    // An image of the most nodes is smaller.
+    CONFIG_IMAGE_BYTES = 64 << 20,
+    // In use, waiting to be used, and come back: there are never more.
+    CONFIG_IMAGES = 3,
+    // Between two rounds. An arming waits for one of them and for the disk.
+    CONFIG_ROUND_NS = 5000000,
+    // All memory of a real-time process is locked, the thread's stack as well.
+    CONFIG_STACK_BYTES = 256 << 10,
+};
+
+// Values of image-error besides those of the library.
+enum { CONFIG_NOT_READ = 64 };
+
+struct config {
+    const char *image, *ledger;
+    struct truepath_config *side;
+    // The parameters of the component, as they are now.
+    void (*limits)(struct truepath_limits *limits);
+    // Pin image-error: HAL moves it when it is connected.
+    hal_u32_t *volatile *error;
+    atomic_uint reloads;
+    atomic_bool end;
+    pthread_t thread;
+    unsigned char *images[CONFIG_IMAGES];
+};
+
+static void config_forget(struct config *config, const unsigned char *image) {
+    for (int i = 0; i < CONFIG_IMAGES; i++) {
+        if (config->images[i] != image) continue;
+        free(config->images[i]);
+        config->images[i] = NULL;
+    }
+}
+
+// Keeps the memory of an image that is lent; false when there is no place, which does not happen.
+static bool config_keep(struct config *config, unsigned char *image) {
+    for (int i = 0; i < CONFIG_IMAGES; i++) {
+        if (config->images[i]) continue;
+        config->images[i] = image;
+        return true;
+    }
+    return false;
+}
+
+// Offers what the image file holds now, or that there is none. `first`: a missing file is no error.
+static void config_offer(struct config *config, const struct truepath_limits *limits, bool first) {
+    unsigned char *bytes = NULL;
+    size_t count = 0;
+    int r = *config->image ? read_file(config->image, CONFIG_IMAGE_BYTES, &bytes, &count) : -ENOENT;
+    uint32_t error = 0;
+    if (r) {
+        error = first && r == -ENOENT ? 0 : CONFIG_NOT_READ;
+        if (error) rtapi_print_msg(RTAPI_MSG_ERR, "truepath: image %s: %s\n", config->image, strerror(-r));
+    } else if (!config_keep(config, bytes)) {
+        error = CONFIG_NOT_READ;
+        free(bytes);
+        bytes = NULL;
+    } else if ((error = truepath_pc_offer(config->side, limits, bytes, count))) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "truepath: image %s is not used: error %u, see docs/linuxcnc.md\n", config->image, error);
+        config_forget(config, bytes);
+        bytes = NULL;
+    }
+    // Never an image that is not the one in the file.
+    if (!bytes) truepath_pc_offer(config->side, limits, NULL, 0);
+    **config->error = error;
+}
+
+static void config_write_ledger(struct config *config, const unsigned char *file, size_t count) {
+    int r = *config->ledger ? write_file(config->ledger, file, count) : -ENOENT;
+    if (r) rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s: %s; nothing can be armed\n",
+        *config->ledger ? config->ledger : "(no file is named)", strerror(-r));
+    truepath_pc_written(config->side, !r);
+}
+
+static void *config_run(void *argument) {
+    struct config *config = argument;
+    struct truepath_limits used = {0}, now;
+    unsigned seen = 0;
+    bool first = true;
+    const struct timespec round = {0, CONFIG_ROUND_NS};
+    while (!atomic_load(&config->end)) {
+        const unsigned char *back;
+        while ((back = truepath_pc_returned(config->side))) config_forget(config, back);
+        unsigned char file[TRUEPATH_LEDGER_BYTES];
+        size_t count = truepath_pc_spend(config->side, file);
+        if (count) config_write_ledger(config, file, count);
+        unsigned reloads = atomic_load(&config->reloads);
+        memset(&now, 0, sizeof now);
+        config->limits(&now);
+        if ((first || reloads != seen || memcmp(&now, &used, sizeof now)) && truepath_pc_ready(config->side)) {
+            config_offer(config, &now, first);
+            used = now;
+            seen = reloads;
+            first = false;
+        }
+        nanosleep(&round, NULL);
+    }
+    return NULL;
+}
+
+// Reads the ledger and fills the block. 0 or a negative errno.
+static int config_open(struct config *config, struct truepath_block *block, const uint8_t *axes, struct truepath_sides *sides) {
+    unsigned char *file = NULL;
+    size_t count = 0;
+    int r = *config->ledger ? read_file(config->ledger, TRUEPATH_LEDGER_BYTES, &file, &count) : -ENOENT;
+    if (r && r != -ENOENT) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s: %s\n", config->ledger, strerror(-r));
+        return r;
+    }
+    // Without a file it is the first start. An empty one is what is left of one.
+    uint32_t wrong = !r && !count ? 1 : truepath_pc_new(block, axes, file, count, sides);
+    free(file);
+    if (wrong) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s is %s. It remembers which parts were corrected: move it away "
+            "only if none of them is machined again\n", config->ledger, wrong == 1 ? "damaged" : "of another version");
+        return -EINVAL;
+    }
+    if (r && *config->ledger) rtapi_print_msg(RTAPI_MSG_WARN, "truepath: no ledger %s: no part was corrected on this machine "
+        "before, as far as is known\n", config->ledger);
+    config->side = sides->config;
+    return 0;
+}
+
+static int config_start(struct config *config) {
+    pthread_attr_t attributes;
+    struct sched_param normal = {0};
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_attr_init(&attributes);
+    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+    pthread_attr_setschedpolicy(&attributes, SCHED_OTHER);
+    pthread_attr_setschedparam(&attributes, &normal);
+    pthread_attr_setstacksize(&attributes, CONFIG_STACK_BYTES);
+    // Signals are for the program that loads the component.
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    int r = pthread_create(&config->thread, &attributes, config_run, config);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    pthread_attr_destroy(&attributes);
+    if (r) rtapi_print_msg(RTAPI_MSG_ERR, "truepath: no thread: %s\n", strerror(r));
+    return -r;
+}
+
+// Ends the thread, which takes as long as the disk.
+static void config_stop(struct config *config) {
+    atomic_store(&config->end, true);
+    pthread_join(config->thread, NULL);
+}
+
+// Gives the memory of the images back, once the servo thread calls the component no more.
+static void config_free(struct config *config) {
+    for (int i = 0; i < CONFIG_IMAGES; i++) free(config->images[i]);
+}
+
+#endif
