@@ -1,9 +1,9 @@
 //! The image in use, checked and bound to the RAM it lies in.
 //!
-//! There is one image buffer. Its owner is either the desk, which may write to it, or the servo, in which a [`Loaded`]
-//! image borrows it; the type leaves no third way, so the servo cycle never reads what somebody writes. Reading and
-//! checking (tens of milliseconds) happen at the desk; what changes hands in the servo cycle is a move of a few
-//! hundred bytes.
+//! There is one image buffer. Its owner is either the configuration service, which may write to it, or the servo, in which
+//! a [`Loaded`] image borrows it; the type leaves no third way, so the servo cycle never reads what somebody writes.
+//! Reading and checking (tens of milliseconds) happen in the service; what changes hands in the servo cycle is a move of
+//! a few hundred bytes.
 //!
 //! A rewriter borrows its image. Keeping both in one value that can be moved is what the `yoke` crate is for; there is
 //! no unsafe code here.

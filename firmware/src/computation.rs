@@ -1,22 +1,22 @@
 //! The on-board correction: program, job and probe log → image, apart from both links.
 //!
-//! `Compute` makes a [`Work`] of the uploaded items and the image buffer; whoever has time runs it (the board at its
-//! lowest priority, in the memory it lends), and hands it back to the desk, which writes the image to the idle slot.
-//! Meanwhile the desk answers, and a [`Meter`] tells how far the work is.
+//! `Compute` makes a [`Computation`] of the uploads and the image buffer. The board runs it at its lowest priority, in
+//! memory it lends, and hands it back to the configuration service, which writes the image to the idle slot. Meanwhile
+//! the service answers requests, and a [`ProgressMeter`] says how far the computation is.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use truepath_core::job::{self, Job, JobError, Workspace};
 use truepath_core::link::{ComputeFailure, Stage};
 
-use crate::shelf::Shelf;
+use crate::ram_upload::RamUploads;
 
-/// How far a work is: written by it, read by the desk, without a lock.
+/// How far a computation is: written by it, read by the configuration service, without a lock.
 #[derive(Debug, Default)]
-pub struct Meter(AtomicU32);
+pub struct ProgressMeter(AtomicU32);
 
-impl Meter {
-    /// At nothing.
+impl ProgressMeter {
+    /// Nothing done yet.
     pub const fn new() -> Self {
         Self(AtomicU32::new(0))
     }
@@ -34,44 +34,34 @@ impl Meter {
     }
 }
 
-/// One image to be made.
-pub struct Work<'a> {
+/// One image to be computed.
+pub struct Computation<'a> {
     /// The items, complete.
-    pub(crate) shelves: Shelves<'a>,
+    pub(crate) uploads: RamUploads<'a>,
     /// Where the image goes.
     pub(crate) image: &'a mut [u8],
-    meter: &'a Meter,
+    meter: &'a ProgressMeter,
     pub(crate) made: Option<Result<usize, ComputeFailure>>,
 }
 
-/// Program, job and probe log.
-pub struct Shelves<'a> {
-    /// The program.
-    pub program: Shelf<'a>,
-    /// The job, in its compact form.
-    pub job: Shelf<'a>,
-    /// The probe log.
-    pub probe: Shelf<'a>,
-}
-
-impl<'a> Work<'a> {
-    pub(crate) fn new(shelves: Shelves<'a>, image: &'a mut [u8], meter: &'a Meter) -> Self {
+impl<'a> Computation<'a> {
+    pub(crate) fn new(uploads: RamUploads<'a>, image: &'a mut [u8], meter: &'a ProgressMeter) -> Self {
         meter.set(Stage::Job, 0);
-        Self { shelves, image, meter, made: None }
+        Self { uploads, image, meter, made: None }
     }
 
     /// Makes the image. Takes seconds to minutes; everything it needs is in itself and in `workspace`.
     pub fn run(&mut self, workspace: &mut Workspace<'_>) {
-        let Self { shelves, image, meter, made } = self;
-        let job = match Job::from_compact(shelves.job.content().unwrap_or(&[])) {
+        let Self { uploads, image, meter, made } = self;
+        let job = match Job::from_compact(uploads.job.content().unwrap_or(&[])) {
             Ok(job) => job,
             Err(error) => {
                 *made = Some(Err(failure(Stage::Job, &error)));
                 return;
             }
         };
-        let program = shelves.program.content().unwrap_or(&[]);
-        let probe = shelves.probe.content().unwrap_or(&[]);
+        let program = uploads.program.content().unwrap_or(&[]);
+        let probe = uploads.probe.content().unwrap_or(&[]);
         let result = job::image(&job, program, probe, workspace, image, &mut |stage, permille| {
             meter.set(link_stage(stage), permille);
         });

@@ -1,15 +1,15 @@
-//! The whole device in one thread: servo and desk on one flash, without interrupts.
+//! The whole device in one thread: servo and configuration service on one flash, without interrupts.
 //!
-//! The boards run the same [`Servo`] and [`Desk`] in an interrupt and in a thread; tests and the bench of the host run
+//! The boards run the same [`Servo`] and [`ConfigService`] in an interrupt and in a thread; tests and the bench of the host run
 //! them here. Both links are fed with bytes as they come from a UART, cut anywhere. Time is an argument, microseconds
 //! on a clock that never goes back, not even over a reset.
 //!
 //! ```
 //! use truepath_core::link::{Ask, PACKET_BYTES, Reply, Request, ResetCause, Response, decode, encode};
-//! use truepath_fw::desk::{Board, IMAGE_BYTES, Memory};
+//! use truepath_fw::config_service::{Board, IMAGE_BYTES, Memory};
 //! use truepath_fw::device::Device;
 //! use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Nor, WordState};
-//! use truepath_fw::work::Meter;
+//! use truepath_fw::computation::ProgressMeter;
 //!
 //! let (mut bank, mut words) = (vec![0; BANK_BYTES], vec![WordState::Blank; BANK_WORDS]);
 //! let flash = Nor::erased(bank.as_mut_slice().try_into()?, words.as_mut_slice().try_into()?);
@@ -21,7 +21,7 @@
 //!     program: &mut program,
 //!     job: &mut job,
 //!     probe: &mut probe,
-//!     meter: &Meter::new(),
+//!     meter: &ProgressMeter::new(),
 //! };
 //! let board = Board { name: "in process", last_reset: ResetCause::PowerOn };
 //! let mut device = Device::start(flash, memory, board, 0);
@@ -43,20 +43,20 @@ use truepath_core::rewrite::State;
 
 use crate::bench::{self, Batch};
 use crate::clock::Clock;
-use crate::desk::{Board, Desk, Memory, Restart};
-use crate::servo::{Alone, Servo, ServoAccess};
+use crate::config_service::{Board, ConfigService, Memory, Restart};
+use crate::servo::Servo;
 
 /// The device.
 pub struct Device<'a, F: NorFlash> {
-    servo: Alone<'a>,
-    desk: Desk<'a, F>,
+    servo: Servo<'a>,
+    config: ConfigService<'a, F>,
 }
 
 impl<'a, F: NorFlash> Device<'a, F> {
     /// Power-up: finds in the flash what the device remembers. It is in `Off` then.
     pub fn start(flash: F, memory: Memory<'a>, board: Board, now_us: u64) -> Self {
-        let (desk, servo) = Desk::start(flash, memory, board, now_us);
-        Self { servo: Alone::new(servo), desk }
+        let (config, servo) = ConfigService::start(flash, memory, board, now_us);
+        Self { servo, config }
     }
 
     /// Bytes of the setpoint link; `answer` gets each answer as it goes out, at the same time.
@@ -71,22 +71,22 @@ impl<'a, F: NorFlash> Device<'a, F> {
         clock: &impl Clock,
         mut answer: impl FnMut(&[u8]),
     ) {
-        self.servo.with(|servo| servo.receive(bytes, arrived_us, clock, &mut answer));
+        self.servo.receive(bytes, arrived_us, clock, &mut answer);
     }
     /// Bytes of the configuration link; `answer` gets each answer. When it gives a restart, the rest of the bytes was
     /// left, and the device waits for [`Device::reset`].
     pub fn config_bytes(&mut self, bytes: &[u8], now_us: u64, mut answer: impl FnMut(&[u8])) -> Option<Restart> {
-        self.desk.receive(bytes, now_us, &self.servo, &mut answer)
+        self.config.receive(bytes, now_us, &mut self.servo, &mut answer)
     }
     /// The timer of a millisecond: notices the silence of the setpoint link.
     pub fn watch(&mut self, now_us: u64) {
-        self.servo.with(|servo| servo.watch(now_us));
+        self.servo.watch(now_us);
     }
     /// Runs a computation that was asked for, to its end; says whether there was one.
-    pub fn work(&mut self, workspace: &mut Workspace<'_>) -> bool {
-        let Some(mut work) = self.desk.take_work() else { return false };
-        work.run(workspace);
-        self.desk.finish(work, &self.servo);
+    pub fn compute(&mut self, workspace: &mut Workspace<'_>) -> bool {
+        let Some(mut computation) = self.config.take_computation() else { return false };
+        computation.run(workspace);
+        self.config.finish(computation, &mut self.servo);
         true
     }
     /// A batch of the bench link, see [`mod@bench`]. `now_us` is the time before it, and the time behind it afterwards.
@@ -97,7 +97,7 @@ impl<'a, F: NorFlash> Device<'a, F> {
         now_us: &mut u64,
         workspace: Option<&mut Workspace<'_>>,
     ) -> Batch {
-        bench::run(&self.servo, &mut self.desk, input, output, now_us, workspace)
+        bench::run(&mut self.servo, &mut self.config, input, output, now_us, workspace)
     }
 
     /// A reset: the flash stays, everything else begins anew.
@@ -107,28 +107,28 @@ impl<'a, F: NorFlash> Device<'a, F> {
     }
     /// The flash, with all it holds, the memory, and what the board said.
     pub fn into_parts(self) -> (F, Memory<'a>, Board) {
-        let (image, recording) = self.servo.into_servo().into_memory();
-        self.desk.into_parts(image, recording)
+        let (image, recording) = self.servo.into_memory();
+        self.config.into_parts(image, recording)
     }
 
     /// Whether the drive enable is passed on.
-    pub fn drive_enable(&mut self) -> bool {
-        self.servo.get_mut().drive_enable()
+    pub fn drive_enable(&self) -> bool {
+        self.servo.drive_enable()
     }
     /// Whether the last correction ended in a fault.
-    pub fn fault(&mut self) -> bool {
-        self.servo.get_mut().fault()
+    pub fn fault(&self) -> bool {
+        self.servo.fault()
     }
     /// A copy of the state of the rewriter.
-    pub fn state(&mut self) -> State {
-        *self.servo.get_mut().state()
+    pub fn state(&self) -> State {
+        *self.servo.state()
     }
     /// The servo.
     pub fn servo(&mut self) -> &mut Servo<'a> {
-        self.servo.get_mut()
+        &mut self.servo
     }
     /// The flash.
     pub fn flash(&mut self) -> &mut F {
-        self.desk.flash()
+        self.config.flash()
     }
 }

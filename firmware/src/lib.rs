@@ -6,11 +6,11 @@
 //! | [`flash`] | the rules of the flash, a model of it in RAM with power that can fail, the places in it |
 //! | [`ledger`] | what is remembered over resets: armed passes of parts, active image, settings |
 //! | [`slots`] | the two image slots, uploads and their commit word |
-//! | [`shelf`] | uploads to RAM: program, job, probe log |
+//! | [`ram_upload`] | uploads to RAM: program, job, probe log |
 //! | [`active`] | the image in use and the RAM it lies in |
 //! | [`servo`] | the setpoint path |
-//! | [`work`] | the on-board correction |
-//! | [`desk`] | the configuration link |
+//! | [`computation`] | the on-board correction |
+//! | [`config_service`] | the requests of the configuration link |
 //! | [`mod@bench`] | batches of both links in shared memory |
 //! | [`device`] | all of it in one thread, for tests and for the bench of the host |
 //!
@@ -23,14 +23,14 @@
 pub mod active;
 pub mod bench;
 pub mod clock;
-pub mod desk;
+pub mod computation;
+pub mod config_service;
 pub mod device;
 pub mod flash;
 pub mod ledger;
+pub mod ram_upload;
 pub mod servo;
-pub mod shelf;
 pub mod slots;
-pub mod work;
 
 #[cfg(any(feature = "board-virtual", feature = "board-nucleo-h743"))]
 pub mod board;

@@ -1,10 +1,20 @@
-//! Program, job and probe log: items that are uploaded to lent RAM, and lost at a reset.
+//! Uploads to RAM: program, job and probe log, in lent memory, lost at a reset.
 
 use truepath_core::image::crc32;
 use truepath_core::link::{Denial, Item};
 
-/// A place for one item.
-pub struct Shelf<'a> {
+/// What the on-board correction reads.
+pub struct RamUploads<'a> {
+    /// The program.
+    pub program: RamUpload<'a>,
+    /// The job, in its compact form.
+    pub job: RamUpload<'a>,
+    /// The probe log.
+    pub probe: RamUpload<'a>,
+}
+
+/// The upload of one item.
+pub struct RamUpload<'a> {
     item: Item,
     buffer: &'a mut [u8],
     length: usize,
@@ -13,8 +23,8 @@ pub struct Shelf<'a> {
     complete: bool,
 }
 
-impl<'a> Shelf<'a> {
-    /// An empty place.
+impl<'a> RamUpload<'a> {
+    /// Nothing uploaded yet.
     pub fn new(item: Item, buffer: &'a mut [u8]) -> Self {
         Self { item, buffer, length: 0, crc: 0, written: 0, complete: false }
     }

@@ -4,11 +4,9 @@
 //! frame arrive, and [`Servo::watch`] from a timer at least every millisecond. The deadline is `deadline_us` of the
 //! settings, counted from the arrival of the frame; an answer that would be later is withheld.
 //!
-//! There is no lock in here. The board shares the servo with the desk by [`ServoAccess`], which holds the setpoint
-//! path off while its closure runs; every method below says how long that is. The longest, arming, is a copy of the
+//! There is no lock in here. The board shares the servo with the configuration service by [`ServoAccess`], which holds the
+//! setpoint path off while its closure runs; every method below says how long that is. The longest, arming, is a copy of the
 //! state, a CRC of 38 bytes and six comparisons: some thousands of instructions.
-
-use core::cell::RefCell;
 
 use truepath_core::link::{
     Counters, Deframer, DeviceSettings, Endpoint, Framed, LinkError, MAX_ANSWER_BYTES, MAX_SETPOINT_BYTES, Recorder,
@@ -30,33 +28,35 @@ const PACKET: usize = MAX_SETPOINT_BYTES + 1;
 /// Longest packet that goes back.
 const ANSWER: usize = MAX_ANSWER_BYTES + 2;
 
-/// The desk's way to the servo.
+/// Access to the servo beside others who have it.
+///
+/// A closure cannot ask for the servo again through the access it came from, so nobody ever holds it twice:
+///
+/// ```compile_fail,E0499
+/// # use truepath_fw::servo::ServoAccess;
+/// fn nested<'a>(servo: &mut impl ServoAccess<'a>) {
+///     servo.with(|outer| servo.with(|inner| (outer.mode(), inner.mode())));
+/// }
+/// ```
+///
+/// One after the other is well:
+///
+/// ```
+/// # use truepath_fw::servo::ServoAccess;
+/// fn in_turn<'a>(servo: &mut impl ServoAccess<'a>) {
+///     servo.with(|servo| servo.mode());
+///     servo.with(|servo| servo.mode());
+/// }
+/// ```
 pub trait ServoAccess<'a> {
     /// Runs a closure while the setpoint path stands still. Only what is bounded and short belongs in it.
-    fn with<R>(&self, f: impl FnOnce(&mut Servo<'a>) -> R) -> R;
+    fn with<R>(&mut self, f: impl FnOnce(&mut Servo<'a>) -> R) -> R;
 }
 
-/// A servo in the same thread as the desk.
-pub struct Alone<'a>(RefCell<Servo<'a>>);
-
-impl<'a> Alone<'a> {
-    /// Of a servo.
-    pub const fn new(servo: Servo<'a>) -> Self {
-        Self(RefCell::new(servo))
-    }
-    /// The servo back.
-    pub fn into_servo(self) -> Servo<'a> {
-        self.0.into_inner()
-    }
-    /// Direct access.
-    pub fn get_mut(&mut self) -> &mut Servo<'a> {
-        self.0.get_mut()
-    }
-}
-
-impl<'a> ServoAccess<'a> for Alone<'a> {
-    fn with<R>(&self, f: impl FnOnce(&mut Servo<'a>) -> R) -> R {
-        f(&mut self.0.borrow_mut())
+/// A servo that nobody else has.
+impl<'a> ServoAccess<'a> for Servo<'a> {
+    fn with<R>(&mut self, f: impl FnOnce(&mut Servo<'a>) -> R) -> R {
+        f(self)
     }
 }
 

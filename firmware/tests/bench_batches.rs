@@ -4,7 +4,7 @@ mod wire_support;
 use truepath_core::link::{Ask, Reply, Response, decode};
 use truepath_core::rewrite::{Flags, Mode};
 use truepath_fw::bench::{Channel, Records, Writer};
-use truepath_fw::desk::Restart;
+use truepath_fw::config_service::Restart;
 use wire_support::part::{FEED, PASS, straight};
 use wire_support::*;
 

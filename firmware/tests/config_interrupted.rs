@@ -1,16 +1,15 @@
-//! The setpoint path interrupts the desk between any two of its closures; flash that wears out under it.
+//! The setpoint path interrupts the configuration service between any two of its closures; flash that wears out under it.
 
 mod wire_support;
-use std::cell::{Cell, RefCell};
 
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 use truepath_core::link::{Ask, Denial, DeviceSettings, ResetCause, Response, SetpointFrame, Slot, decode};
 use truepath_core::rewrite::{ArmRequest, Flags, Frame, Mode, Refusal, Setpoint};
-use truepath_fw::desk::{Board, Desk, IMAGE_BYTES, Memory};
+use truepath_fw::computation::ProgressMeter;
+use truepath_fw::config_service::{Board, ConfigService, IMAGE_BYTES, Memory};
 use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Nor, NorError, WordState};
 use truepath_fw::servo::{Servo, ServoAccess};
 use truepath_fw::slots::Upload;
-use truepath_fw::work::Meter;
 use wire_support::part::{self, straight};
 use wire_support::{image_of, name, request};
 
@@ -19,53 +18,48 @@ fn bank() -> Nor<'static> {
     Nor::erased(bytes, vec![WordState::Blank; BANK_WORDS].leak().try_into().unwrap())
 }
 
-/// A servo whose link falls silent before one of the closures of the desk.
+/// A servo whose link falls silent before one of the closures of the configuration service.
 struct Interrupted {
-    servo: RefCell<Servo<'static>>,
-    left: Cell<Option<u32>>,
-    now_us: Cell<u64>,
+    servo: Servo<'static>,
+    left: Option<u32>,
+    now_us: u64,
 }
 
 impl ServoAccess<'static> for Interrupted {
-    fn with<R>(&self, f: impl FnOnce(&mut Servo<'static>) -> R) -> R {
-        let mut servo = self.servo.borrow_mut();
-        match self.left.get() {
+    fn with<R>(&mut self, f: impl FnOnce(&mut Servo<'static>) -> R) -> R {
+        match self.left {
             Some(0) => {
-                self.left.set(None);
-                servo.watch(self.now_us.get() + 1_000_000);
+                self.left = None;
+                self.servo.watch(self.now_us + 1_000_000);
             }
-            left => self.left.set(left.map(|left| left - 1)),
+            left => self.left = left.map(|left| left - 1),
         }
-        f(&mut servo)
+        f(&mut self.servo)
     }
 }
 
-type TestDesk = Desk<'static, Nor<'static>>;
+type TestService = ConfigService<'static, Nor<'static>>;
 
-fn ask(desk: &mut TestDesk, servo: &Interrupted, id: u16, ask: Ask<'_>) -> Result<(), Denial> {
+fn ask(service: &mut TestService, servo: &mut Interrupted, id: u16, ask: Ask<'_>) -> Result<(), Denial> {
     let mut answer = vec![];
-    desk.receive(&request(id, ask), servo.now_us.get(), servo, &mut |bytes: &[u8]| answer.extend_from_slice(bytes));
+    service.receive(&request(id, ask), servo.now_us, servo, &mut |bytes: &[u8]| answer.extend_from_slice(bytes));
     assert_eq!(answer.pop(), Some(0));
     let response: Response<'_> = decode(&mut answer).unwrap();
     response.answer.map(|_| ())
 }
 
-fn mode(servo: &Interrupted) -> Mode {
-    servo.servo.borrow().mode()
-}
-
-fn enable(desk: &mut TestDesk, servo: &Interrupted) {
-    servo.now_us.set(servo.now_us.get() + 2_000_000);
+fn enable(service: &mut TestService, servo: &mut Interrupted) {
+    servo.now_us += 2_000_000;
     // As many as it takes to know their rate.
     for sequence in 0..40 {
-        servo.now_us.set(servo.now_us.get() + 1_000);
+        servo.now_us += 1_000;
         let setpoint = Setpoint { sequence, flags: Flags::default(), ..Setpoint::default() };
-        let (mut packet, now) = ([0; 128], servo.now_us.get());
+        let (mut packet, now) = ([0; 128], servo.now_us);
         let used = SetpointFrame { axes: 3, setpoint }.encode_packet(&mut packet).unwrap();
-        servo.servo.borrow_mut().receive(&packet[..used], now, &now, &mut |_: &[u8]| {});
+        servo.servo.receive(&packet[..used], now, &now, &mut |_: &[u8]| {});
     }
-    ask(desk, servo, 1_000, Ask::AcknowledgeDrivesDisabled).unwrap();
-    assert_eq!(mode(servo), Mode::Bypass);
+    ask(service, servo, 1_000, Ask::AcknowledgeDrivesDisabled).unwrap();
+    assert_eq!(servo.servo.mode(), Mode::Bypass);
 }
 
 #[test]
@@ -77,23 +71,23 @@ fn silence_between_any_two_steps_of_a_request_leaves_the_device_off_and_in_order
         program: lent(64),
         job: lent(64),
         probe: lent(64),
-        meter: Box::leak(Box::new(Meter::new())),
+        meter: Box::leak(Box::new(ProgressMeter::new())),
     };
     let board = Board { name: "test", last_reset: ResetCause::PowerOn };
-    let (mut desk, servo) = Desk::start(bank(), memory, board, 0);
-    let servo = Interrupted { servo: RefCell::new(servo), left: Cell::new(None), now_us: Cell::new(0) };
-    ask(&mut desk, &servo, 60, Ask::Configure(DeviceSettings::at_1_khz())).unwrap();
+    let (mut service, servo) = ConfigService::start(bank(), memory, board, 0);
+    let mut servo = Interrupted { servo, left: None, now_us: 0 };
+    ask(&mut service, &mut servo, 60, Ask::Configure(DeviceSettings::at_1_khz())).unwrap();
     let images = [image_of(straight()), image_of(wire_support::straight(10))];
     for (id, image) in (0..).step_by(10).zip(&images) {
         let length = image.len() as u32;
         let begin = Ask::Begin { item: truepath_core::link::Item::Image, length, crc: name(image) };
-        ask(&mut desk, &servo, id, begin).unwrap();
+        ask(&mut service, &mut servo, id, begin).unwrap();
         for (k, bytes) in image.chunks(1_024).enumerate() {
-            ask(&mut desk, &servo, id + 1, Ask::Chunk { offset: k as u32 * 1_024, bytes }).unwrap();
+            ask(&mut service, &mut servo, id + 1, Ask::Chunk { offset: k as u32 * 1_024, bytes }).unwrap();
         }
-        ask(&mut desk, &servo, id + 9, Ask::Commit).unwrap();
+        ask(&mut service, &mut servo, id + 9, Ask::Commit).unwrap();
     }
-    ask(&mut desk, &servo, 50, Ask::Activate { slot: 0, crc: name(&images[0]) }).unwrap();
+    ask(&mut service, &mut servo, 50, Ask::Activate { slot: 0, crc: name(&images[0]) }).unwrap();
     let (mut part_serial, mut interrupted, mut spent_without_arming) = (0, 0, 0);
     for before in 0..8 {
         part_serial += 1;
@@ -106,25 +100,25 @@ fn silence_between_any_two_steps_of_a_request_leaves_the_device_off_and_in_order
             Ask::Commit,
         ];
         for (k, what) in requests.into_iter().enumerate() {
-            enable(&mut desk, &servo);
-            ask(&mut desk, &servo, 200, Ask::Activate { slot: 0, crc: name(&images[0]) }).unwrap();
-            servo.left.set(Some(before));
-            let answer = ask(&mut desk, &servo, 300 + before as u16, what);
+            enable(&mut service, &mut servo);
+            ask(&mut service, &mut servo, 200, Ask::Activate { slot: 0, crc: name(&images[0]) }).unwrap();
+            servo.left = Some(before);
+            let answer = ask(&mut service, &mut servo, 300 + before as u16, what);
             let struck = servo.left.take().is_none();
             interrupted += u32::from(struck);
-            assert_eq!(struck, mode(&servo) == Mode::Off, "{k}, {before}");
+            assert_eq!(struck, servo.servo.mode() == Mode::Off, "{k}, {before}");
             if k == 0 && struck {
-                enable(&mut desk, &servo);
-                match ask(&mut desk, &servo, 400, arm) {
+                enable(&mut service, &mut servo);
+                match ask(&mut service, &mut servo, 400, arm) {
                     // Denied, but written to the ledger before: it stays spent.
                     Err(Denial::Refused(Refusal::PartRepeated { .. })) if answer.is_err() => spent_without_arming += 1,
                     other => assert_eq!((other, answer.is_err()), (Ok(()), true)),
                 }
             }
-            if mode(&servo) == Mode::Armed {
-                ask(&mut desk, &servo, 500, Ask::Disarm).unwrap();
+            if servo.servo.mode() == Mode::Armed {
+                ask(&mut service, &mut servo, 500, Ask::Disarm).unwrap();
             }
-            servo.servo.borrow_mut().watch(servo.now_us.get() + 1_000_000);
+            servo.servo.watch(servo.now_us + 1_000_000);
         }
     }
     assert!(interrupted > 10 && spent_without_arming > 0, "{interrupted}, {spent_without_arming}");

@@ -35,7 +35,7 @@ fn progress(rig: &mut Rig) -> Progress {
 /// Runs what was asked for; says whether there was anything.
 fn work(rig: &mut Rig) -> bool {
     let mut room: Box<Room> = Box::default();
-    rig.device().work(&mut room.workspace())
+    rig.device().compute(&mut room.workspace())
 }
 
 fn computed(rig: &mut Rig, part: &Part) -> Result<Computed, ComputeFailure> {

@@ -3,7 +3,7 @@
 mod wire_support;
 use truepath_core::link::{Ask, Denial, ResetCause};
 use truepath_core::rewrite::{Flags, Mode, Output, Refusal};
-use truepath_fw::desk::Restart;
+use truepath_fw::config_service::Restart;
 use wire_support::part::{CLEAR, FEED, GATE, PASS, along, straight};
 use wire_support::*;
 

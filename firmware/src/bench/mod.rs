@@ -13,7 +13,7 @@ mod record;
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::job::Workspace;
 
-use crate::desk::{Desk, Restart};
+use crate::config_service::{ConfigService, Restart};
 use crate::servo::ServoAccess;
 pub use record::{Channel, HEAD_BYTES, MOST_BYTES, Record, Records, Writer};
 
@@ -34,8 +34,8 @@ pub struct Batch {
 
 /// Runs a batch.
 pub fn run<'a, F: NorFlash>(
-    servo: &impl ServoAccess<'a>,
-    desk: &mut Desk<'a, F>,
+    servo: &mut impl ServoAccess<'a>,
+    config: &mut ConfigService<'a, F>,
     input: &[u8],
     output: &mut [u8],
     now_us: &mut u64,
@@ -52,15 +52,15 @@ pub fn run<'a, F: NorFlash>(
                 servo.with(|servo| servo.receive(bytes, now, &now, &mut send));
             }
             Channel::Config => {
-                restart = desk.receive(bytes, *now_us, servo, &mut |answer: &[u8]| out.put(Channel::Config, answer));
+                restart = config.receive(bytes, *now_us, servo, &mut |answer: &[u8]| out.put(Channel::Config, answer));
                 if restart.is_some() {
                     break;
                 }
                 if let Some(workspace) = workspace.as_deref_mut()
-                    && let Some(mut work) = desk.take_work()
+                    && let Some(mut computation) = config.take_computation()
                 {
-                    work.run(workspace);
-                    desk.finish(work, servo);
+                    computation.run(workspace);
+                    config.finish(computation, servo);
                 }
             }
             Channel::Time => {

@@ -4,7 +4,7 @@ use embedded_storage::nor_flash::NorFlash;
 use truepath_core::link::{ActiveImage, Denial, DeviceSettingsError, Reply, Slot};
 use truepath_core::rewrite::Settings;
 
-use super::office::{Office, idle};
+use super::handler::{Handler, idle};
 use crate::active::{LoadError, Loaded};
 use crate::servo::ServoAccess;
 use crate::slots;
@@ -18,9 +18,9 @@ impl From<LoadError> for Denial {
     }
 }
 
-impl<'a, F: NorFlash> Office<'a, F> {
+impl<'a, F: NorFlash> Handler<'a, F> {
     /// Uses an image, after resets as well. An image that does not pass leaves everything as it was.
-    pub fn activate<'s>(&mut self, wanted: ActiveImage, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+    pub fn activate<'s>(&mut self, wanted: ActiveImage, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         idle(servo)?;
         self.not_computing()?;
         let before = self.active;
@@ -35,7 +35,7 @@ impl<'a, F: NorFlash> Office<'a, F> {
         Ok(Reply::Done)
     }
 
-    pub fn deactivate<'s>(&mut self, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+    pub fn deactivate<'s>(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         idle(servo)?;
         self.not_computing()?;
         self.ledger.change(&mut self.flash, |now| now.active = None)?;
@@ -44,8 +44,8 @@ impl<'a, F: NorFlash> Office<'a, F> {
         Ok(Reply::Done)
     }
 
-    /// The image buffer at the desk; the servo then passes setpoints on without an image.
-    pub fn borrow_image(&mut self, servo: &impl ServoAccess<'a>) -> Result<(), Denial> {
+    /// Takes the image buffer back from the servo, which then passes setpoints on without an image.
+    pub fn borrow_image(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<(), Denial> {
         if self.image.is_none() {
             let loaded = servo.with(|servo| servo.take_image());
             let Some(loaded) = loaded else { return Err(Denial::Mode(servo.with(|servo| servo.mode()))) };
@@ -59,7 +59,7 @@ impl<'a, F: NorFlash> Office<'a, F> {
         &mut self,
         wanted: ActiveImage,
         settings: &Settings,
-        servo: &impl ServoAccess<'a>,
+        servo: &mut impl ServoAccess<'a>,
     ) -> Result<(), Denial> {
         self.borrow_image(servo)?;
         self.active = None;
@@ -81,7 +81,7 @@ impl<'a, F: NorFlash> Office<'a, F> {
     }
 
     /// Makes the rewriter anew for other settings, from the image in the buffer.
-    pub fn reload(&mut self, settings: &Settings, servo: &impl ServoAccess<'a>) -> Result<(), Denial> {
+    pub fn reload(&mut self, settings: &Settings, servo: &mut impl ServoAccess<'a>) -> Result<(), Denial> {
         let Some(active) = self.active else { return Ok(()) };
         self.borrow_image(servo)?;
         let Some(&Slot::Image { length, .. }) = self.slots.get(usize::from(active.slot)) else {
@@ -93,7 +93,7 @@ impl<'a, F: NorFlash> Office<'a, F> {
 
     /// The image that was in use, read anew after the buffer served for something else. If the flash does not give it
     /// any more, none is in use.
-    pub fn back_to(&mut self, before: Option<ActiveImage>, servo: &impl ServoAccess<'a>) {
+    pub fn back_to(&mut self, before: Option<ActiveImage>, servo: &mut impl ServoAccess<'a>) {
         let settings = self.settings().rewriter;
         self.active = None;
         if let Some(before) = before {
@@ -106,7 +106,7 @@ impl<'a, F: NorFlash> Office<'a, F> {
         buffer: &'a mut [u8],
         length: usize,
         settings: &Settings,
-        servo: &impl ServoAccess<'a>,
+        servo: &mut impl ServoAccess<'a>,
     ) -> Result<(), Denial> {
         let loaded = Loaded::load(buffer, length, settings).map_err(|(buffer, error)| {
             self.image = Some(buffer);

@@ -1,55 +1,41 @@
-//! The on-board correction, as the desk sees it: collect what is needed, lend it out, write what was made.
+//! The on-board correction, as a request: collect what it needs, lend it out, write the image it made.
 
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::Image;
 use truepath_core::link::{ComputeFailure, Computed, Denial, Item, Progress, Reply, Slot, Stage};
 
-use super::Desk;
-use super::office::{Office, idle};
+use super::handler::{Handler, idle};
+use crate::computation::Computation;
 use crate::servo::ServoAccess;
 use crate::slots::Upload;
-use crate::work::Work;
 
-impl<'a, F: NorFlash> Desk<'a, F> {
-    /// A computation that was asked for: to be run at the lowest priority and given to [`Desk::finish`].
-    pub fn take_work(&mut self) -> Option<Work<'a>> {
-        self.office.work.take()
-    }
-
-    /// Writes the image that was made to the idle slot, and lets requests use the buffers again. Takes as long as an
-    /// upload does.
-    pub fn finish(&mut self, work: Work<'a>, servo: &impl ServoAccess<'a>) {
-        self.office.finish(work, servo);
-    }
-}
-
-impl<'a, F: NorFlash> Office<'a, F> {
-    pub fn compute<'s>(&mut self, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+impl<'a, F: NorFlash> Handler<'a, F> {
+    pub fn compute<'s>(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         idle(servo)?;
         self.not_computing()?;
-        let shelves = self.shelves.as_ref().ok_or(Denial::Busy)?;
-        for (item, shelf) in
-            [(Item::Program, &shelves.program), (Item::Job, &shelves.job), (Item::Probe, &shelves.probe)]
+        let ram_uploads = self.ram_uploads.as_ref().ok_or(Denial::Busy)?;
+        for (item, upload) in
+            [(Item::Program, &ram_uploads.program), (Item::Job, &ram_uploads.job), (Item::Probe, &ram_uploads.probe)]
         {
-            shelf.content().ok_or(Denial::Missing(item))?;
+            upload.content().ok_or(Denial::Missing(item))?;
         }
         self.borrow_image(servo)?;
         self.current = None;
-        self.upload = None;
-        let (Some(shelves), Some(image)) = (self.shelves.take(), self.image.take()) else {
+        self.image_upload = None;
+        let (Some(ram_uploads), Some(image)) = (self.ram_uploads.take(), self.image.take()) else {
             return Err(Denial::Busy);
         };
-        self.work = Some(Work::new(shelves, image, self.meter));
+        self.computation = Some(Computation::new(ram_uploads, image, self.meter));
         self.computing = true;
         self.progress = Progress::default();
         Ok(Reply::Done)
     }
 
-    fn finish(&mut self, work: Work<'a>, servo: &impl ServoAccess<'a>) {
-        let Work { shelves, image, made, .. } = work;
+    pub fn finish(&mut self, computation: Computation<'a>, servo: &mut impl ServoAccess<'a>) {
+        let Computation { uploads, image, made, .. } = computation;
         let not_run = ComputeFailure { stage: Stage::Job, code: 0, line: 0, column: 0 };
         let result = made.unwrap_or(Err(not_run)).and_then(|bytes| self.write(image.get(..bytes).unwrap_or(&[])));
-        self.shelves = Some(shelves);
+        self.ram_uploads = Some(uploads);
         self.image = Some(image);
         self.progress = Progress { stage: Stage::Ended, permille: 1000, result: Some(result) };
         self.computing = false;

@@ -1,7 +1,7 @@
-//! The configuration link: requests in, responses out.
+//! The configuration service: requests of the configuration link in, responses out.
 //!
 //! Who calls it: the task of the configuration link, below the setpoint path. A request may take long (an erase of the
-//! flash takes seconds on a real part); the setpoint path goes on meanwhile, because the desk reaches it only through
+//! flash takes seconds on a real part); the setpoint path goes on meanwhile, because the service reaches it only through
 //! the short closures of [`ServoAccess`].
 //!
 //! A request that changed something is answered again, not carried out again, when it comes once more with the same
@@ -12,24 +12,26 @@
 
 mod activate;
 mod compute;
-mod memory;
-mod office;
+mod handler;
 mod operate;
-mod tell;
+mod report;
 mod upload;
 
 use embedded_storage::nor_flash::NorFlash;
 use heapless::Vec;
 use truepath_core::link::{
-    Ask, CHUNK_BYTES, Deframer, Denial, Framed, LinkError, PACKET_BYTES, Request, Response, decode, encode,
+    ActiveImage, Ask, CHUNK_BYTES, Deframer, Denial, Framed, Item, LinkError, PACKET_BYTES, Progress, Reply, Request,
+    Response, decode, encode,
 };
-use truepath_core::rewrite::Mode;
+use truepath_core::rewrite::{Mode, Rewriter};
 
-use crate::servo::ServoAccess;
-use crate::shelf::Shelf;
-use crate::work::Shelves;
-pub use memory::{Board, IMAGE_BYTES, Memory};
-use office::Office;
+use crate::computation::Computation;
+use crate::ledger::Ledger;
+use crate::ram_upload::{RamUpload, RamUploads};
+use crate::servo::{Servo, ServoAccess};
+use crate::slots;
+pub use handler::{Board, IMAGE_BYTES, Memory};
+use handler::{Handler, idle};
 
 /// The device is to be reset, after what has been answered is sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +40,9 @@ pub struct Restart {
     pub watchdog: bool,
 }
 
-/// The desk.
-pub struct Desk<'a, F: NorFlash> {
-    office: Office<'a, F>,
+/// The service.
+pub struct ConfigService<'a, F: NorFlash> {
+    handler: Handler<'a, F>,
     deframer: Deframer<{ PACKET_BYTES - 1 }>,
     answer: [u8; PACKET_BYTES],
     /// Bytes of `answer`, while it may have to be sent again.
@@ -49,28 +51,76 @@ pub struct Desk<'a, F: NorFlash> {
     asked: Vec<u8, PACKET_BYTES>,
 }
 
-impl<'a, F: NorFlash> Desk<'a, F> {
-    fn new(office: Office<'a, F>) -> Self {
-        Self { office, deframer: Deframer::new(), answer: [0; PACKET_BYTES], answered: None, asked: Vec::new() }
+impl<'a, F: NorFlash> ConfigService<'a, F> {
+    /// Reads ledger and slots after a reset and makes the servo, in `Off`, with the image that was active if it can
+    /// still be used, and the settings and armed passes of parts that were in force.
+    pub fn start(mut flash: F, memory: Memory<'a>, board: Board, now_us: u64) -> (Self, Servo<'a>) {
+        let mut ledger = Ledger::open(&mut flash);
+        // A lost count of boots does no harm: what cannot be written here fails again, and loudly, at the next change.
+        let _ = ledger.change(&mut flash, |now| now.boots = now.boots.saturating_add(1));
+        let Memory { image, recording, program, job, probe, meter } = memory;
+        let slots = [0, 1].map(|slot| slots::survey(&mut flash, slot, image));
+        let settings = ledger.now().settings_in_use();
+        let bare = Rewriter::new(settings.rewriter, None).expect("the ledger has checked the settings");
+        let mut servo = Servo::new(settings, bare, ledger.now().spent, recording);
+        let ram_uploads = RamUploads {
+            program: RamUpload::new(Item::Program, program),
+            job: RamUpload::new(Item::Job, job),
+            probe: RamUpload::new(Item::Probe, probe),
+        };
+        let mut handler = Handler {
+            flash,
+            ledger,
+            board,
+            started_us: now_us,
+            slots,
+            active: None,
+            image: Some(image),
+            capacities: [&ram_uploads.program, &ram_uploads.job, &ram_uploads.probe].map(RamUpload::capacity),
+            ram_uploads: Some(ram_uploads),
+            current: None,
+            image_upload: None,
+            computation: None,
+            computing: false,
+            progress: Progress::default(),
+            meter,
+        };
+        if let Some(active) = handler.ledger.now().active {
+            // An image that cannot be used any more leaves the device without one; `Status` and `List` say so.
+            let _ = handler.load(active, &settings.rewriter, &mut servo);
+        }
+        let service =
+            Self { handler, deframer: Deframer::new(), answer: [0; PACKET_BYTES], answered: None, asked: Vec::new() };
+        (service, servo)
     }
 
     /// The flash.
     pub fn flash(&mut self) -> &mut F {
-        &mut self.office.flash
+        &mut self.handler.flash
     }
     /// Everything that was lent, at a reset; what the servo has of it is handed in. A computation that is under way
-    /// elsewhere has its part of the memory and must be given back by [`Desk::finish`] before.
+    /// elsewhere has its part of the memory and must be given back by [`ConfigService::finish`] before.
     pub fn into_parts(self, image: Option<&'a mut [u8]>, recording: &'a mut [u8]) -> (F, Memory<'a>, Board) {
-        let Office { flash, board, shelves, image: at_desk, work, meter, .. } = self.office;
-        let (shelves, at_desk) = match work {
-            Some(work) => (Some(work.shelves), Some(work.image)),
-            None => (shelves, at_desk),
+        let Handler { flash, board, ram_uploads, image: at_service, computation, meter, .. } = self.handler;
+        let (ram_uploads, at_service) = match computation {
+            Some(computation) => (Some(computation.uploads), Some(computation.image)),
+            None => (ram_uploads, at_service),
         };
-        let image = image.or(at_desk).unwrap_or_default();
-        let [program, job, probe] = shelves.map_or_else(Default::default, |Shelves { program, job, probe }| {
-            [program, job, probe].map(Shelf::into_buffer)
+        let image = image.or(at_service).unwrap_or_default();
+        let [program, job, probe] = ram_uploads.map_or_else(Default::default, |RamUploads { program, job, probe }| {
+            [program, job, probe].map(RamUpload::into_buffer)
         });
         (flash, Memory { image, recording, program, job, probe, meter }, board)
+    }
+
+    /// A computation that was asked for: to be run at the lowest priority and given to [`ConfigService::finish`].
+    pub fn take_computation(&mut self) -> Option<Computation<'a>> {
+        self.handler.computation.take()
+    }
+    /// Writes the image that was computed to the idle slot, and lets requests use the buffers again. Takes as long as
+    /// an upload does.
+    pub fn finish(&mut self, computation: Computation<'a>, servo: &mut impl ServoAccess<'a>) {
+        self.handler.finish(computation, servo);
     }
 
     /// Bytes of the stream; `send` gets the answer to each undamaged request. After a request to restart the rest of
@@ -79,10 +129,10 @@ impl<'a, F: NorFlash> Desk<'a, F> {
         &mut self,
         mut bytes: &[u8],
         now_us: u64,
-        servo: &impl ServoAccess<'a>,
+        servo: &mut impl ServoAccess<'a>,
         send: &mut impl FnMut(&[u8]),
     ) -> Option<Restart> {
-        let Self { office, deframer, answer, answered, asked } = self;
+        let Self { handler, deframer, answer, answered, asked } = self;
         while let Some(framed) = deframer.feed(&mut bytes) {
             let Framed::Packet(packet) = framed else {
                 servo.with(|servo| servo.count_message(true));
@@ -98,7 +148,7 @@ impl<'a, F: NorFlash> Desk<'a, F> {
             if damaged {
                 continue;
             }
-            let still_so = |ask: &Ask<'_>| holds(ask, servo.with(|servo| servo.mode()));
+            let mut still_so = |ask: &Ask<'_>| holds(ask, servo.with(|servo| servo.mode()));
             let remembered = answered.filter(|_| again && request.as_ref().is_ok_and(|r| still_so(&r.ask)));
             if let Some(bytes) = remembered {
                 send(answer.get(..bytes).unwrap_or(&[]));
@@ -108,7 +158,7 @@ impl<'a, F: NorFlash> Desk<'a, F> {
             let mut scratch = [0; CHUNK_BYTES];
             let (response, keep, restart) = match request {
                 Ok(Request { id, ask }) => {
-                    let answer = office.carry_out(&ask, now_us, servo, &mut scratch);
+                    let answer = handler.carry_out(&ask, now_us, servo, &mut scratch);
                     let restart = match (&ask, &answer) {
                         (Ask::Restart { watchdog }, Ok(_)) => Some(Restart { watchdog: *watchdog }),
                         _ => None,
@@ -127,6 +177,51 @@ impl<'a, F: NorFlash> Desk<'a, F> {
             }
         }
         None
+    }
+}
+
+impl<'a, F: NorFlash> Handler<'a, F> {
+    /// Does what a request asks.
+    fn carry_out<'s>(
+        &mut self,
+        ask: &Ask<'_>,
+        now_us: u64,
+        servo: &mut impl ServoAccess<'a>,
+        scratch: &'s mut [u8; CHUNK_BYTES],
+    ) -> Result<Reply<'s>, Denial> {
+        match *ask {
+            Ask::Hello => Ok(Reply::Hello(self.hello())),
+            Ask::Status => Ok(Reply::Status(self.status(now_us, servo))),
+            Ask::AcknowledgeDrivesDisabled => self.acknowledge(now_us, servo),
+            Ask::Check(request) => self.check(&request, servo),
+            Ask::Arm(request) => self.arm(&request, servo),
+            Ask::Disarm => self.disarm(servo),
+            Ask::Begin { item, length, crc } => self.begin(item, length, crc, servo),
+            Ask::Chunk { offset, bytes } => self.chunk(offset, bytes, servo),
+            Ask::Commit => self.commit(servo),
+            Ask::List => Ok(Reply::Slots(self.list())),
+            Ask::Activate { slot, crc } => self.activate(ActiveImage { slot, crc }, servo),
+            Ask::Deactivate => self.deactivate(servo),
+            Ask::Settings => Ok(Reply::Settings(self.settings())),
+            Ask::Configure(settings) => self.configure(settings, servo),
+            Ask::ClearCounters => {
+                idle(servo)?;
+                servo.with(|servo| servo.clear_counters());
+                Ok(Reply::Done)
+            }
+            Ask::Trace => {
+                let (dropped, samples) = servo.with(|servo| servo.drain_trace());
+                Ok(Reply::Trace { dropped, samples })
+            }
+            Ask::Recording { from } => self.recording(from, servo, scratch),
+            Ask::ReleaseRecording => {
+                servo.with(|servo| servo.release_recording());
+                Ok(Reply::Done)
+            }
+            Ask::Compute => self.compute(servo),
+            Ask::Progress => Ok(Reply::Progress(self.progress())),
+            Ask::Restart { .. } => Ok(Reply::Done),
+        }
     }
 }
 

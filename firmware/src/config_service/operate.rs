@@ -4,7 +4,7 @@ use embedded_storage::nor_flash::NorFlash;
 use truepath_core::link::{Denial, DeviceSettings, DeviceSettingsError, Reply};
 use truepath_core::rewrite::{ArmRequest, Mode, Refusal, Rewriter, Spent};
 
-use super::office::Office;
+use super::handler::Handler;
 use crate::flash::LEDGER_SECTORS;
 use crate::ledger::JournalFailed;
 use crate::servo::ServoAccess;
@@ -15,20 +15,20 @@ impl From<JournalFailed> for Denial {
     }
 }
 
-impl<'a, F: NorFlash> Office<'a, F> {
-    pub fn acknowledge<'s>(&mut self, now_us: u64, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+impl<'a, F: NorFlash> Handler<'a, F> {
+    pub fn acknowledge<'s>(&mut self, now_us: u64, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         servo.with(|servo| servo.acknowledge(now_us)).map_err(Denial::Refused)?;
         Ok(Reply::Done)
     }
 
-    pub fn check<'s>(&self, request: &ArmRequest, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+    pub fn check<'s>(&self, request: &ArmRequest, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         self.would_spend(request, servo)?;
         Ok(Reply::Done)
     }
 
     /// The pass of the part that arming would spend. The ledger is asked as well as the servo: it also knows of
     /// armings that failed after they were written.
-    fn would_spend(&self, request: &ArmRequest, servo: &impl ServoAccess<'a>) -> Result<Spent, Denial> {
+    fn would_spend(&self, request: &ArmRequest, servo: &mut impl ServoAccess<'a>) -> Result<Spent, Denial> {
         self.not_computing()?;
         if self.ledger.now().settings.is_none() {
             return Err(Denial::NotConfigured);
@@ -42,14 +42,14 @@ impl<'a, F: NorFlash> Office<'a, F> {
 
     /// The pass of the part is spent in the ledger before the arming can have any effect; should the arming then fail
     /// (the link fell silent meanwhile), it stays spent.
-    pub fn arm<'s>(&mut self, request: &ArmRequest, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+    pub fn arm<'s>(&mut self, request: &ArmRequest, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         let pass = self.would_spend(request, servo)?;
         self.ledger.change(&mut self.flash, |now| now.spend(pass))?;
         servo.with(|servo| servo.arm(request)).map_err(Denial::Refused)?;
         Ok(Reply::Done)
     }
 
-    pub fn disarm<'s>(&mut self, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+    pub fn disarm<'s>(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         servo.with(|servo| servo.disarm()).map_err(Denial::Refused)?;
         Ok(Reply::Done)
     }
@@ -57,7 +57,7 @@ impl<'a, F: NorFlash> Office<'a, F> {
     pub fn configure<'s>(
         &mut self,
         settings: DeviceSettings,
-        servo: &impl ServoAccess<'a>,
+        servo: &mut impl ServoAccess<'a>,
     ) -> Result<Reply<'s>, Denial> {
         match servo.with(|servo| servo.mode()) {
             Mode::Off => self.not_computing()?,

@@ -4,11 +4,11 @@ use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::{DEVICE_NODES, FORMAT, SEMANTICS};
 use truepath_core::link::{CHUNK_BYTES, Denial, DeviceStatus, Hello, LINK_VERSION, Progress, Reply, Slot};
 
-use super::office::Office;
+use super::handler::Handler;
 use crate::servo::ServoAccess;
 use crate::slots::SLOT_IMAGE_BYTES;
 
-impl<'a, F: NorFlash> Office<'a, F> {
+impl<'a, F: NorFlash> Handler<'a, F> {
     pub fn hello<'s>(&self) -> Hello<'s> {
         let [program_bytes, job_bytes, probe_bytes] = self.capacities;
         Hello {
@@ -28,7 +28,7 @@ impl<'a, F: NorFlash> Office<'a, F> {
         }
     }
 
-    pub fn status(&self, now_us: u64, servo: &impl ServoAccess<'a>) -> DeviceStatus {
+    pub fn status(&self, now_us: u64, servo: &mut impl ServoAccess<'a>) -> DeviceStatus {
         let active = self.active;
         let uptime_us = now_us.saturating_sub(self.started_us);
         servo.with(|servo| DeviceStatus {
@@ -55,7 +55,7 @@ impl<'a, F: NorFlash> Office<'a, F> {
     pub fn recording<'s>(
         &self,
         from: u32,
-        servo: &impl ServoAccess<'a>,
+        servo: &mut impl ServoAccess<'a>,
         scratch: &'s mut [u8; CHUNK_BYTES],
     ) -> Result<Reply<'s>, Denial> {
         let (total, used) = servo.with(|servo| servo.recording(from as usize, scratch));

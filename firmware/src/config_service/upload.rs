@@ -3,25 +3,28 @@
 use embedded_storage::nor_flash::NorFlash;
 use truepath_core::link::{CHUNK_BYTES, Denial, Item, Reply, Slot};
 
-use super::office::{Office, idle};
+use super::handler::{Handler, idle};
+use crate::ram_upload::RamUpload;
 use crate::servo::ServoAccess;
-use crate::shelf::Shelf;
 use crate::slots::{SLOT_IMAGE_BYTES, Upload};
 
-impl<'a, F: NorFlash> Office<'a, F> {
+impl<'a, F: NorFlash> Handler<'a, F> {
     pub fn begin<'s>(
         &mut self,
         item: Item,
         length: u32,
         crc: u32,
-        servo: &impl ServoAccess<'a>,
+        servo: &mut impl ServoAccess<'a>,
     ) -> Result<Reply<'s>, Denial> {
         idle(servo)?;
         self.not_computing()?;
         self.current = None;
-        self.upload = None;
-        let offset =
-            if item == Item::Image { self.begin_image(length, crc)? } else { self.shelf(item)?.begin(length, crc)? };
+        self.image_upload = None;
+        let offset = if item == Item::Image {
+            self.begin_image(length, crc)?
+        } else {
+            self.ram_upload(item)?.begin(length, crc)?
+        };
         self.current = Some(item);
         Ok(Reply::Next { offset })
     }
@@ -43,21 +46,26 @@ impl<'a, F: NorFlash> Office<'a, F> {
             self.slots[usize::from(upload.slot())] = upload.held();
         }
         let next = upload.next();
-        self.upload = Some(upload);
+        self.image_upload = Some(upload);
         Ok(next)
     }
 
-    pub fn chunk<'s>(&mut self, offset: u32, bytes: &[u8], servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+    pub fn chunk<'s>(
+        &mut self,
+        offset: u32,
+        bytes: &[u8],
+        servo: &mut impl ServoAccess<'a>,
+    ) -> Result<Reply<'s>, Denial> {
         idle(servo)?;
         self.not_computing()?;
         let item = self.current.ok_or(Denial::NoUpload)?;
         let too_long = bytes.len() > CHUNK_BYTES;
-        let Some(upload) = self.upload.as_mut().filter(|_| item == Item::Image) else {
-            let shelf = self.shelf(item)?;
+        let Some(upload) = self.image_upload.as_mut().filter(|_| item == Item::Image) else {
+            let ram_upload = self.ram_upload(item)?;
             if too_long {
-                return Err(Denial::Offset { expected: shelf.next(), found: offset, bytes: bytes.len() as u32 });
+                return Err(Denial::Offset { expected: ram_upload.next(), found: offset, bytes: bytes.len() as u32 });
             }
-            return Ok(Reply::Next { offset: shelf.chunk(offset, bytes)? });
+            return Ok(Reply::Next { offset: ram_upload.chunk(offset, bytes)? });
         };
         if too_long {
             return Err(Denial::Offset { expected: upload.next(), found: offset, bytes: bytes.len() as u32 });
@@ -68,7 +76,7 @@ impl<'a, F: NorFlash> Office<'a, F> {
         if let Err(Denial::Flash { .. }) = done {
             // What is in the slot is found out by the next `Begin`.
             self.current = None;
-            self.upload = None;
+            self.image_upload = None;
         }
         if let Some(held) = held {
             self.slots[usize::from(slot)] = held;
@@ -76,16 +84,16 @@ impl<'a, F: NorFlash> Office<'a, F> {
         Ok(Reply::Next { offset: done? })
     }
 
-    pub fn commit<'s>(&mut self, servo: &impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+    pub fn commit<'s>(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         idle(servo)?;
         self.not_computing()?;
         let item = self.current.ok_or(Denial::NoUpload)?;
         if item != Item::Image {
-            let crc = self.shelf(item)?.commit()?;
+            let crc = self.ram_upload(item)?.commit()?;
             return Ok(Reply::Committed { slot: 0, crc });
         }
         let before = self.active;
-        let mut upload = self.upload.ok_or(Denial::NoUpload)?;
+        let mut upload = self.image_upload.ok_or(Denial::NoUpload)?;
         upload.is_complete()?;
         if before.is_some() {
             self.borrow_image(servo)?;
@@ -98,16 +106,16 @@ impl<'a, F: NorFlash> Office<'a, F> {
             Err(_) => Slot::Damaged,
         };
         self.current = None;
-        self.upload = None;
+        self.image_upload = None;
         done.map(|_| Reply::Committed { slot: upload.slot(), crc: upload.crc() })
     }
 
-    fn shelf(&mut self, item: Item) -> Result<&mut Shelf<'a>, Denial> {
-        let shelves = self.shelves.as_mut().ok_or(Denial::Busy)?;
+    fn ram_upload(&mut self, item: Item) -> Result<&mut RamUpload<'a>, Denial> {
+        let ram_uploads = self.ram_uploads.as_mut().ok_or(Denial::Busy)?;
         match item {
-            Item::Program => Ok(&mut shelves.program),
-            Item::Job => Ok(&mut shelves.job),
-            Item::Probe => Ok(&mut shelves.probe),
+            Item::Program => Ok(&mut ram_uploads.program),
+            Item::Job => Ok(&mut ram_uploads.job),
+            Item::Probe => Ok(&mut ram_uploads.probe),
             Item::Image => Err(Denial::NoUpload),
         }
     }

@@ -8,25 +8,11 @@
 //! data; a word whose programming was interrupted reads as an ECC error; a sector whose erase was interrupted may
 //! hold anything.
 
-mod layout;
+mod bank;
 mod nor;
-mod power;
-mod word;
 
-pub use layout::{LEDGER_SECTORS, Region, SLOT_BYTES, SLOT_SECTORS, sector_start};
-pub use nor::{Nor, NorError, Wear, WordState};
-pub use power::{Cut, Moment};
-pub use word::Word;
-
-/// Bytes of a sector, the least that can be erased.
-pub const SECTOR_BYTES: usize = 128 * 1024;
-/// Sectors of the bank.
-pub const SECTORS: usize = 8;
-/// Bytes of the bank.
-pub const BANK_BYTES: usize = SECTORS * SECTOR_BYTES;
-/// Bytes of a word, the least that can be programmed.
-pub const WORD_BYTES: usize = 32;
-/// Words of the bank.
-pub const BANK_WORDS: usize = BANK_BYTES / WORD_BYTES;
-/// A word as an erase leaves it.
-pub const BLANK: [u8; WORD_BYTES] = [0xFF; WORD_BYTES];
+pub use bank::{
+    BANK_BYTES, BANK_WORDS, BLANK, LEDGER_SECTORS, Region, SECTOR_BYTES, SECTORS, SLOT_BYTES, SLOT_SECTORS, WORD_BYTES,
+    Word, sector_start,
+};
+pub use nor::{Cut, Moment, Nor, NorError, Wear, WordState};

@@ -8,8 +8,7 @@ use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash, check_erase, check_read, check_write,
 };
 
-use super::power::Remains;
-use super::{BANK_BYTES, BANK_WORDS, Cut, Moment, SECTOR_BYTES, WORD_BYTES};
+use super::bank::{BANK_BYTES, BANK_WORDS, BLANK, SECTOR_BYTES, WORD_BYTES};
 
 /// State of a word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,6 +67,47 @@ impl Wear {
     /// Both together: the count a [`Cut`] refers to.
     pub const fn operations(self) -> u32 {
         self.erased_sectors.wrapping_add(self.programmed_words)
+    }
+}
+
+/// Where in an operation the power fails.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moment {
+    /// Nothing of the operation has happened.
+    Before,
+    /// A word is torn: it reads as an ECC error until it is erased. Of a sector some words are erased, some are torn
+    /// and some are as they were; which, follows from this number.
+    Within(u32),
+    /// The operation is complete, but nobody learns of it.
+    After,
+}
+
+/// A power cut at one erase of a sector or one program of a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cut {
+    /// Operations that still succeed before it.
+    pub after_operations: u32,
+    /// Where in the next one the power fails.
+    pub moment: Moment,
+}
+
+/// What an interrupted erase leaves of one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Remains {
+    Erased,
+    Torn,
+    Old,
+}
+
+impl Remains {
+    /// The fate of a word, from the number of the cut and the place of the word (a multiplicative hash of 32 bits).
+    fn of(seed: u32, word: usize) -> Self {
+        let mixed = (seed ^ 0x9E37_79B9).wrapping_add(word as u32).wrapping_mul(0x85EB_CA6B);
+        match (mixed ^ (mixed >> 15)) % 3 {
+            0 => Self::Erased,
+            1 => Self::Torn,
+            _ => Self::Old,
+        }
     }
 }
 
@@ -166,7 +206,7 @@ impl<'a> Nor<'a> {
                 _ => Remains::Erased,
             };
             match remains {
-                Remains::Erased => (*state, *bytes) = (WordState::Blank, super::BLANK),
+                Remains::Erased => (*state, *bytes) = (WordState::Blank, BLANK),
                 Remains::Torn => *state = WordState::Torn,
                 Remains::Old => {}
             }

@@ -26,7 +26,6 @@
 
 mod store;
 mod upload;
-mod word;
 
 pub use store::{SLOT_IMAGE_BYTES, read, survey};
 pub use upload::Upload;

@@ -1,10 +1,9 @@
-//! Reading slots: what a slot holds after any history, and its image.
+//! A slot in the flash: its head and commit word, what it holds after any history, and its image.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{DEVICE_NODES, Image, image_bytes};
+use truepath_core::image::{DEVICE_NODES, Image, crc32, image_bytes};
 use truepath_core::link::{Denial, Slot};
 
-use super::word::{Kind, Label};
 use crate::flash::{Region, SECTOR_BYTES, SLOT_BYTES, SLOT_SECTORS, WORD_BYTES, Word};
 
 /// Where the commit word lies in a slot.
@@ -16,11 +15,63 @@ pub const SLOT_IMAGE_BYTES: usize = image_bytes(DEVICE_NODES);
 
 const _: () = assert!(SLOT_IMAGE_BYTES + DATA as usize <= SLOT_BYTES);
 
+/// What a head or commit word says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Header {
+    /// Bytes of the image.
+    pub length: u32,
+    /// Its checksum.
+    pub crc: u32,
+    /// Number of the upload.
+    pub generation: u32,
+}
+
+/// Which word it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// An upload was begun.
+    Head,
+    /// The image is complete and was checked.
+    Commit,
+    /// The upload was complete and no usable image.
+    Rejected,
+}
+
+impl Kind {
+    const fn magic(self) -> [u8; 4] {
+        match self {
+            Self::Head => *b"TPH1",
+            Self::Commit => *b"TPC1",
+            Self::Rejected => *b"TPX1",
+        }
+    }
+}
+
+impl Header {
+    /// The word.
+    pub fn encode(self, kind: Kind) -> [u8; WORD_BYTES] {
+        let mut word = [0; WORD_BYTES];
+        let fields = [u32::from_le_bytes(kind.magic()), self.length, self.crc, self.generation];
+        for (to, field) in word.as_chunks_mut::<4>().0.iter_mut().zip(fields) {
+            *to = field.to_le_bytes();
+        }
+        let sum = crc32(&word[..28]);
+        word[28..].copy_from_slice(&sum.to_le_bytes());
+        word
+    }
+    /// What a word says, if it is an undamaged one of this kind.
+    pub fn decode(kind: Kind, word: &[u8; WORD_BYTES]) -> Option<Self> {
+        let field = |at: usize| u32::from_le_bytes([word[at], word[at + 1], word[at + 2], word[at + 3]]);
+        let sound = word.starts_with(&kind.magic()) && field(28) == crc32(&word[..28]);
+        sound.then(|| Self { length: field(4), crc: field(8), generation: field(12) })
+    }
+}
+
 /// A slot in the flash, by its number. A number above 1 is that of the second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Bay(pub u8);
+pub(super) struct FlashSlot(pub u8);
 
-impl Bay {
+impl FlashSlot {
     pub fn region(self) -> Region {
         SLOT_SECTORS[usize::from(self.0 > 0)]
     }
@@ -47,29 +98,29 @@ impl Bay {
     pub fn commit<F: NorFlash>(self, flash: &mut F) -> Word {
         Word::read(flash, self.commit_offset())
     }
-    /// The label of its head.
-    pub fn label<F: NorFlash>(self, flash: &mut F) -> Option<Label> {
-        let label = Label::decode(Kind::Head, &self.head(flash).written()?)?;
-        (1..=SLOT_IMAGE_BYTES as u32).contains(&label.length).then_some(label)
+    /// What its head says.
+    pub fn header<F: NorFlash>(self, flash: &mut F) -> Option<Header> {
+        let header = Header::decode(Kind::Head, &self.head(flash).written()?)?;
+        (1..=SLOT_IMAGE_BYTES as u32).contains(&header.length).then_some(header)
     }
-    /// The label, if head and commit word agree.
-    pub fn committed<F: NorFlash>(self, flash: &mut F) -> Option<Label> {
-        let label = self.label(flash)?;
-        let commit = Label::decode(Kind::Commit, &self.commit(flash).written()?)?;
-        (commit == label).then_some(label)
+    /// What both say, if head and commit word agree.
+    pub fn committed<F: NorFlash>(self, flash: &mut F) -> Option<Header> {
+        let header = self.header(flash)?;
+        let commit = Header::decode(Kind::Commit, &self.commit(flash).written()?)?;
+        (commit == header).then_some(header)
     }
     /// How far an uncommitted upload has come; none if nothing in the slot can be continued.
-    pub fn progress<F: NorFlash>(self, flash: &mut F, label: &Label) -> Option<Reached> {
-        let words = (self.start()..self.end(label.length)).step_by(WORD_BYTES).skip(2);
+    pub fn progress<F: NorFlash>(self, flash: &mut F, header: &Header) -> Option<Reached> {
+        let words = (self.start()..self.end(header.length)).step_by(WORD_BYTES).skip(2);
         let last = words.clone().rev().find(|&at| !Word::read(flash, at).is_blank());
         let Some(last) = last else { return Some(Reached { written: 0, erase_from: None }) };
         let end = last - self.data(0) + WORD_BYTES as u32;
-        if end > label.length.next_multiple_of(WORD_BYTES as u32) {
+        if end > header.length.next_multiple_of(WORD_BYTES as u32) {
             return None;
         }
         let torn = words.take_while(|&at| at <= last).find(|&at| Word::read(flash, at) == Word::Torn);
         let Some(torn) = torn else {
-            return Some(Reached { written: end.min(label.length), erase_from: None });
+            return Some(Reached { written: end.min(header.length), erase_from: None });
         };
         let sector = torn - (torn - self.start()) % SECTOR_BYTES as u32;
         // The first sector holds the head as well.
@@ -88,21 +139,21 @@ pub(super) struct Reached {
 
 /// What a slot holds. `scratch` of [`SLOT_IMAGE_BYTES`] is for the image; whether it is in use, the caller knows.
 pub fn survey<F: NorFlash>(flash: &mut F, slot: u8, scratch: &mut [u8]) -> Slot {
-    let bay = Bay(slot);
-    if let Some(label) = bay.committed(flash) {
-        let Label { length, crc, generation } = label;
-        return match image(flash, bay, &label, scratch) {
+    let place = FlashSlot(slot);
+    if let Some(header) = place.committed(flash) {
+        let Header { length, crc, generation } = header;
+        return match image(flash, place, &header, scratch) {
             Ok(image) => Slot::Image { length, crc, generation, active: false, binding: image.settings().binding },
             Err(_) => Slot::Damaged,
         };
     }
-    match (bay.head(flash), bay.commit(flash), bay.label(flash)) {
-        (_, Word::Blank, Some(label)) => match bay.progress(flash, &label) {
-            Some(reached) => Slot::Partial { length: label.length, crc: label.crc, written: reached.written },
+    match (place.head(flash), place.commit(flash), place.header(flash)) {
+        (_, Word::Blank, Some(header)) => match place.progress(flash, &header) {
+            Some(reached) => Slot::Partial { length: header.length, crc: header.crc, written: reached.written },
             None => Slot::Damaged,
         },
         (Word::Blank, Word::Blank, _) => {
-            let mut words = (bay.region().start()..bay.region().end()).step_by(WORD_BYTES);
+            let mut words = (place.region().start()..place.region().end()).step_by(WORD_BYTES);
             if words.all(|at| Word::read(flash, at).is_blank()) { Slot::Empty } else { Slot::Damaged }
         }
         _ => Slot::Damaged,
@@ -115,27 +166,27 @@ pub fn survey<F: NorFlash>(flash: &mut F, slot: u8, scratch: &mut [u8]) -> Slot 
 /// [`Denial::NoImage`], [`Denial::OtherImage`] if it is not the one with this checksum, [`Denial::Image`] or
 /// [`Denial::Flash`] if it does not pass the check any more.
 pub fn read<F: NorFlash>(flash: &mut F, slot: u8, crc: u32, into: &mut [u8]) -> Result<usize, Denial> {
-    let label = (slot < 2).then(|| Bay(slot).committed(flash)).flatten().ok_or(Denial::NoImage { slot })?;
-    if label.crc != crc {
-        return Err(Denial::OtherImage { slot, expected: crc, found: label.crc });
+    let header = (slot < 2).then(|| FlashSlot(slot).committed(flash)).flatten().ok_or(Denial::NoImage { slot })?;
+    if header.crc != crc {
+        return Err(Denial::OtherImage { slot, expected: crc, found: header.crc });
     }
-    image(flash, Bay(slot), &label, into)?;
-    Ok(label.length as usize)
+    image(flash, FlashSlot(slot), &header, into)?;
+    Ok(header.length as usize)
 }
 
 /// The image of a slot, read and checked, whether committed or not.
 pub(super) fn image<'b, F: NorFlash>(
     flash: &mut F,
-    bay: Bay,
-    label: &Label,
+    place: FlashSlot,
+    header: &Header,
     into: &'b mut [u8],
 ) -> Result<Image<'b>, Denial> {
-    let address = bay.data(0);
-    let bytes = into.get_mut(..label.length as usize).ok_or(Denial::Flash { address })?;
+    let address = place.data(0);
+    let bytes = into.get_mut(..header.length as usize).ok_or(Denial::Flash { address })?;
     flash.read(address, bytes).map_err(|_| Denial::Flash { address })?;
     let image = Image::new_checked(bytes).map_err(Denial::Image)?;
-    if image.crc() != label.crc {
-        return Err(Denial::Checksum { expected: label.crc, found: image.crc() });
+    if image.crc() != header.crc {
+        return Err(Denial::Checksum { expected: header.crc, found: image.crc() });
     }
     Ok(image)
 }

@@ -4,15 +4,14 @@ use embedded_storage::nor_flash::NorFlash;
 use truepath_core::image::Binding;
 use truepath_core::link::{Denial, Slot};
 
-use super::store::{Bay, image};
-use super::word::{Kind, Label};
+use super::store::{FlashSlot, Header, Kind, image};
 use crate::flash::{BLANK, WORD_BYTES, Word};
 
 /// An upload under way.
 #[derive(Clone, Copy, Debug)]
 pub struct Upload {
-    bay: Bay,
-    label: Label,
+    place: FlashSlot,
+    header: Header,
     /// Bytes that have arrived; those of an incomplete word wait in `carry`.
     arrived: u32,
     carry: [u8; WORD_BYTES],
@@ -31,31 +30,32 @@ impl Upload {
     }
 
     fn begin_in<F: NorFlash>(flash: &mut F, slot: u8, held: Slot, length: u32, crc: u32) -> Result<Self, Denial> {
-        let bay = Bay(slot);
-        let same = |label: &Label| label.length == length && label.crc == crc;
-        let upload = |label, arrived, committed| Self { bay, label, arrived, carry: BLANK, committed };
-        if let (Slot::Image { .. }, Some(label)) = (held, bay.committed(flash).filter(same)) {
-            return Ok(upload(label, length, true));
+        let place = FlashSlot(slot);
+        let same = |header: &Header| header.length == length && header.crc == crc;
+        let upload = |header, arrived, committed| Self { place, header, arrived, carry: BLANK, committed };
+        if let (Slot::Image { .. }, Some(header)) = (held, place.committed(flash).filter(same)) {
+            return Ok(upload(header, length, true));
         }
         let failed = |address| move |_| Denial::Flash { address };
-        if let (true, Some(label)) = (bay.commit(flash).is_blank(), bay.label(flash).filter(same))
-            && let Some(reached) = bay.progress(flash, &label)
+        if let (true, Some(header)) = (place.commit(flash).is_blank(), place.header(flash).filter(same))
+            && let Some(reached) = place.progress(flash, &header)
         {
             if let Some(sector) = reached.erase_from {
-                flash.erase(sector, bay.end(length)).map_err(failed(sector))?;
+                flash.erase(sector, place.end(length)).map_err(failed(sector))?;
             }
-            return Ok(upload(label, reached.written, false));
+            return Ok(upload(header, reached.written, false));
         }
-        let newest = (0..2).filter_map(|slot| Bay(slot).label(flash)).map(|label| label.generation).max().unwrap_or(0);
-        let label = Label { length, crc, generation: newest.saturating_add(1) };
-        flash.erase(bay.head_offset(), bay.end(length)).map_err(failed(bay.head_offset()))?;
-        program(flash, bay.head_offset(), &label.encode(Kind::Head))?;
-        Ok(upload(label, 0, false))
+        let newest =
+            (0..2).filter_map(|slot| FlashSlot(slot).header(flash)).map(|header| header.generation).max().unwrap_or(0);
+        let header = Header { length, crc, generation: newest.saturating_add(1) };
+        flash.erase(place.head_offset(), place.end(length)).map_err(failed(place.head_offset()))?;
+        program(flash, place.head_offset(), &header.encode(Kind::Head))?;
+        Ok(upload(header, 0, false))
     }
 
     /// Slot it goes to.
     pub const fn slot(&self) -> u8 {
-        self.bay.0
+        self.place.0
     }
     /// Where the next chunk goes.
     pub const fn next(&self) -> u32 {
@@ -63,7 +63,7 @@ impl Upload {
     }
     /// Checksum of the image.
     pub const fn crc(&self) -> u32 {
-        self.label.crc
+        self.header.crc
     }
     /// Whether the image was there before, committed.
     pub const fn is_committed(&self) -> bool {
@@ -74,12 +74,12 @@ impl Upload {
     /// # Errors
     /// [`Denial::Incomplete`].
     pub const fn is_complete(&self) -> Result<(), Denial> {
-        let (length, written) = (self.label.length, self.arrived);
+        let (length, written) = (self.header.length, self.arrived);
         if written < length { Err(Denial::Incomplete { length, written }) } else { Ok(()) }
     }
     /// What the slot holds meanwhile.
     pub const fn held(&self) -> Slot {
-        Slot::Partial { length: self.label.length, crc: self.label.crc, written: self.arrived }
+        Slot::Partial { length: self.header.length, crc: self.header.crc, written: self.arrived }
     }
 
     /// Takes the next bytes; gives where the ones after them go.
@@ -87,7 +87,7 @@ impl Upload {
     /// # Errors
     /// [`Denial::Offset`], with nothing changed; [`Denial::Flash`], then the upload has to be begun again.
     pub fn chunk<F: NorFlash>(&mut self, flash: &mut F, offset: u32, bytes: &[u8]) -> Result<u32, Denial> {
-        let room = (self.label.length - self.arrived) as usize;
+        let room = (self.header.length - self.arrived) as usize;
         if offset != self.arrived || bytes.len() > room {
             return Err(Denial::Offset { expected: self.arrived, found: offset, bytes: bytes.len() as u32 });
         }
@@ -95,8 +95,8 @@ impl Upload {
             let at = self.arrived as usize % WORD_BYTES;
             self.carry[at] = byte;
             self.arrived += 1;
-            if at == WORD_BYTES - 1 || self.arrived == self.label.length {
-                let word = self.bay.data(self.arrived - 1 - at as u32);
+            if at == WORD_BYTES - 1 || self.arrived == self.header.length {
+                let word = self.place.data(self.arrived - 1 - at as u32);
                 program(flash, word, &core::mem::replace(&mut self.carry, BLANK))?;
             }
         }
@@ -110,7 +110,7 @@ impl Upload {
     /// another one, and the slot is marked so; [`Denial::Flash`].
     pub fn commit<F: NorFlash>(&mut self, flash: &mut F, scratch: &mut [u8]) -> Result<Slot, Denial> {
         self.is_complete()?;
-        let found = image(flash, self.bay, &self.label, scratch).map(|image| image.settings().binding);
+        let found = image(flash, self.place, &self.header, scratch).map(|image| image.settings().binding);
         self.seal(flash, found)
     }
 
@@ -122,7 +122,7 @@ impl Upload {
         self.is_complete()?;
         let mut piece = [0; WORD_BYTES];
         let mut found = Ok(binding);
-        for (expected, at) in bytes.chunks(WORD_BYTES).zip((self.bay.data(0)..).step_by(WORD_BYTES)) {
+        for (expected, at) in bytes.chunks(WORD_BYTES).zip((self.place.data(0)..).step_by(WORD_BYTES)) {
             let read = &mut piece[..expected.len()];
             if flash.read(at, read).is_err() || read != expected {
                 found = Err(Denial::Flash { address: at });
@@ -133,14 +133,14 @@ impl Upload {
     }
 
     fn seal<F: NorFlash>(&mut self, flash: &mut F, found: Result<Binding, Denial>) -> Result<Slot, Denial> {
-        let Label { length, crc, generation } = self.label;
+        let Header { length, crc, generation } = self.header;
         let kind = if found.is_ok() { Kind::Commit } else { Kind::Rejected };
-        if self.bay.commit(flash).is_blank() {
-            program(flash, self.bay.commit_offset(), &self.label.encode(kind))?;
+        if self.place.commit(flash).is_blank() {
+            program(flash, self.place.commit_offset(), &self.header.encode(kind))?;
         }
         let binding = found?;
-        if self.bay.committed(flash) != Some(self.label) {
-            return Err(Denial::Flash { address: self.bay.commit_offset() });
+        if self.place.committed(flash) != Some(self.header) {
+            return Err(Denial::Flash { address: self.place.commit_offset() });
         }
         self.committed = true;
         Ok(Slot::Image { length, crc, generation, active: false, binding })

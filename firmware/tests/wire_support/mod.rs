@@ -11,10 +11,10 @@ use truepath_core::link::{
     ResetCause, Response, SetpointFrame, Slot, decode, encode, unstuff,
 };
 use truepath_core::rewrite::{ArmRequest, Flags, Frame, Mode, Output, Setpoint};
-use truepath_fw::desk::{Board, IMAGE_BYTES, Memory, Restart};
+use truepath_fw::computation::ProgressMeter;
+use truepath_fw::config_service::{Board, IMAGE_BYTES, Memory, Restart};
 use truepath_fw::device::Device;
 use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Cut, Nor, WordState};
-use truepath_fw::work::Meter;
 
 pub type Bank = Nor<'static>;
 
@@ -68,7 +68,7 @@ impl Rig {
             program: lent(0, 4_096),
             job: lent(0, 512),
             probe: lent(0, 4_096),
-            meter: Box::leak(Box::new(Meter::new())),
+            meter: Box::leak(Box::new(ProgressMeter::new())),
         };
         let board = Board { name: "test", last_reset: ResetCause::PowerOn };
         let device = Device::start(Nor::erased(bank, words), memory, board, 0);

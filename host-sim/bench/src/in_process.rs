@@ -12,10 +12,10 @@ use truepath_core::job::Workspace;
 use truepath_core::link::ResetCause;
 use truepath_core::probe::{Contact, Reading};
 use truepath_core::units::{Offset, Real};
-use truepath_fw::desk::{Board, IMAGE_BYTES, Memory};
+use truepath_fw::config_service::{Board, IMAGE_BYTES, Memory};
 use truepath_fw::device::Device;
 use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Nor, WordState};
-use truepath_fw::work::Meter;
+use truepath_fw::computation::ProgressMeter;
 
 use super::bulk::Bulk;
 use super::error::BenchError;
@@ -64,7 +64,7 @@ impl InProcess {
             program: lasting(0, PROGRAM_BYTES),
             job: lasting(0, JOB_BYTES),
             probe: lasting(0, PROBE_BYTES),
-            meter: Box::leak(Box::new(Meter::new())),
+            meter: Box::leak(Box::new(ProgressMeter::new())),
         };
         let board = Board { name: "host", last_reset: ResetCause::PowerOn };
         let device = Device::start(Nor::erased(bytes, words), memory, board, 0);

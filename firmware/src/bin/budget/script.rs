@@ -59,21 +59,21 @@ const PARTS: i64 = 32;
 /// Runs the script; every tick is measured.
 pub fn run(machine: &mut Machine, nodes: usize, all: &mut [Series; Situation::ALL.len()]) {
     let end = (nodes as i64 - 1) * SPACING;
-    let mut tell = |machine: &mut Machine, situation: Situation, along: i64, beside: i64, above: i64| {
+    let mut send = |machine: &mut Machine, situation: Situation, along: i64, beside: i64, above: i64| {
         machine.send(along, beside, above, all.get_mut(situation as usize));
     };
     for part in 0..PARTS {
         for _ in 0..20 {
-            tell(machine, Situation::Bypass, 0, 0, CLEAR);
+            send(machine, Situation::Bypass, 0, 0, CLEAR);
         }
         machine.arm();
         for _ in 0..20 {
-            tell(machine, Situation::Armed, 0, 0, GATE);
+            send(machine, Situation::Armed, 0, 0, GATE);
         }
         while machine.mode() == Mode::Armed {
-            tell(machine, Situation::Entry, 0, 0, 0);
+            send(machine, Situation::Entry, 0, 0, 0);
         }
-        tell(machine, Situation::Entry, 0, 0, 0);
+        send(machine, Situation::Entry, 0, 0, 0);
 
         // Beside the path by up to 0.15 mm, gently. Every other part goes on like that over many nodes; the others soon
         // go on in steps that pass eight segments, each from another place between two nodes.
@@ -84,29 +84,29 @@ pub fn run(machine: &mut Machine, nodes: usize, all: &mut [Series; Situation::AL
         let mut reached = 0;
         while along <= until {
             reached += (beside - reached).clamp(-2_000, 2_000);
-            tell(machine, Situation::Feed, along, reached, 0);
+            send(machine, Situation::Feed, along, reached, 0);
             along += FEED + part;
         }
         if !slow {
             for _ in 0..20 {
                 if along + FASTEST < end {
                     along += FASTEST;
-                    tell(machine, Situation::Fastest, along, reached, 0);
+                    send(machine, Situation::Fastest, along, reached, 0);
                 }
             }
         }
         assert!(machine.mode() == Mode::Active, "the correction ended before its time");
         machine.flags(Flags::FEED_HOLD);
         for _ in 0..60 {
-            tell(machine, Situation::Hold, along, reached, 0);
+            send(machine, Situation::Hold, along, reached, 0);
         }
         machine.flags(Flags::default());
         assert!(machine.mode() == Mode::Hold, "feed hold does not hold");
 
         // The tool goes aside by more than the tolerance: a fault, and the correction ramps out.
-        tell(machine, Situation::FaultRamp, along, reached + 900_000, 0);
+        send(machine, Situation::FaultRamp, along, reached + 900_000, 0);
         while machine.mode() != Mode::Bypass {
-            tell(machine, Situation::FaultRamp, along, reached + 900_000, 0);
+            send(machine, Situation::FaultRamp, along, reached + 900_000, 0);
         }
     }
 }

@@ -5,19 +5,8 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
-use embassy_stm32::pac::{GPIOB, GPIOE};
 
-/// Drive enable PE11 and its lamp low, fault PE9 and its lamp high, past every driver.
-fn drop_drives() {
-    GPIOE.bsrr().write(|w| {
-        w.set_br(11, true);
-        w.set_bs(9, true);
-    });
-    GPIOB.bsrr().write(|w| {
-        w.set_br(0, true);
-        w.set_bs(14, true);
-    });
-}
+use super::outputs::drop_drives;
 
 /// Whether the end has begun: a fault inside the log must not begin another log.
 static ENDING: AtomicBool = AtomicBool::new(false);

@@ -6,8 +6,8 @@ use static_cell::ConstStaticCell;
 use truepath_core::job::Buffers;
 use truepath_core::link::MAX_ANSWER_BYTES;
 
-use crate::desk::{IMAGE_BYTES, Memory};
-use crate::work::Meter;
+use crate::computation::ProgressMeter;
+use crate::config_service::{IMAGE_BYTES, Memory};
 
 /// Frames of the recorder: one second of three axes at 1 kHz, a twentieth of one at 20 kHz.
 const RECORDING_BYTES: usize = 1_000 * 48;
@@ -18,9 +18,9 @@ const JOB_BYTES: usize = 512;
 /// Buffer for a probe log.
 const PROBE_BYTES: usize = 16 << 10;
 
-/// Workspace of the on-board correction: blocks of a contour, samples of a path, states, nodes, probe points: 286 KiB,
+/// Buffers of the on-board correction: blocks of a contour, samples of a path, states, nodes, probe points: 286 KiB,
 /// for a contour of 70 mm and a cutter of up to 20 mm. Longer ones are for the host.
-pub type Workshop = Buffers<64, 1_260, 804, 700, 48>;
+pub type CorrectionBuffers = Buffers<64, 1_260, 804, 700, 48>;
 
 /// Bytes taken from the ring at once; on SPI the longest answer passes through it.
 const RECEIVED: usize = 96;
@@ -70,7 +70,7 @@ pub unsafe fn wake() {
 
 /// The buffers of the links. Called once, after [`wake`].
 pub fn lend() -> Memory<'static> {
-    static METER: Meter = Meter::new();
+    static METER: ProgressMeter = ProgressMeter::new();
     Memory {
         image: lent!(".axi.image", [u8; IMAGE_BYTES], [0; IMAGE_BYTES]),
         recording: lent!(".axi.recording", [u8; RECORDING_BYTES], [0; RECORDING_BYTES]),
@@ -95,7 +95,7 @@ pub fn setpoint_ring() -> &'static mut [u8] {
     lent!(".d2.ring", [u8; 1024], [0; 1024])
 }
 
-/// The workspace of the on-board correction. Called once, after [`wake`].
-pub fn workshop() -> &'static mut Workshop {
-    lent!(".d2.workshop", Workshop, Workshop::new())
+/// The buffers of the on-board correction. Called once, after [`wake`].
+pub fn correction_buffers() -> &'static mut CorrectionBuffers {
+    lent!(".d2.correction", CorrectionBuffers, CorrectionBuffers::new())
 }

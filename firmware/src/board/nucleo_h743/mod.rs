@@ -20,21 +20,17 @@
 //! Both outputs float during a reset: they need pull-downs on the drive side. The caches: instructions on, data off, so
 //! that DMA and processor see the same memory; stack and states lie in the DTCM, which needs no cache.
 
-mod background;
 mod clocks;
-mod config_task;
 mod fatal;
 mod flash;
 mod interrupts;
 mod memory;
-mod select_edge;
+mod outputs;
 mod setpoint_spi;
 mod setpoint_uart;
 mod start;
+mod tasks;
 mod watchdog;
 
 pub use flash::{Bank2, FlashError};
-pub use start::run;
-
-/// Its name in `Hello`.
-pub const NAME: &str = "nucleo-h743zi2";
+pub use start::{NAME, run};

@@ -11,11 +11,13 @@ use embassy_time::Instant;
 use heapless::Vec;
 use truepath_core::link::MAX_ANSWER_BYTES;
 
+use super::clocks::BoardClock;
 use super::memory::SetpointBuffers;
-use super::start::{BoardOutputs, Clockwork};
+use super::outputs::BoardOutputs;
 use super::watchdog;
-use crate::board::SetpointSide;
 use crate::board::config_link::Tick;
+use crate::board::shared_servo::SetpointSide;
+use crate::servo::ServoAccess;
 
 /// Bytes per second of the link.
 pub const BAUD: u32 = 3_000_000;
@@ -38,8 +40,10 @@ pub async fn setpoint_uart(
         // The tick first: bytes that never end must not keep the task from reporting.
         if tick.try_take().is_some() {
             watchdog::setpoint_task_lives();
-            side.servo().watch(Instant::now().as_micros());
-            outputs.follow(side.servo());
+            side.with(|servo| {
+                servo.watch(Instant::now().as_micros());
+                outputs.follow(servo);
+            });
         }
         let (result, arrived_us) = {
             let mut reading = pin!(receiver.read(&mut buffers.received));
@@ -65,11 +69,13 @@ pub async fn setpoint_uart(
         }
         let mut answers: Vec<u8, ANSWERS> = Vec::new();
         let bytes = buffers.received.get(..taken).unwrap_or(&[]);
-        side.servo().receive(bytes, arrived_us, &Clockwork, &mut |answer: &[u8]| {
-            // It has room for as many answers as there are frames in a chunk.
-            let _ = answers.extend_from_slice(answer);
+        side.with(|servo| {
+            servo.receive(bytes, arrived_us, &BoardClock, &mut |answer: &[u8]| {
+                // It has room for as many answers as there are frames in a chunk.
+                let _ = answers.extend_from_slice(answer);
+            });
+            outputs.follow(servo);
         });
-        outputs.follow(side.servo());
         // The DMA does not reach the memory of the stack.
         if let Some(place) = buffers.sent.get_mut(..answers.len()) {
             place.copy_from_slice(&answers);

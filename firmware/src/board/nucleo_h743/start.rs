@@ -6,34 +6,27 @@ use embassy_stm32::pac::gpio::vals::Ospeedr;
 use embassy_stm32::pac::{GPIOA, RCC};
 use embassy_stm32::spi::{self, SlaveSelectPolarity, Spi};
 use embassy_stm32::usart::{self, BufferedUart, Uart};
-use embassy_time::{Duration, Ticker};
 use static_cell::StaticCell;
 use truepath_core::link::ResetCause;
 
-use super::config_task::{self, config_task};
 use super::flash::Bank2;
 use super::interrupts::{self, Lines, SETPOINT_LINK};
 use super::setpoint_spi::setpoint_spi;
 use super::setpoint_uart::{self, setpoint_uart};
-use super::{NAME, background, clocks, memory, watchdog};
-use crate::board::config_link::{SharedDesk, Tick};
-use crate::board::{Outputs, ServoCell};
-use crate::desk::{Board, Desk};
+use super::tasks::{CONFIG_BAUD, SETPOINT_TICK, background, config_task, tick};
+use super::{clocks, memory, outputs, watchdog};
+use crate::board::config_link::{Configuration, SharedConfiguration};
+use crate::board::shared_servo::share;
+use crate::config_service::{Board, ConfigService};
+use crate::servo::Servo;
 
-/// Drive enable and fault, each with its lamp.
-pub type BoardOutputs = Outputs<Output<'static>, 2>;
-
-/// The time of the board.
-#[derive(Clone, Copy, Debug)]
-pub struct Clockwork;
-
-static SETPOINT_TICK: Tick = Tick::new();
-static CONFIG_TICK: Tick = Tick::new();
+/// The board's name in `Hello`.
+pub const NAME: &str = "nucleo-h743zi2";
 
 /// Runs the device. Called once, by the entry of the image.
 pub fn run() -> ! {
-    static SERVO: ServoCell = ServoCell::new();
-    static DESK: StaticCell<SharedDesk<Bank2>> = StaticCell::new();
+    static SERVO: StaticCell<Servo<'static>> = StaticCell::new();
+    static CONFIGURATION: StaticCell<SharedConfiguration<Bank2>> = StaticCell::new();
     static TO_CONTROLLER: StaticCell<[u8; 2048]> = StaticCell::new();
     static FROM_CONTROLLER: StaticCell<[u8; 2048]> = StaticCell::new();
 
@@ -45,19 +38,18 @@ pub fn run() -> ! {
     config.dma_interrupt_priority = SETPOINT_LINK;
     let p = embassy_stm32::init(config);
     // The drives first: they stay off until the controller has acknowledged them.
-    let outputs = BoardOutputs::new(
-        [Output::new(p.PE11, Level::Low, Speed::Low), Output::new(p.PB0, Level::Low, Speed::Low)],
-        [Output::new(p.PE9, Level::Low, Speed::Low), Output::new(p.PB14, Level::Low, Speed::Low)],
-    );
+    let outputs = outputs::low((p.PE11, p.PB0), (p.PE9, p.PB14));
     defmt::info!("truepath {=str}, board {=str}, reset cause {=u8}", env!("CARGO_PKG_VERSION"), NAME, last_reset as u8);
     // SAFETY: nothing in these regions is used before.
     unsafe { memory::wake() };
 
-    let (desk, servo) = Desk::start(Bank2::new(p.FLASH), memory::lend(), Board { name: NAME, last_reset }, 0);
-    let desk = DESK.init(SharedDesk::new(desk));
-    // SAFETY: once, here, before the setpoint task is spawned; above it run only interrupts that leave the servo alone.
-    let side = unsafe { SERVO.fill(servo) };
-    let [setpoint, configuration] = interrupts::start();
+    let board = Board { name: NAME, last_reset };
+    let (service, servo) = ConfigService::start(Bank2::new(p.FLASH), memory::lend(), board, 0);
+    // SAFETY: the first side goes to the setpoint task, the second below it; above it run only interrupts that leave the
+    // servo alone.
+    let (side, servo) = unsafe { share(SERVO.init(servo)) };
+    let configuration = CONFIGURATION.init(SharedConfiguration::new(Configuration { service, servo }));
+    let [setpoint_executor, config_executor] = interrupts::start();
 
     let strap = Input::new(p.PE13, Pull::Up);
     cortex_m::asm::delay(48_000);
@@ -68,7 +60,7 @@ pub fn run() -> ! {
         let (sender, receiver) = uart.split();
         let receiver = receiver.into_ring_buffered(memory::setpoint_ring());
         let buffers = memory::setpoint_buffers();
-        setpoint.spawn(token(setpoint_uart(receiver, sender, buffers, side, outputs, &SETPOINT_TICK)));
+        setpoint_executor.spawn(token(setpoint_uart(receiver, sender, buffers, side, outputs, &SETPOINT_TICK)));
     } else {
         let mut config = spi::Config::default();
         config.nss_polarity = SlaveSelectPolarity::ActiveLow;
@@ -77,27 +69,16 @@ pub fn run() -> ! {
         GPIOA.ospeedr().modify(|w| w.set_ospeedr(6, Ospeedr::VERY_HIGH_SPEED));
         let ready = Output::new(p.PF14, Level::Low, Speed::VeryHigh);
         let buffers = memory::setpoint_buffers();
-        setpoint.spawn(token(setpoint_spi(spi, ready, buffers, side, outputs, &SETPOINT_TICK)));
+        setpoint_executor.spawn(token(setpoint_spi(spi, ready, buffers, side, outputs, &SETPOINT_TICK)));
     }
     let mut config = usart::Config::default();
-    config.baudrate = config_task::BAUD;
+    config.baudrate = CONFIG_BAUD;
     let (to, from) = (TO_CONTROLLER.init([0; 2048]), FROM_CONTROLLER.init([0; 2048]));
     let (sender, receiver) = must(BufferedUart::new(p.USART3, p.PD9, p.PD8, to, from, Lines, config)).split();
-    configuration.spawn(token(config_task(receiver, sender, &CONFIG_TICK, desk, &SERVO)));
-    setpoint.spawn(token(tick()));
+    config_executor.spawn(token(config_task(receiver, sender, configuration)));
+    setpoint_executor.spawn(token(tick()));
     watchdog::start(p.IWDG1);
-    background::run(desk, &SERVO)
-}
-
-/// Wakes both tasks each millisecond.
-#[embassy_executor::task]
-async fn tick() {
-    let mut ticker = Ticker::every(Duration::from_millis(1));
-    loop {
-        ticker.next().await;
-        SETPOINT_TICK.signal(());
-        CONFIG_TICK.signal(());
-    }
+    background(configuration)
 }
 
 /// Why the last reset happened; clears the flags (RM0433, 8.7.37).

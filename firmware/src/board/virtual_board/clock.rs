@@ -9,7 +9,7 @@ use cortex_m::peripheral::NVIC;
 use portable_atomic::AtomicU64;
 use volatile_register::RW;
 
-use super::interrupts::Line;
+use super::line::Line;
 
 /// Clock of the timers, Hz.
 pub const HZ: u32 = 25_000_000;

@@ -5,7 +5,7 @@ use core::panic::PanicInfo;
 use cortex_m::peripheral::SCB;
 
 use super::gpio::{DRIVE_ENABLE, FAULT, Output};
-use super::{kept, log};
+use super::{log, retained};
 
 /// What cannot go on.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ pub fn stop(cause: Cause) -> ! {
 pub fn watchdog_ran_out() -> ! {
     cortex_m::interrupt::disable();
     drop_drives();
-    kept::announce_watchdog_reset();
+    retained::announce_watchdog_reset();
     if !log::is_taken() {
         defmt::error!("watchdog ran out; drives disabled, reset follows");
     }
@@ -55,7 +55,7 @@ pub fn watchdog_ran_out() -> ! {
 pub fn restart() -> ! {
     cortex_m::interrupt::disable();
     drop_drives();
-    kept::announce_software_reset();
+    retained::announce_software_reset();
     SCB::sys_reset()
 }
 

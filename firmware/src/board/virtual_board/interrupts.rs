@@ -12,36 +12,15 @@
 
 use core::cell::RefCell;
 
-use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 use cortex_m_rt::exception;
 use critical_section::Mutex;
 use embassy_executor::InterruptExecutor;
 
+use super::line::Line;
+use super::tasks::{CONFIG_TICK, SETPOINT_TICK};
 use super::uart::{Port, Receiving, Shared};
-use super::{clock, config_task, fatal, setpoint_task};
-
-/// Interrupt lines in use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u16)]
-pub enum Line {
-    /// UART 0, reception.
-    SetpointReceived = 0,
-    /// UART 0, transmission.
-    SetpointTransmitted = 1,
-    /// UART 1, reception.
-    ConfigReceived = 2,
-    /// UART 1, transmission.
-    ConfigTransmitted = 3,
-    /// Timer 0.
-    Timer0 = 8,
-    /// Timer 1.
-    Timer1 = 9,
-    /// Executor of the configuration task.
-    ConfigExecutor = 30,
-    /// Executor of the setpoint task.
-    SetpointExecutor = 31,
-}
+use super::{clock, fatal};
 
 /// Priorities by line; the upper three bits count.
 const PRIORITIES: [(Line, u8); 8] = [
@@ -107,8 +86,8 @@ extern "C" fn timer0() {
 }
 extern "C" fn timer1() {
     clock::on_tick();
-    setpoint_task::TICK.signal(());
-    config_task::TICK.signal(());
+    SETPOINT_TICK.signal(());
+    CONFIG_TICK.signal(());
 }
 extern "C" fn config_executor() {
     // SAFETY: the line is unmasked by `start` of this executor.
@@ -152,10 +131,3 @@ const fn table() -> [unsafe extern "C" fn(); LINES] {
 #[unsafe(link_section = ".vector_table.interrupts")]
 #[unsafe(no_mangle)]
 static __INTERRUPTS: [unsafe extern "C" fn(); LINES] = table();
-
-// SAFETY: the numbers are those of the table above.
-unsafe impl InterruptNumber for Line {
-    fn number(self) -> u16 {
-        self as u16
-    }
-}

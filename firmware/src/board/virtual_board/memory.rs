@@ -8,9 +8,9 @@ use truepath_core::job::Buffers;
 use truepath_core::link::ResetCause;
 
 use super::shared_memory;
-use crate::desk::{IMAGE_BYTES, Memory};
+use crate::computation::ProgressMeter;
+use crate::config_service::{IMAGE_BYTES, Memory};
 use crate::flash::{BANK_BYTES, BANK_WORDS, Nor, WordState};
-use crate::work::Meter;
 
 /// Frames of the recorder: two seconds of three axes at 1 kHz.
 const RECORDING_BYTES: usize = 2_000 * 48;
@@ -21,9 +21,9 @@ const JOB_BYTES: usize = 1 << 10;
 /// Buffer for a probe log.
 const PROBE_BYTES: usize = 128 << 10;
 
-/// Workspace of the on-board correction: blocks of a contour, samples of a path, states, nodes, probe points.
-pub type Workshop = Buffers<4_096, 24_576, 24_576, 16_384, 512>;
-const _: () = assert!(size_of::<Workshop>() <= shared_memory::WORKSPACE_BYTES);
+/// Buffers of the on-board correction: blocks of a contour, samples of a path, states, nodes, probe points.
+pub type CorrectionBuffers = Buffers<4_096, 24_576, 24_576, 16_384, 512>;
+const _: () = assert!(size_of::<CorrectionBuffers>() <= shared_memory::WORKSPACE_BYTES);
 
 unsafe extern "C" {
     static mut _bank_start: [u8; BANK_BYTES];
@@ -37,7 +37,7 @@ pub fn lend() -> Memory<'static> {
     static PROGRAM: ConstStaticCell<[u8; PROGRAM_BYTES]> = ConstStaticCell::new([0; PROGRAM_BYTES]);
     static JOB: ConstStaticCell<[u8; JOB_BYTES]> = ConstStaticCell::new([0; JOB_BYTES]);
     static PROBE: ConstStaticCell<[u8; PROBE_BYTES]> = ConstStaticCell::new([0; PROBE_BYTES]);
-    static METER: Meter = Meter::new();
+    static METER: ProgressMeter = ProgressMeter::new();
     Memory {
         image: IMAGE.take(),
         recording: RECORDING.take(),
@@ -64,9 +64,9 @@ pub fn bank(cause: ResetCause) -> Nor<'static> {
     }
 }
 
-/// The workspace of the on-board correction, in the upper half of the shared memory. Called once.
-pub fn workshop() -> &'static mut Workshop {
+/// The buffers of the on-board correction, in the upper half of the shared memory. Called once.
+pub fn correction_buffers() -> &'static mut CorrectionBuffers {
     // SAFETY: the region is as large as the type (asserted above), aligned, and reserved for it (docs/link.md).
-    let place = unsafe { &mut *shared_memory::workspace().cast::<MaybeUninit<Workshop>>() };
-    place.write(Workshop::new())
+    let place = unsafe { &mut *shared_memory::workspace().cast::<MaybeUninit<CorrectionBuffers>>() };
+    place.write(CorrectionBuffers::new())
 }

@@ -10,22 +10,18 @@
 //! | background | thread | none | |
 //! | watchdog | fed by the configuration task when the setpoint task lives | 1 s, 2 s | drives off, reset |
 
-mod background;
 pub mod clock;
-mod config_task;
 pub mod fatal;
 mod gpio;
 mod interrupts;
-mod kept;
+mod line;
 mod log;
 mod memory;
-mod setpoint_task;
+mod retained;
 mod shared_memory;
 mod start;
+mod tasks;
 pub mod uart;
 mod watchdog;
 
-pub use start::run;
-
-/// Its name in `Hello`.
-pub const NAME: &str = "virtual";
+pub use start::{NAME, run};

@@ -10,12 +10,12 @@ const WATCHDOG: u32 = 0x5253_5402;
 const RUNNING: u32 = 0x5253_5403;
 
 unsafe extern "C" {
-    static mut _kept_start: [u32; 2];
+    static mut _retained_start: [u32; 2];
 }
 
 fn word(index: usize) -> *mut u32 {
     // SAFETY: `memory.x` reserves 64 bytes there; only the address is taken.
-    unsafe { (&raw mut _kept_start).cast::<u32>().add(index) }
+    unsafe { (&raw mut _retained_start).cast::<u32>().add(index) }
 }
 
 fn store(cause: u32) {

@@ -3,37 +3,44 @@
 use heapless::spsc::Queue;
 use static_cell::StaticCell;
 
-use super::config_task::config_task;
 use super::gpio::{DRIVE_ENABLE, FAULT, Output};
-use super::interrupts::{self, CONFIG_EXECUTOR, CONFIG_UART, Line, SETPOINT_EXECUTOR, SETPOINT_UART};
-use super::setpoint_task::setpoint_task;
+use super::interrupts::{self, CONFIG_EXECUTOR, CONFIG_UART, SETPOINT_EXECUTOR, SETPOINT_UART};
+use super::line::Line;
+use super::tasks::{background, config_task, setpoint_task};
 use super::uart::{Port, RING};
-use super::{NAME, background, clock, kept, memory, watchdog};
-use crate::board::config_link::SharedDesk;
-use crate::board::{Outputs, ServoCell};
-use crate::desk::{Board, Desk};
+use super::{clock, memory, retained, watchdog};
+use crate::board::config_link::{Configuration, SharedConfiguration};
+use crate::board::outputs::Outputs;
+use crate::board::shared_servo::share;
+use crate::config_service::{Board, ConfigService};
 use crate::flash::Nor;
+use crate::servo::Servo;
+
+/// The board's name in `Hello`.
+pub const NAME: &str = "virtual";
 
 /// Runs the device. Called once, by the entry of the image.
 pub fn run() -> ! {
     static SETPOINT_RING: StaticCell<Queue<u8, RING>> = StaticCell::new();
     static CONFIG_RING: StaticCell<Queue<u8, RING>> = StaticCell::new();
-    static SERVO: ServoCell = ServoCell::new();
-    static DESK: StaticCell<SharedDesk<Nor<'static>>> = StaticCell::new();
+    static SERVO: StaticCell<Servo<'static>> = StaticCell::new();
+    static CONFIGURATION: StaticCell<SharedConfiguration<Nor<'static>>> = StaticCell::new();
 
     // The drives first: they stay off until the controller has acknowledged them.
     let outputs = Outputs::new([Output::low(DRIVE_ENABLE)], [Output::low(FAULT)]);
     Port::Log.enable_transmission();
-    let last_reset = kept::take_cause();
+    let last_reset = retained::take_cause();
     defmt::info!("truepath {=str}, board {=str}, reset cause {=u8}", env!("CARGO_PKG_VERSION"), NAME, last_reset as u8);
     let Some(mut core) = cortex_m::Peripherals::take() else { unreachable!("taken here and nowhere else") };
     interrupts::set_up(&mut core.NVIC);
 
     // The clock of the device begins here, at 0, in batches as well.
-    let (desk, servo) = Desk::start(memory::bank(last_reset), memory::lend(), Board { name: NAME, last_reset }, 0);
-    let desk = DESK.init(SharedDesk::new(desk));
-    // SAFETY: once, here, before the setpoint task is spawned; above it run only interrupts that leave the servo alone.
-    let side = unsafe { SERVO.fill(servo) };
+    let board = Board { name: NAME, last_reset };
+    let (service, servo) = ConfigService::start(memory::bank(last_reset), memory::lend(), board, 0);
+    // SAFETY: the first side goes to the setpoint task, the second below it; above it run only interrupts that leave the
+    // servo alone.
+    let (side, servo) = unsafe { share(SERVO.init(servo)) };
+    let configuration = CONFIGURATION.init(SharedConfiguration::new(Configuration { service, servo }));
 
     let (setpoints, answers, receiving) =
         SETPOINT_UART.open(SETPOINT_RING.init(Queue::new()), [Line::SetpointReceived, Line::SetpointTransmitted]);
@@ -43,7 +50,7 @@ pub fn run() -> ! {
     interrupts::receive(Port::Config, receiving);
 
     watchdog::start();
-    match (setpoint_task(setpoints, answers, side, outputs), config_task(requests, responses, desk, &SERVO)) {
+    match (setpoint_task(setpoints, answers, side, outputs), config_task(requests, responses, configuration)) {
         (Ok(setpoint), Ok(config)) => {
             SETPOINT_EXECUTOR.start(Line::SetpointExecutor).spawn(setpoint);
             CONFIG_EXECUTOR.start(Line::ConfigExecutor).spawn(config);
@@ -51,5 +58,5 @@ pub fn run() -> ! {
         _ => unreachable!("each task has one place, and this is its only use"),
     }
     clock::start();
-    background::run(desk, &SERVO)
+    background(configuration)
 }

@@ -18,7 +18,7 @@ use heapless::spsc::{Consumer, Producer, Queue};
 use volatile_register::RW;
 
 use super::clock;
-use super::interrupts::Line;
+use super::line::Line;
 
 /// Bytes that may wait between the interrupt and its task.
 pub const RING: usize = 2048;

@@ -60,7 +60,7 @@ const NUCLEO_H743: &[Level] = &[
 /// What a waker can do.
 const WAKER: &[&str] = &["embassy_executor::raw::waker::"];
 /// Closures that are told how far an on-board correction is, outermost first.
-const TOLD: &[&str] = &["Work>::run::{closure#0}>::{closure#2}", "Work>::run::{closure#0}>::{closure#3}"];
+const TOLD: &[&str] = &["Computation>::run::{closure#0}>::{closure#2}", "Computation>::run::{closure#0}>::{closure#3}"];
 /// Of one of the fits under both wall laws.
 const LAW: &str = "identified::{closure#0}>::{closure#0}>::{closure#0}::{closure#0}";
 const FIT: &str = ">::settle::{closure#";
@@ -97,7 +97,7 @@ pub const INDIRECT: &[Indirect] = &[
     ("interrupts::setpoint_transmitted", WAKER),
     ("interrupts::timer1", WAKER),
     ("uart::Receiving>::on_received", WAKER),
-    ("background::run", WAKER),
+    ("tasks::background", WAKER),
     (">::linearise", &[FIT]),
     (FIT, &[">::fit::{closure#0}", LAW, TOLD[0], TOLD[1]]),
     (LAW, TOLD),

@@ -1,0 +1,99 @@
+//! The bank: its sectors and words, and who lives in which sector: image slot A in 0…2, image slot B in 3…5, the
+//! ledger in 6 and 7.
+//!
+//! Slots and ledger share no sector, so that an erase for one can never cost the other anything.
+
+use embedded_storage::nor_flash::ReadNorFlash;
+
+/// Bytes of a sector, the least that can be erased.
+pub const SECTOR_BYTES: usize = 128 * 1024;
+/// Sectors of the bank.
+pub const SECTORS: usize = 8;
+/// Bytes of the bank.
+pub const BANK_BYTES: usize = SECTORS * SECTOR_BYTES;
+/// Bytes of a word, the least that can be programmed.
+pub const WORD_BYTES: usize = 32;
+/// Words of the bank.
+pub const BANK_WORDS: usize = BANK_BYTES / WORD_BYTES;
+/// A word as an erase leaves it.
+pub const BLANK: [u8; WORD_BYTES] = [0xFF; WORD_BYTES];
+
+/// Sectors of the image slots A and B.
+pub const SLOT_SECTORS: [Region; 2] = [Region { first: 0, count: 3 }, Region { first: 3, count: 3 }];
+/// Sectors of the ledger.
+pub const LEDGER_SECTORS: Region = Region { first: 6, count: 2 };
+/// Bytes of an image slot, head included.
+pub const SLOT_BYTES: usize = 3 * SECTOR_BYTES;
+
+const _: () = assert!(LEDGER_SECTORS.first + LEDGER_SECTORS.count == SECTORS);
+const _: () = assert!(SLOT_SECTORS[0].count * SECTOR_BYTES == SLOT_BYTES);
+const _: () = assert!(SLOT_SECTORS[1].first == SLOT_SECTORS[0].first + SLOT_SECTORS[0].count);
+const _: () = assert!(LEDGER_SECTORS.first == SLOT_SECTORS[1].first + SLOT_SECTORS[1].count);
+
+/// Neighbouring sectors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// Number of the first sector in the bank.
+    pub first: usize,
+    /// How many.
+    pub count: usize,
+}
+
+/// Offset of a sector from the start of the bank, bytes.
+pub const fn sector_start(sector: usize) -> u32 {
+    (sector * SECTOR_BYTES) as u32
+}
+
+impl Region {
+    /// Offset of its first byte.
+    pub const fn start(self) -> u32 {
+        sector_start(self.first)
+    }
+    /// Offset of the byte after its last.
+    pub const fn end(self) -> u32 {
+        sector_start(self.first + self.count)
+    }
+    /// Bytes.
+    pub const fn len(self) -> usize {
+        self.count * SECTOR_BYTES
+    }
+    /// Whether it has no sector.
+    pub const fn is_empty(self) -> bool {
+        self.count == 0
+    }
+}
+
+/// What a word holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Word {
+    /// Ones: erased, or programmed with ones, which nobody can tell apart. Words of ones are therefore never
+    /// programmed.
+    Blank,
+    /// Something else.
+    Written([u8; WORD_BYTES]),
+    /// It cannot be read.
+    Torn,
+}
+
+impl Word {
+    /// The word at an offset, a multiple of 32.
+    pub fn read<F: ReadNorFlash>(flash: &mut F, offset: u32) -> Self {
+        let mut bytes = BLANK;
+        match flash.read(offset, &mut bytes) {
+            Ok(()) if bytes == BLANK => Self::Blank,
+            Ok(()) => Self::Written(bytes),
+            Err(_) => Self::Torn,
+        }
+    }
+    /// Its bytes, if it holds some.
+    pub fn written(self) -> Option<[u8; WORD_BYTES]> {
+        match self {
+            Self::Written(bytes) => Some(bytes),
+            _ => None,
+        }
+    }
+    /// Whether it can be programmed.
+    pub fn is_blank(self) -> bool {
+        self == Self::Blank
+    }
+}
