@@ -11,8 +11,7 @@ use std::time::Duration;
 use arguments::Task;
 use serde::Serialize;
 use truepath_bench::{BenchError, Client, Ingredients, Line, compute};
-use truepath_core::link::{Ask, DeviceStatus, Slot};
-use truepath_core::rewrite::Reason;
+use truepath_core::link::{Ask, Counters, DeviceStatus, Slot};
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{json, write_file};
 use truepath_job::job::Job;
@@ -130,7 +129,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
             if *clear {
                 client.done(Ask::ClearCounters)?;
             }
-            say(terminal, &status.counters, || counters_words(&status))
+            say(terminal, &status.counters, || counters_words(&status.counters))
         }
         Task::Restart { watchdog } => done(&mut client, Ask::Restart { watchdog: *watchdog }, terminal, "restarted"),
         Task::Compute { job, probe, activate: after, minutes } => {
@@ -219,18 +218,36 @@ fn status_words(s: &DeviceStatus) -> String {
     )
 }
 
-fn counters_words(status: &DeviceStatus) -> String {
-    let c = Counts::from(&status.counters);
+fn counters_words(counters: &Counters) -> String {
+    let c = Counts::from(counters);
     let mut text = format!(
         "accepted {}\nanswered {}\ndamaged {}\nrepeated {}\nout of order {}\nlost {}\njumps {}\nlate {}\nsilences {}\n",
         c.accepted, c.answered, c.damaged, c.repeated, c.out_of_order, c.lost, c.jumps, c.late, c.silences
     );
-    for reason in (16..32).filter_map(|code| Reason::try_from(code).ok()) {
-        let count = status.counters.faults_of(reason);
-        if count > 0 {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "fault: {reason} {count}");
-        }
+    for (reason, count) in counters.by_fault().filter(|&(_, count)| count > 0) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "fault: {reason} {count}");
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use truepath_core::rewrite::Reason;
+
+    #[test]
+    fn every_fault_that_is_counted_is_shown_with_its_count() {
+        let mut counters = Counters::default();
+        for (count, counter) in (1..).zip(&mut counters.faults) {
+            *counter = 100 + count;
+        }
+        let text = counters_words(&counters);
+        let faults: Vec<Reason> = Reason::ALL.into_iter().filter(|reason| reason.is_fault()).collect();
+        assert_eq!(faults.len(), counters.faults.len());
+        for (count, reason) in (1..).zip(faults) {
+            let line = format!("fault: {reason} {}", 100 + count);
+            assert!(text.lines().any(|l| l == line), "{line} is missing in\n{text}");
+        }
+    }
 }

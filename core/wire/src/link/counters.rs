@@ -47,6 +47,11 @@ impl Counters {
             Self::one_more(counter);
         }
     }
+    /// Every fault with how often it happened, in the order of their numbers.
+    pub fn by_fault(&self) -> impl Iterator<Item = (Reason, u32)> {
+        let faults = Reason::ALL.into_iter().filter(|reason| reason.is_fault());
+        faults.map(|reason| (reason, self.faults_of(reason)))
+    }
     /// How often a fault happened; 0 for a regular end.
     pub fn faults_of(&self, reason: Reason) -> u32 {
         self.faults.get(usize::from(reason.code().wrapping_sub(Reason::FIRST_FAULT))).copied().unwrap_or(0)

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use truepath_bench::{Board, Identity, Injected, Outcome, RoundTrip};
 use truepath_core::link::Counters;
-use truepath_core::rewrite::{Mode, Reason};
+use truepath_core::rewrite::Mode;
 
 use super::OnBoard;
 
@@ -85,14 +85,8 @@ pub(super) fn report(board: &dyn Board, device: Identity, outcome: &Outcome, cou
     if difference.is_none() && (found != expected || counters.faults != outcome.counters.faults) {
         difference = Some(format!("the counters differ: host {expected:?}, board {found:?}"));
     }
-    let faults = (Reason::FIRST_FAULT..)
-        .take(Reason::FAULTS)
-        .filter_map(|code| {
-            let reason = Reason::try_from(code).ok()?;
-            let count = counters.faults_of(reason);
-            (count > 0).then(|| (reason.to_string(), count))
-        })
-        .collect();
+    let faults = counters.by_fault().filter(|&(_, count)| count > 0);
+    let faults = faults.map(|(reason, count)| (reason.to_string(), count)).collect();
     let seconds = outcome.elapsed.as_secs_f64();
     Report {
         device,

@@ -136,8 +136,8 @@ fn faults(model: &Model, theme: Theme, lines: &mut Vec<Line<'static>>) {
     }
     lines.push(Line::from(format!("jumps {}, late {}", grouped(c.jumps.into()), grouped(c.late.into()))));
     let ended: u64 = c.faults.iter().map(|count| u64::from(*count)).sum();
-    let reasons = Reason::ALL.into_iter().filter(|reason| c.faults_of(*reason) > 0);
-    let reasons: Vec<String> = reasons.map(|reason| format!("{} x {reason}", c.faults_of(reason))).collect();
+    let faults = c.by_fault().filter(|&(_, count)| count > 0);
+    let reasons: Vec<String> = faults.map(|(reason, count)| format!("{count} x {reason}")).collect();
     let reasons = if reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join("; ")) };
     lines.push(Line::from(format!("corrections ended by faults: {}{reasons}", grouped(ended))));
 }
