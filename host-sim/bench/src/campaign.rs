@@ -22,7 +22,7 @@ use super::expect::Expectation;
 use super::injector::{Delivery, FaultInjector, Faults, Injected};
 use super::judge::{Happened, Judge};
 use super::traffic::{Command, Traffic};
-use super::watch::Sight;
+use super::watch::RunStatus;
 
 /// Frames of a batch.
 const BATCH: usize = 8192;
@@ -149,7 +149,7 @@ impl<'a> Campaign<'a> {
         mut self,
         traffic: &mut dyn Traffic,
         board: &mut dyn Board,
-        mut progress: impl FnMut(&Sight<'_>),
+        mut progress: impl FnMut(&RunStatus<'_>),
     ) -> Result<Outcome, BenchError> {
         self.id = board.first_id();
         loop {
@@ -165,7 +165,7 @@ impl<'a> Campaign<'a> {
                 break;
             }
             self.outcome.round_trips_ns.extend(exchange.round_trips_ns);
-            progress(&Sight {
+            progress(&RunStatus {
                 injected: self.cable.injected(),
                 counters: self.expectation.endpoint().counters(),
                 answers: self.outcome.answers,

@@ -12,10 +12,10 @@ use truepath_core::job::Workspace;
 use truepath_core::link::ResetCause;
 use truepath_core::probe::{Contact, Reading};
 use truepath_core::units::{Offset, Real};
+use truepath_fw::computation::ProgressMeter;
 use truepath_fw::config_service::{Board, IMAGE_BYTES, Memory};
 use truepath_fw::device::Device;
 use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Nor, WordState};
-use truepath_fw::computation::ProgressMeter;
 
 use super::bulk::Bulk;
 use super::error::BenchError;

@@ -9,7 +9,7 @@
 //! | [`Expectation`] | the host's own endpoint and rewriter, fed with the same bytes |
 //! | [`Judge`] | rules for every answer that know nothing of that code |
 //! | [`Campaign`] | all of it in one run |
-//! | [`Watch`], [`Sight`] | what somebody who looks on sees of it |
+//! | [`Watch`], [`RunStatus`] | what somebody who looks on sees of it |
 //!
 //! Frames and messages are those of `truepath_core::link`; nothing here knows their bytes.
 
@@ -54,5 +54,5 @@ pub use prepare::{Identity, configure, identify, prepare, restart, to_off};
 pub use round_trip::RoundTrip;
 pub use traffic::Traffic;
 pub use uart::UartBoard;
-pub use watch::{Sight, TRAIL_EVERY, Watch};
+pub use watch::{RunStatus, TRAIL_EVERY, Watch};
 pub use wire::{Arrival, Line, Wire};

@@ -1,7 +1,7 @@
 //! What somebody who looks on sees of a run under way, and how he ends it.
 //!
 //! A batch over streams takes seconds, so the board tells of its answers as they arrive ([`Watch`]); what was compared is
-//! told after every batch ([`Sight`]). Neither waits for the one who looks.
+//! told after every batch ([`RunStatus`]). Neither waits for the one who looks.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -12,14 +12,14 @@ use truepath_core::rewrite::Output;
 
 use super::injector::Injected;
 
-/// One answer in so many is in the trail of a [`Sight`].
+/// One answer in so many is in the trail of a [`RunStatus`].
 pub const TRAIL_EVERY: u64 = 8;
 /// Round trips that are kept for somebody who does not fetch them.
 const MOST: usize = 1 << 16;
 
 /// A run as it is after a batch.
 #[derive(Clone, Copy, Debug)]
-pub struct Sight<'a> {
+pub struct RunStatus<'a> {
     /// What the cable did so far; its frames are the setpoints sent.
     pub injected: &'a Injected,
     /// Counters as the host's own code has them. Those of the device are compared at the end.

@@ -144,7 +144,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
     };
     let bytes = given.or_else(|| made.as_ref().map(|m| m.image.clone())).unwrap_or_default();
     let watch = onlooker.watch();
-    let mut report = hil(&mut *board, &bytes, &options, &watch, &mut |sight| onlooker.batch(sight))?;
+    let mut report = hil(&mut *board, &bytes, &options, &watch, &mut |status| onlooker.batch(status))?;
     // What is printed stays on the screen.
     drop(onlooker);
     report.on_board = made;

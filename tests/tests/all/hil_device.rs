@@ -84,7 +84,7 @@ fn a_new_board_is_looked_at_loaded_configured_and_its_fault_recorded() {
     assert_eq!(device(folder.path(), &["settings", "rewriter.tick_hz=1"]).0, 1);
     assert_eq!(device(folder.path(), &["activate", "1"]).0, 1);
 
-    // A part with mischief, until something went wrong.
+    // A part with disturbances, until something went wrong.
     let name = |file: &str| folder.path().join(file).display().to_string();
     let kind = Kind::Ports { names: [name("setpoint.sock"), name("config.sock")], baud: 0 };
     let mut board = open(&kind, 8, false).unwrap();
@@ -187,7 +187,7 @@ fn the_frames_before_a_fault_are_downloaded_as_they_were_sent() {
     let frames = recording(&mut board.client(), 3, |_, _| ()).unwrap();
     let sequences: Vec<u32> =
         frames.iter().map(|f| if let Recorded::Setpoint(s) = f { s.sequence } else { panic!("damaged") }).collect();
-    // The recorder is full and stands: what it holds are neighbours, but for mischief with the counting.
+    // The recorder is full and stands: what it holds are neighbours, but for disturbances of the counting.
     let neighbours = sequences.windows(2).filter(|pair| pair[1].wrapping_sub(pair[0]) == 1).count();
     assert!(sequences.len() > 500 && neighbours > sequences.len() - 5, "{} {neighbours}", sequences.len());
     assert_eq!(recording_table(&frames, 3).lines().count(), sequences.len() + 1);

@@ -23,7 +23,7 @@ fn whole_parts_are_milled_with_the_same_bits_on_both_sides() {
 }
 
 #[test]
-fn mischief_in_any_frame_on_any_axes_at_any_rate_gives_the_same_bits() {
+fn disturbances_in_any_frame_on_any_axes_at_any_rate_give_the_same_bits() {
     let mut seen = [0; 6];
     for (axes, rate_hz, seed) in [(3, 1_000, 1), (4, 500, 2), (6, 1_000, 3), (5, 10_000, 4), (6, 20_000, 5)] {
         let options = Options { source: Source::Random, count: 60_000, axes, rate_hz, faults: Faults::default(), seed };

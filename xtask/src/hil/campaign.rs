@@ -74,7 +74,7 @@ pub fn run() -> Outcome {
     let text = format!(
         "# Campaign of faults\n\n\
          Made by `cargo xtask campaign` on commit {commit}. Each row is one run of `truepath hil --board virtual`: the\n\
-         release firmware in QEMU, a part milled again and again with mischief ([bench.md](bench.md)), and one kind of\n\
+         release firmware in QEMU, a part milled again and again with disturbances ([bench.md](bench.md)), and one kind of\n\
          fault on the cable. Every answer was the host's, byte for byte, and kept every rule of the judge: no answer to\n\
          a frame that did not arrive whole, position = setpoint + correction, correction within clamp and limits of speed\n\
          and acceleration, modes as the safety contract says. After every fault that ended an arming, the device was\n\

@@ -1,20 +1,20 @@
 //! A controller that mills the part of an image again and again, and does now and then what it should not.
 //!
 //! One part: arm, go over the start, plunge, follow the path with overrides and feed holds, retract. After the end of
-//! an arming, by itself or by mischief, it goes on for a while as if nothing had happened: that is a spring pass, or a
+//! an arming, by itself or by a disturbance, it goes on for a while as if nothing had happened: that is a spring pass, or a
 //! restart in the middle without a new arming, and must go out uncorrected. Then comes the next part.
 
 use truepath_core::image::Image;
 use truepath_core::rewrite::{AXES, ArmRequest, AxisMap, Flags, Frame, Mode, Setpoint, TURN_ONE};
 
 use super::cursor::Cursor;
-use super::mischief::{Mood, Spindle, disturb, operate};
+use super::disturbance::{Conditions, Spindle, disturb, operate};
 use super::{Command, LEAD, Traffic};
 use crate::chance::{Chance, Probability};
 
 /// How the controller behaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Manner {
+pub struct ControllerOptions {
     /// Setpoints in all.
     pub count: u64,
     /// Axes of a setpoint, 3…6.
@@ -23,7 +23,7 @@ pub struct Manner {
     pub tick_hz: u32,
     /// Feed hold or override in a tick.
     pub operate: Probability,
-    /// Mischief in a tick.
+    /// A disturbance in a tick.
     pub disturb: Probability,
     /// Whether each part may be clamped elsewhere: offset, turned by 3-4-5 triangles, mirrored, on other axes.
     pub frames: bool,
@@ -31,7 +31,7 @@ pub struct Manner {
 
 /// Where in the part it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Scene {
+enum Phase {
     /// Setpoints with the drives disabled, so many left.
     Waiting(u32),
     /// Over the start, so many ticks down to the pass.
@@ -50,7 +50,7 @@ const CLEAR: u32 = 4;
 /// The controller.
 #[derive(Clone, Debug)]
 pub struct Controller {
-    manner: Manner,
+    options: ControllerOptions,
     chance: Chance,
     cursor: Cursor,
     request: ArmRequest,
@@ -59,8 +59,8 @@ pub struct Controller {
     feed_nm: i64,
     pass_nm: i64,
     gate_nm: i64,
-    scene: Scene,
-    mood: Mood,
+    phase: Phase,
+    conditions: Conditions,
     sequence: u32,
     sent: u64,
     armed: bool,
@@ -70,7 +70,7 @@ pub struct Controller {
 
 impl Controller {
     /// A controller for the part of an image; the same seed gives the same traffic. `serial` numbers the first part.
-    pub fn new(image: &Image<'_>, manner: Manner, serial: u32, seed: u64) -> Self {
+    pub fn new(image: &Image<'_>, options: ControllerOptions, serial: u32, seed: u64) -> Self {
         let settings = image.settings();
         let window = settings.window;
         let teeth_per_s = u64::from(settings.feed.teeth) * u64::from(settings.feed.spindle_millirpm) / 60_000;
@@ -80,59 +80,59 @@ impl Controller {
             cursor: Cursor::new(image),
             request: ArmRequest { binding: settings.binding, part_serial: serial, frame: Frame::identity() },
             nominal_millirpm: settings.feed.spindle_millirpm,
-            feed_nm: (per_tooth * teeth_per_s as i64 / i64::from(manner.tick_hz.max(1))).max(1),
+            feed_nm: (per_tooth * teeth_per_s as i64 / i64::from(options.tick_hz.max(1))).max(1),
             pass_nm: (window.z_low.nm() + window.z_high.nm()) / 2,
             gate_nm: window.z_high.nm() + window.gate_height.nm(),
-            scene: Scene::Waiting(LEAD),
-            mood: Mood::calm(),
+            phase: Phase::Waiting(LEAD),
+            conditions: Conditions::calm(),
             sequence: first_sequence(seed),
             sent: 0,
             armed: false,
             ticks: 0,
-            manner,
+            options,
         }
     }
 
     /// The request with which the next part will be armed.
     fn next_part(&mut self) -> ArmRequest {
         self.request.part_serial = self.request.part_serial.wrapping_add(1);
-        if self.manner.frames {
-            self.request.frame = frame(&mut self.chance, self.manner.axes);
+        if self.options.frames {
+            self.request.frame = frame(&mut self.chance, self.options.axes);
         }
         self.cursor.rewind();
-        self.scene = Scene::Plunging(PLUNGE + CLEAR);
-        self.mood = Mood::calm();
+        self.phase = Phase::Plunging(PLUNGE + CLEAR);
+        self.conditions = Conditions::calm();
         self.armed = true;
         self.ticks = 0;
         self.request
     }
 
-    /// One tick on in the scene; gives Z, program coordinates.
+    /// One tick on in the phase; gives Z, program coordinates.
     fn move_on(&mut self) -> i64 {
-        match &mut self.scene {
-            Scene::Waiting(_) => self.gate_nm + 10_000_000,
-            Scene::Plunging(left) => {
+        match &mut self.phase {
+            Phase::Waiting(_) => self.gate_nm + 10_000_000,
+            Phase::Plunging(left) => {
                 *left = left.saturating_sub(1);
                 let height = (self.gate_nm - self.pass_nm) * i64::from(*left) / i64::from(PLUNGE);
                 if *left == 0 {
-                    self.scene = Scene::Milling;
+                    self.phase = Phase::Milling;
                 }
                 self.pass_nm + height
             }
-            Scene::Milling | Scene::Afterwards(_) => {
-                if let Scene::Afterwards(left) = &mut self.scene {
+            Phase::Milling | Phase::Afterwards(_) => {
+                if let Phase::Afterwards(left) = &mut self.phase {
                     *left = left.saturating_sub(1);
                 }
-                let mood = &mut self.mood;
-                if mood.hold > 0 {
-                    mood.hold -= 1;
+                let conditions = &mut self.conditions;
+                if conditions.hold > 0 {
+                    conditions.hold -= 1;
                 } else {
-                    let way = self.feed_nm * mood.feed_256 / 256;
-                    self.cursor.advance(if mood.backwards > 0 { -way } else { way });
-                    mood.backwards = mood.backwards.saturating_sub(1);
+                    let way = self.feed_nm * conditions.feed_256 / 256;
+                    self.cursor.advance(if conditions.backwards > 0 { -way } else { way });
+                    conditions.backwards = conditions.backwards.saturating_sub(1);
                 }
                 // At the end it lifts off; an image that ends closed would start again.
-                let lift = if self.cursor.at_end() { 3_000_000 } else { mood.lift_nm };
+                let lift = if self.cursor.at_end() { 3_000_000 } else { conditions.lift_nm };
                 self.pass_nm + lift
             }
         }
@@ -150,13 +150,13 @@ impl Controller {
             axes[usize::from(map.axis) % AXES] = nm;
         }
         let mut flags = Flags::SPINDLE_LOADED;
-        if !matches!(self.scene, Scene::Waiting(_)) {
+        if !matches!(self.phase, Phase::Waiting(_)) {
             flags = flags.with(Flags::DRIVES_ENABLED);
         }
-        if self.mood.hold > 0 {
+        if self.conditions.hold > 0 {
             flags = flags.with(Flags::FEED_HOLD);
         }
-        let (spindle_millirpm, spindle_age_ticks) = match self.mood.spindle {
+        let (spindle_millirpm, spindle_age_ticks) = match self.conditions.spindle {
             Spindle::Nominal => (self.nominal_millirpm, 0),
             Spindle::Stopped => (0, 0),
             Spindle::Stale => (self.nominal_millirpm, 60_000),
@@ -169,29 +169,29 @@ impl Controller {
 
 impl Traffic for Controller {
     fn next(&mut self, mode: Mode) -> Option<Command> {
-        if self.sent >= self.manner.count {
+        if self.sent >= self.options.count {
             return None;
         }
-        match (mode, self.scene) {
-            (Mode::Off, Scene::Waiting(0)) => {
-                self.scene = Scene::Waiting(LEAD);
+        match (mode, self.phase) {
+            (Mode::Off, Phase::Waiting(0)) => {
+                self.phase = Phase::Waiting(LEAD);
                 return Some(Command::Acknowledge);
             }
-            (Mode::Off, Scene::Waiting(left)) => self.scene = Scene::Waiting(left - 1),
+            (Mode::Off, Phase::Waiting(left)) => self.phase = Phase::Waiting(left - 1),
             (Mode::Off, _) => {
-                self.scene = Scene::Waiting(LEAD);
+                self.phase = Phase::Waiting(LEAD);
                 self.armed = false;
             }
-            (Mode::Bypass, Scene::Waiting(_) | Scene::Afterwards(0)) => return Some(Command::Arm(self.next_part())),
-            (Mode::Bypass, Scene::Plunging(_) | Scene::Milling) if self.armed => {
+            (Mode::Bypass, Phase::Waiting(_) | Phase::Afterwards(0)) => return Some(Command::Arm(self.next_part())),
+            (Mode::Bypass, Phase::Plunging(_) | Phase::Milling) if self.armed => {
                 // On as before, or from the start once more, or from the middle: nothing of it is armed.
                 match self.chance.below(3) {
                     0 => self.cursor.rewind(),
                     1 => self.cursor.place_at(self.chance.below(self.cursor.len() as u64) as usize),
                     _ => {}
                 }
-                self.scene = Scene::Afterwards(self.chance.below(80) as u32);
-                self.mood = Mood::calm();
+                self.phase = Phase::Afterwards(self.chance.below(80) as u32);
+                self.conditions = Conditions::calm();
                 self.armed = false;
             }
             (Mode::Armed | Mode::Hold | Mode::Active, _) if self.ticks > self.patience() => {
@@ -201,18 +201,18 @@ impl Traffic for Controller {
             _ => {}
         }
         self.ticks += 1;
-        let moving = matches!(self.scene, Scene::Milling | Scene::Afterwards(_));
-        if moving && self.chance.happens(self.manner.operate) {
-            operate(&mut self.chance, &mut self.mood);
+        let moving = matches!(self.phase, Phase::Milling | Phase::Afterwards(_));
+        if moving && self.chance.happens(self.options.operate) {
+            operate(&mut self.chance, &mut self.conditions);
         }
-        let mischief = self.chance.happens(self.manner.disturb);
-        if mischief && self.chance.one_in(20) {
+        let disturbed = self.chance.happens(self.options.disturb);
+        if disturbed && self.chance.one_in(20) {
             return Some(Command::Disarm);
         }
         self.sent += 1;
         let mut setpoint = self.setpoint();
-        if mischief {
-            disturb(&mut self.chance, &mut self.mood, &mut setpoint);
+        if disturbed {
+            disturb(&mut self.chance, &mut self.conditions, &mut setpoint);
         }
         self.sequence = setpoint.sequence;
         Some(Command::Setpoint(setpoint))

@@ -9,7 +9,7 @@ use crate::chance::Chance;
 
 /// What is different from now on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Mood {
+pub(super) struct Conditions {
     /// Ticks of feed hold left; the axes stand.
     pub hold: u32,
     /// Ticks of backward motion left.
@@ -33,23 +33,23 @@ pub(super) enum Spindle {
     Other(u16),
 }
 
-impl Mood {
+impl Conditions {
     pub fn calm() -> Self {
         Self { feed_256: 256, ..Self::default() }
     }
 }
 
 /// What an operator may do: feed hold and override.
-pub(super) fn operate(chance: &mut Chance, mood: &mut Mood) {
+pub(super) fn operate(chance: &mut Chance, conditions: &mut Conditions) {
     match chance.below(3) {
-        0 => mood.hold = 5 + chance.below(200) as u32,
-        1 => mood.feed_256 = 128 + chance.below(256) as i64,
-        _ => mood.feed_256 = 256,
+        0 => conditions.hold = 5 + chance.below(200) as u32,
+        1 => conditions.feed_256 = 128 + chance.below(256) as i64,
+        _ => conditions.feed_256 = 256,
     }
 }
 
-/// Anything else, into the setpoint or into the mood.
-pub(super) fn disturb(chance: &mut Chance, mood: &mut Mood, setpoint: &mut Setpoint) {
+/// Anything else, into the setpoint or into the conditions.
+pub(super) fn disturb(chance: &mut Chance, conditions: &mut Conditions, setpoint: &mut Setpoint) {
     let axis = |chance: &mut Chance, n: u64| chance.below(n) as usize;
     match chance.below(20) {
         0 => setpoint.flags = setpoint.flags.with(Flags::EMERGENCY_STOP),
@@ -63,17 +63,17 @@ pub(super) fn disturb(chance: &mut Chance, mood: &mut Mood, setpoint: &mut Setpo
         7 => setpoint.axes[axis(chance, 3)] += chance.around(5_000_000),
         8 => setpoint.axes[axis(chance, 2)] += chance.around(600_000),
         9 => setpoint.axes[axis(chance, AXES as u64)] = chance.bits() as i64 >> chance.below(60),
-        10 => mood.lift_nm = chance.around(1_000_000),
-        11 => mood.lift_nm = 5_000_000,
-        12 => mood.backwards = 1 + chance.below(200) as u32,
-        13 => mood.spindle = Spindle::Stopped,
-        14 => mood.spindle = Spindle::Stale,
-        15 => mood.spindle = Spindle::Other(chance.below(1024) as u16),
-        16 => mood.spindle = Spindle::Nominal,
+        10 => conditions.lift_nm = chance.around(1_000_000),
+        11 => conditions.lift_nm = 5_000_000,
+        12 => conditions.backwards = 1 + chance.below(200) as u32,
+        13 => conditions.spindle = Spindle::Stopped,
+        14 => conditions.spindle = Spindle::Stale,
+        15 => conditions.spindle = Spindle::Other(chance.below(1024) as u16),
+        16 => conditions.spindle = Spindle::Nominal,
         // The controller counts from elsewhere, or jumps by as much as may be lost.
         17 => setpoint.sequence = chance.bits() as u32,
         18 => setpoint.sequence = setpoint.sequence.wrapping_add(chance.below(70) as u32),
         // A feed far outside of what the image is for.
-        _ => mood.feed_256 = chance.below(1500) as i64,
+        _ => conditions.feed_256 = chance.below(1500) as i64,
     }
 }

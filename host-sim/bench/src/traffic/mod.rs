@@ -3,16 +3,16 @@
 //! A [`Traffic`] is asked once per tick and told the mode the coprocessor must be in, as the host's own rewriter has it.
 //! So the same seed gives the same traffic, whatever board answers. Two kinds exist: recorded setpoints
 //! ([`Recorded`]), and a controller that mills the part of an image again and again ([`Controller`]), well behaved or
-//! with mischief.
+//! with disturbances.
 
 mod controller;
 mod cursor;
-mod mischief;
+mod disturbance;
 mod recorded;
 
 use truepath_core::rewrite::{ArmRequest, Mode, Setpoint};
 
-pub use controller::{Controller, Manner};
+pub use controller::{Controller, ControllerOptions};
 pub use recorded::Recorded;
 
 /// Setpoints with the drives disabled before that is acknowledged. Before it has seen 32 frames at its setpoint rate the

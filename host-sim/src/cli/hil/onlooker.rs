@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use truepath_bench::{Sight, Watch};
+use truepath_bench::{RunStatus, Watch};
 
 use crate::cli::monitor::{HilView, Step, wanted};
 use crate::cli::{Progress, Terminal};
@@ -44,11 +44,11 @@ impl Onlooker {
         }
     }
     /// A batch was compared.
-    pub fn batch(&mut self, sight: &Sight<'_>) {
+    pub fn batch(&mut self, status: &RunStatus<'_>) {
         match self {
-            Self::View(view) => view.tell(&Step::Batch(sight)),
+            Self::View(view) => view.tell(&Step::Batch(status)),
             Self::Bar(bar, count) => {
-                let share = sight.injected.frames as f64 / *count as f64;
+                let share = status.injected.frames as f64 / *count as f64;
                 bar.reached((share * STEPS as f64) as u64);
             }
         }

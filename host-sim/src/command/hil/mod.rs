@@ -8,8 +8,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use report::report;
-use truepath_bench::traffic::{Command, Controller, Manner, Recorded};
-use truepath_bench::{Board, Campaign, Faults, Plan, Probability, Sight, Traffic, Watch, identify, prepare, to_off};
+use truepath_bench::traffic::{Command, Controller, ControllerOptions, Recorded};
+use truepath_bench::{
+    Board, Campaign, Faults, Plan, Probability, RunStatus, Traffic, Watch, identify, prepare, to_off,
+};
 use truepath_core::image::Image;
 use truepath_core::link::{Ask, DeviceSettings};
 use truepath_core::rewrite::{ArmRequest, Mode};
@@ -26,7 +28,7 @@ pub use report::{Counts, Report};
 pub enum Source {
     /// The image's own path, well behaved but for feed holds and overrides.
     Path,
-    /// The same with mischief, in changing frames.
+    /// The same with disturbances, in changing frames.
     Random,
     /// A file.
     Recorded(Setpoints),
@@ -58,7 +60,7 @@ pub fn run(
     board: &mut dyn Board,
     bytes: &[u8],
     options: &Options,
-    progress: &mut dyn FnMut(&Sight<'_>),
+    progress: &mut dyn FnMut(&RunStatus<'_>),
 ) -> Result<Report, Failure> {
     run_watched(board, bytes, options, &Arc::default(), progress)
 }
@@ -72,7 +74,7 @@ pub fn run_watched(
     bytes: &[u8],
     options: &Options,
     watch: &Arc<Watch>,
-    progress: &mut dyn FnMut(&Sight<'_>),
+    progress: &mut dyn FnMut(&RunStatus<'_>),
 ) -> Result<Report, Failure> {
     let image = Image::new_checked(bytes).map_err(|e| Failure::Internal(format!("an image that was checked: {e}")))?;
     let device = identify(board)?;
@@ -127,7 +129,7 @@ pub const SILENCE_US: u32 = 20_000;
 
 fn traffic(image: Image<'_>, options: &Options) -> Box<dyn Traffic> {
     let probability = |share| Probability::new(share).unwrap_or_default();
-    let manner = Manner {
+    let behaviour = ControllerOptions {
         count: options.count,
         axes: options.axes,
         tick_hz: options.rate_hz,
@@ -138,10 +140,10 @@ fn traffic(image: Image<'_>, options: &Options) -> Box<dyn Traffic> {
     // Parts of a run are numbered from its seed on, so that a device remembers none of them from the run before.
     let serial = 1_000u32.wrapping_mul(options.seed as u32);
     match &options.source {
-        Source::Path => Box::new(Controller::new(&image, manner, serial, options.seed)),
+        Source::Path => Box::new(Controller::new(&image, behaviour, serial, options.seed)),
         Source::Random => {
-            let manner = Manner { disturb: probability(0.0005), frames: true, ..manner };
-            Box::new(Controller::new(&image, manner, serial, options.seed))
+            let disturbed = ControllerOptions { disturb: probability(0.0005), frames: true, ..behaviour };
+            Box::new(Controller::new(&image, disturbed, serial, options.seed))
         }
         Source::Recorded(setpoints) => {
             let request = ArmRequest {

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 use draw::{Ending, draw};
 use model::{Model, RoundTrips};
-use truepath_bench::{Sight, Watch};
+use truepath_bench::{RunStatus, Watch};
 
 use super::screen::{Key, Screen};
 use super::theme::Theme;
@@ -29,7 +29,7 @@ pub enum Step<'a, 'b> {
     /// Another stage, in words.
     Stage(&'a str),
     /// After a batch.
-    Batch(&'a Sight<'b>),
+    Batch(&'a RunStatus<'b>),
 }
 
 /// What both threads hold.
@@ -73,7 +73,7 @@ impl View {
         let mut model = self.shared.model();
         match step {
             Step::Stage(stage) => model.stage = (*stage).to_owned(),
-            Step::Batch(sight) => model.see(sight, self.shared.watch.answered()),
+            Step::Batch(status) => model.see(status, self.shared.watch.answered()),
         }
     }
 }

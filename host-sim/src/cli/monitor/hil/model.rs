@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use hdrhistogram::Histogram;
-use truepath_bench::{Injected, Sight};
+use truepath_bench::{Injected, RunStatus};
 use truepath_core::link::Counters;
 use truepath_core::rewrite::Output;
 
@@ -70,13 +70,13 @@ impl Model {
         }
     }
     /// Takes what a batch came to; `arrived` are all answers the board told of.
-    pub fn see(&mut self, sight: &Sight<'_>, arrived: u64) {
+    pub fn see(&mut self, status: &RunStatus<'_>, arrived: u64) {
         self.stage = "setpoints under way".to_owned();
-        (self.injected, self.counters, self.answers) = (*sight.injected, *sight.counters, sight.answers);
-        (self.modes, self.armed, self.largest_nm) = (*sight.modes, sight.armed, sight.largest_nm);
-        (self.elapsed, self.arrived_before, self.since) = (sight.elapsed, arrived, 0);
-        self.latest = sight.trail.last().copied().or(self.latest);
-        for output in sight.trail.iter().skip(sight.trail.len().saturating_sub(MOST)) {
+        (self.injected, self.counters, self.answers) = (*status.injected, *status.counters, status.answers);
+        (self.modes, self.armed, self.largest_nm) = (*status.modes, status.armed, status.largest_nm);
+        (self.elapsed, self.arrived_before, self.since) = (status.elapsed, arrived, 0);
+        self.latest = status.trail.last().copied().or(self.latest);
+        for output in status.trail.iter().skip(status.trail.len().saturating_sub(MOST)) {
             let size = output.correction_nm.iter().map(|nm| nm.unsigned_abs()).max().unwrap_or(0);
             if self.trail_nm.len() == MOST {
                 self.trail_nm.pop_front();

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
-use truepath_bench::{Injected, RoundTrip, Sight};
+use truepath_bench::{Injected, RoundTrip, RunStatus};
 use truepath_core::link::Counters;
 use truepath_core::rewrite::{AXES, Mode, Output, Place, Reason, Status};
 
@@ -36,7 +36,7 @@ fn under_way() -> (Model, RoundTrips, Duration) {
     let mut counters = Counters { lost: 160, damaged: 80, repeated: 12, silences: 3, ..Counters::default() };
     counters.faults[usize::from(Reason::SequenceBroken.code() - Reason::FIRST_FAULT)] = 2;
     let trail: Vec<Output> = (0..1_004).map(|k| output(8 * k)).collect();
-    let sight = Sight {
+    let status = RunStatus {
         injected: &injected,
         counters: &counters,
         answers: 8_032,
@@ -49,7 +49,7 @@ fn under_way() -> (Model, RoundTrips, Duration) {
     for k in 0..=80u64 {
         model.tick(Duration::from_millis(100 * k), 100 * k);
     }
-    model.see(&sight, 8_032);
+    model.see(&status, 8_032);
     model.tick(Duration::from_millis(8_532), 8_532);
     trips.take(&(0..8_532).map(|k| 900_000 + 100 * k).collect::<Vec<u64>>());
     (model, trips, Duration::from_millis(8_532))
