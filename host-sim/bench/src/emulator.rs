@@ -7,6 +7,7 @@ use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
@@ -14,6 +15,7 @@ use tempfile::TempDir;
 use super::bulk::Bulk;
 use super::error::BenchError;
 use super::wire::Line;
+use truepath_ground::interruption::{Kind, Temporary, hold};
 
 /// Where `cargo xtask firmware` puts the firmware, from the root of the repository.
 pub const ELF: &str = "target/firmware/truepath-virtual";
@@ -35,6 +37,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 pub struct Emulator {
     process: Child,
     folder: TempDir,
+    _temporary: Arc<Temporary>,
     shared: File,
     request: u32,
 }
@@ -66,7 +69,12 @@ impl Emulator {
     /// QEMU is missing, or the firmware does not come up.
     pub fn start(elf: &Path) -> Result<Self, BenchError> {
         let opened = |e: io::Error| BenchError::open("the folder of the emulator", &e);
-        let folder = tempfile::Builder::new().prefix("truepath-").tempdir().map_err(opened)?;
+        let (folder, temporary) = {
+            let mut hold = hold();
+            let folder = tempfile::Builder::new().prefix("truepath-").tempdir().map_err(opened)?;
+            let temporary = hold.removes(folder.path(), Kind::Folder);
+            (folder, temporary)
+        };
         let path = folder.path().join("psram");
         let shared = File::options().read(true).write(true).create_new(true).open(&path).map_err(opened)?;
         shared.set_len(PSRAM_BYTES).map_err(opened)?;
@@ -89,7 +97,7 @@ impl Emulator {
             },
             _ => BenchError::open(QEMU, &e),
         })?;
-        let mut emulator = Self { process, folder, shared, request: 0 };
+        let mut emulator = Self { process, folder, _temporary: temporary, shared, request: 0 };
         emulator.wait("the firmware does not come up", |e| Ok(e.word(0)? == MAGIC))?;
         let version = emulator.word(4).map_err(opened)?;
         if version != VERSION {

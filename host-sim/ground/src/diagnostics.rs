@@ -4,9 +4,11 @@
 //! [`Failure`] is ours (exit code 2). On a terminal an input error is drawn with the offending text underlined, in a
 //! pipe it is the same without colour or box characters, and with `--json` it is one object on standard error:
 //! `{"error":{"code","message","file","line","column","found","expected","help"}}`. In every form the place reads
-//! `file:line:column`, lines and columns counted from 1, columns in characters.
+//! `file:line:column`, lines and columns counted from 1, columns in characters. Control characters, wherever they come
+//! from, are shown ([`visible`]), never sent.
 
 mod source;
+mod visible;
 
 use std::ops::Range;
 use std::path::Path;
@@ -16,6 +18,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan};
 use truepath_core::gcode::GcodeError;
 
 pub use source::Source;
+pub use visible::{visible, visible_lines};
 
 impl Source {
     /// Reads a file.
@@ -54,9 +57,9 @@ impl InputError {
     ) -> Self {
         Self(Box::new(Body {
             code: code.into(),
-            found: found.into(),
-            expected: expected.into(),
-            help: help.into(),
+            found: visible(&found.into()).into_owned(),
+            expected: visible(&expected.into()).into_owned(),
+            help: visible(&help.into()).into_owned(),
             file: None,
             place: None,
             label: None,
@@ -65,20 +68,20 @@ impl InputError {
     /// The same, pointing at a byte span of a text.
     #[must_use]
     pub fn at(mut self, source: &Source, span: Range<usize>) -> Self {
-        self.0.file = Some(source.name().to_owned());
+        self.0.file = Some(visible(source.name()).into_owned());
         self.0.place = Some((source.clone(), span));
         self
     }
     /// The same, naming a file it has no place in.
     #[must_use]
     pub fn in_file(mut self, path: &Path) -> Self {
-        self.0.file = Some(path.display().to_string());
+        self.0.file = Some(visible(&path.display().to_string()).into_owned());
         self
     }
     /// The words written beside the underlined text.
     #[must_use]
     pub fn labelled(mut self, label: impl Into<String>) -> Self {
-        self.0.label = Some(label.into());
+        self.0.label = Some(visible(&label.into()).into_owned());
         self
     }
     /// A file that cannot be read (`F001`).
@@ -186,8 +189,10 @@ impl Failure {
                     "found": message, "expected": null, "help": REPORT_IT}});
                 format!("{error}\n")
             }
-            (Self::Usage(text), _) => text.clone(),
-            (Self::Internal(_), _) => format!("error[X001]: {self}\n  help: {REPORT_IT}\n"),
+            (Self::Usage(text), _) => visible_lines(text).into_owned(),
+            (Self::Internal(_), _) => {
+                format!("error[X001]: {}\n  help: {REPORT_IT}\n", visible_lines(&self.to_string()))
+            }
             (Self::Input(error), Form::Colour) => drawn(error, GraphicalTheme::unicode(), 120),
             (Self::Input(error), Form::Plain) => drawn(error, GraphicalTheme::none(), 1000),
         }

@@ -6,6 +6,7 @@
 pub mod decimal;
 pub mod diagnostics;
 pub mod document;
+pub mod interruption;
 pub mod library;
 pub mod limits;
 pub mod notation;

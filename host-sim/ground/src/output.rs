@@ -4,16 +4,24 @@
 //! when it is complete: a command that fails or is stopped leaves the target as it was. Missing folders above a target
 //! are made, and taken away again when nothing came to lie in them. Replacing files in an existing
 //! folder (`--force`) takes one rename a file; when one of them fails the others are put back. Only a power failure
-//! between two renames can leave a mixture, and then the replaced files are still in the temporary folder.
+//! between two renames can leave a mixture, and then the replaced files are still in the temporary folder. A signal
+//! that ends the process takes the temporary files along (see [`interruption`](crate::interruption)). One run at a time
+//! writes a folder.
 
+mod lock;
+
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use tempfile::{NamedTempFile, TempDir};
 
 use crate::diagnostics::{Failure, InputError};
+use crate::interruption::{Hold, Kind, Temporary, hold};
+use lock::Lock;
 
 /// A single output file on its way.
 #[derive(Debug)]
@@ -21,6 +29,8 @@ pub struct OutputFile {
     target: PathBuf,
     force: bool,
     file: BufWriter<NamedTempFile>,
+    // Dropped in this order.
+    _temporary: Arc<Temporary>,
     _parents: Parents,
 }
 
@@ -40,12 +50,20 @@ impl OutputFile {
             .in_file(target));
         }
         refuse_existing(target, force)?;
-        let parents = Parents::make(target)?;
+        let mut hold = hold();
+        let parents = Parents::make(target, &mut hold)?;
         let file = plain_mode(&mut tempfile::Builder::new(), 0o666)
             .prefix(".truepath-")
             .tempfile_in(folder_of(target))
             .map_err(|e| InputError::unwritable(target, &e))?;
-        Ok(Self { target: target.to_owned(), force, file: BufWriter::new(file), _parents: parents })
+        let temporary = hold.removes(file.path(), Kind::File);
+        Ok(Self {
+            target: target.to_owned(),
+            force,
+            file: BufWriter::new(file),
+            _temporary: temporary,
+            _parents: parents,
+        })
     }
 
     /// Puts the finished file in its place.
@@ -56,6 +74,7 @@ impl OutputFile {
         let failed = |e: io::Error| InputError::unwritable(&self.target, &e);
         let file = self.file.into_inner().map_err(|e| failed(e.into_error()))?;
         file.as_file().sync_all().map_err(failed)?;
+        let _hold = hold();
         let moved = if self.force { file.persist(&self.target) } else { file.persist_noclobber(&self.target) };
         match moved {
             Ok(_) => Ok(()),
@@ -78,23 +97,29 @@ impl Write for OutputFile {
 #[derive(Debug)]
 pub struct OutputFolder {
     target: PathBuf,
+    force: bool,
     owned: Vec<&'static str>,
     staged: TempDir,
-    // After `staged`, which lies in them and goes first.
+    // Dropped in this order: what lies in the folders above goes before them.
+    _temporary: Arc<Temporary>,
+    _lock: Lock,
     _parents: Parents,
 }
 
 /// Folders that were made so that a target can lie in them. Dropped, those go that have stayed empty: a command that
 /// fails leaves no folder behind.
 #[derive(Debug)]
-struct Parents(Vec<PathBuf>);
+struct Parents(Vec<(PathBuf, Arc<Temporary>)>);
 
 impl Parents {
     /// Makes the folders above a target that are missing.
-    fn make(target: &Path) -> Result<Self, InputError> {
+    fn make(target: &Path, hold: &mut Hold) -> Result<Self, InputError> {
         let folder = folder_of(target);
         let missing = folder.ancestors().take_while(|a| !a.as_os_str().is_empty() && !a.exists());
-        let parents = Self(missing.map(Path::to_owned).collect());
+        let mut missing: Vec<PathBuf> = missing.map(Path::to_owned).collect();
+        missing.reverse();
+        let parents = missing.into_iter().map(|path| (path.clone(), hold.removes(&path, Kind::EmptyFolder)));
+        let parents = Self(parents.collect());
         fs::create_dir_all(folder).map_err(|e| InputError::unwritable(target, &e))?;
         Ok(parents)
     }
@@ -102,7 +127,7 @@ impl Parents {
 
 impl Drop for Parents {
     fn drop(&mut self) {
-        for folder in &self.0 {
+        for (folder, _) in self.0.iter().rev() {
             // Refused for one that is not empty, which is as it should be.
             let _ = fs::remove_dir(folder);
         }
@@ -110,13 +135,14 @@ impl Drop for Parents {
 }
 
 impl OutputFolder {
-    /// Opens a folder beside `target`. `owned` are the names this command may write: with `force` every one of them
-    /// that lies in the target is replaced or, when this run does not write it, removed, so that no file of an earlier
-    /// run stays behind beside newer ones. Other files in the target are left alone.
+    /// Opens a folder beside `target`. `owned` are the names this command may write, `#` in them stands for a number
+    /// from 1: with `force` every one of them that lies in the target is replaced or, when this run does not write it,
+    /// removed, so that no file of an earlier run stays behind beside newer ones. Other files in the target are left
+    /// alone.
     ///
     /// # Errors
-    /// `F003` when the target exists, is not empty and `force` is not set, or is no folder; `F002` when its parent
-    /// cannot be written to.
+    /// `F003` when the target exists, is not empty and `force` is not set, or is no folder; `F004` when another run
+    /// writes it; `F002` when its parent cannot be written to.
     pub fn create(target: &Path, force: bool, owned: &[&'static str]) -> Result<Self, InputError> {
         if target.exists() && !target.is_dir() {
             return Err(InputError::new(
@@ -127,18 +153,25 @@ impl OutputFolder {
             )
             .in_file(target));
         }
-        let occupied = fs::read_dir(target).is_ok_and(|mut entries| entries.next().is_some());
-        if occupied && !force {
-            let found = format!("{} exists and is not empty", target.display());
-            let help = "name another folder, or add --force to replace the files of the same names";
-            return Err(InputError::new("F003", found, "a new or an empty folder", help).in_file(target));
-        }
-        let parents = Parents::make(target)?;
+        refuse_occupied(target, force)?;
+        let mut hold = hold();
+        let parents = Parents::make(target, &mut hold)?;
+        let lock = Lock::take(target, folder_of(target), &mut hold)?;
         let staged = plain_mode(&mut tempfile::Builder::new(), 0o777)
             .prefix(".truepath-")
             .tempdir_in(folder_of(target))
             .map_err(|e| InputError::unwritable(target, &e))?;
-        Ok(Self { target: target.to_owned(), owned: owned.to_vec(), staged, _parents: parents })
+        let temporary = hold.removes(staged.path(), Kind::Folder);
+        let owned = owned.to_vec();
+        Ok(Self {
+            target: target.to_owned(),
+            force,
+            owned,
+            staged,
+            _temporary: temporary,
+            _lock: lock,
+            _parents: parents,
+        })
     }
 
     /// Writes one of the owned files.
@@ -147,11 +180,29 @@ impl OutputFolder {
     /// `F002` when writing fails or the name is not one of the owned ones.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), InputError> {
         let failed = |e: &io::Error| InputError::unwritable(&self.target.join(name), e);
-        if !self.owned.contains(&name) {
+        if !self.owns(name) {
             return Err(failed(&io::Error::other("this command has no output of that name")));
         }
+        // After a signal the folder is gone.
+        let _hold = hold();
         let mut file = fs::File::create(self.staged.path().join(name)).map_err(|e| failed(&e))?;
         file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|e| failed(&e))
+    }
+
+    fn owns(&self, name: &str) -> bool {
+        self.owned.iter().any(|owned| match owned.split_once('#') {
+            None => *owned == name,
+            Some((before, after)) => {
+                let number = name.strip_prefix(before).and_then(|rest| rest.strip_suffix(after)).unwrap_or_default();
+                number.bytes().all(|b| b.is_ascii_digit()) && number.bytes().next().is_some_and(|first| first != b'0')
+            }
+        })
+    }
+
+    /// The owned names in a folder.
+    fn names_in(&self, folder: &Path) -> io::Result<Vec<String>> {
+        let names = fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()));
+        names.filter(|name| name.as_ref().map_or(true, |name| self.owns(name))).collect()
     }
 
     /// Opens one of the owned files to be written piece by piece, for tables too large for memory.
@@ -167,9 +218,12 @@ impl OutputFolder {
     /// Puts the finished files in their place.
     ///
     /// # Errors
-    /// `F002` when a file cannot be moved; the target is then as it was.
+    /// `F002` when a file cannot be moved, `F003` when files have appeared in the target meanwhile and `force` is not
+    /// set; the target is then as it was.
     pub fn commit(self) -> Result<(), InputError> {
         let failed = |e: &io::Error| InputError::unwritable(&self.target, e);
+        let _hold = hold();
+        refuse_occupied(&self.target, self.force)?;
         if !self.target.exists() {
             let staged = self.staged.keep();
             return fs::rename(&staged, &self.target).map_err(|e| {
@@ -183,7 +237,11 @@ impl OutputFolder {
             .tempdir_in(folder_of(&self.target))
             .map_err(|e| failed(&e))?;
         let mut exchange = Exchange::default();
-        let moved = self.owned.iter().try_for_each(|name| {
+        let mut names = BTreeSet::new();
+        for folder in [self.target.as_path(), self.staged.path()] {
+            names.extend(self.names_in(folder).map_err(|e| failed(&e))?);
+        }
+        let moved = names.iter().try_for_each(|name| {
             let place = self.target.join(name);
             if place.is_dir() {
                 return Err(io::Error::other(format!("{name} is a folder there")));
@@ -230,6 +288,15 @@ pub fn write_file(target: &Path, force: bool, bytes: &[u8]) -> Result<(), InputE
     let mut file = OutputFile::create(target, force)?;
     file.write_all(bytes).map_err(|e| InputError::unwritable(target, &e))?;
     file.commit()
+}
+
+fn refuse_occupied(folder: &Path, force: bool) -> Result<(), InputError> {
+    if force || !fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some()) {
+        return Ok(());
+    }
+    let found = format!("{} exists and is not empty", folder.display());
+    let help = "name another folder, or add --force to replace the files of the same names";
+    Err(InputError::new("F003", found, "a new or an empty folder", help).in_file(folder))
 }
 
 fn refuse_existing(target: &Path, force: bool) -> Result<(), InputError> {

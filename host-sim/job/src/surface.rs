@@ -79,14 +79,21 @@ impl Surface {
         Self::new(points).ok_or_else(|| wrong("the surface has fewer than two points".to_owned(), 1))
     }
 
-    /// Distance from a point along a direction to the surface, mm, the one nearest to `expected`; `None` when the surface
-    /// does not pass there within `reach`.
-    fn along(&self, from: [f64; 2], direction: [f64; 2], expected: f64, reach: f64) -> Option<f64> {
-        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+    /// Distance from a point along a direction to the surface, mm, the one nearest to `expected`; `None` when none of
+    /// these segments passes there within `reach`.
+    fn along(
+        &self,
+        segments: impl IntoIterator<Item = usize>,
+        from: [f64; 2],
+        direction: [f64; 2],
+        expected: f64,
+        reach: f64,
+    ) -> Option<f64> {
         let mut best: Option<f64> = None;
-        for pair in self.points.windows(2) {
-            let chord = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
-            let to = [pair[0][0] - from[0], pair[0][1] - from[1]];
+        for k in segments {
+            let (start, end) = (self.points[k], self.points[k + 1]);
+            let chord = [end[0] - start[0], end[1] - start[1]];
+            let to = [start[0] - from[0], start[1] - from[1]];
             let turn = cross(direction, chord);
             if turn == 0.0 {
                 continue;
@@ -104,30 +111,104 @@ impl Surface {
     /// surface lies beside none of them.
     pub fn beside(&self, samples: &[Sample], radius_mm: f64) -> Option<Vec<f64>> {
         let mm = |p: Position| p.nm() as f64 / 1e6;
+        let boxes = Boxes::of(&self.points);
         let seen: Vec<Option<f64>> = samples
             .iter()
             .map(|sample| {
                 let from = [mm(sample.point.x), mm(sample.point.y)];
                 let normal =
                     [truepath_ground::units::float(sample.normal.x), truepath_ground::units::float(sample.normal.y)];
-                self.along(from, normal, radius_mm, 2.0 * radius_mm)
+                let near = boxes.near(from, normal, [-radius_mm, 3.0 * radius_mm]);
+                self.along(near, from, normal, radius_mm, 2.0 * radius_mm)
             })
             .collect();
         let first = *seen.iter().flatten().next()?;
-        let mut filled = Vec::with_capacity(seen.len());
-        let mut last = first;
-        for (k, distance) in seen.iter().enumerate() {
-            last = match distance {
-                Some(d) => *d,
-                // A hole is bridged evenly; beyond the last point the last distance goes on.
-                None => match seen[k..].iter().position(Option::is_some) {
-                    Some(ahead) => last + (seen[k + ahead].unwrap_or(last) - last) / (ahead as f64 + 1.0),
-                    None => last,
-                },
-            };
-            filled.push(last);
+        // The next distance that was seen, and how many samples ahead.
+        let mut ahead = vec![None; seen.len()];
+        for k in (0..seen.len()).rev() {
+            let later = ahead.get(k + 1).copied().flatten();
+            ahead[k] =
+                seen[k].map(|distance| (distance, 0u32)).or(later.map(|(distance, count)| (distance, count + 1)));
         }
-        Some(filled)
+        let mut last = first;
+        let filled = ahead.into_iter().map(|next| {
+            last = match next {
+                Some((distance, 0)) => distance,
+                // A hole is bridged evenly; beyond the last point the last distance goes on.
+                Some((distance, count)) => last + (distance - last) / (f64::from(count) + 1.0),
+                None => last,
+            };
+            last
+        });
+        Some(filled.collect())
+    }
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// Bounding boxes of consecutive segments, and boxes of pairs of boxes up to a single one: the segments near a line
+/// are found without a look at all.
+struct Boxes {
+    segments: usize,
+    /// Centre and half of the size; those of the segments first.
+    levels: Vec<Vec<[[f64; 2]; 2]>>,
+}
+
+/// Segments in the smallest box.
+const LEAF: usize = 8;
+
+/// What the place where a line meets a segment may be off by rounding, mm: across the line, and along it, where a
+/// segment that is nearly parallel to the line makes the error large.
+const ROUNDING: [f64; 2] = [1e-6, 1.0];
+
+impl Boxes {
+    fn of(points: &[[f64; 2]]) -> Self {
+        let bounds = |points: &[[f64; 2]]| {
+            let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+            points.iter().fold(start, |[low, high], p| {
+                [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
+            })
+        };
+        let segments = points.len().saturating_sub(1);
+        let leaves = (0..segments).step_by(LEAF).map(|k| bounds(&points[k..=(k + LEAF).min(segments)]));
+        let mut levels: Vec<Vec<_>> = vec![leaves.collect()];
+        while let Some(below) = levels.last().filter(|below| below.len() > 1) {
+            let above = below.chunks(2).map(|pair| bounds(pair.as_flattened())).collect();
+            levels.push(above);
+        }
+        let centred = |[low, high]: [[f64; 2]; 2]| {
+            [[(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0], [(high[0] - low[0]) / 2.0, (high[1] - low[1]) / 2.0]]
+        };
+        let levels = levels.into_iter().map(|level| level.into_iter().map(centred).collect()).collect();
+        Self { segments, levels }
+    }
+
+    /// Every segment that may meet a line within a range of it, and few others, in their order.
+    fn near(&self, from: [f64; 2], direction: [f64; 2], range: [f64; 2]) -> Vec<usize> {
+        let [dx, dy] = direction;
+        let square = dx * dx + dy * dy;
+        let (middle, half) = ((range[0] + range[1]) / 2.0 * square, (range[1] - range[0]) / 2.0 * square);
+        let meets = |[[x, y], [width, height]]: [[f64; 2]; 2]| {
+            let to = [x - from[0], y - from[1]];
+            let (across, along) = (cross(direction, to), dx * to[0] + dy * to[1]);
+            across.abs() <= width * dy.abs() + height * dx.abs() + ROUNDING[0]
+                && (along - middle).abs() <= half + width * dx.abs() + height * dy.abs() + ROUNDING[1]
+        };
+        let mut found = Vec::new();
+        let mut open = vec![(self.levels.len() - 1, 0)];
+        while let Some((level, k)) = open.pop() {
+            let Some(bounds) = self.levels[level].get(k) else { continue };
+            if !meets(*bounds) {
+                continue;
+            }
+            match level.checked_sub(1) {
+                Some(below) => open.extend([(below, 2 * k + 1), (below, 2 * k)]),
+                None => found.extend(k * LEAF..self.segments.min((k + 1) * LEAF)),
+            }
+        }
+        found
     }
 }
 
@@ -165,6 +246,58 @@ mod tests {
         let beside = two.beside(&[sample(1), sample(2), sample(3), sample(4)], 10.0).expect("beside");
         assert!((beside[1] - beside[0] - (beside[2] - beside[1])).abs() < 1e-9 && beside[1] > 8.0, "{beside:?}");
         assert_eq!(two.beside(&[sample(50)], 10.0), None);
+    }
+
+    /// Numbers in 0…1 that look like chance and are always the same.
+    fn chance(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as f64 / f64::from(1u32 << 31)
+        }
+    }
+
+    #[test]
+    fn boxes_leave_out_no_segment_that_the_line_meets_and_change_no_bit() {
+        for seed in 0..40 {
+            let mut next = chance(seed);
+            let count = 2 + (next() * 300.0) as usize;
+            let step = 10f64.powf(next() * 4.0 - 3.0);
+            let mut at = [0.0, 0.0];
+            let points = (0..count).map(|_| {
+                // Steps along the axes too, so that lines run along segments and through their ends.
+                let turn = [next(), next()].map(|v| if v < 0.3 { 0.0 } else { (v - 0.5) * step });
+                at = [at[0] + turn[0], at[1] + turn[1]];
+                at
+            });
+            let surface = Surface::new(points.collect()).expect("points");
+            let boxes = Boxes::of(&surface.points);
+            for _ in 0..200 {
+                let angle = next() * 6.3;
+                let direction = if next() < 0.3 { [0.0, 1.0] } else { [angle.cos(), angle.sin()] };
+                let on = surface.points[(next() * count as f64) as usize % count];
+                let from = if next() < 0.5 { [on[0], on[1] - step] } else { [next() * step, next() * step] };
+                let near = boxes.near(from, direction, [-step, 3.0 * step]);
+                let [some, all] = [
+                    surface.along(near, from, direction, step, 2.0 * step),
+                    surface.along(0..count - 1, from, direction, step, 2.0 * step),
+                ]
+                .map(|t| t.map(f64::to_bits));
+                assert_eq!(some, all, "seed {seed}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_is_held_against_few_of_a_million_segments() {
+        let turn = |k: u32| (f64::from(k) / f64::from(1 << 20) * std::f64::consts::TAU).sin_cos();
+        let points: Vec<[f64; 2]> = (0..1 << 20).map(turn).map(|(y, x)| [50.0 * x, 30.0 * y]).collect();
+        let boxes = Boxes::of(&points);
+        for k in 0..1000 {
+            let (y, x) = (f64::from(k) / 1000.0 * std::f64::consts::TAU).sin_cos();
+            let asked = boxes.near([40.0 * x, 20.0 * y], [x, y], [-10.0, 30.0]).len();
+            assert!((1..=64).contains(&asked), "{asked} segments at {k}");
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::OutputFile;
 use truepath_program::canon::{CanonOptions, ParameterFile, ToolTable, write_canon};
 
-use super::{Terminal, print};
+use super::{Terminal, print_data};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -129,7 +129,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
             // A program that is refused prints nothing.
             let mut text = Vec::new();
             let summary = write_canon(&source, &options, &mut text)?.map_err(|e| Failure::Internal(e.to_string()))?;
-            print(&text)?;
+            print_data(&text)?;
             summary
         }
     };

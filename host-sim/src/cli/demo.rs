@@ -7,7 +7,7 @@ use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::json;
 
 use super::{Terminal, print};
-use crate::command::demo::{Outcome, run as demo};
+use crate::command::demo::{Earlier, Outcome, run as demo};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -17,11 +17,19 @@ pub(super) struct Arguments {
     /// Keep the files of an earlier run: stop when there are some.
     #[arg(long)]
     keep: bool,
+    /// Replace the files of an earlier run, edited ones too.
+    #[arg(long, conflicts_with = "keep")]
+    force: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
     let mut bar = terminal.progress("milling, probing, correcting, milling again", 100);
-    let outcomes = demo(&arguments.output, !arguments.keep, &mut |share| bar.reached((share * 100.0) as u64))?;
+    let earlier = match (arguments.keep, arguments.force) {
+        (true, _) => Earlier::Stop,
+        (_, true) => Earlier::Replace,
+        _ => Earlier::ReplaceUnchanged,
+    };
+    let outcomes = demo(&arguments.output, earlier, &mut |share| bar.reached((share * 100.0) as u64))?;
     drop(bar);
     print(&if terminal.json() { json(&outcomes)? } else { words(&outcomes).into_bytes() })
 }

@@ -29,11 +29,12 @@ mod terminal;
 mod which;
 
 use std::ffi::OsString;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::diagnostics::{Failure, InputError, visible_lines};
+use truepath_ground::interruption;
 
 pub use terminal::{Progress, Terminal};
 
@@ -101,6 +102,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let json = arguments.iter().any(|a| a == "--json");
     let terminal = Terminal::new(json);
+    // Where signals cannot be waited for they end the process as ever, and temporary files stay.
+    let _ = interruption::listen();
     let outcome = match Arguments::try_parse_from(&arguments) {
         Ok(arguments) => guarded(|| dispatch(arguments.command, &terminal)),
         Err(error) if error.use_stderr() => Err(usage_error(&error, json)),
@@ -157,8 +160,18 @@ fn usage_error(error: &clap::Error, json: bool) -> Failure {
     InputError::new("C001", first, "a command line as shown by truepath --help", "run truepath --help").into()
 }
 
-/// Standard output that was closed early (`| head`) is not an error.
+/// What a command says, for people or as JSON.
 fn print(text: &[u8]) -> Result<(), Failure> {
+    write_out(visible_lines(&String::from_utf8_lossy(text)).as_bytes())
+}
+
+/// Data byte for byte, unless a person looks on.
+fn print_data(text: &[u8]) -> Result<(), Failure> {
+    if std::io::stdout().is_terminal() { print(text) } else { write_out(text) }
+}
+
+/// Standard output that was closed early (`| head`) is not an error.
+fn write_out(text: &[u8]) -> Result<(), Failure> {
     let mut out = BufWriter::new(std::io::stdout().lock());
     match out.write_all(text).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::Internal(error.to_string())),

@@ -4,7 +4,7 @@ use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use truepath_ground::diagnostics::{Failure, Form};
+use truepath_ground::diagnostics::{Failure, Form, visible};
 
 /// Standard error and how to write on it.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +47,7 @@ impl Terminal {
         self.say("note", text);
     }
     fn say(&self, kind: &str, text: &str) {
+        let text = visible(text);
         if self.json {
             write_error(&format!("{}\n", serde_json::json!({ kind: text })));
         } else {

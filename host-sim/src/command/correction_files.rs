@@ -29,14 +29,7 @@ pub(super) const FILES: &[&str] = &[
     REPORT,
     "probe-raw.txt",
     "first-pass-surface.csv",
-    "correction-pass-1.tpi",
-    "correction-pass-2.tpi",
-    "correction-pass-3.tpi",
-    "correction-pass-4.tpi",
-    "correction-pass-5.tpi",
-    "correction-pass-6.tpi",
-    "correction-pass-7.tpi",
-    "correction-pass-8.tpi",
+    "correction-pass-#.tpi",
 ];
 
 /// Writes what a correction in memory holds beside its summary.

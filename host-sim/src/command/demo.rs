@@ -1,11 +1,12 @@
 //! `demo`: the whole story on three parts. Each is milled by the plant, which is no model of the core, touched with a
 //! probe, corrected, and milled again with the corrected program.
 
+use std::collections::VecDeque;
 use std::path::{Path as FilePath, PathBuf};
 
 use truepath_chart::view::View;
 use truepath_correction::correct::{Corrected, correct};
-use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::{Job, Route};
 use truepath_job::measurement::Measurement;
@@ -103,22 +104,77 @@ pub struct Outcome {
     pub folder: PathBuf,
 }
 
-/// Tells the story; every part gets a folder in `out`. `progress` is told the share done, 0…1.
+/// What becomes of files that lie in the folders already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Earlier {
+    /// They stop the command.
+    Stop,
+    /// They are replaced as long as they are what would be written now; one that is not stops the command.
+    ReplaceUnchanged,
+    /// They are replaced.
+    Replace,
+}
+
+/// The folder of a part on its way.
+struct Part<'a> {
+    story: &'a Story,
+    place: PathBuf,
+    folder: OutputFolder,
+    earlier: Earlier,
+}
+
+impl<'a> Part<'a> {
+    fn create(story: &'a Story, out: &FilePath, earlier: Earlier) -> Result<Self, InputError> {
+        let place = out.join(story.name);
+        let folder = OutputFolder::create(&place, earlier != Earlier::Stop, FILES)?;
+        let part = Self { story, place, folder, earlier };
+        // Before the work: these are what a user edits.
+        for (name, text) in part.inputs() {
+            part.write(name, text.as_bytes())?;
+        }
+        Ok(part)
+    }
+
+    fn inputs(&self) -> [(&'static str, &'static str); 3] {
+        [("program.nc", self.story.program), ("job.toml", self.story.job), ("plant.toml", self.story.plant)]
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) -> Result<(), InputError> {
+        let there = self.place.join(name);
+        if self.earlier == Earlier::ReplaceUnchanged && std::fs::read(&there).is_ok_and(|found| found != bytes) {
+            let found = format!("{} is not what the demonstration writes", there.display());
+            let help =
+                "name another folder with -o, or add --force to replace what was edited or is of another version";
+            return Err(InputError::new("F003", found, "a file as it was written", help).in_file(&there));
+        }
+        self.folder.write(name, bytes)
+    }
+}
+
+/// Tells the story; every part gets a folder in `out`, all of them when everything is done. `progress` is told the share
+/// done, 0…1.
 ///
 /// # Errors
-/// Outputs that cannot be written.
-pub fn run(out: &FilePath, force: bool, progress: &mut dyn FnMut(f64)) -> Result<Vec<Outcome>, Failure> {
-    std::fs::create_dir_all(out).map_err(|e| truepath_ground::diagnostics::InputError::unwritable(out, &e))?;
+/// Outputs that cannot be written, files that are in their way.
+pub fn run(out: &FilePath, earlier: Earlier, progress: &mut dyn FnMut(f64)) -> Result<Vec<Outcome>, Failure> {
+    // The first one is dropped last: it made `out` and takes it away again when nothing came to lie in it.
+    let mut parts = VecDeque::new();
+    for story in STORIES {
+        parts.push_front(Part::create(story, out, earlier)?);
+    }
     let mut outcomes = Vec::new();
-    for (k, story) in STORIES.iter().enumerate() {
+    for (k, part) in parts.iter().rev().enumerate() {
         let done = |share: f64| (k as f64 + share) / STORIES.len() as f64;
-        outcomes.push(tell(story, &out.join(story.name), force, &mut |share| progress(done(share)))?);
+        outcomes.push(tell(part, &mut |share| progress(done(share)))?);
+    }
+    for part in parts.into_iter().rev() {
+        part.folder.commit()?;
     }
     Ok(outcomes)
 }
 
-fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(f64)) -> Result<Outcome, Failure> {
-    let out = OutputFolder::create(folder, force, FILES)?;
+fn tell(part: &Part, progress: &mut dyn FnMut(f64)) -> Result<Outcome, Failure> {
+    let story = part.story;
     let source = |name: &str, text: &str| Source::new(format!("demo/{}/{name}", story.name), text.as_bytes().to_vec());
     let job = Job::parse(source("job.toml", story.job), FilePath::new(""))?;
     let machine = toml::from_str(story.plant).map_err(|e| Failure::Internal(format!("demo plant: {e}")))?;
@@ -140,23 +196,19 @@ fn tell(story: &Story, folder: &FilePath, force: bool, progress: &mut dyn FnMut(
     progress(0.9);
     let (before, after) = (first.score(), second.score());
 
-    out.write("program.nc", story.program.as_bytes())?;
-    out.write("job.toml", story.job.as_bytes())?;
-    out.write("plant.toml", story.plant.as_bytes())?;
-    out.write("probe.txt", probe.as_bytes())?;
-    out.write("corrected.nc", text)?;
-    out.write("difference.txt", corrected.summary.difference("program.nc").as_bytes())?;
-    out.write("correction.tpi", corrected.image.as_deref().unwrap_or_default())?;
-    out.write("correction.csv", &correction_csv(&corrected.rows)?)?;
-    out.write("wall.csv", &wall_csv(&corrected.rows)?)?;
-    out.write("summary.json", &json(&corrected.summary)?)?;
-    out.write("before-after.svg", &picture(story, (&first, &before), (&second, &after))?)?;
-    out.write("points.csv", &points_csv(&measurement, &corrected.identified.observations)?)?;
+    part.write("probe.txt", probe.as_bytes())?;
+    part.write("corrected.nc", text)?;
+    part.write("difference.txt", corrected.summary.difference("program.nc").as_bytes())?;
+    part.write("correction.tpi", corrected.image.as_deref().unwrap_or_default())?;
+    part.write("correction.csv", &correction_csv(&corrected.rows)?)?;
+    part.write("wall.csv", &wall_csv(&corrected.rows)?)?;
+    part.write("summary.json", &json(&corrected.summary)?)?;
+    part.write("before-after.svg", &picture(story, (&first, &before), (&second, &after))?)?;
+    part.write("points.csv", &points_csv(&measurement, &corrected.identified.observations)?)?;
     let page = demonstrated(story.title, &pass, &measurement, &corrected, [(&first, &before), (&second, &after)])?;
-    out.write(REPORT, &render(&page)?)?;
-    out.commit()?;
+    part.write(REPORT, &render(&page)?)?;
     progress(1.0);
-    Ok(outcome(story, folder, &measurement, &corrected, &before, &after))
+    Ok(outcome(story, &part.place, &measurement, &corrected, &before, &after))
 }
 
 fn outcome(

@@ -107,3 +107,113 @@ fn a_reader_that_closes_early_is_no_error() {
     let done = child.wait_with_output().expect("it ends");
     assert_eq!((done.status.code(), text(&done.stderr)), (Some(0), String::new()));
 }
+
+/// A sequence that clears the screen, one that renames the window, one in eight bits, a bell and a step back.
+const STEERING: &str = "\x1b[2J\x1b]0;mine\x07\u{9b}31m\x08\x7f\u{202e}";
+
+fn assert_steers_nothing(shown: &[u8], what: &str) {
+    let shown = text(shown);
+    let steers = |c: char| c.is_control() && !matches!(c, '\n' | '\t') || ('\u{202a}'..='\u{202e}').contains(&c);
+    assert!(!shown.contains(steers), "{what}: {shown:?}");
+}
+
+#[test]
+fn control_characters_of_a_file_are_shown_and_never_sent_to_the_terminal() {
+    let desk = desk();
+    let write = |name: &str, text: String| std::fs::write(desk.path().join(name), text).expect("a file");
+    let job = include_str!("../../demo/corner/job.toml");
+    write("program.nc", include_str!("../../demo/corner/program.nc").to_owned());
+    write("job.toml", job.to_owned());
+    write("wrong.nc", format!("%\nG21 G90\nG0 X0 Y0\nG1 X{STEERING} F100\nM30\n"));
+    write("comment.nc", format!("%\nG21 G90\n(MSG,{STEERING})\nG1 X10 ? F100\nM30\n"));
+    let escaped: String = STEERING.chars().map(|c| format!("\\U{:08x}", u32::from(c))).collect();
+    write("key.toml", format!("{job}\n\"{escaped}\" = 1\n"));
+    write("raw.toml", format!("{job}\n{STEERING} = 1\n"));
+    write(
+        "feature.toml",
+        format!("{job}\n[[feature]]\nid = \"\\u001b[2J\\u009b\"\nblocks = [1, 2]\nrole = \"finish\"\n"),
+    );
+    write("probe.txt", format!("1 2 3 4 5 6 7 8 9\n{STEERING} 2 3 4 5 6 7 8 9\n"));
+    write("named.csv", format!("x_mm,y_mm,{STEERING}\n1,2,3\n"));
+    write("table.csv", format!("s_mm,{STEERING}\n1,2\n"));
+    write("plant.toml", format!("ktc_n_per_mm2 = \"{STEERING}\"\n"));
+    let file = format!("{STEERING}.nc");
+    std::fs::copy(desk.path().join("wrong.nc"), desk.path().join(&file)).expect("a file");
+    let probe = |probe: &'static str| vec!["correct", "job.toml", "--probe", probe, "-o", "out"];
+    for arguments in [
+        vec!["canon", "wrong.nc"],
+        vec!["canon", "comment.nc"],
+        vec!["canon", &file],
+        vec!["simulate", "key.toml", "-o", "out"],
+        vec!["simulate", "raw.toml", "-o", "out"],
+        vec!["simulate", "feature.toml", "-o", "out"],
+        vec!["simulate", "job.toml", "-o", "out", "--plant", "plant.toml"],
+        probe("probe.txt"),
+        probe("named.csv"),
+        vec!["plot", "trace", "table.csv", "-o", "out.svg"],
+        vec!["image", &file],
+        vec![STEERING],
+    ] {
+        for json in [false, true] {
+            let arguments: Vec<&str> = arguments.iter().copied().chain(json.then_some("--json")).collect();
+            let done = truepath(&arguments, desk.path());
+            let what = format!("{arguments:?}");
+            assert_eq!(done.status.code(), Some(1), "{what}: {}", text(&done.stderr));
+            assert_steers_nothing(&done.stderr, &what);
+            assert_steers_nothing(&done.stdout, &what);
+        }
+    }
+    let shown = text(&truepath(&["canon", "wrong.nc"], desk.path()).stderr);
+    assert!(shown.contains("␛[2J␛]0;mine␇") && shown.contains("wrong.nc:4:"), "{shown}");
+    // Data stay as they are where nobody looks on.
+    write("data.nc", format!("%\nG21 G90\n({STEERING})\nG1 X10 F100\nM30\n"));
+    let done = truepath(&["canon", "data.nc"], desk.path());
+    assert!(text(&done.stdout).contains('\x1b'), "{}", text(&done.stdout));
+}
+
+#[cfg(unix)]
+#[test]
+fn data_that_a_person_looks_at_steer_nothing_either() {
+    use portable_pty::{CommandBuilder, PtySize, native_pty_system};
+    use std::io::Read;
+    let desk = desk();
+    let program = format!("%\nG21 G90\n({STEERING})\nG1 X10 F100\nM30\n");
+    std::fs::write(desk.path().join("data.nc"), program).expect("a file");
+    let pair = native_pty_system().openpty(PtySize::default()).expect("a terminal");
+    let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_truepath"));
+    command.args(["canon", "data.nc"]);
+    command.cwd(desk.path());
+    let mut child = pair.slave.spawn_command(command).expect("the program runs");
+    drop(pair.slave);
+    let mut reader = pair.master.try_clone_reader().expect("a reader");
+    let (mut shown, mut buffer) = (Vec::new(), [0; 4096]);
+    // On Linux the end of a terminal is an error.
+    while let Ok(count @ 1..) = reader.read(&mut buffer) {
+        shown.extend_from_slice(&buffer[..count]);
+    }
+    assert!(child.wait().expect("it ends").success());
+    let shown = text(&shown).replace("\r\n", "\n");
+    assert!(shown.contains("␛[2J"), "{shown:?}");
+    assert_steers_nothing(shown.as_bytes(), "canon");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_during_the_demonstration_leaves_nothing_behind() {
+    use std::time::{Duration, Instant};
+    let place = tempfile::tempdir().expect("a folder");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_truepath"));
+    command.args(["demo", "-o", "out/demo"]).current_dir(place.path()).stdout(std::process::Stdio::null());
+    let mut process = command.spawn().expect("the program runs");
+    let start = Instant::now();
+    while !place.path().join("out/demo").exists() {
+        assert!(start.elapsed() < Duration::from_secs(60), "it does not begin");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    // In the middle of the milling.
+    std::thread::sleep(Duration::from_millis(300));
+    let kill = Command::new("kill").args(["-INT", &process.id().to_string()]).status();
+    assert!(kill.expect("kill runs").success());
+    assert_eq!(process.wait().expect("it ends").code(), Some(130));
+    assert_eq!(std::fs::read_dir(place.path()).expect("a folder").count(), 0);
+}

@@ -308,6 +308,58 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
     }
 }
 
+/// A finishing pass round a pocket at so many depths, 6 mm each.
+fn at_depths(folder: &Path, count: u32) {
+    let text = std::fs::read_to_string(data("pocket.nc")).unwrap();
+    let between = |from: &str, to: &str| text[text.find(from).unwrap()..text.find(to).unwrap()].to_owned();
+    let one = between("N315 ", "(FINISHING Z-12)");
+    let depths: String = (1..=count).map(|k| one.replace("Z-6", &format!("Z-{}", 6 * k))).collect();
+    let program = between("%", "(ROUGHING Z-6)") + &depths + &text[text.find("N525 ").unwrap()..];
+    std::fs::write(folder.join("pocket.nc"), program).unwrap();
+}
+
+#[test]
+fn every_depth_gets_its_image_however_many_there_are_and_none_of_a_deeper_pocket_stays() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::copy(data("pocket.toml"), at("pocket.toml")).unwrap();
+    let (job, probe, out) = (at("pocket.toml"), at("probe.txt"), at("out"));
+    let images = || {
+        let names = std::fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<String> = names.filter(|name| name.starts_with("correction-pass-")).collect();
+        names.sort();
+        names
+    };
+    for (depths, force, expected) in [(11, false, 10), (3, true, 2)] {
+        at_depths(folder.path(), depths);
+        let mut asked = Job::read(&job).unwrap();
+        asked.which.pass = Some(2);
+        let pass = Pass::read(asked).unwrap();
+        let milled = virtual_mill::mill(&pass, &toml::from_str(PLANT).unwrap(), None).unwrap();
+        let touched = virtual_mill::probe(&pass, &milled, &[15.0, 60.0, 95.0, 140.0], &[0.3, 0.8], 4.0).unwrap();
+        std::fs::write(&probe, touched).unwrap();
+        if force {
+            std::fs::write(out.join("correction-pass-old.tpi"), "the user's").unwrap();
+        }
+        let options = correct::Options {
+            job: &job,
+            probe: &probe,
+            out: &out,
+            force,
+            route: Some(Route::Coprocessor),
+            first_pass: None,
+            probe_flags: ProbeFlags::default(),
+            which: Which::default(),
+        };
+        correct::run(&options, &mut |_| ()).unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)));
+        let mut names: Vec<String> =
+            (1..=depths).filter(|k| *k != 2).map(|k| format!("correction-pass-{k}.tpi")).collect();
+        names.extend(force.then(|| "correction-pass-old.tpi".to_owned()));
+        names.sort();
+        assert_eq!((images(), names.len() - usize::from(force)), (names, expected));
+    }
+}
+
 fn job_of(name: &str, pass: Option<u32>) -> Pass {
     job(name, "", None, pass).unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)))
 }

@@ -11,7 +11,7 @@ use truepath_ground::diagnostics::Failure;
 use truepath_job::job::{ProbeFlags, Route, Which};
 
 fn told(folder: &Path) -> Vec<demo::Outcome> {
-    demo::run(folder, true, &mut |_| ()).unwrap()
+    demo::run(folder, demo::Earlier::Replace, &mut |_| ()).unwrap()
 }
 
 /// The demonstration, told once for all tests.
@@ -67,6 +67,47 @@ fn the_same_inputs_give_the_same_bytes() {
                 one.name,
                 name.display()
             );
+        }
+    }
+}
+
+#[test]
+fn an_edited_file_of_the_demonstration_is_replaced_only_when_told_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = |earlier| demo::run(folder.path(), earlier, &mut |_| ());
+    let refused = |earlier| match told(earlier) {
+        Err(Failure::Input(error)) => error,
+        other => panic!("{other:?}"),
+    };
+    for outcome in &STORY.1 {
+        let place = folder.path().join(outcome.name);
+        fs::create_dir(&place).unwrap();
+        for entry in fs::read_dir(&outcome.folder).unwrap() {
+            let entry = entry.unwrap();
+            fs::copy(entry.path(), place.join(entry.file_name())).unwrap();
+        }
+    }
+    assert_eq!(refused(demo::Earlier::Stop).code(), "F003");
+    // What it wrote itself it may write again, and nothing else of a part.
+    for (part, name) in [("pocket", "job.toml"), ("corner", "probe.txt")] {
+        let file = folder.path().join(part).join(name);
+        let written = fs::read(&file).unwrap();
+        let edited = [written.as_slice(), b"\n# mine\n"].concat();
+        fs::write(&file, &edited).unwrap();
+        let error = refused(demo::Earlier::ReplaceUnchanged);
+        assert_eq!(error.code(), "F003");
+        assert!(error.to_string().contains(&format!("{part}/{name} is not what the demonstration writes")), "{error}");
+        assert_eq!(fs::read(&file).unwrap(), edited);
+        fs::write(&file, &written).unwrap();
+    }
+    assert_eq!(told(demo::Earlier::ReplaceUnchanged).unwrap().len(), 3);
+    fs::write(folder.path().join("corner/job.toml"), "mine").unwrap();
+    told(demo::Earlier::Replace).unwrap();
+    for outcome in &STORY.1 {
+        for entry in fs::read_dir(&outcome.folder).unwrap() {
+            let name = entry.unwrap().file_name();
+            let place = folder.path().join(outcome.name).join(&name);
+            assert_eq!(fs::read(outcome.folder.join(&name)).unwrap(), fs::read(place).unwrap(), "{}", name.display());
         }
     }
 }

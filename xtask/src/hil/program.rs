@@ -73,7 +73,7 @@ impl Parts {
     /// Makes them.
     pub fn make(truepath: &Program) -> Result<Self, Failure> {
         let folder = target().join("hil");
-        read(program(&truepath.0).arg("demo").arg("-o").arg(&folder))?;
+        read(program(&truepath.0).args(["demo", "--force", "-o"]).arg(&folder))?;
         Ok(Self(folder))
     }
     /// A file of a part.

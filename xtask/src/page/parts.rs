@@ -53,7 +53,7 @@ pub fn write() -> Result<PathBuf, Failure> {
     let force = word("--force");
     let pocket = |file: &str| pages.join("demo/pocket").join(file);
     let island = |file: &str| root().join(ISLAND).join(file);
-    truepath(&[word("demo")], "demo")?;
+    truepath(&[word("demo"), force], "demo")?;
     truepath(&[word("simulate"), force, &pocket("job.toml")], "simulate-core")?;
     truepath(
         &[word("simulate"), force, &pocket("job.toml"), word("--plant"), &pocket("plant.toml")],

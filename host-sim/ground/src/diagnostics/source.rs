@@ -3,9 +3,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::visible::{visible, visible_lines};
+
 /// A text that errors can point into: its name as the user wrote it, and its bytes made readable.
 ///
-/// Bytes that are not UTF-8 (comments of old controls) become `U+FFFD`; a lone carriage return counts as a line end.
+/// Bytes that are not UTF-8 (comments of old controls) become `U+FFFD`, control characters become visible; a lone
+/// carriage return counts as a line end.
 #[derive(Clone, Debug)]
 pub struct Source(Arc<Inner>);
 
@@ -65,11 +68,12 @@ impl Source {
 }
 
 fn readable(bytes: &[u8]) -> String {
-    let mut text = String::from_utf8_lossy(bytes).into_owned();
-    if !text.contains('\n') && text.contains('\r') {
-        text = text.replace('\r', "\n");
+    let text = String::from_utf8_lossy(bytes);
+    if !text.contains('\r') {
+        return visible_lines(&text).into_owned();
     }
-    text
+    let text = text.replace("\r\n", "\n").replace('\r', "\n");
+    visible_lines(&text).into_owned()
 }
 
 /// Offsets of the first byte of every line; CR, LF and CRLF end a line.
@@ -92,7 +96,7 @@ impl miette::SourceCode for Source {
     ) -> Result<Box<dyn miette::SpanContents<'a> + 'a>, miette::MietteError> {
         let contents = self.0.text.read_span(span, before, after)?;
         Ok(Box::new(miette::MietteSpanContents::new_named(
-            self.0.name.clone(),
+            visible(&self.0.name).into_owned(),
             contents.data(),
             *contents.span(),
             contents.line(),

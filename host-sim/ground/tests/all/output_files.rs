@@ -93,6 +93,27 @@ fn force_replaces_its_own_files_removes_its_old_ones_and_leaves_the_rest() {
 }
 
 #[test]
+fn a_numbered_name_holds_for_every_number_and_for_nothing_else() {
+    let place = tempfile::tempdir().expect("a folder");
+    let target = place.path().join("out");
+    let owned = ["pass-#.tpi"];
+    let folder = OutputFolder::create(&target, false, &owned).expect("a new folder");
+    for name in ["pass-1.tpi", "pass-9.tpi", "pass-120.tpi"] {
+        folder.write(name, b"an image").expect(name);
+    }
+    for name in ["pass-.tpi", "pass-0.tpi", "pass-01.tpi", "pass--1.tpi", "pass-1.tpi.tpi", "pass-#.tpi", "pass-1", "1"]
+    {
+        assert_eq!(folder.write(name, b"").expect_err(name).code(), "F002");
+    }
+    folder.commit().expect("committed");
+    fs::write(target.join("pass-old.tpi"), "the user's").expect("a file");
+    let folder = OutputFolder::create(&target, true, &owned).expect("a folder");
+    folder.write("pass-2.tpi", b"an image").expect("written");
+    folder.commit().expect("committed");
+    assert_eq!(names(&target), ["pass-2.tpi", "pass-old.tpi"]);
+}
+
+#[test]
 fn a_failed_replacement_puts_everything_back() {
     let place = tempfile::tempdir().expect("a folder");
     let target = place.path().join("out");

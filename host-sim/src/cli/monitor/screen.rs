@@ -17,6 +17,7 @@ use ratatui::crossterm::terminal::{
 };
 use ratatui::prelude::CrosstermBackend;
 use ratatui::{Frame, Terminal};
+use truepath_ground::interruption::{self, Watch};
 
 /// What a key asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +42,7 @@ static WRITING: Mutex<()> = Mutex::new(());
 /// The terminal while a view has it.
 pub struct Screen {
     terminal: Terminal<CrosstermBackend<Stdout>>,
-    signals: signals::Signals,
+    signals: Watch,
 }
 
 impl Screen {
@@ -51,7 +52,7 @@ impl Screen {
     /// It has no raw mode, or is gone.
     pub fn open() -> io::Result<Self> {
         give_back_in_a_panic();
-        let signals = signals::Signals::watch()?;
+        let signals = Watch::begin()?;
         let terminal = Terminal::new(CrosstermBackend::new(stdout()))?;
         OURS.store(true, Ordering::SeqCst);
         let screen = Self { terminal, signals };
@@ -90,7 +91,7 @@ impl Screen {
     /// Gives the terminal back and ends the process by a signal.
     pub fn end_by(self, signal: i32) {
         drop(self);
-        signals::end_by(signal);
+        interruption::end_by(signal);
     }
 }
 
@@ -146,77 +147,3 @@ fn give_back_in_a_panic() {
 
 #[cfg(all(test, unix))]
 mod tests;
-
-#[cfg(unix)]
-mod signals {
-    //! Signals that end a process.
-
-    use std::io;
-    use std::sync::Arc;
-    use std::sync::OnceLock;
-    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
-    use signal_hook::{flag, low_level};
-
-    /// The signal that came, and whether signals end the process as ever.
-    struct Notes {
-        came: Arc<AtomicUsize>,
-        as_ever: Arc<AtomicBool>,
-    }
-
-    /// Actions of signals cannot be taken back, so they are set once and asked whether they are wanted.
-    static NOTES: OnceLock<Notes> = OnceLock::new();
-
-    /// While it lives these signals are noted and do not end the process.
-    pub struct Signals(&'static Notes);
-
-    impl Signals {
-        pub fn watch() -> io::Result<Self> {
-            if NOTES.get().is_none() {
-                let notes = Notes { came: Arc::default(), as_ever: Arc::default() };
-                for signal in [SIGTERM, SIGHUP, SIGINT, SIGQUIT] {
-                    flag::register_conditional_default(signal, Arc::clone(&notes.as_ever))?;
-                    flag::register_usize(signal, Arc::clone(&notes.came), signal as usize)?;
-                }
-                let _ = NOTES.set(notes);
-            }
-            let notes = NOTES.get().ok_or(io::ErrorKind::Other)?;
-            notes.as_ever.store(false, Ordering::SeqCst);
-            Ok(Self(notes))
-        }
-        pub fn came(&self) -> Option<i32> {
-            let signal = self.0.came.load(Ordering::SeqCst) as i32;
-            (signal != 0).then_some(signal)
-        }
-    }
-
-    impl Drop for Signals {
-        fn drop(&mut self) {
-            self.0.as_ever.store(true, Ordering::SeqCst);
-        }
-    }
-
-    /// As if nobody had waited for it.
-    pub fn end_by(signal: i32) {
-        let _ = low_level::emulate_default_handler(signal);
-    }
-}
-
-#[cfg(not(unix))]
-mod signals {
-    //! There are none here.
-
-    pub struct Signals;
-
-    impl Signals {
-        pub fn watch() -> std::io::Result<Self> {
-            Ok(Self)
-        }
-        pub fn came(&self) -> Option<i32> {
-            None
-        }
-    }
-
-    pub fn end_by(_signal: i32) {}
-}

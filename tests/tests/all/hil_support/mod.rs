@@ -14,7 +14,7 @@ use truepath_bench::{Board, Bulk, BulkBoard, Faults, InProcess, Probability, rec
 /// The parts of the demonstration, made once.
 pub static PARTS: LazyLock<(tempfile::TempDir, Vec<PathBuf>)> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
-    let outcomes = demo::run(folder.path(), true, &mut |_| ()).unwrap();
+    let outcomes = demo::run(folder.path(), demo::Earlier::Replace, &mut |_| ()).unwrap();
     let folders = outcomes.iter().map(|o| o.folder.clone()).collect();
     (folder, folders)
 });
