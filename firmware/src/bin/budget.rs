@@ -19,8 +19,8 @@ mod script;
 use core::fmt::Write as _;
 
 use machine::Machine;
-use measure::{Console, Series};
-use script::{Situation, run};
+use measure::{Console, Series, Situation};
+use script::run;
 
 /// Nodes of the contours; the costs must not depend on them.
 const CONTOURS: [usize; 3] = [10, 100, 10_000];

@@ -3,45 +3,7 @@
 use truepath_core::rewrite::{Flags, Mode};
 
 use crate::machine::Machine;
-use crate::measure::Series;
-
-/// Situations, by what costs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Situation {
-    /// Nothing is armed.
-    Bypass,
-    /// Armed, before the gate.
-    Armed,
-    /// The tick in which the correction begins, and the next.
-    Entry,
-    /// Nominal feed: 400 mm/min at 1 kHz.
-    Feed,
-    /// As many segments in a tick as the rewriter may advance.
-    Fastest,
-    /// Feed hold.
-    Hold,
-    /// The correction ramps to zero after a fault.
-    FaultRamp,
-}
-
-impl Situation {
-    /// All of them.
-    pub const ALL: [Self; 7] =
-        [Self::Bypass, Self::Armed, Self::Entry, Self::Feed, Self::Fastest, Self::Hold, Self::FaultRamp];
-
-    /// Its name in the tables.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Bypass => "bypass",
-            Self::Armed => "armed",
-            Self::Entry => "entry",
-            Self::Feed => "feed",
-            Self::Fastest => "fastest",
-            Self::Hold => "hold",
-            Self::FaultRamp => "fault-ramp",
-        }
-    }
-}
+use crate::measure::{Series, Situation};
 
 /// Way of a tick at the nominal feed, nm.
 const FEED: i64 = 6_667;
