@@ -8,7 +8,7 @@ from pathlib import Path
 from package import arming, words
 
 ROOT = Path(__file__).resolve().parents[2]
-CORE = ROOT / "core" / "src"
+CORE = ROOT / "core" / "wire" / "src"
 COMPONENT = ROOT / "linuxcnc" / "abi" / "src" / "pc" / "arming.rs"
 
 
