@@ -40,7 +40,7 @@
 //!     kre: Real::ZERO,
 //!     size_exponent: Real::ZERO,
 //! };
-//! let compliance = Compliance::from_stiffness(Real::from_int(3000), Real::from_int(3000));
+//! let compliance = Compliance::from_stiffness(Real::from_int(1150), Real::from_int(1150));
 //! let table = ForceTable::new(coefficients.size_exponent);
 //! let machine = Loop { path: &path, table: &table, coefficients, compliance, undersize: Offset::ZERO };
 //!
