@@ -202,3 +202,9 @@ fn a_buffer_that_is_too_short_or_a_number_of_axes_that_does_not_exist_is_refused
         assert_eq!(SetpointFrame { axes, setpoint }.encode(&mut [0; 3_000]), Err(LinkError::Buffer));
     }
 }
+
+#[test]
+fn a_frame_of_another_version_is_told_the_one_that_can_be_read() {
+    let said = truepath_wire::link::LinkError::Version { found: 1 }.to_string();
+    assert_eq!(said, format!("version 1 of the link, only {} can be read", truepath_wire::link::LINK_VERSION));
+}

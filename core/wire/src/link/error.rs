@@ -56,7 +56,9 @@ impl fmt::Display for LinkError {
             Self::Stuffing => f.write_str("the bytes are not a COBS frame"),
             Self::Length { expected, found } => write!(f, "the frame should have {expected} bytes and has {found}"),
             Self::Kind { found } => write!(f, "a frame of unknown kind 0x{found:02x}"),
-            Self::Version { found } => write!(f, "version {found} of the link, only 1 can be read"),
+            Self::Version { found } => {
+                write!(f, "version {found} of the link, only {} can be read", super::LINK_VERSION)
+            }
             Self::Axes { expected, found } => write!(f, "a frame for {found} axes, the device has {expected}"),
             Self::Reserved => f.write_str("a reserved byte is set or a number stands for nothing"),
             Self::Checksum { stored, computed } => {
