@@ -26,19 +26,12 @@ pub fn doc() -> Outcome {
     Ok(Passed::Done)
 }
 
-/// Set for the tests to `all` when every case is wanted.
-const CASES: &str = "TRUEPATH_CASES";
-
-/// The tests, with every case of them when all are wanted. Without arguments those of the whole workspace, and all of
-/// them even when one fails.
-pub fn tests(all: bool, arguments: &[String]) -> Outcome {
+/// The tests. Without arguments those of the whole workspace, and all of them even when one fails.
+pub fn tests(arguments: &[String]) -> Outcome {
     let mut command = cargo();
     command.arg("test");
     if arguments.is_empty() {
         command.args(["--workspace", "--no-fail-fast"]);
-    }
-    if all {
-        command.env(CASES, "all");
     }
     run(command.args(arguments))?;
     Ok(Passed::Done)

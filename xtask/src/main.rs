@@ -40,8 +40,8 @@ struct Arguments {
 enum Task {
     /// What a change has to pass; with --all everything there is.
     ///
-    /// fmt, lint, doc, test-only, device, firmware, elf, budget and hil, each the same on every repeat. With --all also
-    /// the image of the real board, every case of every test, page, conformance, judge, bench, fuzz and linuxcnc.
+    /// fmt, lint, doc, test-only, device, firmware, elf, budget and hil. With --all also the image of the real board, all
+    /// setpoints of hil, page, conformance, judge, bench, fuzz and linuxcnc.
     Test {
         /// Also what takes long.
         #[arg(long)]
@@ -59,9 +59,6 @@ enum Task {
     Doc,
     /// The tests of all packages, examples in the documentation included.
     TestOnly {
-        /// Every case: random programs, streams and machines by the thousand instead of by the hundred.
-        #[arg(long)]
-        all: bool,
         /// Handed to `cargo test`, for instance `-p truepath-core engagement`.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
@@ -182,7 +179,7 @@ fn main() -> ExitCode {
         Task::Fmt { write } => report.run(Step::new("fmt", || checks::format(write))),
         Task::Lint => report.run(Step::new("lint", checks::lint)),
         Task::Doc => report.run(Step::new("doc", checks::doc)),
-        Task::TestOnly { all, arguments } => report.run(Step::new("test-only", || checks::tests(all, &arguments))),
+        Task::TestOnly { arguments } => report.run(Step::new("test-only", || checks::tests(&arguments))),
         Task::Rooms { all, part } => report.run(Step::new("rooms", || rooms::check(all, part.as_deref()))),
         Task::Device => report.run(Step::new("device", device::check)),
         Task::Firmware { board, write } => {
@@ -224,7 +221,7 @@ fn test(report: &mut Report, all: bool) {
     report.run(Step::new("fmt", || checks::format(false)));
     report.run(Step::new("lint", checks::lint));
     report.run(Step::new("doc", checks::doc));
-    report.run(Step::new("test-only", || checks::tests(all, &[])));
+    report.run(Step::new("test-only", || checks::tests(&[])));
     report.run(Step::new("device", device::check));
     report.run(Step::new("firmware", || firmware::build(boards, false)));
     report.run(Step::new("elf", || firmware::elf::check(boards, false)));

@@ -6,7 +6,7 @@ mod operations;
 mod rules;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::repository::{read, target};
 use crate::step::{Failure, Outcome, Passed};
@@ -30,9 +30,12 @@ pub fn check() -> Outcome {
     let built = read(&mut build)?;
     let mut code = Code::default();
     for name in rules::CRATES {
-        let library = library(&built, name).ok_or_else(|| Failure::found(format!("cargo built no library {name}")))?;
-        code.read(&library)?;
-        let representation = representation(&library);
+        let files = files(&built, name);
+        let library = files.iter().find(|file| file.extension().is_some_and(|e| e == "rlib"));
+        let library = library.ok_or_else(|| Failure::found(format!("cargo built no library {name}")))?;
+        code.read(library)?;
+        let representation = representation(&files)
+            .ok_or_else(|| Failure::found(format!("no intermediate representation beside any of {files:?}")))?;
         let text = std::fs::read_to_string(&representation)
             .map_err(|e| Failure::found(format!("{}: {e}", representation.display())))?;
         code.add_operations(operations::operations(&text))?;
@@ -42,20 +45,26 @@ pub fn check() -> Outcome {
     if said.is_empty() { Ok(Passed::Done) } else { Err(Failure::found(said.join("\n"))) }
 }
 
-/// The library of a crate among what cargo says it has built.
-fn library(built: &str, name: &str) -> Option<PathBuf> {
-    built.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok()).find_map(|said| {
-        let own = said["reason"] == "compiler-artifact" && said["target"]["name"] == name;
-        let files = said["filenames"].as_array().filter(|_| own)?;
-        // The library of the package asked for is linked to a second name, without the hash.
-        files.iter().filter_map(|file| file.as_str()).find(|file| file.ends_with(".rlib")).map(PathBuf::from)
+/// The files of a library crate, of what cargo says it has built.
+fn files(built: &str, name: &str) -> Vec<PathBuf> {
+    let said = built.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
+    let own = said.filter(|said| said["reason"] == "compiler-artifact" && said["target"]["name"] == name);
+    own.filter_map(|said| {
+        let files = said["filenames"].as_array()?.clone();
+        Some(files.into_iter().filter_map(|file| file.as_str().map(PathBuf::from)))
     })
+    .flatten()
+    .collect()
 }
 
-/// The intermediate representation beside a library: `truepath_wire-0123.ll` of `libtruepath_wire-0123.rlib`.
-fn representation(library: &Path) -> PathBuf {
-    let name = library.file_stem().unwrap_or_default().to_string_lossy();
-    library.with_file_name(format!("{}.ll", name.trim_start_matches("lib")))
+/// The intermediate representation: `truepath_wire-0123.ll` beside `libtruepath_wire-0123.rmeta`. The library of the
+/// package asked for is named without the hash and lies elsewhere, so each file of the crate is tried.
+fn representation(files: &[PathBuf]) -> Option<PathBuf> {
+    let beside = files.iter().filter_map(|file| {
+        let name = file.file_stem()?.to_str()?;
+        Some(file.with_file_name(format!("{}.ll", name.strip_prefix("lib")?)))
+    });
+    beside.into_iter().find(|file| file.exists())
 }
 
 /// Size of the code by module, before the linker removes what a firmware does not use.

@@ -3,7 +3,7 @@
 use truepath_core::cut::{Envelope, Loop, Path, Sample, State};
 use truepath_core::geometry::Vector;
 use truepath_core::units::{Offset, Real};
-use truepath_ground::units::{float, mm};
+use truepath_ground::units::{float, mm, rounded};
 
 use super::column::FINE;
 use super::kept::Kept;
@@ -65,7 +65,7 @@ pub(super) fn of_depth(depth_mm: f64, kept: &Kept, passes: OfPasses) -> Option<H
     }
     let [before, milled, after] = passes.map(|errors| errors.map(|errors| Column::of(errors, FINE)));
     Some(Heights {
-        z_mm: (0..HEIGHTS).map(|k| truepath_ground::units::rounded(depth_mm * fraction(k), 6)).collect(),
+        z_mm: (0..HEIGHTS).map(|k| rounded(depth_mm * fraction(k), 6)).collect(),
         stride: kept.stride(),
         before,
         milled,
