@@ -26,10 +26,17 @@ pub fn doc() -> Outcome {
     Ok(Passed::Done)
 }
 
-/// The tests. Without arguments those of the whole workspace, and all of them even when one fails.
-pub fn tests(arguments: &[String]) -> Outcome {
+/// What decides the random cases of property tests.
+const SEED: &str = "PROPTEST_RNG_SEED";
+
+/// The tests. Without arguments those of the whole workspace, and all of them even when one fails. Property tests take
+/// the same cases on every repeat, other ones each time when `all` is wanted.
+pub fn tests(all: bool, arguments: &[String]) -> Outcome {
     let mut command = cargo();
     command.arg("test");
+    if !all && std::env::var_os(SEED).is_none() {
+        command.env(SEED, "1");
+    }
     if arguments.is_empty() {
         command.args(["--workspace", "--no-fail-fast"]);
     }

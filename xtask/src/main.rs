@@ -40,8 +40,9 @@ struct Arguments {
 enum Task {
     /// What a change has to pass; with --all everything there is.
     ///
-    /// fmt, lint, doc, test-only, device, firmware, elf, budget and hil. With --all also the image of the real board, all
-    /// setpoints of hil, page, conformance, judge, bench, fuzz and linuxcnc.
+    /// fmt, lint, rooms, test-only, firmware, budget and hil, the same on every repeat. With --all also other random cases
+    /// each time, the image of the real board, doc, device, elf, all setpoints of hil and its release build, page,
+    /// conformance, judge, bench, fuzz and linuxcnc.
     Test {
         /// Also what takes long.
         #[arg(long)]
@@ -59,6 +60,9 @@ enum Task {
     Doc,
     /// The tests of all packages, examples in the documentation included.
     TestOnly {
+        /// Other random cases on every repeat.
+        #[arg(long)]
+        all: bool,
         /// Handed to `cargo test`, for instance `-p truepath-core engagement`.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
@@ -179,7 +183,7 @@ fn main() -> ExitCode {
         Task::Fmt { write } => report.run(Step::new("fmt", || checks::format(write))),
         Task::Lint => report.run(Step::new("lint", checks::lint)),
         Task::Doc => report.run(Step::new("doc", checks::doc)),
-        Task::TestOnly { arguments } => report.run(Step::new("test-only", || checks::tests(&arguments))),
+        Task::TestOnly { all, arguments } => report.run(Step::new("test-only", || checks::tests(all, &arguments))),
         Task::Rooms { all, part } => report.run(Step::new("rooms", || rooms::check(all, part.as_deref()))),
         Task::Device => report.run(Step::new("device", device::check)),
         Task::Firmware { board, write } => {
@@ -220,14 +224,14 @@ fn test(report: &mut Report, all: bool) {
     let boards: &[Board] = if all { &Board::ALL } else { &[Board::Virtual] };
     report.run(Step::new("fmt", || checks::format(false)));
     report.run(Step::new("lint", checks::lint));
-    report.run(Step::new("doc", checks::doc));
-    report.run(Step::new("test-only", || checks::tests(&[])));
-    report.run(Step::new("device", device::check));
+    report.run(Step::new("test-only", || checks::tests(all, &[])));
     report.run(Step::new("firmware", || firmware::build(boards, false)));
-    report.run(Step::new("elf", || firmware::elf::check(boards, false)));
     report.run(Step::new("budget", || firmware::budget::check(false)));
     report.run(Step::new("hil", || hil::check(all)));
     if all {
+        report.run(Step::new("doc", checks::doc));
+        report.run(Step::new("device", device::check));
+        report.run(Step::new("elf", || firmware::elf::check(boards, false)));
         report.run(Step::new("page", || page::check(false)));
         report.run(Step::new("conformance", || conformance::check(false)));
         report.run(Step::new("judge", || judge::run_all(None)));

@@ -4,10 +4,12 @@
 //! segments: their cost must not depend on the length. Identification and design are measured whole, on the papers'
 //! corner and on a pocket.
 
-#[path = "../../model/tests/corner/mod.rs"]
+#[allow(dead_code)]
+#[path = "../../model/tests/all/corner/mod.rs"]
 mod corner;
 mod part;
-#[path = "../../wire/tests/rewrite_support/mod.rs"]
+#[allow(dead_code)]
+#[path = "../../wire/tests/all/rewrite_support/mod.rs"]
 mod rewrite_support;
 mod servo;
 mod whole;

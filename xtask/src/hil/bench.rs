@@ -8,7 +8,7 @@ use crate::toolchain::{Toolchain, install};
 
 const QEMU: &str = "qemu-system-arm";
 
-/// Runs whose digests have to be equal on all three: part, kind and number of setpoints, other options; together above
+/// Runs whose digests have to be equal everywhere: part, kind and number of setpoints, other options; together above
 /// 10⁶ setpoints.
 const EQUAL: [(&str, (&str, u32), &[&str]); 5] = [
     ("corner", ("--count", 250_000), &["--seed", "1"]),
@@ -40,8 +40,8 @@ const EQUAL: [(&str, (&str, u32), &[&str]); 5] = [
 pub struct Bench {
     /// Built for debugging.
     debug: Program,
-    /// Built for release.
-    release: Program,
+    /// Built for release, when it is wanted.
+    release: Option<Program>,
     /// The image of the virtual board.
     firmware: String,
     /// The parts.
@@ -49,19 +49,20 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Builds all of it.
+    /// Builds all of it, the program for release only when that is compared, too.
     ///
     /// # Errors
     /// Something does not build, or the emulator is missing.
-    pub fn set_up() -> Result<Self, Failure> {
+    pub fn set_up(release: bool) -> Result<Self, Failure> {
         let there = || succeeds(command(QEMU).arg("--version"));
         let installed = || may_install() && install(&[QEMU]).is_ok() && there();
         if !(there() || installed()) {
             return Err(Failure::Missing(format!("no emulator of the virtual board: apt-get install {QEMU}")));
         }
         let elf = Board::Virtual.image().build(&Toolchain::find()?, &[])?;
-        let [debug, release] = [Program::build(false)?, Program::build(true)?];
-        let parts = Parts::make(&release)?;
+        let debug = Program::build(false)?;
+        let release = release.then(|| Program::build(true)).transpose()?;
+        let parts = Parts::make(&debug)?;
         Ok(Self { debug, release, firmware: elf.display().to_string(), parts })
     }
 
@@ -72,7 +73,7 @@ impl Bench {
     pub fn emulated(&self, part: &str, link: &str, arguments: &[&str]) -> Result<Run, Failure> {
         let image = self.parts.image(part);
         let board = [image.as_str(), "--board", "virtual", "--link", link, "--elf", &self.firmware];
-        self.release.hil(&[&board[..], arguments].concat())
+        self.debug.hil(&[&board[..], arguments].concat())
     }
 
     /// All of [`EQUAL`] with this part of the setpoints; gives the setpoints compared.
@@ -86,11 +87,11 @@ impl Bench {
             let number = (number / part_of).to_string();
             let arguments = [&[kind, &number], options].concat();
             let on_host = [&[image.as_str()], &arguments[..]].concat();
-            let runs = [
-                ("host debug", self.debug.hil(&on_host)?),
-                ("host release", self.release.hil(&on_host)?),
-                ("emulated", self.emulated(part, "bulk", &arguments)?),
-            ];
+            let mut runs =
+                vec![("host debug", self.debug.hil(&on_host)?), ("emulated", self.emulated(part, "bulk", &arguments)?)];
+            if let Some(release) = &self.release {
+                runs.push(("host release", release.hil(&on_host)?));
+            }
             for (name, run) in &runs {
                 println!("{part:<14} {name:<13} {:>8} answers  {}", run.answers, run.digest);
                 if run.digest != runs[0].1.digest {
@@ -110,6 +111,6 @@ impl Bench {
         let [job, probe] = [self.parts.file(part, "job.toml"), self.parts.file(part, "probe.txt")];
         let made = ["--job", &job, "--probe", &probe, "--count", "2000"];
         let board = ["--board", "virtual", "--link", link, "--elf", &self.firmware];
-        self.release.hil(&[&made[..], &board[..]].concat())
+        self.debug.hil(&[&made[..], &board[..]].concat())
     }
 }

@@ -62,7 +62,7 @@ pub fn short(bench: &Bench) -> Result<(), Failure> {
 
 /// The long campaign, written into the document.
 pub fn run() -> Outcome {
-    let bench = Bench::set_up()?;
+    let bench = Bench::set_up(false)?;
     let commit = read(command("git").args(["rev-parse", "--short=12", "HEAD"]))?;
     let changed =
         !read(command("git").args(["status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/campaign.md"]))?

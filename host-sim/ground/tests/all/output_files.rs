@@ -178,3 +178,25 @@ fn outputs_are_readable_like_any_other_file() {
     fs::create_dir(place.path().join("plain")).expect("a folder");
     assert_eq!(mode(&target), mode(&place.path().join("plain")));
 }
+
+/// An administrator may write anywhere and sees nothing of this.
+#[cfg(unix)]
+#[test]
+fn output_into_a_folder_that_the_user_may_not_write_is_refused_and_says_where() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = tempfile::tempdir().expect("a folder");
+    let closed = place.path().join("closed");
+    fs::create_dir(&closed).expect("a folder");
+    fs::set_permissions(&closed, fs::Permissions::from_mode(0o555)).expect("closed");
+    if fs::write(closed.join("tried"), "").is_ok() {
+        return;
+    }
+    let refusals = [
+        write_file(&closed.join("out.csv"), false, b"").expect_err("closed"),
+        OutputFolder::create(&closed.join("out"), false, &OWNED).expect_err("closed"),
+    ];
+    for refusal in refusals {
+        assert_eq!(refusal.code(), "F002");
+        assert!(refusal.to_string().contains("closed") && refusal.to_string().contains("denied"), "{refusal}");
+    }
+}

@@ -1,0 +1,8 @@
+//! Engagement, force, elastic loop and correction against reference numbers and invariances.
+
+mod corner;
+mod cut_reference;
+mod engagement_properties;
+mod guard;
+mod invariance;
+mod laws;

@@ -1,0 +1,13 @@
+//! Programs, read and interpreted: against written results, LinuxCNC and what holds for all of them.
+
+mod canon;
+mod compensation;
+mod compensation_properties;
+mod contour;
+mod corner;
+mod decimal;
+mod errors;
+mod flow;
+mod machine;
+mod properties;
+mod search;

@@ -1,0 +1,175 @@
+//! Which runs of a program make a wall: roughing, levels, spring passes, islands, other tools, leads.
+
+use truepath_rs274::{
+    ContourOptions, Criteria, DeviceMemory, Found, LineRange, Program, Role, RunPart, read_contour, search, visit_runs,
+};
+use truepath_units::Offset;
+use truepath_units::geometry::{Block, Side};
+
+const POCKET: &str = include_str!("../../../../host-sim/tests/data/features/pocket.nc");
+const ISLAND: &str = include_str!("../../../../host-sim/tests/data/features/island.nc");
+const TWO_TOOLS: &str = include_str!("../../../../host-sim/tests/data/features/two-tools.nc");
+
+fn criteria(tool: Option<u32>) -> Criteria {
+    Criteria { tool, wall: Some(Side::Right), diameter: Offset::from_um(10_000) }
+}
+
+fn searched(program: &str, criteria: &Criteria) -> (u32, Vec<Found>, Vec<Block>) {
+    let (mut runs, mut blocks) = (Vec::new(), Vec::new());
+    let mut first = 0;
+    visit_runs(
+        &Program::new(program.as_bytes()),
+        &mut DeviceMemory::new().lend(),
+        &ContourOptions::default(),
+        |b| blocks.push(*b),
+        |run| {
+            runs.push(Found::new(*run, first));
+            first += run.blocks;
+        },
+    )
+    .expect("readable");
+    let count = search(&mut runs, &blocks, criteria);
+    (count, runs, blocks)
+}
+
+fn roles(program: &str, criteria: &Criteria) -> (u32, Vec<Role>) {
+    let (count, runs, _) = searched(program, criteria);
+    (count, runs.iter().map(|f| f.role).collect())
+}
+
+/// Index of the nearer run, gap in mm, whether parallel.
+fn rough(role: Role) -> Option<(usize, f64, bool)> {
+    match role {
+        Role::Rough { nearer, gap, parallel } => Some((nearer, (gap.nm() as f64 / 1e4).round() / 100.0, parallel)),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_pocket_with_roughing_two_depths_and_a_spring_pass_has_one_finishing_contour() {
+    let (count, runs, blocks) = searched(POCKET, &criteria(Some(1)));
+    assert_eq!((count, runs.len()), (1, 9));
+    // The innermost ones are farther from the finished wall than the cutter is wide, but not from the next pass.
+    for (found, expected) in runs[..6].iter().zip([(2, 10.0), (6, 5.5), (6, 0.5), (2, 10.0), (6, 5.5), (6, 0.5)]) {
+        assert_eq!(rough(found.role), Some((expected.0, expected.1, true)), "{:?}", found.run.lines);
+    }
+    let last: Vec<_> = runs[6..].iter().map(|f| f.role).collect();
+    let finish = |level| Role::Finish { contour: 1, level };
+    assert_eq!(last, [finish(1), finish(2), Role::Spring { contour: 1, level: 2 }]);
+    for (found, first) in runs[6..].iter().zip([71, 86, 101]) {
+        let lines = LineRange { first, last: first + 8 };
+        assert_eq!((found.run.lines, found.run.closed, found.skipped, found.run.blocks), (lines, true, 1, 9));
+        let path = found.blocks(&blocks);
+        assert_eq!(path[0].curve.start(), path[8].curve.end());
+    }
+}
+
+#[test]
+fn a_part_of_a_run_is_read_by_number_and_blocks() {
+    let (_, runs, blocks) = searched(POCKET, &criteria(Some(1)));
+    let found = &runs[7];
+    let part = RunPart { run: found.run.number, first: found.skipped as u32, blocks: found.run.blocks as u32 };
+    let options = ContourOptions { part: Some(part), ..ContourOptions::default() };
+    let mut buffer = vec![Block::BLANK; 64];
+    let contour =
+        read_contour(&Program::new(POCKET.as_bytes()), &mut DeviceMemory::new().lend(), &mut buffer, &options)
+            .expect("the second depth");
+    assert_eq!((contour.z.nm(), contour.lines, contour.closed), (-12_000_000, found.run.lines, true));
+    assert_eq!((contour.length, buffer[0].s), (found.run.length, Offset::ZERO));
+    let curves = |b: &[Block]| b.iter().map(|b| b.curve).collect::<Vec<_>>();
+    assert_eq!(curves(&buffer[..contour.blocks]), curves(found.blocks(&blocks)));
+    for wrong in [RunPart { run: 40, ..part }, RunPart { blocks: 12, ..part }, RunPart { first: 30, ..part }] {
+        let options = ContourOptions { part: Some(wrong), ..ContourOptions::default() };
+        let error =
+            read_contour(&Program::new(POCKET.as_bytes()), &mut DeviceMemory::new().lend(), &mut buffer, &options)
+                .expect_err("no such part");
+        assert!(["G076", "G070"].contains(&error.kind.code()), "{error}");
+    }
+}
+
+#[test]
+fn a_pocket_and_its_island_are_two_walls() {
+    let (count, roles) = roles(ISLAND, &criteria(Some(1)));
+    assert_eq!(count, 2);
+    assert_eq!(rough(roles[0]), Some((1, 0.5, true)));
+    assert_eq!(roles[1..], [Role::Finish { contour: 1, level: 1 }, Role::Finish { contour: 2, level: 1 }]);
+}
+
+#[test]
+fn runs_of_another_tool_do_not_count() {
+    for (tool, finish) in [(1, 1), (2, 3)] {
+        let (count, roles) = roles(TWO_TOOLS, &criteria(Some(tool)));
+        let other = roles.iter().filter(|r| **r == Role::OtherTool).count();
+        assert_eq!((count, other, roles[finish]), (1, 2, Role::Finish { contour: 1, level: 1 }), "tool {tool}");
+    }
+    assert_eq!(roles(TWO_TOOLS, &criteria(None)).0, 2);
+}
+
+#[test]
+fn a_shallower_wall_round_a_deeper_one_is_no_roughing_of_it() {
+    // A counterbore: the inner, deeper wall is still there when the outer one is milled.
+    let square = |half: i32, z: i32| {
+        format!("G0 X0 Y-{half}\nG1 Z{z} F100\nG1 X{half}\nY{half}\nX-{half}\nY-{half}\nX0\nG0 Z5\n")
+    };
+    let program = format!("G21 G90\nG0 Z5\n{}{}M2\n", square(10, -9), square(14, -4));
+    assert_eq!(roles(&program, &criteria(None)).0, 2);
+    // The other way round the outer one takes the inner one's wall away.
+    let program = format!("G21 G90\nG0 Z5\n{}{}M2\n", square(10, -4), square(14, -9));
+    assert_eq!(roles(&program, &criteria(None)).0, 1);
+}
+
+#[test]
+fn zigzag_roughing_inside_a_pocket_is_roughing() {
+    let mut program = "G21 G90\nG0 Z5\nG0 X-15 Y-9\nG1 Z-4 F100\n".to_owned();
+    for row in 0..7 {
+        let (y, x) = (-9 + 3 * row, if row % 2 == 0 { 15 } else { -15 });
+        program += &format!("G1 Y{y}\nG1 X{x}\n");
+    }
+    program += "G0 Z5\nG0 X0 Y-10\nG1 Z-4\nG1 X16\nY10\nX-16\nY-10\nX0\nG0 Z5\nM2\n";
+    let (count, roles) = roles(&program, &criteria(None));
+    assert_eq!(count, 1);
+    assert!(matches!(roles[0], Role::Rough { nearer: 1, parallel: false, .. }), "{roles:?}");
+}
+
+#[test]
+fn a_spring_pass_may_go_round_the_other_way() {
+    let program = "G21 G90\nG0 X0 Y0 Z5\nG1 Z-4 F100\nX10\nY10\nX0\nY0\nG0 Z5\nG0 X10 Y10\nG1 Z-4\nX10 Y0\nX0\nY10\nX10\nG0 Z5\nM2\n";
+    let (count, roles) = roles(program, &criteria(None));
+    assert_eq!((count, roles[1]), (1, Role::Spring { contour: 1, level: 1 }));
+}
+
+#[test]
+fn parallel_open_walls_are_roughing_and_finishing() {
+    let corner = |off: f64| {
+        let (x, y) = (34.0 + off, 30.0 + off);
+        format!("G0 X{x} Y80\nG1 Z-10 F200\nG1 Y35\nG3 X39 Y{y} R{}\nG1 X90\nG0 Z5\n", 5.0 - off)
+    };
+    let program = format!("G21 G90\nG0 Z5\n{}{}M2\n", corner(0.5), corner(0.0));
+    let (count, roles) = roles(&program, &criteria(None));
+    assert_eq!(count, 1, "{roles:?}");
+    assert!(matches!(roles[0], Role::Rough { nearer: 1, parallel: true, .. }), "{roles:?}");
+}
+
+#[test]
+fn a_loop_gives_a_run_each_time_only_when_it_is_left_in_between() {
+    // Twice round without a break is one run of two turns; with a retract between it is two.
+    let turn = "X10\nY10\nX0\nY0\n";
+    let program = format!("G21 G90\nG0 X0 Y0 Z5\nG1 Z-4 F100\n{turn}{turn}G0 Z5\nG1 Z-4\n{turn}G0 Z5\nM2\n");
+    let (_, runs, _) = searched(&program, &criteria(None));
+    assert_eq!(runs.iter().map(|f| f.run.blocks).collect::<Vec<_>>(), [8, 4]);
+}
+
+#[test]
+fn moves_before_the_offset_is_taken_and_after_it_is_given_up_are_leads() {
+    // An open wall: nothing but G41 and G40 tells its leads.
+    let wall = |y: i32| {
+        format!("G0 X0 Y20\nG1 Z-4 F100\nG1 X2\nG41 D1 G1 X5 Y{y}\nG1 X40\nG1 X60 Y{}\nG40 G1 X70 Y30\nG0 Z5\n", y - 9)
+    };
+    let program = format!("G21 G90\nG0 Z5\n{}{}M2\n", wall(1), wall(0));
+    let (count, runs, _) = searched(&program, &criteria(None));
+    assert_eq!(count, 1);
+    for (found, first) in runs.iter().zip([7, 15]) {
+        assert_eq!((found.skipped, found.run.blocks), (2, 2));
+        assert_eq!(found.run.lines, LineRange { first, last: first + 1 });
+    }
+}

@@ -1,0 +1,31 @@
+//! Image, link and rewriting as their documents have them, and the table of the safety contract.
+
+mod document;
+mod link_chaos;
+mod link_document;
+mod link_document_types;
+mod link_endpoint;
+mod link_frames;
+mod link_golden;
+mod link_messages;
+mod link_pace;
+mod link_recorder;
+mod link_samples;
+mod link_sequence;
+mod link_stream;
+mod link_support;
+mod link_withdraw;
+mod rewrite_caps;
+mod rewrite_fade;
+mod rewrite_faults;
+mod rewrite_invariance;
+mod rewrite_once;
+mod rewrite_path;
+mod rewrite_states;
+mod rewrite_streams;
+mod rewrite_support;
+mod safety;
+mod safety_link;
+mod safety_part;
+mod safety_path;
+mod safety_table;
