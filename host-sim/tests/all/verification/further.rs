@@ -1,6 +1,6 @@
 //! Further places, given what was measured.
 
-use truepath::command::probe_next::{next, next_part};
+use truepath::command::probe::{next, next_part};
 use truepath_core::checksum::crc32;
 use truepath_correction::correct::correct;
 use truepath_correction::learning::History;
