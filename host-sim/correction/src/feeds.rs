@@ -3,12 +3,12 @@
 use truepath_core::cut::Loop;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::units::float;
-use truepath_job::feed::{FeedSummary, Schedule, Unscheduled, Wanted, largest_force, schedule};
+use truepath_job::feed::{FeedSummary, Schedule, Wanted, largest_force, schedule};
 use truepath_job::job::{ForceLimit, Route};
 use truepath_job::pass::Pass;
 
 use crate::correction::{DesignRequest, Identified, design_correction};
-use crate::summary::correct_summary;
+use crate::summary::unscheduled;
 
 /// The feeds along a contour.
 #[derive(Clone, Debug, Default)]
@@ -92,13 +92,7 @@ impl Feeds {
         let (Some(_), Some(summary)) = (&self.schedule, &mut self.summary) else { return };
         // Beyond the clamp there is none.
         let Ok(plain) = design_correction(pass, machine, identified, request, |_| ()) else { return };
-        let told = correct_summary(pass, identified, &plain, 0, Vec::new());
-        summary.unscheduled = Some(Unscheduled {
-            max_error_after_mm: told.max_error_after_mm,
-            max_sigma_mm: told.max_sigma_mm,
-            axial_form_error_mm: told.axial_form_error_mm,
-            max_correction_mm: told.max_correction_mm,
-        });
+        summary.unscheduled = Some(unscheduled(&plain));
     }
 
     /// What the user should know of the feeds, given the standard deviation of the corrected wall at them, mm.

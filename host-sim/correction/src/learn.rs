@@ -11,7 +11,7 @@ use crate::as_milled::WholeContour;
 use crate::correct::{Corrected, design};
 use crate::correction::{DesignRequest, Identified};
 use crate::learning::{History, MOST_PARTS, Part, PartPoints, Update, Verdict, update};
-use crate::remarks::Remarks;
+use crate::remarks::{MeasuredPart, Remarks};
 use crate::summary::CorrectSummary;
 
 /// The correction of the next part.
@@ -78,7 +78,7 @@ pub fn learn(
     if let Some(oldest) = history.parts.first().filter(|_| history.parts.len() >= MOST_PARTS) {
         texts.push(format!("part {} is dropped from the history, which keeps {MOST_PARTS} parts", oldest.number));
     }
-    let texts = Remarks::of(measurement, &texts);
+    let texts = Remarks::of(measurement, &texts, MeasuredPart::Corrected);
     let later = &mut |share| progress(0.5 + 0.5 * share);
     let corrected = design(pass, &sampled, identified, &request, texts, routes, later)?;
     let history = history.with(part, &corrected);

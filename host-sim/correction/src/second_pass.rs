@@ -18,9 +18,9 @@ use truepath_job::pass::{Pass, PathBuffer};
 use truepath_job::surface::Surface;
 use truepath_program::first_pass_of;
 
-use super::remarks::Remarks;
 use crate::correct::{Corrected, design};
 use crate::correction::{DesignRequest, Identified, identify};
+use crate::remarks::{MeasuredPart, Remarks};
 
 /// Corrects the second pass from a measurement of the first, in memory; gives the surface it is made over as well.
 ///
@@ -42,7 +42,7 @@ pub fn correct(
     let second = second.clone().over(surface.clone())?;
     let mut buffer = PathBuffer::default();
     let sampled = second.sample(&mut buffer)?;
-    let remarks = Remarks { of_this_pass: false, ..Remarks::of(measurement, remarks) };
+    let remarks = Remarks::of(measurement, remarks, MeasuredPart::FirstPass);
     let path = sampled.with_law(known.law());
     let table = known.table();
     let law = job::law(&second.core, &known.machine(&path, &table), &[]);

@@ -120,8 +120,11 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
         Some(file) => milled(&pass, &read_machine(file)?, recording.as_ref(), &mut warnings)?,
     };
     let Done { by, trace, along, milled, facts } = done;
-    let mut summary = simulate_summary(&pass, by, &trace, warnings);
-    (summary.judged, summary.recorded) = (milled.as_ref().map(Milled::score), facts);
+    let summary = SimulateSummary {
+        judged: milled.as_ref().map(Milled::score),
+        recorded: facts,
+        ..simulate_summary(&pass, by, &trace, warnings)
+    };
     if let Some(milled) = milled.filter(|_| options.probed_wall) {
         folder.write(PROBED, probed_wall(&pass, &milled).as_bytes())?;
     }
