@@ -19,7 +19,6 @@ pub mod placement;
 pub mod plot;
 pub mod pocket;
 pub mod probe;
-mod replaced;
 pub mod replay;
 pub mod simulate;
 pub mod split;
