@@ -13,7 +13,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
 
-use crate::correction::{Correction, DesignRequest, Identified, design_correction, identify};
+use crate::correction::{Correction, DesignRequest, Identification, design_correction, identify};
 use crate::edits::block_edits;
 use crate::remarks::{MeasuredPart, Remarks};
 use crate::rows::{CorrectionRow, correction_rows};
@@ -23,9 +23,9 @@ use crate::{feeds, image};
 
 /// A correction in memory: everything the command writes follows from it.
 #[derive(Clone, Debug)]
-pub struct Corrected {
+pub struct CorrectedPass {
     /// Machine and material.
-    pub identified: Identified,
+    pub identified: Identification,
     /// The correction.
     pub correction: Correction,
     /// Feeds in place of the programmed ones, where the job wants any.
@@ -56,7 +56,7 @@ pub fn correct(
     remarks: &[String],
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
-) -> Result<Corrected, Failure> {
+) -> Result<CorrectedPass, Failure> {
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
     let identified = identify(pass, &sampled, measurement, |share| progress(0.2 * share))?;
@@ -74,12 +74,12 @@ pub fn correct(
 pub fn design(
     pass: &Pass,
     sampled: &Path,
-    identified: Identified,
+    identified: Identification,
     request: &DesignRequest<'_>,
     remarks: Remarks<'_>,
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
-) -> Result<Corrected, Failure> {
+) -> Result<CorrectedPass, Failure> {
     progress(0.2);
     let path = sampled.with_law(identified.law());
     let table = identified.table();
@@ -137,7 +137,7 @@ pub fn design(
     };
     let rows = correction_rows(&machine, &correction);
     progress(1.0);
-    Ok(Corrected {
+    Ok(CorrectedPass {
         identified,
         correction,
         schedule: feeds.schedule,

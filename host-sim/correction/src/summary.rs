@@ -11,7 +11,7 @@ use truepath_job::feed::{FeedSummary, Unscheduled};
 use truepath_job::pass::{Pass, milling_name};
 use truepath_program::Difference;
 
-use crate::correction::{Correction, Identified};
+use crate::correction::{Correction, Identification};
 use crate::damped::{DampedSummary, damped_summary};
 use crate::guard::{GuardSummary, guard_summary};
 
@@ -64,7 +64,7 @@ pub struct CorrectSummary {
     pub wall_law: &'static str,
     /// Climb or conventional.
     pub milling: &'static str,
-    /// Identified quantities by name.
+    /// Identification quantities by name.
     pub identified: BTreeMap<&'static str, Parameter>,
     /// Contacts used.
     pub points_used: usize,
@@ -116,7 +116,7 @@ pub fn unscheduled(correction: &Correction) -> Unscheduled {
 /// Makes the summary of `correct`, but for what was written.
 pub fn correct_summary(
     pass: &Pass,
-    identified: &Identified,
+    identified: &Identification,
     path: &Path,
     correction: &Correction,
     rejected: usize,
@@ -159,7 +159,7 @@ pub fn correct_summary(
     }
 }
 
-fn parameters(identified: &Identified) -> BTreeMap<&'static str, Parameter> {
+fn parameters(identified: &Identification) -> BTreeMap<&'static str, Parameter> {
     let (fitted, believed) = (&identified.fit().parameters, &identified.prior().mean);
     let (values, prior) = (fitted.values(), believed.values());
     let (sigma, prior_sigma) = (identified.prior().deviations(fitted), identified.prior().deviations(believed));

@@ -6,7 +6,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
 use truepath_chart::view::View;
-use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::{Job, Route};
@@ -246,7 +246,7 @@ fn outcome(
     story: &Story,
     folder: &FilePath,
     measurement: &Measurement,
-    corrected: &Corrected,
+    corrected: &CorrectedPass,
     before: &Score,
     after: &Score,
 ) -> Outcome {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 use truepath::command::{correct, inspect, simulate};
 use truepath_core::image::Image;
-use truepath_correction::correct::{Corrected, correct as corrected_in_memory};
+use truepath_correction::correct::{CorrectedPass, correct as corrected_in_memory};
 use truepath_ground::diagnostics::{Failure, Form, InputError, Source};
 use truepath_job::job::{Job, Route, Which};
 use truepath_job::measurement::Measurement;
@@ -37,7 +37,7 @@ fn refused(result: Result<Pass, Failure>) -> (InputError, String) {
 }
 
 /// Mills the pass, probes it and corrects by both routes.
-fn corrected(pass: &Pass, ball: f64) -> (Pass, Corrected) {
+fn corrected(pass: &Pass, ball: f64) -> (Pass, CorrectedPass) {
     let machine: Machine = toml::from_str(PLANT).unwrap();
     let milled = virtual_mill::mill(pass, &machine, None).unwrap();
     let length = pass.core.contour.length.nm() as f64 / 1e6;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use truepath::command::compare;
 use truepath::command::compare::CompareSummary;
-use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{Job, Route};
 use truepath_job::measurement::Measurement;
@@ -40,7 +40,7 @@ fn probed(pass: &Pass) -> String {
 }
 
 /// The correction, and the part that is milled with it.
-fn milled(keys: &str) -> (Corrected, Milled) {
+fn milled(keys: &str) -> (CorrectedPass, Milled) {
     let pass = pass(keys);
     let file = Source::new("probe.txt", probed(&pass).into_bytes());
     let measurement = shown(Measurement::read(&pass, &file));

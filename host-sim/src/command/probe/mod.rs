@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::{ArgGroup, Args};
-use truepath_correction::verification::{Dialect, Gained, KeptOff, Plan, Settings, Unknown, plan, write};
+use truepath_correction::verification::{Gained, KeptOff, Plan, ProbeDialect, Settings, Unknown, plan, write};
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFile;
 use truepath_job::job::{Job, ProbeFlags, Which};
@@ -23,7 +23,7 @@ pub struct Options {
     pub job: PathBuf,
     /// The control the program is for.
     #[arg(long, value_enum, required_unless_present = "next", requires = "output")]
-    pub dialect: Option<Dialect>,
+    pub dialect: Option<ProbeDialect>,
     /// The program to write.
     #[arg(short, long, value_name = "FILE", required_unless_present = "next", requires = "dialect")]
     pub output: Option<PathBuf>,
@@ -164,7 +164,7 @@ pub struct Kept {
 pub struct Report {
     /// The control; absent when no program was written.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub dialect: Option<Dialect>,
+    pub dialect: Option<ProbeDialect>,
     /// `[probe] format` for the file of results.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probe_format: Option<&'static str>,
@@ -213,7 +213,7 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failu
 }
 
 /// The report of a plan.
-pub fn report(plan: &Plan, dialect: Option<Dialect>) -> Report {
+pub fn report(plan: &Plan, dialect: Option<ProbeDialect>) -> Report {
     let points = plan.touches().map(|touch| Point {
         id: touch.id,
         s_mm: touch.place.s_mm,
@@ -231,7 +231,7 @@ pub fn report(plan: &Plan, dialect: Option<Dialect>) -> Report {
     });
     Report {
         dialect,
-        probe_format: dialect.map(Dialect::probe_format),
+        probe_format: dialect.map(ProbeDialect::probe_format),
         points: points.collect(),
         safe_z_mm: plan.safe_z_mm,
         clearance_mm: plan.settings.clearance,

@@ -11,7 +11,7 @@ use std::path::Path as FilePath;
 use truepath_core::correct::{Law, Node};
 use truepath_core::cut::Path;
 use truepath_core::job;
-use truepath_correction::correction::{DesignRequest, Identified, design_correction, identify};
+use truepath_correction::correction::{DesignRequest, Identification, design_correction, identify};
 use truepath_correction::feeds;
 use truepath_correction::learn::refuse_feeds;
 use truepath_correction::learning::{History, Part, PartPoints, Residual, joint, refuse_uncorrected};
@@ -124,7 +124,7 @@ pub fn next_part(
     let joint = joint(pass, &sampled, &points, None, &mut |share| progress(0.2 + 0.3 * share));
     let observations: Vec<_> = joint.observations.into_iter().flatten().collect();
     joint.core.check(&observations).map_err(|error| pass.refused(&error))?;
-    let known = Identified { core: joint.core, observations };
+    let known = Identification { core: joint.core, observations };
     let path = sampled.with_law(known.law());
     let touched = measurement.map(places).unwrap_or_default();
     let goal = goal(pass, &path, &known, &nodes, &mut |share| progress(0.5 + 0.2 * share));
@@ -135,7 +135,7 @@ pub fn next_part(
     Ok(Plan { correction: history.correction(), ..plan })
 }
 
-fn goal(pass: &Pass, path: &Path, known: &Identified, nodes: &[Node], progress: &mut dyn FnMut(f64)) -> Goal {
+fn goal(pass: &Pass, path: &Path, known: &Identification, nodes: &[Node], progress: &mut dyn FnMut(f64)) -> Goal {
     Goal::of(path, known, &pass.job.numbers.design(Law::Model), nodes, progress)
 }
 
