@@ -2,3 +2,7 @@
 
 pub mod cli;
 pub mod command;
+pub mod coprocessor;
+mod monitor;
+pub mod settings;
+mod terminal;

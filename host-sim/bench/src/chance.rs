@@ -27,6 +27,14 @@ impl Probability {
     }
 }
 
+impl std::str::FromStr for Probability {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        text.parse().ok().and_then(Self::new).ok_or("a probability from 0 to 1")
+    }
+}
+
 /// A sequence of chances.
 #[derive(Clone, Debug)]
 pub struct Chance(ChaCha8Rng);

@@ -8,21 +8,31 @@
 use super::chance::{Chance, Probability};
 
 /// What goes wrong on the cable.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+///
+/// A frame is damaged in bits, bytes, a burst, its end or its delimiter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::Args)]
+#[command(next_help_heading = "Faults of the cable, as probabilities 0 to 1 per frame")]
 pub struct Faults {
-    /// A frame is lost.
+    /// Lost.
+    #[arg(long, value_name = "P", default_value = "0")]
     pub drop: Probability,
-    /// A frame is damaged: bits, bytes, a burst, its end or its delimiter.
+    /// Damaged.
+    #[arg(long, value_name = "P", default_value = "0")]
     pub corrupt: Probability,
-    /// A frame comes after the next one to four.
+    /// Overtaken by one to four others.
+    #[arg(long, value_name = "P", default_value = "0")]
     pub reorder: Probability,
-    /// A frame comes twice.
+    /// Sent twice.
+    #[arg(long, value_name = "P", default_value = "0")]
     pub repeat: Probability,
-    /// A pause of [`Faults::pause_us`] before a frame.
+    /// A pause before it.
+    #[arg(long, value_name = "P", default_value = "0")]
     pub pause: Probability,
-    /// Length of a pause, µs.
+    /// Length of a pause, microseconds.
+    #[arg(long, value_name = "US", default_value_t = 25_000)]
     pub pause_us: u32,
-    /// Every frame is late by 0 to so many µs.
+    /// Every frame is late by up to so many microseconds.
+    #[arg(long = "jitter", value_name = "US", default_value_t = 0)]
     pub jitter_us: u32,
 }
 

@@ -8,7 +8,7 @@ use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::mm;
 use truepath_job::pass::{Pass, PathBuffer};
 
-use crate::correct::Corrected;
+use crate::correct::CorrectedPass;
 use crate::correction::{Correction, DesignRequest, evaluate};
 use crate::learning::History;
 use crate::rows::{CorrectionRow, correction_rows};
@@ -38,7 +38,7 @@ impl AsMilled {
     ///
     /// # Errors
     /// As [`Pass::sample`].
-    pub fn of(pass: &Pass, history: &History, done: &Corrected) -> Result<Self, Failure> {
+    pub fn of(pass: &Pass, history: &History, done: &CorrectedPass) -> Result<Self, Failure> {
         let mut buffer = PathBuffer::default();
         let path = pass.sample(&mut buffer)?.with_law(done.identified.law());
         let table = done.identified.table();

@@ -13,9 +13,9 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
 
-use crate::correction::{Correction, DesignRequest, Identified, design_correction, identify};
+use crate::correction::{Correction, DesignRequest, Identification, design_correction, identify};
 use crate::edits::block_edits;
-use crate::remarks::Remarks;
+use crate::remarks::{MeasuredPart, Remarks};
 use crate::rows::{CorrectionRow, correction_rows};
 use crate::summary::{CorrectSummary, correct_summary};
 use crate::warnings::{cut_corrected, kinked, model_warnings};
@@ -23,9 +23,9 @@ use crate::{feeds, image};
 
 /// A correction in memory: everything the command writes follows from it.
 #[derive(Clone, Debug)]
-pub struct Corrected {
+pub struct CorrectedPass {
     /// Machine and material.
-    pub identified: Identified,
+    pub identified: Identification,
     /// The correction.
     pub correction: Correction,
     /// Feeds in place of the programmed ones, where the job wants any.
@@ -56,17 +56,15 @@ pub fn correct(
     remarks: &[String],
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
-) -> Result<Corrected, Failure> {
+) -> Result<CorrectedPass, Failure> {
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
     let identified = identify(pass, &sampled, measurement, |share| progress(0.2 * share))?;
-    let remarks = Remarks::of(measurement, remarks);
+    let remarks = Remarks::of(measurement, remarks, MeasuredPart::Uncorrected);
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let law = job::law(&pass.core, &identified.machine(&path, &table), &measurement.contacts);
-    let mut done = design(pass, &sampled, identified, &DesignRequest::of(law), remarks, routes, progress)?;
-    done.summary.warnings.extend(cut_corrected(&done.identified, &done.correction));
-    Ok(done)
+    design(pass, &sampled, identified, &DesignRequest::of(law), remarks, routes, progress)
 }
 
 /// Designs the correction of a pass for an identified machine and writes it for the routes.
@@ -76,17 +74,17 @@ pub fn correct(
 pub fn design(
     pass: &Pass,
     sampled: &Path,
-    identified: Identified,
+    identified: Identification,
     request: &DesignRequest<'_>,
     remarks: Remarks<'_>,
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
-) -> Result<Corrected, Failure> {
+) -> Result<CorrectedPass, Failure> {
     progress(0.2);
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let machine = identified.machine(&path, &table);
-    let mut feeds = feeds::planned(pass, &machine, &identified, remarks.of_this_pass, routes)?;
+    let mut feeds = feeds::planned(pass, &machine, &identified, remarks.part != MeasuredPart::FirstPass, routes)?;
     feeds.compare(pass, &machine, &identified, request);
     let mut fed = PathBuffer::default();
     let path = match &feeds.schedule {
@@ -99,10 +97,7 @@ pub fn design(
     warnings.extend(remarks.texts.iter().cloned());
     warnings.extend(model_warnings(pass, &identified, &correction, &machine));
     warnings.extend(feeds.warnings(mm(correction.sigma.iter().copied().max().unwrap_or_default())));
-    let mut summary = correct_summary(pass, &identified, &correction, remarks.set_aside, warnings);
-    summary.place(&path, &correction);
-    summary.feed = feeds.summary;
-    let (mut program, mut image, mut other_images) = (None, None, Vec::new());
+    let (mut written, mut image, mut other_images) = (None, None, Vec::new());
     let mut levels = Levels::default();
     for route in routes {
         match route {
@@ -112,10 +107,9 @@ pub fn design(
                     edits.extend(block_edits(pass, path, &correction.nodes, feeds.schedule.as_ref()));
                     Ok(())
                 })?;
-                let written = corrected_program(pass, remarks.probe, &edits)?;
-                summary.warnings.extend(kinked(&written.difference));
-                summary.program = Some(written.difference);
-                program = Some(written.text);
+                let rewritten = corrected_program(pass, remarks.probe, &edits)?;
+                warnings.extend(kinked(&rewritten.difference));
+                written = Some(rewritten);
             }
             Route::Coprocessor => {
                 levels = levels::each(pass, &path, |number, other, path| {
@@ -130,11 +124,20 @@ pub fn design(
             }
         }
     }
-    summary.warnings.append(&mut levels.left);
-    summary.feature = pass.feature(&levels.written);
+    warnings.append(&mut levels.left);
+    if remarks.part == MeasuredPart::Uncorrected {
+        warnings.extend(cut_corrected(&identified, &correction));
+    }
+    let (program, difference) = written.map(|rewritten| (rewritten.text, rewritten.difference)).unzip();
+    let summary = CorrectSummary {
+        program: difference,
+        feed: feeds.summary,
+        feature: pass.feature(&levels.written),
+        ..correct_summary(pass, &identified, &path, &correction, remarks.set_aside, warnings)
+    };
     let rows = correction_rows(&machine, &correction);
     progress(1.0);
-    Ok(Corrected {
+    Ok(CorrectedPass {
         identified,
         correction,
         schedule: feeds.schedule,

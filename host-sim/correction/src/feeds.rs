@@ -3,12 +3,12 @@
 use truepath_core::cut::Loop;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::units::float;
-use truepath_job::feed::{FeedSummary, Schedule, Unscheduled, Wanted, largest_force, schedule};
+use truepath_job::feed::{FeedSummary, Schedule, Wanted, largest_force, schedule};
 use truepath_job::job::{ForceLimit, Route};
 use truepath_job::pass::Pass;
 
-use crate::correction::{DesignRequest, Identified, design_correction};
-use crate::summary::correct_summary;
+use crate::correction::{DesignRequest, Identification, design_correction};
+use crate::summary::unscheduled;
 
 /// The feeds along a contour.
 #[derive(Clone, Debug, Default)]
@@ -30,7 +30,7 @@ const TRUSTED: f64 = 0.3;
 pub fn planned(
     pass: &Pass,
     machine: &Loop,
-    identified: &Identified,
+    identified: &Identification,
     probed: bool,
     routes: &[Route],
 ) -> Result<Feeds, Failure> {
@@ -88,17 +88,11 @@ fn contradiction(pass: &Pass, key: &str, found: &str, expected: &str, help: &str
 
 impl Feeds {
     /// Notes what a correction at the feeds of the program would leave; `machine` is on the path with these.
-    pub fn compare(&mut self, pass: &Pass, machine: &Loop, identified: &Identified, request: &DesignRequest<'_>) {
+    pub fn compare(&mut self, pass: &Pass, machine: &Loop, identified: &Identification, request: &DesignRequest<'_>) {
         let (Some(_), Some(summary)) = (&self.schedule, &mut self.summary) else { return };
         // Beyond the clamp there is none.
         let Ok(plain) = design_correction(pass, machine, identified, request, |_| ()) else { return };
-        let told = correct_summary(pass, identified, &plain, 0, Vec::new());
-        summary.unscheduled = Some(Unscheduled {
-            max_error_after_mm: told.max_error_after_mm,
-            max_sigma_mm: told.max_sigma_mm,
-            axial_form_error_mm: told.axial_form_error_mm,
-            max_correction_mm: told.max_correction_mm,
-        });
+        summary.unscheduled = Some(unscheduled(&plain));
     }
 
     /// What the user should know of the feeds, given the standard deviation of the corrected wall at them, mm.

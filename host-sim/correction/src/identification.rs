@@ -6,12 +6,13 @@
 use truepath_core::cut::{Path, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{EarlierPart, Observation, PredictionWorkspace, identify_parts, speaks_for_mean};
-use truepath_core::job::{ForceModel, Identified, Pass};
+use truepath_core::job::{self, ForceModel};
+
 /// What a fit has found, with the points as it left them.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// Wall law, machine and material.
-    pub core: Identified,
+    pub core: job::Identified,
     /// The parts before the last one, with their datums.
     pub earlier: Vec<EarlierPart>,
     /// The points with predictions, weights and sensitivities.
@@ -39,7 +40,7 @@ pub const fn asked(model: ForceModel) -> Option<WallLaw> {
 /// Fits machine and material to points under a law, or under the one they speak for. `commanded(part, sample)` is the
 /// displacement that the program of a part, counted from 0, commanded. `progress` is told the share done, 0…1.
 pub fn found(
-    pass: &Pass,
+    pass: &job::Pass,
     path: &Path,
     law: Option<WallLaw>,
     points: Points<'_>,
@@ -56,7 +57,7 @@ pub fn found(
         let path = path.with_law(law);
         let fit =
             identify_parts(&path, &prior, &mut earlier, &mut observations, commanded, &mut workspace, &mut observe);
-        Found { core: Identified { law, prior, fit }, earlier, observations }
+        Found { core: job::Identified { law, prior, fit }, earlier, observations }
     };
     if let Some(law) = law {
         return under(law, progress);

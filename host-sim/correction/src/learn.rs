@@ -8,17 +8,17 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::as_milled::WholeContour;
-use crate::correct::{Corrected, design};
-use crate::correction::{DesignRequest, Identified};
+use crate::correct::{CorrectedPass, design};
+use crate::correction::{DesignRequest, Identification};
 use crate::learning::{History, MOST_PARTS, Part, PartPoints, Update, Verdict, update};
-use crate::remarks::Remarks;
+use crate::remarks::{MeasuredPart, Remarks};
 use crate::summary::CorrectSummary;
 
 /// The correction of the next part.
 #[derive(Clone, Debug)]
 pub struct Learned {
     /// The correction, as `correct` gives it.
-    pub corrected: Corrected,
+    pub corrected: CorrectedPass,
     /// The history with one part more.
     pub history: History,
     /// How the part came out, and what was made of it.
@@ -70,7 +70,7 @@ pub fn learn(
         update(pass, &sampled, parts, newest, &history.next.promised(), &mut |share| progress(0.5 * share))?;
     part.set_aside = set_aside;
     let observations = joint.observations.last().cloned().unwrap_or_default();
-    let identified = Identified { core: joint.core, observations };
+    let identified = Identification { core: joint.core, observations };
     let request =
         DesignRequest { law: Law::Model, residual: &residual, residual_sigma: &residual_sigma, kept: kept.as_deref() };
     let mut texts = remarks.to_vec();
@@ -78,7 +78,7 @@ pub fn learn(
     if let Some(oldest) = history.parts.first().filter(|_| history.parts.len() >= MOST_PARTS) {
         texts.push(format!("part {} is dropped from the history, which keeps {MOST_PARTS} parts", oldest.number));
     }
-    let texts = Remarks::of(measurement, &texts);
+    let texts = Remarks::of(measurement, &texts, MeasuredPart::Corrected);
     let later = &mut |share| progress(0.5 + 0.5 * share);
     let corrected = design(pass, &sampled, identified, &request, texts, routes, later)?;
     let history = history.with(part, &corrected);

@@ -2,6 +2,17 @@
 
 use truepath_job::measurement::Measurement;
 
+/// The part that was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeasuredPart {
+    /// Cut by the pass that is corrected, without a correction.
+    Uncorrected,
+    /// Cut by that pass with a correction.
+    Corrected,
+    /// Cut by the pass before it only.
+    FirstPass,
+}
+
 /// What a measurement leaves to be said.
 #[derive(Clone, Copy, Debug)]
 pub struct Remarks<'a> {
@@ -11,13 +22,13 @@ pub struct Remarks<'a> {
     pub texts: &'a [String],
     /// CRC-32 of the probe file.
     pub probe: u32,
-    /// Whether it is of the pass that is corrected, and not of one before it.
-    pub of_this_pass: bool,
+    /// What it is of.
+    pub part: MeasuredPart,
 }
 
 impl<'a> Remarks<'a> {
-    /// Of a measurement, with sentences about it.
-    pub const fn of(measurement: &Measurement, texts: &'a [String]) -> Self {
-        Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc, of_this_pass: true }
+    /// Of the measurement of a part, with sentences about it.
+    pub const fn of(measurement: &Measurement, texts: &'a [String], part: MeasuredPart) -> Self {
+        Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc, part }
     }
 }

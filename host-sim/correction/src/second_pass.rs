@@ -18,9 +18,9 @@ use truepath_job::pass::{Pass, PathBuffer};
 use truepath_job::surface::Surface;
 use truepath_program::first_pass_of;
 
-use super::remarks::Remarks;
-use crate::correct::{Corrected, design};
-use crate::correction::{DesignRequest, Identified, identify};
+use crate::correct::{CorrectedPass, design};
+use crate::correction::{DesignRequest, Identification, identify};
+use crate::remarks::{MeasuredPart, Remarks};
 
 /// Corrects the second pass from a measurement of the first, in memory; gives the surface it is made over as well.
 ///
@@ -33,7 +33,7 @@ pub fn correct(
     remarks: &[String],
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
-) -> Result<(Corrected, Surface), Failure> {
+) -> Result<(CorrectedPass, Surface), Failure> {
     agree(second, first)?;
     let mut buffer = PathBuffer::default();
     let sampled = first.sample(&mut buffer)?;
@@ -42,7 +42,7 @@ pub fn correct(
     let second = second.clone().over(surface.clone())?;
     let mut buffer = PathBuffer::default();
     let sampled = second.sample(&mut buffer)?;
-    let remarks = Remarks { of_this_pass: false, ..Remarks::of(measurement, remarks) };
+    let remarks = Remarks::of(measurement, remarks, MeasuredPart::FirstPass);
     let path = sampled.with_law(known.law());
     let table = known.table();
     let law = job::law(&second.core, &known.machine(&path, &table), &[]);
@@ -51,7 +51,7 @@ pub fn correct(
 }
 
 /// The wall of a pass as it stands: the identified model's, with the measured difference.
-fn left_by(sampled: &Path, known: &Identified) -> Surface {
+fn left_by(sampled: &Path, known: &Identification) -> Surface {
     let path = sampled.with_law(known.law());
     let table = known.table();
     let machine = known.machine(&path, &table);
@@ -73,7 +73,7 @@ fn left_by(sampled: &Path, known: &Identified) -> Surface {
 }
 
 /// Measured less predicted wall error at every probed place, mean over its heights, in the order of the contour, mm.
-fn differences(known: &Identified) -> Vec<(f64, f64)> {
+fn differences(known: &Identification) -> Vec<(f64, f64)> {
     let mut places: Vec<(f64, f64, f64)> = Vec::new();
     for o in known.observations.iter().filter(|o| float(o.weight) > 0.3) {
         let (s, d) = (mm(o.s), mm(o.error - o.predicted));

@@ -7,11 +7,11 @@ use truepath_core::identify;
 use truepath_core::units::{Offset, Real};
 use truepath_ground::units::{float, mm};
 use truepath_job::feature::FeatureSummary;
-use truepath_job::feed::FeedSummary;
+use truepath_job::feed::{FeedSummary, Unscheduled};
 use truepath_job::pass::{Pass, milling_name};
 use truepath_program::Difference;
 
-use crate::correction::{Correction, Identified};
+use crate::correction::{Correction, Identification};
 use crate::damped::{DampedSummary, damped_summary};
 use crate::guard::{GuardSummary, guard_summary};
 
@@ -64,7 +64,7 @@ pub struct CorrectSummary {
     pub wall_law: &'static str,
     /// Climb or conventional.
     pub milling: &'static str,
-    /// Identified quantities by name.
+    /// Identification quantities by name.
     pub identified: BTreeMap<&'static str, Parameter>,
     /// Contacts used.
     pub points_used: usize,
@@ -102,10 +102,22 @@ fn largest(values: impl Iterator<Item = Offset>) -> f64 {
     mm(values.max().unwrap_or_default())
 }
 
-/// Makes the summary of `correct`.
+/// What is left with a correction at the feeds of the program.
+pub fn unscheduled(correction: &Correction) -> Unscheduled {
+    let (predicted, target) = (&correction.predicted, correction.wanted.target);
+    Unscheduled {
+        max_error_after_mm: largest(predicted.iter().map(|p| p.after.aim(target, None).abs())),
+        max_sigma_mm: largest(correction.sigma.iter().copied()),
+        axial_form_error_mm: largest(predicted.iter().map(|p| p.after.form_error(target))),
+        max_correction_mm: largest(correction.nodes.iter().map(|n| n.total().x.abs().max(n.total().y.abs()))),
+    }
+}
+
+/// Makes the summary of `correct`, but for what was written.
 pub fn correct_summary(
     pass: &Pass,
-    identified: &Identified,
+    identified: &Identification,
+    path: &Path,
     correction: &Correction,
     rejected: usize,
     warnings: Vec<String>,
@@ -114,18 +126,23 @@ pub fn correct_summary(
     let predicted = &correction.predicted;
     let observations = &identified.observations;
     let squares: f64 = observations.iter().map(|o| mm(o.error - o.predicted).powi(2)).sum();
+    let Unscheduled { max_error_after_mm, max_sigma_mm, axial_form_error_mm, max_correction_mm } =
+        unscheduled(correction);
+    let errors = predicted.iter().map(|p| p.after.aim(target, None).abs());
+    let at = errors.enumerate().max_by_key(|(_, error)| *error).map(|(at, _)| at);
+    let sample = at.and_then(|at| path.samples().get(path.first() + at));
     CorrectSummary {
         version: 1,
         max_error_before_mm: largest(predicted.iter().map(|p| p.before.aim(target, None).abs())),
-        max_error_after_mm: largest(predicted.iter().map(|p| p.after.aim(target, None).abs())),
-        max_error_after_s_mm: 0.0,
-        sigma_at_max_error_mm: 0.0,
-        max_sigma_mm: largest(correction.sigma.iter().copied()),
-        axial_form_error_mm: largest(predicted.iter().map(|p| p.after.form_error(target))),
+        max_error_after_mm,
+        max_error_after_s_mm: sample.map_or(0.0, |sample| mm(sample.s)),
+        sigma_at_max_error_mm: at.and_then(|at| correction.sigma.get(at)).map_or(0.0, |sigma| mm(*sigma)),
+        max_sigma_mm,
+        axial_form_error_mm,
         worst_gouge_mm: largest(predicted.iter().map(|p| -p.after.deepest())).max(0.0),
-        guard: None,
-        damped: None,
-        max_correction_mm: largest(correction.nodes.iter().map(|n| n.total().x.abs().max(n.total().y.abs()))),
+        guard: guard_summary(path, correction),
+        damped: damped_summary(path, correction),
+        max_correction_mm,
         law: law_name(&correction.wanted.law),
         wall_law: wall_law_name(identified.law()),
         milling: milling_name(pass.core.setup.milling),
@@ -135,27 +152,14 @@ pub fn correct_summary(
         points_rejected: rejected,
         fit_residual_mm: (squares / observations.len().max(1) as f64).sqrt(),
         program_crc32: format!("{:08x}", pass.core.program_crc),
-        feature: pass.feature(&[]),
         program: None,
         feed: None,
+        feature: None,
         warnings,
     }
 }
 
-impl CorrectSummary {
-    /// Adds what depends on where along the contour a wall lies.
-    pub fn place(&mut self, path: &Path, correction: &Correction) {
-        let errors = correction.predicted.iter().map(|p| p.after.aim(correction.wanted.target, None).abs());
-        if let Some((at, _)) = errors.enumerate().max_by_key(|(_, error)| *error) {
-            self.max_error_after_s_mm = path.samples().get(path.first() + at).map_or(0.0, |sample| mm(sample.s));
-            self.sigma_at_max_error_mm = correction.sigma.get(at).map_or(0.0, |sigma| mm(*sigma));
-        }
-        self.guard = guard_summary(path, correction);
-        self.damped = damped_summary(path, correction);
-    }
-}
-
-fn parameters(identified: &Identified) -> BTreeMap<&'static str, Parameter> {
+fn parameters(identified: &Identification) -> BTreeMap<&'static str, Parameter> {
     let (fitted, believed) = (&identified.fit().parameters, &identified.prior().mean);
     let (values, prior) = (fitted.values(), believed.values());
     let (sigma, prior_sigma) = (identified.prior().deviations(fitted), identified.prior().deviations(believed));

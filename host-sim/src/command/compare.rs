@@ -1,7 +1,8 @@
 //! `compare`: what every law of correction leaves on the same machine, from the same measurement.
 
-use std::path::Path as FilePath;
+use std::path::PathBuf;
 
+use clap::Args;
 use truepath_chart::view::View;
 use truepath_correction::correction::identify;
 use truepath_ground::diagnostics::{Failure, Source};
@@ -15,27 +16,70 @@ use truepath_report::{compare_csv, plot, walls_csv};
 use truepath_trial::compare::{Row, Walls, candidates, identified as by_model, row, virtual_machine};
 
 use super::simulate::read_machine;
+use crate::terminal::Terminal;
 
 /// Files this command may write.
 const FILES: &[&str] = &["compare.csv", "walls.csv", "summary.json", "compare.svg"];
 
 /// What is compared.
-#[derive(Clone, Debug)]
-pub struct Options<'a> {
+#[derive(Clone, Debug, Default, Args)]
+pub struct Options {
     /// The job.
-    pub job: &'a FilePath,
-    /// The probe file of the uncorrected part.
-    pub probe: &'a FilePath,
-    /// A virtual machine to compare on; without it the identified one.
-    pub plant: Option<&'a FilePath>,
-    /// Output folder, if anything is to be written.
-    pub out: Option<&'a FilePath>,
-    /// Replace existing files.
+    pub job: PathBuf,
+    /// What the probe measured on the part cut by the job's program.
+    #[arg(long, value_name = "FILE")]
+    pub probe: PathBuf,
+    /// A virtual machine to compare on; without it the machine identified from the points.
+    #[arg(long, value_name = "PLANT.toml")]
+    pub plant: Option<PathBuf>,
+    /// Folder for the tables, the summary and the picture.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Replace the files of an earlier run.
+    #[arg(long, requires = "output")]
     pub force: bool,
-    /// What the command line says of the probe file.
+    /// What is said of the probe file in place of the job.
+    #[command(flatten)]
     pub probe_flags: ProbeFlags,
     /// Which cut of the program.
+    #[command(flatten)]
     pub which: Which,
+}
+
+/// Compares and prints the table.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let summary = terminal.watch("comparing", |progress| run(options, progress))?;
+    terminal.warn_all(&summary.warnings);
+    terminal.tell(&summary, || words(&summary))
+}
+
+fn words(s: &CompareSummary) -> String {
+    let on = match s.machine {
+        "plant" => "on the virtual machine, which shares no physics with the model",
+        _ => "on the machine identified from the points: the model's own prediction",
+    };
+    let mut text = format!(
+        "{on}\nerror of the target ({}, heights {:.1} to {:.1} mm) and at any height, without {:.1} mm at either end\n\n\
+         law                     largest       rms  any height     gouge   factor   mm\n",
+        s.target, s.band_mm[0], s.band_mm[1], s.trim_mm
+    );
+    let number = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.4}"));
+    for row in &s.laws {
+        text += &format!(
+            "{:<20} {:>10} {:>9} {:>11} {:>9} {:>8}\n",
+            row.title,
+            number(row.max_error_mm),
+            number(row.rms_error_mm),
+            number(row.worst_height_mm),
+            number(row.gouge_mm),
+            row.factor.map_or_else(|| "-".to_owned(), |f| format!("{f:.1}")),
+        );
+    }
+    text.push('\n');
+    for row in s.laws.iter().filter(|row| !row.remark.is_empty()) {
+        text += &format!("{}: {}\n", row.title, row.remark);
+    }
+    text
 }
 
 /// The comparison.
@@ -64,14 +108,14 @@ pub struct CompareSummary {
 /// # Errors
 /// Whatever is wrong with job, program, probe file or plant, and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CompareSummary, Failure> {
-    let mut job = Job::read(options.job)?;
+    let mut job = Job::read(&options.job)?;
     job.override_probe(&options.probe_flags)?;
     job.which = options.which.clone();
     let pass = Pass::read(job)?;
-    let file = Source::read(options.probe)?;
+    let file = Source::read(&options.probe)?;
     let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
-    let plant = options.plant.map(read_machine).transpose()?;
-    let folder = options.out.map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
+    let plant = options.plant.as_deref().map(read_machine).transpose()?;
+    let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
     let identified = identify(&pass, &sampled, &measurement, |share| progress(0.3 * share))?;

@@ -1,44 +1,105 @@
 //! `correct`: from a probe file to the corrected program or the correction image.
 
-use std::path::Path as FilePath;
+use std::path::{Path as FilePath, PathBuf};
 
+use clap::Args;
 use truepath_correction::correct::correct;
-use truepath_correction::learning::History;
+use truepath_correction::learning::{History, Part, refuse_corrected};
 use truepath_correction::second_pass;
 use truepath_correction::summary::CorrectSummary;
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
-use truepath_job::job::{Job, ProbeFlags, Route, Which};
+use truepath_job::feature::listing;
+use truepath_job::job::{Job, ProbeFlags, ROUTES, Route, Which, one_of};
 use truepath_job::measurement::Measurement;
-use truepath_job::pass::Pass;
+use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::first_pass_of;
 use truepath_report::page::render;
 use truepath_report::pages;
 use truepath_report::pages::{Points, REPORT};
 
 use super::correction_files::{FILES, HISTORY, write};
-use super::replaced::refuse_replacing;
+use super::pocket;
+use crate::terminal::Terminal;
 
 /// What is corrected.
-#[derive(Clone, Debug)]
-pub struct Options<'a> {
+#[derive(Clone, Debug, Default, Args)]
+pub struct Options {
     /// The job.
-    pub job: &'a FilePath,
-    /// The probe file.
-    pub probe: &'a FilePath,
-    /// Output folder.
-    pub out: &'a FilePath,
-    /// Replace existing files.
-    pub force: bool,
-    /// `--route`, over that of the job.
+    pub job: PathBuf,
+    /// What the probe measured on the part cut by the job's program.
+    #[arg(long, value_name = "FILE", required_unless_present = "no_probe")]
+    pub probe: Option<PathBuf>,
+    /// From tool and material data alone: the same as truepath pocket.
+    #[arg(long, conflicts_with_all = ["probe", "route", "first_pass"])]
+    pub no_probe: bool,
+    /// Folder for the corrected program (or image), tables, summary, report and picture.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Correct in the program text or in the coprocessor; the job says it otherwise.
+    #[arg(long, value_parser = one_of(&ROUTES))]
     pub route: Option<Route>,
-    /// The job of the first of two passes: the probe file is of its wall.
-    pub first_pass: Option<&'a FilePath>,
-    /// What the command line says of the probe file.
+    /// The probe file is of the first of two passes, with this job (written by truepath split).
+    #[arg(long, value_name = "FIRST-PASS.toml")]
+    pub first_pass: Option<PathBuf>,
+    /// Replace the files of an earlier run.
+    #[arg(long)]
+    pub force: bool,
+    /// What is said of the probe file in place of the job.
+    #[command(flatten)]
     pub probe_flags: ProbeFlags,
     /// Which cut of the program.
+    #[command(flatten)]
     pub which: Which,
+}
+
+/// Corrects and prints what is expected.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let Options { job, output, force, which, .. } = options;
+    if options.no_probe {
+        let options = pocket::Options { force: *force, which: which.clone(), ..Default::default() };
+        return pocket::compensate(&options, job, output, terminal);
+    }
+    let summary = terminal.watch("correcting", |progress| run(options, progress))?;
+    terminal.warn_all(&summary.warnings);
+    terminal.tell(&summary, || words(&summary, output))
+}
+
+pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
+    let factor = s.max_error_before_mm / s.max_error_after_mm.max(1e-6);
+    let mut text = s.feature.as_ref().map(listing).unwrap_or_default();
+    text += &format!(
+        "{} points used, {} set aside; wall follows the {} force, {} milling\n\
+         \n\
+         largest wall error without correction  {:>8.4} mm\n\
+         with correction, as the model sees it  {:>8.4} mm  ({factor:.0} times less)\n\
+         what the points leave open (1 sigma)   {:>8.4} mm\n\
+         \x20 where the largest error is expected  {:>8.4} mm\n\
+         left over the height, beyond X and Y   {:>8.4} mm\n\
+         deepest cut at any height              {:>8.4} mm\n\
+         largest correction                     {:>8.4} mm\n\
+         \n\
+         identified                      value      sigma   before\n",
+        s.points_used,
+        s.points_rejected + s.points_outlying,
+        s.wall_law,
+        s.milling,
+        s.max_error_before_mm,
+        s.max_error_after_mm,
+        s.max_sigma_mm,
+        s.sigma_at_max_error_mm,
+        s.axial_form_error_mm,
+        s.worst_gouge_mm,
+        s.max_correction_mm,
+    );
+    for (name, p) in &s.identified {
+        let seen = if p.observable { "" } else { "  not decided by the points" };
+        text +=
+            &format!("  {name:<24} {:>10.4} {:>10.4} {:>8.4} {:<5}{seen}\n", p.value + 0.0, p.sigma, p.prior, p.unit);
+    }
+    text += &format!("\nwritten to {}; to look at: {}\n", output.display(), output.join(REPORT).display());
+    text
 }
 
 /// Corrects and writes the outputs.
@@ -52,9 +113,11 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
         job.which = options.which.clone();
         Pass::read(job)
     };
-    let pass = read(options.job)?;
-    let file = Source::read(options.probe)?;
-    let first = options.first_pass.map(read).transpose()?;
+    let pass = read(&options.job)?;
+    // clap has seen to it that there is one.
+    let probe = options.probe.as_deref().unwrap_or(FilePath::new(""));
+    let file = Source::read(probe)?;
+    let first = options.first_pass.as_deref().map(read).transpose()?;
     let (pass, first, measurement) = match first {
         None => {
             let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
@@ -66,9 +129,9 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
             (pass, Some(first), measurement)
         }
     };
-    let folder = OutputFolder::create(options.out, options.force, FILES)?;
+    let folder = OutputFolder::create(&options.output, options.force, FILES)?;
     if first.is_none() {
-        refuse_replacing(options.out, options.probe, &pass, &measurement)?;
+        refuse_replacing(&options.output, probe, &pass, &measurement)?;
     }
     let route = options.route.unwrap_or(pass.job.route);
     let mut remarks = measurement.remarks(&file);
@@ -99,4 +162,31 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     folder.write(REPORT, &render(&pages::corrected(&pass, &measurement, &done, points)?)?)?;
     folder.commit()?;
     Ok(done.summary)
+}
+
+/// Refuses points that lie where the correction in the output folder leaves the wall.
+///
+/// `correct` takes what the points show for what no correction leaves. Given the points of a part that was already cut
+/// with one, it would make a correction of what is left and put it in the place of the whole one: the next part would be
+/// nearly as wrong as the first. The probe file may say so itself (`M038`); else the correction in the output folder is
+/// what the points can be held against. Limit: in an empty folder, and with a file that says nothing, it cannot be known.
+///
+/// # Errors
+/// `Q008` with both distances.
+fn refuse_replacing(out: &FilePath, probe: &FilePath, pass: &Pass, measurement: &Measurement) -> Result<(), Failure> {
+    let place = out.join(HISTORY);
+    if !place.exists() || pass.job.feed.is_some() {
+        return Ok(());
+    }
+    // What cannot be read, or is of another cut, says nothing about this part.
+    let Ok(history) = Source::read(&place).map_err(Failure::from).and_then(|file| Ok(History::read(&file)?)) else {
+        return Ok(());
+    };
+    if history.facts.agree(pass).is_err() {
+        return Ok(());
+    }
+    let mut buffer = PathBuffer::default();
+    let path = pass.sample(&mut buffer)?;
+    let part = Part::new(history.next_number(), measurement, None)?;
+    refuse_corrected(pass, &path, &history, &part).map_err(|error| error.in_file(probe).into())
 }

@@ -1,7 +1,7 @@
 //! The files of a correction: what `correct` and `learn` may write, and what a correction in memory holds beside its summary.
 
 use truepath_chart::view::View;
-use truepath_correction::correct::Corrected;
+use truepath_correction::correct::CorrectedPass;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::OutputFolder;
 use truepath_job::measurement::Measurement;
@@ -37,7 +37,7 @@ pub(super) fn write(
     folder: &OutputFolder,
     pass: &Pass,
     measurement: &Measurement,
-    done: &Corrected,
+    done: &CorrectedPass,
 ) -> Result<(), Failure> {
     if let Some(text) = &done.program {
         folder.write("corrected.nc", text)?;

@@ -4,8 +4,9 @@
 use std::collections::VecDeque;
 use std::path::{Path as FilePath, PathBuf};
 
+use clap::Args;
 use truepath_chart::view::View;
-use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::{Job, Route};
@@ -17,6 +18,48 @@ use truepath_report::pages::{REPORT, demonstrated};
 use truepath_report::plot::Wall;
 use truepath_report::{correction_csv, plot, points_csv, wall_csv};
 use truepath_trial::virtual_mill;
+
+use crate::terminal::Terminal;
+
+/// Where the story goes, and what becomes of files that lie there already: they are replaced as long as they are what
+/// would be written now, and one that is not stops the command.
+#[derive(Clone, Debug, Args)]
+pub struct Options {
+    /// Folder for the programs, probe files, corrections, reports and pictures.
+    #[arg(short, long, value_name = "DIR", default_value = "out/demo")]
+    pub output: PathBuf,
+    /// Keep the files of an earlier run: stop when there are some.
+    #[arg(long)]
+    pub keep: bool,
+    /// Replace the files of an earlier run, edited ones too.
+    #[arg(long, conflicts_with = "keep")]
+    pub force: bool,
+}
+
+/// Tells the story and prints what came of it.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let outcomes = terminal.watch("milling, probing, correcting, milling again", |progress| run(options, progress))?;
+    terminal.tell(&outcomes, || words(&outcomes))
+}
+
+fn words(outcomes: &[Outcome]) -> String {
+    let mut text = String::from(
+        "Each part was milled on a virtual machine, touched with a probe, corrected, and milled again.\n\
+         Largest error of the wall (mean over the height):\n\n\
+         part                                                          points   before mm   after mm   times less\n",
+    );
+    for o in outcomes {
+        text +=
+            &format!("{:<62}{:>6}{:>12.4}{:>11.4}{:>11.1}x\n", o.title, o.points, o.before_mm, o.after_mm, o.factor);
+    }
+    text += "\nLook at the reports (open them in a browser):\n";
+    for o in outcomes {
+        text += &format!("  {}\n", o.folder.join(REPORT).display());
+    }
+    text += "Pictures (before-after.svg), corrected programs (corrected.nc) and images for the coprocessor (correction.tpi) lie\n\
+             beside them.\n";
+    text
+}
 
 /// A part of the story.
 struct Story {
@@ -104,30 +147,19 @@ pub struct Outcome {
     pub folder: PathBuf,
 }
 
-/// What becomes of files that lie in the folders already.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Earlier {
-    /// They stop the command.
-    Stop,
-    /// They are replaced as long as they are what would be written now; one that is not stops the command.
-    ReplaceUnchanged,
-    /// They are replaced.
-    Replace,
-}
-
 /// The folder of a part on its way.
 struct Part<'a> {
     story: &'a Story,
     place: PathBuf,
     folder: OutputFolder,
-    earlier: Earlier,
+    options: &'a Options,
 }
 
 impl<'a> Part<'a> {
-    fn create(story: &'a Story, out: &FilePath, earlier: Earlier) -> Result<Self, InputError> {
-        let place = out.join(story.name);
-        let folder = OutputFolder::create(&place, earlier != Earlier::Stop, FILES)?;
-        let part = Self { story, place, folder, earlier };
+    fn create(story: &'a Story, options: &'a Options) -> Result<Self, InputError> {
+        let place = options.output.join(story.name);
+        let folder = OutputFolder::create(&place, !options.keep, FILES)?;
+        let part = Self { story, place, folder, options };
         // Before the work: these are what a user edits.
         for (name, text) in part.inputs() {
             part.write(name, text.as_bytes())?;
@@ -141,7 +173,7 @@ impl<'a> Part<'a> {
 
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), InputError> {
         let there = self.place.join(name);
-        if self.earlier == Earlier::ReplaceUnchanged && std::fs::read(&there).is_ok_and(|found| found != bytes) {
+        if !self.options.force && std::fs::read(&there).is_ok_and(|found| found != bytes) {
             let found = format!("{} is not what the demonstration writes", there.display());
             let help =
                 "name another folder with -o, or add --force to replace what was edited or is of another version";
@@ -151,16 +183,15 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Tells the story; every part gets a folder in `out`, all of them when everything is done. `progress` is told the share
-/// done, 0…1.
+/// Tells the story; every part gets a folder, all of them when everything is done. `progress` is told the share done, 0…1.
 ///
 /// # Errors
 /// Outputs that cannot be written, files that are in their way.
-pub fn run(out: &FilePath, earlier: Earlier, progress: &mut dyn FnMut(f64)) -> Result<Vec<Outcome>, Failure> {
-    // The first one is dropped last: it made `out` and takes it away again when nothing came to lie in it.
+pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Vec<Outcome>, Failure> {
+    // The first one is dropped last: it made the folder around them and takes it away again when nothing came to lie in it.
     let mut parts = VecDeque::new();
     for story in STORIES {
-        parts.push_front(Part::create(story, out, earlier)?);
+        parts.push_front(Part::create(story, options)?);
     }
     let mut outcomes = Vec::new();
     for (k, part) in parts.iter().rev().enumerate() {
@@ -215,7 +246,7 @@ fn outcome(
     story: &Story,
     folder: &FilePath,
     measurement: &Measurement,
-    corrected: &Corrected,
+    corrected: &CorrectedPass,
     before: &Score,
     after: &Score,
 ) -> Outcome {

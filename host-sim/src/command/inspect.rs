@@ -1,7 +1,8 @@
 //! `inspect`: the accuracy of the wall from measurements alone (P18), no model, and the verdict on the part.
 
-use std::path::Path as FilePath;
+use std::path::PathBuf;
 
+use clap::Args;
 use truepath_core::probe::{Contact, CutWith};
 use truepath_core::units::Offset;
 use truepath_correction::inspection::{Extent, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge};
@@ -9,12 +10,15 @@ use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
+use truepath_job::feature::listing;
 use truepath_job::job::{Job, PartFlags, ProbeFlags, Which};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::page::render;
 use truepath_report::pages::{REPORT, inspected};
 use truepath_report::{InspectSummary, inspect_summary, judged_points_csv, points_csv};
+
+use crate::terminal::Terminal;
 
 /// One contact, for the list that is printed.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -52,22 +56,76 @@ pub struct Inspection {
 const FILES: &[&str] = &["points.csv", "summary.json", "probe-raw.txt", REPORT];
 
 /// What is inspected.
-#[derive(Clone, Debug)]
-pub struct Options<'a> {
+#[derive(Clone, Debug, Default, Args)]
+pub struct Options {
     /// The job.
-    pub job: &'a FilePath,
+    pub job: PathBuf,
     /// The probe file.
-    pub probe: &'a FilePath,
-    /// Output folder, if anything is to be written.
-    pub out: Option<&'a FilePath>,
-    /// Replace existing files.
+    #[arg(long, value_name = "FILE")]
+    pub probe: PathBuf,
+    /// Folder for report.html, the points as a table, the summary and the probe file as it is.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Replace the files of an earlier run.
+    #[arg(long, requires = "output")]
     pub force: bool,
-    /// What the command line says of the part.
+    /// What is said of the part in place of the job.
+    #[command(flatten)]
     pub part: PartFlags,
-    /// What the command line says of the probe file.
+    /// What is said of the probe file in place of the job.
+    #[command(flatten)]
     pub probe_flags: ProbeFlags,
     /// Which cut of the program.
+    #[command(flatten)]
     pub which: Which,
+}
+
+/// Inspects and prints the report.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let inspection = run(options)?;
+    terminal.warn_all(&inspection.summary.warnings);
+    terminal.tell(&inspection, || words(&inspection))
+}
+
+fn words(inspection: &Inspection) -> String {
+    let mut text = inspection.summary.feature.as_ref().map(listing).unwrap_or_default();
+    let judged = inspection.summary.tolerance.is_some();
+    text.push_str("  line     s mm       X mm       Y mm   height mm   error mm");
+    text.push_str(if judged { "  verdict\n" } else { "\n" });
+    for p in &inspection.contacts {
+        text += &format!(
+            "{:>6} {:>8.2} {:>10.4} {:>10.4} {:>11.3} {:>10.*}{}\n",
+            p.line,
+            p.s_mm,
+            p.x_mm,
+            p.y_mm,
+            p.height_mm,
+            inspection.decimals,
+            p.error_mm,
+            p.verdict.map_or("", word)
+        );
+    }
+    let s = &inspection.summary;
+    text += &format!(
+        "\n{} points; material left is positive\nmean {:.4} mm (a wear offset removes it), largest {:.d$}, smallest {:.d$}, rms {:.4}, spread over height {:.4} mm\n",
+        s.points,
+        s.mean_error_mm,
+        s.max_error_mm,
+        s.min_error_mm,
+        s.rms_error_mm,
+        s.spread_over_height_mm,
+        d = inspection.decimals
+    );
+    text += &s.statements.join("\n");
+    text + &format!("\nverdict: {}\n", s.verdict.text)
+}
+
+const fn word(verdict: PointVerdict) -> &'static str {
+    match verdict {
+        PointVerdict::Pass => "  pass",
+        PointVerdict::Fail => "  FAIL",
+        PointVerdict::Open => "  undecided",
+    }
 }
 
 /// Compares a probe file with the wall of the job. A part that fails is no error: the command did its work, and the verdict
@@ -76,13 +134,13 @@ pub struct Options<'a> {
 /// # Errors
 /// Whatever is wrong with job, program or probe file, and outputs that cannot be written.
 pub fn run(options: &Options) -> Result<Inspection, Failure> {
-    let mut job = Job::read(options.job)?;
+    let mut job = Job::read(&options.job)?;
     job.override_probe(&options.probe_flags)?;
     job.override_part(&options.part)?;
     job.which = options.which.clone();
     // What a part was cut with does not matter for how far its wall is off.
     let pass = Pass::read(job)?.cut_with(CutWith::Anything);
-    let file = Source::read(options.probe)?;
+    let file = Source::read(&options.probe)?;
     let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
     let misreadings = misread(&pass, false, &measurement.contacts);
     let told: Vec<String> = pass.warnings.iter().chain(&misreadings).cloned().collect();
@@ -114,7 +172,7 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let contacts = contacts.collect();
     let summary = inspect_summary(&pass, &measurement, &judgement, coverage, warnings);
     let inspection = Inspection { contacts, summary, decimals: judgement.decimals };
-    if let Some(out) = options.out {
+    if let Some(out) = &options.output {
         let folder = OutputFolder::create(out, options.force, FILES)?;
         let points = match inspection.summary.tolerance {
             Some(_) => judged_points_csv(&measurement, &judgement.points)?,

@@ -1,41 +1,94 @@
 //! `learn`: from the probe file of a part that was cut with a correction to the correction of the next part.
 
-use std::path::Path as FilePath;
+use std::path::{Path as FilePath, PathBuf};
 
+use clap::Args;
 use truepath_core::checksum::crc32;
 use truepath_correction::as_milled::AsMilled;
 use truepath_correction::learn::{LearnSummary, learn};
 use truepath_correction::learning::History;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
-use truepath_job::job::{Job, ProbeFlags, Route, Which};
+use truepath_job::job::{Job, ProbeFlags, ROUTES, Route, Which, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::correction_csv;
 use truepath_report::page::render;
 use truepath_report::pages::{REPORT, learned};
 
+use super::correct::words as correction;
 use super::correction_files::{FILES, HISTORY, MILLED, write};
+use crate::terminal::Terminal;
 
 /// What is learned from.
-#[derive(Clone, Debug)]
-pub struct Options<'a> {
+#[derive(Clone, Debug, Default, Args)]
+pub struct Options {
     /// The job.
-    pub job: &'a FilePath,
-    /// The probe file of the part cut with the correction in `from`.
-    pub probe: &'a FilePath,
-    /// The folder of that correction.
-    pub from: &'a FilePath,
-    /// Output folder.
-    pub out: &'a FilePath,
-    /// Replace existing files.
-    pub force: bool,
-    /// `--route`, over that of the job.
+    pub job: PathBuf,
+    /// What the probe measured on the part cut with the correction in --from.
+    #[arg(long, value_name = "FILE")]
+    pub probe: PathBuf,
+    /// Folder that truepath correct, or truepath learn, wrote that correction into.
+    #[arg(long, value_name = "DIR")]
+    pub from: PathBuf,
+    /// Folder for the correction of the next part; another one than --from.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Correct in the program text or in the coprocessor; the job says it otherwise.
+    #[arg(long, value_parser = one_of(&ROUTES))]
     pub route: Option<Route>,
-    /// What the command line says of the probe file.
+    /// Replace the files of an earlier run.
+    #[arg(long)]
+    pub force: bool,
+    /// What is said of the probe file in place of the job.
+    #[command(flatten)]
     pub probe_flags: ProbeFlags,
     /// Which cut of the program.
+    #[command(flatten)]
     pub which: Which,
+}
+
+/// Learns and prints what was learned.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let summary = terminal.watch("learning", |progress| run(options, progress))?;
+    terminal.warn_all(&summary.correct.warnings);
+    terminal.tell(&summary, || words(&summary) + &correction(&summary.correct, &options.output))
+}
+
+fn words(s: &LearnSummary) -> String {
+    let (v, whole) = (&s.verdict, &s.whole_contour_error_mm);
+    let mut text = format!(
+        "part {} at {} places, error of the target      largest      rms\n\
+         \x20 measured                           {:>12.4} {:>8.4} mm\n\
+         \x20 part {} there                       {:>12.4} {:>8.4} mm\n\
+         \x20 promised                           {:>12.4}          mm, {} of {} places within 2 sigma\n\
+         \x20 whole contour, by the model        {:>12.4}          mm, at s = {:.1} mm, sigma {:.4} mm\n",
+        v.part,
+        v.measured_error_mm.places,
+        v.measured_error_mm.max_mm,
+        v.measured_error_mm.rms_mm,
+        v.previous_error_mm.part,
+        v.previous_error_mm.max_mm,
+        v.previous_error_mm.rms_mm,
+        v.promise.max_mm,
+        v.promise.within_two_sigma,
+        v.promise.places,
+        whole.max_mm,
+        whole.s_mm,
+        whole.sigma_mm,
+    );
+    if let Some(held) = &v.holdout_residual_mm {
+        text += &format!(
+            "\x20 at {} places kept from a first fit the model missed {:.4} mm before and {:.4} mm after learning\n",
+            held.places.len(),
+            held.before_mm,
+            held.after_mm
+        );
+    }
+    if let Some(again) = v.used_again.filter(|_| v.rolled_back) {
+        text += &format!("  rolled back: {}\n", again.words());
+    }
+    text + &format!("\ncorrection of part {}\n", v.part.saturating_add(1))
 }
 
 /// Learns and writes the outputs.
@@ -44,20 +97,20 @@ pub struct Options<'a> {
 /// As [`learn`], a folder without a history or with another corrected program, and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSummary, Failure> {
     refuse_same_folder(options)?;
-    let history = history_in(options.from)?;
-    let mut job = Job::read(options.job)?;
+    let history = history_in(&options.from)?;
+    let mut job = Job::read(&options.job)?;
     job.override_probe(&options.probe_flags)?;
     job.which = options.which.clone();
     let pass = Pass::read(job)?;
     let level = history.facts.level().filter(|_| options.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
-    let file = Source::read(options.probe)?;
+    let file = Source::read(&options.probe)?;
     let measurement = Measurement::read(&pass, &file)?;
-    let folder = OutputFolder::create(options.out, options.force, FILES)?;
+    let folder = OutputFolder::create(&options.output, options.force, FILES)?;
     let remarks = measurement.remarks(&file);
     let routes = [options.route.unwrap_or(pass.job.route)];
     let done = learn(&pass, &history, &measurement, &remarks, &routes, progress).map_err(|failure| match failure {
-        Failure::Input(error) if matches!(error.code(), "Q003" | "Q007") => error.in_file(options.probe).into(),
+        Failure::Input(error) if matches!(error.code(), "Q003" | "Q007") => error.in_file(&options.probe).into(),
         Failure::Input(error) if error.code() == "Q002" && error.line_column().is_none() => {
             error.in_file(&options.from.join(HISTORY)).into()
         }
@@ -113,14 +166,14 @@ pub(super) fn history_in(folder: &FilePath) -> Result<History, InputError> {
 
 /// The old correction must outlive the new one: it is what the measured part was cut with.
 fn refuse_same_folder(options: &Options) -> Result<(), InputError> {
-    let same = match (options.from.canonicalize(), options.out.canonicalize()) {
+    let same = match (options.from.canonicalize(), options.output.canonicalize()) {
         (Ok(from), Ok(out)) => from == out,
-        _ => options.from == options.out,
+        _ => options.from == options.output,
     };
     if !same {
         return Ok(());
     }
     let found = format!("--from and -o are both {}", options.from.display());
     let help = "name another folder with -o: the correction of each part is kept";
-    Err(InputError::new("Q005", found, "two folders", help).in_file(options.out))
+    Err(InputError::new("Q005", found, "two folders", help).in_file(&options.output))
 }

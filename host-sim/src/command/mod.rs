@@ -1,24 +1,25 @@
-//! What the commands do, apart from how they are called (`cli`) and printed.
+//! The commands: what each is asked is what it takes.
+//!
+//! A command is a module: `Options`, which clap fills; `run`, which does the work and gives a summary; `main`, which runs it
+//! and prints.
 
 pub mod bore;
-mod bore_error;
-mod bore_files;
-mod bore_summary;
+pub mod canon;
 pub mod compare;
 pub mod correct;
 mod correction_files;
 pub mod demo;
 pub mod device;
 pub mod hil;
+pub mod image;
 pub mod inspect;
 pub mod learn;
 pub mod multiaxis;
+pub mod placement;
 pub mod plot;
 pub mod pocket;
 pub mod probe;
-pub mod probe_next;
-mod replaced;
-pub mod settings;
+pub mod replay;
 pub mod simulate;
 pub mod split;
 pub mod study;

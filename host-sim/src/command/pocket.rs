@@ -1,7 +1,8 @@
 //! `pocket`: the compensated path of a whole pocket from tool and material data alone.
 
-use std::path::Path as FilePath;
+use std::path::{Path as FilePath, PathBuf};
 
+use clap::Args;
 use truepath_core::checksum::crc32;
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
@@ -16,29 +17,102 @@ use truepath_job::levels;
 use truepath_job::pass::{Pass, PathBuffer, read_blocks};
 use truepath_pocket::{
     Designed, Machine, PocketError, PocketSummary, Process, Told, Wanted, before_after, correction_csv, design, edits,
-    finishing, pocket_summary, section_rows, sections_csv, sensitivity, slotting,
+    finishing, materials, materials_text, pocket_summary, section_rows, sections_csv, sections_text, sensitivity,
+    slotting,
 };
 use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
+
+use crate::terminal::Terminal;
 
 /// Files this command may write.
 const FILES: &[&str] =
     &["corrected.nc", "difference.txt", "correction.csv", "sections.csv", "summary.json", "before-after.svg"];
 
 /// What is compensated.
-#[derive(Clone, Debug)]
-pub struct Options<'a> {
-    /// The job.
-    pub job: &'a FilePath,
-    /// Output folder.
-    pub out: &'a FilePath,
-    /// Replace existing files.
-    pub force: bool,
-    /// `--tolerance`, over that of the job, mm.
-    pub tolerance_mm: Option<f64>,
-    /// `--per-section`, over that of the job.
+#[derive(Clone, Debug, Default, Args)]
+pub struct Options {
+    /// The job: with `stickout_mm` and `material` in `[tool]`, and `[pocket]`.
+    #[arg(required_unless_present = "materials")]
+    pub job: Option<PathBuf>,
+    /// Folder for corrected.nc, sections.csv, correction.csv, before-after.svg and summary.json.
+    #[arg(short, long, value_name = "DIR", required_unless_present = "materials")]
+    pub output: Option<PathBuf>,
+    /// Half of the width of the band the walls may lie in, mm; over that of the job.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub tolerance: Option<f64>,
+    /// How a section out of the band is shifted; over what the job says.
+    #[arg(long, value_name = "WAY")]
     pub per_section: Option<PerSection>,
+    /// The force coefficients of materials, with their sources, and nothing else.
+    #[arg(long, conflicts_with_all = ["job", "output", "tolerance", "per_section"])]
+    pub materials: bool,
+    /// Replace the files of an earlier run.
+    #[arg(long)]
+    pub force: bool,
     /// Which cut of the program.
+    #[command(flatten)]
     pub which: Which,
+}
+
+/// Compensates, or lists the materials.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let (Some(job), Some(out)) = (&options.job, &options.output) else {
+        let rows = materials();
+        return terminal.tell(&rows, || materials_text(&rows));
+    };
+    compensate(options, job, out, terminal)
+}
+
+/// Compensates and prints; `truepath correct --no-probe` comes here as well.
+pub(super) fn compensate(
+    options: &Options,
+    job: &FilePath,
+    out: &FilePath,
+    terminal: &Terminal,
+) -> Result<(), Failure> {
+    let summary = terminal.watch("compensating", |progress| run(options, job, out, progress))?;
+    terminal.warn_all(&summary.warnings);
+    terminal.tell(&summary, || format!("{}written to {}\n", words(&summary), out.display()))
+}
+
+fn words(s: &PocketSummary) -> String {
+    let what = match s.mode {
+        Mode::Wall => "finishing pass",
+        Mode::Slot => "slot, near wall on the",
+    };
+    let side = if s.mode == Mode::Slot { format!(" {}", s.near_wall) } else { String::new() };
+    let cutter = &s.cutter;
+    let mut text = format!(
+        "{what}{side}, {:.1} mm, {} milling; cutter {:.1} mm free, {:.1} of it fluted: {:.3} µm/N at the tip, {:.3} at the top of the cut\n\n",
+        s.length_mm, s.milling, cutter.stickout_mm, cutter.flute_length_mm, cutter.tip_um_per_n, cutter.top_um_per_n,
+    );
+    text += &sections_text(&s.sections);
+    text += &format!(
+        "\nband ±{} mm: {} of {} sections shifted, largest error {:.4} -> {:.4} mm, predicted\n\
+         without a probe this is as good as the force coefficients:\n",
+        s.tolerance_mm,
+        s.sections_shifted,
+        s.sections.len(),
+        s.max_error_before_mm,
+        s.max_error_after_mm
+    );
+    if s.max_error_sharp_mm > 0.0 {
+        text += &format!("  (corners without an arc apart: {:.4} mm remain there)\n", s.max_error_sharp_mm);
+    }
+    for case in &s.sensitivity {
+        let out = match case.sections_out {
+            0 => "all sections within the band".to_owned(),
+            1 => "1 section out of the band".to_owned(),
+            n => format!("{n} sections out of the band"),
+        };
+        text += &format!(
+            "  coefficients {:+.0} %: largest error {:.4} -> {:.4} mm, {out}\n",
+            100.0 * (case.factor - 1.0),
+            case.max_error_before_mm,
+            case.max_error_after_mm
+        );
+    }
+    text
 }
 
 /// A compensated pocket in memory.
@@ -54,12 +128,17 @@ struct Made {
 ///
 /// # Errors
 /// Whatever is wrong with job or program, a cutter too soft for the cut, outputs that cannot be written.
-pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PocketSummary, Failure> {
-    let mut job = Job::read(options.job)?;
+fn run(
+    options: &Options,
+    job: &FilePath,
+    out: &FilePath,
+    progress: &mut dyn FnMut(f64),
+) -> Result<PocketSummary, Failure> {
+    let mut job = Job::read(job)?;
     job.which = options.which.clone();
     let mut table = job.pocket.unwrap_or_default();
     table.per_section = options.per_section.unwrap_or(table.per_section);
-    if let Some(tolerance) = options.tolerance_mm {
+    if let Some(tolerance) = options.tolerance {
         table.tolerance = checked(tolerance).map_err(|e| e.failure(&job))?;
     }
     if table.mode == Mode::Slot && job.numbers.wall.is_none() {
@@ -69,7 +148,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PocketSum
     }
     let machine = Machine::of(&job).map_err(|e| e.failure(&job))?;
     let pass = Pass::read(job)?;
-    let folder = OutputFolder::create(options.out, options.force, FILES)?;
+    let folder = OutputFolder::create(out, options.force, FILES)?;
     let mut warnings = pass.warnings.clone();
     if table.mode == Mode::Slot && pass.job.gives("stock.allowance_mm") {
         warnings.push("[stock] is not used: a slot is cut at full immersion".to_owned());

@@ -1,8 +1,9 @@
 //! `simulate`: the pass as the core predicts it, or as the plant cuts it.
 
 use std::fmt::Write;
-use std::path::Path as FilePath;
+use std::path::{Path as FilePath, PathBuf};
 
+use clap::Args;
 use truepath_chart::view::View;
 use truepath_core::correct::{Band, Profile, profile};
 use truepath_core::cut::{ForceTable, State};
@@ -10,6 +11,7 @@ use truepath_core::geometry::Vector;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
+use truepath_job::feature::listing;
 use truepath_job::job::{Job, Which};
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_plant as plant;
@@ -22,6 +24,9 @@ use truepath_trial::replay::Placement;
 use truepath_trial::setpoints::Setpoints;
 use truepath_trial::{recorded, virtual_mill};
 
+use super::placement::PlacementOptions;
+use crate::terminal::Terminal;
+
 /// Files this command may write.
 const FILES: &[&str] = &["trace.csv", "wall.csv", PROBED, "summary.json", "trace.svg", REPORT];
 /// The wall as cut, at several heights.
@@ -30,31 +35,70 @@ const PROBED: &str = "probed-wall.csv";
 const HEIGHTS: usize = 21;
 
 /// What is simulated.
-#[derive(Clone, Debug)]
-pub struct Options<'a> {
+#[derive(Clone, Debug, Default, Args)]
+pub struct Options {
     /// The job.
-    pub job: &'a FilePath,
-    /// A machine for the plant; without it the core predicts with the job's priors.
-    pub plant: Option<&'a FilePath>,
-    /// A recording whose tool path the plant cuts along, in place of the program's.
-    pub recording: Option<Recording<'a>>,
-    /// Whether the wall is also written at several heights, for a simulated probe.
+    pub job: PathBuf,
+    /// A virtual machine to cut with; without it the core predicts from the job's own numbers.
+    #[arg(long, value_name = "PLANT.toml")]
+    pub plant: Option<PathBuf>,
+    /// Cut along a recorded tool path, not along the program's: `# frame = program` or `machine`, then t_s,x_mm,y_mm,z_mm
+    /// and other columns as for `truepath replay`.
+    #[arg(long, value_name = "FILE", requires = "plant")]
+    pub setpoints: Option<PathBuf>,
+    /// Where the program stood in the machine.
+    #[command(flatten)]
+    pub placement: PlacementOptions,
+    /// Also write probed-wall.csv: the wall as cut at several heights, for a simulated probe.
+    #[arg(long, requires = "plant")]
     pub probed_wall: bool,
-    /// Output folder.
-    pub out: &'a FilePath,
-    /// Replace existing files.
+    /// Folder for trace.csv, trace.svg, report.html and summary.json.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Replace the files of an earlier run.
+    #[arg(long)]
     pub force: bool,
     /// Which cut of the program.
+    #[command(flatten)]
     pub which: Which,
 }
 
-/// A recorded tool path.
-#[derive(Clone, Copy, Debug)]
-pub struct Recording<'a> {
-    /// Its rows.
-    pub setpoints: &'a Setpoints,
-    /// Where the program stood in the machine.
-    pub placement: Placement,
+/// Simulates and prints the summary.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let summary = run(options)?;
+    terminal.warn_all(&summary.warnings);
+    terminal.tell(&summary, || words(&summary, &options.output))
+}
+
+fn words(summary: &SimulateSummary, output: &FilePath) -> String {
+    let cut = summary.recorded.as_ref().map_or_else(String::new, |facts| {
+        format!(
+            "recorded from {:.3} to {:.3} s, at most {:.4} mm from the program's path, feed {:.0} to {:.0} %\n",
+            facts.from_s,
+            facts.to_s,
+            facts.farthest_mm,
+            100.0 * facts.least_feed,
+            100.0 * facts.greatest_feed
+        )
+    });
+    let judged = summary.judged.map_or_else(String::new, |score| {
+        format!("away from the ends: largest wall error {:.4} mm (rms {:.4})\n", score.max_error_mm, score.rms_error_mm)
+    });
+    format!(
+        "{}{:.1} mm of contour, {} milling, by the {}\n\
+         largest wall error {:.4} mm (rms {:.4}), largest engagement {:.2} degrees, largest mean force {:.0} N\n\
+         {judged}{cut}written to {}; to look at: {}\n",
+        summary.feature.as_ref().map(listing).unwrap_or_default(),
+        summary.length_mm,
+        summary.milling,
+        summary.by,
+        summary.max_error_mm,
+        summary.rms_error_mm,
+        summary.max_arc_deg,
+        summary.max_force_n,
+        output.display(),
+        output.join(REPORT).display()
+    )
 }
 
 /// Simulates and writes trace and summary.
@@ -62,21 +106,25 @@ pub struct Recording<'a> {
 /// # Errors
 /// Whatever is wrong with job, program or plant, and outputs that cannot be written.
 pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
-    let mut job = Job::read(options.job)?;
+    let recording = options.setpoints.as_deref().map(|file| recording(file, &options.placement)).transpose()?;
+    let mut job = Job::read(&options.job)?;
     job.which = options.which.clone();
     let pass = Pass::read(job)?;
-    let folder = OutputFolder::create(options.out, options.force, FILES)?;
+    let folder = OutputFolder::create(&options.output, options.force, FILES)?;
     let mut warnings = pass.warnings.clone();
-    let done = match options.plant {
+    let done = match &options.plant {
         None => {
             let (trace, along) = predicted(&pass, &mut warnings)?;
             Done { by: "core", trace, along, milled: None, facts: None }
         }
-        Some(file) => milled(&pass, &read_machine(file)?, options.recording.as_ref(), &mut warnings)?,
+        Some(file) => milled(&pass, &read_machine(file)?, recording.as_ref(), &mut warnings)?,
     };
     let Done { by, trace, along, milled, facts } = done;
-    let mut summary = simulate_summary(&pass, by, &trace, warnings);
-    (summary.judged, summary.recorded) = (milled.as_ref().map(Milled::score), facts);
+    let summary = SimulateSummary {
+        judged: milled.as_ref().map(Milled::score),
+        recorded: facts,
+        ..simulate_summary(&pass, by, &trace, warnings)
+    };
     if let Some(milled) = milled.filter(|_| options.probed_wall) {
         folder.write(PROBED, probed_wall(&pass, &milled).as_bytes())?;
     }
@@ -87,6 +135,14 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     folder.write(REPORT, &page::render(&simulated(&pass, along, &summary))?)?;
     folder.commit()?;
     Ok(summary)
+}
+
+/// A recorded tool path, and where the program stood in the machine.
+fn recording(file: &FilePath, placement: &PlacementOptions) -> Result<(Setpoints, Placement), Failure> {
+    let source = Source::read(file)?;
+    let setpoints = Setpoints::parse(&source)?;
+    let placement = placement.of(&setpoints, &source)?;
+    Ok((setpoints, placement))
 }
 
 /// The uncorrected pass as the core predicts it from the job's priors; adds to the warnings what is doubtful.
@@ -133,12 +189,12 @@ struct Done {
 fn milled(
     pass: &Pass,
     machine: &plant::Machine,
-    recording: Option<&Recording>,
+    recording: Option<&(Setpoints, Placement)>,
     warnings: &mut Vec<String>,
 ) -> Result<Done, Failure> {
     let (milled, facts) = match recording {
         None => (virtual_mill::mill(pass, machine, None)?, None),
-        Some(Recording { setpoints, placement }) => {
+        Some((setpoints, placement)) => {
             let (milled, facts) = virtual_mill::mill_recorded(pass, machine, setpoints, placement)?;
             if facts.passes > 1 {
                 warnings.push(format!(

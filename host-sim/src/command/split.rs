@@ -7,6 +7,7 @@
 
 use std::path::{Path as FilePath, PathBuf};
 
+use clap::Args;
 use toml_edit::{Array, DocumentMut, Item, value};
 use truepath_core::units::Offset;
 use truepath_correction::first_pass;
@@ -14,9 +15,11 @@ use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFolder;
 use truepath_ground::units::mm;
 use truepath_job::feature::lines_named;
-use truepath_job::job::{Job, Which};
+use truepath_job::job::Job;
 use truepath_job::pass::Pass;
 use truepath_program::{Purpose, RewriteOptions, Rewritten, rewrite_program};
+
+use crate::terminal::Terminal;
 
 /// The program of the first pass.
 const PROGRAM: &str = "first-pass.nc";
@@ -24,16 +27,19 @@ const PROGRAM: &str = "first-pass.nc";
 const JOB: &str = "first-pass.toml";
 
 /// What is split.
-#[derive(Clone, Debug)]
-pub struct Options<'a> {
+#[derive(Clone, Debug, Default, Args)]
+pub struct Options {
     /// The job of the whole allowance.
-    pub job: &'a FilePath,
-    /// Output folder.
-    pub out: &'a FilePath,
-    /// Replace existing files.
+    pub job: PathBuf,
+    /// Folder for first-pass.nc and first-pass.toml.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// The feature of the job, or of the markers in the program; needed when there are several to correct.
+    #[arg(long, value_name = "ID")]
+    pub feature: Option<String>,
+    /// Replace the files of an earlier run.
+    #[arg(long)]
     pub force: bool,
-    /// Which cut of the program.
-    pub which: Which,
 }
 
 /// What was written.
@@ -51,14 +57,34 @@ pub struct Split {
     pub warnings: Vec<String>,
 }
 
+/// Splits, and prints what to do next.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let split = run(options)?;
+    terminal.warn_all(&split.warnings);
+    terminal.tell(&split, || words(&split, &options.job))
+}
+
+fn words(split: &Split, job: &FilePath) -> String {
+    let (program, first, job) = (split.program.display(), split.job.display(), job.display());
+    format!(
+        "{program}: the contour {:.3} mm away from the wall in {} moves; the second pass takes the other {:.3} mm\n\
+         next:\n\
+         1. mill {program} and leave the part clamped\n\
+         2. probe its wall: truepath probe {first} ..., or your own probing routine\n\
+         3. truepath correct {job} --first-pass {first} --probe FILE -o DIR\n\
+         4. mill the corrected program\n",
+        split.allowance_mm, split.moves, split.allowance_mm
+    )
+}
+
 /// Writes program and job of the first pass.
 ///
 /// # Errors
 /// Whatever is wrong with job or program, an inside corner without room for the first pass, and outputs that cannot be
 /// written.
 pub fn run(options: &Options) -> Result<Split, Failure> {
-    let mut job = Job::read(options.job)?;
-    job.which = options.which.clone();
+    let mut job = Job::read(&options.job)?;
+    job.which.feature = options.feature.clone();
     let pass = Pass::read(job)?;
     if pass.surface.is_some() {
         let help = "split the job of the whole, even allowance";
@@ -68,7 +94,7 @@ pub fn run(options: &Options) -> Result<Split, Failure> {
     }
     let half = Offset::from_nm(pass.job.numbers.allowance.nm() / 2);
     let edits = first_pass::edits(&pass, half)?;
-    let folder = OutputFolder::create(options.out, options.force, &[PROGRAM, JOB])?;
+    let folder = OutputFolder::create(&options.output, options.force, &[PROGRAM, JOB])?;
     let rewrite = RewriteOptions {
         tolerance: pass.job.tolerance,
         max_arc_radius: pass.job.max_arc_radius,
@@ -82,8 +108,8 @@ pub fn run(options: &Options) -> Result<Split, Failure> {
     folder.write(JOB, job_text(&pass, half, &written)?.as_bytes())?;
     folder.commit()?;
     Ok(Split {
-        program: options.out.join(PROGRAM),
-        job: options.out.join(JOB),
+        program: options.output.join(PROGRAM),
+        job: options.output.join(JOB),
         allowance_mm: mm(half),
         moves: written.difference.straight_moves + written.difference.arcs,
         warnings: pass.warnings.clone(),

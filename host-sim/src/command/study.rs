@@ -1,45 +1,146 @@
 //! `study`: the cases that are asked for and not yet finished, on all cores, and the summary of all that are.
 
+use std::fmt::Write as _;
 use std::io::Write;
-use std::path::Path as FilePath;
+use std::path::{Path as FilePath, PathBuf};
 
+use clap::Args;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFile, json};
+use truepath_job::job::one_of;
 use truepath_study::families::{FAMILIES, Family, family};
 use truepath_study::id::{Axis, CaseId, Cell};
 use truepath_study::ledger::{Ledger, program_key};
 use truepath_study::markdown::{results, written_into};
 use truepath_study::outcome::Outcome;
 use truepath_study::page::page;
-use truepath_study::reference::{Reached, reference as goals};
+use truepath_study::reference::{Reached, reference as goals, words as words_of_goals};
 use truepath_study::seeds::Set;
-use truepath_study::summary::{Summary, summary};
-use truepath_study::{carry, pool};
+use truepath_study::summary::{Row, Summary, summary};
+use truepath_study::{carry, export, pool};
+
+use crate::terminal::Terminal;
 
 /// File of the reference goals.
 const GOALS: &str = "reference.json";
 
+/// The sets one may ask for.
+const SETS: [(&str, Set); 2] = [("tuning", Set::Tuning), ("test", Set::Test)];
+
 /// What is studied.
-#[derive(Clone, Debug)]
-pub struct Options<'a> {
-    /// Folder of the results.
-    pub out: &'a FilePath,
-    /// Which seeds.
+#[derive(Clone, Debug, Args)]
+pub struct Options {
+    /// Folder of the results; an interrupted study goes on there.
+    #[arg(short, long, value_name = "DIR", required_unless_present = "case")]
+    pub output: Option<PathBuf>,
+    /// One case in detail instead, by its id.
+    #[arg(long, value_name = "ID", conflicts_with_all = ["output", "set", "families", "seeds", "axis", "random"])]
+    pub case: Option<CaseId>,
+    /// Write program, job, machine, probe file and corrected program of that case.
+    #[arg(long, value_name = "DIR", requires = "case")]
+    pub export: Option<PathBuf>,
+    /// Which seeds: those for tuning, or those kept for judging.
+    #[arg(long, value_parser = one_of(&SETS), default_value = "tuning")]
     pub set: Set,
-    /// Names of families; all when empty.
-    pub families: &'a [String],
-    /// Seeds a family, or cases in all for random machines.
+    /// Only these families.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub families: Vec<String>,
+    /// Seeds a family.
+    #[arg(long, value_name = "N", default_value_t = 5)]
     pub seeds: u64,
-    /// The grid, if one.
+    /// A grid instead of single cases: the factor against one thing.
+    #[arg(long, value_enum)]
     pub axis: Option<Axis>,
-    /// Only the first correction.
-    pub first_only: bool,
-    /// A Markdown file whose results are replaced.
-    pub write: Option<&'a FilePath>,
-    /// Drop earlier results.
-    pub force: bool,
-    /// Threads; all cores when `None`.
+    /// So many wholly random machines instead of the seeds of a set.
+    #[arg(long, value_name = "N", conflicts_with_all = ["set", "seeds", "axis"])]
+    pub random: Option<u64>,
+    /// The reference goals instead: the papers' corner, --seeds noise seeds (200 are usual) for each.
+    #[arg(long, conflicts_with_all = ["set", "families", "axis", "random", "first"])]
+    pub reference: bool,
+    /// Only the first correction; nothing is learned from a second part.
+    #[arg(long)]
+    pub first: bool,
+    /// Put the tables into a Markdown file, between its two marks.
+    #[arg(long, value_name = "FILE.md")]
+    pub write: Option<PathBuf>,
+    /// Threads. [default: all cores]
+    #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
+    /// Drop earlier results; with --export, replace files.
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl Options {
+    /// The set the seeds are of, and how many of them.
+    fn seeds(&self) -> (Set, u64) {
+        self.random.map_or((self.set, self.seeds), |count| (Set::Random, count))
+    }
+    fn threads(&self) -> usize {
+        self.threads.unwrap_or_else(pool::cores)
+    }
+    /// Folder of the results; clap has seen to it that there is one where it is needed.
+    fn out(&self) -> &FilePath {
+        self.output.as_deref().unwrap_or(FilePath::new("."))
+    }
+}
+
+/// Studies and prints the summary.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    if let Some(id) = &options.case {
+        let detail = export::detail(id)?;
+        if let Some(folder) = &options.export {
+            export::export(&detail, folder, options.force)?;
+        }
+        return terminal.tell(&detail.outcome, || export::words(&detail));
+    }
+    let mut bar = terminal.progress("studying", 1000);
+    let progress = &mut |done, all: u64| bar.reached(done * 1000 / all.max(1));
+    if options.reference {
+        let reached = reference(options, progress)?;
+        drop(bar);
+        return terminal.tell(&reached, || words_of_goals(&reached));
+    }
+    let studied = run(options, progress)?;
+    drop(bar);
+    terminal.tell(&studied.summary, || words(&studied.summary, options.out()))
+}
+
+fn words(summary: &Summary, output: &FilePath) -> String {
+    let mut text = format!(
+        "{:<22} {:>5} {:>7} {:>7} {:>7} {:>8} {:>8} {:>7} {:>7} {:>8} {:>8} {:>6}\n",
+        "", "cases", "median", "P10", "worst", "in 2 sg", "learned", "P10", "worst", "in 2 sg", "refused", "worse"
+    );
+    for set in &summary.sets {
+        let _ = writeln!(text, "{} seeds", set.set.name());
+        for one in set.families.iter().chain([&set.all]) {
+            text += &row(one);
+        }
+    }
+    for axis in &summary.axes {
+        let _ = writeln!(text, "{}", axis.axis);
+        for (_, one) in &axis.cells {
+            text += &row(one);
+        }
+    }
+    for failed in summary.failures.iter().chain(&summary.worse) {
+        let _ = writeln!(text, "{}: {}", failed.case, failed.what);
+    }
+    let _ = writeln!(text, "\nwritten to {}", output.display());
+    text
+}
+
+fn row(row: &Row) -> String {
+    let mut text = format!("  {:<20} {:>5}", row.name, row.cases);
+    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.1}"));
+    for (spread, coverage) in [(row.first, row.coverage), (row.learned, row.learned_coverage)] {
+        for value in [spread.map(|s| s.median), spread.map(|s| s.p10), spread.map(|s| s.worst)] {
+            let _ = write!(text, " {:>7}", number(value));
+        }
+        let _ = write!(text, " {:>7}%", number(coverage.map(|c| 100.0 * c)));
+    }
+    let _ = writeln!(text, " {:>8} {:>6}", row.failures + row.learn_failures, row.worse);
+    text
 }
 
 /// The cases of a request.
@@ -62,10 +163,11 @@ pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
         let each = options.families.iter().map(|name| family(name).ok_or_else(|| unknown(name)));
         each.collect::<Result<_, _>>()?
     };
-    let seeds = options.set.seeds();
+    let (set, count) = options.seeds();
+    let seeds = set.seeds();
     let most = seeds.end - seeds.start;
-    if options.seeds == 0 || options.seeds > most {
-        let found = format!("{} seeds", options.seeds);
+    if count == 0 || count > most {
+        let found = format!("{count} seeds");
         return Err(InputError::new("Y004", found, format!("1 to {most}"), "ask for another number").into());
     }
     let cells: Vec<Option<Cell>> = match options.axis {
@@ -73,9 +175,9 @@ pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
         Some(axis) => axis.values().iter().map(|&value| Some(Cell { axis, value })).collect(),
     };
     let mut cases = Vec::new();
-    for seed in seeds.take(options.seeds as usize) {
+    for seed in seeds.take(count as usize) {
         // Random machines go round the families; otherwise every family gets every seed.
-        let these = match options.set {
+        let these = match set {
             Set::Random => vec![chosen[(seed % chosen.len() as u64) as usize]],
             Set::Tuning | Set::Test => chosen.clone(),
         };
@@ -103,14 +205,13 @@ pub struct Studied {
 pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Studied, Failure> {
     let cases = cases(options)?;
     let key = program_key();
-    let mut ledger = Ledger::open(options.out, &key, options.force)?;
+    let mut ledger = Ledger::open(options.out(), &key, options.force)?;
     let all = cases.len() as u64;
     let left: Vec<CaseId> = cases.into_iter().filter(|id| !ledger.finished.contains_key(&id.to_string())).collect();
     let mut finished = all - left.len() as u64;
     progress(finished, all);
-    let threads = options.threads.unwrap_or_else(pool::cores);
-    let carried = |id: &CaseId| carry::outcome(id, options.first_only);
-    pool::each(&left, threads, carried, |outcome| {
+    let carried = |id: &CaseId| carry::outcome(id, options.first);
+    pool::each(&left, options.threads(), carried, |outcome| {
         finished += 1;
         progress(finished, all);
         ledger.append(outcome)
@@ -118,7 +219,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Stud
     let outcomes: Vec<Outcome> = ledger.finished.into_values().collect();
     let summary = summary(&key, &outcomes);
     let write = |name: &str, bytes: &[u8]| -> Result<(), Failure> {
-        let path = options.out.join(name);
+        let path = options.out().join(name);
         // These two always follow from the table beside them.
         let mut file = OutputFile::create(&path, true)?;
         file.write_all(bytes).map_err(|e| InputError::unwritable(&path, &e))?;
@@ -126,8 +227,8 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Stud
     };
     write("summary.json", &json(&summary)?)?;
     write("study.html", page(&summary, &outcomes)?.as_bytes())?;
-    if let Some(path) = options.write {
-        let goals = std::fs::read(options.out.join(GOALS)).ok();
+    if let Some(path) = &options.write {
+        let goals = std::fs::read(options.out().join(GOALS)).ok();
         let reached: Vec<Reached> = goals.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
         let text = written_into(&Source::read(path)?, &results(&summary, &reached))?;
         let mut file = OutputFile::create(path, true)?;
@@ -137,21 +238,15 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Stud
     Ok(Studied { outcomes, summary })
 }
 
-/// The reference goals over `seeds` noise seeds; writes `reference.json`. `progress` is told (finished, of) runs.
+/// The reference goals; writes `reference.json`. `progress` is told (finished, of) runs.
 ///
 /// # Errors
-/// `F003` for a folder that has results of an earlier run, unless `force`; outputs that cannot be written.
-pub fn reference(
-    seeds: u64,
-    threads: usize,
-    out: &FilePath,
-    force: bool,
-    progress: &mut dyn FnMut(u64, u64),
-) -> Result<Vec<Reached>, Failure> {
-    let path = out.join(GOALS);
-    std::fs::create_dir_all(out).map_err(|e| InputError::unwritable(&path, &e))?;
-    let mut file = OutputFile::create(&path, force)?;
-    let reached = goals(seeds, threads, progress)?;
+/// `F003` for a folder that has results of an earlier run, unless they are to be dropped; outputs that cannot be written.
+fn reference(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Vec<Reached>, Failure> {
+    let path = options.out().join(GOALS);
+    std::fs::create_dir_all(options.out()).map_err(|e| InputError::unwritable(&path, &e))?;
+    let mut file = OutputFile::create(&path, options.force)?;
+    let reached = goals(options.seeds, options.threads(), progress)?;
     file.write_all(&json(&reached)?).map_err(|e| InputError::unwritable(&path, &e))?;
     file.commit()?;
     Ok(reached)

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_correction::learn::{Learned, learn};
 use truepath_correction::learning::History;
 use truepath_correction::rows::CorrectionRow;
@@ -25,7 +25,7 @@ pub struct Carried {
     /// What it says.
     pub measurement: Measurement,
     /// The correction.
-    pub corrected: Corrected,
+    pub corrected: CorrectedPass,
     /// The part cut with it.
     pub milled: Milled,
     /// Its wall.
@@ -138,7 +138,7 @@ fn measured(case: &Case, name: &str, probe: &str) -> Result<Measurement, Failure
 }
 
 /// Mills part `number` with a corrected program.
-fn cut(case: &Case, number: u64, corrected: &Corrected) -> Result<Milled, Failure> {
+fn cut(case: &Case, number: u64, corrected: &CorrectedPass) -> Result<Milled, Failure> {
     let text = corrected.program.as_deref().ok_or_else(|| Failure::Internal("no corrected program".to_owned()))?;
     let commanded = virtual_mill::commanded(&case.pass, text)?;
     virtual_mill::mill(&case.pass, &case.machine_of(number), Some(&commanded))

@@ -7,13 +7,17 @@ use super::families::family;
 use super::seeds::Set;
 
 /// What a grid changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum)]
 pub enum Axis {
-    /// Standard deviation of the probe, µm.
+    /// Probe noise.
+    ///
+    /// Its standard deviation, µm.
     Noise,
     /// Number of touches.
     Points,
-    /// Mistakes of the user, as a multiple of the usual.
+    /// Mistakes of the job.
+    ///
+    /// As a multiple of the usual.
     Prior,
 }
 

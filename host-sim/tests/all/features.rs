@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 use truepath::command::{correct, inspect, simulate};
 use truepath_core::image::Image;
-use truepath_correction::correct::{Corrected, correct as corrected_in_memory};
+use truepath_correction::correct::{CorrectedPass, correct as corrected_in_memory};
 use truepath_ground::diagnostics::{Failure, Form, InputError, Source};
-use truepath_job::job::{Job, PartFlags, ProbeFlags, Route, Which};
+use truepath_job::job::{Job, Route, Which};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
@@ -37,7 +37,7 @@ fn refused(result: Result<Pass, Failure>) -> (InputError, String) {
 }
 
 /// Mills the pass, probes it and corrects by both routes.
-fn corrected(pass: &Pass, ball: f64) -> (Pass, Corrected) {
+fn corrected(pass: &Pass, ball: f64) -> (Pass, CorrectedPass) {
     let machine: Machine = toml::from_str(PLANT).unwrap();
     let milled = virtual_mill::mill(pass, &machine, None).unwrap();
     let length = pass.core.contour.length.nm() as f64 / 1e6;
@@ -248,19 +248,11 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
         std::fs::copy(data(name), at(name)).unwrap();
     }
     let which = Which { feature: Some("pocket".to_owned()), pass: None };
-    let (job, out) = (at("markers.toml"), at("simulated"));
-    let options = simulate::Options {
-        job: &job,
-        plant: None,
-        out: &out,
-        recording: None,
-        probed_wall: false,
-        force: false,
-        which,
-    };
+    let job = at("markers.toml");
+    let options = simulate::Options { job, output: at("simulated"), which, ..simulate::Options::default() };
     let feature = simulate::run(&options).unwrap().feature.unwrap();
     assert_eq!((feature.id.as_deref(), feature.chosen_by), (Some("pocket"), "markers"));
-    let without = simulate::Options { which: Which::default(), out: &at("never"), ..options };
+    let without = simulate::Options { which: Which::default(), output: at("never"), ..options };
     assert!(matches!(simulate::run(&without), Err(Failure::Input(error)) if error.code() == "N001"));
     assert!(!at("never").exists());
 
@@ -268,17 +260,12 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
     let milled = virtual_mill::mill(&pass, &toml::from_str(PLANT).unwrap(), None).unwrap();
     let probe = virtual_mill::probe(&pass, &milled, &[15.0, 60.0, 95.0, 140.0], &[0.3, 0.8], 4.0).unwrap();
     std::fs::write(at("probe.txt"), probe).unwrap();
-    let (job, probe, which) = (at("pocket.toml"), at("probe.txt"), Which::default());
-    let flags = ProbeFlags::default();
-    let out = at("inspected");
+    let (job, probe) = (at("pocket.toml"), at("probe.txt"));
     let options = inspect::Options {
-        job: &job,
-        probe: &probe,
-        out: Some(&out),
-        force: false,
-        part: PartFlags::default(),
-        probe_flags: flags,
-        which: which.clone(),
+        job: job.clone(),
+        probe: probe.clone(),
+        output: Some(at("inspected")),
+        ..inspect::Options::default()
     };
     let summary = inspect::run(&options).unwrap().summary;
     assert_eq!((summary.feature.unwrap().pass, summary.points), (2, 8));
@@ -287,16 +274,12 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
         (Route::Coprocessor, &["correction.tpi", "correction-pass-1.tpi"][..]),
     ] {
         let out = at(files[0]);
-        let which = which.clone();
         let options = correct::Options {
-            job: &job,
-            probe: &probe,
-            out: &out,
-            force: false,
+            job: job.clone(),
+            probe: Some(probe.clone()),
+            output: out.clone(),
             route: Some(route),
-            first_pass: None,
-            probe_flags: flags,
-            which,
+            ..correct::Options::default()
         };
         correct::run(&options, &mut |_| ()).unwrap();
         assert!(files.iter().all(|name| out.join(name).exists()), "{route:?}");
@@ -342,14 +325,12 @@ fn every_depth_gets_its_image_however_many_there_are_and_none_of_a_deeper_pocket
             std::fs::write(out.join("correction-pass-old.tpi"), "the user's").unwrap();
         }
         let options = correct::Options {
-            job: &job,
-            probe: &probe,
-            out: &out,
+            job: job.clone(),
+            probe: Some(probe.clone()),
+            output: out.clone(),
             force,
             route: Some(Route::Coprocessor),
-            first_pass: None,
-            probe_flags: ProbeFlags::default(),
-            which: Which::default(),
+            ..correct::Options::default()
         };
         correct::run(&options, &mut |_| ()).unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)));
         let mut names: Vec<String> =

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use truepath::command::{correct, learn};
 use truepath_correction::learn::LearnSummary;
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_job::job::{Job, ProbeFlags, Which};
+use truepath_job::job::Job;
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
 use truepath_trial::virtual_mill;
@@ -31,14 +31,10 @@ static BENCH: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     probe(None, &[20.0, 32.0, 68.0, 80.0], "part-1.txt");
     probe(None, &[21.0, 32.5, 49.0, 68.5, 80.5], "uncorrected.txt");
     let options = correct::Options {
-        job: &at("job.toml"),
-        probe: &at("part-1.txt"),
-        out: &at("first"),
-        force: false,
-        route: None,
-        first_pass: None,
-        probe_flags: ProbeFlags::default(),
-        which: Which::default(),
+        job: at("job.toml"),
+        probe: Some(at("part-1.txt")),
+        output: at("first"),
+        ..correct::Options::default()
     };
     correct::run(&options, &mut |_| ()).unwrap();
     let commanded = virtual_mill::commanded(&pass, &fs::read(at("first/corrected.nc")).unwrap()).unwrap();
@@ -69,14 +65,11 @@ fn edit(file: &Path, from: &str, to: &str) {
 
 fn run(folder: &Path, probe: &str, from: &str, out: &str) -> Result<LearnSummary, Failure> {
     let options = learn::Options {
-        job: &folder.join("job.toml"),
-        probe: &folder.join(probe),
-        from: &folder.join(from),
-        out: &folder.join(out),
-        force: false,
-        route: None,
-        probe_flags: ProbeFlags::default(),
-        which: Which::default(),
+        job: folder.join("job.toml"),
+        probe: folder.join(probe),
+        from: folder.join(from),
+        output: folder.join(out),
+        ..learn::Options::default()
     };
     learn::run(&options, &mut |_| ())
 }
@@ -250,14 +243,11 @@ fn a_correction_is_not_replaced_by_one_made_from_the_part_that_was_cut_with_it()
     let (_guard, folder) = copy();
     let again = |probe: &str, out: &str| {
         let options = correct::Options {
-            job: &folder.join("job.toml"),
-            probe: &folder.join(probe),
-            out: &folder.join(out),
+            job: folder.join("job.toml"),
+            probe: Some(folder.join(probe)),
+            output: folder.join(out),
             force: true,
-            route: None,
-            first_pass: None,
-            probe_flags: ProbeFlags::default(),
-            which: Which::default(),
+            ..correct::Options::default()
         };
         correct::run(&options, &mut |_| ())
     };

@@ -2,15 +2,12 @@
 
 use std::f64::consts::PI;
 use std::fmt::Write;
-use std::path::Path;
 
-use truepath::command::simulate::{Options, Recording, run};
+use truepath::command::placement::PlacementOptions;
+use truepath::command::simulate::{Options, run};
 use truepath_core::units::Real;
-use truepath_ground::diagnostics::{Failure, Source};
-use truepath_job::job::Which;
+use truepath_ground::diagnostics::Failure;
 use truepath_report::SimulateSummary;
-use truepath_trial::replay::Placement;
-use truepath_trial::setpoints::Setpoints;
 
 const PROGRAM: &str = "G21 G17 G90 G94\nT1 M6\nS1500 M3\nG0 X34 Y80\nG1 Z-15 F400\nG1 X34 Y35\n\
                        G3 X39 Y30 I5 J0\nG1 X90 Y30\nG0 Z30\nM30\n";
@@ -50,27 +47,27 @@ fn pass(off: f64, feed: f64, rpm: f64) -> Vec<[f64; 4]> {
     down.chain(deep).chain(up).collect()
 }
 
-fn setpoints(frame: &str, rows: &[[f64; 4]]) -> Setpoints {
+fn setpoints(frame: &str, rows: &[[f64; 4]]) -> String {
     let mut text = format!("# frame = {frame}\nt_s,x_mm,y_mm,z_mm,spindle_rpm\n");
     for (k, [x, y, z, rpm]) in rows.iter().enumerate() {
         let _ = writeln!(text, "{:.3},{x:.6},{y:.6},{z:.6},{rpm}", k as f64 / 1e3);
     }
-    Setpoints::parse(&Source::new("in.csv", text.into_bytes())).expect("setpoints")
+    text
 }
 
 /// Cuts along a recording, or along the program with other keys in `[cut]`.
-fn cut(recording: Option<(&Setpoints, Placement)>, keys: &str) -> Result<SimulateSummary, Failure> {
+fn cut(recording: Option<(&str, PlacementOptions)>, keys: &str) -> Result<SimulateSummary, Failure> {
     let desk = tempfile::tempdir().expect("a folder");
     let put = |name: &str, text: &str| std::fs::write(desk.path().join(name), text).expect("a file");
     put("corner.nc", PROGRAM);
     put("job.toml", &JOB.replace("CUT", keys));
     put("plant.toml", PLANT);
     let at = |name: &str| desk.path().join(name);
-    let (job, plant, out) = (at("job.toml"), at("plant.toml"), at("out"));
-    let recording = recording.map(|(setpoints, placement)| Recording { setpoints, placement });
-    let plant: Option<&Path> = Some(&plant);
-    let which = Which::default();
-    run(&Options { job: &job, plant, recording, probed_wall: true, out: &out, force: false, which })
+    let setpoints = recording.as_ref().map(|_| at("in.csv"));
+    let (text, placement) = recording.unwrap_or_default();
+    put("in.csv", text);
+    let (job, plant, output) = (at("job.toml"), Some(at("plant.toml")), at("out"));
+    run(&Options { job, plant, setpoints, placement, probed_wall: true, output, ..Options::default() })
 }
 
 fn largest(summary: &SimulateSummary) -> f64 {
@@ -82,7 +79,7 @@ fn a_recording_of_the_program_itself_gives_its_wall() {
     let usual = cut(None, "").expect("a wall");
     assert!(usual.recorded.is_none());
     let rows = setpoints("program", &pass(0.0, 400.0, 1500.0));
-    let recorded = cut(Some((&rows, Placement::default())), "").expect("a wall");
+    let recorded = cut(Some((&rows, PlacementOptions::default())), "").expect("a wall");
     assert!((largest(&usual) - largest(&recorded)).abs() < 5e-4, "{} {}", largest(&usual), largest(&recorded));
     let facts = recorded.recorded.expect("facts");
     assert!(facts.passes == 1 && facts.farthest_mm < 1e-3, "{facts:?}");
@@ -94,7 +91,7 @@ fn a_recording_of_the_program_itself_gives_its_wall() {
 fn the_chip_follows_the_recorded_feed_and_the_recorded_spindle() {
     let at = |feed: f64, rpm: f64| {
         let rows = setpoints("program", &pass(0.0, feed, rpm));
-        largest(&cut(Some((&rows, Placement::default())), "").expect("a wall"))
+        largest(&cut(Some((&rows, PlacementOptions::default())), "").expect("a wall"))
     };
     let usual = at(400.0, 1500.0);
     let half = largest(&cut(None, "feed_mm_per_min = 200").expect("a wall"));
@@ -110,7 +107,7 @@ fn a_place_at_which_the_cutter_stops_carries_the_mark_of_it() {
     // 20 mm from the start: without a chip only the edges push, and less material is left there than anywhere else.
     let stop = rows[500 + 3_000];
     rows.splice(3_500..3_500, std::iter::repeat_n(stop, 400));
-    let recorded = cut(Some((&setpoints("program", &rows), Placement::default())), "").expect("a wall");
+    let recorded = cut(Some((&setpoints("program", &rows), PlacementOptions::default())), "").expect("a wall");
     assert!(recorded.recorded.as_ref().expect("facts").least_feed < 0.01);
     let usual = cut(None, "").expect("a wall");
     let left = |summary: &SimulateSummary| -summary.judged.expect("judged").gouge_mm;
@@ -121,13 +118,17 @@ fn a_place_at_which_the_cutter_stops_carries_the_mark_of_it() {
 #[test]
 fn machine_coordinates_of_a_turned_program_give_the_same_wall() {
     let rows = pass(0.0, 400.0, 1500.0);
-    let placement = Placement::turned([150_000_000, 100_000_000, -120_000_000], Real::from_int(30));
+    let placement = PlacementOptions {
+        origin_mm: Some([150_000_000, 100_000_000, -120_000_000]),
+        rotation_deg: Some(Real::from_int(30)),
+        ..PlacementOptions::default()
+    };
     let (sine, cosine) = (PI / 6.0).sin_cos();
     let turned: Vec<[f64; 4]> = rows
         .iter()
         .map(|[x, y, z, rpm]| [150.0 + cosine * x - sine * y, 100.0 + sine * x + cosine * y, z - 120.0, *rpm])
         .collect();
-    let program = cut(Some((&setpoints("program", &rows), Placement::default())), "").expect("a wall");
+    let program = cut(Some((&setpoints("program", &rows), PlacementOptions::default())), "").expect("a wall");
     let machine = cut(Some((&setpoints("machine", &turned), placement)), "").expect("a wall");
     assert!((largest(&program) - largest(&machine)).abs() < 1e-5);
 }
@@ -135,7 +136,7 @@ fn machine_coordinates_of_a_turned_program_give_the_same_wall() {
 #[test]
 fn of_several_passes_the_nearest_to_the_contour_is_the_finishing_one() {
     let rows = [pass(1.5, 800.0, 1500.0), pass(0.05, 400.0, 1500.0)].concat();
-    let summary = cut(Some((&setpoints("program", &rows), Placement::default())), "").expect("a wall");
+    let summary = cut(Some((&setpoints("program", &rows), PlacementOptions::default())), "").expect("a wall");
     let facts = summary.recorded.expect("facts");
     assert_eq!(facts.passes, 2);
     assert!((facts.farthest_mm - 0.05).abs() < 1e-3 && facts.from_s > 8.0, "{facts:?}");
@@ -145,7 +146,8 @@ fn of_several_passes_the_nearest_to_the_contour_is_the_finishing_one() {
 #[test]
 fn a_recording_without_the_pass_and_a_spindle_that_stands_are_told() {
     let code = |rows: &[[f64; 4]]| {
-        let Err(Failure::Input(error)) = cut(Some((&setpoints("program", rows), Placement::default())), "") else {
+        let Err(Failure::Input(error)) = cut(Some((&setpoints("program", rows), PlacementOptions::default())), "")
+        else {
             panic!("a wall")
         };
         error.code().to_owned()

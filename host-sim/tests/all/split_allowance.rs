@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use truepath::command::{correct, split};
 use truepath_ground::diagnostics::Failure;
-use truepath_job::job::{Job, ProbeFlags, Route, Which};
+use truepath_job::job::{Job, Route};
 use truepath_job::pass::Pass;
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/features");
@@ -24,7 +24,7 @@ fn write(folder: &Path, program: &str, job: &str) -> PathBuf {
 }
 
 fn run(job: &Path, out: &Path) -> Result<split::Split, Failure> {
-    split::run(&split::Options { job, out, force: false, which: Which::default() })
+    split::run(&split::Options { job: job.to_owned(), output: out.to_owned(), ..split::Options::default() })
 }
 
 fn refusal(job: &Path, out: &Path) -> (String, Option<usize>) {
@@ -140,14 +140,12 @@ fn touches(z: [f64; 2]) -> String {
 
 fn second(job: &Path, first: &Path, probe: &Path, out: &Path) -> Result<Vec<u32>, Failure> {
     let options = correct::Options {
-        job,
-        probe,
-        out,
-        force: false,
+        job: job.to_owned(),
+        probe: Some(probe.to_owned()),
+        output: out.to_owned(),
         route: Some(Route::Program),
-        first_pass: Some(first),
-        probe_flags: ProbeFlags::default(),
-        which: Which::default(),
+        first_pass: Some(first.to_owned()),
+        ..correct::Options::default()
     };
     let summary = correct::run(&options, &mut |_| ())?;
     let spring = summary.warnings.iter().filter(|w| w.contains("spring pass")).count();
@@ -197,16 +195,12 @@ fn who_corrects_the_first_pass_itself_is_told_what_that_means() {
     let written = run(&job, &folder.path().join("first")).unwrap();
     let probe = folder.path().join("probe.txt");
     fs::write(&probe, touches([-4.0, -2.5])).unwrap();
-    let out = folder.path().join("again");
     let options = correct::Options {
-        job: &written.job,
-        probe: &probe,
-        out: &out,
-        force: false,
+        job: written.job,
+        probe: Some(probe),
+        output: folder.path().join("again"),
         route: Some(Route::Program),
-        first_pass: None,
-        probe_flags: ProbeFlags::default(),
-        which: Which::default(),
+        ..correct::Options::default()
     };
     let summary = correct::run(&options, &mut |_| ()).unwrap();
     assert!(summary.warnings.iter().any(|w| w.contains("that of a first pass")), "{:?}", summary.warnings);

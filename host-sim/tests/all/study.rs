@@ -1,6 +1,7 @@
 //! The study: distributions that do not depend on what is studied, results that survive an interruption, a page with
 //! everything on it.
 
+use clap::Parser;
 use truepath::command::study::{Options, cases, run};
 use truepath_study::case::Case;
 use truepath_study::families::FAMILIES;
@@ -8,25 +9,22 @@ use truepath_study::id::{Axis, CaseId};
 use truepath_study::ledger::NAME;
 use truepath_study::seeds::Set;
 
-fn options<'a>(out: &'a std::path::Path, families: &'a [String]) -> Options<'a> {
-    Options {
-        out,
-        set: Set::Tuning,
-        families,
-        seeds: 1,
-        axis: None,
-        first_only: false,
-        write: None,
-        force: false,
-        threads: Some(2),
-    }
+#[derive(Parser)]
+struct Asked {
+    #[command(flatten)]
+    options: Options,
+}
+
+fn options(words: &[&str]) -> Options {
+    let usual = ["study", "--seeds", "1", "--threads", "2", "-o"];
+    Asked::try_parse_from(usual.iter().chain(words)).unwrap_or_else(|e| panic!("{e}")).options
 }
 
 #[test]
 fn two_cases_go_the_whole_way_and_an_interrupted_study_goes_on() {
     let folder = tempfile::tempdir().expect("a folder");
-    let families = ["corner-papers".to_owned(), "bore".to_owned()];
-    let asked = options(folder.path(), &families);
+    let families = ["corner-papers", "bore"];
+    let asked = options(&[folder.path().to_str().expect("a name"), "--families", &families.join(",")]);
     let studied = run(&asked, &mut |_, _| ()).expect("two cases");
     for outcome in &studied.outcomes {
         assert_eq!((outcome.failure.as_str(), outcome.learn_failure.as_str()), ("", ""), "{}", outcome.case);
@@ -45,7 +43,7 @@ fn two_cases_go_the_whole_way_and_an_interrupted_study_goes_on() {
     };
     assert_eq!(without_time(&again.outcomes), without_time(&studied.outcomes), "a case is the same every time");
     let page = std::fs::read_to_string(folder.path().join("study.html")).expect("the page");
-    for name in families.iter().map(String::as_str).chain(["Where it stops working", "<svg"]) {
+    for name in families.into_iter().chain(["Where it stops working", "<svg"]) {
         assert!(page.contains(name), "{name} is not on the page");
     }
 }
@@ -69,9 +67,8 @@ fn every_family_draws_cases_that_can_be_milled_and_touched() {
 
 #[test]
 fn no_two_sets_share_a_case_and_every_family_is_in_each() {
-    let nowhere = std::path::Path::new("");
     let names = |set: Set, seeds: u64| -> Vec<String> {
-        let asked = Options { set, seeds, ..options(nowhere, &[]) };
+        let asked = Options { set, seeds, ..options(&["nowhere"]) };
         cases(&asked).expect("cases").iter().map(ToString::to_string).collect()
     };
     let (tuning, test) = (names(Set::Tuning, 3), names(Set::Test, 3));
@@ -80,6 +77,6 @@ fn no_two_sets_share_a_case_and_every_family_is_in_each() {
     assert!(tuning.iter().all(|name| !test.contains(name)));
     let random = names(Set::Random, FAMILIES.len() as u64);
     assert!(FAMILIES.iter().all(|family| random.iter().any(|name| name.starts_with(family.name))));
-    let grid = Options { axis: Some(Axis::Noise), ..options(nowhere, &[]) };
+    let grid = Options { axis: Some(Axis::Noise), ..options(&["nowhere"]) };
     assert_eq!(cases(&grid).expect("cases").len(), FAMILIES.len() * Axis::Noise.values().len());
 }

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use truepath::command::compare;
 use truepath::command::compare::CompareSummary;
-use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Form, Source};
-use truepath_job::job::{Job, ProbeFlags, Route, Which};
+use truepath_job::job::{Job, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::{Machine, Milled};
@@ -40,7 +40,7 @@ fn probed(pass: &Pass) -> String {
 }
 
 /// The correction, and the part that is milled with it.
-fn milled(keys: &str) -> (Corrected, Milled) {
+fn milled(keys: &str) -> (CorrectedPass, Milled) {
     let pass = pass(keys);
     let file = Source::new("probe.txt", probed(&pass).into_bytes());
     let measurement = shown(Measurement::read(&pass, &file));
@@ -120,13 +120,11 @@ fn compared(on_plant: bool) -> (tempfile::TempDir, CompareSummary) {
     write("probe.txt", &probed(&pass("")));
     let [job, probe, plant, out] = ["job.toml", "probe.txt", "plant.toml", "out"].map(|name| desk.path().join(name));
     let options = compare::Options {
-        job: &job,
-        probe: &probe,
-        plant: on_plant.then_some(plant.as_path()),
-        out: Some(&out),
-        force: false,
-        probe_flags: ProbeFlags::default(),
-        which: Which::default(),
+        job,
+        probe,
+        plant: on_plant.then_some(plant),
+        output: Some(out),
+        ..compare::Options::default()
     };
     let summary = shown(compare::run(&options, &mut |_| ()));
     (desk, summary)

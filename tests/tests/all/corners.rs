@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_job::job::{Job, Route};
 use truepath_job::measurement::Measurement;
@@ -28,7 +28,7 @@ fn pass(moves: &str, wall: &str, allowance: f64) -> Pass {
 struct Told {
     pass: Pass,
     first: Milled,
-    corrected: Corrected,
+    corrected: CorrectedPass,
     second: Milled,
 }
 

@@ -8,8 +8,8 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::hil_support::{image, options, part, serve};
-use truepath::command::device::{Recorded, recording, recording_table};
 use truepath::command::hil::{Kind, Source, open, run};
+use truepath::coprocessor::{Recorded, recording, recording_table};
 use truepath_bench::{Board, Faults};
 use truepath_core::image::Image;
 use truepath_core::link::{Ask, SetpointFrame};

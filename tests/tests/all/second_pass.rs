@@ -1,12 +1,12 @@
 //! A single part: half of the allowance is cut and probed, and the second half is corrected over the actual surface.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use truepath::command::{correct, split};
 use truepath_correction::second_pass;
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_job::job::{Job, ProbeFlags, Route};
+use truepath_job::job::{Job, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_job::surface::Surface;
@@ -35,13 +35,16 @@ fn mill_over(pass: &Pass, machine: &plant::Machine, surface: Vec<[f64; 2]>, text
     virtual_mill::mill(&pass, machine, centres.as_deref()).unwrap()
 }
 
+fn halved(job: &Path, output: PathBuf) -> Result<split::Split, Failure> {
+    split::run(&split::Options { job: job.to_owned(), output, ..split::Options::default() })
+}
+
 /// Largest error of a single part: split, milled, probed, corrected; and of the second pass without correction.
 fn single_part(name: &str, places: &[f64], levels: &[f64]) -> (f64, f64) {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("split");
     let job = demo(name).join("job.toml");
-    let written =
-        split::run(&split::Options { job: &job, out: &out, force: false, which: Default::default() }).unwrap();
+    let written = halved(&job, out).unwrap();
     let (whole, first) = (pass(&job), pass(&written.job));
     let machine = machine(name);
     let milled = virtual_mill::mill(&first, &machine, None).unwrap();
@@ -51,14 +54,12 @@ fn single_part(name: &str, places: &[f64], levels: &[f64]) -> (f64, f64) {
 
     let result = folder.path().join("second");
     let options = correct::Options {
-        job: &job,
-        probe: &folder.path().join("probe.txt"),
-        out: &result,
-        force: false,
+        job,
+        probe: Some(folder.path().join("probe.txt")),
+        output: result.clone(),
         route: Some(Route::Program),
-        first_pass: Some(&written.job),
-        probe_flags: ProbeFlags::default(),
-        which: Default::default(),
+        first_pass: Some(written.job),
+        ..correct::Options::default()
     };
     correct::run(&options, &mut |_| ()).unwrap();
     assert!(fs::read_to_string(result.join("first-pass-surface.csv")).unwrap().starts_with("x_mm,y_mm\n"));
@@ -80,13 +81,7 @@ fn the_second_pass_of_a_single_part_comes_out_right() {
 fn the_first_pass_leaves_half_of_the_allowance_and_is_no_corrected_program() {
     let folder = tempfile::tempdir().unwrap();
     let job = demo("corner").join("job.toml");
-    let written = split::run(&split::Options {
-        job: &job,
-        out: &folder.path().join("a"),
-        force: false,
-        which: Default::default(),
-    })
-    .unwrap();
+    let written = halved(&job, folder.path().join("a")).unwrap();
     let text = fs::read_to_string(&written.program).unwrap();
     assert!(text.contains("(TRUEPATH FIRST PASS, LEAVES 1.5 MM)"), "{text}");
     assert!(text.contains("X35.5 Y35.") && text.contains("X39. Y31.5 I3.5 J0."), "{text}");
@@ -110,11 +105,7 @@ fn a_sharp_inside_corner_cannot_be_split_and_other_jobs_are_no_first_pass() {
     let job = folder.path().join("job.toml");
     fs::write(&job, &text).unwrap();
     let out = folder.path().join("out");
-    let Err(Failure::Input(error)) =
-        split::run(&split::Options { job: &job, out: &out, force: false, which: Default::default() })
-    else {
-        panic!("split across a sharp corner")
-    };
+    let Err(Failure::Input(error)) = halved(&job, out.clone()) else { panic!("split across a sharp corner") };
     assert_eq!((error.code(), error.line_column().map(|(line, _)| line)), ("P020", Some(12)));
     assert!(!out.exists());
 

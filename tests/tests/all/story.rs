@@ -8,10 +8,10 @@ use truepath::command::correct::Options;
 use truepath::command::{correct, demo};
 use truepath_core::image::Image;
 use truepath_ground::diagnostics::Failure;
-use truepath_job::job::{ProbeFlags, Route, Which};
+use truepath_job::job::Route;
 
 fn told(folder: &Path) -> Vec<demo::Outcome> {
-    demo::run(folder, demo::Earlier::Replace, &mut |_| ()).unwrap()
+    demo::run(&demo::Options { output: folder.to_owned(), keep: false, force: true }, &mut |_| ()).unwrap()
 }
 
 /// The demonstration, told once for all tests.
@@ -74,8 +74,9 @@ fn the_same_inputs_give_the_same_bytes() {
 #[test]
 fn an_edited_file_of_the_demonstration_is_replaced_only_when_told_to() {
     let folder = tempfile::tempdir().unwrap();
-    let told = |earlier| demo::run(folder.path(), earlier, &mut |_| ());
-    let refused = |earlier| match told(earlier) {
+    let usual = demo::Options { output: folder.path().to_owned(), keep: false, force: false };
+    let told = |options: &demo::Options| demo::run(options, &mut |_| ());
+    let refused = |options: &demo::Options| match told(options) {
         Err(Failure::Input(error)) => error,
         other => panic!("{other:?}"),
     };
@@ -87,22 +88,22 @@ fn an_edited_file_of_the_demonstration_is_replaced_only_when_told_to() {
             fs::copy(entry.path(), place.join(entry.file_name())).unwrap();
         }
     }
-    assert_eq!(refused(demo::Earlier::Stop).code(), "F003");
+    assert_eq!(refused(&demo::Options { keep: true, ..usual.clone() }).code(), "F003");
     // What it wrote itself it may write again, and nothing else of a part.
     for (part, name) in [("pocket", "job.toml"), ("corner", "probe.txt")] {
         let file = folder.path().join(part).join(name);
         let written = fs::read(&file).unwrap();
         let edited = [written.as_slice(), b"\n# mine\n"].concat();
         fs::write(&file, &edited).unwrap();
-        let error = refused(demo::Earlier::ReplaceUnchanged);
+        let error = refused(&usual);
         assert_eq!(error.code(), "F003");
         assert!(error.to_string().contains(&format!("{part}/{name} is not what the demonstration writes")), "{error}");
         assert_eq!(fs::read(&file).unwrap(), edited);
         fs::write(&file, &written).unwrap();
     }
-    assert_eq!(told(demo::Earlier::ReplaceUnchanged).unwrap().len(), 3);
+    assert_eq!(told(&usual).unwrap().len(), 3);
     fs::write(folder.path().join("corner/job.toml"), "mine").unwrap();
-    told(demo::Earlier::Replace).unwrap();
+    told(&demo::Options { force: true, ..usual }).unwrap();
     for outcome in &STORY.1 {
         for entry in fs::read_dir(&outcome.folder).unwrap() {
             let name = entry.unwrap().file_name();
@@ -116,20 +117,14 @@ fn an_edited_file_of_the_demonstration_is_replaced_only_when_told_to() {
 fn correct_reads_what_the_demonstration_wrote_and_refuses_a_second_correction() {
     let (_kept, part) = part(0);
     let options = |job: &Path, out: &Path, route| -> Result<_, Failure> {
-        let probe = part.join("probe.txt");
-        correct::run(
-            &Options {
-                job,
-                probe: &probe,
-                out,
-                force: false,
-                route: Some(route),
-                first_pass: None,
-                probe_flags: ProbeFlags::default(),
-                which: Which::default(),
-            },
-            &mut |_| (),
-        )
+        let options = Options {
+            job: job.to_owned(),
+            probe: Some(part.join("probe.txt")),
+            output: out.to_owned(),
+            route: Some(route),
+            ..Options::default()
+        };
+        correct::run(&options, &mut |_| ())
     };
     let job = part.join("job.toml");
     let out = part.join("again");
@@ -173,16 +168,7 @@ fn a_correction_beyond_the_clamp_is_an_error_that_proposes_one_and_writes_nothin
     let job = fs::read_to_string(part.join("job.toml")).unwrap().replace("clamp_mm = 1.0", "clamp_mm = 0.2");
     fs::write(part.join("tight.toml"), job).unwrap();
     let (job, probe, out) = (part.join("tight.toml"), part.join("probe.txt"), part.join("out"));
-    let options = Options {
-        job: &job,
-        probe: &probe,
-        out: &out,
-        force: false,
-        route: None,
-        first_pass: None,
-        probe_flags: ProbeFlags::default(),
-        which: Which::default(),
-    };
+    let options = Options { job, probe: Some(probe), output: out.clone(), ..Options::default() };
     let Err(Failure::Input(error)) = correct::run(&options, &mut |_| ()) else { panic!("clamped in silence") };
     assert_eq!(error.code(), "J017");
     let shown = Failure::Input(error).render(truepath_ground::diagnostics::Form::Plain);

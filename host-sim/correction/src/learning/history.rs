@@ -12,7 +12,7 @@ use truepath_job::pass::Pass;
 use super::facts::Facts;
 use super::nodes::{Nodes, differences, sums};
 use super::points::Point;
-use crate::correct::Corrected;
+use crate::correct::CorrectedPass;
 use crate::correction::Correction;
 
 /// Parts a history keeps: when there are more, the oldest is dropped, and the summary says so.
@@ -81,14 +81,14 @@ impl History {
     ///
     /// # Errors
     /// Internal, when the points cannot be held.
-    pub fn first(pass: &Pass, measurement: &Measurement, corrected: &Corrected) -> Result<Self, Failure> {
+    pub fn first(pass: &Pass, measurement: &Measurement, corrected: &CorrectedPass) -> Result<Self, Failure> {
         let part = Part::new(1, measurement, None)?;
         Ok(Self { version: VERSION, facts: Facts::of(pass), parts: vec![part], next: Next::of(corrected) })
     }
 
     /// After one more part.
     #[must_use]
-    pub fn with(&self, part: Part, corrected: &Corrected) -> Self {
+    pub fn with(&self, part: Part, corrected: &CorrectedPass) -> Self {
         let mut parts = self.parts.clone();
         parts.push(part);
         let dropped = parts.len().saturating_sub(MOST_PARTS);
@@ -204,7 +204,7 @@ impl Part {
 }
 
 impl Next {
-    fn of(corrected: &Corrected) -> Self {
+    fn of(corrected: &CorrectedPass) -> Self {
         let Correction { nodes, predicted, sigma, wanted, .. } = &corrected.correction;
         let file = |name: &str, bytes: &Option<Vec<u8>>| {
             bytes.as_ref().map(|b| WrittenFile { name: name.to_owned(), crc32: format!("{:08x}", crc32(b)) })

@@ -13,7 +13,7 @@ use truepath_ground::units::{float, mm};
 
 use super::belief::{Belief, of_measurement};
 use super::knowledge::Row;
-use crate::correction::Identified;
+use crate::correction::Identification;
 
 /// Step of the difference quotients, in standard deviations of what the job states.
 const DIFFERENCE: Real = Real::ratio(1, 8);
@@ -31,7 +31,7 @@ impl Goal {
     /// Of a correction on a path under the identified wall law. `progress` is told the share done, 0…1.
     pub fn of(
         path: &Path,
-        identified: &Identified,
+        identified: &Identification,
         wanted: &Design,
         nodes: &[Node],
         progress: &mut dyn FnMut(f64),

@@ -43,7 +43,7 @@ mod text;
 mod walk;
 
 pub use candidates::KeptOff;
-pub use dialect::{Dialect, write};
+pub use dialect::{ProbeDialect, write};
 pub use goal::Goal;
 pub use heights::Height;
 pub use next::{Measured, plan_next};

@@ -24,13 +24,13 @@ use super::plan::{Gained, Place, Plan};
 use super::reason;
 use super::sensitivity::tellings;
 use super::settings::Settings;
-use crate::correction::Identified;
+use crate::correction::Identification;
 
 /// What was measured, and which part will be touched.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<'a> {
     /// Machine and material by the points at hand.
-    pub identified: &'a Identified,
+    pub identified: &'a Identification,
     /// The path of the part that will be touched, under the identified wall law.
     pub path: &'a Path<'a>,
     /// The correction that part was cut with; empty for an uncorrected one.

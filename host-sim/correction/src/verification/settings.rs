@@ -5,29 +5,40 @@ use std::ops::RangeInclusive;
 use truepath_ground::diagnostics::InputError;
 
 /// Choices; lengths in millimetres, feeds in mm/min whatever the unit of the program.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, clap::Args)]
 pub struct Settings {
-    /// Places along the contour, 1…64.
+    /// Places along the contour; how many are usual depends on what is known.
+    #[arg(skip = Settings::default().places)]
     pub places: u32,
-    /// Heights at each place, 1…9.
+    /// Heights at each place.
+    #[arg(long, value_name = "N", default_value_t = Settings::default().heights)]
     pub heights: u32,
-    /// From the ball's surface at the stand-off to the nominal wall, 1…50 mm.
+    /// From the ball's surface to the nominal wall where a touch begins, mm.
+    #[arg(long, value_name = "MM", default_value_t = Settings::default().clearance)]
     pub clearance: f64,
-    /// How far beyond the nominal wall a touch is searched, 0.1…5 mm.
+    /// How far beyond the nominal wall a touch is searched, mm.
+    #[arg(long, value_name = "MM", default_value_t = Settings::default().overtravel)]
     pub overtravel: f64,
-    /// From the lowest point of the ball to the floor, 0…50 mm.
+    /// From the ball's lowest point to the floor, mm.
+    #[arg(long, value_name = "MM", default_value_t = Settings::default().floor_clearance)]
     pub floor_clearance: f64,
-    /// Width of what is free before the wall; the cutter's diameter, which the pass itself has cleared, when not given.
+    /// Width that is free before the wall, mm [default: the cutter's diameter, which the pass has cleared].
+    #[arg(long, value_name = "MM")]
     pub free_width: Option<f64>,
-    /// Height for moves between places, program coordinates.
+    /// Z for moves between places, mm [default: 50 mm above the engaged depth, and no lower than the part's program moves].
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub safe_z: Option<f64>,
-    /// Feed of moves that should touch nothing, 1…10,000 mm/min.
+    /// Feed of moves that should touch nothing, mm/min.
+    #[arg(long, value_name = "MM/MIN", default_value_t = Settings::default().feed_move)]
     pub feed_move: f64,
-    /// Feed of the first touch, 1…2,000 mm/min.
+    /// Feed of the first touch, mm/min.
+    #[arg(long, value_name = "MM/MIN", default_value_t = Settings::default().feed_fast)]
     pub feed_fast: f64,
-    /// Feed of the second touch, 1…500 mm/min.
+    /// Feed of the second touch, which counts, mm/min.
+    #[arg(long, value_name = "MM/MIN", default_value_t = Settings::default().feed_slow)]
     pub feed_slow: f64,
-    /// Number of the probe in the tool table, 1…99,999; without it the operator puts the probe in.
+    /// Call the probe as this tool (T, M6, G43 H) instead of stopping for the operator.
+    #[arg(long, value_name = "N")]
     pub probe_tool: Option<u32>,
 }
 

@@ -28,7 +28,7 @@ use super::{Job, Which};
 const RIGID: Machine = Machine { stiffness_x: Real::from_int(1_000_000), stiffness_y: Real::from_int(1_000_000) };
 
 /// Names of the controls a program may be written for.
-const DIALECTS: [(&str, Dialect); 5] = [
+pub const DIALECTS: [(&str, Dialect); 5] = [
     ("linuxcnc", Dialect::Linuxcnc),
     ("fanuc", Dialect::Fanuc),
     ("haas", Dialect::Haas),
@@ -37,7 +37,7 @@ const DIALECTS: [(&str, Dialect); 5] = [
 ];
 
 /// What a length without a point may be.
-const DECIMALS: [(&str, PointlessLength); 2] =
+pub const DECIMALS: [(&str, PointlessLength); 2] =
     [("calculator", PointlessLength::Calculator), ("least", PointlessLength::Least)];
 
 /// Reads the whole job.

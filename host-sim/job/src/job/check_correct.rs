@@ -28,6 +28,9 @@ pub(super) struct Writing {
     pub(super) route: Route,
 }
 
+/// Routes by name.
+pub const ROUTES: [(&str, Route); 2] = [("program", Route::Program), ("coprocessor", Route::Coprocessor)];
+
 /// What the table says.
 pub(super) fn correct(
     source: &Source,
@@ -37,7 +40,6 @@ pub(super) fn correct(
     const LAWS: [(&str, LawName); 3] =
         [("model", LawName::Model), ("mirror", LawName::Mirror), ("paper", LawName::Paper)];
     const TARGETS: [(&str, Target); 3] = [("mean", Target::Mean), ("tip", Target::Tip), ("minimax", Target::Minimax)];
-    const ROUTES: [(&str, Route); 2] = [("program", Route::Program), ("coprocessor", Route::Coprocessor)];
     let mut correct = Correct {
         law: LawName::Model,
         clamp: DEFAULT_CLAMP,

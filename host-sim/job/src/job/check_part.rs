@@ -59,13 +59,16 @@ pub struct Tolerance {
 }
 
 /// What the command line says in place of the job.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
 pub struct PartFlags {
-    /// Serial number.
+    /// Serial number of the part, in place of part.serial of the job.
+    #[arg(long, value_name = "TEXT")]
     pub serial: Option<String>,
-    /// Half width of the tolerance, as written, mm.
+    /// Half the width of the tolerance of the wall, mm, in place of the limits of the job.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub tolerance: Option<String>,
-    /// Date of the measurement.
+    /// When the part was measured, for the report; without it none is named.
+    #[arg(long, value_name = "TEXT")]
     pub date: Option<String>,
 }
 

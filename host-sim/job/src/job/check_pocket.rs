@@ -17,12 +17,14 @@ pub enum Mode {
 }
 
 /// How the stations of a section are shifted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PerSection {
     /// By the predicted profile of the error.
     Profile,
-    /// By one value, as in LG03.
+    /// By one value.
+    ///
+    /// As in LG03.
     Constant,
 }
 

@@ -1,5 +1,6 @@
 //! The `[probe]` table, and the flags that stand in for its keys.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use truepath_core::job::{Probe, ZReference};
 use truepath_core::probe::{Columns, DecimalSign, Format, Frame, Layout, LengthUnit, PointKind, Separator};
 use truepath_core::units::Offset;
@@ -12,7 +13,7 @@ use truepath_ground::limits::Limits;
 const DEFAULT_NOISE: Offset = Offset::from_um(2);
 
 /// Formats by name.
-pub const FORMATS: [(&str, Format); 6] = [
+const FORMATS: [(&str, Format); 6] = [
     ("linuxcnc", Format::Linuxcnc),
     ("linuxcnc-log", Format::LinuxcncLog),
     ("grbl", Format::Grbl),
@@ -21,7 +22,7 @@ pub const FORMATS: [(&str, Format); 6] = [
     ("columns", Format::Columns),
 ];
 /// Separators of columns by name.
-pub const SEPARATORS: [(&str, Separator); 5] = [
+const SEPARATORS: [(&str, Separator); 5] = [
     ("auto", Separator::Auto),
     ("comma", Separator::Comma),
     ("semicolon", Separator::Semicolon),
@@ -29,12 +30,12 @@ pub const SEPARATORS: [(&str, Separator); 5] = [
     ("blank", Separator::Blank),
 ];
 /// Decimal signs by name.
-pub const DECIMALS: [(&str, DecimalSign); 3] =
+const DECIMALS: [(&str, DecimalSign); 3] =
     [("auto", DecimalSign::Auto), ("comma", DecimalSign::Comma), ("point", DecimalSign::Point)];
 /// Frames by name.
-pub const FRAMES: [(&str, Frame); 2] = [("work", Frame::Work), ("machine", Frame::Machine)];
+const FRAMES: [(&str, Frame); 2] = [("work", Frame::Work), ("machine", Frame::Machine)];
 /// Points by name.
-pub const POINTS: [(&str, PointKind); 2] = [("tip", PointKind::Tip), ("surface", PointKind::Surface)];
+const POINTS: [(&str, PointKind); 2] = [("tip", PointKind::Tip), ("surface", PointKind::Surface)];
 const UNITS: [(&str, LengthUnit); 2] = [("mm", LengthUnit::Millimetre), ("inch", LengthUnit::Inch)];
 const REFERENCES: [(&str, ZReference); 2] = [("centre", ZReference::Centre), ("tip", ZReference::Tip)];
 /// Keys that only a file of columns has.
@@ -43,19 +44,26 @@ const COLUMNS_EXPECTED: &str =
     "names of the columns in their order: x, y, z, and nx, ny, hit where there are such; any other name for the rest";
 
 /// What the command line says instead of the job.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::Args)]
+#[command(next_help_heading = "Probe file, in place of [probe] of the job")]
 pub struct ProbeFlags {
-    /// The format.
+    /// Its format.
+    #[arg(long, value_name = "FORMAT", value_parser = one_of(&FORMATS))]
     pub format: Option<Format>,
-    /// Columns in their order.
+    /// Columns in their order: x,y,z and nx,ny, hit where there are such; other names are not read.
+    #[arg(long = "cols", value_name = "NAMES", value_parser = given_columns)]
     pub columns: Option<Columns>,
-    /// What separates them.
+    /// What separates the columns.
+    #[arg(long = "sep", value_name = "NAME", value_parser = one_of(&SEPARATORS))]
     pub separator: Option<Separator>,
     /// What stands before decimals.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&DECIMALS))]
     pub decimal: Option<DecimalSign>,
-    /// Coordinates.
+    /// Coordinates of the columns; machine coordinates need probe.work_offset_mm.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&FRAMES))]
     pub frame: Option<Frame>,
-    /// Ball centre or surface.
+    /// Ball centre (tip) or touched point (surface).
+    #[arg(long, value_name = "NAME", value_parser = one_of(&POINTS))]
     pub point: Option<PointKind>,
 }
 
@@ -117,6 +125,21 @@ fn contradiction(probe: &Probe) -> Option<Wrong> {
         ));
     }
     None
+}
+
+/// Takes one of a list of names, as [`Section::choice`](truepath_ground::document::Section::choice) does in a job.
+pub fn one_of<T: Copy + Send + Sync, const N: usize>(
+    choices: &'static [(&'static str, T); N],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(choices.iter().map(|(name, _)| *name)).try_map(|text| {
+        let choice = choices.iter().find(|(name, _)| *name == text);
+        choice.map(|(_, choice)| *choice).ok_or(text)
+    })
+}
+
+fn given_columns(text: &str) -> Result<Columns, String> {
+    columns(text)
+        .ok_or_else(|| "expected x, y and z, each once, and nx and ny both or not at all: x,y,z,nx,ny".to_owned())
 }
 
 /// Columns from their names, separated by commas; `None` when x, y or z is missing, one is named twice, or nx and ny are

@@ -41,11 +41,13 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use crate::surface::Surface;
 
+pub use check::{DECIMALS, DIALECTS};
+pub use check_correct::ROUTES;
 pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
 pub use check_feed::{FeedTable, ForceLimit};
 pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
 pub use check_pocket::{Mode, PerSection, PocketTable};
-pub use check_probe::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
+pub use check_probe::{ProbeFlags, columns, one_of};
 pub use check_shank::Shank;
 pub use material::{MATERIALS, Material};
 
@@ -87,11 +89,13 @@ pub struct Job {
 }
 
 /// Which cut of a program with several a command is about.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
 pub struct Which {
-    /// The name of a feature; needed when the job has several finishing features.
+    /// The feature of the job, or of the markers in the program; needed when there are several to correct.
+    #[arg(long, value_name = "ID")]
     pub feature: Option<String>,
-    /// The level of the feature, from 1; otherwise that of the probe points, or the first.
+    /// The depth of the feature, 1 for the first; otherwise the one the probe points lie on, or the first.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=99_999))]
     pub pass: Option<u32>,
 }
 

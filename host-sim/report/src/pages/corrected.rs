@@ -2,7 +2,7 @@
 
 use truepath_core::correct::{Band, Target};
 use truepath_core::cut::Loop;
-use truepath_correction::correct::Corrected;
+use truepath_correction::correct::CorrectedPass;
 use truepath_correction::summary::CorrectSummary;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::float;
@@ -28,7 +28,7 @@ pub enum Points {
 ///
 /// # Errors
 /// As [`Pass::sample`].
-pub fn corrected(pass: &Pass, measurement: &Measurement, done: &Corrected, of: Points) -> Result<Page, Failure> {
+pub fn corrected(pass: &Pass, measurement: &Measurement, done: &CorrectedPass, of: Points) -> Result<Page, Failure> {
     let words = |label: &str| Words { name: None, label: format!("{label}, predicted by the identified model") };
     let passes = PredictedPasses {
         before: Some(words("without correction")),
@@ -47,7 +47,7 @@ pub fn corrected(pass: &Pass, measurement: &Measurement, done: &Corrected, of: P
 pub(super) fn of_correction(
     pass: &Pass,
     measurement: &Measurement,
-    done: &Corrected,
+    done: &CorrectedPass,
     of: Points,
     along: impl FnOnce(&Loop) -> Along,
 ) -> Result<Page, Failure> {
@@ -77,7 +77,7 @@ pub(super) fn of_correction(
     Ok(page)
 }
 
-/// Identified quantities, by name.
+/// Identification quantities, by name.
 fn parameters(summary: &CorrectSummary) -> Vec<Parameter> {
     let each = summary.identified.iter();
     each.map(|(name, of)| Parameter { name: (*name).to_owned(), of: of.clone() }).collect()
@@ -102,7 +102,7 @@ pub(super) fn figures(s: &CorrectSummary, largest: &[impl AsRef<str>; 2]) -> Vec
     figures.into_iter().flatten().collect()
 }
 
-fn facts(pass: &Pass, done: &Corrected, of: Points) -> Vec<Fact> {
+fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
     let (s, wanted) = (&done.summary, &done.correction.wanted);
     let mut facts = vec![
         Fact::new("law", format!("{}; the wall follows the {} force", s.law, s.wall_law)),

@@ -1,6 +1,6 @@
 //! The page of a part of `demo`: the first and the corrected part as the virtual machine cut them, no predictions.
 
-use truepath_correction::correct::Corrected;
+use truepath_correction::correct::CorrectedPass;
 use truepath_ground::diagnostics::Failure;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -17,7 +17,7 @@ pub fn demonstrated(
     title: &str,
     pass: &Pass,
     measurement: &Measurement,
-    done: &Corrected,
+    done: &CorrectedPass,
     cut: [(&Milled, &Score); 2],
 ) -> Result<Page, Failure> {
     let mut page = corrected(pass, measurement, done, Points::ThisPass)?;
@@ -41,7 +41,7 @@ pub fn demonstrated(
     Ok(page)
 }
 
-fn figures(before: &Score, after: &Score, done: &Corrected) -> Vec<Figure> {
+fn figures(before: &Score, after: &Score, done: &CorrectedPass) -> Vec<Figure> {
     let rms = |score: &Score| format!("cut, rms {:.4} mm", score.rms_error_mm);
     let s = &done.summary;
     let figures = [

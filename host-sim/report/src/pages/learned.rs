@@ -1,7 +1,7 @@
 //! The page of `learn`: the measured part as it was milled, beside the next one and the one without any correction.
 
 use truepath_correction::as_milled::AsMilled;
-use truepath_correction::correct::Corrected;
+use truepath_correction::correct::CorrectedPass;
 use truepath_correction::learn::LearnSummary;
 use truepath_correction::learning::Verdict;
 use truepath_ground::diagnostics::Failure;
@@ -19,7 +19,7 @@ use crate::page::{Fact, Figure, Kind, Page, PredictedPasses, Words, predicted, s
 pub fn learned(
     pass: &Pass,
     measurement: &Measurement,
-    done: &Corrected,
+    done: &CorrectedPass,
     milled: &AsMilled,
     summary: &LearnSummary,
 ) -> Result<Page, Failure> {

@@ -1,174 +1,231 @@
-//! `hil`: the device under setpoints and faults, every answer compared with the host's own code.
+//! `truepath hil`: a board under setpoints and faults, compared with the host answer by answer.
 
 mod on_board;
+mod onlooker;
 mod place;
 mod report;
+mod run;
 
-use std::path::Path;
-use std::sync::Arc;
+use std::fmt::Write;
+use std::path::PathBuf;
 
-use report::report;
-use truepath_bench::traffic::{Command, Controller, ControllerOptions, Recorded};
-use truepath_bench::{
-    Board, Campaign, Faults, Plan, Probability, RunStatus, Traffic, Watch, identify, prepare, to_off,
-};
-use truepath_core::image::Image;
-use truepath_core::link::{Ask, DeviceSettings};
-use truepath_core::rewrite::{ArmRequest, Mode};
+use clap::{Args, ValueEnum};
+use onlooker::Onlooker;
+use truepath_bench::{BenchError, Faults, RoundTrip};
 use truepath_ground::diagnostics::{Failure, InputError};
-use truepath_trial::replay;
-use truepath_trial::setpoints::{Frame, Setpoints};
 
 pub use on_board::{OnBoard, on_board};
 pub use place::{Kind, open};
 pub use report::{Counts, Report};
+pub use run::{Options, SILENCE_US, STREAM_HZ, Source, recorded, run, run_watched, settings};
 
-/// What the controller sends.
-#[derive(Clone, Debug)]
-pub enum Source {
-    /// The image's own path, well behaved but for feed holds and overrides.
-    Path,
-    /// The same with disturbances, in changing frames.
-    Random,
-    /// A file.
-    Recorded(Setpoints),
+use super::image;
+use crate::terminal::Terminal;
+
+/// What is run, as it is asked for.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// The correction image.
+    #[arg(required_unless_present = "job")]
+    image: Option<PathBuf>,
+    /// Have the device make the image of this job first, and compare it with the one made here.
+    #[arg(long, value_name = "FILE", requires = "probe", conflicts_with = "image")]
+    job: Option<PathBuf>,
+    /// What the probe measured, for --job.
+    #[arg(long, value_name = "FILE", requires = "job")]
+    probe: Option<PathBuf>,
+    /// What is tested: the device in this process, the emulated one, or one on serial ports.
+    #[arg(long, value_enum, default_value_t = BoardArgument::Host)]
+    board: BoardArgument,
+    /// Recorded setpoints in program coordinates; otherwise a part is milled along the path of the image.
+    #[arg(long, value_name = "FILE", conflicts_with = "random")]
+    setpoints: Option<PathBuf>,
+    /// So many setpoints along the path with everything that can go wrong, in changing frames.
+    #[arg(long, value_name = "N", conflicts_with = "count")]
+    random: Option<u64>,
+    /// Setpoints in all. [default: 20000, or the file once]
+    #[arg(long, value_name = "N")]
+    count: Option<u64>,
+    /// How a board is reached: frame by frame, or in batches through shared memory. [default: bulk; uart for serial]
+    #[arg(long, value_enum)]
+    link: Option<LinkArgument>,
+    /// Setpoints per second of the controller. Over uart they also go out at this rate, when it or a file is given.
+    /// [default: that of the file, or 1000; over uart 20000, which no uart reaches]
+    #[arg(long, value_name = "HZ")]
+    rate: Option<u32>,
+    /// Answers that may be outstanding over uart.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
+    window: u32,
+    /// Axes of a setpoint.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(3..=6))]
+    axes: u8,
+    /// Seed of controller and faults: the same seed gives the same run.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// No live view on a terminal.
+    #[arg(long)]
+    plain: bool,
+    #[command(flatten)]
+    faults: Faults,
+    #[command(flatten)]
+    place: PlaceArguments,
 }
 
-/// A run.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// What is sent.
-    pub source: Source,
-    /// Setpoints in all; for a file rounded up to whole rounds.
-    pub count: u64,
-    /// Axes of a setpoint, 3…6.
-    pub axes: u8,
-    /// Setpoints per second.
-    pub rate_hz: u32,
-    /// Faults of the cable.
-    pub faults: Faults,
-    /// Seed of controller and cable.
-    pub seed: u64,
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Where the board is")]
+struct PlaceArguments {
+    /// Firmware of the virtual board. [default: target/firmware/truepath-virtual]
+    #[arg(long, value_name = "FILE")]
+    elf: Option<PathBuf>,
+    /// Setpoint link: a serial port, a Unix socket, or tcp:HOST:PORT.
+    #[arg(long, value_name = "PORT", required_if_eq("board", "serial"))]
+    port: Option<String>,
+    /// Configuration link, as --port.
+    #[arg(long, value_name = "PORT", required_if_eq("board", "serial"))]
+    config_port: Option<String>,
+    /// Bits per second of serial ports.
+    #[arg(long, value_name = "BAUD", default_value_t = 921_600)]
+    baud: u32,
 }
 
-/// Runs setpoints through a board. `progress` is told after every batch.
-///
-/// # Errors
-/// The board cannot be reached, is of another version, or refuses; the options do not go together. A difference is no
-/// error here: it is in the report.
-pub fn run(
-    board: &mut dyn Board,
-    bytes: &[u8],
-    options: &Options,
-    progress: &mut dyn FnMut(&RunStatus<'_>),
-) -> Result<Report, Failure> {
-    run_watched(board, bytes, options, &Arc::default(), progress)
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum BoardArgument {
+    /// The device in this process.
+    Host,
+    /// The firmware in QEMU.
+    Virtual,
+    /// A real one.
+    Serial,
 }
 
-/// The same with somebody who looks on and may end it: a run that was stopped has the report of what was done.
-///
-/// # Errors
-/// As [`run`]; `H008` when it was left within a batch.
-pub fn run_watched(
-    board: &mut dyn Board,
-    bytes: &[u8],
-    options: &Options,
-    watch: &Arc<Watch>,
-    progress: &mut dyn FnMut(&RunStatus<'_>),
-) -> Result<Report, Failure> {
-    let image = Image::new_checked(bytes).map_err(|e| Failure::Internal(format!("an image that was checked: {e}")))?;
-    let device = identify(board)?;
-    let settings = settings(options, board.is_stepped())?;
-    let before = prepare(board, bytes, &settings, |_| ())?;
-    let plan = Plan { settings, faults: options.faults, seed: options.seed };
-    let campaign = Campaign::new(plan, image, board.is_stepped())?;
-    let mut traffic = Stoppable { traffic: traffic(image, options), watch };
-    board.watched_by(Arc::clone(watch));
-    let outcome = campaign.run(&mut traffic, board, progress)?;
-    let counters = board.client().status()?.counters;
-    let report = report(board, device, &outcome, &counters);
-    if !board.is_stepped() {
-        // What the device was before; an emulator or a device in process is gone with the run.
-        to_off(board, settings.silence_us)?;
-        board.client().done(Ask::Configure(before))?;
-    }
-    Ok(report)
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum LinkArgument {
+    Uart,
+    Bulk,
 }
 
-/// Traffic that ends when it is asked to.
-struct Stoppable<'a> {
-    traffic: Box<dyn Traffic>,
-    watch: &'a Watch,
-}
-
-impl Traffic for Stoppable<'_> {
-    fn next(&mut self, mode: Mode) -> Option<Command> {
-        if self.watch.is_stopping() { None } else { self.traffic.next(mode) }
-    }
-}
-
-/// Settings for a run. Over streams the clock of the device is not ours: deadline and silence are then as long as they
-/// may be, so that no answer depends on how busy this machine is.
-///
-/// # Errors
-/// `H007` for a rate or a number of axes that there is not.
-pub fn settings(options: &Options, stepped: bool) -> Result<DeviceSettings, InputError> {
-    let period_ns = 1_000_000_000 / i64::from(options.rate_hz.max(1));
-    let rewriter = replay::settings(period_ns);
-    let (deadline_us, silence_us) = if stepped { (500, SILENCE_US) } else { (1_000_000, 10_000_000) };
-    let settings = DeviceSettings { rewriter, axes: options.axes, deadline_us, silence_us };
-    settings.check().map_err(|e| InputError::new("H007", e.to_string(), "", "choose other --rate or --axes"))?;
-    Ok(settings)
-}
-
-/// Setpoint rate of a device over streams when setpoints go out as fast as the answers come, Hz. No stream reaches it, so
-/// that no burst is faster than the device permits.
-pub const STREAM_HZ: u32 = 20_000;
-/// Silence of a board whose clock is ours, µs.
-pub const SILENCE_US: u32 = 20_000;
-
-fn traffic(image: Image<'_>, options: &Options) -> Box<dyn Traffic> {
-    let probability = |share| Probability::new(share).unwrap_or_default();
-    let behaviour = ControllerOptions {
-        count: options.count,
-        axes: options.axes,
-        tick_hz: options.rate_hz,
-        operate: probability(0.001),
-        disturb: probability(0.0),
-        frames: false,
+/// Runs and prints what came of it; a difference is an error.
+pub(crate) fn main(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    let options = options(arguments)?;
+    let given = arguments.image.as_deref().map(|path| {
+        let bytes = image::read(path)?;
+        image::check(&bytes, path).map(|_| ())?;
+        Ok::<_, InputError>(bytes)
+    });
+    let given = given.transpose()?;
+    // Setpoints at a rate of their own keep to it; the others go out as fast as the answers come.
+    let paced = arguments.rate.is_some() || arguments.setpoints.is_some();
+    let mut board = open(&kind(arguments)?, arguments.window, paced)?;
+    let mut onlooker = Onlooker::new(arguments.plain, terminal, board.describe(), options.count);
+    let made = match (&arguments.job, &arguments.probe) {
+        (Some(job), Some(probe)) => {
+            let settings = settings(&options, board.is_stepped())?;
+            Some(on_board(&mut *board, &settings, job, probe, &mut |stage| onlooker.stage(stage))?)
+        }
+        _ => None,
     };
-    // Parts of a run are numbered from its seed on, so that a device remembers none of them from the run before.
-    let serial = 1_000u32.wrapping_mul(options.seed as u32);
-    match &options.source {
-        Source::Path => Box::new(Controller::new(&image, behaviour, serial, options.seed)),
-        Source::Random => {
-            let disturbed = ControllerOptions { disturb: probability(0.0005), frames: true, ..behaviour };
-            Box::new(Controller::new(&image, disturbed, serial, options.seed))
+    let bytes = given.or_else(|| made.as_ref().map(|m| m.image.clone())).unwrap_or_default();
+    let watch = onlooker.watch();
+    let mut report = run_watched(&mut *board, &bytes, &options, &watch, &mut |status| onlooker.batch(status))?;
+    // What is printed stays on the screen.
+    drop(onlooker);
+    report.on_board = made;
+    terminal.tell(&report, || words(&report))?;
+    match report.difference {
+        Some(difference) => Err(BenchError::Differs(difference).into()),
+        None if watch.is_stopping() => {
+            let text = format!("after {} of {} setpoints", report.setpoints, options.count);
+            Err(BenchError::Stopped(text).into())
         }
-        Source::Recorded(setpoints) => {
-            let request = ArmRequest {
-                binding: image.settings().binding,
-                part_serial: serial,
-                frame: truepath_core::rewrite::Frame::identity(),
-            };
-            let rounds = options.count.div_ceil(setpoints.rows.len().max(1) as u64).max(1);
-            let nominal = image.settings().feed.spindle_millirpm;
-            Box::new(Recorded::new(setpoints.clone(), request, nominal, rounds.try_into().unwrap_or(u32::MAX)))
-        }
+        None => Ok(()),
     }
 }
 
-/// Recorded setpoints for a run: program coordinates, from a file.
-///
-/// # Errors
-/// As [`Setpoints::parse`]; `H007` for a file in machine coordinates.
-pub fn recorded(path: &Path) -> Result<Setpoints, InputError> {
-    let source = truepath_ground::diagnostics::Source::read(path)?;
-    let setpoints = Setpoints::parse(&source)?;
-    if setpoints.frame == Frame::Machine {
-        let found = "the setpoints are in machine coordinates";
-        let help = "record them in program coordinates (# frame = program): the bench arms with the identity frame";
-        return Err(InputError::new("H007", found, "program coordinates", help).at(&source, 0..1));
+fn options(arguments: &Arguments) -> Result<Options, Failure> {
+    let (source, count, file_hz) = match (&arguments.setpoints, arguments.random) {
+        (Some(path), _) => {
+            let setpoints = recorded(path)?;
+            let hz = u32::try_from(1_000_000_000 / setpoints.period_ns.max(1)).unwrap_or(u32::MAX);
+            let rows = setpoints.rows.len() as u64;
+            (Source::Recorded(setpoints), arguments.count.unwrap_or(rows), Some(hz))
+        }
+        (None, Some(count)) => (Source::Random, count, None),
+        (None, None) => (Source::Path, arguments.count.unwrap_or(20_000), None),
+    };
+    let nominal_hz = if kind(arguments)?.is_stepped() { 1_000 } else { STREAM_HZ };
+    let rate_hz = arguments.rate.or(file_hz).unwrap_or(nominal_hz);
+    Ok(Options { source, count, axes: arguments.axes, rate_hz, faults: arguments.faults, seed: arguments.seed })
+}
+
+fn kind(arguments: &Arguments) -> Result<Kind, BenchError> {
+    let place = &arguments.place;
+    let elf = place.elf.clone();
+    Ok(match (arguments.board, arguments.link) {
+        (BoardArgument::Host, Some(LinkArgument::Uart)) | (BoardArgument::Serial, Some(LinkArgument::Bulk)) => {
+            return Err(BenchError::Option {
+                found: "this board has no such link".to_owned(),
+                help: "the host board has bulk only, a serial one uart only".to_owned(),
+            });
+        }
+        (BoardArgument::Host, _) => Kind::Host,
+        (BoardArgument::Virtual, Some(LinkArgument::Uart)) => Kind::VirtualUart { elf },
+        (BoardArgument::Virtual, _) => Kind::VirtualBulk { elf },
+        (BoardArgument::Serial, _) => {
+            let names = [&place.port, &place.config_port].map(|name| name.clone().unwrap_or_default());
+            Kind::Ports { names, baud: place.baud }
+        }
+    })
+}
+
+fn words(report: &Report) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = write_words(report, &mut text);
+    text
+}
+
+fn write_words(r: &Report, out: &mut String) -> std::fmt::Result {
+    writeln!(out, "{} (firmware {}), {}", r.device.board, r.device.firmware, r.board)?;
+    if let Some(m) = &r.on_board {
+        writeln!(out, "image made on the device in {:.1} s: {:08x}, {} bytes, as here", m.seconds, m.crc, m.bytes)?;
+        if let Some(t) = &m.round_trip {
+            let count = m.setpoints_meanwhile;
+            writeln!(out, "meanwhile {count} setpoints were answered, round trip {}", round_trip(t))?;
+        }
     }
-    Ok(setpoints)
+    writeln!(out, "{} setpoints, {} answers compared, {} parts armed", r.setpoints, r.answers, r.armed)?;
+    let [off, bypass, armed, active, hold, fault] = r.modes;
+    writeln!(out, "answers: Off {off}, Bypass {bypass}, Armed {armed}, Active {active}, Hold {hold}, Fault {fault}")?;
+    writeln!(out, "largest correction {:.6} mm", r.max_correction_mm)?;
+    let i = &r.injected;
+    let faults = [i.dropped, i.corrupted, i.reordered, i.repeated, i.pauses];
+    if faults.iter().any(|&count| count > 0) {
+        let [dropped, corrupted, reordered, repeated, pauses] = faults;
+        writeln!(
+            out,
+            "injected: {dropped} lost, {corrupted} damaged, {reordered} overtaken, {repeated} repeated, {pauses} pauses"
+        )?;
+    }
+    let c = &r.counters;
+    writeln!(
+        out,
+        "device: {} accepted, {} answered, {} damaged, {} repeated, {} out of order, {} lost, {} jumps, {} late, {} silences",
+        c.accepted, c.answered, c.damaged, c.repeated, c.out_of_order, c.lost, c.jumps, c.late, c.silences
+    )?;
+    for (reason, count) in &r.faults {
+        writeln!(out, "{count:>10} x {reason}")?;
+    }
+    writeln!(out, "{:.0} setpoints/s", r.setpoints_per_s)?;
+    if let Some(t) = &r.round_trip {
+        writeln!(out, "round trip {}", round_trip(t))?;
+    }
+    writeln!(out, "digest {} host {}", r.digest, r.host_digest)?;
+    writeln!(out, "{}", if r.identical { "identical" } else { "DIFFERENT" })
+}
+
+fn round_trip(t: &RoundTrip) -> String {
+    format!(
+        "min {:.0}, median {:.0}, 99 % {:.0}, max {:.0} us, with the noise of this machine",
+        t.min_us, t.median_us, t.p99_us, t.max_us
+    )
 }

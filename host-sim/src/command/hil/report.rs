@@ -5,7 +5,7 @@ use truepath_bench::{Board, Identity, Injected, Outcome, RoundTrip};
 use truepath_core::link::Counters;
 use truepath_core::rewrite::Mode;
 
-use super::OnBoard;
+use super::on_board::OnBoard;
 
 /// What came of it.
 #[derive(Clone, Debug, Serialize)]

@@ -1,12 +1,12 @@
 //! What `multiaxis` tells of a program: the figures before and after, and what the user should know.
 
+use std::path::Path as FilePath;
+
 use truepath_multiaxis::Machine;
 use truepath_multiaxis::ball::{ContactSpan, Contacts};
 use truepath_multiaxis::machine::{Coordinates, Kind};
 use truepath_multiaxis::program::{Left, Places, Report, Settings};
 use truepath_multiaxis::statistics::Figures;
-
-use super::Options;
 
 /// What was found and done.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -52,7 +52,7 @@ pub struct MultiaxisSummary {
 }
 
 /// What is told of a pass.
-pub(super) fn summary(options: &Options, machine: &Machine, settings: &Settings, report: &Report) -> MultiaxisSummary {
+pub(super) fn summary(program: &FilePath, machine: &Machine, settings: &Settings, report: &Report) -> MultiaxisSummary {
     let kind = match machine.kind() {
         Kind::TableTable => "table-table",
         Kind::TableHead => "table-head",
@@ -65,7 +65,7 @@ pub(super) fn summary(options: &Options, machine: &Machine, settings: &Settings,
         machine: format!("{kind} {first} {second}"),
         coordinates: if settings.coordinates == Coordinates::Tip { "tip" } else { "joints" },
         tip_moves: report.tips,
-        tolerance_mm: options.tolerance_mm,
+        tolerance_mm: settings.splitter.tolerance,
         lines: report.lines,
         moves: before.count,
         straight_moves: report.straight,
@@ -79,12 +79,12 @@ pub(super) fn summary(options: &Options, machine: &Machine, settings: &Settings,
         orientation: report.orientation.clone(),
         contact: report.contacts.as_ref().and_then(Contacts::span),
         left: report.left.clone(),
-        warnings: warnings(options, report),
+        warnings: warnings(program, report),
     }
 }
 
-fn warnings(options: &Options, report: &Report) -> Vec<String> {
-    let name = options.program.display();
+fn warnings(program: &FilePath, report: &Report) -> Vec<String> {
+    let name = program.display();
     let mut all: Vec<String> = Vec::new();
     for (note, line, count) in report.notes.iter() {
         let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
@@ -105,4 +105,61 @@ fn warnings(options: &Options, report: &Report) -> Vec<String> {
         all.push(format!("{} more moves are left as they are", report.left.count - 10));
     }
     all
+}
+
+/// A figure of the table.
+type Figure = fn(&Figures) -> f64;
+
+pub(super) fn words(s: &MultiaxisSummary) -> String {
+    let xyz = match (s.tip_moves, s.moves) {
+        (0, 0) if s.coordinates == "tip" => "places of the tool tip",
+        (0, _) => "positions of the joints",
+        (tips, all) if tips == all => "places of the tool tip",
+        _ => "positions of the joints, and of the tool tip under centre point codes",
+    };
+    let mut text = format!("{}; X, Y, Z are {xyz}; tolerance {} mm\n\n", s.machine, s.tolerance_mm);
+    text += "chord error, mm         before       after\n";
+    let rows: [(&str, Figure); 4] = [
+        ("maximum", |v| v.maximum_mm),
+        ("minimum", |v| v.minimum_mm),
+        ("mean", |v| v.mean_mm),
+        ("standard deviation", |v| v.standard_deviation_mm),
+    ];
+    for (name, value) in rows {
+        text += &format!("{name:<20} {:>9.5} {:>11.5}\n", value(&s.before), value(&s.after));
+    }
+    text += &format!("{:<20} {:>9} {:>11}\n\n", "moves", s.before.count, s.after.count);
+    text += &format!(
+        "{} of {} five-axis moves rewritten, {} points inserted\n",
+        s.moves_rewritten, s.moves, s.points_inserted
+    );
+    if s.singular.count > 0 {
+        let lines: Vec<String> = s.singular.lines.iter().take(12).map(u32::to_string).collect();
+        let more = if s.singular.lines.len() > 12 { ", …" } else { "" };
+        let (moves, word) = (counted(s.singular.count, "move"), if lines.len() == 1 { "line" } else { "lines" });
+        text += &format!("{moves} near a pole of the machine or across it: {word} {}{more}\n", lines.join(", "));
+    }
+    if s.orientation.count > 0 {
+        text += &format!("{} whose tool axis cannot keep to the great circle\n", counted(s.orientation.count, "move"));
+    }
+    if let Some(contact) = &s.contact {
+        let span = |[low, high]: [f64; 2], digits| format!("{low:.digits$} to {high:.digits$}");
+        text += &format!(
+            "ball end on the surface: {} degrees from its tip, cutting radius {} mm, lag of the edge {} degrees\n",
+            span(contact.polar_deg, 2),
+            span(contact.cutting_radius_mm, 3),
+            span(contact.lag_deg, 2)
+        );
+        if contact.on_shank > 0 {
+            text += &format!("{} where the shank would touch it\n", counted(contact.on_shank, "place"));
+        }
+    }
+    if s.left.count > 0 {
+        text += &format!("{} not brought within the tolerance\n", counted(s.left.count, "move"));
+    }
+    text
+}
+
+fn counted(count: u64, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use truepath::command::{correct, inspect, simulate};
-use truepath_job::job::{Job, PartFlags, ProbeFlags, Which};
+use truepath_job::job::{Job, Which};
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
 use truepath_trial::virtual_mill;
@@ -28,7 +28,8 @@ fn copied(name: &str) -> (tempfile::TempDir, PathBuf) {
 }
 
 fn simulated(job: &Path, out: &Path, which: Which) -> Value {
-    let options = simulate::Options { job, plant: None, out, recording: None, probed_wall: false, force: false, which };
+    let (job, output) = (job.to_owned(), out.to_owned());
+    let options = simulate::Options { job, output, which, ..simulate::Options::default() };
     shown(simulate::run(&options));
     data(&out.join("report.html"))
 }
@@ -75,14 +76,10 @@ fn a_correction_tells_which_depths_got_it_and_an_inspection_which_it_judged() {
     fs::write(at("probe.txt"), shown(virtual_mill::probe(&pass, &milled, &places, &[0.3, 0.8], 4.0))).unwrap();
     shown(correct::run(
         &correct::Options {
-            job: &job,
-            probe: &at("probe.txt"),
-            out: &at("out"),
-            force: false,
-            route: None,
-            first_pass: None,
-            probe_flags: ProbeFlags::default(),
-            which: Which::default(),
+            job: job.clone(),
+            probe: Some(at("probe.txt")),
+            output: at("out"),
+            ..correct::Options::default()
         },
         &mut |_| (),
     ));
@@ -92,13 +89,10 @@ fn a_correction_tells_which_depths_got_it_and_an_inspection_which_it_judged() {
     assert!(others.len() == 7 && others.iter().all(|became| became == "unchanged"), "{others:?}");
 
     let told = shown(inspect::run(&inspect::Options {
-        job: &job,
-        probe: &at("probe.txt"),
-        out: Some(&at("inspected")),
-        force: false,
-        part: PartFlags::default(),
-        probe_flags: ProbeFlags::default(),
-        which: Which::default(),
+        job,
+        probe: at("probe.txt"),
+        output: Some(at("inspected")),
+        ..inspect::Options::default()
     }));
     let limits = "Judged is the wall of the finishing contour, pass 1 of 2, Z -6 mm, lines 71-79; not those of pass 2 (Z -12 mm).";
     assert!(told.summary.statements.iter().any(|s| s == limits), "{:?}", told.summary.statements);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use truepath::command::{correct, learn, simulate};
 use truepath_ground::diagnostics::{Failure, Form};
 use truepath_ground::units::mm;
-use truepath_job::job::{Job, ProbeFlags, Route, Which};
+use truepath_job::job::{Job, Route};
 use truepath_job::pass::Pass;
 use truepath_plant::Milled;
 use truepath_trial::virtual_mill;
@@ -72,44 +72,31 @@ impl Part {
     /// Corrects the pass that follows the one of another job, which the points are of.
     pub fn correct_after(&self, first_pass: Option<&Path>, probe: &str, out: &str, route: Option<Route>) {
         let options = correct::Options {
-            job: &self.at("job.toml"),
-            probe: &self.at(probe),
-            out: &self.at(out),
-            force: false,
+            job: self.at("job.toml"),
+            probe: Some(self.at(probe)),
+            output: self.at(out),
             route,
-            first_pass,
-            probe_flags: ProbeFlags::default(),
-            which: Which::default(),
+            first_pass: first_pass.map(Path::to_owned),
+            ..correct::Options::default()
         };
         shown(correct::run(&options, &mut |_| ()));
     }
 
     pub fn learn(&self, probe: &str, from: &str, out: &str) {
         let options = learn::Options {
-            job: &self.at("job.toml"),
-            probe: &self.at(probe),
-            from: &self.at(from),
-            out: &self.at(out),
-            force: false,
-            route: None,
-            probe_flags: ProbeFlags::default(),
-            which: Which::default(),
+            job: self.at("job.toml"),
+            probe: self.at(probe),
+            from: self.at(from),
+            output: self.at(out),
+            ..learn::Options::default()
         };
         shown(learn::run(&options, &mut |_| ()));
     }
 
     pub fn simulate(&self, plant: bool, out: &str) {
         let plant = plant.then(|| self.at("plant.toml"));
-        let (job, out) = (self.at("job.toml"), self.at(out));
-        let options = simulate::Options {
-            job: &job,
-            plant: plant.as_deref(),
-            out: &out,
-            recording: None,
-            probed_wall: false,
-            force: false,
-            which: Which::default(),
-        };
+        let (job, output) = (self.at("job.toml"), self.at(out));
+        let options = simulate::Options { job, plant, output, ..simulate::Options::default() };
         shown(simulate::run(&options));
     }
 }

@@ -76,7 +76,8 @@ fn the_wall_over_the_height_has_the_mean_of_the_error_shown() {
 #[test]
 fn the_pages_of_the_demonstration_show_what_was_cut() {
     let folder = tempfile::tempdir().unwrap();
-    let outcomes = demo::run(folder.path(), demo::Earlier::Replace, &mut |_| ()).unwrap();
+    let options = demo::Options { output: folder.path().to_owned(), keep: false, force: true };
+    let outcomes = demo::run(&options, &mut |_| ()).unwrap();
     for outcome in outcomes {
         let page = data(&outcome.folder.join("report.html"));
         assert_eq!(page["title"], outcome.title);

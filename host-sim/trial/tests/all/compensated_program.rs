@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{Job, Route};
 use truepath_job::measurement::Measurement;
@@ -41,7 +41,7 @@ fn a_compensated_program_is_the_same_contour_as_the_path_of_the_centre() {
 }
 
 /// Mills the pass, probes it and corrects its program.
-fn corrected(pass: &Pass) -> Corrected {
+fn corrected(pass: &Pass) -> CorrectedPass {
     let machine: Machine = toml::from_str(PLANT).unwrap();
     let milled = virtual_mill::mill(pass, &machine, None).unwrap();
     let probe = virtual_mill::probe(pass, &milled, &[25.0, 40.0, 55.0, 70.0, 90.0], &[0.3, 0.8], 6.0).unwrap();

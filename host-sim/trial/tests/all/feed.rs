@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use truepath_core::gcode::Units;
-use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{Job, Route};
 use truepath_job::measurement::Measurement;
@@ -29,7 +29,7 @@ fn shown<T>(result: Result<T, Failure>) -> T {
     result.unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)))
 }
 
-fn corrected(pass: &Pass, routes: &[Route]) -> Result<Corrected, Failure> {
+fn corrected(pass: &Pass, routes: &[Route]) -> Result<CorrectedPass, Failure> {
     let machine: Machine = toml::from_str(PLANT).unwrap();
     let milled = virtual_mill::mill(pass, &machine, None)?;
     let mut probe = virtual_mill::probe(pass, &milled, &STRAIGHT, &[0.1, 0.5, 0.9], 6.0)?;
@@ -42,7 +42,7 @@ fn corrected(pass: &Pass, routes: &[Route]) -> Result<Corrected, Failure> {
     correct(pass, &measurement, &[], routes, &mut |_| ())
 }
 
-fn program(corrected: &Corrected) -> String {
+fn program(corrected: &CorrectedPass) -> String {
     String::from_utf8(corrected.program.clone().unwrap()).unwrap()
 }
 
@@ -65,7 +65,7 @@ fn a_corner_whose_force_leaves_the_window_comes_out_better_with_scheduled_feeds(
     assert!(fed.0.summary.axial_form_error_mm < 0.65 * feed.unscheduled.unwrap().axial_form_error_mm);
 }
 
-fn scheduled(program: &str, feed: &str) -> (Pass, Corrected) {
+fn scheduled(program: &str, feed: &str) -> (Pass, CorrectedPass) {
     let pass = shown(pass(program, feed));
     let done = shown(corrected(&pass, &[Route::Program]));
     (pass, done)

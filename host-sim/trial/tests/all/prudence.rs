@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{Job, Route};
 use truepath_job::measurement::Measurement;
@@ -27,7 +27,7 @@ fn pass() -> Pass {
     shown(Pass::new(job, Source::new("program.nc", PROGRAM.as_bytes().to_vec())))
 }
 
-fn corrected(pass: &Pass, probe: &str) -> Corrected {
+fn corrected(pass: &Pass, probe: &str) -> CorrectedPass {
     let measurement = shown(Measurement::read(pass, &Source::new("probe.txt", probe.as_bytes().to_vec())));
     shown(correct(pass, &measurement, &[], &[Route::Program], &mut |_| ()))
 }

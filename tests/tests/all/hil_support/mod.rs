@@ -14,7 +14,8 @@ use truepath_bench::{Board, Bulk, BulkBoard, Faults, InProcess, Probability, rec
 /// The parts of the demonstration, made once.
 pub static PARTS: LazyLock<(tempfile::TempDir, Vec<PathBuf>)> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
-    let outcomes = demo::run(folder.path(), demo::Earlier::Replace, &mut |_| ()).unwrap();
+    let options = demo::Options { output: folder.path().to_owned(), keep: false, force: true };
+    let outcomes = demo::run(&options, &mut |_| ()).unwrap();
     let folders = outcomes.iter().map(|o| o.folder.clone()).collect();
     (folder, folders)
 });

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use truepath_correction::correct::{Corrected, correct};
+use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_correction::learn::{Learned, learn};
 use truepath_correction::learning::History;
 use truepath_ground::diagnostics::{Failure, Source};
@@ -35,19 +35,19 @@ impl Shop {
     }
 
     /// Mills a part, uncorrected or with a correction.
-    pub fn mill(&self, corrected: Option<&Corrected>) -> Milled {
+    pub fn mill(&self, corrected: Option<&CorrectedPass>) -> Milled {
         let text = corrected.map(|c| c.program.clone().unwrap());
         let commanded = text.map(|text| virtual_mill::commanded(&self.pass, &text).unwrap());
         virtual_mill::mill(&self.pass, &self.machine, commanded.as_deref()).unwrap()
     }
 
     /// Largest wall error of a part, mean over height, mm.
-    pub fn error(&self, corrected: Option<&Corrected>) -> f64 {
+    pub fn error(&self, corrected: Option<&CorrectedPass>) -> f64 {
         self.mill(corrected).score().max_error_mm
     }
 
     /// The probe file of a part; `noise` is the seed of the probe's chance.
-    pub fn probe(&self, corrected: Option<&Corrected>, places: &[f64], noise: u64) -> String {
+    pub fn probe(&self, corrected: Option<&CorrectedPass>, places: &[f64], noise: u64) -> String {
         let mut milled = self.mill(corrected);
         milled.machine.seed = noise;
         virtual_mill::probe(&self.pass, &milled, places, &LEVELS, self.ball_mm).unwrap()
@@ -58,7 +58,7 @@ impl Shop {
     }
 
     /// The first part: measured and corrected.
-    pub fn first(&self, places: &[f64]) -> (Corrected, History) {
+    pub fn first(&self, places: &[f64]) -> (CorrectedPass, History) {
         let measurement = self.measured(&self.probe(None, places, 11));
         let corrected = correct(&self.pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
         let history = History::first(&self.pass, &measurement, &corrected).unwrap();
@@ -71,7 +71,7 @@ impl Shop {
     }
 
     /// One more part, cut with a correction.
-    pub fn next(&self, history: &History, corrected: &Corrected, places: &[f64]) -> Learned {
+    pub fn next(&self, history: &History, corrected: &CorrectedPass, places: &[f64]) -> Learned {
         let noise = 20 + history.parts.len() as u64;
         self.learn(history, &self.probe(Some(corrected), places, noise)).unwrap()
     }

@@ -6,15 +6,19 @@ use super::span::Span;
 pub const MOST_PIECES: usize = 10_000;
 
 /// How locations are inserted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Rule {
     /// Equal pieces.
     Equal,
-    /// Halving of every piece that errs too much.
+    /// Halving, as in the paper.
+    ///
+    /// Of every piece that errs too much.
     Midpoint,
     /// Every piece as long as it can be.
     Longest,
-    /// The one of the three with the fewest pieces; of several the first.
+    /// The one of the three with the fewest pieces.
+    ///
+    /// Of several the first.
     Fewest,
 }
 

@@ -118,11 +118,15 @@ pub struct Rotary {
 }
 
 /// What the linear words of the program are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Coordinates {
-    /// Positions of the linear joints: the control moves all five linearly, the tip bends off the chord.
+    /// Positions of the linear joints.
+    ///
+    /// The control moves all five linearly, the tip bends off the chord.
     Joints,
-    /// Places of the tool tip in the part's frame (tool centre point programming).
+    /// Places of the tool tip in the part's frame.
+    ///
+    /// Tool centre point programming.
     Tip,
 }
 

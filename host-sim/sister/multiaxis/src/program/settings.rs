@@ -11,11 +11,15 @@ use super::state::Reading;
 use crate::machine::Coordinates;
 
 /// What the control does while it keeps the tool's tip (G43.4, G43.5, G234, LinuxCNC's M428).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum CentrePoint {
-    /// It transforms every interpolated point: the tip stays on the chord, there is nothing to divide.
+    /// It transforms every interpolated point: no chord error.
+    ///
+    /// The tip stays on the chord, there is nothing to divide.
     Full,
-    /// It transforms the ends of blocks only and moves the joints linearly between them.
+    /// It transforms the ends of blocks only.
+    ///
+    /// It moves the joints linearly between them.
     Ends,
 }
 

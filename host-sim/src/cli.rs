@@ -1,0 +1,139 @@
+//! The command line: arguments, dispatch, exit codes.
+//!
+//! Data goes to standard output or to the files named by `-o`, talk to standard error. Exit codes: 0 done, 1 the input
+//! is wrong (command line included), 2 a fault of the program. `--json` makes both streams readable for machines.
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::interruption;
+
+use crate::command::{
+    bore, canon, compare, correct, demo, device, hil, image, inspect, learn, multiaxis, plot, pocket, probe, replay,
+    simulate, split, study,
+};
+use crate::terminal::Terminal;
+
+/// Cut contours as if machine and cutter were rigid.
+///
+/// Mill once, touch the wall in a few places, and get the program or the correction image that cancels the deflection.
+#[derive(Debug, Parser)]
+#[command(
+    name = "truepath",
+    version,
+    propagate_version = true,
+    subcommand_required = true,
+    arg_required_else_help = true
+)]
+struct Arguments {
+    /// Print results, warnings and errors as JSON.
+    #[arg(long, global = true)]
+    json: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// The whole story: parts are milled, probed, corrected and milled again on a virtual machine.
+    Demo(demo::Options),
+    /// One pass as the model predicts it, or as a virtual machine cuts it.
+    Simulate(simulate::Options),
+    /// The program with which a control touches a milled wall where that tells most.
+    Probe(probe::Options),
+    /// How accurate a milled wall is, from probe points alone.
+    Inspect(inspect::Options),
+    /// What every law of correction leaves on the same machine, in one table.
+    Compare(compare::Options),
+    /// From a probe file to the corrected program or the image for the coprocessor.
+    Correct(correct::Options),
+    /// From the probe file of a corrected part to the correction of the next one.
+    Learn(learn::Options),
+    /// For a single part: a program that cuts half of the allowance, to be probed before the second half.
+    Split(split::Options),
+    /// A whole pocket, finishing pass or slot, compensated from tool and material data alone, section by section.
+    Pocket(pocket::Options),
+    /// Pictures (SVG, PNG) of what the commands wrote: traces, correction, wall to scale, laws compared.
+    Plot(plot::Options),
+    /// How well the method does on virtual machines of all kinds, and where it stops working.
+    Study(study::Options),
+    /// The chord error of a five-axis program, and a program in which locations are inserted against it.
+    Multiaxis(multiaxis::Options),
+    /// Recorded setpoints through the device's own code.
+    Replay(replay::Options),
+    /// A correction image as text.
+    Image(image::Options),
+    /// A board under setpoints and faults, every answer compared with the host's own code.
+    Hil(hil::Arguments),
+    /// A coprocessor over its configuration link.
+    Device(device::Options),
+    /// Waviness, roughness and roundness of a bore milled by a circling cutter.
+    Bore(bore::Options),
+    /// Canonical moves of a program, in the text format of LinuxCNC's `rs274 -g`.
+    Canon(canon::Options),
+}
+
+/// Runs the program.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let json = arguments.iter().any(|a| a == "--json");
+    let terminal = Terminal::new(json);
+    // Where signals cannot be waited for they end the process as ever, and temporary files stay.
+    let _ = interruption::listen();
+    let outcome = match Arguments::try_parse_from(&arguments) {
+        Ok(arguments) => guarded(|| dispatch(arguments.command, &terminal)),
+        Err(error) if error.use_stderr() => Err(usage_error(&error, json)),
+        Err(help) => {
+            // Help and version are asked for: data, on standard output.
+            let printed = help.print().map_err(|e| Failure::Internal(e.to_string()));
+            return ExitCode::from(printed.map_or_else(|failure| terminal.fail(&failure), |()| 0));
+        }
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => ExitCode::from(terminal.fail(&failure)),
+    }
+}
+
+fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
+    match command {
+        Command::Demo(options) => demo::main(&options, terminal),
+        Command::Simulate(options) => simulate::main(&options, terminal),
+        Command::Probe(options) => probe::main(&options, terminal),
+        Command::Inspect(options) => inspect::main(&options, terminal),
+        Command::Compare(options) => compare::main(&options, terminal),
+        Command::Correct(options) => correct::main(&options, terminal),
+        Command::Learn(options) => learn::main(&options, terminal),
+        Command::Split(options) => split::main(&options, terminal),
+        Command::Pocket(options) => pocket::main(&options, terminal),
+        Command::Plot(options) => plot::main(&options, terminal),
+        Command::Study(options) => study::main(&options, terminal),
+        Command::Multiaxis(options) => multiaxis::main(&options, terminal),
+        Command::Replay(options) => replay::main(&options, terminal),
+        Command::Image(options) => image::main(&options, terminal),
+        Command::Hil(arguments) => hil::main(&arguments, terminal),
+        Command::Device(options) => device::main(&options, terminal),
+        Command::Bore(options) => bore::main(&options, terminal),
+        Command::Canon(options) => canon::main(&options, terminal),
+    }
+}
+
+/// Turns a panic into an internal error, so that it is reported as one.
+fn guarded(work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+        Err(Failure::Internal(text.unwrap_or("a panic without a message").to_owned()))
+    })
+}
+
+/// A wrong command line. For people clap's own text is the better one.
+fn usage_error(error: &clap::Error, json: bool) -> Failure {
+    let text = error.render().to_string();
+    if !json {
+        return Failure::Usage(text);
+    }
+    let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+    InputError::new("C001", first, "a command line as shown by truepath --help", "run truepath --help").into()
+}

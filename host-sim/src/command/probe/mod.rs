@@ -1,0 +1,256 @@
+//! `probe`: the verification program of a job.
+
+mod next;
+
+use std::fmt::Write as _;
+use std::io::Write;
+use std::path::{Path as FilePath, PathBuf};
+
+use clap::{ArgGroup, Args};
+use truepath_correction::verification::{Gained, KeptOff, Plan, ProbeDialect, Settings, Unknown, plan, write};
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::output::OutputFile;
+use truepath_job::job::{Job, ProbeFlags, Which};
+use truepath_job::pass::Pass;
+
+use crate::terminal::Terminal;
+
+/// What is asked for.
+#[derive(Clone, Debug, Args)]
+#[command(group = ArgGroup::new("measured").multiple(true))]
+pub struct Options {
+    /// The job.
+    pub job: PathBuf,
+    /// The control the program is for.
+    #[arg(long, value_enum, required_unless_present = "next", requires = "output")]
+    pub dialect: Option<ProbeDialect>,
+    /// The program to write.
+    #[arg(short, long, value_name = "FILE", required_unless_present = "next", requires = "dialect")]
+    pub output: Option<PathBuf>,
+    /// Further places, given what was measured: those after which the worst place of the corrected wall is most certain.
+    #[arg(long, requires = "measured")]
+    pub next: bool,
+    /// What was measured on the part that will be touched again: cut by the job's program, or with the correction in DIR.
+    #[arg(long, value_name = "FILE", requires = "next", group = "measured")]
+    pub probe: Option<PathBuf>,
+    /// Folder of correct or learn: touched is the part cut with the correction in it, its history is known.
+    #[arg(long, value_name = "DIR", requires = "next", group = "measured")]
+    pub from: Option<PathBuf>,
+    /// Replace the file if it exists.
+    #[arg(long)]
+    pub force: bool,
+    /// Which cut of the program.
+    #[command(flatten)]
+    pub which: Which,
+    /// Places along the contour; each is touched at every height [default: 8; with --next at most 4].
+    #[arg(long, value_name = "N")]
+    pub points: Option<u32>,
+    /// Choices about the program.
+    #[command(flatten)]
+    pub settings: Settings,
+    /// What is said of the probe file in place of the job.
+    #[command(flatten)]
+    pub probe_flags: ProbeFlags,
+}
+
+/// Further places that are looked for, when the user does not say how many.
+const FURTHER: u32 = 4;
+
+/// Plans, and prints the places.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let report = terminal.watch("choosing places", |progress| run(options, progress))?;
+    terminal.warn_all(&report.warnings);
+    let written = options.output.as_ref().map(|out| format!("written to {}\n", out.display()));
+    terminal.tell(&report, || words(&report) + &written.unwrap_or_default())
+}
+
+fn words(report: &Report) -> String {
+    let mut text = String::from(" point      s mm       X mm       Y mm       Z mm\n");
+    let mut last = usize::MAX;
+    for p in &report.points {
+        if p.rank != last {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "       {} (line {}): {}", p.what, p.line, p.why);
+            if let Some(gain) = p.gain {
+                let _ = writeln!(
+                    text,
+                    "       corrected wall least certain at s = {:.2} mm: {:.4} mm -> {:.4} mm (one sigma){}",
+                    gain.worst_s_mm,
+                    gain.max_sigma_before_mm,
+                    gain.max_sigma_after_mm,
+                    if gain.worth_it { "" } else { ", below the noise of a reading" }
+                );
+            }
+            last = p.rank;
+        }
+        let _ = writeln!(
+            text,
+            "{:>6} {:>9.2} {:>10.4} {:>10.4} {:>10.4}  {}",
+            p.id, p.s_mm, p.x_mm, p.y_mm, p.z_mm, p.why_height
+        );
+    }
+    text += "\nuncertainty left of what the job states:";
+    for u in &report.unknowns {
+        let _ = write!(text, " {} {:.0} %;", u.words, 100.0 * u.remaining);
+    }
+    let wall = if report.points.iter().any(|p| p.gain.is_some()) {
+        "corrected wall where it is least certain"
+    } else {
+        "predicted wall"
+    };
+    let _ = writeln!(
+        text,
+        "\n{wall}, one sigma: {:.4} mm before the touches, {:.4} mm after",
+        report.wall_sigma_before_mm, report.wall_sigma_after_mm
+    );
+    for kept in &report.kept_off {
+        let _ = writeln!(text, "kept off {} places {}", kept.places, kept.words);
+    }
+    let _ = writeln!(
+        text,
+        "safe height Z{:.3} mm, stand-off {:.3} mm before the wall{}",
+        report.safe_z_mm,
+        report.clearance_mm,
+        report.probe_format.map_or_else(String::new, |f| format!("; read the results with [probe] format = \"{f}\""))
+    );
+    text
+}
+
+/// A point of the program, for the list that is printed.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Point {
+    /// Its number in program and results.
+    pub id: usize,
+    /// Place along the contour, mm.
+    pub s_mm: f64,
+    /// Line of the part's program.
+    pub line: u32,
+    /// Nominal contact, mm.
+    pub x_mm: f64,
+    /// Nominal contact, mm.
+    pub y_mm: f64,
+    /// Programmed Z, mm.
+    pub z_mm: f64,
+    /// Unit normal from the wall to the free side.
+    pub normal: [f64; 2],
+    /// Height above the cutter's tip, mm.
+    pub height_mm: f64,
+    /// What is there.
+    pub what: String,
+    /// Why this place: what its touches tell.
+    pub why: String,
+    /// Why this height.
+    pub why_height: &'static str,
+    /// How many places were chosen before this one.
+    pub rank: usize,
+    /// What the touches of its place are expected to bring; absent when nothing was measured before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Gained>,
+}
+
+/// Places looked at and kept off.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Kept {
+    /// The reason.
+    pub reason: KeptOff,
+    /// In words.
+    pub words: &'static str,
+    /// How many.
+    pub places: usize,
+}
+
+/// What was planned.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Report {
+    /// The control; absent when no program was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dialect: Option<ProbeDialect>,
+    /// `[probe] format` for the file of results.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub probe_format: Option<&'static str>,
+    /// Every touch, in the order of the program.
+    pub points: Vec<Point>,
+    /// Height between places, mm.
+    pub safe_z_mm: f64,
+    /// Distance of the ball's surface from the wall at the stand-off, mm.
+    pub clearance_mm: f64,
+    /// What the touches leave of every unknown.
+    pub unknowns: Vec<Unknown>,
+    /// Standard deviation of the wall before the touches, mm: of the predicted wall, root mean square, or, of further
+    /// places, the largest of the corrected wall.
+    pub wall_sigma_before_mm: f64,
+    /// The same after them.
+    pub wall_sigma_after_mm: f64,
+    /// Where the plan keeps off.
+    pub kept_off: Vec<Kept>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Plans and writes. `progress` is told the share done, 0…1.
+///
+/// # Errors
+/// Whatever is wrong with job, program or choices, and an output that cannot be written.
+fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failure> {
+    // A target that may not be written is refused before the work.
+    let file = options.output.as_ref().map(|out| OutputFile::create(out, options.force)).transpose()?;
+    let usual = if options.next { FURTHER } else { options.settings.places };
+    let settings = Settings { places: options.points.unwrap_or(usual), ..options.settings.clone() };
+    let mut job = Job::read(&options.job)?;
+    job.which = options.which.clone();
+    let plan = if options.next {
+        job.override_probe(&options.probe_flags)?;
+        next::of_files(Pass::read(job)?, (options.probe.as_deref(), options.from.as_deref()), &settings, progress)?
+    } else {
+        plan(&Pass::read(job)?, &settings, progress)?
+    };
+    if let (Some(dialect), Some(out), Some(mut file)) = (options.dialect, &options.output, file) {
+        let text = write(&plan, dialect, &log_name(out))?;
+        file.write_all(text.as_bytes()).map_err(|e| InputError::unwritable(out, &e))?;
+        file.commit()?;
+    }
+    Ok(report(&plan, options.dialect))
+}
+
+/// The report of a plan.
+pub fn report(plan: &Plan, dialect: Option<ProbeDialect>) -> Report {
+    let points = plan.touches().map(|touch| Point {
+        id: touch.id,
+        s_mm: touch.place.s_mm,
+        line: touch.place.line,
+        x_mm: touch.place.wall[0],
+        y_mm: touch.place.wall[1],
+        z_mm: touch.height.z_mm,
+        normal: touch.place.normal,
+        height_mm: touch.height.above_tip_mm,
+        what: touch.place.what.clone(),
+        why: touch.place.why.clone(),
+        why_height: touch.height.why,
+        rank: touch.place.rank,
+        gain: touch.place.gain,
+    });
+    Report {
+        dialect,
+        probe_format: dialect.map(ProbeDialect::probe_format),
+        points: points.collect(),
+        safe_z_mm: plan.safe_z_mm,
+        clearance_mm: plan.settings.clearance,
+        unknowns: plan.unknowns.clone(),
+        wall_sigma_before_mm: plan.wall_sigma_mm[0],
+        wall_sigma_after_mm: plan.wall_sigma_mm[1],
+        kept_off: plan
+            .kept_off
+            .iter()
+            .map(|(reason, places)| Kept { reason: *reason, words: reason.words(), places: *places })
+            .collect(),
+        warnings: plan.warnings.clone(),
+    }
+}
+
+/// Name of the file of results beside the program, in letters that no control stumbles over.
+fn log_name(out: &FilePath) -> String {
+    let stem = out.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem: String = stem.chars().filter(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')).collect();
+    let stem = if stem.is_empty() { "verification" } else { &stem };
+    format!("{stem}-log.txt")
+}
