@@ -62,7 +62,6 @@ mod identity;
 mod interpreter;
 mod lexical;
 mod mcode;
-mod message;
 mod mode;
 mod options;
 mod parameter;

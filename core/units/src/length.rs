@@ -1,10 +1,11 @@
 //! Lengths in whole nanometres: places ([`Position`]) and differences of places ([`Offset`]).
 
+use core::fmt;
 use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Real, shift_rounded};
+use super::{Real, div_rounded, shift_rounded};
 
 /// An absolute coordinate, nanometres, ±9.2 × 10⁹ m (the machine uses ±4 m). Arithmetic saturates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -82,6 +83,26 @@ const fn saturate(v: i128) -> i64 {
         i64::MAX.saturating_neg()
     } else {
         v as i64
+    }
+}
+
+/// A length in millimetres as text: `{}` with as many decimals as it needs, at most six; `{:.3}` rounded to three.
+#[derive(Clone, Copy, Debug)]
+pub struct Millimetres(pub Offset);
+
+impl fmt::Display for Millimetres {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let power = |decimals: usize| 10i128.saturating_pow(u32::try_from(decimals).unwrap_or(0));
+        let nm = self.0.nm();
+        let mut decimals = f.precision().unwrap_or(6).min(6);
+        let mut digits = div_rounded(i128::from(nm.unsigned_abs()), power(6usize.saturating_sub(decimals)));
+        while f.precision().is_none() && decimals > 0 && digits % 10 == 0 {
+            (digits, decimals) = (digits / 10, decimals.saturating_sub(1));
+        }
+        let sign = if nm < 0 { "-" } else { "" };
+        let (whole, part) = (digits.checked_div(power(decimals)), digits.checked_rem(power(decimals)));
+        write!(f, "{sign}{}", whole.unwrap_or(0))?;
+        if decimals == 0 { Ok(()) } else { write!(f, ".{:0decimals$}", part.unwrap_or(0)) }
     }
 }
 
