@@ -17,9 +17,10 @@ pub struct Row {
 /// The digits of a code as a number: 14 of `I014`.
 pub const fn number(code: &str) -> u16 {
     match code.as_bytes() {
-        [_, a @ b'0'..=b'9', b @ b'0'..=b'9', c @ b'0'..=b'9'] => {
-            ((*a & 15) as u16).wrapping_mul(100).wrapping_add(((*b & 15) as u16).wrapping_mul(10)).wrapping_add((*c & 15) as u16)
-        }
+        [_, a @ b'0'..=b'9', b @ b'0'..=b'9', c @ b'0'..=b'9'] => ((*a & 15) as u16)
+            .wrapping_mul(100)
+            .wrapping_add(((*b & 15) as u16).wrapping_mul(10))
+            .wrapping_add((*c & 15) as u16),
         _ => 0,
     }
 }

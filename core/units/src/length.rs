@@ -5,7 +5,7 @@ use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Real, div_rounded, shift_rounded};
+use super::{Real, div_rounded, isqrt_rounded, shift_rounded};
 
 /// An absolute coordinate, nanometres, ±9.2 × 10⁹ m (the machine uses ±4 m). Arithmetic saturates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -84,6 +84,14 @@ const fn saturate(v: i128) -> i64 {
     } else {
         v as i64
     }
+}
+
+/// The length of (x, y), rounded to the nanometre, saturating.
+pub const fn hypot_nm(x: Offset, y: Offset) -> Offset {
+    let a = x.nm().unsigned_abs() as u128;
+    let b = y.nm().unsigned_abs() as u128;
+    let root = isqrt_rounded(a.saturating_mul(a).saturating_add(b.saturating_mul(b)));
+    if root > i64::MAX as u128 { Offset::MAX } else { Offset::from_nm(root as i64) }
 }
 
 /// A length in millimetres as text: `{}` with as many decimals as it needs, at most six; `{:.3}` rounded to three.

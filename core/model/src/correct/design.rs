@@ -150,7 +150,7 @@ pub fn design_observed<R: WallReader>(
         if wanted.law != Law::Model || largest < SETTLED || since > PATIENCE {
             break;
         }
-        refine(path, wanted, nodes, workspace.profiles, workspace.updates);
+        refine(path, (wanted.target, wanted.max_gouge), nodes, workspace.profiles, workspace.updates);
     }
     // Also where the last was the best: it has been refined since, but not cut.
     copy(workspace.best, nodes);

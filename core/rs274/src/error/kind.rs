@@ -2,10 +2,17 @@
 
 use super::super::text::{Byte, Letter};
 use super::super::{GCode, LineRange};
-use super::{
-    CompensationError, CornerError, CycleError, ExpressionError, FlowError, Foreign, ParameterError, SettingError,
-};
+use super::{CompensationError, CornerError, CycleError, ExpressionError, FlowError, ParameterError, SettingError};
 use truepath_units::{Millimetres, Offset, errors};
+
+/// A language that is not G-code as read here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Foreign {
+    /// `BEGIN PGM … MM`: Heidenhain's conversational language.
+    Heidenhain,
+    /// `E` words: a program of a 3D printer.
+    Printer,
+}
 
 errors! {
     /// What is wrong.
@@ -251,6 +258,11 @@ macro_rules! themes {
 }
 
 themes!(
-    Parameter(ParameterError), Compensation(CompensationError), Expression(ExpressionError), Flow(FlowError),
-    Cycle(CycleError), Corner(CornerError), Setting(SettingError)
+    Parameter(ParameterError),
+    Compensation(CompensationError),
+    Expression(ExpressionError),
+    Flow(FlowError),
+    Cycle(CycleError),
+    Corner(CornerError),
+    Setting(SettingError)
 );

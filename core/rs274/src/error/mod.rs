@@ -23,18 +23,9 @@ pub use corner::CornerError;
 pub use cycle::CycleError;
 pub use expression::ExpressionError;
 pub use flow::FlowError;
-pub use kind::GcodeErrorKind;
+pub use kind::{Foreign, GcodeErrorKind};
 pub use parameter::ParameterError;
 pub use setting::SettingError;
-
-/// A language that is not G-code as read here.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Foreign {
-    /// `BEGIN PGM … MM`: Heidenhain's conversational language.
-    Heidenhain,
-    /// `E` words: a program of a 3D printer.
-    Printer,
-}
 
 /// What is wrong, and where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

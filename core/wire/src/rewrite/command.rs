@@ -3,9 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::mode::Mode;
 use super::refusal::{Identity, Refusal};
 use super::spent::Spent;
-use super::state::{Mode, State};
+use super::state::State;
 use super::{Frame, Phase, Reason, Rewriter};
 use crate::image::Binding;
 

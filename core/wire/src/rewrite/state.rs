@@ -1,52 +1,16 @@
 //! The state of a rewriter, apart from its configuration.
 
-use core::fmt;
-
-use serde::{Deserialize, Serialize};
-
 use super::feed::FeedRatio;
 use super::frame::{Local, Mapping};
 use super::limit::AxisState;
 use super::locate::Place;
 use super::spent::{Spent, SpentList};
-use super::{Reason, Setpoint};
+use super::{Mode, Reason, Setpoint};
 
 /// Fraction bits of the fade factor.
 pub(super) const FADE_BITS: u32 = 16;
 /// Fade factor 1.
 pub(super) const FADE_ONE: i32 = 1 << FADE_BITS;
-
-/// The states of the safety contract.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[repr(u8)]
-pub enum Mode {
-    /// After power-up or reset: nothing goes out, until the controller acknowledges that the drives are disabled.
-    #[default]
-    Off = 0,
-    /// Positions unchanged.
-    Bypass = 1,
-    /// Positions unchanged; waiting for the gate.
-    Armed = 2,
-    /// Corrected positions; also while the correction ramps out behind the end of the path.
-    Active = 3,
-    /// Place frozen, correction held.
-    Hold = 4,
-    /// The correction ramps to zero, then `Bypass`.
-    Fault = 5,
-}
-
-impl fmt::Display for Mode {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Off => "Off",
-            Self::Bypass => "Bypass",
-            Self::Armed => "Armed",
-            Self::Active => "Active",
-            Self::Hold => "Hold",
-            Self::Fault => "Fault",
-        })
-    }
-}
 
 /// Where in the feature an active correction is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
