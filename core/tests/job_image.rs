@@ -99,7 +99,7 @@ fn within(part: &Part, counts: &Counts, bytes: usize) -> Result<u32, JobError> {
         profiles: &mut all.profiles[..counts.nodes],
         updates: &mut all.updates[..counts.nodes],
         nodes: &mut all.nodes[..counts.nodes],
-        best: &mut all.best[..counts.nodes],
+        scratch: &mut all.scratch[..counts.nodes],
     };
     let mut out = vec![0; bytes];
     image(&part.job, part.program, part.probe, &mut workspace, &mut out, &mut |_, _| ()).map(|m| m.crc)

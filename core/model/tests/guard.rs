@@ -2,8 +2,8 @@
 mod corner;
 use corner::*;
 use truepath_model::correct::{
-    Band, Damped, Design, DesignWorkspace, Guarded, InOrder, Law, Node, Predicted, Profile, Target, Update, commanded,
-    design, guarded_design, guarded_given, profile,
+    Band, Damped, Design, DesignWorkspace, Guarded, InOrder, Law, Node, Predicted, Profile, Scratch, Target, Update,
+    commanded, design, guarded_design, guarded_given, profile,
 };
 use truepath_model::cut::*;
 use truepath_model::identify::{self, Fit, Observation, Parameters, PredictionWorkspace, Prior};
@@ -88,7 +88,7 @@ impl Case {
             displacements: &mut vec![Vector::ZERO; w],
             profiles: &mut vec![Profile::default(); n],
             updates: &mut vec![Update::default(); n],
-            best: &mut vec![Node::default(); n],
+            scratch: &mut vec![Scratch::default(); n],
             residual: &[],
             reader: InOrder,
         };

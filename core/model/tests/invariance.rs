@@ -3,7 +3,9 @@
 mod corner;
 use corner::*;
 use proptest::prelude::*;
-use truepath_model::correct::{self, Band, Design, DesignWorkspace, InOrder, Node, Predicted, Profile, Target, Update};
+use truepath_model::correct::{
+    self, Band, Design, DesignWorkspace, InOrder, Node, Predicted, Profile, Scratch, Target, Update,
+};
 use truepath_model::cut::*;
 use truepath_model::identify::{Fit, Observation, PredictionWorkspace, Prior, identify};
 use truepath_units::geometry::{Block, Curve, Point, Shape, Side, Vector};
@@ -105,7 +107,7 @@ fn designed(machine: &Loop) -> Vec<Node> {
         displacements: &mut vec![Vector::ZERO; w],
         profiles: &mut vec![Profile::default(); n],
         updates: &mut vec![Update::default(); n],
-        best: &mut vec![Node::default(); n],
+        scratch: &mut vec![Scratch::default(); n],
         residual: &[],
         reader: InOrder,
     };

@@ -29,7 +29,7 @@
 //! # let path = Path::sample(&contour, &setup, step, &mut buffer).unwrap();
 //! # use truepath_model::cut::{Coefficients, Compliance, ForceTable, Loop, State};
 //! use truepath_model::correct::{
-//!     Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Target, Update, design,
+//!     Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Scratch, Target, Update, design,
 //! };
 //!
 //! // `path` is a straight wall of 40 mm.
@@ -51,7 +51,7 @@
 //!     displacements: &mut vec![Vector::ZERO; working],
 //!     profiles: &mut vec![Profile::default(); samples],
 //!     updates: &mut vec![Update::default(); samples],
-//!     best: &mut vec![Node::default(); samples],
+//!     scratch: &mut vec![Scratch::default(); samples],
 //!     residual: &[],
 //!     reader: InOrder,
 //! };
@@ -68,9 +68,10 @@ mod guard;
 mod node;
 mod paper;
 mod profile;
-mod prudence;
 mod reader;
 mod refine;
+mod scratch;
+mod shrinkage;
 mod uncertainty;
 
 pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design, design_observed};
@@ -78,6 +79,7 @@ pub use guard::{GUARD_SIGMAS, Guarded, guarded_design, guarded_given};
 pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, HEIGHTS, Profile, Target, add_residual, begin, finish, profile, read_slices};
-pub use prudence::Damped;
 pub use reader::{InOrder, WallReader};
 pub use refine::Update;
+pub use scratch::Scratch;
+pub use shrinkage::Damped;

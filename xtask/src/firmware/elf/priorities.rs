@@ -105,7 +105,7 @@ pub const INDIRECT: &[Indirect] = &[
     ("design_observed", DESIGN),
     (DESIGN[0], &[DESIGN[1]]),
     (DESIGN[1], TOLD),
-    ("uncertainty::spread", &["guard::margins::{closure#", "prudence::damp::{closure#"]),
+    ("uncertainty::spread", &["guard::margins::{closure#", "shrinkage::damp::{closure#"]),
     // A device has no library of other programs.
     ("flow::program::Program>::file", &[]),
 ];
