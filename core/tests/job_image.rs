@@ -79,7 +79,7 @@ fn needed(part: &Part) -> Counts {
     let mut workspace = room.workspace();
     let pass = Pass::read(&part.job, part.program, &mut workspace.parameters, workspace.blocks).unwrap();
     let contour = Pass::path_contour(&workspace.blocks[..pass.contour.blocks]).unwrap();
-    let path = pass.sample(&contour, workspace.samples).unwrap();
+    let path = pass.sample(&contour, workspace.samples, |_| ()).unwrap();
     Counts::needed(&contour, &path, part.probe.iter().filter(|b| **b == b'\n').count())
 }
 

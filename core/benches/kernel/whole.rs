@@ -107,7 +107,15 @@ pub fn identify(part: Part) -> Work {
     let mut lent = Lent::for_points(&part.path);
     Box::new(move || {
         let mut observations = part.observations.clone();
-        black_box(fit::identify(&part.path, &part.prior, &mut observations, |_| Vector::ZERO, &mut lent.points()));
+        black_box(fit::identify(
+            &part.path,
+            &part.prior,
+            &mut [],
+            &mut observations,
+            |_, _| Vector::ZERO,
+            &mut lent.points(),
+            &mut |_| (),
+        ));
     })
 }
 
@@ -121,6 +129,6 @@ pub fn design(part: Part) -> Work {
     let mut predicted = vec![Predicted::default(); part.path.count()];
     Box::new(move || {
         let machine = parameters.machine(&part.path, &table);
-        black_box(correct::design(&machine, &wanted, &mut nodes, &mut predicted, &mut lent.design()));
+        black_box(correct::design(&machine, &wanted, &mut nodes, &mut predicted, &mut lent.design(), &mut |_| ()));
     })
 }

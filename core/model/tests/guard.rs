@@ -48,7 +48,8 @@ fn probed(places: &[i32]) -> Case {
     let table = ForceTable::new(prior.mean.coefficients.size_exponent);
     identify::predict(&path, &table, &prior.mean, |_| Vector::ZERO, &mut observations, &mut workspace);
     observations.iter_mut().for_each(|o| o.error = o.predicted);
-    let fit = identify::identify(&path, &prior, &mut observations, |_| Vector::ZERO, &mut workspace);
+    let fit =
+        identify::identify(&path, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
     Case { path, prior, fit }
 }
 
@@ -68,7 +69,7 @@ impl Case {
     /// Designed without guard and prudence.
     fn plain(&self, wanted: &Design) -> Made {
         self.run(|machine, made, workspace| {
-            design(machine, wanted, made.nodes, made.predicted, workspace);
+            design(machine, wanted, made.nodes, made.predicted, workspace, &mut |_| ());
         })
     }
 

@@ -91,7 +91,7 @@ fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, 
     let need = PredictionWorkspace::needed(&path);
     let (mut s, mut d) = (vec![State::REST; need], vec![Vector::ZERO; need]);
     let mut lent = PredictionWorkspace { states: &mut s, displacements: &mut d };
-    let fit = identify(&path, &prior, &mut observations, |_| Vector::ZERO, &mut lent);
+    let fit = identify(&path, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut lent, &mut |_| ());
     let table = ForceTable::new(fit.parameters.coefficients.size_exponent);
     let machine = fit.parameters.machine(&path, &table);
     (fit, designed(&machine))
@@ -111,7 +111,7 @@ fn designed(machine: &Loop) -> Vec<Node> {
         residual: &[],
         reader: InOrder,
     };
-    correct::design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
+    correct::design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());
     nodes
 }
 

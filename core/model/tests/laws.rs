@@ -46,7 +46,7 @@ fn left_by(law: &str, blocks: &[Block]) -> (f64, f64) {
         reader: InOrder,
     };
     let wanted = Design { law, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
-    design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
+    design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());
     // Away from the ends, where no wall is judged.
     let judged = || {
         predicted

@@ -72,7 +72,7 @@ pub fn image(
     let contour = Pass::path_contour(blocks)?;
 
     gauge.tell(Stage::Sampling, 0);
-    let sampled = pass.sample(&contour, workspace.samples)?;
+    let sampled = pass.sample(&contour, workspace.samples, |_| ())?;
     let (count, working) = (sampled.count(), sampled.working().len());
     let nodes = [workspace.profiles.len(), workspace.updates.len(), workspace.nodes.len(), workspace.scratch.len()];
     room(Buffer::Nodes, count, nodes.into_iter().min().unwrap_or(0))?;

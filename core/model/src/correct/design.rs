@@ -85,24 +85,14 @@ pub enum DesignStep<'a> {
     },
 }
 
-/// Makes the correction: `nodes` and `predicted` as long as the contour's own samples.
+/// Makes the correction: `nodes` as long as the contour's own samples, `predicted` as well, or empty where the predictions
+/// are not needed one by one.
 ///
 /// Near a sharp inside corner the correction of the straight wall is held: there the load changes the moment the
 /// direction does, and a correction that followed it would be driven into the wall by a machine that cannot.
-/// Returns the summary of the last pass of the elastic loop.
-pub fn design(
-    machine: &Loop,
-    wanted: &Design,
-    nodes: &mut [Node],
-    predicted: &mut [Predicted],
-    workspace: &mut DesignWorkspace<'_, impl WallReader>,
-) -> Passage {
-    design_observed(machine, wanted, nodes, predicted, workspace, &mut |_| ())
-}
-
-/// As [`design`], observed; `predicted` may be empty where the predictions are not needed one by one. On return
-/// `workspace.profiles` holds the corrected wall.
-pub fn design_observed<R: WallReader>(
+/// `observe` is told what the design does. Returns the summary of the last pass of the elastic loop;
+/// `workspace.profiles` then holds the corrected wall.
+pub fn design<R: WallReader>(
     machine: &Loop,
     wanted: &Design,
     nodes: &mut [Node],

@@ -7,7 +7,7 @@
 //! these have changed. What a design leaves of it is taken back at the places. Limits: the standard deviation is that of the fit's parameters; a sharp inside corner, where the
 //! correction is held, is not guarded; the laws kept for comparison know no guard.
 
-use super::design::{Design, DesignStep, DesignWorkspace, Law, Predicted, copy, design_observed, pass, worst};
+use super::design::{Design, DesignStep, DesignWorkspace, Law, Predicted, copy, design, pass, worst};
 use super::node::Node;
 use super::profile::Profile;
 use super::reader::WallReader;
@@ -52,7 +52,7 @@ enum Deviations {
     Stale,
 }
 
-/// As [`design_observed`], under the guard of the design. Without guard the two are the same. On return
+/// As [`design`], under the guard of the design. Without guard the two are the same. On return
 /// `workspace.profiles` holds the corrected wall and the margins the guard has kept. By [`Law::Model`] a wall that is known
 /// too badly is corrected in part; what the guard forbids, it forbids of that as well.
 pub fn guarded_design(
@@ -82,7 +82,7 @@ pub fn guarded_design(
         }
     };
     workspace.profiles.fill(Profile::default());
-    let mut passage = design_observed(machine, &free, made.nodes, made.predicted, workspace, &mut |step| {
+    let mut passage = design(machine, &free, made.nodes, made.predicted, workspace, &mut |step| {
         tell(0, 0, &mut done, step);
     });
     copy(made.nodes, made.unguarded);
@@ -102,7 +102,7 @@ pub fn guarded_design(
             break;
         }
         let before = done;
-        passage = design_observed(machine, wanted, made.nodes, made.predicted, workspace, &mut |step| {
+        passage = design(machine, wanted, made.nodes, made.predicted, workspace, &mut |step| {
             tell(round, before, &mut done, step);
         });
         state = Deviations::Stale;

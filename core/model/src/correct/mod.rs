@@ -26,7 +26,7 @@
 //! # let contour = Contour::new(&blocks).unwrap();
 //! # let step = Offset::from_um(500);
 //! # let mut buffer = vec![Sample::BLANK; Path::samples_needed(&contour, &setup, step)];
-//! # let path = Path::sample(&contour, &setup, step, &mut buffer).unwrap();
+//! # let path = Path::sample(&contour, &setup, step, &mut buffer, |_| ()).unwrap();
 //! # use truepath_model::cut::{Coefficients, Compliance, ForceTable, Loop, State};
 //! use truepath_model::correct::{
 //!     Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Scratch, Target, Update, design,
@@ -56,7 +56,7 @@
 //!     reader: InOrder,
 //! };
 //! let (mut nodes, mut predicted) = (vec![Node::default(); samples], vec![Predicted::default(); samples]);
-//! design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
+//! design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());
 //!
 //! let middle = &predicted[samples / 2];
 //! assert!(middle.before.mean.abs() > Offset::from_um(50));
@@ -74,7 +74,7 @@ mod scratch;
 mod shrinkage;
 mod uncertainty;
 
-pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design, design_observed};
+pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design};
 pub use guard::{GUARD_SIGMAS, Guarded, guarded_design, guarded_given};
 pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};

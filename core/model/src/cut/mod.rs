@@ -21,7 +21,7 @@
 //! let contour = Contour::new(&blocks).unwrap();
 //! let step = Offset::from_um(500);
 //! let mut buffer = vec![Sample::BLANK; Path::samples_needed(&contour, &setup, step)];
-//! let path = Path::sample(&contour, &setup, step, &mut buffer).unwrap();
+//! let path = Path::sample(&contour, &setup, step, &mut buffer, |_| ()).unwrap();
 //!
 //! let index = path.index_at(Offset::from_um(20_000));
 //! let frame = path.frame(index, Vector::ZERO).unwrap();

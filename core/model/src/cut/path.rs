@@ -54,40 +54,13 @@ impl<'a> Path<'a> {
         count
     }
 
-    /// Samples a contour at about `step` (even on each block).
+    /// Samples a contour at about `step` (even on each block). `shape` may change the stock and the feed of each sample,
+    /// which are the parallel curve at the allowance and the programmed feed: for the wall that a first pass left, or a feed
+    /// that changes within a block.
     ///
     /// # Errors
     /// [`PathError`] when the buffer is too short or an arc leaves no wall.
     pub fn sample(
-        contour: &Contour,
-        setup: &CutSetup,
-        step: Offset,
-        buffer: &'a mut [Sample],
-    ) -> Result<Self, PathError> {
-        Self::sample_over(contour, setup, step, buffer, |sample| sample.stock)
-    }
-
-    /// Samples a contour beside an uneven stock, such as the wall a first pass left: `surface` gives, for a sample that
-    /// still holds the parallel curve at the allowance, the point of the raw stock on its normal.
-    ///
-    /// # Errors
-    /// As [`Path::sample`].
-    pub fn sample_over(
-        contour: &Contour,
-        setup: &CutSetup,
-        step: Offset,
-        buffer: &'a mut [Sample],
-        mut surface: impl FnMut(&Sample) -> Point,
-    ) -> Result<Self, PathError> {
-        Self::sample_shaped(contour, setup, step, buffer, |sample| sample.stock = surface(sample))
-    }
-
-    /// Samples a contour whose stock and feed `shape` may change, sample by sample: another surface, as in
-    /// [`Path::sample_over`], or a feed that changes within a block.
-    ///
-    /// # Errors
-    /// As [`Path::sample`].
-    pub fn sample_shaped(
         contour: &Contour,
         setup: &CutSetup,
         step: Offset,

@@ -22,40 +22,15 @@ const SPREADS: usize = 4;
 /// Step of the difference quotients, in prior standard deviations.
 const DIFFERENCE: Real = Real::ratio(1, 32);
 
-/// Fits the parameters to the observations.
-///
-/// `commanded` is the displacement the program commanded at each sample when the probed part was cut. The path's
-/// setup names the wall law. On return the observations hold predictions, weights and sensitivities at the solution.
-pub fn identify(
-    path: &Path,
-    prior: &Prior,
-    observations: &mut [Observation],
-    commanded: impl Fn(usize) -> Vector + Copy,
-    workspace: &mut PredictionWorkspace,
-) -> Fit {
-    identify_observed(path, prior, observations, commanded, workspace, &mut |_| ())
-}
-
-/// As [`identify`]; `observe` is told the share of the longest possible fit that is done, ‰, rising: a fit that settles
-/// early ends before 1000.
-pub fn identify_observed(
-    path: &Path,
-    prior: &Prior,
-    observations: &mut [Observation],
-    commanded: impl Fn(usize) -> Vector + Copy,
-    workspace: &mut PredictionWorkspace,
-    observe: &mut dyn FnMut(u16),
-) -> Fit {
-    let task = Task { path, prior, commanded: |_, i| commanded(i) };
-    task.fit(&mut [], observations, workspace, observe)
-}
-
-/// As [`identify_observed`], over several parts that one machine cut.
+/// Fits the parameters to the observations of one or several parts that one machine cut.
 ///
 /// The observations are those of the `earlier` parts, one part behind the other, then those of the last.
-/// `commanded(part, sample)` is the displacement that the program of a part, counted from 0, commanded. Every part has a
-/// datum of its own; that of [`Fit::parameters`] is the last one's, the others are left in `earlier`.
-pub fn identify_parts(
+/// `commanded(part, sample)` is the displacement that the program of a part, counted from 0, commanded when it was cut.
+/// Every part has a datum of its own; that of [`Fit::parameters`] is the last one's, the others are left in `earlier`.
+/// The path's setup names the wall law. `observe` is told the share of the longest possible fit that is done, ‰, rising: a
+/// fit that settles early ends before 1000. On return the observations hold predictions, weights and sensitivities at
+/// the solution.
+pub fn identify(
     path: &Path,
     prior: &Prior,
     earlier: &mut [EarlierPart],

@@ -7,8 +7,8 @@ mod symbol;
 mod token;
 mod word;
 
-pub use decimal::Decimal;
-pub(super) use decimal::{NumberError, is_blank, number, trimmed};
+pub use decimal::{Decimal, NumberError};
+pub(super) use decimal::{is_blank, number, trimmed};
 pub use number::Number;
 pub(super) use symbol::{Function, Operator};
 pub use token::{Token, WrittenWord};
