@@ -3,25 +3,27 @@
 use core::fmt;
 use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
+use super::round::symmetric;
 use super::{Real, div_rounded, isqrt_rounded, shift_rounded};
 
-/// An absolute coordinate, nanometres, ±9.2 × 10⁹ m (the machine uses ±4 m). Arithmetic saturates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+/// An absolute coordinate, nanometres, ±9.2 × 10⁹ m (the machine uses ±4 m). Arithmetic saturates at ±(2⁶³ − 1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct Position(i64);
 
-/// A difference of coordinates, a length or a displacement, nanometres. Arithmetic saturates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+/// A difference of coordinates, a length or a displacement, nanometres. Arithmetic saturates at ±(2⁶³ − 1): negation is
+/// exact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct Offset(i64);
 
 impl Position {
     /// The origin of the coordinate.
     pub const ZERO: Self = Self(0);
 
-    /// From whole nanometres.
+    /// From whole nanometres, saturating: −2⁶³ becomes −(2⁶³ − 1).
     pub const fn from_nm(nm: i64) -> Self {
-        Self(nm)
+        Self(symmetric(nm))
     }
     /// Whole nanometres.
     pub const fn nm(self) -> i64 {
@@ -35,13 +37,13 @@ impl Offset {
     /// The longest length.
     pub const MAX: Self = Self(i64::MAX);
 
-    /// From whole nanometres.
+    /// From whole nanometres, saturating: −2⁶³ becomes −(2⁶³ − 1).
     pub const fn from_nm(nm: i64) -> Self {
-        Self(nm)
+        Self(symmetric(nm))
     }
     /// From whole micrometres, saturating.
     pub const fn from_um(um: i64) -> Self {
-        Self(um.saturating_mul(1_000))
+        Self::from_nm(um.saturating_mul(1_000))
     }
     /// Whole nanometres.
     pub const fn nm(self) -> i64 {
@@ -114,46 +116,57 @@ impl fmt::Display for Millimetres {
     }
 }
 
+impl<'de> Deserialize<'de> for Position {
+    fn deserialize<D: Deserializer<'de>>(bytes: D) -> Result<Self, D::Error> {
+        i64::deserialize(bytes).map(Self::from_nm)
+    }
+}
+impl<'de> Deserialize<'de> for Offset {
+    fn deserialize<D: Deserializer<'de>>(bytes: D) -> Result<Self, D::Error> {
+        i64::deserialize(bytes).map(Self::from_nm)
+    }
+}
+
 impl Sub for Position {
     type Output = Offset;
     #[inline]
     fn sub(self, other: Self) -> Offset {
-        Offset(self.0.saturating_sub(other.0))
+        Offset::from_nm(self.0.saturating_sub(other.0))
     }
 }
 impl Add<Offset> for Position {
     type Output = Self;
     #[inline]
     fn add(self, by: Offset) -> Self {
-        Self(self.0.saturating_add(by.0))
+        Self::from_nm(self.0.saturating_add(by.0))
     }
 }
 impl Sub<Offset> for Position {
     type Output = Self;
     #[inline]
     fn sub(self, by: Offset) -> Self {
-        Self(self.0.saturating_sub(by.0))
+        Self::from_nm(self.0.saturating_sub(by.0))
     }
 }
 impl Add for Offset {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
-        Self(self.0.saturating_add(other.0))
+        Self::from_nm(self.0.saturating_add(other.0))
     }
 }
 impl Sub for Offset {
     type Output = Self;
     #[inline]
     fn sub(self, other: Self) -> Self {
-        Self(self.0.saturating_sub(other.0))
+        Self::from_nm(self.0.saturating_sub(other.0))
     }
 }
 impl Neg for Offset {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self(self.0.saturating_neg())
+        Self::from_nm(self.0.wrapping_neg())
     }
 }
 impl AddAssign for Offset {
@@ -166,5 +179,39 @@ impl SubAssign for Offset {
     #[inline]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_range_is_symmetric() {
+        let (min, max) = (-Offset::MAX, Offset::MAX);
+        let far = Position::from_nm(i64::MIN);
+        let ends = [min + min, min - max, Offset::from_nm(i64::MIN), Offset::from_um(i64::MIN), far - Position::ZERO];
+        for end in
+            ends.into_iter().chain([(far + min) - Position::ZERO, (far - max) - Position::ZERO, max.scaled(Real::MIN)])
+        {
+            assert_eq!((end, -end, end.abs()), (min, max, max));
+        }
+        assert_eq!(min + min, -(max + max));
+    }
+
+    #[test]
+    fn a_length_in_millimetres_has_the_decimals_it_needs_or_those_asked_for() {
+        use std::format;
+        let shown =
+            |nm| (format!("{}", Millimetres(Offset::from_nm(nm))), format!("{:.3}", Millimetres(Offset::from_nm(nm))));
+        for (nm, short, fixed) in [
+            (0, "0", "0.000"),
+            (-4_900_000, "-4.9", "-4.900"),
+            (1, "0.000001", "0.000"),
+            (12_345_600, "12.3456", "12.346"),
+            (9_999_500, "9.9995", "10.000"),
+        ] {
+            assert_eq!(shown(nm), (short.into(), fixed.into()));
+        }
     }
 }
