@@ -1,11 +1,9 @@
 //! The fit: Gauss–Newton with priors and a robust loss, over one part or several.
 
-use super::loss;
 use super::observation::{Observation, PredictionWorkspace, predict};
-use super::outcome::Fit;
 use super::parameters::{COUNT, Parameter, Parameters, Prior};
 use super::part::EarlierPart;
-use super::solve::Information;
+use super::solve::{Information, Matrix};
 use super::spread;
 use super::tails;
 use crate::cut::{ForceTable, Path};
@@ -21,6 +19,32 @@ const WILD: Real = Real::from_int(25);
 const SPREADS: usize = 4;
 /// Step of the difference quotients, in prior standard deviations.
 const DIFFERENCE: Real = Real::ratio(1, 32);
+
+/// Result of an identification.
+#[derive(Clone, Copy, Debug)]
+pub struct Fit {
+    /// The identified parameters.
+    pub parameters: Parameters,
+    /// Distance from the prior, in its standard deviations.
+    pub theta: [Real; COUNT],
+    /// Covariance in units of the prior's standard deviations; its diagonal is 1 where the points say nothing.
+    pub covariance: Matrix,
+    /// Robust sum of squared residuals plus that of the prior, of all points.
+    pub cost: Real,
+    /// Gauss–Newton steps taken.
+    pub steps: u32,
+    /// Points that the robust loss set aside (weight below 0.3).
+    pub outliers: usize,
+    /// Evidence of the model, −½(cost + ln det), natural logarithm up to a constant; larger is better.
+    pub evidence: Real,
+}
+
+impl Fit {
+    /// Standard deviation of a parameter over that of its prior, 0…1: small where the points decide.
+    pub fn remaining(&self, index: usize) -> Real {
+        self.covariance.get(index).and_then(|row| row.get(index)).map_or(Real::ONE, |v| v.sqrt())
+    }
+}
 
 /// Fits the parameters to the observations of one or several parts that one machine cut.
 ///
@@ -189,7 +213,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         let datums = points.earlier.iter().flat_map(|part| &part.trial);
         let mut cost = datums.fold(tails::cost(theta), |sum, t| sum + *t * *t);
         for o in points.observations.iter_mut() {
-            cost += loss::weigh(o, gate);
+            cost += o.weigh(gate);
         }
         cost
     }

@@ -1,8 +1,7 @@
 //! Which wall law the points speak for.
 
-use super::fit::identify;
+use super::fit::{Fit, identify};
 use super::observation::{Observation, PredictionWorkspace};
-use super::outcome::Fit;
 use super::parameters::Prior;
 use super::part::EarlierPart;
 use crate::cut::{Path, WallLaw};

@@ -61,19 +61,16 @@
 
 mod fit;
 mod law;
-mod loss;
 mod observation;
-mod outcome;
 mod parameters;
 mod part;
 mod solve;
 mod spread;
 mod tails;
 
-pub use fit::identify;
+pub use fit::{Fit, identify};
 pub use law::{identify_law, speaks_for_mean};
 pub use observation::{Observation, PredictionWorkspace, predict};
-pub use outcome::Fit;
 pub use parameters::{COUNT, Parameter, Parameters, Prior};
 pub use part::{EarlierPart, Eliminated};
 pub use solve::{Information, Matrix, square_root};

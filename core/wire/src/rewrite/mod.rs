@@ -92,14 +92,12 @@ mod frame;
 mod limit;
 mod locate;
 mod mode;
-mod off;
 mod reason;
 mod refusal;
 mod setpoint;
 mod settings;
 mod spent;
 mod state;
-mod telemetry;
 mod tick;
 
 pub use command::ArmRequest;

@@ -6,6 +6,7 @@ use super::limit::AxisState;
 use super::locate::Place;
 use super::spent::{Spent, SpentList};
 use super::{Mode, Reason, Setpoint};
+use crate::image::RATIO_ONE;
 
 /// Fraction bits of the fade factor.
 pub(super) const FADE_BITS: u32 = 16;
@@ -75,6 +76,21 @@ impl State {
     /// The limited corrections of the machine axes of X and Y.
     pub const fn axes(&self) -> &[AxisState; 2] {
         &self.axes
+    }
+    /// Place on the path, the last one when no correction is on.
+    #[inline]
+    pub const fn place(&self) -> Place {
+        self.place
+    }
+    /// Live feed per tooth over the nominal one, smoothed, units of 2⁻¹⁶; 1 while no correction is on.
+    #[inline]
+    pub fn feed_ratio(&self) -> u32 {
+        if self.mapping.is_some() { self.ratio.value() } else { RATIO_ONE }
+    }
+    /// Machine axes of the program's X and Y; 0 and 1 while nothing is armed.
+    #[inline]
+    pub fn plane(&self) -> [usize; 2] {
+        self.mapping.as_ref().map_or([0, 1], |mapping| mapping.plane())
     }
     /// Armed passes of parts, to be kept over a power-down.
     pub const fn spent(&self) -> &SpentList {
