@@ -22,6 +22,7 @@
 //! | | [`rewrite`] | setpoint → corrected setpoint, the only code in the servo cycle |
 //! | | [`link`] | frames and messages of both links, and what becomes of a frame |
 //! | `truepath-core` | [`job`] | job, program and measurement → image: what the command line and the device both run |
+//! | | [`errors`] | the code and the sentences of every error |
 //!
 //! `truepath-wire` needs `truepath-units` alone: it is all that a servo cycle has to trust.
 #![no_std]
@@ -39,6 +40,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod errors;
 pub mod job;
 
 pub use truepath_model::{correct, cut, identify, probe};

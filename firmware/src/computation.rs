@@ -6,6 +6,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
+use truepath_core::errors::number;
 use truepath_core::job::{self, Job, JobError, Workspace};
 use truepath_core::link::{ComputeFailure, Stage};
 
@@ -84,13 +85,11 @@ fn link_stage(stage: job::Stage) -> Stage {
 /// A failure as it travels. The code is that of the command line as a number: three digits, and in front of them 0 for
 /// `J`, 1 for `G`, 2 for `M`, 3 for `I`, 4 for `W`.
 fn failure(stage: Stage, error: &JobError) -> ComputeFailure {
-    let failed = error.failed();
-    let [letter, digits @ ..] = failed.code;
-    let number = digits.iter().fold(0u16, |sum, digit| sum * 10 + u16::from(digit.saturating_sub(b'0').min(9)));
-    let group = [b'J', b'G', b'M', b'I', b'W'].iter().position(|&known| known == letter).unwrap_or(9);
+    let code = error.code();
+    let group = "JGMIW".find(code.chars().next().unwrap_or(' ')).unwrap_or(9);
     let column = match error {
         JobError::Program(error) => error.column,
         _ => 0,
     };
-    ComputeFailure { stage, code: group as u16 * 1000 + number, line: failed.line, column }
+    ComputeFailure { stage, code: group as u16 * 1000 + number(code), line: error.line().unwrap_or(0), column }
 }

@@ -5,7 +5,7 @@ use super::corner::{coefficients, corner as papers_corner, path, real, setup};
 use super::part;
 use std::hint::black_box;
 use truepath_core::correct::{
-    self, Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Target, Update,
+    self, Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Scratch, Target, Update,
 };
 use truepath_core::cut::{Coefficients, Compliance, ForceTable, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
@@ -67,7 +67,7 @@ struct Lent {
     displacements: Vec<Vector>,
     profiles: Vec<Profile>,
     updates: Vec<Update>,
-    best: Vec<Node>,
+    scratch: Vec<Scratch>,
 }
 
 impl Lent {
@@ -83,7 +83,7 @@ impl Lent {
             displacements: vec![Vector::ZERO; working],
             profiles: vec![Profile::default(); contour],
             updates: vec![Update::default(); contour],
-            best: vec![Node::default(); contour],
+            scratch: vec![Scratch::default(); contour],
         }
     }
     fn points(&mut self) -> PredictionWorkspace<'_> {
@@ -95,7 +95,7 @@ impl Lent {
             displacements: &mut self.displacements,
             profiles: &mut self.profiles,
             updates: &mut self.updates,
-            best: &mut self.best,
+            scratch: &mut self.scratch,
             residual: &[],
             reader: InOrder,
         }
@@ -107,7 +107,15 @@ pub fn identify(part: Part) -> Work {
     let mut lent = Lent::for_points(&part.path);
     Box::new(move || {
         let mut observations = part.observations.clone();
-        black_box(fit::identify(&part.path, &part.prior, &mut observations, |_| Vector::ZERO, &mut lent.points()));
+        black_box(fit::identify(
+            &part.path,
+            &part.prior,
+            &mut [],
+            &mut observations,
+            |_, _| Vector::ZERO,
+            &mut lent.points(),
+            &mut |_| (),
+        ));
     })
 }
 
@@ -121,6 +129,6 @@ pub fn design(part: Part) -> Work {
     let mut predicted = vec![Predicted::default(); part.path.count()];
     Box::new(move || {
         let machine = parameters.machine(&part.path, &table);
-        black_box(correct::design(&machine, &wanted, &mut nodes, &mut predicted, &mut lent.design()));
+        black_box(correct::design(&machine, &wanted, &mut nodes, &mut predicted, &mut lent.design(), &mut |_| ()));
     })
 }

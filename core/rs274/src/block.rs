@@ -3,8 +3,8 @@
 //! The words stay where the reader has put them; what is kept here is which letters are present, which of them some
 //! code has used, and the codes of each group.
 
-use super::code::Group;
 use super::flow::Sentence;
+use super::group::Group;
 use super::mcode::{M_LIMIT, MCode};
 use super::{GCode, GcodeError, GcodeErrorKind, Span, Word};
 

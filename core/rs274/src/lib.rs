@@ -58,11 +58,12 @@ mod error;
 mod execute;
 mod expression;
 mod flow;
+mod group;
 mod identity;
 mod interpreter;
 mod lexical;
 mod mcode;
-mod message;
+mod modal;
 mod mode;
 mod options;
 mod parameter;
@@ -83,13 +84,13 @@ pub use error::{
     CornerError, CycleError, ExpressionError, FlowError, Foreign, GcodeError, GcodeErrorKind, ParameterError,
     SettingError,
 };
-pub use execute::{Machine, Modal, Motion, Tool};
 pub use flow::{Library, LibraryFile, Program, Word};
 pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};
 pub use interpreter::{Interpreter, ProgramSummary};
-pub use lexical::{Decimal, Number, Token, Words, WrittenWord};
+pub use lexical::{Decimal, Number, NumberError, Token, Words, WrittenWord};
+pub use modal::{Modal, Motion};
 pub use mode::{Coolant, FeedMode, PathControl, Plane, RetractLevel, Spindle, ToolLength, Units};
-pub use options::{CompensationBy, Options, PointlessLength};
+pub use options::{CompensationBy, Machine, Options, PointlessLength, Tool};
 pub use parameter::{DeviceMemory, HostMemory, MachineParameters, Memory, MemoryBuffers, NamedSlot};
 pub use place::Axes;
 pub use shifts::{AXIS_LETTERS, NineAxes, Shifts};

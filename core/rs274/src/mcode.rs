@@ -3,7 +3,6 @@
 //! LinuxCNC's modal groups 4 (stop), 5 (inputs and outputs), 6 (tool), 7 (spindle), 8 (coolant), 9 (overrides), its
 //! saving of modes, and the calls of Fanuc and Haas. Any other code is kept and passed on.
 
-use super::block::BlockWords;
 use super::{GcodeErrorKind, Span};
 
 /// M codes kept per block; one more is an error.
@@ -32,10 +31,10 @@ pub(super) struct MCodes {
 }
 
 impl MCodes {
-    /// Sorts them; two of one kind exclude each other, except M7 with M8 and codes that are not known.
-    pub(super) fn sorted(block: &BlockWords<'_>) -> Result<Self, (GcodeErrorKind, Span)> {
-        let mut sorted = Self { any: !block.m.is_empty(), ..Self::default() };
-        for &code in &block.m {
+    /// Sorts the codes of a block; two of one kind exclude each other, except M7 with M8 and codes that are not known.
+    pub(super) fn sorted(codes: &[MCode]) -> Result<Self, (GcodeErrorKind, Span)> {
+        let mut sorted = Self { any: !codes.is_empty(), ..Self::default() };
+        for &code in codes {
             let before = match code.number {
                 0 | 1 | 2 | 30 | 60 => sorted.stop.replace(code),
                 62..=68 => sorted.io.replace(code),

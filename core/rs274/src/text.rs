@@ -3,6 +3,8 @@
 //! A program is bytes, not characters: comments may be in any code page. Lines end with CR, LF or CR LF. Columns are
 //! bytes, counted from 1.
 
+use core::fmt;
+
 /// A run of bytes of the program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Span {
@@ -36,6 +38,38 @@ impl LineRange {
     /// Whether a line is one of them.
     pub const fn contains(self, line: u32) -> bool {
         self.first <= line && line <= self.last
+    }
+}
+
+impl fmt::Display for LineRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.first == self.last {
+            write!(f, "line {}", self.first)
+        } else {
+            write!(f, "lines {}-{}", self.first, self.last)
+        }
+    }
+}
+
+/// A byte as a reader can find it in the text.
+pub(super) struct Byte(pub(super) u8);
+
+impl fmt::Display for Byte {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_ascii_graphic() {
+            write!(f, "`{}`", char::from(self.0))
+        } else {
+            write!(f, "byte 0x{:02X}", self.0)
+        }
+    }
+}
+
+/// A letter.
+pub(super) struct Letter(pub(super) u8);
+
+impl fmt::Display for Letter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", char::from(self.0))
     }
 }
 

@@ -2,70 +2,53 @@
 
 use core::fmt;
 
-use super::message::Letter;
+use super::text::Letter;
 use super::{Line, Span};
+use truepath_units::errors;
 
-/// What was noticed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WarningKind {
-    /// The program lacks one or both `%`.
-    PercentMissing,
-    /// There is text before the first or behind the second `%`.
-    OutsidePercent,
-    /// Neither M2 nor M30.
-    EndMissing,
-    /// There is text behind M2 or M30.
-    TextAfterEnd,
-    /// A cutting move before any F, or with F0.
-    FeedMissing,
-    /// A length before G20 or G21.
-    UnitsAssumed,
-    /// F in the block in which G20 or G21 changes the unit.
-    UnitsWithFeed,
-    /// A block with `/` was executed.
-    BlockDeleteExecuted,
-    /// A block with `/` was skipped.
-    BlockDeleteSkipped,
-    /// An M code that is not known.
-    UnknownM {
-        /// Its number.
-        m: u32,
-    },
-    /// G53 with no axis words.
-    BareG53,
-    /// H or D without the code that uses it.
-    UnusedOffsetNumber {
-        /// `H` or `D`.
-        letter: u8,
-    },
-    /// G41 or G42: the side is recorded, no offset computed.
-    CompensationNotApplied,
-    /// A length without a point, for a control that may take it for least increments.
-    LengthWithoutPoint,
-    /// M99 in the main program.
-    Repeats,
-}
-
-impl WarningKind {
-    /// The stable code of this kind.
-    pub const fn code(self) -> &'static str {
-        match self {
-            Self::PercentMissing => "W001",
-            Self::OutsidePercent => "W002",
-            Self::EndMissing => "W003",
-            Self::TextAfterEnd => "W004",
-            Self::FeedMissing => "W005",
-            Self::UnitsAssumed => "W006",
-            Self::UnitsWithFeed => "W007",
-            Self::BlockDeleteExecuted => "W008",
-            Self::BlockDeleteSkipped => "W009",
-            Self::UnknownM { .. } => "W010",
-            Self::BareG53 => "W011",
-            Self::UnusedOffsetNumber { .. } => "W012",
-            Self::CompensationNotApplied => "W013",
-            Self::LengthWithoutPoint => "W014",
-            Self::Repeats => "W015",
-        }
+errors! {
+    /// What was noticed.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum WarningKind {
+        /// The program lacks one or both `%`.
+        PercentMissing = "W001", "the program does not begin and end with `%`; make sure that the file is complete";
+        /// There is text before the first or behind the second `%`.
+        OutsidePercent = "W002", "text outside the two `%` is ignored";
+        /// Neither M2 nor M30.
+        EndMissing = "W003", "the program does not end with M2 or M30; make sure that the file is complete";
+        /// There is text behind M2 or M30.
+        TextAfterEnd = "W004", "text after the end of the program (M2, M30) is ignored";
+        /// A cutting move before any F, or with F0.
+        FeedMissing = "W005", "a cutting move has no feed; give F before it";
+        /// A length before G20 or G21.
+        UnitsAssumed = "W006",
+            "neither G20 nor G21 before the first length; millimetres or inches are taken as set in the options";
+        /// F in the block in which G20 or G21 changes the unit.
+        UnitsWithFeed = "W007", "F stands in the block that changes the unit; it is read in the new unit";
+        /// A block with `/` was executed.
+        BlockDeleteExecuted = "W008", "a block with `/` is executed; it changes the part if the machine skips it";
+        /// A block with `/` was skipped.
+        BlockDeleteSkipped = "W009", "a block with `/` is skipped; it changes the part if the machine executes it";
+        /// An M code that is not known.
+        UnknownM {
+            /// Its number.
+            m: u32,
+        } = "W010", "M{m} is not known here; it is kept, and taken not to move an axis";
+        /// G53 with no axis words.
+        BareG53 = "W011", "G53 without axis words has no effect";
+        /// H or D without the code that uses it.
+        UnusedOffsetNumber {
+            /// `H` or `D`.
+            letter: u8,
+        } = "W012", "{letter} is given without the code that uses it; it has no effect here", letter = Letter(letter);
+        /// G41 or G42: the side is recorded, no offset computed.
+        CompensationNotApplied = "W013",
+            "G41/G42: the program is read as the path of the cutter's centre and tells the side of the wall; the D offset must be zero or wear only";
+        /// A length without a point, for a control that may take it for least increments.
+        LengthWithoutPoint = "W014",
+            "a length without a point is read in millimetres or inches; a control set to least increments moves 1000 (10,000 in inches) times less: write the point, or choose least increments";
+        /// M99 in the main program.
+        Repeats = "W015", "M99 in the main program repeats it without end; it is read once";
     }
 }
 
@@ -117,36 +100,6 @@ impl Warnings {
         let column = u32::try_from(column).unwrap_or(u32::MAX);
         if self.list.push(Warning { kind, file, line: line.number, column, times: 1 }).is_err() {
             self.dropped = self.dropped.saturating_add(1);
-        }
-    }
-}
-
-impl fmt::Display for WarningKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::PercentMissing => f.write_str("the program does not begin and end with `%`; make sure that the file is complete"),
-            Self::OutsidePercent => f.write_str("text outside the two `%` is ignored"),
-            Self::EndMissing => f.write_str("the program does not end with M2 or M30; make sure that the file is complete"),
-            Self::TextAfterEnd => f.write_str("text after the end of the program (M2, M30) is ignored"),
-            Self::FeedMissing => f.write_str("a cutting move has no feed; give F before it"),
-            Self::UnitsAssumed => f.write_str("neither G20 nor G21 before the first length; millimetres or inches are taken as set in the options"),
-            Self::UnitsWithFeed => f.write_str("F stands in the block that changes the unit; it is read in the new unit"),
-            Self::BlockDeleteExecuted => f.write_str("a block with `/` is executed; it changes the part if the machine skips it"),
-            Self::BlockDeleteSkipped => f.write_str("a block with `/` is skipped; it changes the part if the machine executes it"),
-            Self::UnknownM { m } => write!(f, "M{m} is not known here; it is kept, and taken not to move an axis"),
-            Self::BareG53 => f.write_str("G53 without axis words has no effect"),
-            Self::UnusedOffsetNumber { letter } => {
-                write!(f, "{} is given without the code that uses it; it has no effect here", Letter(letter))
-            }
-            Self::LengthWithoutPoint => f.write_str(
-                "a length without a point is read in millimetres or inches; a control set to least increments moves 1000 (10,000 in inches) times less: write the point, or choose least increments",
-            ),
-            Self::Repeats => {
-                f.write_str("M99 in the main program repeats it without end; it is read once")
-            }
-            Self::CompensationNotApplied => f.write_str(
-                "G41/G42: the program is read as the path of the cutter's centre and tells the side of the wall; the D offset must be zero or wear only",
-            ),
         }
     }
 }

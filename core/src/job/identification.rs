@@ -3,7 +3,7 @@
 use super::{ForceModel, JobError, Pass};
 use crate::cut::{ForceTable, Loop, Path, WallLaw};
 use crate::geometry::Vector;
-use crate::identify::{Fit, Observation, PredictionWorkspace, Prior, identify_law_observed, identify_observed};
+use crate::identify::{Fit, Observation, PredictionWorkspace, Prior, identify, identify_law};
 
 /// Machine and material of a pass.
 #[derive(Clone, Copy, Debug)]
@@ -25,18 +25,18 @@ pub fn identified(
     workspace: &mut PredictionWorkspace,
     observe: &mut dyn FnMut(u16),
 ) -> Identified {
-    let uncorrected = |_| Vector::ZERO;
+    let uncorrected = |_, _| Vector::ZERO;
     let law = match pass.job.force.model {
         ForceModel::Auto => {
             let around = |law| pass.prior(law);
-            let (law, prior, fit) = identify_law_observed(path, around, observations, uncorrected, workspace, observe);
+            let (law, prior, fit) = identify_law(path, around, &mut [], observations, uncorrected, workspace, observe);
             return Identified { law, prior, fit };
         }
         ForceModel::Mean => WallLaw::Mean,
         ForceModel::Helical => WallLaw::Helical,
     };
     let prior = pass.prior(law);
-    let fit = identify_observed(&path.with_law(law), &prior, observations, uncorrected, workspace, observe);
+    let fit = identify(&path.with_law(law), &prior, &mut [], observations, uncorrected, workspace, observe);
     Identified { law, prior, fit }
 }
 

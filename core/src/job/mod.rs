@@ -30,7 +30,7 @@ mod workspace;
 pub use array::{Written, to_nominal_feed, write_image};
 pub use compact::COMPACT_BYTES;
 pub use correction::{check_clamp, largest, law};
-pub use error::{Buffer, Failed, JobError};
+pub use error::{Buffer, JobError};
 pub use facts::{
     Compensation, Correct, Cut, Force, ForceModel, Job, LARGEST_NUMBER, LawName, Machine, Part, Probe, Stickout, Tool,
     ZReference,

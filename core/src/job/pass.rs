@@ -6,7 +6,7 @@ use crate::gcode::{
     CompensationBy, ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Memory, Options, Program, RunPart,
     Spindle, Units, is_marked_corrected, program_crc, read_contour,
 };
-use crate::geometry::{Block, Contour, Point};
+use crate::geometry::{Block, Contour};
 use crate::identify::Prior;
 use crate::image::Binding;
 use crate::probe::{CutWith, Given, LengthUnit};
@@ -83,32 +83,12 @@ impl Pass {
         Contour::new(blocks).ok_or(JobError::Program(none))
     }
 
-    /// Samples the path of a contour into a buffer. A contour that cannot fit is refused before it is walked along.
+    /// Samples the path of a contour into a buffer, each sample with what `shape` makes of it, see [`Path::sample`]. A
+    /// contour that cannot fit is refused before it is walked along.
     ///
     /// # Errors
     /// When the buffer is too short, or an outside arc is so tight that it leaves no wall.
-    pub fn sample<'a>(&self, contour: &Contour, buffer: &'a mut [Sample]) -> Result<Path<'a>, JobError> {
-        self.sample_over(contour, buffer, |sample| sample.stock)
-    }
-
-    /// The same beside the stock that `surface` gives for each sample, see [`Path::sample_over`].
-    ///
-    /// # Errors
-    /// As [`Pass::sample`].
-    pub fn sample_over<'a>(
-        &self,
-        contour: &Contour,
-        buffer: &'a mut [Sample],
-        mut surface: impl FnMut(&Sample) -> Point,
-    ) -> Result<Path<'a>, JobError> {
-        self.sample_shaped(contour, buffer, |sample| sample.stock = surface(sample))
-    }
-
-    /// The same with the stock and the feed that `shape` gives each sample, see [`Path::sample_shaped`].
-    ///
-    /// # Errors
-    /// As [`Pass::sample`].
-    pub fn sample_shaped<'a>(
+    pub fn sample<'a>(
         &self,
         contour: &Contour,
         buffer: &'a mut [Sample],
@@ -121,7 +101,7 @@ impl Pass {
         if least > lent {
             return Err(JobError::full(Buffer::Samples, least, lent));
         }
-        Path::sample_shaped(contour, &self.setup, self.step(), buffer, shape).map_err(|error| match error {
+        Path::sample(contour, &self.setup, self.step(), buffer, shape).map_err(|error| match error {
             PathError::NoWall { line } => JobError::Undercut { line },
             PathError::BufferTooShort { needed, lent } => JobError::full(Buffer::Samples, needed, lent),
         })

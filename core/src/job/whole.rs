@@ -72,9 +72,9 @@ pub fn image(
     let contour = Pass::path_contour(blocks)?;
 
     gauge.tell(Stage::Sampling, 0);
-    let sampled = pass.sample(&contour, workspace.samples)?;
+    let sampled = pass.sample(&contour, workspace.samples, |_| ())?;
     let (count, working) = (sampled.count(), sampled.working().len());
-    let nodes = [workspace.profiles.len(), workspace.updates.len(), workspace.nodes.len(), workspace.best.len()];
+    let nodes = [workspace.profiles.len(), workspace.updates.len(), workspace.nodes.len(), workspace.scratch.len()];
     room(Buffer::Nodes, count, nodes.into_iter().min().unwrap_or(0))?;
     let needed = Counts::needed(&contour, &sampled, 0);
     room(Buffer::States, needed.states, workspace.states.len().min(workspace.displacements.len()))?;
@@ -104,7 +104,7 @@ pub fn image(
         displacements: workspace.displacements.get_mut(..working).unwrap_or_default(),
         profiles: workspace.profiles.get_mut(..count).unwrap_or_default(),
         updates: workspace.updates.get_mut(..count).unwrap_or_default(),
-        best: workspace.best.get_mut(..count).unwrap_or_default(),
+        scratch: workspace.scratch.get_mut(..count).unwrap_or_default(),
         residual: &[],
         reader: InOrder,
     };

@@ -5,7 +5,7 @@
 //! | block of the contour | [`BLOCK_BYTES`] | geometry, feed, line |
 //! | sample of the path, run-in and run-out of 2.8 radii each included | [`SAMPLE_BYTES`] | place, stock, feed |
 //! | state: sample of the contour, and of half a radius on either side | [`STATE_BYTES`] | elastic loop, cutter position |
-//! | node: sample of the contour | [`NODE_BYTES`] | wall profile, update, correction, best correction so far |
+//! | node: sample of the contour | [`NODE_BYTES`] | wall profile, update, correction, scratch |
 //! | probe point | [`POINT_BYTES`] | reading, contact, observation |
 //!
 //! Samples are 0.1 mm apart, with cutters below 5 mm a fiftieth of the diameter; a sharp inside corner takes up to 314
@@ -15,7 +15,7 @@
 use heapless::Vec;
 
 use super::{Buffer, JobError};
-use crate::correct::{Node, Profile, Update};
+use crate::correct::{Node, Profile, Scratch, Update};
 use crate::cut::{Path, Sample, State};
 use crate::gcode::{DeviceMemory, Memory};
 use crate::geometry::{Block, Contour, Direction, Vector};
@@ -30,7 +30,7 @@ pub const SAMPLE_BYTES: usize = size_of::<Sample>();
 /// Bytes a sample takes besides where the elastic loop is solved.
 pub const STATE_BYTES: usize = size_of::<(State, Vector)>();
 /// Bytes a sample of the contour takes besides.
-pub const NODE_BYTES: usize = size_of::<(Profile, Update, Node, Node)>();
+pub const NODE_BYTES: usize = size_of::<(Profile, Update, Node, Scratch)>();
 /// Bytes a probe point takes.
 pub const POINT_BYTES: usize = size_of::<(Reading, Contact, Observation)>();
 
@@ -95,8 +95,8 @@ pub struct Workspace<'a> {
     pub updates: &'a mut [Update],
     /// The correction.
     pub nodes: &'a mut [Node],
-    /// The best correction so far; as many as nodes.
-    pub best: &'a mut [Node],
+    /// The best correction so far, and what else is needed for a while; as many as nodes.
+    pub scratch: &'a mut [Scratch],
 }
 
 /// Refuses unless a buffer has the entries needed.
@@ -125,7 +125,7 @@ pub struct Buffers<
     profiles: Vec<Profile, NODES>,
     updates: Vec<Update, NODES>,
     nodes: Vec<Node, NODES>,
-    best: Vec<Node, NODES>,
+    scratch: Vec<Scratch, NODES>,
 }
 
 impl<const BLOCKS: usize, const SAMPLES: usize, const STATES: usize, const NODES: usize, const POINTS: usize>
@@ -149,7 +149,7 @@ impl<const BLOCKS: usize, const SAMPLES: usize, const STATES: usize, const NODES
             profiles: Vec::new(),
             updates: Vec::new(),
             nodes: Vec::new(),
-            best: Vec::new(),
+            scratch: Vec::new(),
         }
     }
 
@@ -168,7 +168,7 @@ impl<const BLOCKS: usize, const SAMPLES: usize, const STATES: usize, const NODES
             profiles: filled(&mut self.profiles, Profile::default()),
             updates: filled(&mut self.updates, Update::default()),
             nodes: filled(&mut self.nodes, Node::default()),
-            best: filled(&mut self.best, Node::default()),
+            scratch: filled(&mut self.scratch, Scratch::default()),
         }
     }
 }

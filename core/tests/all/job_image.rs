@@ -79,7 +79,7 @@ fn needed(part: &Part) -> Counts {
     let mut workspace = room.workspace();
     let pass = Pass::read(&part.job, part.program, &mut workspace.parameters, workspace.blocks).unwrap();
     let contour = Pass::path_contour(&workspace.blocks[..pass.contour.blocks]).unwrap();
-    let path = pass.sample(&contour, workspace.samples).unwrap();
+    let path = pass.sample(&contour, workspace.samples, |_| ()).unwrap();
     Counts::needed(&contour, &path, part.probe.iter().filter(|b| **b == b'\n').count())
 }
 
@@ -99,7 +99,7 @@ fn within(part: &Part, counts: &Counts, bytes: usize) -> Result<u32, JobError> {
         profiles: &mut all.profiles[..counts.nodes],
         updates: &mut all.updates[..counts.nodes],
         nodes: &mut all.nodes[..counts.nodes],
-        best: &mut all.best[..counts.nodes],
+        scratch: &mut all.scratch[..counts.nodes],
     };
     let mut out = vec![0; bytes];
     image(&part.job, part.program, part.probe, &mut workspace, &mut out, &mut |_, _| ()).map(|m| m.crc)

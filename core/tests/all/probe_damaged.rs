@@ -96,7 +96,7 @@ fn a_job_with_a_layout_keeps_it_in_the_compact_form() {
     let bytes = job.to_compact(&mut buffer).unwrap();
     assert_eq!(truepath_core::job::Job::from_compact(bytes), Ok(job));
     job.probe.as_mut().unwrap().work_offset = None;
-    assert_eq!(job.check().unwrap_err().code(), "J006");
+    assert_eq!(job.check().unwrap_err().code(), "J025");
 }
 
 proptest! {

@@ -1,4 +1,4 @@
-//! Numbers: one length type, one general number, one rounding; plane [`geometry`] and the [`checksum`] on top of them.
+//! Numbers: one length type, one general number, one rounding; plane [`geometry`] and the [`checksum`] on top of them; how [`errors`](mod@errors) are declared.
 //!
 //! Its place: the ground floor. It names no other crate of Truepath; all others name it.
 //!
@@ -33,6 +33,7 @@
 extern crate std;
 
 pub mod checksum;
+pub mod errors;
 pub mod geometry;
 
 mod length;
@@ -42,9 +43,9 @@ mod root;
 mod round;
 mod trig;
 
-pub use length::{Offset, Position};
+pub use length::{Millimetres, Offset, Position, hypot_nm};
 pub use power::{exp2, log2, pow};
 pub use real::Real;
-pub use root::{hypot_nm, isqrt_rounded};
+pub use root::isqrt_rounded;
 pub use round::{div_rounded, shift_rounded, shift_rounded_i31, shift_rounded_i63, shift_rounded_i64};
 pub use trig::{atan2, sin_cos};

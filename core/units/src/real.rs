@@ -5,12 +5,14 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use fixed::types::I32F32;
 
+use super::round::symmetric;
 use super::{div_rounded, shift_rounded};
 
 /// A fixed-point number with 31 integer and 32 fraction bits (Q31.32): range ±2.1 × 10⁹, step 2.3 × 10⁻¹⁰.
 ///
-/// Sums saturate; products and quotients are formed in 128 bits, rounded once to nearest (ties away from zero) and
-/// saturate. A division by zero gives the end of the range (0/0 = 0). No operation panics or wraps.
+/// The range is symmetric: no number holds −2³¹, whose opposite would not exist, so negation is exact. Sums saturate;
+/// products and quotients are formed in 128 bits, rounded once to nearest (ties away from zero) and saturate. A division
+/// by zero gives the end of the range (0/0 = 0). No operation panics or wraps.
 /// Cost of a product: one 64 × 64 → 128 bit multiplication; not for the servo cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Real(I32F32);
@@ -26,7 +28,7 @@ impl Real {
     pub const HALF: Self = Self::from_bits(1 << 31);
     /// The largest number.
     pub const MAX: Self = Self::from_bits(i64::MAX);
-    /// The smallest number; −[`MAX`](Self::MAX), so that negation is exact.
+    /// The smallest number; −[`MAX`](Self::MAX).
     pub const MIN: Self = Self::from_bits(i64::MAX.saturating_neg());
     /// The smallest positive number.
     pub const STEP: Self = Self::from_bits(1);
@@ -37,15 +39,15 @@ impl Real {
     /// 2π, to the last bit.
     pub const TAU: Self = Self::from_bits(26_986_075_409);
 
-    /// From raw bits, units of 2⁻³².
+    /// From raw bits, units of 2⁻³², saturating: −2⁶³ becomes [`MIN`](Self::MIN).
     pub const fn from_bits(bits: i64) -> Self {
-        Self(I32F32::from_bits(bits))
+        Self(I32F32::from_bits(symmetric(bits)))
     }
     /// Raw bits, units of 2⁻³².
     pub const fn bits(self) -> i64 {
         self.0.to_bits()
     }
-    /// From a whole number.
+    /// From a whole number, saturating: −2³¹ becomes [`MIN`](Self::MIN).
     pub const fn from_int(value: i32) -> Self {
         Self::from_bits((value as i64) << 32)
     }
@@ -106,14 +108,14 @@ impl Add for Real {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
-        Self(self.0.saturating_add(other.0))
+        Self::from_bits(self.bits().saturating_add(other.bits()))
     }
 }
 impl Sub for Real {
     type Output = Self;
     #[inline]
     fn sub(self, other: Self) -> Self {
-        Self(self.0.saturating_sub(other.0))
+        Self::from_bits(self.bits().saturating_sub(other.bits()))
     }
 }
 impl Mul for Real {
@@ -134,7 +136,7 @@ impl Neg for Real {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self(self.0.saturating_neg())
+        Self::from_bits(self.bits().wrapping_neg())
     }
 }
 impl AddAssign for Real {
@@ -157,5 +159,27 @@ impl PartialEq<i32> for Real {
 impl PartialOrd<i32> for Real {
     fn partial_cmp(&self, other: &i32) -> Option<Ordering> {
         self.partial_cmp(&Self::from_int(*other))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_range_is_symmetric() {
+        let (min, max) = (Real::MIN, Real::MAX);
+        for end in [
+            Real::from_bits(i64::MIN),
+            Real::from_int(i32::MIN),
+            min + min,
+            min - max,
+            -max,
+            max * min,
+            min / Real::HALF,
+        ] {
+            assert_eq!((end, -end, end.abs()), (min, max, max));
+        }
+        assert_eq!(min + min, -(max + max));
     }
 }

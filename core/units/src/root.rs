@@ -4,8 +4,6 @@
 //! divide: a division of 64 bits is slow on a PC and a routine on the microcontroller, and the root is the heart of the
 //! wall's envelope. The remainder makes the result exact, so nothing but the time depends on the approximation.
 
-use super::Offset;
-
 /// The square root of an integer, rounded to nearest (exact: no tie exists). Error ≤ 1/2.
 pub const fn isqrt_rounded(value: u128) -> u128 {
     if value >> 64 == 0 {
@@ -18,14 +16,6 @@ pub const fn isqrt_rounded(value: u128) -> u128 {
     let root = floor_128(value);
     let up = value.wrapping_sub(square(root)) > root as u128;
     (root as u128).wrapping_add(up as u128)
-}
-
-/// The length of (x, y), rounded to the nanometre, saturating.
-pub const fn hypot_nm(x: Offset, y: Offset) -> Offset {
-    let a = x.nm().unsigned_abs() as u128;
-    let b = y.nm().unsigned_abs() as u128;
-    let root = isqrt_rounded(a.saturating_mul(a).saturating_add(b.saturating_mul(b)));
-    if root > i64::MAX as u128 { Offset::MAX } else { Offset::from_nm(root as i64) }
 }
 
 const fn square(v: u64) -> u128 {

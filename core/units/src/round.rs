@@ -3,6 +3,11 @@
 //! It is odd-symmetric, `round(-x) == -round(x)`, which is what makes a mirrored or turned contour give mirrored or
 //! turned bits. Everything that drops bits goes through one of the widths below.
 
+/// Into ±(2⁶³ − 1): −2⁶³ has no opposite.
+pub(crate) const fn symmetric(value: i64) -> i64 {
+    if value == i64::MIN { i64::MAX.wrapping_neg() } else { value }
+}
+
 /// `value / 2^bits`, rounded to nearest, ties away from zero. `bits` ≤ 126.
 #[inline]
 pub const fn shift_rounded(value: i128, bits: u32) -> i128 {

@@ -3,7 +3,7 @@
 //! The same `Device` that the virtual board runs, with the same batches. Its memory is as large as the virtual board's
 //! and stays allocated until the process ends.
 
-use truepath_core::correct::{Node, Profile, Update};
+use truepath_core::correct::{Node, Profile, Scratch, Update};
 use truepath_core::cut::{Sample, State};
 use truepath_core::gcode::DeviceMemory;
 use truepath_core::geometry::{Block, Direction, Vector};
@@ -95,7 +95,7 @@ fn workspace() -> Workspace<'static> {
         profiles: lasting(Profile::default(), NODES),
         updates: lasting(Update::default(), NODES),
         nodes: lasting(Node::default(), NODES),
-        best: lasting(Node::default(), NODES),
+        scratch: lasting(Scratch::default(), NODES),
     }
 }
 

@@ -2,8 +2,8 @@
 //! reports.
 
 use truepath_core::correct::{
-    Band, Damped, Design, DesignStep, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Update, WallReader,
-    add_residual, commanded, guarded_design, guarded_given,
+    Band, Damped, Design, DesignStep, DesignWorkspace, Guarded, Law, Node, Predicted, Profile, Scratch, Update,
+    WallReader, add_residual, commanded, guarded_design, guarded_given,
 };
 use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
@@ -186,7 +186,7 @@ pub struct Buffers {
     displacements: Vec<Vector>,
     profiles: Vec<Profile>,
     updates: Vec<Update>,
-    best: Vec<Node>,
+    scratch: Vec<Scratch>,
     walls: ParallelWalls,
 }
 
@@ -199,7 +199,7 @@ impl Buffers {
             displacements: vec![Vector::ZERO; working],
             profiles: vec![Profile::default(); count],
             updates: vec![Update::default(); count],
-            best: vec![Node::default(); count],
+            scratch: vec![Scratch::default(); count],
             walls: ParallelWalls::of(path),
         }
     }
@@ -211,7 +211,7 @@ impl Buffers {
             displacements: &mut self.displacements,
             profiles: &mut self.profiles,
             updates: &mut self.updates,
-            best: &mut self.best,
+            scratch: &mut self.scratch,
             residual,
             reader: &mut self.walls,
         }

@@ -5,7 +5,7 @@
 
 use truepath_core::cut::{Path, State, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{EarlierPart, Observation, PredictionWorkspace, identify_parts, speaks_for_mean};
+use truepath_core::identify::{EarlierPart, Observation, PredictionWorkspace, identify, speaks_for_mean};
 use truepath_core::job::{self, ForceModel};
 
 /// What a fit has found, with the points as it left them.
@@ -55,8 +55,7 @@ pub fn found(
         let prior = pass.prior(law);
         let mut observe = |permille| progress(f64::from(permille) / 1000.0);
         let path = path.with_law(law);
-        let fit =
-            identify_parts(&path, &prior, &mut earlier, &mut observations, commanded, &mut workspace, &mut observe);
+        let fit = identify(&path, &prior, &mut earlier, &mut observations, commanded, &mut workspace, &mut observe);
         Found { core: job::Identified { law, prior, fit }, earlier, observations }
     };
     if let Some(law) = law {

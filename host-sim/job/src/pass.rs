@@ -236,11 +236,11 @@ impl Pass {
         };
         let Some(surface) = &self.surface else {
             buffer.0 = vec![Sample::BLANK; needed];
-            return self.core.sample_shaped(&contour, &mut buffer.0, fed).map_err(|error| self.refused(&error));
+            return self.core.sample(&contour, &mut buffer.0, fed).map_err(|error| self.refused(&error));
         };
         let mut even = vec![Sample::BLANK; needed];
         let stock: Vec<Point> = {
-            let path = self.core.sample(&contour, &mut even).map_err(|error| self.refused(&error))?;
+            let path = self.core.sample(&contour, &mut even, |_| ()).map_err(|error| self.refused(&error))?;
             let samples = path.samples();
             let beside = surface.beside(samples, mm(self.core.setup.radius));
             let beside = beside.ok_or_else(|| self.no_stock("lies nowhere beside the contour".to_owned()))?;
@@ -253,7 +253,7 @@ impl Pass {
             sample.stock = next.next().unwrap_or(sample.stock);
             fed(sample);
         };
-        self.core.sample_shaped(&contour, &mut buffer.0, shape).map_err(|error| self.refused(&error))
+        self.core.sample(&contour, &mut buffer.0, shape).map_err(|error| self.refused(&error))
     }
 }
 

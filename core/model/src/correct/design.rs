@@ -5,6 +5,7 @@ use super::paper::PaperTransfer;
 use super::profile::{Band, Profile, Target, add_residual, deepen};
 use super::reader::{InOrder, WallReader};
 use super::refine::{Update, refine, settle_ends};
+use super::scratch::Scratch;
 use crate::cut::{Loop, Passage, Path, State};
 use truepath_units::geometry::Vector;
 use truepath_units::{Offset, Real};
@@ -43,7 +44,7 @@ pub struct Design {
 }
 
 /// Buffers lent by the caller: `states` and `displacements` as long as the path's working range, `profiles`,
-/// `updates` and `best` as long as the contour's own samples.
+/// `updates` and `scratch` as long as the contour's own samples.
 #[derive(Debug)]
 pub struct DesignWorkspace<'a, R = InOrder> {
     /// States of the elastic loop.
@@ -54,8 +55,8 @@ pub struct DesignWorkspace<'a, R = InOrder> {
     pub profiles: &'a mut [Profile],
     /// Changes of the correction.
     pub updates: &'a mut [Update],
-    /// The best correction so far.
-    pub best: &'a mut [Node],
+    /// The best correction so far, and what else is needed for a while.
+    pub scratch: &'a mut [Scratch],
     /// Wall error that parts have shown beside what the model predicts, as long as the contour's own samples; empty where
     /// none is known. The correction cancels it as well.
     pub residual: &'a [Offset],
@@ -84,24 +85,14 @@ pub enum DesignStep<'a> {
     },
 }
 
-/// Makes the correction: `nodes` and `predicted` as long as the contour's own samples.
+/// Makes the correction: `nodes` as long as the contour's own samples, `predicted` as well, or empty where the predictions
+/// are not needed one by one.
 ///
 /// Near a sharp inside corner the correction of the straight wall is held: there the load changes the moment the
 /// direction does, and a correction that followed it would be driven into the wall by a machine that cannot.
-/// Returns the summary of the last pass of the elastic loop.
-pub fn design(
-    machine: &Loop,
-    wanted: &Design,
-    nodes: &mut [Node],
-    predicted: &mut [Predicted],
-    workspace: &mut DesignWorkspace<'_, impl WallReader>,
-) -> Passage {
-    design_observed(machine, wanted, nodes, predicted, workspace, &mut |_| ())
-}
-
-/// As [`design`], observed; `predicted` may be empty where the predictions are not needed one by one. On return
-/// `workspace.profiles` holds the corrected wall.
-pub fn design_observed<R: WallReader>(
+/// `observe` is told what the design does. Returns the summary of the last pass of the elastic loop;
+/// `workspace.profiles` then holds the corrected wall.
+pub fn design<R: WallReader>(
     machine: &Loop,
     wanted: &Design,
     nodes: &mut [Node],
@@ -145,15 +136,15 @@ pub fn design_observed<R: WallReader>(
         is_best = largest < best;
         if is_best {
             best = largest;
-            copy(nodes, workspace.best);
+            copy(nodes, workspace.scratch);
         }
         if wanted.law != Law::Model || largest < SETTLED || since > PATIENCE {
             break;
         }
-        refine(path, wanted, nodes, workspace.profiles, workspace.updates);
+        refine(path, (wanted.target, wanted.max_gouge), nodes, workspace.profiles, workspace.updates);
     }
     // Also where the last was the best: it has been refined since, but not cut.
-    copy(workspace.best, nodes);
+    copy(workspace.scratch, nodes);
     if !is_best {
         passage = pass(nodes, workspace, observe);
     }
@@ -163,9 +154,9 @@ pub fn design_observed<R: WallReader>(
     passage
 }
 
-pub(super) fn copy(from: &[Node], to: &mut [Node]) {
+pub(super) fn copy<A: Copy + Into<B>, B>(from: &[A], to: &mut [B]) {
     for (slot, node) in to.iter_mut().zip(from) {
-        *slot = *node;
+        *slot = (*node).into();
     }
 }
 

@@ -7,13 +7,14 @@
 //! these have changed. What a design leaves of it is taken back at the places. Limits: the standard deviation is that of the fit's parameters; a sharp inside corner, where the
 //! correction is held, is not guarded; the laws kept for comparison know no guard.
 
-use super::design::{Design, DesignStep, DesignWorkspace, Law, Predicted, copy, design_observed, pass, worst};
+use super::design::{Design, DesignStep, DesignWorkspace, Law, Predicted, copy, design, pass, worst};
 use super::node::Node;
 use super::profile::Profile;
-use super::prudence::{Damped, damp};
 use super::reader::WallReader;
 use super::refine::settle_ends;
-use super::uncertainty::{deviations, of_aim, of_deepest};
+use super::scratch::Scratch;
+use super::shrinkage::{Damped, damp};
+use super::uncertainty::deviations;
 use crate::cut::{Loop, Passage};
 use crate::identify::{Fit, Prior};
 use truepath_units::{Offset, Real};
@@ -44,7 +45,14 @@ pub struct Guarded<'a> {
     pub damped: Option<Damped>,
 }
 
-/// As [`design_observed`], under the guard of the design. Without guard the two are the same. On return
+/// Whether the standard deviations computed last are those of the correction as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Deviations {
+    Current,
+    Stale,
+}
+
+/// As [`design`], under the guard of the design. Without guard the two are the same. On return
 /// `workspace.profiles` holds the corrected wall and the margins the guard has kept. By [`Law::Model`] a wall that is known
 /// too badly is corrected in part; what the guard forbids, it forbids of that as well.
 pub fn guarded_design(
@@ -74,12 +82,11 @@ pub fn guarded_design(
         }
     };
     workspace.profiles.fill(Profile::default());
-    let mut passage = design_observed(machine, &free, made.nodes, made.predicted, workspace, &mut |step| {
+    let mut passage = design(machine, &free, made.nodes, made.predicted, workspace, &mut |step| {
         tell(0, 0, &mut done, step);
     });
     copy(made.nodes, made.unguarded);
-    // Whether the place of the best correction holds the deviations of the one there is.
-    let mut known = false;
+    let mut state = Deviations::Stale;
     while let Some(limit) = limit
         && round < ROUNDS
     {
@@ -88,33 +95,33 @@ pub fn guarded_design(
             pass(machine, wanted, made.nodes, workspace, &mut |_| ());
         }
         margins(machine, belief, wanted, made.nodes, workspace);
-        known = true;
+        state = Deviations::Current;
         // The walls of the correction itself, beside the margins.
         passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
         if workspace.profiles.iter().all(|p| missed(p, limit) <= MISSED) {
             break;
         }
         let before = done;
-        passage = design_observed(machine, wanted, made.nodes, made.predicted, workspace, &mut |step| {
+        passage = design(machine, wanted, made.nodes, made.predicted, workspace, &mut |step| {
             tell(round, before, &mut done, step);
         });
-        known = false;
+        state = Deviations::Stale;
     }
     made.damped = None;
     if wanted.law == Law::Model {
-        let cut_anew = !known;
+        let cut_anew = state == Deviations::Stale;
         if cut_anew {
             deviations(machine, belief, wanted, made.nodes, workspace);
         }
-        hand_out(workspace.best, made.sigma);
+        hand_out(workspace.scratch, made.sigma);
         let both = [&mut *made.nodes, &mut *made.unguarded];
-        made.damped = damp(machine.path, uncorrected, both, workspace.best);
-        known = made.damped.is_none();
-        if cut_anew || !known {
+        made.damped = damp(machine.path, uncorrected, both, workspace.scratch);
+        state = if made.damped.is_none() { Deviations::Current } else { Deviations::Stale };
+        if cut_anew || state == Deviations::Stale {
             passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
         }
     }
-    finish(machine, belief, wanted, (known, passage), made, workspace)
+    finish(machine, belief, wanted, (state, passage), made, workspace)
 }
 
 /// A correction that is given instead of designed, under the guard of `wanted` as the fit knows the machine now: where
@@ -137,13 +144,14 @@ pub fn guarded_given(
     copy(given, made.nodes);
     copy(given, made.unguarded);
     let passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
-    let known = limit(wanted).is_some();
-    if known {
+    let mut state = Deviations::Stale;
+    if limit(wanted).is_some() {
         margins(machine, belief, wanted, made.nodes, workspace);
-        hand_out(workspace.best, made.sigma);
+        state = Deviations::Current;
+        hand_out(workspace.scratch, made.sigma);
         pass(machine, wanted, made.nodes, workspace, &mut |_| ());
     }
-    finish(machine, belief, wanted, (known, passage), made, workspace)
+    finish(machine, belief, wanted, (state, passage), made, workspace)
 }
 
 /// The guard of a design: other laws than the model's heed none.
@@ -157,7 +165,7 @@ fn finish(
     machine: &Loop,
     belief: (&Prior, &Fit),
     wanted: &Design,
-    (mut known, mut passage): (bool, Passage),
+    (mut state, mut passage): (Deviations, Passage),
     made: &mut Guarded<'_>,
     workspace: &mut DesignWorkspace<'_, impl WallReader>,
 ) -> Passage {
@@ -168,23 +176,23 @@ fn finish(
         }
         lift(machine, limit, made.nodes, workspace);
         passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
-        known = false;
+        state = Deviations::Stale;
     }
     for (p, wall) in made.predicted.iter_mut().zip(workspace.profiles.iter()) {
         p.after = *wall;
     }
-    if !known && !made.sigma.is_empty() {
+    if state == Deviations::Stale && !made.sigma.is_empty() {
         deviations(machine, belief, wanted, made.nodes, workspace);
-        hand_out(workspace.best, made.sigma);
+        hand_out(workspace.scratch, made.sigma);
         passage = pass(machine, wanted, made.nodes, workspace, &mut |_| ());
     }
     passage
 }
 
 /// Hands out the deviations of the aimed error.
-fn hand_out(slots: &[Node], sigma: &mut [Offset]) {
+fn hand_out(slots: &[Scratch], sigma: &mut [Offset]) {
     for (sigma, slot) in sigma.iter_mut().zip(slots) {
-        *sigma = of_aim(slot);
+        *sigma = slot.deviation().sigma_of_aimed;
     }
 }
 
@@ -196,28 +204,22 @@ fn missed(wall: &Profile, limit: Offset) -> Offset {
 /// Takes the cutter back from the wall where it was deeper than allowed, at the positions that made it so, and less and
 /// less beside them. What it no longer cuts bends it less: half as much again is taken back.
 fn lift(machine: &Loop, limit: Offset, nodes: &mut [Node], workspace: &mut DesignWorkspace<'_, impl WallReader>) {
-    let amount = |slot: &Node| slot.chip.x;
-    workspace.best.fill(Node::default());
+    workspace.scratch.fill(Scratch::default());
     for (index, wall) in workspace.profiles.iter().enumerate() {
         let back = missed(wall, limit).scaled(Real::ratio(3, 2));
         if back == Offset::ZERO {
             continue;
         }
         for maker in wall.makers(index).chain([index]) {
-            if let Some(slot) = workspace.best.get_mut(maker) {
-                slot.chip.x = amount(slot).max(back);
+            if let Some(amount) = workspace.scratch.get_mut(maker).map(Scratch::length) {
+                *amount = (*amount).max(back);
             }
         }
     }
-    let carry = |carried: Offset, slot: &mut Node| {
-        slot.chip.x = amount(slot).max(carried - SLOPE);
-        amount(slot)
-    };
-    workspace.best.iter_mut().fold(Offset::ZERO, carry);
-    workspace.best.iter_mut().rev().fold(Offset::ZERO, carry);
+    Scratch::envelope(workspace.scratch, SLOPE, false);
     let samples = machine.path.samples().iter().skip(machine.path.first());
-    for ((node, slot), sample) in nodes.iter_mut().zip(workspace.best.iter()).zip(samples) {
-        node.chip = node.chip - sample.normal.times(amount(slot));
+    for ((node, slot), sample) in nodes.iter_mut().zip(workspace.scratch.iter_mut()).zip(samples) {
+        node.chip = node.chip - sample.normal.times(*slot.length());
     }
     settle_ends(machine.path, nodes);
 }
@@ -232,7 +234,7 @@ fn margins(
     workspace: &mut DesignWorkspace<'_, impl WallReader>,
 ) {
     deviations(machine, belief, wanted, nodes, workspace);
-    for (wall, slot) in workspace.profiles.iter_mut().zip(workspace.best.iter()) {
-        wall.set_margin(of_deepest(slot).scaled(Real::from_int(GUARD_SIGMAS)));
+    for (wall, slot) in workspace.profiles.iter_mut().zip(workspace.scratch.iter()) {
+        wall.set_margin(slot.deviation().sigma_of_deepest.scaled(Real::from_int(GUARD_SIGMAS)));
     }
 }

@@ -26,10 +26,10 @@
 //! # let contour = Contour::new(&blocks).unwrap();
 //! # let step = Offset::from_um(500);
 //! # let mut buffer = vec![Sample::BLANK; Path::samples_needed(&contour, &setup, step)];
-//! # let path = Path::sample(&contour, &setup, step, &mut buffer).unwrap();
+//! # let path = Path::sample(&contour, &setup, step, &mut buffer, |_| ()).unwrap();
 //! # use truepath_model::cut::{Coefficients, Compliance, ForceTable, Loop, State};
 //! use truepath_model::correct::{
-//!     Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Target, Update, design,
+//!     Band, Design, DesignWorkspace, InOrder, Law, Node, Predicted, Profile, Scratch, Target, Update, design,
 //! };
 //!
 //! // `path` is a straight wall of 40 mm.
@@ -51,12 +51,12 @@
 //!     displacements: &mut vec![Vector::ZERO; working],
 //!     profiles: &mut vec![Profile::default(); samples],
 //!     updates: &mut vec![Update::default(); samples],
-//!     best: &mut vec![Node::default(); samples],
+//!     scratch: &mut vec![Scratch::default(); samples],
 //!     residual: &[],
 //!     reader: InOrder,
 //! };
 //! let (mut nodes, mut predicted) = (vec![Node::default(); samples], vec![Predicted::default(); samples]);
-//! design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
+//! design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());
 //!
 //! let middle = &predicted[samples / 2];
 //! assert!(middle.before.mean.abs() > Offset::from_um(50));
@@ -68,16 +68,18 @@ mod guard;
 mod node;
 mod paper;
 mod profile;
-mod prudence;
 mod reader;
 mod refine;
+mod scratch;
+mod shrinkage;
 mod uncertainty;
 
-pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design, design_observed};
+pub use design::{Design, DesignStep, DesignWorkspace, Law, Predicted, design};
 pub use guard::{GUARD_SIGMAS, Guarded, guarded_design, guarded_given};
 pub use node::{Node, commanded};
 pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, HEIGHTS, Profile, Target, add_residual, begin, finish, profile, read_slices};
-pub use prudence::Damped;
 pub use reader::{InOrder, WallReader};
 pub use refine::Update;
+pub use scratch::Scratch;
+pub use shrinkage::Damped;

@@ -1,8 +1,7 @@
 //! Refinement of a correction on the predicted wall error, and where it is not refined.
 
-use super::design::Design;
 use super::node::Node;
-use super::profile::Profile;
+use super::profile::{Profile, Target};
 use crate::cut::Path;
 use truepath_units::{Offset, Real};
 
@@ -21,10 +20,16 @@ impl Update {
 
 /// One refinement: every cutter position moves along the normal by the mean error of the wall places it made (over
 /// samples and heights); positions that made none follow their neighbours.
-pub(super) fn refine(path: &Path, wanted: &Design, nodes: &mut [Node], profiles: &[Profile], updates: &mut [Update]) {
+pub(super) fn refine(
+    path: &Path,
+    (target, max_gouge): (Target, Option<Offset>),
+    nodes: &mut [Node],
+    profiles: &[Profile],
+    updates: &mut [Update],
+) {
     updates.fill(Update::default());
     for (index, profile) in profiles.iter().enumerate() {
-        let error = profile.aim(wanted.target, wanted.max_gouge);
+        let error = profile.aim(target, max_gouge);
         for maker in profile.makers(index) {
             if let Some(update) = updates.get_mut(maker) {
                 update.sum += error;
@@ -33,7 +38,7 @@ pub(super) fn refine(path: &Path, wanted: &Design, nodes: &mut [Node], profiles:
         }
     }
     fill_gaps(updates);
-    if wanted.max_gouge.is_some() {
+    if max_gouge.is_some() {
         // Where the guard begins, neighbours are asked for different things, and single positions would run away.
         (0..SMOOTHED).for_each(|_| smooth(updates));
     }

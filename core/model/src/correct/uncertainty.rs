@@ -4,17 +4,17 @@ use super::design::{Design, DesignWorkspace, walls};
 use super::node::{Node, commanded};
 use super::profile::Profile;
 use super::reader::WallReader;
+use super::scratch::Deviation;
 use crate::cut::{ForceTable, Loop};
 use crate::identify::{Fit, Prior};
-use truepath_units::geometry::Vector;
 use truepath_units::{Offset, Real, hypot_nm};
 
 /// Standard deviations of the walls that a correction leaves, beside each sample, from the covariance of the fit: of the
 /// error the target aims at and of the deepest height.
 ///
 /// The machine is displaced along each column of a square root of the covariance and cut again with the correction
-/// held; the squares add up. `workspace.profiles` must hold the walls of the correction and is overwritten. `workspace.best`
-/// then holds the deviations, see [`of_aim`] and [`of_deepest`]: between two designs the best correction is of no use.
+/// held; the squares add up. `workspace.profiles` must hold the walls of the correction and is overwritten. Every slot
+/// of `workspace.scratch` then holds a [`Deviation`].
 pub(super) fn deviations(
     machine: &Loop,
     belief: (&Prior, &Fit),
@@ -22,28 +22,20 @@ pub(super) fn deviations(
     nodes: &[Node],
     workspace: &mut DesignWorkspace<'_, impl WallReader>,
 ) {
-    let best = core::mem::take(&mut workspace.best);
-    for (slot, wall) in best.iter_mut().zip(workspace.profiles.iter()) {
-        let of = |x: Offset| Vector { x, y: Offset::ZERO };
-        *slot = Node { chip: of(wall.aim(wanted.target, None)), edge: of(wall.deepest()) };
+    let slots = core::mem::take(&mut workspace.scratch);
+    for (slot, wall) in slots.iter_mut().zip(workspace.profiles.iter()) {
+        let (aimed, deepest) = (wall.aim(wanted.target, None), wall.deepest());
+        *slot = Deviation { aimed, sigma_of_aimed: Offset::ZERO, deepest, sigma_of_deepest: Offset::ZERO }.into();
     }
     spread(machine, belief, wanted, nodes, workspace, &mut |index, wall| {
-        if let Some(Node { chip: aimed, edge: deepest }) = best.get_mut(index) {
-            aimed.y = hypot_nm(aimed.y, wall.aim(wanted.target, None) - aimed.x);
-            deepest.y = hypot_nm(deepest.y, wall.deepest() - deepest.x);
+        if let Some(slot) = slots.get_mut(index) {
+            let mut known = slot.deviation();
+            known.sigma_of_aimed = hypot_nm(known.sigma_of_aimed, wall.aim(wanted.target, None) - known.aimed);
+            known.sigma_of_deepest = hypot_nm(known.sigma_of_deepest, wall.deepest() - known.deepest);
+            *slot = known.into();
         }
     });
-    workspace.best = best;
-}
-
-/// The standard deviation of the aimed error that [`deviations`] has put into the place of a best correction.
-pub(super) const fn of_aim(slot: &Node) -> Offset {
-    slot.chip.y
-}
-
-/// The same of the deepest height.
-pub(super) const fn of_deepest(slot: &Node) -> Offset {
-    slot.edge.y
+    workspace.scratch = slots;
 }
 
 /// Cuts the corrected contour once on every machine that lies a column of the covariance's square root away, and hands

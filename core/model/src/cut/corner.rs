@@ -4,7 +4,7 @@
 //! stock nor wall. At an inside corner the wall is formed by the normal turning on the spot; the load falls there the
 //! moment the direction changes, which no machine follows, so the places around it are marked.
 
-use super::path::Sample;
+use super::sample::Sample;
 use super::setup::CutSetup;
 use truepath_units::geometry::{FACET_TURN_LIMIT, Point, Side};
 use truepath_units::{Offset, Real};

@@ -5,7 +5,8 @@
 //! wrong as printed (134.4° on its own example); here φ₁ = atan2(q·t, q·n) of the crossing point q. Block boundaries
 //! play no part: the load rises before an arc begins.
 
-use super::path::{Path, Sample};
+use super::path::Path;
+use super::sample::Sample;
 use truepath_units::geometry::{Direction, Point, Vector};
 use truepath_units::{Offset, Real, atan2, isqrt_rounded};
 

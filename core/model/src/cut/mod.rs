@@ -21,7 +21,7 @@
 //! let contour = Contour::new(&blocks).unwrap();
 //! let step = Offset::from_um(500);
 //! let mut buffer = vec![Sample::BLANK; Path::samples_needed(&contour, &setup, step)];
-//! let path = Path::sample(&contour, &setup, step, &mut buffer).unwrap();
+//! let path = Path::sample(&contour, &setup, step, &mut buffer, |_| ()).unwrap();
 //!
 //! let index = path.index_at(Offset::from_um(20_000));
 //! let frame = path.frame(index, Vector::ZERO).unwrap();
@@ -36,6 +36,7 @@ mod elastic;
 mod engagement;
 mod force;
 mod path;
+mod sample;
 mod setup;
 mod walk;
 mod wall;
@@ -45,6 +46,7 @@ pub use compliance::Compliance;
 pub use elastic::{Loop, Passage, State};
 pub use engagement::Frame;
 pub use force::{ForceTable, SplitForce, chip_area};
-pub use path::{Path, PathError, Sample};
+pub use path::{Path, PathError};
+pub use sample::Sample;
 pub use setup::{Coefficients, CutSetup, Helix, Milling, WallLaw};
 pub use wall::{Envelope, WallError};

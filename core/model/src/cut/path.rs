@@ -7,48 +7,11 @@
 //! contour that starts by plunging starts fully engaged.
 
 use super::corner;
+use super::sample::Sample;
 use super::setup::{CutSetup, Helix, WallLaw};
 use super::walk::{closes_smoothly, margin, walk};
-use truepath_units::geometry::{Contour, Direction, Point, Side};
-use truepath_units::{Offset, Real};
-
-/// One sample of the path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sample {
-    /// Arc length from the start of the contour; negative before it.
-    pub s: Offset,
-    /// Nominal cutter centre.
-    pub point: Point,
-    /// Normal towards the wall.
-    pub normal: Direction,
-    /// Raw stock surface beside it.
-    pub stock: Point,
-    /// Programmed feed, mm/min.
-    pub feed: Real,
-    /// Index of the block.
-    pub block: u32,
-    /// Whether `stock` is part of the surface; at a sharp outside corner the parallel curve crosses itself.
-    pub on_surface: bool,
-    /// Whether a wall stands beside it; at a sharp outside corner the rest of the path cuts it away.
-    pub on_wall: bool,
-    /// Whether it lies so near to a sharp inside corner that the load changes faster than a machine can follow.
-    pub near_corner: bool,
-}
-
-impl Sample {
-    /// What a lent buffer is filled with before a path is sampled into it.
-    pub const BLANK: Self = Self {
-        s: Offset::ZERO,
-        point: Point::from_nm(0, 0),
-        normal: Direction::X,
-        stock: Point::from_nm(0, 0),
-        feed: Real::ZERO,
-        block: 0,
-        on_surface: true,
-        on_wall: true,
-        near_corner: false,
-    };
-}
+use truepath_units::Offset;
+use truepath_units::geometry::{Contour, Point, Side};
 
 /// The sampled path: a straight run-in, the contour, a straight run-out, in a slice lent by the caller.
 #[derive(Clone, Copy, Debug)]
@@ -91,40 +54,13 @@ impl<'a> Path<'a> {
         count
     }
 
-    /// Samples a contour at about `step` (even on each block).
+    /// Samples a contour at about `step` (even on each block). `shape` may change the stock and the feed of each sample,
+    /// which are the parallel curve at the allowance and the programmed feed: for the wall that a first pass left, or a feed
+    /// that changes within a block.
     ///
     /// # Errors
     /// [`PathError`] when the buffer is too short or an arc leaves no wall.
     pub fn sample(
-        contour: &Contour,
-        setup: &CutSetup,
-        step: Offset,
-        buffer: &'a mut [Sample],
-    ) -> Result<Self, PathError> {
-        Self::sample_over(contour, setup, step, buffer, |sample| sample.stock)
-    }
-
-    /// Samples a contour beside an uneven stock, such as the wall a first pass left: `surface` gives, for a sample that
-    /// still holds the parallel curve at the allowance, the point of the raw stock on its normal.
-    ///
-    /// # Errors
-    /// As [`Path::sample`].
-    pub fn sample_over(
-        contour: &Contour,
-        setup: &CutSetup,
-        step: Offset,
-        buffer: &'a mut [Sample],
-        mut surface: impl FnMut(&Sample) -> Point,
-    ) -> Result<Self, PathError> {
-        Self::sample_shaped(contour, setup, step, buffer, |sample| sample.stock = surface(sample))
-    }
-
-    /// Samples a contour whose stock and feed `shape` may change, sample by sample: another surface, as in
-    /// [`Path::sample_over`], or a feed that changes within a block.
-    ///
-    /// # Errors
-    /// As [`Path::sample`].
-    pub fn sample_shaped(
         contour: &Contour,
         setup: &CutSetup,
         step: Offset,

@@ -1,6 +1,6 @@
 //! The walk along a contour that gives the samples of a path.
 
-use super::path::Sample;
+use super::sample::Sample;
 use super::setup::CutSetup;
 use truepath_units::geometry::{Contour, Direction, FACET_TURN_LIMIT, Point, Side};
 use truepath_units::{Offset, Real};

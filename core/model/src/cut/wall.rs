@@ -5,7 +5,8 @@
 //! along n: where that changes along the path by g per unit length the envelope lies about r·g²/2 above it.
 
 use super::elastic::{Loop, State};
-use super::path::{Path, Sample};
+use super::path::Path;
+use super::sample::Sample;
 use truepath_units::geometry::{Direction, Point, Vector};
 use truepath_units::{Offset, Real, isqrt_rounded};
 

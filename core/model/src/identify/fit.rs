@@ -1,11 +1,9 @@
 //! The fit: Gauss–Newton with priors and a robust loss, over one part or several.
 
-use super::loss;
 use super::observation::{Observation, PredictionWorkspace, predict};
-use super::outcome::Fit;
 use super::parameters::{COUNT, Parameter, Parameters, Prior};
 use super::part::EarlierPart;
-use super::solve::Information;
+use super::solve::{Information, Matrix};
 use super::spread;
 use super::tails;
 use crate::cut::{ForceTable, Path};
@@ -22,40 +20,41 @@ const SPREADS: usize = 4;
 /// Step of the difference quotients, in prior standard deviations.
 const DIFFERENCE: Real = Real::ratio(1, 32);
 
-/// Fits the parameters to the observations.
-///
-/// `commanded` is the displacement the program commanded at each sample when the probed part was cut. The path's
-/// setup names the wall law. On return the observations hold predictions, weights and sensitivities at the solution.
-pub fn identify(
-    path: &Path,
-    prior: &Prior,
-    observations: &mut [Observation],
-    commanded: impl Fn(usize) -> Vector + Copy,
-    workspace: &mut PredictionWorkspace,
-) -> Fit {
-    identify_observed(path, prior, observations, commanded, workspace, &mut |_| ())
+/// Result of an identification.
+#[derive(Clone, Copy, Debug)]
+pub struct Fit {
+    /// The identified parameters.
+    pub parameters: Parameters,
+    /// Distance from the prior, in its standard deviations.
+    pub theta: [Real; COUNT],
+    /// Covariance in units of the prior's standard deviations; its diagonal is 1 where the points say nothing.
+    pub covariance: Matrix,
+    /// Robust sum of squared residuals plus that of the prior, of all points.
+    pub cost: Real,
+    /// Gauss–Newton steps taken.
+    pub steps: u32,
+    /// Points that the robust loss set aside (weight below 0.3).
+    pub outliers: usize,
+    /// Evidence of the model, −½(cost + ln det), natural logarithm up to a constant; larger is better.
+    pub evidence: Real,
 }
 
-/// As [`identify`]; `observe` is told the share of the longest possible fit that is done, ‰, rising: a fit that settles
-/// early ends before 1000.
-pub fn identify_observed(
-    path: &Path,
-    prior: &Prior,
-    observations: &mut [Observation],
-    commanded: impl Fn(usize) -> Vector + Copy,
-    workspace: &mut PredictionWorkspace,
-    observe: &mut dyn FnMut(u16),
-) -> Fit {
-    let task = Task { path, prior, commanded: |_, i| commanded(i) };
-    task.fit(&mut [], observations, workspace, observe)
+impl Fit {
+    /// Standard deviation of a parameter over that of its prior, 0…1: small where the points decide.
+    pub fn remaining(&self, index: usize) -> Real {
+        self.covariance.get(index).and_then(|row| row.get(index)).map_or(Real::ONE, |v| v.sqrt())
+    }
 }
 
-/// As [`identify_observed`], over several parts that one machine cut.
+/// Fits the parameters to the observations of one or several parts that one machine cut.
 ///
 /// The observations are those of the `earlier` parts, one part behind the other, then those of the last.
-/// `commanded(part, sample)` is the displacement that the program of a part, counted from 0, commanded. Every part has a
-/// datum of its own; that of [`Fit::parameters`] is the last one's, the others are left in `earlier`.
-pub fn identify_parts(
+/// `commanded(part, sample)` is the displacement that the program of a part, counted from 0, commanded when it was cut.
+/// Every part has a datum of its own; that of [`Fit::parameters`] is the last one's, the others are left in `earlier`.
+/// The path's setup names the wall law. `observe` is told the share of the longest possible fit that is done, ‰, rising: a
+/// fit that settles early ends before 1000. On return the observations hold predictions, weights and sensitivities at
+/// the solution.
+pub fn identify(
     path: &Path,
     prior: &Prior,
     earlier: &mut [EarlierPart],
@@ -214,7 +213,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         let datums = points.earlier.iter().flat_map(|part| &part.trial);
         let mut cost = datums.fold(tails::cost(theta), |sum, t| sum + *t * *t);
         for o in points.observations.iter_mut() {
-            cost += loss::weigh(o, gate);
+            cost += o.weigh(gate);
         }
         cost
     }

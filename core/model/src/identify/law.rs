@@ -1,8 +1,7 @@
 //! Which wall law the points speak for.
 
-use super::fit::identify_parts;
+use super::fit::{Fit, identify};
 use super::observation::{Observation, PredictionWorkspace};
-use super::outcome::Fit;
 use super::parameters::Prior;
 use super::part::EarlierPart;
 use crate::cut::{Path, WallLaw};
@@ -15,31 +14,9 @@ const DECISIVE: Real = Real::from_int(3);
 /// Identifies under both wall laws and takes the mean law only where the points speak decisively for it: on a
 /// helical cutter it is the wrong one, and a few points at one height cannot tell.
 ///
-/// `around` gives the prior for a law. Returns the law with its prior and fit; the observations hold its predictions.
+/// `around` gives the prior for a law, the others are those of [`identify`]. Returns the law with its prior and fit; the
+/// observations hold its predictions.
 pub fn identify_law(
-    path: &Path,
-    around: impl Fn(WallLaw) -> Prior,
-    observations: &mut [Observation],
-    commanded: impl Fn(usize) -> Vector + Copy,
-    workspace: &mut PredictionWorkspace,
-) -> (WallLaw, Prior, Fit) {
-    identify_law_observed(path, around, observations, commanded, workspace, &mut |_| ())
-}
-
-/// As [`identify_law`], observed as [`identify_observed`](super::identify_observed).
-pub fn identify_law_observed(
-    path: &Path,
-    around: impl Fn(WallLaw) -> Prior,
-    observations: &mut [Observation],
-    commanded: impl Fn(usize) -> Vector + Copy,
-    workspace: &mut PredictionWorkspace,
-    observe: &mut dyn FnMut(u16),
-) -> (WallLaw, Prior, Fit) {
-    identify_law_parts(path, around, &mut [], observations, |_, i| commanded(i), workspace, observe)
-}
-
-/// As [`identify_law_observed`], over several parts as [`identify_parts`](super::identify_parts).
-pub fn identify_law_parts(
     path: &Path,
     around: impl Fn(WallLaw) -> Prior,
     earlier: &mut [EarlierPart],
@@ -51,7 +28,7 @@ pub fn identify_law_parts(
     let mut under = |law, observations: &mut [Observation], fits: u16| {
         let prior = around(law);
         let third = &mut |permille: u16| observe(fits.saturating_mul(1000).saturating_add(permille) / 3);
-        let fit = identify_parts(&path.with_law(law), &prior, earlier, observations, commanded, workspace, third);
+        let fit = identify(&path.with_law(law), &prior, earlier, observations, commanded, workspace, third);
         (law, prior, fit)
     };
     let mean = under(WallLaw::Mean, observations, 0);

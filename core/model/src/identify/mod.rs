@@ -26,7 +26,7 @@
 //! # let contour = Contour::new(&blocks).unwrap();
 //! # let step = Offset::from_um(500);
 //! # let mut buffer = vec![Sample::BLANK; Path::samples_needed(&contour, &setup, step)];
-//! # let path = Path::sample(&contour, &setup, step, &mut buffer).unwrap();
+//! # let path = Path::sample(&contour, &setup, step, &mut buffer, |_| ()).unwrap();
 //! # use truepath_model::cut::{Coefficients, Compliance, ForceTable, State};
 //! use truepath_model::identify::{Observation, PredictionWorkspace, Prior, identify, predict};
 //!
@@ -55,25 +55,22 @@
 //! for point in &mut points {
 //!     point.error = point.predicted.scaled(Real::ratio(1, 2));
 //! }
-//! identify(&path, &prior, &mut points, |_| Vector::ZERO, &mut workspace);
+//! identify(&path, &prior, &mut [], &mut points, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
 //! assert!(points.iter().all(|point| point.residual().abs() < Real::ONE));
 //! ```
 
 mod fit;
 mod law;
-mod loss;
 mod observation;
-mod outcome;
 mod parameters;
 mod part;
 mod solve;
 mod spread;
 mod tails;
 
-pub use fit::{identify, identify_observed, identify_parts};
-pub use law::{identify_law, identify_law_observed, identify_law_parts, speaks_for_mean};
+pub use fit::{Fit, identify};
+pub use law::{identify_law, speaks_for_mean};
 pub use observation::{Observation, PredictionWorkspace, predict};
-pub use outcome::Fit;
 pub use parameters::{COUNT, Parameter, Parameters, Prior};
 pub use part::{EarlierPart, Eliminated};
 pub use solve::{Information, Matrix, square_root};

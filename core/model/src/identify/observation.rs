@@ -51,7 +51,24 @@ impl Observation {
 /// The share of an error that the model may miss, added to the noise of a point.
 const MODEL_SHARE: Real = Real::ratio(1, 100);
 
+/// Residual, in standard deviations, from which a point loses weight (Huber's constant).
+const HUBER: Real = Real::ratio(25, 10);
+
 impl Observation {
+    /// Sets the weight for the residual and returns what it costs: quadratic near zero, linear in the tails (Huber's loss),
+    /// and level beyond a gate, where the point has no weight. A wrong point must not bend the fit of the others.
+    pub(super) fn weigh(&mut self, gate: Real) -> Real {
+        let residual = self.residual().abs();
+        let (weight, cost) = if residual <= HUBER {
+            (Real::ONE, residual * residual)
+        } else if residual > gate {
+            (Real::ZERO, HUBER * (gate + gate - HUBER))
+        } else {
+            (HUBER / residual, HUBER * (residual + residual - HUBER))
+        };
+        self.weight = weight;
+        cost
+    }
     /// Standard deviation of measured − predicted at the right parameters: probe noise and what the model may miss.
     pub fn deviation(&self) -> Offset {
         hypot_nm(self.noise, self.error.scaled(MODEL_SHARE)).scaled(self.spread).max(Offset::from_nm(1))

@@ -123,7 +123,7 @@ fn report<'a>(line: &'a [u8], name: &str) -> Option<&'a [u8]> {
 struct Reports {
     unit: LengthUnit,
     /// Decimals that every number must have when they alone tell the unit.
-    decimals: Option<u32>,
+    decimals: Option<u8>,
 }
 
 impl Reports {
@@ -145,7 +145,7 @@ impl Reports {
             return Ok(Self { unit, decimals: None });
         }
         let first = Lines::new(file).find_map(|line| Some((line, touch(&line)?.1?.0)));
-        match first.map(|(line, [x, ..])| (line, x.decimals)) {
+        match first.map(|(line, [x, ..])| (line, x.decimals())) {
             Some((_, 4)) => Ok(Self { unit: LengthUnit::Inch, decimals: Some(4) }),
             Some((line, decimals)) if decimals != 3 => Err(ProbeError::of_line(ProbeErrorKind::UnitUnclear, &line)),
             _ => Ok(Self { unit: LengthUnit::Millimetre, decimals: Some(3) }),
@@ -153,7 +153,7 @@ impl Reports {
     }
 
     fn position(&self, numbers: [Number; 3], line: &Line) -> Result<[Position; 3], ProbeError> {
-        if self.decimals.is_some_and(|decimals| numbers.iter().any(|n| n.decimals != decimals)) {
+        if self.decimals.is_some_and(|decimals| numbers.iter().any(|n| n.decimals() != decimals)) {
             return Err(ProbeError::of_line(ProbeErrorKind::UnitUnclear, line));
         }
         position(numbers, self.unit, line)
@@ -168,7 +168,7 @@ impl Reports {
             let Some((numbers, count)) = axes(text) else { return Err(ProbeError::of_line(malformed, &line)) };
             let numbers = match (numbers, count) {
                 // The tool length of grbl is a single number along Z.
-                ([z, ..], 1) if name == "TLO" => [Number::zero_like(z), Number::zero_like(z), z],
+                ([z, ..], 1) if name == "TLO" => [z.zeroed(), z.zeroed(), z],
                 ([x, y, z, ..], 3..) => [x, y, z],
                 _ => return Err(ProbeError::of_line(malformed, &line)),
             };

@@ -19,7 +19,7 @@ pub enum LengthUnit {
 
 impl LengthUnit {
     /// Its length.
-    pub(super) const fn nm(self) -> i128 {
+    pub(super) const fn nm(self) -> i64 {
         match self {
             Self::Millimetre => 1_000_000,
             Self::Inch => 25_400_000,

@@ -2,16 +2,15 @@
 
 use super::error::ProbeErrorKind;
 use super::format::LengthUnit;
-use truepath_units::{Real, div_rounded};
+use truepath_rs274::{Decimal, NumberError};
+use truepath_units::Real;
 
-/// A decimal number: sign, digits, and how many of them are decimals.
+/// A decimal number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Number {
-    mantissa: i128,
-    scale: i128,
-    /// Digits behind the point.
-    pub(super) decimals: u32,
-}
+pub(super) struct Number(Decimal);
+
+/// The first number with too many digits before its point.
+const TOO_LARGE: u64 = 1_000_000_000_000;
 
 /// Which bytes stand before the decimals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,73 +24,50 @@ impl Signs {
 }
 
 impl Number {
-    pub(super) const ZERO: Self = Self { mantissa: 0, scale: 1, decimals: 0 };
+    pub(super) const ZERO: Self = Self(Decimal::ZERO);
 
     /// Sign, digits, one decimal sign; neither exponent nor blanks.
     pub(super) fn parse(text: &[u8], signs: Signs) -> Result<Self, ProbeErrorKind> {
-        let (negative, digits) = match text {
-            [b'-', rest @ ..] => (true, rest),
-            [b'+', rest @ ..] => (false, rest),
-            _ => (false, text),
-        };
-        let (mut mantissa, mut scale, mut whole, mut any) = (0i128, 1i128, 0u32, false);
-        let (mut behind_point, mut decimals) = (false, 0u32);
-        for byte in digits {
-            match byte {
-                b'0'..=b'9' => {
-                    any = true;
-                    if behind_point {
-                        decimals = decimals.saturating_add(1);
-                    }
-                    // Digits finer than 10⁻¹⁵ are below any length.
-                    if !behind_point || scale < 1_000_000_000_000_000 {
-                        mantissa = mantissa.saturating_mul(10).saturating_add(i128::from(byte.saturating_sub(b'0')));
-                        if behind_point {
-                            scale = scale.saturating_mul(10);
-                        } else if mantissa != 0 {
-                            whole = whole.saturating_add(1);
-                        }
-                    }
-                }
-                b'.' if !behind_point && signs.point => behind_point = true,
-                b',' if !behind_point && signs.comma => behind_point = true,
-                _ => return Err(ProbeErrorKind::NotANumber),
-            }
+        let is_point = |byte| (byte == b'.' && signs.point) || (byte == b',' && signs.comma);
+        match Decimal::read(text, is_point, |_| false) {
+            ([_, ..], _) | (_, Err(NumberError::Missing)) => Err(ProbeErrorKind::NotANumber),
+            (_, Ok(number)) if whole(number) < TOO_LARGE => Ok(Self(number)),
+            _ => Err(ProbeErrorKind::NumberTooLarge),
         }
-        if !any {
-            return Err(ProbeErrorKind::NotANumber);
-        }
-        if whole > 12 {
-            return Err(ProbeErrorKind::NumberTooLarge);
-        }
-        Ok(Self { mantissa: if negative { mantissa.saturating_neg() } else { mantissa }, scale, decimals })
+    }
+
+    /// Zero with as many decimals as this number.
+    pub(super) fn zeroed(self) -> Self {
+        Self(Decimal::new(0, self.decimals()).unwrap_or(self.0))
+    }
+
+    /// Digits behind the point.
+    pub(super) const fn decimals(self) -> u8 {
+        self.0.decimals()
     }
 
     /// With the other sign.
     pub(super) const fn negated(self) -> Self {
-        Self { mantissa: self.mantissa.saturating_neg(), ..self }
-    }
-
-    /// Zero with as many decimals as another number.
-    pub(super) const fn zero_like(other: Self) -> Self {
-        Self { mantissa: 0, scale: 1, decimals: other.decimals }
+        Self(self.0.negated())
     }
 
     /// As a length in nanometres, rounded to nearest.
     pub(super) fn nm(self, unit: LengthUnit) -> Result<i64, ProbeErrorKind> {
-        let nm = div_rounded(self.mantissa.saturating_mul(unit.nm()), self.scale);
-        i64::try_from(nm).map_err(|_| ProbeErrorKind::NumberTooLarge)
+        i64::try_from(self.0.times(unit.nm())).map_err(|_| ProbeErrorKind::NumberTooLarge)
     }
 
     /// As a number without a unit.
-    pub(super) fn real(self) -> Real {
-        Real::narrow(div_rounded(self.mantissa.saturating_mul(1 << Real::FRACTION_BITS), self.scale))
+    pub(super) const fn real(self) -> Real {
+        self.0.real()
     }
 
     /// As a whole number; `None` when it is not one or is negative.
     pub(super) fn whole(self) -> Option<u32> {
-        let whole = self.mantissa.checked_div(self.scale)?;
-        let exact = self.mantissa.checked_rem(self.scale) == Some(0);
-        u32::try_from(whole).ok().filter(|_| exact)
+        u32::try_from(self.0.exactly_times(1)?).ok()
     }
+}
+
+/// What stands before the point.
+fn whole(number: Decimal) -> u64 {
+    number.mantissa().unsigned_abs().checked_div(10u64.saturating_pow(number.decimals().into())).unwrap_or(0)
 }

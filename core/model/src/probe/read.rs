@@ -3,7 +3,7 @@
 use super::error::{ProbeError, ProbeErrorKind};
 use super::format::{Format, Given};
 use super::reading::{Reading, Sink};
-use super::{columns, console, inspection, log, probeopen};
+use super::{columns, console, inspection, linuxcnc};
 
 /// Reads a file into `readings`; returns how many there are.
 ///
@@ -14,9 +14,9 @@ use super::{columns, console, inspection, log, probeopen};
 pub fn read(file: &[u8], given: &Given, readings: &mut [Reading]) -> Result<usize, ProbeError> {
     let mut sink = Sink::new(readings);
     match given.format {
-        Format::Linuxcnc => probeopen::read(file, given, &mut sink),
+        Format::Linuxcnc => linuxcnc::probeopen(file, given, &mut sink),
         Format::Columns => columns::read(file, given, &mut sink),
-        Format::LinuxcncLog => log::read(file, given, &mut sink),
+        Format::LinuxcncLog => linuxcnc::log(file, given, &mut sink),
         Format::Grbl => console::read(file, given, &mut sink),
         Format::Inspection | Format::Dprnt => inspection::read(file, given, &mut sink),
     }?;

@@ -7,60 +7,41 @@
 use super::contact::{Contacts, Setting};
 use super::reading::{Outcome, Reading};
 use truepath_units::geometry::{Point, Vector};
-use truepath_units::{Offset, Position, Real};
+use truepath_units::{Offset, Position, Real, errors};
 
-/// What explains that most readings are off the wall.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Suspicion {
-    /// They fit when read as inches.
-    Inches,
-    /// They fit when inches are read as millimetres.
-    Millimetres,
-    /// They fit with a ball twice as large: its radius was given as its diameter.
-    BallTwice,
-    /// They fit with a ball half as large: its diameter was given twice.
-    BallHalf,
-    /// Ball centres are expected, and they fit as surface points.
-    Surface,
-    /// Surface points are expected, and they fit as ball centres.
-    Centre,
-    /// They fit a wall on the other side of travel.
-    OtherSide,
-    /// They fit with X and Y exchanged.
-    Swapped,
-    /// They fit with the sign of X turned.
-    MirroredX,
-    /// They fit with the sign of Y turned.
-    MirroredY,
-    /// They fit, and the normals in the file point the other way.
-    Normals,
-    /// They fit after one shift of all: another frame.
-    Shifted {
-        /// What the readings have too much, rounded to a tenth of a millimetre.
-        by: [Offset; 2],
-    },
-    /// Nothing simple.
-    Frame,
-}
-
-impl Suspicion {
-    /// What it says of the readings.
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::Inches => "they fit when read as inches",
-            Self::Millimetres => "they fit when read as millimetres",
-            Self::BallTwice => "they fit with a ball twice as large",
-            Self::BallHalf => "they fit with a ball half as large",
-            Self::Surface => "they fit as surface points, and ball centres are expected",
-            Self::Centre => "they fit as ball centres, and surface points are expected",
-            Self::OtherSide => "they fit a wall on the other side of travel",
-            Self::Swapped => "they fit with X and Y exchanged",
-            Self::MirroredX => "they fit with the sign of X turned",
-            Self::MirroredY => "they fit with the sign of Y turned",
-            Self::Normals => "the normals in the file point into the wall",
-            Self::Shifted { .. } => "they fit after one shift of all",
-            Self::Frame => "probably they are in another frame",
-        }
+errors! {
+    /// What explains that most readings are off the wall.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Suspicion {
+        /// They fit when read as inches.
+        Inches = "M011", "they fit when read as inches";
+        /// They fit when inches are read as millimetres.
+        Millimetres = "M012", "they fit when read as millimetres";
+        /// They fit with a ball twice as large: its radius was given as its diameter.
+        BallTwice = "M013", "they fit with a ball twice as large";
+        /// They fit with a ball half as large: its diameter was given twice.
+        BallHalf = "M013", "they fit with a ball half as large";
+        /// Ball centres are expected, and they fit as surface points.
+        Surface = "M013", "they fit as surface points, and ball centres are expected";
+        /// Surface points are expected, and they fit as ball centres.
+        Centre = "M017", "they fit as ball centres, and surface points are expected";
+        /// They fit a wall on the other side of travel.
+        OtherSide = "M016", "they fit a wall on the other side of travel";
+        /// They fit with X and Y exchanged.
+        Swapped = "M018", "they fit with X and Y exchanged";
+        /// They fit with the sign of X turned.
+        MirroredX = "M019", "they fit with the sign of X turned";
+        /// They fit with the sign of Y turned.
+        MirroredY = "M019", "they fit with the sign of Y turned";
+        /// They fit, and the normals in the file point the other way.
+        Normals = "M021", "the normals in the file point into the wall";
+        /// They fit after one shift of all: another frame.
+        Shifted {
+            /// What the readings have too much, rounded to a tenth of a millimetre.
+            by: [Offset; 2],
+        } = "M014", "they fit after one shift of all";
+        /// Nothing simple.
+        Frame = "M014", "probably they are in another frame";
     }
 }
 

@@ -2,8 +2,8 @@
 use crate::corner;
 use corner::*;
 use truepath_model::correct::{
-    Band, Damped, Design, DesignWorkspace, Guarded, InOrder, Law, Node, Predicted, Profile, Target, Update, commanded,
-    design, guarded_design, guarded_given, profile,
+    Band, Damped, Design, DesignWorkspace, Guarded, InOrder, Law, Node, Predicted, Profile, Scratch, Target, Update,
+    commanded, design, guarded_design, guarded_given, profile,
 };
 use truepath_model::cut::*;
 use truepath_model::identify::{self, Fit, Observation, Parameters, PredictionWorkspace, Prior};
@@ -48,7 +48,8 @@ fn probed(places: &[i32]) -> Case {
     let table = ForceTable::new(prior.mean.coefficients.size_exponent);
     identify::predict(&path, &table, &prior.mean, |_| Vector::ZERO, &mut observations, &mut workspace);
     observations.iter_mut().for_each(|o| o.error = o.predicted);
-    let fit = identify::identify(&path, &prior, &mut observations, |_| Vector::ZERO, &mut workspace);
+    let fit =
+        identify::identify(&path, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
     Case { path, prior, fit }
 }
 
@@ -68,7 +69,7 @@ impl Case {
     /// Designed without guard and prudence.
     fn plain(&self, wanted: &Design) -> Made {
         self.run(|machine, made, workspace| {
-            design(machine, wanted, made.nodes, made.predicted, workspace);
+            design(machine, wanted, made.nodes, made.predicted, workspace, &mut |_| ());
         })
     }
 
@@ -88,7 +89,7 @@ impl Case {
             displacements: &mut vec![Vector::ZERO; w],
             profiles: &mut vec![Profile::default(); n],
             updates: &mut vec![Update::default(); n],
-            best: &mut vec![Node::default(); n],
+            scratch: &mut vec![Scratch::default(); n],
             residual: &[],
             reader: InOrder,
         };

@@ -3,7 +3,9 @@
 use crate::corner;
 use corner::*;
 use proptest::prelude::*;
-use truepath_model::correct::{self, Band, Design, DesignWorkspace, InOrder, Node, Predicted, Profile, Target, Update};
+use truepath_model::correct::{
+    self, Band, Design, DesignWorkspace, InOrder, Node, Predicted, Profile, Scratch, Target, Update,
+};
 use truepath_model::cut::*;
 use truepath_model::identify::{Fit, Observation, PredictionWorkspace, Prior, identify};
 use truepath_units::geometry::{Block, Curve, Point, Shape, Side, Vector};
@@ -89,7 +91,7 @@ fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, 
     let need = PredictionWorkspace::needed(&path);
     let (mut s, mut d) = (vec![State::REST; need], vec![Vector::ZERO; need]);
     let mut lent = PredictionWorkspace { states: &mut s, displacements: &mut d };
-    let fit = identify(&path, &prior, &mut observations, |_| Vector::ZERO, &mut lent);
+    let fit = identify(&path, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut lent, &mut |_| ());
     let table = ForceTable::new(fit.parameters.coefficients.size_exponent);
     let machine = fit.parameters.machine(&path, &table);
     (fit, designed(&machine))
@@ -105,11 +107,11 @@ fn designed(machine: &Loop) -> Vec<Node> {
         displacements: &mut vec![Vector::ZERO; w],
         profiles: &mut vec![Profile::default(); n],
         updates: &mut vec![Update::default(); n],
-        best: &mut vec![Node::default(); n],
+        scratch: &mut vec![Scratch::default(); n],
         residual: &[],
         reader: InOrder,
     };
-    correct::design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
+    correct::design(machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());
     nodes
 }
 

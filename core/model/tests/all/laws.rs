@@ -2,8 +2,8 @@
 use crate::corner;
 use corner::*;
 use truepath_model::correct::{
-    Band, Design, DesignWorkspace, InOrder, Law, Node, PaperRatio, PaperTransfer, Predicted, Profile, Target, Update,
-    design,
+    Band, Design, DesignWorkspace, InOrder, Law, Node, PaperRatio, PaperTransfer, Predicted, Profile, Scratch, Target,
+    Update, design,
 };
 use truepath_model::cut::*;
 use truepath_units::geometry::{Block, Curve, Vector};
@@ -41,12 +41,12 @@ fn left_by(law: &str, blocks: &[Block]) -> (f64, f64) {
         displacements: &mut vec![Vector::ZERO; w],
         profiles: &mut vec![Profile::default(); n],
         updates: &mut vec![Update::default(); n],
-        best: &mut vec![Node::default(); n],
+        scratch: &mut vec![Scratch::default(); n],
         residual: &[],
         reader: InOrder,
     };
     let wanted = Design { law, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
-    design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace);
+    design(&machine, &wanted, &mut nodes, &mut predicted, &mut workspace, &mut |_| ());
     // Away from the ends, where no wall is judged.
     let judged = || {
         predicted

@@ -15,7 +15,6 @@
 //! the last bit.
 
 mod corner;
-mod error;
 mod leg;
 mod path;
 mod remains;
@@ -24,7 +23,7 @@ mod stage;
 mod tests;
 pub(crate) mod unit;
 
-pub use error::CompensationError;
+pub use super::error::CompensationError;
 pub use leg::{Cutter, Piece, Shape};
 pub use path::{CutterPath, Step};
 pub use stage::WAITING;

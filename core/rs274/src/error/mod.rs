@@ -3,9 +3,9 @@
 //! Every kind has a code that never changes its meaning (`G00…` lexical, `G02…` one block, `G03…` a code, `G04…` motion,
 //! `G05…` arcs and corners, `G11…` corners, `G07…` the contour, `G08…` parameters, `G12…` and `G13…` cutter compensation,
 //! `G14…` and `G15…` the order of blocks, `G16…` and
-//! `G17…` expressions) and carries both sides of a mismatch. The sentences shown to the
-//! user are in `message.rs`, those of a theme with its kinds.
+//! `G17…` expressions) and carries both sides of a mismatch.
 
+mod compensation;
 mod corner;
 mod cycle;
 mod expression;
@@ -14,24 +14,18 @@ mod kind;
 mod parameter;
 mod setting;
 
+use core::fmt;
+
 use super::{Line, Span};
 
+pub use compensation::CompensationError;
 pub use corner::CornerError;
 pub use cycle::CycleError;
 pub use expression::ExpressionError;
 pub use flow::FlowError;
-pub use kind::GcodeErrorKind;
+pub use kind::{Foreign, GcodeErrorKind};
 pub use parameter::ParameterError;
 pub use setting::SettingError;
-
-/// A language that is not G-code as read here.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Foreign {
-    /// `BEGIN PGM … MM`: Heidenhain's conversational language.
-    Heidenhain,
-    /// `E` words: a program of a 3D printer.
-    Printer,
-}
 
 /// What is wrong, and where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,3 +60,11 @@ impl GcodeError {
         Span { start: self.start, len: self.len }
     }
 }
+
+impl fmt::Display for GcodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}, column {}: {}: {}", self.line, self.column, self.kind.code(), self.kind)
+    }
+}
+
+impl core::error::Error for GcodeError {}

@@ -1,8 +1,8 @@
 //! Codes that leave the sequence of blocks: G65, M97, M98, M99. They are followed by the reader.
 
 use super::super::block::BlockWords;
-use super::super::code::Group;
 use super::super::flow::{Next, Target};
+use super::super::group::Group;
 use super::super::mcode::MCodes;
 use super::super::{
     CycleError, Dialect, Event, GcodeError, GcodeErrorKind, Number, PointlessLength, SettingError, WarningKind, Word,

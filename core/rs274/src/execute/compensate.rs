@@ -1,8 +1,8 @@
 //! G40, G41, G42, G41.1, G42.1: which cutter keeps beside the path, and from where to where.
 
 use super::super::block::BlockWords;
-use super::super::code::Group;
 use super::super::compensation::{CompensationError, Cutter, Waiting};
+use super::super::group::Group;
 use super::super::{Canon, CompensationBy, Event, GcodeError, GcodeErrorKind, Line, Plane, Source, Span, WarningKind};
 use super::Execution;
 use truepath_units::geometry::Side;

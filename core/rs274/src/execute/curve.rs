@@ -7,30 +7,6 @@ use super::spline::{ControlPoint, ORDER, POINTS, Spline};
 use truepath_units::geometry::{Point, Vector};
 use truepath_units::{Offset, Real};
 
-/// What is kept from block to block.
-#[derive(Debug, Default)]
-pub(super) struct SplineMemory {
-    /// The second control point of the next G5 when it gives none: against (P, Q) of the last.
-    tangent: Option<Vector>,
-    /// The order of the spline that G5.2 has begun, its start, and its control points from there.
-    order: usize,
-    start: Axes,
-    points: heapless::Vec<ControlPoint, POINTS>,
-}
-
-impl SplineMemory {
-    /// Whether G5.2 has begun a spline that is not ended.
-    pub(super) fn is_open(&self) -> bool {
-        !self.points.is_empty()
-    }
-
-    /// A move that is no spline comes.
-    pub(super) fn interrupted(&mut self) {
-        self.tangent = None;
-        self.points.clear();
-    }
-}
-
 impl<S> Execution<'_, '_, '_, S>
 where
     S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,

@@ -12,7 +12,7 @@ use super::super::{
     Spindle,
 };
 use super::Execution;
-use super::cycle_words::CycleMemory;
+use super::memory::CycleMemory;
 use truepath_units::Position;
 
 /// How far above the last depth the rapid of a pecking cycle ends: 0.254 mm, or 0.010 in.

@@ -3,22 +3,12 @@
 //! LinuxCNC's rule: R, the depth, Q, P, I, J, K stay from hole to hole of one cycle; another code needs them again.
 
 use super::super::block::BlockWords;
-use super::super::{CycleError, Event, GCode, GcodeError, GcodeErrorKind, Number, Span};
+use super::super::{CycleError, Event, GCode, GcodeError, GcodeErrorKind, Span};
 use super::Execution;
+use super::memory::CycleMemory;
 
 /// Repetitions of one block; more are an error.
 const REPETITIONS: u32 = 10_000;
-
-/// The words that stay from hole to hole.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CycleMemory {
-    pub(super) code: GCode,
-    pub(super) clearance: i64,
-    pub(super) depth: i64,
-    pub(super) peck: Option<i64>,
-    pub(super) dwell: Option<Number>,
-    pub(super) aside: [Option<i64>; 3],
-}
 
 impl<S> Execution<'_, '_, '_, S>
 where

@@ -12,7 +12,7 @@
 //! | `home.rs`, `probe.rs` | G28, G30, G53; probing and tapping |
 //! | `cycle.rs`, `cycle_words.rs` | canned cycles |
 //! | `curve.rs`, `spline.rs` | splines, and their flattening |
-//! | `modal.rs`, `machine.rs` | the modes; what a machine knows |
+//! | `memory.rs` | what codes remember from block to block |
 //! | `readout.rs` | parameters that follow the machine |
 
 mod arc;
@@ -25,8 +25,7 @@ mod curve;
 mod cycle;
 mod cycle_words;
 mod home;
-mod machine;
-mod modal;
+mod memory;
 mod modes;
 mod motion;
 mod origin;
@@ -45,19 +44,13 @@ use super::corner::CornerStage;
 use super::flow::{Next, Sentence};
 use super::parameter::Surroundings;
 use super::{
-    Axes, Canon, Event, GcodeError, GcodeErrorKind, Line, Memory, Options, PointlessLength, Source, Span, Token,
-    WarningKind, Warnings, Words,
+    Axes, Canon, Event, GcodeError, GcodeErrorKind, Line, Memory, Modal, Options, PointlessLength, Source, Span, Token,
+    Tool, WarningKind, Warnings, Words,
 };
 
-use curve::SplineMemory;
-use cycle_words::CycleMemory;
-use saved::{LEVELS, SavedModes};
-use tool::CHANGED_TOOLS;
+use memory::{CHANGED_TOOLS, CycleMemory, LEVELS, SavedModes, SplineMemory};
 
 use truepath_units::Position;
-
-pub use machine::{Machine, Tool};
-pub use modal::{Modal, Motion};
 
 /// The machine.
 pub(super) struct Execution<'p, 's, 'm, S> {

@@ -4,8 +4,8 @@
 //! the F of its own block.
 
 use super::super::block::{BlockWords, whole};
-use super::super::code::Group;
 use super::super::flow::Next;
+use super::super::group::Group;
 use super::super::mcode::MCodes;
 use super::super::{
     Canon, CornerError, Event, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel, SettingError, WarningKind,
@@ -31,7 +31,7 @@ where
             self.emit(Canon::ProgramNumber(second), span)?;
             return Ok(Next::Continue);
         }
-        let m = MCodes::sorted(block).map_err(|(kind, span)| self.error(kind, span))?;
+        let m = MCodes::sorted(&block.m).map_err(|(kind, span)| self.error(kind, span))?;
         if let Some(next) = self.macro_call(block)? {
             return Ok(next);
         }

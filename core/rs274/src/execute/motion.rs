@@ -1,8 +1,8 @@
 //! The moves of one block: which code moves, and along what.
 
 use super::super::block::BlockWords;
-use super::super::code::Group;
 use super::super::compensation::CompensationError;
+use super::super::group::Group;
 use super::super::{
     Axes, Canon, CycleError, Event, GCode, GcodeError, GcodeErrorKind, Motion, SettingError, Span, WarningKind,
 };

@@ -4,7 +4,7 @@
 //! position unknown, and G10 L2 the axes it names; G92, G52 and G10 L20 tell enough to go on.
 
 use super::super::block::BlockWords;
-use super::super::code::Group;
+use super::super::group::Group;
 use super::super::{
     AXIS_LETTERS, Axes, Canon, Event, GCode, GcodeError, GcodeErrorKind, NineAxes, SettingError, ShiftKind, Shifts,
     Span, Word,

@@ -1,7 +1,7 @@
 //! F and S, and what they mean: G93, G94, G95, G96, G97.
 
 use super::super::block::BlockWords;
-use super::super::code::Group;
+use super::super::group::Group;
 use super::super::{
     Canon, CycleError, Event, FeedMode, GCode, GcodeError, GcodeErrorKind, SettingError, Units, WarningKind, Word,
 };

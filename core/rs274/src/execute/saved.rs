@@ -3,54 +3,9 @@
 //! Limits: coolant, overrides and cutter radius compensation are not restored, and a tool offset only when it was off.
 
 use super::super::mcode::MCodes;
-use super::super::{
-    Canon, Event, FeedMode, GcodeError, GcodeErrorKind, Modal, PathControl, Plane, RetractLevel, SettingError, Span,
-    Spindle, Units,
-};
+use super::super::{Canon, Event, GcodeError, GcodeErrorKind, SettingError, Span};
 use super::Execution;
-use truepath_units::Real;
-
-/// Levels of calls, the main program included.
-pub(super) const LEVELS: usize = 11;
-
-/// The modes that M72 brings back.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct SavedModes {
-    units: Units,
-    plane: Plane,
-    absolute: bool,
-    absolute_centres: bool,
-    feed_mode: FeedMode,
-    retract: RetractLevel,
-    path: Option<PathControl>,
-    feed: Option<Real>,
-    speed: Option<Real>,
-    spindle: Spindle,
-    work_offset: u16,
-    length_offset: bool,
-    /// M73: restored when the level returns.
-    on_return: bool,
-}
-
-impl SavedModes {
-    const fn of(modal: &Modal, on_return: bool) -> Self {
-        Self {
-            units: modal.units,
-            plane: modal.plane,
-            absolute: modal.absolute,
-            absolute_centres: modal.absolute_centres,
-            feed_mode: modal.feed_mode,
-            retract: modal.retract,
-            path: modal.path,
-            feed: modal.feed,
-            speed: modal.speed,
-            spindle: modal.spindle,
-            work_offset: modal.work_offset,
-            length_offset: modal.length_offset,
-            on_return,
-        }
-    }
-}
+use super::memory::SavedModes;
 
 impl<S> Execution<'_, '_, '_, S> {
     /// A call level has ended: what M73 saved in it waits to come back.

@@ -1,7 +1,7 @@
 //! M codes that switch something, and the codes that set how the path is followed.
 
 use super::super::block::BlockWords;
-use super::super::code::Group;
+use super::super::group::Group;
 use super::super::mcode::{MCode, MCodes};
 use super::super::{
     Canon, Coolant, CycleError, Event, GcodeError, GcodeErrorKind, PathControl, SettingError, Span, Spindle,

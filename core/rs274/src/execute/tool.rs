@@ -1,16 +1,14 @@
 //! Tools: selection, change, length and offset (G43, G43.1, G43.2, G44, G49), and the tool table in the program (G10).
 
 use super::super::block::BlockWords;
-use super::super::code::Group;
+use super::super::group::Group;
 use super::super::mcode::MCodes;
 use super::super::{
     Canon, CycleError, Event, GCode, GcodeError, GcodeErrorKind, NineAxes, SettingError, Shifts, Span, Tool, ToolLength,
 };
 use super::Execution;
+use super::memory::CHANGED_TOOLS;
 use truepath_units::{Offset, Position};
-
-/// Rows of the tool table that a program may change with G10.
-pub(super) const CHANGED_TOOLS: usize = 8;
 
 impl<S> Execution<'_, '_, '_, S> {
     /// A row of the tool table, as G10 has left it.

@@ -3,9 +3,9 @@
 //! Operands and operators wait on two stacks of fixed depth until an operator that binds less follows, or the bracket
 //! closes (E. W. Dijkstra's shunting yard): nothing recurs, and an expression nested too deeply is an error.
 
-use super::super::lexical::{NumberError, number, trimmed};
+use super::super::lexical::{Function, NumberError, Operator, number, trimmed};
 use super::super::{Dialect, ExpressionError, GcodeErrorKind, MachineParameters, ParameterError};
-use super::{Function, Operator, name};
+use super::name;
 
 /// Operands and operators that may wait.
 const DEPTH: usize = 48;

@@ -1,56 +1,11 @@
 //! Functions of one operand, and the arc tangent of two. Angles are degrees.
 
 use super::super::ExpressionError;
-use super::super::lexical::trimmed;
-
-/// A function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum Function {
-    Abs,
-    Acos,
-    Asin,
-    Atan,
-    Cos,
-    Exists,
-    Exp,
-    Fix,
-    Fup,
-    Ln,
-    Round,
-    Sin,
-    Sqrt,
-    Tan,
-}
-
-const NAMES: [(&[u8], Function); 14] = [
-    (b"ABS", Function::Abs),
-    (b"ACOS", Function::Acos),
-    (b"ASIN", Function::Asin),
-    (b"ATAN", Function::Atan),
-    (b"COS", Function::Cos),
-    (b"EXISTS", Function::Exists),
-    (b"EXP", Function::Exp),
-    (b"FIX", Function::Fix),
-    (b"FUP", Function::Fup),
-    (b"LN", Function::Ln),
-    (b"ROUND", Function::Round),
-    (b"SIN", Function::Sin),
-    (b"SQRT", Function::Sqrt),
-    (b"TAN", Function::Tan),
-];
+use super::super::lexical::Function;
 
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
 
 impl Function {
-    /// The function at the start of a text, and the length of its name. A bracket must follow.
-    pub(in super::super) fn at(text: &[u8]) -> Option<(Self, usize)> {
-        let is_here = |name: &[u8]| {
-            text.split_at_checked(name.len())
-                .is_some_and(|(here, rest)| here.eq_ignore_ascii_case(name) && trimmed(rest).first() == Some(&b'['))
-        };
-        NAMES.iter().find(|(name, _)| is_here(name)).map(|(name, function)| (*function, name.len()))
-    }
-
     /// Its value. `Atan` and `Exists` are not computed here.
     #[expect(clippy::float_arithmetic, reason = "expressions are computed in floating point")]
     pub(super) fn apply(self, x: f64) -> Result<f64, ExpressionError> {

@@ -16,6 +16,4 @@ mod name;
 mod operator;
 
 pub(super) use evaluator::{Evaluator, Fault, parameter_number};
-pub(super) use function::Function;
 pub(super) use name::name;
-pub(super) use operator::Operator;

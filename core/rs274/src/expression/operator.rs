@@ -1,61 +1,12 @@
 //! Operators with two operands.
 
 use super::super::ExpressionError;
-
-/// An operator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum Operator {
-    Power,
-    Times,
-    Over,
-    Modulo,
-    Plus,
-    Minus,
-    Equal,
-    NotEqual,
-    Greater,
-    GreaterEqual,
-    Less,
-    LessEqual,
-    And,
-    Or,
-    Xor,
-}
+use super::super::lexical::Operator;
 
 /// How far two numbers may differ and count as equal; LinuxCNC's value.
 const EQUAL: f64 = 1e-4;
 
-/// The operators that are words.
-const WORDS: [(&[u8], Operator); 10] = [
-    (b"MOD", Operator::Modulo),
-    (b"EQ", Operator::Equal),
-    (b"NE", Operator::NotEqual),
-    (b"GT", Operator::Greater),
-    (b"GE", Operator::GreaterEqual),
-    (b"LT", Operator::Less),
-    (b"LE", Operator::LessEqual),
-    (b"AND", Operator::And),
-    (b"OR", Operator::Or),
-    (b"XOR", Operator::Xor),
-];
-
 impl Operator {
-    /// The operator at the start of a text, and its length.
-    pub(in super::super) fn at(text: &[u8]) -> Option<(Self, usize)> {
-        match text {
-            [b'*', b'*', ..] => Some((Self::Power, 2)),
-            [b'*', ..] => Some((Self::Times, 1)),
-            [b'/', ..] => Some((Self::Over, 1)),
-            [b'+', ..] => Some((Self::Plus, 1)),
-            [b'-', ..] => Some((Self::Minus, 1)),
-            [first, ..] if first.is_ascii_alphabetic() => {
-                let is_here = |name: &[u8]| text.get(..name.len()).is_some_and(|t| t.eq_ignore_ascii_case(name));
-                WORDS.iter().find(|(name, _)| is_here(name)).map(|(name, operator)| (*operator, name.len()))
-            }
-            _ => None,
-        }
-    }
-
     /// The higher, the closer it binds.
     pub(super) const fn rank(self) -> u8 {
         match self {

@@ -5,23 +5,10 @@ use super::super::lexical::trimmed;
 use super::super::parameter::Surroundings;
 use super::super::{GcodeError, ParameterError, Span};
 use super::reader::Reader;
-
-/// Parameters set in one block.
-pub(super) const ASSIGNMENTS: usize = 32;
+use super::sentence::{Assignments, Destination};
 
 /// LinuxCNC's switch of DEBUG comments, which has a value before a program sets it.
 const DEBUG_SWITCH: u16 = 5599;
-
-/// What an assignment sets.
-#[derive(Clone, Copy)]
-pub(super) enum Destination {
-    Number(u16),
-    /// A name, by its bytes from `<` to the end of the line.
-    Name(usize),
-}
-
-/// The assignments of a block.
-pub(super) type Assignments = heapless::Vec<(Destination, f64), ASSIGNMENTS>;
 
 impl<'p> Reader<'p> {
     /// What an assignment sets, and to what.

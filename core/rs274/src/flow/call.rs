@@ -2,35 +2,13 @@
 
 use super::super::lexical::trimmed;
 use super::super::parameter::Surroundings;
-use super::super::{FlowError, GcodeError, Lines, Span};
+use super::super::{FlowError, GcodeError, Span};
 use super::keyword::digits;
 use super::next::{Next, Target};
+use super::open::{CALLS, Call, CallKind};
 use super::place::Place;
-use super::reader::{CALLS, Reader};
+use super::reader::Reader;
 use super::sentence::Sentence;
-
-/// A call that has not returned.
-#[derive(Clone, Debug)]
-pub(super) struct Call<'p> {
-    /// Where the caller goes on.
-    back: Place<'p>,
-    /// Where the subprogram begins.
-    begin: Lines<'p>,
-    /// Turns left behind this one.
-    turns: u32,
-    pub(super) kind: CallKind,
-}
-
-/// What kind of subprogram was called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum CallKind {
-    /// An O word's, which ends with `endsub`.
-    Sub,
-    /// M98, M97: with the local parameters of its caller.
-    Program,
-    /// G65: with local parameters of its own.
-    Macro,
-}
 
 impl<'p> Reader<'p> {
     /// Goes where a block leads.

@@ -3,9 +3,8 @@
 use super::super::lexical::trimmed;
 use super::super::parameter::Surroundings;
 use super::super::{FlowError, GcodeError, Lines, Span};
-use super::call::CallKind;
 use super::keyword::{Keyword, Label, OLine, digits, keyword, label};
-use super::open::{Kind, Open};
+use super::open::{CallKind, Kind, Open};
 use super::place::Place;
 use super::reader::Reader;
 

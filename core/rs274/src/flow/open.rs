@@ -1,8 +1,34 @@
-//! What is open: conditions and loops whose end is still to come.
+//! What is open: calls, conditions and loops whose end is still to come.
 
-use super::super::FlowError;
-use super::super::Lines;
+use super::super::{FlowError, Lines};
 use super::keyword::Label;
+use super::place::Place;
+
+/// Calls inside each other.
+pub(super) const CALLS: usize = 10;
+
+/// A call that has not returned.
+#[derive(Clone, Debug)]
+pub(super) struct Call<'p> {
+    /// Where the caller goes on.
+    pub(super) back: Place<'p>,
+    /// Where the subprogram begins.
+    pub(super) begin: Lines<'p>,
+    /// Turns left behind this one.
+    pub(super) turns: u32,
+    pub(super) kind: CallKind,
+}
+
+/// What kind of subprogram was called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum CallKind {
+    /// An O word's, which ends with `endsub`.
+    Sub,
+    /// M98, M97: with the local parameters of its caller.
+    Program,
+    /// G65: with local parameters of its own.
+    Macro,
+}
 
 /// Conditions and loops that may be open at a time, all calls together.
 const LIMIT: usize = 32;

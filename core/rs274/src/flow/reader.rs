@@ -5,15 +5,10 @@ use super::super::lexical::{Token, Words, trimmed};
 use super::super::parameter::Surroundings;
 use super::super::{Dialect, FlowError, GcodeError, GcodeErrorKind, Line, Number, Options, Source, Span};
 use super::Program;
-use super::assignment::{ASSIGNMENTS, Assignments};
-use super::call::Call;
 use super::frame::Frame;
-use super::open::OpenList;
+use super::open::{CALLS, Call, OpenList};
 use super::place::Place;
-use super::sentence::{Sentence, Word};
-
-/// Calls inside each other.
-pub(super) const CALLS: usize = 10;
+use super::sentence::{ASSIGNMENTS, Assignments, Sentence, Word};
 
 /// The place in a program, and what has led there.
 #[derive(Debug)]

@@ -57,3 +57,17 @@ impl<'p> Sentence<'p> {
         self.words.push(word).map_err(|_| GcodeErrorKind::TooManyWords { limit: WORDS as u8 })
     }
 }
+
+/// Parameters set in one block.
+pub(super) const ASSIGNMENTS: usize = 32;
+
+/// What an assignment sets.
+#[derive(Clone, Copy)]
+pub(super) enum Destination {
+    Number(u16),
+    /// A name, by its bytes from `<` to the end of the line.
+    Name(usize),
+}
+
+/// The assignments of a block.
+pub(super) type Assignments = heapless::Vec<(Destination, f64), ASSIGNMENTS>;

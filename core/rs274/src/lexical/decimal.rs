@@ -1,4 +1,4 @@
-//! Numbers as a program writes them: exact decimals, never floating point.
+//! Numbers as a program or a measurement file writes them: exact decimals, never floating point.
 //!
 //! `X0.0001` in inches is 2540 nm to the last digit because the written digits are kept and converted once. Numbers
 //! have an optional sign, digits and at most one point, no exponent; blanks may stand anywhere between the digits
@@ -22,12 +22,57 @@ const POWERS: [f64; 19] =
     [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18];
 
 impl Decimal {
+    /// 0.
+    pub const ZERO: Self = Self { mantissa: 0, decimals: 0 };
+
     /// From digits and the number of them behind the point, at most 18.
     ///
     /// `None` when `decimals` is larger or the mantissa has more than 18 digits.
     pub const fn new(mantissa: i64, decimals: u8) -> Option<Self> {
         const LIMIT: u64 = 1_000_000_000_000_000_000;
         if decimals > DIGITS || mantissa.unsigned_abs() >= LIMIT { None } else { Some(Self { mantissa, decimals }) }
+    }
+    /// Reads sign, digits and one point from the start of a text; what follows is the rest. Blanks count for nothing.
+    ///
+    /// # Errors
+    /// [`NumberError`].
+    pub fn read(
+        input: &[u8],
+        is_point: impl Fn(u8) -> bool,
+        is_blank: impl Fn(u8) -> bool,
+    ) -> (&[u8], Result<Self, NumberError>) {
+        let (mut mantissa, mut significant, mut decimals) = (0i64, 0u8, 0u8);
+        let (mut negative, mut signed, mut point, mut any, mut too_large) = (false, false, false, false, false);
+        let mut end = 0usize;
+        for (index, &byte) in input.iter().enumerate() {
+            let digit = byte.wrapping_sub(b'0');
+            if digit < 10 {
+                any = true;
+                if significant < DIGITS && decimals < DIGITS {
+                    mantissa = mantissa.wrapping_mul(10).wrapping_add(i64::from(digit));
+                    significant = significant.wrapping_add(u8::from(mantissa != 0));
+                    decimals = decimals.wrapping_add(u8::from(point));
+                } else {
+                    too_large |= !point;
+                }
+            } else if is_point(byte) && !point {
+                point = true;
+            } else if is_blank(byte) {
+                continue;
+            } else if matches!(byte, b'+' | b'-') && !signed && !point && !any {
+                signed = true;
+                negative = byte == b'-';
+            } else {
+                break;
+            }
+            end = index.saturating_add(1);
+        }
+        let value = match (any, too_large) {
+            (false, _) => Err(NumberError::Missing),
+            (true, true) => Err(NumberError::TooLarge),
+            (true, false) => Ok(Self { mantissa: if negative { mantissa.wrapping_neg() } else { mantissa }, decimals }),
+        };
+        (input.get(end..).unwrap_or(&[]), value)
     }
     /// The written digits as a whole number, with the sign.
     pub const fn mantissa(self) -> i64 {
@@ -40,6 +85,11 @@ impl Decimal {
     /// Whether it is below zero; −0 is not.
     pub const fn is_negative(self) -> bool {
         self.mantissa < 0
+    }
+    /// With the other sign.
+    #[must_use]
+    pub const fn negated(self) -> Self {
+        Self { mantissa: self.mantissa.wrapping_neg(), ..self }
     }
     /// This number times a whole one, rounded once to a whole number.
     pub const fn times(self, factor: i64) -> i128 {
@@ -72,9 +122,9 @@ impl Decimal {
     }
 }
 
-/// Why the text after a letter is no number.
+/// Why a text is no number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) enum NumberError {
+pub enum NumberError {
     /// No digit.
     Missing,
     /// More than 18 digits before the point.
@@ -94,38 +144,7 @@ pub(in super::super) fn trimmed(text: &[u8]) -> &[u8] {
 
 /// A number, with the blanks before and inside it; what follows it is the rest.
 pub(in super::super) fn number(input: &[u8]) -> (&[u8], Result<Decimal, NumberError>) {
-    let (mut mantissa, mut significant, mut decimals) = (0i64, 0u8, 0u8);
-    let (mut negative, mut signed, mut point, mut any, mut too_large) = (false, false, false, false, false);
-    let mut end = 0usize;
-    for (index, &byte) in input.iter().enumerate() {
-        let digit = byte.wrapping_sub(b'0');
-        if digit < 10 {
-            any = true;
-            if significant < DIGITS && decimals < DIGITS {
-                mantissa = mantissa.wrapping_mul(10).wrapping_add(i64::from(digit));
-                significant = significant.wrapping_add(u8::from(mantissa != 0));
-                decimals = decimals.wrapping_add(u8::from(point));
-            } else {
-                too_large |= !point;
-            }
-        } else if byte == b'.' && !point {
-            point = true;
-        } else if is_blank(byte) {
-            continue;
-        } else if matches!(byte, b'+' | b'-') && !signed && !point && !any {
-            signed = true;
-            negative = byte == b'-';
-        } else {
-            break;
-        }
-        end = index.saturating_add(1);
-    }
-    let value = match (any, too_large) {
-        (false, _) => Err(NumberError::Missing),
-        (true, true) => Err(NumberError::TooLarge),
-        (true, false) => Ok(Decimal { mantissa: if negative { mantissa.wrapping_neg() } else { mantissa }, decimals }),
-    };
-    (input.get(end..).unwrap_or(&[]), value)
+    Decimal::read(input, |byte| byte == b'.', is_blank)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! How far a value, a parameter or a statement reaches, without computing it.
 
-use super::super::expression::{Function, Operator};
 use super::decimal::{number, trimmed};
+use super::symbol::{Function, Operator};
 
 /// Bytes of the value at the start of a text, blanks before it included: a number, a parameter, a function, an
 /// expression in brackets, with signs before it. `None` when none of them stands there. A bracket or a name that is not

@@ -3,11 +3,13 @@
 mod decimal;
 mod extent;
 mod number;
+mod symbol;
 mod token;
 mod word;
 
-pub use decimal::Decimal;
-pub(super) use decimal::{NumberError, is_blank, number, trimmed};
+pub use decimal::{Decimal, NumberError};
+pub(super) use decimal::{is_blank, number, trimmed};
 pub use number::Number;
+pub(super) use symbol::{Function, Operator};
 pub use token::{Token, WrittenWord};
 pub use word::Words;

@@ -2,18 +2,14 @@
 
 use core::borrow::Borrow;
 
-use super::check::reach_nm;
+use super::check::{MAX_NODES, reach_nm};
+use super::checked::{CRC_BYTES, image_bytes};
 use super::{
-    CRC_BYTES, FACTOR_ONE, FeedLaw, Field, HEADER_BYTES, Header, Image, ImageError, ImageNode, ImageSettings,
-    MAX_NODES, NODE_BYTES, Node, crc32,
+    FACTOR_ONE, FeedLaw, Field, HEADER_BYTES, Header, Image, ImageError, ImageNode, ImageSettings, NODE_BYTES, Node,
+    crc32,
 };
 use truepath_units::Offset;
 use truepath_units::geometry::Point;
-
-/// Bytes of an image with a number of nodes.
-pub const fn image_bytes(nodes: usize) -> usize {
-    nodes.saturating_mul(NODE_BYTES).saturating_add(HEADER_BYTES + CRC_BYTES)
-}
 
 /// The longest correction vector among nodes, over the feed window of a law and at the nominal feed: the clamp of
 /// an image must be at least this.

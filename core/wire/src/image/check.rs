@@ -1,11 +1,21 @@
 //! What makes a well-framed image trustworthy: ranges, spacing, derived fields, clamp.
 
-use super::{
-    FACTOR_ONE, Field, FineOffset, Header, Image, ImageError, MAX_CLAMP_NM, MAX_NODES, MAX_SPACING_NM, MIN_SPACING_NM,
-    Node, RATIO_ONE,
-};
+use super::feed_law::scaled;
+use super::{FACTOR_ONE, Field, FineOffset, Header, ImageError, Node, RATIO_ONE};
 use truepath_units::isqrt_rounded;
-use truepath_units::shift_rounded_i63;
+
+/// Shortest way between neighbouring nodes.
+pub const MIN_SPACING_NM: i64 = 1_000;
+/// Longest way between neighbouring nodes.
+pub const MAX_SPACING_NM: i64 = 1_000_000;
+/// Largest clamp; keeps every sum of corrections within 32 bits of 2⁻⁸ nm.
+pub const MAX_CLAMP_NM: i64 = 4_000_000;
+/// Most nodes of an image: 100 m of path at 0.1 mm.
+pub const MAX_NODES: usize = 1 << 20;
+/// Most nodes of an image that a coprocessor holds. A slot of its flash is three sectors of 128 KiB; less one flash
+/// word for the commit and one for the head of the slot (32 bytes each) that is room for 12,276 nodes, rounded down
+/// so that the head may grow. 1.2 m of path at 0.1 mm.
+pub const DEVICE_NODES: usize = 12_000;
 
 fn within(name: Field, value: i64, low: i64, high: i64) -> Result<(), ImageError> {
     if (low..=high).contains(&value) { Ok(()) } else { Err(ImageError::Range { name, value, low, high }) }
@@ -51,10 +61,10 @@ fn factor_table(factor: &[u32]) -> Result<(), ImageError> {
 }
 
 /// Spacing, derived fields and clamp of all nodes.
-pub(super) fn nodes(image: &Image<'_>) -> Result<(), ImageError> {
-    let header = image.header();
+pub(super) fn nodes(header: &Header, nodes: impl ExactSizeIterator<Item = Node>) -> Result<(), ImageError> {
+    let count = nodes.len();
     let mut before: Option<Node> = None;
-    for (index, node) in image.nodes().enumerate() {
+    for (index, node) in nodes.enumerate() {
         if let Some(previous) = before {
             link(index.saturating_sub(1), &previous, &node)?;
         } else if (node.x, node.y) != (0, 0) {
@@ -67,7 +77,7 @@ pub(super) fn nodes(image: &Image<'_>) -> Result<(), ImageError> {
         return Ok(());
     };
     if (last.length, last.reciprocal) != (0, 0) {
-        return Err(ImageError::Derived { node: image.len().saturating_sub(1) });
+        return Err(ImageError::Derived { node: count.saturating_sub(1) });
     }
     if header.settings.closed && (last.x, last.y) != (0, 0) {
         return Err(ImageError::NotClosed);
@@ -110,11 +120,4 @@ pub(super) fn reach_nm(chip: [FineOffset; 2], edge: [FineOffset; 2], factors: &[
     }
     let fine = isqrt_rounded(most) as i64;
     fine.saturating_add((1 << FineOffset::FRACTION_BITS) - 1) >> FineOffset::FRACTION_BITS
-}
-
-/// A part times a chip factor, units of 2⁻⁸ nm.
-#[inline]
-pub fn scaled(part: FineOffset, factor: i32) -> i64 {
-    // In range: a factor is at most 2, 2²⁵, so the product is below 2⁵⁷.
-    shift_rounded_i63(i64::from(part.bits()).wrapping_mul(i64::from(factor)), super::FACTOR_BITS)
 }

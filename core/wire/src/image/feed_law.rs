@@ -83,6 +83,13 @@ impl FeedLaw {
     }
 }
 
+/// A part times a chip factor, units of 2⁻⁸ nm.
+#[inline]
+pub(super) fn scaled(part: FineOffset, factor: i32) -> i64 {
+    // In range: a factor is at most 2, 2²⁵, so the product is below 2⁵⁷.
+    shift_rounded_i63(i64::from(part.bits()).wrapping_mul(i64::from(factor)), FACTOR_BITS)
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::arithmetic_side_effects, clippy::float_arithmetic)]

@@ -5,10 +5,20 @@
 use serde::{Deserialize, Serialize};
 
 use super::feed_law::FeedLaw;
-use super::{FACTOR_NODES, FLAG_CLOSED, FORMAT, FineOffset, MAGIC, SEMANTICS, read};
+use super::{FACTOR_NODES, FineOffset, read};
 use truepath_units::geometry::Point;
 use truepath_units::{Offset, Position};
 
+/// First bytes of an image.
+pub const MAGIC: [u8; 8] = *b"TRUEPATH";
+/// Layout of the bytes.
+pub const FORMAT: u16 = 1;
+/// Meaning of the numbers: raised whenever the same image and setpoints would give other bits.
+/// 2: the walk along the path looks ahead once a tick, a joint limit is judged by the correction that is on.
+/// 3: nothing is added for a cutter that does not turn at the gate, and the fade rests while the axes stand.
+pub const SEMANTICS: u32 = 3;
+/// Bit of the flags word: the path ends where it starts.
+pub const FLAG_CLOSED: u32 = 1;
 /// Bytes of the head; the nodes follow.
 pub const HEADER_BYTES: usize = 288;
 

@@ -5,7 +5,8 @@
 //! neighbours, and stored so that the servo cycle needs neither a division nor a root; they are recomputed and
 //! compared when the image is opened.
 
-use super::{FineOffset, Image, read, scaled};
+use super::feed_law::scaled;
+use super::{FineOffset, read};
 use truepath_units::geometry::Point;
 use truepath_units::isqrt_rounded;
 
@@ -95,14 +96,6 @@ impl Node {
         let bits = 64u32.saturating_sub(square.leading_zeros());
         let reciprocal = (1u128 << bits.saturating_add(30)).checked_div(u128::from(square)).unwrap_or(0);
         (length, reciprocal as u32)
-    }
-}
-
-impl<'a> Image<'a> {
-    /// The nodes from an index on as they are stored, to be decoded where they are needed; none beyond the last.
-    #[inline]
-    pub(crate) fn stored_from(&self, index: u32) -> &'a [[u8; NODE_BYTES]] {
-        self.nodes.get(index as usize..).unwrap_or(&[])
     }
 }
 

@@ -26,12 +26,10 @@ mod reply;
 
 use pace::Pace;
 
+pub use pace::RESTART_AFTER;
+
 /// Sequences before the last accepted one that are taken for late frames and not for another count.
 pub const BEHIND: u32 = 63;
-/// So many refused frames in a row that follow each other are the controller counting anew, not late ones, provided
-/// they came at a pace at which a controller sends and none was accepted in their time.
-pub const RESTART_AFTER: u32 = 4;
-
 /// What became of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {

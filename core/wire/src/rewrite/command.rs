@@ -1,11 +1,12 @@
-//! Commands between ticks: acknowledge, arm, disarm. They come from the controller or the operator, outside the servo
-//! cycle.
+//! What happens to a state between ticks: the controller or the operator acknowledges, arms, disarms, outside the servo
+//! cycle; the link ends a correction when too many setpoints are missing, or none come any more.
 
 use serde::{Deserialize, Serialize};
 
+use super::mode::Mode;
 use super::refusal::{Identity, Refusal};
 use super::spent::Spent;
-use super::state::{Mode, State};
+use super::state::State;
 use super::{Frame, Phase, Reason, Rewriter};
 use crate::image::Binding;
 
@@ -100,5 +101,23 @@ impl Rewriter<'_> {
         }
         state.end(Reason::Disarmed);
         Ok(())
+    }
+
+    /// `Armed` → `Bypass`, `Active` and `Hold` → `Fault`, from which the correction ramps out with the next ticks.
+    /// In other states, and on the way out, nothing happens.
+    #[inline]
+    pub fn break_off(&self, state: &mut State, reason: Reason) {
+        if matches!(state.mode, Mode::Armed | Mode::Active | Mode::Hold) && !state.is_ending() {
+            state.end(reason);
+        }
+    }
+
+    /// Any state → `Off`, whatever correction there was: nothing goes out until the controller acknowledges that the
+    /// drives are disabled. A ramp needs setpoints, and there are none; the drives stop by themselves. The passes of
+    /// parts that were armed stay spent.
+    #[inline]
+    pub fn power_off(&self, state: &mut State, reason: Reason) {
+        // What the controller last said about its drives is old: it has to say it again.
+        *state = State { mode: Mode::Off, reason, drives_seen_enabled: true, ..State::remembering(state.spent) };
     }
 }

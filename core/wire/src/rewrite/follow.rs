@@ -3,7 +3,8 @@
 use super::feed::FeedRatio;
 use super::frame::Local;
 use super::locate::{FRACTION_BITS, FRACTION_ONE, Foot, Place, dot, locate, product, square};
-use super::state::{FADE_BITS, FADE_ONE, Mode, Phase, State};
+use super::mode::Mode;
+use super::state::{FADE_BITS, FADE_ONE, Phase, State};
 use super::{Flags, Plan, Reason, Rewriter, Setpoint};
 use crate::image::Node;
 use truepath_units::shift_rounded_i63;

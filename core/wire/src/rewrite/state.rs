@@ -1,52 +1,17 @@
 //! The state of a rewriter, apart from its configuration.
 
-use core::fmt;
-
-use serde::{Deserialize, Serialize};
-
 use super::feed::FeedRatio;
 use super::frame::{Local, Mapping};
 use super::limit::AxisState;
 use super::locate::Place;
 use super::spent::{Spent, SpentList};
-use super::{Reason, Setpoint};
+use super::{Mode, Reason, Setpoint};
+use crate::image::RATIO_ONE;
 
 /// Fraction bits of the fade factor.
 pub(super) const FADE_BITS: u32 = 16;
 /// Fade factor 1.
 pub(super) const FADE_ONE: i32 = 1 << FADE_BITS;
-
-/// The states of the safety contract.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[repr(u8)]
-pub enum Mode {
-    /// After power-up or reset: nothing goes out, until the controller acknowledges that the drives are disabled.
-    #[default]
-    Off = 0,
-    /// Positions unchanged.
-    Bypass = 1,
-    /// Positions unchanged; waiting for the gate.
-    Armed = 2,
-    /// Corrected positions; also while the correction ramps out behind the end of the path.
-    Active = 3,
-    /// Place frozen, correction held.
-    Hold = 4,
-    /// The correction ramps to zero, then `Bypass`.
-    Fault = 5,
-}
-
-impl fmt::Display for Mode {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Off => "Off",
-            Self::Bypass => "Bypass",
-            Self::Armed => "Armed",
-            Self::Active => "Active",
-            Self::Hold => "Hold",
-            Self::Fault => "Fault",
-        })
-    }
-}
 
 /// Where in the feature an active correction is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -111,6 +76,21 @@ impl State {
     /// The limited corrections of the machine axes of X and Y.
     pub const fn axes(&self) -> &[AxisState; 2] {
         &self.axes
+    }
+    /// Place on the path, the last one when no correction is on.
+    #[inline]
+    pub const fn place(&self) -> Place {
+        self.place
+    }
+    /// Live feed per tooth over the nominal one, smoothed, units of 2⁻¹⁶; 1 while no correction is on.
+    #[inline]
+    pub fn feed_ratio(&self) -> u32 {
+        if self.mapping.is_some() { self.ratio.value() } else { RATIO_ONE }
+    }
+    /// Machine axes of the program's X and Y; 0 and 1 while nothing is armed.
+    #[inline]
+    pub fn plane(&self) -> [usize; 2] {
+        self.mapping.as_ref().map_or([0, 1], |mapping| mapping.plane())
     }
     /// Armed passes of parts, to be kept over a power-down.
     pub const fn spent(&self) -> &SpentList {

@@ -2,7 +2,8 @@
 
 use super::frame::AXES;
 use super::limit::AxisState;
-use super::state::{FADE_ONE, Mode, State};
+use super::mode::Mode;
+use super::state::{FADE_ONE, State};
 use super::{Flags, Output, Plan, Reason, Rewriter, Setpoint, Status};
 use crate::image::FineOffset;
 use truepath_units::shift_rounded_i31;

@@ -1,7 +1,7 @@
 //! Machine and material from the points of all parts together.
 //!
 //! Machine, cutter and material are the same for all parts; the correction each was cut with is known, and each has a
-//! datum of its own ([`identify_parts`]). A part that was cut with a good correction shows a small error, and is as
+//! datum of its own ([`identify`](truepath_core::identify::identify)). A part that was cut with a good correction shows a small error, and is as
 //! trustworthy as the model is for the deflection that the correction cancelled: a hundredth of it counts as noise.
 
 use truepath_core::correct::{Node, commanded};

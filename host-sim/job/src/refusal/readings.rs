@@ -87,7 +87,7 @@ fn suspected(suspicion: Suspicion) -> (String, &'static str) {
             mm(x) + 0.0,
             mm(y) + 0.0
         ),
-        _ => suspicion.words().to_owned(),
+        _ => suspicion.to_string(),
     };
     (words, help)
 }

@@ -1,6 +1,6 @@
 //! The corrections that are compared.
 
-use truepath_core::correct::{DesignStep, Guarded, Law, Node, design_observed, guarded_design};
+use truepath_core::correct::{DesignStep, Guarded, Law, Node, design, guarded_design};
 use truepath_core::cut::Loop;
 use truepath_core::geometry::Vector;
 use truepath_core::job::{self, LawName};
@@ -82,7 +82,7 @@ fn unguarded(pass: &Pass, machine: &Loop, law: Law) -> Vec<Node> {
     let wanted = pass.job.numbers.design(law);
     let mut buffers = Buffers::of(machine.path);
     let mut nodes = vec![Node::default(); machine.path.count()];
-    design_observed(machine, &wanted, &mut nodes, &mut [], &mut buffers.workspace(&[]), &mut |_| ());
+    design(machine, &wanted, &mut nodes, &mut [], &mut buffers.workspace(&[]), &mut |_| ());
     nodes
 }
 

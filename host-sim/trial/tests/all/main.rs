@@ -3,5 +3,5 @@
 mod compensated_program;
 mod device_image;
 mod feed;
-mod prudence;
+mod shrinkage;
 mod two_threads;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use truepath_core::correct::{
-    Band, DesignWorkspace, Guarded, InOrder, Law, Node, Predicted, Profile, WallReader, guarded_design,
+    Band, DesignWorkspace, Guarded, InOrder, Law, Node, Predicted, Profile, Scratch, WallReader, guarded_design,
 };
 use truepath_core::cut::{State, WallLaw};
 use truepath_core::geometry::Vector;
@@ -81,7 +81,7 @@ fn a_design_that_reads_half_of_the_heights_elsewhere_is_the_one_that_reads_them_
             displacements: &mut vec![Vector::ZERO; working],
             profiles: &mut vec![Profile::default(); count],
             updates: &mut vec![Default::default(); count],
-            best: &mut vec![Node::default(); count],
+            scratch: &mut vec![Scratch::default(); count],
             residual: &[],
             reader: InOrder,
         };

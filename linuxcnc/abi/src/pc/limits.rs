@@ -1,5 +1,6 @@
 //! The machine's limits, from the parameters of the component, as settings of a rewriter.
 
+use truepath_core::errors::number;
 use truepath_core::image::ImageError;
 use truepath_core::rewrite::{AXES, NO_ACCELERATION_CAP, Settings, SettingsError};
 
@@ -26,7 +27,7 @@ pub struct Limits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Joints(pub [u8; JOINTS]);
 
-/// Why an image is not used. Numbers stay the same from version to version; those below 32 are [`ImageError::code`].
+/// Why an image is not used. Numbers stay the same from version to version; those below 32 are the digits of [`ImageError::code`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OfferError {
     /// The bytes are no image.
@@ -46,7 +47,7 @@ impl OfferError {
     /// Its number.
     pub const fn code(self) -> u32 {
         match self {
-            Self::Image(error) => error.code() as u32,
+            Self::Image(error) => number(error.code()) as u32,
             Self::Limits { joint } => (joint as u32).saturating_add(32),
             Self::Settings(_) => 40,
             Self::Busy => 41,

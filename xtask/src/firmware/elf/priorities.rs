@@ -62,7 +62,7 @@ const WAKER: &[&str] = &["embassy_executor::raw::waker::"];
 /// Closures that are told how far an on-board correction is, outermost first.
 const TOLD: &[&str] = &["Computation>::run::{closure#0}>::{closure#2}", "Computation>::run::{closure#0}>::{closure#3}"];
 /// Of one of the fits under both wall laws.
-const LAW: &str = "identified::{closure#0}>::{closure#0}>::{closure#0}::{closure#0}";
+const LAW: &str = "identified::{closure#0}>::{closure#0}::{closure#0}";
 const FIT: &str = ">::settle::{closure#";
 /// Of a design, which reads the walls in order: under the guard, and of the whole.
 const DESIGN: &[&str] =
@@ -101,11 +101,11 @@ pub const INDIRECT: &[Indirect] = &[
     (">::linearise", &[FIT]),
     (FIT, &[">::fit::{closure#0}", LAW, TOLD[0], TOLD[1]]),
     (LAW, TOLD),
-    ("correct::design::pass", &["design_observed::<truepath_model::correct::reader::InOrder>::{closure#0}"]),
-    ("design_observed", DESIGN),
+    ("correct::design::pass", &["design::design::<truepath_model::correct::reader::InOrder>::{closure#0}"]),
+    ("correct::design::design", DESIGN),
     (DESIGN[0], &[DESIGN[1]]),
     (DESIGN[1], TOLD),
-    ("uncertainty::spread", &["guard::margins::{closure#", "prudence::damp::{closure#"]),
+    ("uncertainty::spread", &["guard::margins::{closure#", "shrinkage::damp::{closure#"]),
     // A device has no library of other programs.
     ("flow::program::Program>::file", &[]),
 ];

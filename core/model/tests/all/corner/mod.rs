@@ -59,7 +59,7 @@ pub fn path(blocks: &[Block], setup: &CutSetup, step_um: i64) -> Path<'static> {
     let contour = Contour::new(blocks).unwrap();
     let step = Offset::from_um(step_um);
     let buffer = vec![Sample::BLANK; Path::samples_needed(&contour, setup, step)].leak();
-    Path::sample(&contour, setup, step, buffer).unwrap()
+    Path::sample(&contour, setup, step, buffer, |_| ()).unwrap()
 }
 /// Wall error beside each sample of the contour, mean over `heights` even heights, mm.
 pub fn wall_errors(machine: &Loop, states: &[State], heights: i64) -> Vec<f64> {

@@ -7,8 +7,11 @@
 //! A pace that becomes too fast is noticed at the end of the first window that lies in it for the most part, within 63
 //! frames. The bounds are prepared, nothing is divided while frames come.
 
-use crate::link::endpoint::RESTART_AFTER;
 use crate::rewrite::Refusal;
+
+/// So many refused frames in a row that follow each other are the controller counting anew, not late ones, provided
+/// they came at a pace at which a controller sends and none was accepted in their time.
+pub const RESTART_AFTER: u32 = 4;
 
 /// Frames of a window, and so many times the interval between two.
 const WINDOW: u32 = 32;

@@ -1,6 +1,6 @@
 //! The modes of the machine that stay from block to block.
 
-use super::super::{FeedMode, GCode, PathControl, Plane, RetractLevel, Shifts, Spindle, Units};
+use super::{FeedMode, GCode, PathControl, Plane, RetractLevel, Shifts, Spindle, Units};
 use truepath_units::Real;
 use truepath_units::geometry::Side;
 

@@ -11,10 +11,10 @@ use truepath_job::pass::Pass;
 use truepath_plant::Machine;
 use truepath_trial::virtual_mill;
 
-const JOB: &str = include_str!("../data/prudence/job.toml");
-const PLANT: &str = include_str!("../data/prudence/plant.toml");
-const PROGRAM: &str = include_str!("../data/prudence/program.nc");
-const PROBE: &str = include_str!("../data/prudence/probe.txt");
+const JOB: &str = include_str!("../data/shrinkage/job.toml");
+const PLANT: &str = include_str!("../data/shrinkage/plant.toml");
+const PROGRAM: &str = include_str!("../data/shrinkage/program.nc");
+const PROBE: &str = include_str!("../data/shrinkage/probe.txt");
 /// Left out at either end of the contour, mm.
 const TRIM: f64 = 4.0;
 

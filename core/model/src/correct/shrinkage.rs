@@ -1,4 +1,4 @@
-//! Prudence: where the points say too little about the wall, only a share of its correction is applied.
+//! Shrinkage: where the points say too little about the wall, only a share of its correction is applied.
 //!
 //! A correction of `d` makes a wall worse whose true error is less than `d/2`: where the error is known to a quarter of
 //! itself that takes two standard deviations, where it is known to no more than its own size it often comes so. Every
@@ -12,9 +12,8 @@
 
 use super::node::Node;
 use super::refine::settle_ends;
-use super::uncertainty::of_aim;
+use super::scratch::{Doubt, Scratch};
 use crate::cut::Path;
-use truepath_units::geometry::Vector;
 use truepath_units::{Offset, Real};
 
 /// Standard deviations of the wall that the largest error has to outweigh for a whole correction.
@@ -37,25 +36,25 @@ pub struct Damped {
 }
 
 /// Damps a correction, and the one without guard beside it, where its wall is known badly beside the largest error of the
-/// uncorrected wall. `slots` hold the [`deviations`](super::uncertainty::deviations) of the wall and are overwritten.
+/// uncorrected wall. `slots` hold the [deviations](super::uncertainty::deviations) of the wall and are overwritten.
 pub(super) fn damp(
     path: &Path,
     uncorrected: Offset,
     [nodes, unguarded]: [&mut [Node]; 2],
-    slots: &mut [Node],
+    slots: &mut [Scratch],
 ) -> Option<Damped> {
     let samples = path.samples().iter().skip(path.first());
     for (slot, sample) in slots.iter_mut().zip(samples) {
         // Around a sharp inside corner the correction is held.
-        let sigma = if sample.near_corner { Offset::ZERO } else { of_aim(slot) };
-        slot.chip = Vector { x: sigma.scaled(Real::from_int(SIGMAS)), y: sigma };
+        let sigma = if sample.near_corner { Offset::ZERO } else { slot.deviation().sigma_of_aimed };
+        *slot = Doubt { outweighed: sigma.scaled(Real::from_int(SIGMAS)), sigma }.into();
     }
-    envelope(slots, path.is_closed());
+    Scratch::envelope(slots, SLOPE, path.is_closed());
     let damped = stretch(slots, uncorrected);
     if damped.is_some() {
         for nodes in [nodes, unguarded] {
             for (node, slot) in nodes.iter_mut().zip(slots.iter()) {
-                let share = share(slot, uncorrected);
+                let share = share(slot.doubt(), uncorrected);
                 *node = Node { chip: node.chip.scaled(share), edge: node.edge.scaled(share) };
             }
             settle_ends(path, nodes);
@@ -64,37 +63,25 @@ pub(super) fn damp(
     damped
 }
 
-/// The least curve above that falls by no more than the slope, either way, and around a closed contour.
-fn envelope(slots: &mut [Node], closed: bool) {
-    let carry = |carried: Offset, slot: &mut Node| {
-        slot.chip.x = slot.chip.x.max(carried - SLOPE);
-        slot.chip.x
-    };
-    let (mut ahead, mut back) = (Offset::ZERO, Offset::ZERO);
-    for _ in 0..=usize::from(closed) {
-        ahead = slots.iter_mut().fold(ahead, carry);
-        back = slots.iter_mut().rev().fold(back, carry);
-    }
-}
-
 /// The share of a correction that is applied.
-fn share(slot: &Node, uncorrected: Offset) -> Real {
-    if slot.chip.x <= uncorrected {
+fn share(doubt: Doubt, uncorrected: Offset) -> Real {
+    if doubt.outweighed <= uncorrected {
         return Real::ONE;
     }
-    let known = uncorrected.over(slot.chip.x) * Real::from_int(SIGMAS);
+    let known = uncorrected.over(doubt.outweighed) * Real::from_int(SIGMAS);
     ((known - Real::ONE) * Real::HALF).max(Real::ZERO)
 }
 
 /// The stretch around the place where least is applied, if it is not everything.
-fn stretch(slots: &[Node], uncorrected: Offset) -> Option<Damped> {
-    let partly = |slot: &&Node| slot.chip.x > uncorrected;
-    let (at, worst) = slots.iter().enumerate().filter(|(_, slot)| partly(slot)).max_by_key(|(_, slot)| slot.chip.x)?;
-    let before = slots.iter().take(at).rev().take_while(partly).count();
-    let behind = slots.iter().skip(at).take_while(partly).count();
+fn stretch(slots: &[Scratch], uncorrected: Offset) -> Option<Damped> {
+    let doubts = || slots.iter().map(|slot| slot.doubt());
+    let partly = |doubt: &Doubt| doubt.outweighed > uncorrected;
+    let (at, worst) = doubts().enumerate().filter(|(_, d)| partly(d)).max_by_key(|(_, doubt)| doubt.outweighed)?;
+    let before = doubts().take(at).rev().take_while(partly).count();
+    let behind = doubts().skip(at).take_while(partly).count();
     Some(Damped {
         least: share(worst, uncorrected),
-        sigma: worst.chip.y,
+        sigma: worst.sigma,
         from: at.saturating_sub(before),
         to: at.saturating_add(behind).saturating_sub(1),
     })

@@ -1,8 +1,4 @@
-//! `(LOG, …)` of a LinuxCNC verification program: `id,nx,ny,xn,yn,xs,ys,zs,hit` in each line.
-//!
-//! Work coordinates, ball centre. Lines that begin with `#` are comments, of which `# program`, `# unit`, `# ball`,
-//! `# points` and `# end` mean something (see [`Heading`]). The last line is `# end COUNT`, so that a file that was
-//! cut off is noticed. A log may follow another one in the same file.
+//! The two files that LinuxCNC writes: `(PROBEOPEN file)` and the `(LOG, …)` of a verification program.
 
 use super::error::{ProbeError, ProbeErrorKind};
 use super::format::Given;
@@ -15,7 +11,28 @@ use truepath_rs274::Lines;
 /// What the last line begins with.
 const END: &str = "`# end`";
 
-pub(super) fn read(file: &[u8], given: &Given, sink: &mut Sink) -> Result<(), ProbeError> {
+/// PROBEOPEN: nine numbers X Y Z A B C U V W in each line, no header.
+///
+/// Work coordinates, unit of the program, ball centre (observed on LinuxCNC 2.9). Probe moves that touched nothing are
+/// written as well, at the end of the move, and cannot be told from touches.
+pub(super) fn probeopen(file: &[u8], given: &Given, sink: &mut Sink) -> Result<(), ProbeError> {
+    for line in Lines::new(file).filter(|line| !is_empty(line)) {
+        let row = Row { line, separator: None, signs: Signs { point: true, comma: true } };
+        let [x, y, z, ..] = row.exactly::<9>()?;
+        let position = position([x, y, z], given.program_unit, &line)?;
+        let radius = given.ball_radius();
+        let reading = Reading { position, radius, outcome: Outcome::Touched, normal: None, line: line.number };
+        sink.push(reading, &line)?;
+    }
+    Ok(())
+}
+
+/// A log: `id,nx,ny,xn,yn,xs,ys,zs,hit` in each line.
+///
+/// Work coordinates, ball centre. Lines that begin with `#` are comments, of which `# program`, `# unit`, `# ball`,
+/// `# points` and `# end` mean something (see [`Heading`]). The last line is `# end COUNT`, so that a file that was
+/// cut off is noticed. A log may follow another one in the same file.
+pub(super) fn log(file: &[u8], given: &Given, sink: &mut Sink) -> Result<(), ProbeError> {
     let mut heading = Heading::new(given);
     let mut open_at = None;
     for line in Lines::new(file).filter(|line| !is_empty(line)) {
