@@ -17,9 +17,9 @@ pub mod columns;
 use std::ops::Range;
 
 use columns::{Columns, Fields};
-use truepath_core::rewrite::Flags;
-use truepath_core::units::Real;
 use truepath_ground::diagnostics::{InputError, Source};
+
+pub use columns::Row;
 
 /// The coordinates a file is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,21 +28,6 @@ pub enum Frame {
     Program,
     /// Those of the machine.
     Machine,
-}
-
-/// One tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Row {
-    /// X, Y, Z, nm.
-    pub position_nm: [i64; 3],
-    /// Spindle speed, rev/min; `None` when the file has no such column.
-    pub spindle_rpm: Option<Real>,
-    /// What the controller said with it; drives enabled and spindle loaded when the file has no such column.
-    pub flags: Flags,
-    /// Checksum of the frame in force; `None` when the file has no such column: the frame that was armed.
-    pub frame_crc: Option<u32>,
-    /// Whether the arming was ended by command before this tick.
-    pub disarm: bool,
 }
 
 /// A file of setpoints.
@@ -162,6 +147,9 @@ fn even(source: &Source, times: &[(i64, Range<usize>)]) -> Result<(), InputError
 
 #[cfg(test)]
 mod tests {
+    use truepath_core::rewrite::Flags;
+    use truepath_core::units::Real;
+
     use super::*;
 
     fn parse(text: &str) -> Result<Setpoints, InputError> {

@@ -40,8 +40,27 @@ const DIALECTS: [(&str, Dialect); 5] = [
 const DECIMALS: [(&str, PointlessLength); 2] =
     [("calculator", PointlessLength::Calculator), ("least", PointlessLength::Least)];
 
+impl Job {
+    /// Reads and checks a job file.
+    ///
+    /// # Errors
+    /// An [`InputError`] at the first thing that is wrong.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(Source::read(path)?, folder)
+    }
+
+    /// Checks the text of a job whose relative paths start at `folder`.
+    ///
+    /// # Errors
+    /// An [`InputError`] at the first thing that is wrong.
+    pub fn parse(source: Source, folder: &Path) -> Result<Self, InputError> {
+        job(source, folder)
+    }
+}
+
 /// Reads the whole job.
-pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
+fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     let table = notation::parse(&source, "the job file")?;
     let spans = RefCell::new(Spans::new());
     let root = Section::root(&source, &table, &spans);
@@ -166,9 +185,4 @@ fn machine(section: &Section<'_>) -> Result<(Machine, [Offset; 2]), InputError> 
     let backlash = [backlash("backlash_x_mm")?, backlash("backlash_y_mm")?];
     section.close()?;
     Ok((machine, backlash))
-}
-
-/// Millimetres as a person writes them.
-pub(super) fn text_of(length: Offset) -> String {
-    format!("{}", length.nm() as f64 / 1e6)
 }

@@ -14,8 +14,7 @@ use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::{Section, Value};
 use truepath_ground::limits::Limits;
-
-use super::check::text_of;
+use truepath_ground::units::mm;
 
 /// What a cut is for; only finishing is corrected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,7 +160,7 @@ fn allowance(section: &Section<'_>, diameter: Offset) -> Result<Option<Offset>, 
     if allowance < diameter {
         return Ok(Some(allowance));
     }
-    let expected = format!("less than the cutter's diameter, {} mm", text_of(diameter));
+    let expected = format!("less than the cutter's diameter, {} mm", mm(diameter));
     Err(section.out_of_range(&value, &expected, "take the stock off in more passes, or correct tool.diameter_mm"))
 }
 

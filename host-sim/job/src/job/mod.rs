@@ -33,7 +33,7 @@ mod check_tool;
 mod material;
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use truepath_core::job::Probe;
 use truepath_core::units::Offset;
@@ -105,23 +105,6 @@ pub enum Route {
 }
 
 impl Job {
-    /// Reads and checks a job file.
-    ///
-    /// # Errors
-    /// An [`InputError`] at the first thing that is wrong.
-    pub fn read(path: &Path) -> Result<Self, InputError> {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        Self::parse(Source::read(path)?, folder)
-    }
-
-    /// Checks the text of a job whose relative paths start at `folder`.
-    ///
-    /// # Errors
-    /// An [`InputError`] at the first thing that is wrong.
-    pub fn parse(source: Source, folder: &Path) -> Result<Self, InputError> {
-        check::job(source, folder)
-    }
-
     /// Reads the program.
     ///
     /// # Errors

@@ -17,8 +17,6 @@ use truepath_core::units::{Offset, Real};
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 
-use super::Row;
-
 /// In every file, in this order.
 const FIRST: [&str; 4] = ["t_s", "x_mm", "y_mm", "z_mm"];
 /// May follow.
@@ -29,6 +27,21 @@ const FARTHEST: Offset = Offset::from_um(4_000_000);
 const FASTEST: Real = Real::from_int(200_000);
 /// All flags there are.
 const ALL_FLAGS: u16 = 0x7f;
+
+/// One tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// X, Y, Z, nm.
+    pub position_nm: [i64; 3],
+    /// Spindle speed, rev/min; `None` when the file has no such column.
+    pub spindle_rpm: Option<Real>,
+    /// What the controller said with it; drives enabled and spindle loaded when the file has no such column.
+    pub flags: Flags,
+    /// Checksum of the frame in force; `None` when the file has no such column: the frame that was armed.
+    pub frame_crc: Option<u32>,
+    /// Whether the arming was ended by command before this tick.
+    pub disarm: bool,
+}
 
 /// Which columns a file has.
 #[derive(Debug)]
