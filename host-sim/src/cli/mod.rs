@@ -33,6 +33,7 @@ use std::io::{BufWriter, IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError, visible_lines};
 use truepath_ground::interruption;
 
@@ -157,7 +158,7 @@ fn usage_error(error: &clap::Error, json: bool) -> Failure {
         return Failure::Usage(text);
     }
     let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-    InputError::new("C001", first, "a command line as shown by truepath --help", "run truepath --help").into()
+    InputError::new(C001, first, "a command line as shown by truepath --help", "run truepath --help").into()
 }
 
 /// What a command says, for people or as JSON.

@@ -6,6 +6,7 @@ use clap::{Args, Subcommand};
 use truepath_chart::view::View;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::json;
+use truepath_report::codes::Z012;
 use truepath_report::plot::Column;
 
 use super::which::WhichArguments;
@@ -108,7 +109,7 @@ pub(super) fn run(arguments: Arguments, terminal: &Terminal) -> Result<(), Failu
             let which = which.which();
             if job.is_none() && which != Default::default() {
                 let help = "give --job, the job of the tables, or leave --feature and --pass out";
-                return Err(InputError::new("Z012", "--feature and --pass without --job", "a job", help).into());
+                return Err(InputError::new(Z012, "--feature and --pass without --job", "a job", help).into());
             }
             let job = job.map(|job| (job, which));
             (Kind::Error { tables, names, points, job }, magnify, picture)

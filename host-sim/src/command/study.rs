@@ -5,6 +5,7 @@ use std::path::Path as FilePath;
 
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFile, json};
+use truepath_study::codes::{Y003, Y004};
 use truepath_study::families::{FAMILIES, Family, family};
 use truepath_study::id::{Axis, CaseId, Cell};
 use truepath_study::ledger::{Ledger, program_key};
@@ -49,12 +50,7 @@ pub struct Options<'a> {
 pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
     let unknown = |name: &str| {
         let names: Vec<&str> = FAMILIES.iter().map(|f| f.name).collect();
-        InputError::new(
-            "Y003",
-            format!("no family `{name}`"),
-            format!("one of {}", names.join(", ")),
-            "correct the name",
-        )
+        InputError::new(Y003, format!("no family `{name}`"), format!("one of {}", names.join(", ")), "correct the name")
     };
     let chosen: Vec<&Family> = if options.families.is_empty() {
         FAMILIES.iter().collect()
@@ -66,7 +62,7 @@ pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
     let most = seeds.end - seeds.start;
     if options.seeds == 0 || options.seeds > most {
         let found = format!("{} seeds", options.seeds);
-        return Err(InputError::new("Y004", found, format!("1 to {most}"), "ask for another number").into());
+        return Err(InputError::new(Y004, found, format!("1 to {most}"), "ask for another number").into());
     }
     let cells: Vec<Option<Cell>> = match options.axis {
         None => vec![None],

@@ -7,6 +7,7 @@ use truepath_core::gcode::{Dialect, PointlessLength};
 use truepath_core::geometry::Side;
 use truepath_core::job::{Cut, Force, ForceModel, Machine};
 use truepath_core::units::{Offset, Real};
+use truepath_ground::codes::J008;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::{Section, Spans};
@@ -162,7 +163,7 @@ fn force(source: &Source, section: &Section<'_>) -> Result<Force, InputError> {
         let found = format!("{} is given as well as force.material", value.path);
         let help = "remove material to use your own coefficients, or remove the coefficients";
         return Err(
-            InputError::new("J008", found, "either a material or the four coefficients", help).at(source, value.span)
+            InputError::new(J008, found, "either a material or the four coefficients", help).at(source, value.span)
         );
     }
     section.close()?;

@@ -10,6 +10,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 use truepath_core::geometry::Side;
 use truepath_core::units::{Offset, Position};
+use truepath_ground::codes::J008;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::{Section, Value};
@@ -76,7 +77,7 @@ pub(super) fn features(source: &Source, root: &Section<'_>, diameter: Offset) ->
             let (line, _) = source.line_column(first.id_span.start);
             let found = format!("the feature \"{}\" is given twice, first on line {line}", feature.id);
             let help = "give every feature a name of its own";
-            return Err(InputError::new("J008", found, "every name once", help).at(source, feature.id_span));
+            return Err(InputError::new(J008, found, "every name once", help).at(source, feature.id_span));
         }
         list.push(feature);
     }

@@ -2,6 +2,7 @@
 
 use truepath_core::cut::ToolMaterial;
 use truepath_core::job::{Compensation, Cut, Stickout, Tool};
+use truepath_ground::codes::J008;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::Section;
@@ -47,13 +48,8 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<(Tool, Shan
             let place = section.value(there).map_or(0..0, |v| v.span);
             let help = format!("add {other}, or remove {there}");
             let found = format!("tool.{there} is given without tool.{other}");
-            return Err(InputError::new(
-                "J008",
-                found,
-                "both or neither: the cutter's own compliance needs both",
-                help,
-            )
-            .at(source, place));
+            return Err(InputError::new(J008, found, "both or neither: the cutter's own compliance needs both", help)
+                .at(source, place));
         }
     };
     let choices = [("centre", Compensation::Centre), ("radius", Compensation::Radius)];
@@ -83,7 +79,7 @@ pub(super) fn reach(
         (Some(c), Some(value)) if c.length < cut.axial_depth => {
             let expected = format!("at least cut.axial_depth_mm, {} mm", mm(cut.axial_depth));
             let found = format!("tool.stickout_mm is {}", source.excerpt(value.span.clone()));
-            Err(InputError::new("J008", found, expected, "measure from the collet to the cutter's tip")
+            Err(InputError::new(J008, found, expected, "measure from the collet to the cutter's tip")
                 .at(source, value.span))
         }
         _ => Ok(()),

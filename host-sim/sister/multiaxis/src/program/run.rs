@@ -16,6 +16,7 @@ use super::split::{Plan, Writing};
 use super::state::State;
 use super::step::{Move, Step};
 use super::writer::{Original, write};
+use crate::codes::A007;
 use crate::machine::Coordinates;
 
 /// Lines between two tellings of the progress.
@@ -160,9 +161,9 @@ impl Pass<'_, '_> {
         }
         if self.closed && !self.opened {
             let at = At { name: self.name, number: line.number, text: &line.text };
-            let help = "remove the text in front of the %, or the % that closes too early";
-            let found = "a block behind a %, and blocks in front of it".to_owned();
-            return Err(at.error("A007", found, "the program between two %", help, 0..line.text.len()).into());
+            let found = "a block behind a %, and blocks in front of it";
+            let texts = [found, "the program between two %", A007.remedy];
+            return Err(at.error(A007, texts, 0..line.text.len()).into());
         }
         self.report.notes.add(Note::TextBehindEnd, line.number);
         Ok(())

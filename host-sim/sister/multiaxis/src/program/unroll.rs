@@ -18,6 +18,7 @@ use truepath_ground::library::Folder;
 
 use super::block::{AXES, Block};
 use super::quantity::{Quantity, Scale};
+use crate::codes::A012;
 
 /// A program written out.
 #[derive(Clone, Debug, Default)]
@@ -70,10 +71,9 @@ pub fn unroll(source: &Source, options: UnrollOptions) -> Result<Unrolled, Input
     run.map_err(|error| InputError::of_program(beside.source(error.file).unwrap_or(source), &error))?;
     if let Some((Refused(what), place)) = refused {
         let file = beside.source(place.file).unwrap_or(source);
-        let help = "write this part of the program out by hand, or leave it to the control with --partial";
         let span = place.block.start..place.block.end();
         let found = format!("{what} in a program with loops, calls or computed places");
-        return Err(InputError::new("A012", found, "moves, modes, feeds and tools", help).at(file, span));
+        return Err(A012.error(found, "moves, modes, feeds and tools").at(file, span));
     }
     Ok(writer.out)
 }
