@@ -7,6 +7,7 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::interruption;
 
@@ -135,5 +136,5 @@ fn usage_error(error: &clap::Error, json: bool) -> Failure {
         return Failure::Usage(text);
     }
     let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-    InputError::new("C001", first, "a command line as shown by truepath --help", "run truepath --help").into()
+    InputError::new(C001, first, "a command line as shown by truepath --help", "run truepath --help").into()
 }

@@ -1,4 +1,4 @@
-//! Format, lints, documentation and tests of the workspace.
+//! Format, lints, documentation, tests and error codes of the workspace.
 
 use crate::repository::{cargo, run};
 use crate::step::{Outcome, Passed};
@@ -41,5 +41,16 @@ pub fn tests(all: bool, arguments: &[String]) -> Outcome {
         command.args(["--workspace", "--no-fail-fast"]);
     }
     run(command.args(arguments))?;
+    Ok(Passed::Done)
+}
+
+/// docs/errors.md against the rows of the error codes; a test knows them all.
+pub fn errors(write: bool) -> Outcome {
+    let mut command = cargo();
+    command.args(["test", "--quiet", "-p", "truepath-tests", "--test", "all", "errors::"]);
+    if write {
+        command.env("BLESS", "1");
+    }
+    run(&mut command)?;
     Ok(Passed::Done)
 }

@@ -75,6 +75,12 @@ enum Task {
         /// Only what holds this text, for instance `truepath::job` or `src/plot`.
         part: Option<String>,
     },
+    /// The error codes: unique, and docs/errors.md as they are.
+    Errors {
+        /// Write docs/errors.md instead of comparing it.
+        #[arg(long)]
+        write: bool,
+    },
     /// Builds the core for the microcontroller and checks what is in it.
     Device,
     /// Builds the firmware of one board or of all, and compares its sizes with docs/firmware.md.
@@ -185,6 +191,7 @@ fn main() -> ExitCode {
         Task::Doc => report.run(Step::new("doc", checks::doc)),
         Task::TestOnly { all, arguments } => report.run(Step::new("test-only", || checks::tests(all, &arguments))),
         Task::Rooms { all, part } => report.run(Step::new("rooms", || rooms::check(all, part.as_deref()))),
+        Task::Errors { write } => report.run(Step::new("errors", || checks::errors(write))),
         Task::Device => report.run(Step::new("device", device::check)),
         Task::Firmware { board, write } => {
             let boards = board.map_or(Board::ALL.to_vec(), |board| vec![board]);

@@ -1,19 +1,10 @@
 //! What can go wrong between bench and board.
-//!
-//! | code | meaning |
-//! |---|---|
-//! | H001 | a port, socket or file cannot be opened |
-//! | H002 | the emulator or the firmware is missing |
-//! | H003 | the device does not answer |
-//! | H004 | the device refuses a request; what to do follows from its reason |
-//! | H005 | the device speaks another version |
-//! | H006 | device and host differ |
-//! | H007 | an option does not fit |
-//! | H008 | a run was stopped before its end |
 
 use truepath_core::link::Denial;
 use truepath_core::rewrite::{Mode, Refusal};
 use truepath_ground::diagnostics::{Failure, InputError};
+
+use crate::codes::{H001, H002, H003, H004, H005, H006, H007, H008};
 
 /// An error between bench and board.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -68,17 +59,17 @@ impl BenchError {
 
 impl From<BenchError> for InputError {
     fn from(error: BenchError) -> Self {
-        let (code, help) = match &error {
-            BenchError::Open { .. } => ("H001", "check the name, the permissions, and that nobody else uses it"),
-            BenchError::Missing { remedy, .. } => ("H002", remedy.as_str()),
-            BenchError::Silent(_) => ("H003", "check cable, port and baud rate, and that the board is powered"),
-            BenchError::Denied(denial) => ("H004", remedy(denial)),
-            BenchError::Foreign(_) => ("H005", "use firmware and program of the same version"),
-            BenchError::Differs(_) => ("H006", "do not drive axes with this firmware; report it with the command line"),
-            BenchError::Stopped(_) => ("H008", "run it again to its end; a shorter run has a smaller --count"),
-            BenchError::Option { help, .. } => ("H007", help.as_str()),
+        let (row, help) = match &error {
+            BenchError::Open { .. } => (H001, H001.remedy),
+            BenchError::Missing { remedy, .. } => (H002, remedy.as_str()),
+            BenchError::Silent(_) => (H003, H003.remedy),
+            BenchError::Denied(denial) => (H004, remedy(denial)),
+            BenchError::Foreign(_) => (H005, H005.remedy),
+            BenchError::Differs(_) => (H006, H006.remedy),
+            BenchError::Stopped(_) => (H008, H008.remedy),
+            BenchError::Option { help, .. } => (H007, help.as_str()),
         };
-        Self::new(code, error.to_string(), "", help)
+        Self::new(row, error.to_string(), "", help)
     }
 }
 

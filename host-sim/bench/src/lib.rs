@@ -18,6 +18,7 @@ mod bulk;
 mod campaign;
 mod chance;
 mod client;
+pub mod codes;
 mod compare;
 mod difference;
 mod emulator;

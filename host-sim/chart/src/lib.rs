@@ -6,6 +6,7 @@
 
 pub mod axis;
 pub mod chart;
+pub mod codes;
 pub mod curve;
 pub mod legend;
 pub mod letters;

@@ -12,8 +12,9 @@ use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Options, Tree};
 use truepath_ground::diagnostics::{Failure, InputError};
 
-use super::letters::{FAMILY, FILE};
-use super::style::failed;
+use crate::codes::Z005;
+use crate::letters::{FAMILY, FILE};
+use crate::style::failed;
 
 /// Pixels of a PNG picture to one of the view.
 pub const SCALES: RangeInclusive<f64> = 0.1..=20.0;
@@ -35,7 +36,7 @@ pub fn png(svg: &[u8], scale: f64) -> Result<Vec<u8>, Failure> {
     if !SCALES.contains(&scale) {
         let expected = format!("{} to {}", SCALES.start(), SCALES.end());
         let help = "96 dots per inch times the scale is what is printed: 3.125 for 300 dpi";
-        return Err(InputError::new("Z005", format!("the scale is {scale}"), expected, help).into());
+        return Err(InputError::new(Z005, format!("the scale is {scale}"), expected, help).into());
     }
     let options = Options { fontdb: FONTS.clone(), font_family: FAMILY.to_owned(), ..Options::default() };
     let tree = Tree::from_data(svg, &options).map_err(failed)?;
@@ -44,7 +45,7 @@ pub fn png(svg: &[u8], scale: f64) -> Result<Vec<u8>, Failure> {
     if u64::from(width) * u64::from(height) > PIXELS {
         let found = format!("the picture would have {width} × {height} pixels");
         let expected = format!("at most {PIXELS} pixels");
-        return Err(InputError::new("Z005", found, expected, "lower --scale, --width or --height").into());
+        return Err(Z005.error(found, expected).into());
     }
     let mut pixmap = Pixmap::new(width, height).ok_or_else(|| failed("no memory for its pixels"))?;
     let (across, down) = (width as f32 / tree.size().width(), height as f32 / tree.size().height());

@@ -1,17 +1,11 @@
 //! How a picture is wanted: its size, the stretch of the contour it shows, its title, its magnification.
-//!
-//! | code | meaning |
-//! |---|---|
-//! | Z001 | a size outside [`SIZES`], or too low for what is to be drawn |
-//! | Z002 | a stretch that is empty or off the contour |
-//! | Z003 | a magnification outside [`MAGNIFICATIONS`] |
-//! | Z004 | a title or a name of more than [`LETTERS`] letters |
 
 use std::ops::RangeInclusive;
 
 use truepath_ground::diagnostics::InputError;
 
-use super::axis::plain;
+use crate::axis::plain;
+use crate::codes::{Z001, Z002, Z003, Z004};
 
 /// Width and height a picture may have, px.
 pub const SIZES: RangeInclusive<u32> = 200..=8000;
@@ -53,7 +47,7 @@ impl View {
             Some(size) if !SIZES.contains(&size) => {
                 let expected = format!("{} to {} px", SIZES.start(), SIZES.end());
                 let help = "for a sharper PNG picture raise --scale";
-                Err(InputError::new("Z001", format!("the {name} is {size} px"), expected, help))
+                Err(InputError::new(Z001, format!("the {name} is {size} px"), expected, help))
             }
             size => Ok(size.unwrap_or(usual)),
         };
@@ -61,7 +55,7 @@ impl View {
         if height < least {
             let found = format!("a height of {height} px is too low for what is to be drawn");
             let help = "make it higher, or draw fewer things (--columns)";
-            return Err(InputError::new("Z001", found, format!("at least {least} px"), help));
+            return Err(InputError::new(Z001, found, format!("at least {least} px"), help));
         }
         Ok((width, height))
     }
@@ -76,7 +70,7 @@ impl View {
             let told = |mm: f64| if mm.abs() < 1e9 { plain(mm) } else { format!("{mm:e}") };
             let found = format!("the stretch from {} to {} mm holds nothing of the contour", told(from), told(to));
             let expected = format!("a stretch between {} and {} mm", plain(start), plain(end));
-            return Err(InputError::new("Z002", found, expected, "correct --from and --to"));
+            return Err(Z002.error(found, expected));
         }
         Ok((from.max(start), to.min(end)))
     }
@@ -88,8 +82,7 @@ impl View {
             return Ok(magnify);
         }
         let expected = format!("{} to {}", MAGNIFICATIONS.start(), MAGNIFICATIONS.end());
-        let help = "leave --magnify out to show the largest error as a tenth of the part";
-        Err(InputError::new("Z003", format!("the magnification is {magnify}"), expected, help))
+        Err(Z003.error(format!("the magnification is {magnify}"), expected))
     }
 }
 
@@ -100,7 +93,7 @@ pub fn short(what: &str, text: &str) -> Result<(), InputError> {
         return Ok(());
     }
     let found = format!("{what} has {letters} letters");
-    Err(InputError::new("Z004", found, format!("at most {LETTERS}"), "shorten it"))
+    Err(Z004.error(found, format!("at most {LETTERS}")))
 }
 
 #[cfg(test)]

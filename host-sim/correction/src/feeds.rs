@@ -1,6 +1,7 @@
 //! The feeds of a correction: whether the job wants them changed, and what that comes to.
 
 use truepath_core::cut::Loop;
+use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::units::float;
 use truepath_job::feed::{FeedSummary, Schedule, Wanted, largest_force, schedule};
@@ -83,7 +84,7 @@ fn written_feeds_count(pass: &Pass) -> Result<(), Failure> {
 }
 
 fn contradiction(pass: &Pass, key: &str, found: &str, expected: &str, help: &str) -> Failure {
-    InputError::new("J008", found, expected, help).at(pass.job.source(), pass.job.span(key)).into()
+    InputError::new(J008, found, expected, help).at(pass.job.source(), pass.job.span(key)).into()
 }
 
 impl Feeds {

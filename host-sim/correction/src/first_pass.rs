@@ -10,12 +10,13 @@ use truepath_core::cut::Path;
 use truepath_core::gcode::Found;
 use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::units::{Offset, Real};
-use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::mm;
 use truepath_job::feature::Survey;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::BlockEdit;
 
+use crate::codes::{P020, P021};
 use crate::edits::carried_edits;
 
 /// Sine of the turn between two blocks from which on a corner counts as sharp: about 3 degrees.
@@ -109,9 +110,8 @@ fn alone(pass: &Pass, half: Offset, moved: &[u32]) -> Result<(), Failure> {
             mm(distance)
         );
         let expected = format!("no other cut of the tool nearer than half of the allowance, {} mm", mm(half));
-        let help = "let one feature hold all passes along the wall; otherwise correct allowance_mm";
         let place = pass.program.line_span(block.line);
-        return Err(InputError::new("P021", found, expected, help).at(&pass.program, place).into());
+        return Err(P021.error(found, expected).at(&pass.program, place).into());
     }
     Ok(())
 }
@@ -145,11 +145,9 @@ fn distance(point: Point, contour: &Contour) -> Offset {
 fn room(pass: &Pass, half: Offset) -> Result<(), Failure> {
     let left = pass.core.setup.wall == Side::Left;
     let refuse = |line: u32, found: String| {
-        let help =
-            "give the path an arc there (a lead too meets the wall along it), or leave less stock before this pass";
         let expected = format!("inside arcs of more than half the allowance, {} mm", mm(half));
         let place = pass.program.line_span(line);
-        Err(InputError::new("P020", found, expected, help).at(&pass.program, place).into())
+        Err(P020.error(found, expected).at(&pass.program, place).into())
     };
     for (index, block) in pass.blocks.iter().enumerate() {
         // Turning away from the wall is an inside corner of the part.

@@ -8,6 +8,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::as_milled::WholeContour;
+use crate::codes::{Q002, Q006};
 use crate::correct::{CorrectedPass, design};
 use crate::correction::{DesignRequest, Identification};
 use crate::learning::{History, MOST_PARTS, Part, PartPoints, Update, Verdict, update};
@@ -61,7 +62,7 @@ pub fn learn(
         PartPoints::of(part, &sampled).ok_or_else(|| {
             let found = format!("the correction of part {} does not lie along this contour", part.number);
             let help = "correct again with truepath correct, and learn from there";
-            InputError::new("Q002", found, format!("one entry for each of {} samples", sampled.count()), help)
+            InputError::new(Q002, found, format!("one entry for each of {} samples", sampled.count()), help)
         })
     };
     let parts: Vec<PartPoints> = history.parts.iter().filter(|p| !p.set_aside).map(of).collect::<Result<_, _>>()?;
@@ -93,7 +94,7 @@ fn refuse_other_laws(pass: &Pass) -> Result<(), InputError> {
         LawName::Paper => "paper",
     };
     let found = format!("correct.law is \"{name}\"");
-    let error = InputError::new("Q006", found, "a law that can learn", "set law = \"model\", or leave it out");
+    let error = InputError::new(Q006, found, "a law that can learn", "set law = \"model\", or leave it out");
     Err(error.at(pass.job.source(), pass.job.span("correct.law")))
 }
 
@@ -103,6 +104,6 @@ pub fn refuse_feeds(pass: &Pass) -> Result<(), InputError> {
         return Ok(());
     }
     let help = "learn without [feed], or correct the next part anew with truepath correct";
-    let error = InputError::new("Q006", "[feed] is given", "parts that are all cut at the feeds of the program", help);
+    let error = InputError::new(Q006, "[feed] is given", "parts that are all cut at the feeds of the program", help);
     Err(error.at(pass.job.source(), pass.job.span("feed")))
 }

@@ -11,6 +11,7 @@
 //! | accuracy from the measurement alone | [`inspection`] |
 
 pub mod as_milled;
+pub mod codes;
 pub mod correct;
 pub mod correction;
 pub mod damped;

@@ -18,6 +18,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 use truepath_job::surface::Surface;
 use truepath_program::first_pass_of;
 
+use crate::codes::K003;
 use crate::correct::{CorrectedPass, design};
 use crate::correction::{DesignRequest, Identification, identify};
 use crate::remarks::{MeasuredPart, Remarks};
@@ -108,7 +109,7 @@ fn agree(second: &Pass, first: &Pass) -> Result<(), Failure> {
     if let Some((table, _)) = differs.into_iter().find(|(_, differs)| *differs) {
         let found = format!("[{table}] is not the same in the jobs of the two passes");
         let help = "use the first-pass.toml that truepath split wrote for this job";
-        let error = InputError::new("K003", found, "two passes of one part", help);
+        let error = InputError::new(K003, found, "two passes of one part", help);
         return Err(error.at(first.job.source(), first.job.span(table)).into());
     }
     let original = program_crc(second.program.bytes());
@@ -117,12 +118,12 @@ fn agree(second: &Pass, first: &Pass) -> Result<(), Failure> {
         let expected = format!("that of {}, {original:08X}", second.program.name());
         let help =
             "give the first-pass.toml that truepath split wrote for this job; split again if the program was changed";
-        return Err(InputError::new("K003", found, expected, help).at(&first.program, place).into());
+        return Err(InputError::new(K003, found, expected, help).at(&first.program, place).into());
     }
     if a.correct.law == LawName::Paper {
         let help = "set law = \"model\" or \"mirror\"";
         let error = InputError::new(
-            "K003",
+            K003,
             "correct.law is \"paper\" for a second pass",
             "a law that knows the first pass from the second",
             help,

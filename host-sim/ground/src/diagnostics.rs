@@ -17,6 +17,8 @@ use std::{fmt, io};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan};
 use truepath_core::gcode::GcodeError;
 
+use crate::codes::{F001, F002, Row, X001};
+
 pub use source::Source;
 pub use visible::{visible, visible_lines};
 
@@ -46,10 +48,21 @@ struct Body {
     label: Option<String>,
 }
 
+impl Row {
+    /// An error of this row with its remedy; the texts are those of [`InputError::new`].
+    pub fn error(self, found: impl Into<String>, expected: impl Into<String>) -> InputError {
+        InputError::new(self, found, expected, self.remedy)
+    }
+}
+
 impl InputError {
-    /// `code` is stable; `found` is a clause naming what is there, `expected` a noun phrase (empty when
-    /// `found` says it), `help` an instruction.
-    pub fn new(
+    /// `found` is a clause naming what is there, `expected` a noun phrase (empty when `found` says it), `help` an
+    /// instruction.
+    pub fn new(row: Row, found: impl Into<String>, expected: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::of_core(row.code, found, expected, help)
+    }
+    /// The same with a code of the core, which has rows of its own.
+    pub fn of_core(
         code: impl Into<String>,
         found: impl Into<String>,
         expected: impl Into<String>,
@@ -87,12 +100,12 @@ impl InputError {
     /// A file that cannot be read (`F001`).
     pub fn unreadable(path: &Path, error: &io::Error) -> Self {
         let found = format!("{} cannot be read ({})", path.display(), plain_reason(error));
-        Self::new("F001", found, "a readable file", "check the name and the permissions").in_file(path)
+        F001.error(found, "a readable file").in_file(path)
     }
     /// A file that cannot be written (`F002`).
     pub fn unwritable(path: &Path, error: &io::Error) -> Self {
         let found = format!("{} cannot be written ({})", path.display(), plain_reason(error));
-        Self::new("F002", found, "a writable place", "check that the folder exists and may be written to").in_file(path)
+        F002.error(found, "a writable place").in_file(path)
     }
     /// The clause naming what was found.
     pub fn found(&self) -> &str {
@@ -107,7 +120,7 @@ impl InputError {
         let sentence = error.kind.to_string();
         let (found, help) = sentence.split_once("; ").unwrap_or((&sentence, "correct the program"));
         let span = error.span();
-        Self::new(error.kind.code(), found, "", help).at(source, span.start..span.end())
+        Self::of_core(error.kind.code(), found, "", help).at(source, span.start..span.end())
     }
     /// Line and column, both from 1, when the error has a place.
     pub fn line_column(&self) -> Option<(usize, usize)> {
@@ -185,21 +198,19 @@ impl Failure {
             (Self::Input(error), Form::Json) => format!("{}\n", error.to_json()),
             (Self::Internal(message), Form::Json) => {
                 let error = serde_json::json!({"error": {
-                    "code": "X001", "message": self.to_string(), "file": null, "line": null, "column": null,
-                    "found": message, "expected": null, "help": REPORT_IT}});
+                    "code": X001.code, "message": self.to_string(), "file": null, "line": null, "column": null,
+                    "found": message, "expected": null, "help": X001.remedy}});
                 format!("{error}\n")
             }
             (Self::Usage(text), _) => visible_lines(text).into_owned(),
             (Self::Internal(_), _) => {
-                format!("error[X001]: {}\n  help: {REPORT_IT}\n", visible_lines(&self.to_string()))
+                format!("error[{}]: {}\n  help: {}\n", X001.code, visible_lines(&self.to_string()), X001.remedy)
             }
             (Self::Input(error), Form::Colour) => drawn(error, GraphicalTheme::unicode(), 120),
             (Self::Input(error), Form::Plain) => drawn(error, GraphicalTheme::none(), 1000),
         }
     }
 }
-
-const REPORT_IT: &str = "this is a fault of the program: please report it with the command and its input files";
 
 /// How an error is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

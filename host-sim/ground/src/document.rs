@@ -13,6 +13,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::decimal::Decimal;
 use super::limits::Limits;
+use crate::codes::{J003, J004, J005, J006, J007, J008};
 use crate::diagnostics::{InputError, Source};
 
 /// Where the value of a key stands; keys are written with their table, `tool.diameter_mm`.
@@ -170,7 +171,7 @@ impl<'d> Section<'d> {
                     Some(name) => format!("did you mean \"{name}\"?"),
                     None => "write one of these names exactly".to_owned(),
                 };
-                Err(InputError::new("J007", format!("{} is \"{text}\"", value.path), one_of(&names), help)
+                Err(InputError::new(J007, format!("{} is \"{text}\"", value.path), one_of(&names), help)
                     .at(self.source, value.span))
             }
         }
@@ -179,12 +180,12 @@ impl<'d> Section<'d> {
     /// An error at a value that is well formed but not allowed.
     pub fn out_of_range(&self, value: &Value<'_>, expected: &str, help: &str) -> InputError {
         let found = format!("{} is {}", value.path, self.source.excerpt(value.span.clone()));
-        InputError::new("J006", found, expected, help).at(self.source, value.span.clone())
+        InputError::new(J006, found, expected, help).at(self.source, value.span.clone())
     }
 
     /// An error at a value that another one excludes.
     pub fn contradiction(&self, value: &Value<'_>, found: &str, expected: &str, help: &str) -> InputError {
-        InputError::new("J008", found, expected, help).at(self.source, value.span.clone())
+        InputError::new(J008, found, expected, help).at(self.source, value.span.clone())
     }
 
     /// An error at a value of the wrong type.
@@ -195,7 +196,7 @@ impl<'d> Section<'d> {
             "datetime" => "a date".to_owned(),
             kind => format!("a {kind}"),
         };
-        InputError::new("J005", format!("{} is {article}", value.path), expected, help)
+        InputError::new(J005, format!("{} is {article}", value.path), expected, help)
             .at(self.source, value.span.clone())
     }
 
@@ -226,7 +227,7 @@ impl<'d> Section<'d> {
             Some(k) => (format!("did you mean {key} where {} is written?", k.get_ref()), k.span()),
             None => (help, place),
         };
-        InputError::new("J004", found, expected, help).at(self.source, place)
+        InputError::new(J004, found, expected, help).at(self.source, place)
     }
 
     /// Ends the reading of this table.
@@ -249,7 +250,7 @@ impl<'d> Section<'d> {
         let mut known = asked.clone();
         known.sort_unstable();
         known.dedup();
-        Err(InputError::new("J003", format!("{name} is no key of {place}"), one_of(&known), help)
+        Err(InputError::new(J003, format!("{name} is no key of {place}"), one_of(&known), help)
             .at(self.source, key.span()))
     }
 

@@ -1,13 +1,13 @@
 //! TOML as a notation: from bytes to tables with spans, and the version every file of ours carries.
 //!
 //! Shared by all files the user writes in TOML; `what` names the file in the errors ("the job file").
-//! Codes: J002 for text that is not TOML, J004 and J010 for the version.
 
 use toml::Spanned;
 use toml::de::DeTable;
 
 use super::document::Section;
 use super::limits::Limits;
+use crate::codes::{J002, J010};
 use crate::diagnostics::{InputError, Source};
 
 /// The tables of a text.
@@ -18,7 +18,7 @@ pub fn parse<'s>(source: &'s Source, what: &str) -> Result<Spanned<DeTable<'s>>,
     let text = std::str::from_utf8(source.bytes()).map_err(|error| {
         let at = error.valid_up_to();
         let found = format!("{what} holds a byte that is not UTF-8");
-        InputError::new("J002", found, "a text in UTF-8", "save the file as UTF-8").at(source, at..at + 1)
+        InputError::new(J002, found, "a text in UTF-8", "save the file as UTF-8").at(source, at..at + 1)
     })?;
     DeTable::parse(text).map_err(|error| syntax_error(source, what, &error))
 }
@@ -36,7 +36,7 @@ fn syntax_error(source: &Source, what: &str, error: &toml::de::Error) -> InputEr
         [digit, b','] if digit.is_ascii_digit() => "write a decimal point, not a comma",
         _ => "correct the line; https://toml.io shows the notation",
     };
-    InputError::new("J002", format!("{what} is not TOML here: {reason}"), expected, help).at(source, span)
+    InputError::new(J002, format!("{what} is not TOML here: {reason}"), expected, help).at(source, span)
 }
 
 /// Checks `version = 1` at the top of the file.
@@ -52,11 +52,5 @@ pub fn version(source: &Source, root: &Section<'_>) -> Result<(), InputError> {
         return Ok(());
     }
     let found = format!("version is {}", source.excerpt(value.span.clone()));
-    Err(InputError::new(
-        "J010",
-        found,
-        "1, the only version there is",
-        "write version = 1, or use the program the file was made for",
-    )
-    .at(source, value.span))
+    Err(J010.error(found, "1, the only version there is").at(source, value.span))
 }

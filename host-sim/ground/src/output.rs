@@ -19,6 +19,7 @@ use std::sync::Arc;
 
 use tempfile::{NamedTempFile, TempDir};
 
+use crate::codes::F003;
 use crate::diagnostics::{Failure, InputError};
 use crate::interruption::{Hold, Kind, Temporary, hold};
 use lock::Lock;
@@ -42,7 +43,7 @@ impl OutputFile {
     pub fn create(target: &Path, force: bool) -> Result<Self, InputError> {
         if target.is_dir() {
             return Err(InputError::new(
-                "F003",
+                F003,
                 format!("{} is a folder", target.display()),
                 "the name of a file",
                 "name a file in it",
@@ -146,7 +147,7 @@ impl OutputFolder {
     pub fn create(target: &Path, force: bool, owned: &[&'static str]) -> Result<Self, InputError> {
         if target.exists() && !target.is_dir() {
             return Err(InputError::new(
-                "F003",
+                F003,
                 format!("{} is a file", target.display()),
                 "the name of a folder",
                 "name another folder",
@@ -296,7 +297,7 @@ fn refuse_occupied(folder: &Path, force: bool) -> Result<(), InputError> {
     }
     let found = format!("{} exists and is not empty", folder.display());
     let help = "name another folder, or add --force to replace the files of the same names";
-    Err(InputError::new("F003", found, "a new or an empty folder", help).in_file(folder))
+    Err(InputError::new(F003, found, "a new or an empty folder", help).in_file(folder))
 }
 
 fn refuse_existing(target: &Path, force: bool) -> Result<(), InputError> {
@@ -304,7 +305,7 @@ fn refuse_existing(target: &Path, force: bool) -> Result<(), InputError> {
         return Ok(());
     }
     let found = format!("{} exists", target.display());
-    Err(InputError::new("F003", found, "the name of a new file", "name another file, or add --force to replace it")
+    Err(InputError::new(F003, found, "the name of a new file", "name another file, or add --force to replace it")
         .in_file(target))
 }
 

@@ -1,20 +1,13 @@
 //! A table (CSV) that is read back: named columns of numbers, every mistake with its place.
 //!
 //! The columns may stand in any order, with others between them.
-//!
-//! | code | meaning |
-//! |---|---|
-//! | Z006 | no table, a column that is missing, a line with another number of fields |
-//! | Z007 | a field that is no number, or beyond ±1e9 |
-//! | Z008 | an arc length that falls |
-//! | Z009 | fewer than two places |
-//! | Z010 | more than 2,000,000 lines or 1 GB |
 
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
+use crate::codes::{Row, Z006, Z007, Z008, Z010};
 use crate::diagnostics::{InputError, Source};
 
 /// Most lines of a table.
@@ -34,7 +27,7 @@ pub fn read_bounded(path: &Path) -> Result<Source, InputError> {
     File::open(path).map_err(unreadable)?.take(BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > BYTES {
         let found = format!("{} has more than {BYTES} bytes", path.display());
-        return Err(InputError::new("Z010", found, "a table of at most 1 GB", "cut it into pieces").in_file(path));
+        return Err(InputError::new(Z010, found, "a table of at most 1 GB", "cut it into pieces").in_file(path));
     }
     Ok(Source::new(path.display().to_string(), bytes))
 }
@@ -75,7 +68,7 @@ pub fn each_line(
             let expected = format!("the columns {}", wanted.join(", "));
             let help = "give a table as the commands write it; a table without these columns is of another kind or an \
                         older version: write it again";
-            InputError::new("Z006", found, expected, help).at(source, header.clone())
+            InputError::new(Z006, found, expected, help).at(source, header.clone())
         })
     };
     let places = wanted.iter().map(place).collect::<Result<Vec<usize>, _>>()?;
@@ -84,20 +77,20 @@ pub fn each_line(
     let mut lines = 0usize;
     while reader.read_byte_record(&mut record).map_err(|e| {
         let found = format!("the table cannot be read ({e})");
-        InputError::new("Z006", found, "comma separated values", "write it again").at(source, header.clone())
+        InputError::new(Z006, found, "comma separated values", "write it again").at(source, header.clone())
     })? {
         lines += 1;
         let line = Line { source, record: &record, places: &places, wanted };
         if lines > LINES {
             let found = format!("the table has more than {LINES} lines");
             let help = "cut it into pieces";
-            return Err(InputError::new("Z010", found, format!("at most {LINES}"), help).at(source, line.span(None)));
+            return Err(InputError::new(Z010, found, format!("at most {LINES}"), help).at(source, line.span(None)));
         }
         if record.len() != head.len() {
             let found = format!("this line has {} fields", record.len());
             let expected = format!("{}, as in the line with the names", head.len());
             let help = "a line that was cut off? write the table again";
-            return Err(InputError::new("Z006", found, expected, help).at(source, line.span(None)));
+            return Err(InputError::new(Z006, found, expected, help).at(source, line.span(None)));
         }
         each(&line)?;
     }
@@ -117,7 +110,7 @@ impl Line<'_> {
     /// `Z007`.
     pub fn number(&self, column: usize) -> Result<f64, InputError> {
         let value = self.text(column).parse().ok().filter(|v: &f64| v.abs() <= FARTHEST);
-        value.ok_or_else(|| self.refused(column, "Z007", "a number between −1e9 and 1e9"))
+        value.ok_or_else(|| self.refused(column, Z007, "a number between −1e9 and 1e9"))
     }
 
     /// The number in a column, or what is not a number in an empty one.
@@ -137,18 +130,18 @@ impl Line<'_> {
         let s = self.number(column)?;
         match before {
             Some(before) if s < before => {
-                Err(self.refused(column, "Z008", &format!("no less than the {before} of the line before")))
+                Err(self.refused(column, Z008, &format!("no less than the {before} of the line before")))
             }
             _ => Ok(s),
         }
     }
 
     /// An error at a column.
-    pub fn refused(&self, column: usize, code: &str, expected: &str) -> InputError {
+    pub fn refused(&self, column: usize, row: Row, expected: &str) -> InputError {
         let name = self.wanted.get(column).copied().unwrap_or_default();
         let found = format!("{name} is \"{}\"", self.text(column));
         let span = self.span(self.places.get(column).copied());
-        InputError::new(code, found, expected, "correct the field, or write the table again").at(self.source, span)
+        InputError::new(row, found, expected, "correct the field, or write the table again").at(self.source, span)
     }
 
     /// Where a field of the line stands, or the whole line.

@@ -11,6 +11,7 @@
 //! | the points of a probe file on that contour | [`measurement`] |
 //! | what refuses a job, a program or a point, as an error with its place | [`refusal`] |
 
+pub mod codes;
 pub mod feature;
 pub mod feed;
 pub mod job;

@@ -6,8 +6,9 @@ use truepath_core::identify::Observation;
 use truepath_core::job;
 use truepath_core::probe::{Contact, Reading, Rejected};
 use truepath_core::units::{Offset, Position, Real};
-use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::diagnostics::{Failure, Source};
 
+use crate::codes::M040;
 use crate::feature::Plan;
 use crate::pass::Pass;
 use crate::refusal::why;
@@ -103,8 +104,7 @@ impl Measurement {
         if self.contacts.len() > MOST_POINTS {
             let found = format!("{} holds {} points on the wall", self.file, self.contacts.len());
             let expected = format!("at most {MOST_POINTS} to identify machine and material from");
-            let help = "keep every n-th reading of a scan: some places on each wall and in every corner, each at several heights, tell all there is; truepath inspect takes the whole file";
-            return Err(InputError::new("M040", found, expected, help).in_file(self.file.as_ref()).into());
+            return Err(M040.error(found, expected).in_file(self.file.as_ref()).into());
         }
         let blank = Observation::new(Offset::ZERO, Real::ZERO, Offset::ZERO, Offset::ZERO, Direction::X);
         let mut observations = vec![blank; self.contacts.len()];

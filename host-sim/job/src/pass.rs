@@ -13,6 +13,7 @@ use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
 
+use crate::codes::K002;
 use crate::feature;
 use crate::feature::{FeaturePass, FeatureSummary, Plan};
 use crate::feed::Schedule;
@@ -141,8 +142,7 @@ impl Pass {
 
     fn no_stock(&self, found: String) -> Failure {
         let expected = "a surface along the whole contour, between the finished wall and the far side of the cutter";
-        let help = "check frame and unit of the surface, and that it belongs to this program";
-        let error = InputError::new("K002", format!("the surface of the stock {found}"), expected, help);
+        let error = K002.error(format!("the surface of the stock {found}"), expected);
         match &self.job.surface {
             Some(path) => error.in_file(path).into(),
             None => error.into(),

@@ -11,6 +11,8 @@ use truepath_core::geometry::Point;
 use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::{InputError, Source};
 
+use crate::codes::K001;
+
 /// The surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
@@ -42,13 +44,12 @@ impl Surface {
     /// # Errors
     /// `K001` when it is not such a table, with the place.
     pub fn read(source: &Source) -> Result<Self, InputError> {
-        const HELP: &str = "write a first line x_mm,y_mm and then one point of the surface a line, decimal points, in the order of travel";
         let wrong = |found: String, line: u64| {
             let line = u32::try_from(line).unwrap_or(u32::MAX);
             let length =
                 source.bytes().split(|b| *b == b'\n').nth(line.saturating_sub(1) as usize).map_or(0, <[u8]>::len);
             let span = source.span_at(line, 1, u32::try_from(length).unwrap_or(u32::MAX));
-            InputError::new("K001", found, "columns x_mm and y_mm with numbers", HELP).at(source, span)
+            K001.error(found, "columns x_mm and y_mm with numbers").at(source, span)
         };
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(source.bytes());
         let names = reader.headers().map_err(|e| wrong(format!("the surface cannot be read: {e}"), 1))?.clone();

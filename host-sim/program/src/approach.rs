@@ -9,9 +9,9 @@ use super::edit::BlockEdit;
 use super::pen::{Pen, place};
 use super::survey::{Kind, Move};
 use super::writer::Writer;
+use crate::codes::P002;
 
 const EXPECTED: &str = "a G0 or G1 move in X and Y to the start of the contour";
-const HELP: &str = "give the contour's start with G0 X Y before it";
 
 impl Writer<'_> {
     /// Leads the moves before the contour to its corrected start, and gives the pen there. `displaced` is a move among
@@ -51,7 +51,7 @@ impl Writer<'_> {
                     } else {
                         "the move to the start of the contour cannot be changed"
                     };
-                    return Err(self.refusal("P002", step.line, [found, EXPECTED, HELP]));
+                    return Err(self.refusal(P002, step.line, [found, EXPECTED, P002.remedy]));
                 }
             }
             if named == [false, false] {
@@ -75,6 +75,6 @@ impl Writer<'_> {
                 return Ok(Pen::new(reached, &first.modal));
             }
         }
-        Err(self.refusal("P002", first.line, ["no move leads to the start of the contour", EXPECTED, HELP]))
+        Err(self.refusal(P002, first.line, ["no move leads to the start of the contour", EXPECTED, P002.remedy]))
     }
 }

@@ -21,8 +21,7 @@ use super::line::Block;
 use super::pen::{Pen, place};
 use super::survey::{Kind, Move};
 use super::writer::Writer;
-
-const HELP: &str = "use --route coprocessor, or post the program with the path of the cutter's centre";
+use crate::codes::P007;
 
 /// Stretches of compensated moves that hold a line of the contour.
 pub(super) fn stretches(moves: &[Move], edits: &[BlockEdit]) -> Vec<Range<usize>> {
@@ -98,7 +97,7 @@ impl Writer<'_> {
     }
 
     pub(super) fn refuse_compensation(&self, line: u32, found: &str) -> Failure {
-        self.refusal("P007", line, [found, "moves that can be written as the path of the cutter's centre", HELP])
+        self.refusal(P007, line, [found, "moves that can be written as the path of the cutter's centre", P007.remedy])
     }
 
     /// Writes one move beside the contour.

@@ -10,6 +10,7 @@ use truepath_ground::diagnostics::Failure;
 use super::pen::{Pen, place};
 use super::survey::{Kind, Move};
 use super::writer::Writer;
+use crate::codes::{P003, P005};
 
 impl Writer<'_> {
     /// Makes up for the displaced end of the contour. Gives the move that begins displaced and returns, with its place
@@ -33,7 +34,7 @@ impl Writer<'_> {
             }
             if matches!(step.kind, Kind::Origin) {
                 return Err(self.refusal(
-                    "P005",
+                    P005,
                     step.line,
                     [
                         "the origin is set while the cutter stands at the displaced end of the contour",
@@ -50,11 +51,7 @@ impl Writer<'_> {
                     let found = self.what_keeps_a_hole(step, &hole.collect::<Vec<_>>());
                     if let Some(found) = found {
                         let help = "put a G0 move in X and Y between the contour and this line";
-                        return Err(self.refusal(
-                            "P003",
-                            step.line,
-                            [found, "a move away from the contour first", help],
-                        ));
+                        return Err(self.refusal(P003, step.line, [found, "a move away from the contour first", help]));
                     }
                     // It is raised where it stands before it goes to the hole.
                     if !step.stands_still() {
@@ -66,7 +63,7 @@ impl Writer<'_> {
                 _ if self.block(step.line).has_corner() => {
                     let found = "the control cuts the corner behind this move, which begins displaced";
                     let help = "put a short G1 move between the contour and this line";
-                    return Err(self.refusal("P003", step.line, [found, "a move without ,R or ,C", help]));
+                    return Err(self.refusal(P003, step.line, [found, "a move without ,R or ,C", help]));
                 }
                 Kind::Arc(..) => {
                     self.carry(pen, step, by);
@@ -78,7 +75,7 @@ impl Writer<'_> {
                 _ => {
                     let found = "this move begins where the corrected contour ends, and cannot begin elsewhere";
                     let help = "put a short G1 move between the contour and this line";
-                    return Err(self.refusal("P003", step.line, [found, "a straight move or a G17 arc", help]));
+                    return Err(self.refusal(P003, step.line, [found, "a straight move or a G17 arc", help]));
                 }
             }
         }

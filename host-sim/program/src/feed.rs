@@ -13,6 +13,7 @@ use truepath_ground::diagnostics::Failure;
 use super::edit::BlockEdit;
 use super::survey::Move;
 use super::writer::{Scheduled, Writer};
+use crate::codes::P006;
 
 /// Parts of an edit at one feed each: first and last sample, percent of the programmed feed.
 pub(super) fn spans(edit: &BlockEdit) -> Vec<(usize, usize, u16)> {
@@ -75,7 +76,7 @@ impl Writer<'_> {
         several.map_or(Ok(()), |pair| {
             let found = "this line of the contour has several feeds, and its feed is scheduled";
             let help = "write the moves on lines of their own, or remove [feed] from the job";
-            Err(self.refusal("P006", pair[0].line, [found, "one feed for each line", help]))
+            Err(self.refusal(P006, pair[0].line, [found, "one feed for each line", help]))
         })
     }
 
@@ -115,7 +116,7 @@ impl Writer<'_> {
         programmed(modal).ok_or_else(|| {
             let found = "the feed of the contour is computed, and has to be put back behind it";
             let help = "write the feed as a number, or remove [feed] from the job";
-            self.refusal("P006", line, [found, "a feed of at most six decimals", help])
+            self.refusal(P006, line, [found, "a feed of at most six decimals", help])
         })
     }
 }

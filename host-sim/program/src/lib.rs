@@ -21,6 +21,7 @@ mod approach;
 mod assemble;
 pub mod canon;
 mod centre_path;
+pub mod codes;
 mod departure;
 mod deviation;
 mod difference;
@@ -44,6 +45,8 @@ use std::ops::Range;
 
 use truepath_core::gcode::{LineRange, is_marked_corrected};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+
+use crate::codes::P001;
 
 pub use difference::{Difference, Shift};
 pub use edit::{BlockEdit, FeedFrom, Origin, Purpose, RewriteOptions};
@@ -85,15 +88,10 @@ impl Rewritten {
 pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOptions) -> Result<Rewritten, Failure> {
     let original = source.bytes();
     if is_marked_corrected(original) {
-        let help = "correct the original program; its CRC-32 is in the comment";
-        return Err(InputError::new(
-            "P001",
-            "the program carries the mark TRUEPATH CORRECTED",
-            "an uncorrected program",
-            help,
-        )
-        .at(source, mark(original))
-        .into());
+        return Err(P001
+            .error("the program carries the mark TRUEPATH CORRECTED", "an uncorrected program")
+            .at(source, mark(original))
+            .into());
     }
     let moves = survey::survey(original, options.program).map_err(|e| InputError::of_program(source, &e))?;
     let (written, proof) = within_kinks(source, &moves, edits, options)?;

@@ -13,6 +13,7 @@ use super::pen::{Pen, place};
 use super::spacing::bulges;
 use super::survey::{Kind, Move};
 use super::writer::Writer;
+use crate::codes::P006;
 
 impl Writer<'_> {
     /// Writes consecutive lines of the contour, from the move `first`; `edits` are in reverse order, with their
@@ -128,7 +129,7 @@ impl Writer<'_> {
         if step.modal.feed_mode == FeedMode::InverseTime {
             let found = "the feed of the contour is a time for each whole line (G93), and lines are divided";
             return Err(self.refusal(
-                "P006",
+                P006,
                 line,
                 [found, "feed per minute or per revolution", "post the contour with G94"],
             ));
@@ -136,16 +137,12 @@ impl Writer<'_> {
         if self.original(line).has_computed_code() {
             let found =
                 "a G word of the contour is a parameter or an expression, and its lines get G words of their own";
-            return Err(self.refusal(
-                "P006",
-                line,
-                [found, "G words with numbers", "write the G code out on this line"],
-            ));
+            return Err(self.refusal(P006, line, [found, "G words with numbers", "write the G code out on this line"]));
         }
         if matches!(step.kind, Kind::Arc(_, turns) if turns > 0) {
             let found = "an arc of the contour makes more than one turn";
             return Err(self.refusal(
-                "P006",
+                P006,
                 line,
                 [found, "arcs of at most one turn", "write the turns on lines of their own"],
             ));

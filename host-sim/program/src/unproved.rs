@@ -7,6 +7,7 @@ use truepath_core::gcode::Lines;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::edit::BlockEdit;
+use crate::codes::{P003, P007};
 
 /// How a program reads where it stands: LinuxCNC's parameters of the present position.
 const POSITIONS: [&str; 6] = ["#542", "#<_x>", "#<_y>", "#<_abs_x>", "#<_abs_y>", "#[542"];
@@ -20,13 +21,12 @@ pub(super) fn failure(source: &Source, edits: &[BlockEdit], centre_path: bool, w
     if let Some(line) = reads_its_position(source.bytes()) {
         let found = format!("the program computes with the place where it stands, which is displaced ({what})");
         let help = "keep places in parameters of the program, or use --route coprocessor";
-        return at(InputError::new("P003", found, "moves that do not depend on the present position", help), line);
+        return at(InputError::new(P003, found, "moves that do not depend on the present position", help), line);
     }
     if centre_path {
         let found = format!("the path that G41 or G42 leads along cannot be written without them ({what})");
-        let help = "use --route coprocessor, or post the program with the path of the cutter's centre";
         let line = edits.first().map_or(0, |e| e.line);
-        return at(InputError::new("P007", found, "the path of the cutter's centre", help), line);
+        return at(P007.error(found, "the path of the cutter's centre"), line);
     }
     Failure::Internal(format!("the corrected program is not what it should be: {what}"))
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use truepath_core::gcode::{Line, Modal, Motion};
+use truepath_ground::codes::Row;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::assemble::Replaced;
@@ -10,6 +11,7 @@ use super::edit::RewriteOptions;
 use super::line::Block;
 use super::pen::Pen;
 use super::survey::Move;
+use crate::codes::P004;
 
 /// The feed in force in the written text where it is not that of the program.
 #[derive(Clone, Debug)]
@@ -55,15 +57,14 @@ impl<'a> Writer<'a> {
         };
         Block::new(line, self.two_digits)
     }
-    pub(super) fn refusal(&self, code: &str, line: u32, texts: [&str; 3]) -> Failure {
+    pub(super) fn refusal(&self, row: Row, line: u32, texts: [&str; 3]) -> Failure {
         let span = self.line(line).span();
         let [found, expected, help] = texts;
-        InputError::new(code, found, expected, help).at(self.source, span.start..span.end()).into()
+        InputError::new(row, found, expected, help).at(self.source, span.start..span.end()).into()
     }
 
     /// A line that the program executes several times, or that stands in another file, cannot be edited in place.
     pub(super) fn refuse_repetition(&self, moves: &[Move], lines: impl Iterator<Item = u32>) -> Result<(), Failure> {
-        const HELP: &str = "use --route coprocessor, or post the program without subprograms and loops";
         for line in lines {
             let mut times = moves.iter().filter(|m| m.line == line).map(|m| m.jumps);
             let first = times.next();
@@ -73,7 +74,11 @@ impl<'a> Writer<'a> {
                 } else {
                     "this line is executed several times (a loop or a subprogram), with one correction for each"
                 };
-                return Err(self.refusal("P004", line, [found, "lines of this file that are executed once", HELP]));
+                return Err(self.refusal(
+                    P004,
+                    line,
+                    [found, "lines of this file that are executed once", P004.remedy],
+                ));
             }
         }
         Ok(())

@@ -2,6 +2,7 @@
 //!
 //! Nothing is computed here that decides a correction.
 
+pub mod codes;
 mod compare;
 mod inspection;
 pub mod page;

@@ -1,10 +1,12 @@
 //! The tables of the commands, read back into the rows they were written from.
 
 use truepath_correction::rows::CorrectionRow;
+use truepath_ground::codes::Z007;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::sheet::{Line, each_line};
 
 use super::wall::WallRow;
+use crate::codes::{Z009, Z013};
 use crate::tables::{Trace, TraceRow};
 
 /// Columns of `trace.csv` that every one has.
@@ -21,8 +23,8 @@ fn beside(line: &Line, wall: Option<&[WallRow]>, row: usize, s_mm: f64) -> Resul
     let Some(wall) = wall else { return Ok([f64::NAN; 2]) };
     match wall.get(row) {
         Some(place) if (place.s_mm - s_mm).abs() < 1e-5 => Ok([place.x_mm, place.y_mm]),
-        Some(place) => Err(line.refused(0, "Z013", &format!("{} as in the same line of wall.csv", place.s_mm))),
-        None => Err(line.refused(0, "Z013", &format!("no more than the {} lines of wall.csv", wall.len()))),
+        Some(place) => Err(line.refused(0, Z013, &format!("{} as in the same line of wall.csv", place.s_mm))),
+        None => Err(line.refused(0, Z013, &format!("no more than the {} lines of wall.csv", wall.len()))),
     }
 }
 
@@ -32,8 +34,7 @@ fn enough(source: &Source, first: Option<f64>, last: Option<f64>) -> Result<(), 
         return Ok(());
     }
     let end = source.bytes().len();
-    let help = "give the table of a whole contour";
-    Err(InputError::new("Z009", "the table has fewer than two places along the contour", "", help).at(source, end..end))
+    Err(Z009.error("the table has fewer than two places along the contour", "").at(source, end..end))
 }
 
 /// `wall.csv`.
@@ -147,7 +148,7 @@ pub fn read_points(source: &Source) -> Result<Vec<PointRow>, InputError> {
             "aside" => return Ok(()),
             "used" => false,
             "outlying" => true,
-            _ => return Err(line.refused(0, "Z007", "used, outlying or aside")),
+            _ => return Err(line.refused(0, Z007, "used, outlying or aside")),
         };
         rows.push(PointRow {
             s_mm: line.number(1)?,

@@ -7,6 +7,7 @@ use std::path::{Path as FilePath, PathBuf};
 use clap::Args;
 use truepath_chart::view::View;
 use truepath_correction::correct::{CorrectedPass, correct};
+use truepath_ground::codes::F003;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::{Job, Route};
@@ -177,7 +178,7 @@ impl<'a> Part<'a> {
             let found = format!("{} is not what the demonstration writes", there.display());
             let help =
                 "name another folder with -o, or add --force to replace what was edited or is of another version";
-            return Err(InputError::new("F003", found, "a file as it was written", help).in_file(&there));
+            return Err(InputError::new(F003, found, "a file as it was written", help).in_file(&there));
         }
         self.folder.write(name, bytes)
     }

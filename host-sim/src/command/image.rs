@@ -57,7 +57,7 @@ pub(super) fn check<'b>(bytes: &'b [u8], path: &Path) -> Result<Image<'b>, Input
         };
         // The detail behind the colon belongs to what was found when it is no instruction.
         let found = if help.is_empty() || sentence.contains("make the image") { found } else { &sentence };
-        InputError::new(error.code(), format!("{}: {found}", path.display()), expected, help).in_file(path)
+        InputError::of_core(error.code(), format!("{}: {found}", path.display()), expected, help).in_file(path)
     })
 }
 

@@ -5,6 +5,7 @@ use std::path::{Path as FilePath, PathBuf};
 use clap::Args;
 use truepath_core::checksum::crc32;
 use truepath_correction::as_milled::AsMilled;
+use truepath_correction::codes::{Q001, Q002, Q003, Q004, Q005, Q007};
 use truepath_correction::learn::{LearnSummary, learn};
 use truepath_correction::learning::History;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
@@ -110,8 +111,8 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
     let remarks = measurement.remarks(&file);
     let routes = [options.route.unwrap_or(pass.job.route)];
     let done = learn(&pass, &history, &measurement, &remarks, &routes, progress).map_err(|failure| match failure {
-        Failure::Input(error) if matches!(error.code(), "Q003" | "Q007") => error.in_file(&options.probe).into(),
-        Failure::Input(error) if error.code() == "Q002" && error.line_column().is_none() => {
+        Failure::Input(error) if [Q003.code, Q007.code].contains(&error.code()) => error.in_file(&options.probe).into(),
+        Failure::Input(error) if error.code() == Q002.code && error.line_column().is_none() => {
             error.in_file(&options.from.join(HISTORY)).into()
         }
         failure => failure,
@@ -139,7 +140,7 @@ pub(super) fn history_in(folder: &FilePath) -> Result<History, InputError> {
     if !place.exists() {
         let found = format!("{} holds no {HISTORY}", folder.display());
         let help = "name the folder that truepath correct or truepath learn wrote the correction of this part into; a second pass of truepath split has no next part";
-        return Err(InputError::new("Q001", found, "a folder with a correction and its history", help).in_file(folder));
+        return Err(InputError::new(Q001, found, "a folder with a correction and its history", help).in_file(folder));
     }
     let history = History::read(&Source::read(&place)?)?;
     let mut held = 0;
@@ -152,14 +153,14 @@ pub(super) fn history_in(folder: &FilePath) -> Result<History, InputError> {
             let found = format!("{} has the CRC-32 {crc}", place.display());
             let expected = format!("{}, as {HISTORY} says of the correction it was cut with", file.crc32);
             let help = "the part must be cut with the correction of this folder, unchanged; put the file back, or correct again";
-            return Err(InputError::new("Q004", found, expected, help).in_file(&place));
+            return Err(InputError::new(Q004, found, expected, help).in_file(&place));
         }
     }
     if held == 0 {
         let names: Vec<&str> = history.next.files.iter().map(|file| file.name.as_str()).collect();
         let found = format!("{} does not hold the correction", folder.display());
         let help = "name the folder as truepath correct or truepath learn left it";
-        return Err(InputError::new("Q004", found, names.join(" or "), help).in_file(folder));
+        return Err(InputError::new(Q004, found, names.join(" or "), help).in_file(folder));
     }
     Ok(history)
 }
@@ -175,5 +176,5 @@ fn refuse_same_folder(options: &Options) -> Result<(), InputError> {
     }
     let found = format!("--from and -o are both {}", options.from.display());
     let help = "name another folder with -o: the correction of each part is kept";
-    Err(InputError::new("Q005", found, "two folders", help).in_file(&options.output))
+    Err(InputError::new(Q005, found, "two folders", help).in_file(&options.output))
 }

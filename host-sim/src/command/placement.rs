@@ -4,6 +4,7 @@ use clap::Args;
 use truepath_core::units::Real;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
+use truepath_trial::codes::R003;
 use truepath_trial::replay::Placement;
 use truepath_trial::setpoints::{Frame, Setpoints};
 
@@ -50,7 +51,7 @@ impl PlacementOptions {
                 "add --origin-mm X,Y,Z: the work offset with the tool's length",
             ),
         };
-        Err(InputError::new("R003", found, expected, help).at(source, 0..1))
+        Err(InputError::new(R003, found, expected, help).at(source, 0..1))
     }
 }
 

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFile, json};
+use truepath_trial::codes::R004;
 use truepath_trial::replay::{Run, replay, settings};
 use truepath_trial::setpoints::{Frame, Setpoints};
 
@@ -51,7 +52,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     let setpoints = Setpoints::parse(&source)?;
     let placement = options.placement.of(&setpoints, &source)?;
     let settings = changed(&settings(setpoints.period_ns), &options.settings)
-        .map_err(|e| InputError::new("R004", e.found, "a setting of the rewriter as NAME=VALUE", e.help))?;
+        .map_err(|e| InputError::new(R004, e.found, "a setting of the rewriter as NAME=VALUE", e.help))?;
     let run = Run { placement, part_serial: options.part, settings };
     if setpoints.rows.first().is_some_and(|row| row.spindle_rpm.is_none()) {
         terminal.note("the file has no spindle_rpm; the image's nominal speed is taken");

@@ -20,6 +20,7 @@ use truepath_report::page::Along;
 use truepath_report::pages::{REPORT, simulated};
 use truepath_report::plot::Column;
 use truepath_report::{SimulateSummary, Trace, page, plot, simulate_summary, trace, trace_csv, wall_csv};
+use truepath_trial::codes::{L001, L002};
 use truepath_trial::replay::Placement;
 use truepath_trial::setpoints::Setpoints;
 use truepath_trial::{recorded, virtual_mill};
@@ -237,11 +238,11 @@ pub fn read_machine(file: &FilePath) -> Result<plant::Machine, Failure> {
     let text = std::str::from_utf8(source.bytes()).map_err(|e| {
         let at = e.valid_up_to();
         let help = "save the file as UTF-8";
-        InputError::new("L001", "a byte that is not UTF-8", "a text file", help).at(&source, at..at + 1)
+        InputError::new(L001, "a byte that is not UTF-8", "a text file", help).at(&source, at..at + 1)
     })?;
     toml::from_str(text).map_err(|e| {
         let span = e.span().unwrap_or(0..0);
         let help = "see docs/plant.md for the keys of a plant and their units";
-        InputError::new("L002", e.message().to_owned(), "", help).at(&source, span).into()
+        InputError::new(L002, e.message().to_owned(), "", help).at(&source, span).into()
     })
 }

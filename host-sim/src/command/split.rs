@@ -11,6 +11,7 @@ use clap::Args;
 use toml_edit::{Array, DocumentMut, Item, value};
 use truepath_core::units::Offset;
 use truepath_correction::first_pass;
+use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFolder;
 use truepath_ground::units::mm;
@@ -89,7 +90,7 @@ pub fn run(options: &Options) -> Result<Split, Failure> {
     if pass.surface.is_some() {
         let help = "split the job of the whole, even allowance";
         let found = "stock.surface is given: part of the allowance has been cut";
-        let error = InputError::new("J008", found, "a job with stock.allowance_mm", help);
+        let error = InputError::new(J008, found, "a job with stock.allowance_mm", help);
         return Err(error.at(pass.job.source(), pass.job.span("stock.surface")).into());
     }
     let half = Offset::from_nm(pass.job.numbers.allowance.nm() / 2);

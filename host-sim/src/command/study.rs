@@ -8,6 +8,7 @@ use clap::Args;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFile, json};
 use truepath_job::job::one_of;
+use truepath_study::codes::{Y003, Y004};
 use truepath_study::families::{FAMILIES, Family, family};
 use truepath_study::id::{Axis, CaseId, Cell};
 use truepath_study::ledger::{Ledger, program_key};
@@ -150,12 +151,7 @@ fn row(row: &Row) -> String {
 pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
     let unknown = |name: &str| {
         let names: Vec<&str> = FAMILIES.iter().map(|f| f.name).collect();
-        InputError::new(
-            "Y003",
-            format!("no family `{name}`"),
-            format!("one of {}", names.join(", ")),
-            "correct the name",
-        )
+        InputError::new(Y003, format!("no family `{name}`"), format!("one of {}", names.join(", ")), "correct the name")
     };
     let chosen: Vec<&Family> = if options.families.is_empty() {
         FAMILIES.iter().collect()
@@ -168,7 +164,7 @@ pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
     let most = seeds.end - seeds.start;
     if count == 0 || count > most {
         let found = format!("{count} seeds");
-        return Err(InputError::new("Y004", found, format!("1 to {most}"), "ask for another number").into());
+        return Err(InputError::new(Y004, found, format!("1 to {most}"), "ask for another number").into());
     }
     let cells: Vec<Option<Cell>> = match options.axis {
         None => vec![None],

@@ -12,6 +12,7 @@ use truepath_core::checksum::crc32;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::outcome::Outcome;
+use crate::codes::{Y001, Y002};
 
 /// Name of the table.
 pub const NAME: &str = "cases.csv";
@@ -79,24 +80,14 @@ impl Ledger {
 fn read(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Outcome>, Failure> {
     let mut finished = BTreeMap::new();
     for row in csv::Reader::from_reader(bytes).deserialize::<Outcome>() {
-        let outcome = row.map_err(|e| {
-            InputError::new("Y002", format!("{e}"), "lines that a study wrote", "name another folder, or add --force")
-                .in_file(path)
-        })?;
+        let outcome = row.map_err(|e| Y002.error(format!("{e}"), "lines that a study wrote").in_file(path))?;
         finished.insert(outcome.case.clone(), outcome);
     }
     Ok(finished)
 }
 
 fn other_program(path: &Path, found: &str, key: &str) -> Failure {
-    InputError::new(
-        "Y001",
-        format!("results of another program: `{found}`"),
-        format!("`{key}`"),
-        "name another folder, or add --force to drop them and start afresh",
-    )
-    .in_file(path)
-    .into()
+    Y001.error(format!("results of another program: `{found}`"), format!("`{key}`")).in_file(path).into()
 }
 
 #[cfg(test)]

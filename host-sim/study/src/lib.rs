@@ -7,6 +7,7 @@
 pub mod belief;
 pub mod carry;
 pub mod case;
+pub mod codes;
 pub mod contour;
 pub mod draw;
 pub mod export;

@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::diagnostics::{Failure, Source};
 
 use super::reference::Reached;
 use super::summary::{Row, Summary, Trouble, WORKS};
+use crate::codes::Y005;
 
 /// Where the results begin.
 pub const BEGIN: &str = "<!-- results of truepath study -->";
@@ -23,9 +24,8 @@ pub fn written_into(file: &Source, results: &str) -> Result<String, Failure> {
     match marks.filter(|(begin, end)| begin <= end) {
         Some((begin, end)) => Ok(format!("{}\n\n{results}\n{}", &text[..begin], &text[end..])),
         None => {
-            let help = "put the two lines where the results belong";
             let expected = format!("a line `{BEGIN}` and after it a line `{END}`");
-            Err(InputError::new("Y005", "no place for results", expected, help).in_file(file.name().as_ref()).into())
+            Err(Y005.error("no place for results", expected).in_file(file.name().as_ref()).into())
         }
     }
 }

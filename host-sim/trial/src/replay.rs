@@ -16,8 +16,9 @@ use truepath_core::rewrite::{
     TURN_ONE,
 };
 use truepath_core::units::{Real, shift_rounded_i64, sin_cos};
-use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::diagnostics::Failure;
 
+use crate::codes::{R001, R002};
 use crate::setpoints::Setpoints;
 
 /// Where the program stands in the machine.
@@ -105,13 +106,9 @@ pub fn replay(
     let nominal_millirpm = image.settings().feed.spindle_millirpm;
     let request =
         ArmRequest { binding: image.settings().binding, part_serial: run.part_serial, frame: run.placement.frame() };
-    let rewriter = Rewriter::new(run.settings, Some(image)).map_err(|e| {
-        let help = "record the setpoints at the rate of the machine's servo cycle; give settings within their ranges";
-        InputError::new("R001", e.to_string(), "", help)
-    })?;
+    let rewriter = Rewriter::new(run.settings, Some(image)).map_err(|e| R001.error(e.to_string(), ""))?;
     let mut state = State::default();
-    let refused =
-        |e: truepath_core::rewrite::Refusal| InputError::new("R002", e.to_string(), "", "make the image again");
+    let refused = |e: truepath_core::rewrite::Refusal| R002.error(e.to_string(), "");
     rewriter.acknowledge_drives_disabled(&mut state).map_err(refused)?;
     rewriter.arm(&mut state, &request).map_err(refused)?;
     let mut tally = Tally::default();

@@ -3,23 +3,17 @@
 //! Numbers are read as exact decimals: 0.1 mm is 100,000 nm. The rows are the ticks of a servo cycle, so their times
 //! must rise by one and the same period; what does not is an error with its line. The optional columns are in
 //! [`columns`]; a controller that writes them all is reproduced to the last bit, whatever happened during the run.
-//!
-//! | code | meaning |
-//! |---|---|
-//! | S001 | the first line does not name the frame |
-//! | S002 | columns |
-//! | S003 | a field that is no number, or out of range |
-//! | S004 | times that do not rise evenly |
-//! | S005 | fewer than two rows |
 
 pub mod columns;
 
 use std::ops::Range;
 
 use columns::{Columns, Fields};
-use truepath_core::rewrite::Flags;
-use truepath_core::units::Real;
 use truepath_ground::diagnostics::{InputError, Source};
+
+use crate::codes::{S001, S002, S004, S005};
+
+pub use columns::Row;
 
 /// The coordinates a file is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,21 +22,6 @@ pub enum Frame {
     Program,
     /// Those of the machine.
     Machine,
-}
-
-/// One tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Row {
-    /// X, Y, Z, nm.
-    pub position_nm: [i64; 3],
-    /// Spindle speed, rev/min; `None` when the file has no such column.
-    pub spindle_rpm: Option<Real>,
-    /// What the controller said with it; drives enabled and spindle loaded when the file has no such column.
-    pub flags: Flags,
-    /// Checksum of the frame in force; `None` when the file has no such column: the frame that was armed.
-    pub frame_crc: Option<u32>,
-    /// Whether the arming was ended by command before this tick.
-    pub disarm: bool,
 }
 
 /// A file of setpoints.
@@ -90,8 +69,7 @@ impl Setpoints {
         }
         let end = source.bytes().len();
         let [(first, _), .., (last, _)] = times.as_slice() else {
-            let help = "record at least two ticks";
-            return Err(InputError::new("S005", "the file has fewer than two setpoints", "", help).at(source, end..end));
+            return Err(S005.error("the file has fewer than two setpoints", "").at(source, end..end));
         };
         let period_ns = (last - first) / (times.len() as i64 - 1);
         even(source, &times)?;
@@ -108,9 +86,8 @@ fn frame(source: &Source) -> Result<(Frame, usize), InputError> {
         Some("program") => Ok((Frame::Program, end)),
         Some("machine") => Ok((Frame::Machine, end)),
         _ => {
-            let help = "say which coordinates the file holds: those of the program or those of the machine";
             let expected = "# frame = program, or # frame = machine";
-            Err(InputError::new("S001", "the first line does not name the frame", expected, help).at(source, 0..end))
+            Err(S001.error("the first line does not name the frame", expected).at(source, 0..end))
         }
     }
 }
@@ -119,7 +96,7 @@ fn read(reader: &mut csv::Reader<&[u8]>, record: &mut csv::ByteRecord, source: &
     reader.read_byte_record(record).map_err(|e| {
         let end = source.bytes().len();
         InputError::new(
-            "S002",
+            S002,
             format!("the file cannot be read as a table ({e})"),
             "comma separated values",
             "export it again",
@@ -153,8 +130,7 @@ fn even(source: &Source, times: &[(i64, Range<usize>)]) -> Result<(), InputError
         if step <= 0 || (step - usual).abs() > usual * PERIOD_TOLERANCE_PERCENT / 100 {
             let found = format!("the time rises by {} s here", step as f64 / 1e9);
             let expected = format!("{} s as from tick to tick elsewhere", usual as f64 / 1e9);
-            let help = "replay needs every tick of the servo cycle: record without gaps, or cut the file at the gap";
-            return Err(InputError::new("S004", found, expected, help).at(source, pair[1].1.clone()));
+            return Err(S004.error(found, expected).at(source, pair[1].1.clone()));
         }
     }
     Ok(())
@@ -162,6 +138,9 @@ fn even(source: &Source, times: &[(i64, Range<usize>)]) -> Result<(), InputError
 
 #[cfg(test)]
 mod tests {
+    use truepath_core::rewrite::Flags;
+    use truepath_core::units::Real;
+
     use super::*;
 
     fn parse(text: &str) -> Result<Setpoints, InputError> {

@@ -9,6 +9,7 @@ use truepath_job::pass::Pass;
 use truepath_plant as plant;
 use truepath_plant::{Milled, PlantError};
 
+use crate::codes::L003;
 use crate::recorded;
 use crate::replay::Placement;
 use crate::setpoints::Setpoints;
@@ -18,13 +19,7 @@ fn coordinates(p: Point) -> [f64; 2] {
 }
 
 fn refused(error: &PlantError) -> Failure {
-    truepath_ground::diagnostics::InputError::new(
-        "L003",
-        error.to_string(),
-        "",
-        "correct the plant or the job; the plant mills contours with real-world dimensions",
-    )
-    .into()
+    L003.error(error.to_string(), "").into()
 }
 
 /// The nominal path of a pass for the plant.

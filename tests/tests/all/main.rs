@@ -2,6 +2,7 @@
 
 mod conformance_small;
 mod corners;
+mod errors;
 mod hil_client;
 mod hil_clock;
 mod hil_device;

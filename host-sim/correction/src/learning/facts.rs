@@ -9,6 +9,8 @@ use truepath_ground::diagnostics::InputError;
 use truepath_ground::units::{float, mm};
 use truepath_job::pass::{Pass, milling_name};
 
+use crate::codes::Q002;
+
 /// Facts by the key of the job they come from, with their value as text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Facts(Vec<(String, String)>);
@@ -53,7 +55,7 @@ impl Facts {
         let before = self.get(key).map_or("nothing", String::as_str);
         let expected = format!("{before}, as when the first part of the history was corrected");
         let help = "name the folder that this job was corrected into; after a change of program, tool or cut start again with truepath correct";
-        let error = InputError::new("Q002", found, expected, help);
+        let error = InputError::new(Q002, found, expected, help);
         Err(if pass.job.gives(key) { error.at(pass.job.source(), pass.job.span(key)) } else { error })
     }
 

@@ -12,6 +12,7 @@ use truepath_job::pass::Pass;
 use super::facts::Facts;
 use super::nodes::{Nodes, differences, sums};
 use super::points::Point;
+use crate::codes::{Q001, Q003};
 use crate::correct::CorrectedPass;
 use crate::correction::Correction;
 
@@ -104,8 +105,7 @@ impl History {
         let help =
             "name a folder that truepath correct or truepath learn has written; if the file was changed, correct again";
         let wrong = |found: String| {
-            InputError::new("Q001", found, format!("a history of version {VERSION}"), help)
-                .in_file(file.name().as_ref())
+            InputError::new(Q001, found, format!("a history of version {VERSION}"), help).in_file(file.name().as_ref())
         };
         let body = unsealed(file.bytes()).map_err(|why| wrong(format!("{} {why}", file.name())))?;
         let history: Self = serde_json::from_slice(&body)
@@ -172,7 +172,7 @@ impl History {
                 }
                 format!("{known} of {} points are those of part {}, to the nanometre", new.points.len(), part.number)
             };
-            return Err(InputError::new("Q003", found, expected, help));
+            return Err(InputError::new(Q003, found, expected, help));
         }
         Ok(())
     }

@@ -18,6 +18,7 @@ use super::holdout::missed;
 use super::joint::{Joint, PartPoints, joint};
 use super::nodes::Nodes;
 use super::residual::Residual;
+use crate::codes::{Q007, Q008};
 
 /// The one must explain the points this many times worse than the other does.
 const CLEARLY: f64 = 3.0;
@@ -42,8 +43,7 @@ pub fn refuse_uncorrected(
         "the points lie {without:.4} mm (rms) from the wall that no correction leaves, and {with:.4} mm from that of the correction in --from"
     );
     let expected = format!("the points of part {}, cut with that correction", part.number);
-    let help = "touch the part that the corrected program has cut; if this is that part, the control ran the original program, or the coprocessor was not armed";
-    Err(InputError::new("Q007", found, expected, help))
+    Err(Q007.error(found, expected))
 }
 
 /// Refuses a part that looks as if the correction of a history had been applied to it, although it is to be corrected as
@@ -53,10 +53,7 @@ pub fn refuse_uncorrected(
 /// `Q008`, when the history holds these very points as those of a corrected part, or they lie where its next correction
 /// leaves the wall.
 pub fn refuse_corrected(pass: &Pass, path: &Path, history: &History, new: &Part) -> Result<(), InputError> {
-    let refused = |found: String| {
-        let help = "learn from it with truepath learn and name the folder of its correction with --from; if the program itself has cut this part, give another folder with -o";
-        Err(InputError::new("Q008", found, "the points of a part that no correction was applied to", help))
-    };
+    let refused = |found: String| Err(Q008.error(found, "the points of a part that no correction was applied to"));
     let is_corrected = |part: &Part| {
         let nodes = part.correction.as_ref().and_then(Nodes::nodes).unwrap_or_default();
         nodes.iter().any(|node| *node != Node::default())

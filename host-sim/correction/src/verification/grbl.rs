@@ -9,6 +9,7 @@ use truepath_ground::diagnostics::InputError;
 use super::plan::{Plan, Touch};
 use super::text::{MoreOffsets, Notation, Page, fixed, work_offset};
 use super::walk::{Words, walk};
+use crate::codes::V005;
 
 struct Grbl {
     n: Notation,
@@ -36,7 +37,7 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     let s = &plan.settings;
     if let Some(tool) = s.probe_tool {
         return Err(InputError::new(
-            "V005",
+            V005,
             format!("--probe-tool {tool}, and grbl changes no tools"),
             "a program without a tool call",
             "leave --probe-tool out and put the probe in by hand",

@@ -14,6 +14,7 @@ use super::candidates::{KeptOff, Site, candidates};
 use super::heights::{Height, heights};
 use super::settings::Settings;
 use super::shop::Shop;
+use crate::codes::{V001, V003, V004};
 
 /// Part, probe and ball.
 pub(super) struct Ground {
@@ -82,7 +83,7 @@ fn safe_z(pass: &Pass, settings: &Settings, shop: &Shop) -> Result<f64, InputErr
         None => Ok((top + SAFE_ABOVE).max(highest)),
         Some(z) if z > top => Ok(z),
         Some(z) => Err(InputError::new(
-            "V001",
+            V001,
             format!("--safe-z {z} is not above the wall, which ends at Z{top}"),
             format!("a height above Z{top} and above every clamp"),
             "give a higher one, or leave it out",
@@ -100,15 +101,13 @@ fn no_width(ball: Ball, free: f64, settings: &Settings) -> InputError {
         )
     };
     let expected = format!("{} mm: the ball of {} mm and its clearance", ball.width(), 2.0 * ball.radius);
-    InputError::new("V003", found, expected, help)
+    InputError::new(V003, found, expected, help)
 }
 
 fn no_place(kept_off: &BTreeMap<KeptOff, usize>) -> InputError {
     let reasons: Vec<String> = kept_off.iter().map(|(reason, n)| format!("{n} {}", reason.words())).collect();
-    InputError::new(
-        "V004",
+    V004.error(
         format!("no place of the contour may be touched; of those looked at, {}", reasons.join(", ")),
         "a place where wall and engagement are steady and the ball's way is free",
-        "use a smaller ball or a smaller --clearance, or probe by hand",
     )
 }

@@ -10,6 +10,7 @@ use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
 use super::settings::Settings;
+use crate::codes::V002;
 
 /// A height.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,14 +43,12 @@ pub(super) fn heights(pass: &Pass, probe: &Probe, settings: &Settings) -> Result
     let below_top = BELOW_TOP.0.max(BELOW_TOP.1 * depth);
     let (lowest, highest) = (radius + settings.floor_clearance, depth - below_top);
     if lowest > highest {
-        return Err(InputError::new(
-            "V002",
+        return Err(V002.error(
             format!("a ball of {} mm has no room in an engaged depth of {depth} mm", 2.0 * radius),
             format!(
                 "its radius + {} mm above the floor + {below_top} mm below the upper end within the depth",
                 settings.floor_clearance
             ),
-            "use a smaller ball, or a smaller --floor-clearance where there is no floor near the wall",
         ));
     }
     let lift = match probe.z_reference {

@@ -4,6 +4,8 @@ use std::ops::RangeInclusive;
 
 use truepath_ground::diagnostics::InputError;
 
+use crate::codes::V001;
+
 /// Choices; lengths in millimetres, feeds in mm/min whatever the unit of the program.
 #[derive(Clone, Debug, PartialEq, clap::Args)]
 pub struct Settings {
@@ -82,7 +84,7 @@ impl Settings {
         within("--probe-tool", f64::from(self.probe_tool.unwrap_or(1)), 1.0..=99_999.0, "")?;
         if self.feed_slow > self.feed_fast {
             return Err(InputError::new(
-                "V001",
+                V001,
                 format!("--feed-slow {} is faster than --feed-fast {}", self.feed_slow, self.feed_fast),
                 "a second touch no faster than the first",
                 "exchange the two, or give both",
@@ -97,12 +99,7 @@ fn within(option: &str, value: f64, range: RangeInclusive<f64>, unit: &str) -> R
         return Ok(());
     }
     let expected = format!("{} to {}{unit}", range.start(), range.end());
-    Err(InputError::new(
-        "V001",
-        format!("{option} is {value}"),
-        expected,
-        format!("give {option} a value in this range"),
-    ))
+    Err(InputError::new(V001, format!("{option} is {value}"), expected, format!("give {option} a value in this range")))
 }
 
 #[cfg(test)]

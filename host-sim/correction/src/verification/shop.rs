@@ -7,6 +7,8 @@ use truepath_core::gcode::{Canon, HostMemory, Interpreter, Options, Units};
 use truepath_ground::diagnostics::InputError;
 use truepath_job::pass::Pass;
 
+use crate::codes::V006;
+
 /// What the part's program says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shop {
@@ -47,11 +49,9 @@ impl Shop {
             .map_err(|error| InputError::of_program(&pass.program, &error))?;
         if local != [0; 3] {
             let [x, y, z] = local.map(|nm| nm as f64 / 1e6);
-            return Err(InputError::new(
-                "V006",
+            return Err(V006.error(
                 format!("G52 or G92 has shifted the origin by X{x} Y{y} Z{z} mm when line {first} is cut"),
                 "a contour cut in a work offset alone: a verification program changes no origin",
-                "put the shift into the work offset",
             ));
         }
         let name = pass.program.name();

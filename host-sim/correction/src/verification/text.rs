@@ -6,6 +6,7 @@ use truepath_core::gcode::Units;
 use truepath_ground::diagnostics::InputError;
 
 use super::plan::{Place, Plan};
+use crate::codes::V005;
 
 /// How a control writes numbers.
 #[derive(Clone, Copy, Debug)]
@@ -139,7 +140,7 @@ pub(super) fn work_offset(plan: &Plan, more: MoreOffsets) -> Result<String, Inpu
         (n @ 7..=9, MoreOffsets::Points) => Ok(format!("G59.{}", n - 6)),
         (n @ 10.., MoreOffsets::Code(code)) => Ok(format!("{code} P{}", n - 9)),
         (n, _) => Err(InputError::new(
-            "V005",
+            V005,
             format!(
                 "the part's program cuts in {}",
                 match n {

@@ -9,6 +9,7 @@ use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::codes::F004;
 use crate::diagnostics::InputError;
 use crate::interruption::{Hold, Kind, Temporary};
 
@@ -89,6 +90,5 @@ fn held(target: &Path, file: &mut File) -> InputError {
         _ => "another run".to_owned(),
     };
     let found = format!("{} is being written by {run}", target.display());
-    let help = "wait until it has ended, or name another folder";
-    InputError::new("F004", found, "a folder that no other run writes", help).in_file(target)
+    F004.error(found, "a folder that no other run writes").in_file(target)
 }

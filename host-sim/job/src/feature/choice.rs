@@ -3,11 +3,13 @@
 use std::ops::Range;
 
 use truepath_core::gcode::{Found, LineRange, Role};
+use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::listing::{listed, rows};
 use super::region::{Origin, Region};
 use super::survey::Survey;
+use crate::codes::{N001, N002, N010, N011};
 use crate::job::{FeatureRole, Job};
 
 /// The feature named by the user, or the only one that can be meant.
@@ -19,14 +21,14 @@ pub(super) fn chosen<'r>(job: &Job, regions: &'r [Region], survey: &Survey) -> R
     if region.role != FeatureRole::Finish {
         let found = format!("{} is not a finishing cut", region.name());
         let help = "roughing, semi-finishing and spring passes stay as they are; name a feature with role = \"finish\"";
-        return Err(region.error(InputError::new("N011", found, "a feature to be corrected", help)).into());
+        return Err(region.error(InputError::new(N011, found, "a feature to be corrected", help)).into());
     }
     if let (Some(tool), Some(cutter)) = (region.tool, job.numbers.tool.number)
         && tool != cutter
     {
         let found = format!("{} is cut with tool {tool}, and [tool] describes number {cutter}", region.name());
         let help = "give the feature a job of its own with its cutter in [tool], or correct one of the two numbers";
-        return Err(region.tool_error(InputError::new("J008", found, "the same tool in both", help)).into());
+        return Err(region.tool_error(InputError::new(J008, found, "the same tool in both", help)).into());
     }
     Ok(region)
 }
@@ -41,7 +43,7 @@ fn named<'r>(regions: &'r [Region], id: &str) -> Result<&'r Region, Failure> {
     } else {
         (format!("one of {}", known.join(", ")), "write one of these names exactly")
     };
-    Err(InputError::new("N002", format!("there is no feature \"{id}\""), expected, help).into())
+    Err(InputError::new(N002, format!("there is no feature \"{id}\""), expected, help).into())
 }
 
 fn only<'r>(job: &Job, regions: &'r [Region], survey: &Survey) -> Result<&'r Region, Failure> {
@@ -56,7 +58,7 @@ fn only<'r>(job: &Job, regions: &'r [Region], survey: &Survey) -> Result<&'r Reg
         ([only], _) | (_, [only]) => Ok(only),
         ([], _) => {
             let help = "give the cut to be corrected role = \"finish\"";
-            Err(InputError::new("N011", "no feature is a finishing cut", "a feature to be corrected", help)
+            Err(InputError::new(N011, "no feature is a finishing cut", "a feature to be corrected", help)
                 .at(job.source(), job.span("feature"))
                 .into())
         }
@@ -76,8 +78,7 @@ fn only<'r>(job: &Job, regions: &'r [Region], survey: &Survey) -> Result<&'r Reg
                     runs.len()
                 );
             }
-            let help = "add --feature and one of these names; each of them is a correction of its own";
-            Err(InputError::new("N001", found, "", help).into())
+            Err(N001.error(found, "").into())
         }
     }
 }
@@ -98,10 +99,10 @@ pub(super) fn ambiguous(region: &Region, program: &Source, runs: &[Found], count
     };
     let found = format!("{count} finishing contours in {}, one is needed:{}{rest}", region.name(), listed(walls));
     let help = "name one: [[feature]] with id and blocks (or lines) in the job, or (TRUEPATH BEGIN id) … (TRUEPATH END) around it in the program; a pocket and its island are two features";
-    let error = InputError::new(if region.origin == Origin::Search { "G071" } else { "N010" }, found, "", help);
     if region.origin != Origin::Search {
-        return region.error(error).into();
+        return region.error(InputError::new(N010, found, "", help)).into();
     }
+    let error = InputError::of_core("G071", found, "", help);
     let second = runs.iter().find(|f| matches!(f.role, Role::Finish { contour: 2, .. }));
     let line = second.map_or(1, |f| f.run.lines.first);
     error.at(program, line_span(program, line)).into()

@@ -4,8 +4,10 @@
 //! hold them; they do not nest, and a name is used once.
 
 use truepath_core::gcode::{LineRange, Lines, Token, Words};
+use truepath_ground::codes::Row;
 use truepath_ground::diagnostics::{InputError, Source};
 
+use crate::codes::{N003, N004, N005, N006};
 use crate::job::is_id;
 
 /// A marked feature.
@@ -35,20 +37,20 @@ pub(super) fn marked(program: &Source) -> Result<Vec<Marked>, InputError> {
             let Token::Comment { span, body } = token else { continue };
             let Some(marker) = marker(&String::from_utf8_lossy(body.of(bytes))) else { continue };
             let span = span.start..span.end();
-            let error = |code: &str, found: String, expected: &str, help: &str| {
-                Err(InputError::new(code, found, expected, help).at(program, span.clone()))
+            let error = |row: Row, found: String, expected: &str, help: &str| {
+                Err(InputError::new(row, found, expected, help).at(program, span.clone()))
             };
             match (marker, open.take()) {
                 (Marker::Wrong, _) => {
                     let expected = "TRUEPATH BEGIN id or TRUEPATH END";
                     let help = "a name has 1 to 64 letters, digits, `-`, `_` or `.`, and nothing follows it";
-                    return error("N004", "this comment begins like a marker and is none".to_owned(), expected, help);
+                    return error(N004, "this comment begins like a marker and is none".to_owned(), expected, help);
                 }
                 (Marker::Begin(id), Some(before)) => {
                     let (at, _) = program.line_column(before.span.start);
                     let found = format!("\"{id}\" begins inside \"{}\", which began on line {at}", before.id);
                     return error(
-                        "N003",
+                        N003,
                         found,
                         "TRUEPATH END before it",
                         "features do not nest: end one before the next",
@@ -57,18 +59,18 @@ pub(super) fn marked(program: &Source) -> Result<Vec<Marked>, InputError> {
                 (Marker::Begin(id), None) => {
                     if let Some(first) = list.iter().find(|m| m.id == id) {
                         let found = format!("\"{id}\" is marked twice, first on line {}", first.lines.first);
-                        return error("N006", found, "every name once", "give every feature a name of its own");
+                        return error(N006, found, "every name once", "give every feature a name of its own");
                     }
                     let lines = LineRange { first: line.number, last: line.number };
                     open = Some(Marked { id, lines, span });
                 }
                 (Marker::End(_), None) => {
                     let found = "TRUEPATH END without TRUEPATH BEGIN before it".to_owned();
-                    return error("N004", found, "TRUEPATH BEGIN id before it", "add the beginning, or remove the end");
+                    return error(N004, found, "TRUEPATH BEGIN id before it", "add the beginning, or remove the end");
                 }
                 (Marker::End(Some(id)), Some(begun)) if id != begun.id => {
                     let found = format!("\"{id}\" ends where \"{}\" of line {} is open", begun.id, begun.lines.first);
-                    return error("N004", found, "the end of the feature that is open", "correct one of the two names");
+                    return error(N004, found, "the end of the feature that is open", "correct one of the two names");
                 }
                 (Marker::End(_), Some(mut begun)) => {
                     begun.lines.last = line.number;
@@ -81,8 +83,7 @@ pub(super) fn marked(program: &Source) -> Result<Vec<Marked>, InputError> {
         None => Ok(list),
         Some(open) => {
             let found = format!("\"{}\" begins here and never ends", open.id);
-            let help = "add (TRUEPATH END) behind the last block of the feature";
-            Err(InputError::new("N005", found, "TRUEPATH END after it", help).at(program, open.span))
+            Err(N005.error(found, "TRUEPATH END after it").at(program, open.span))
         }
     }
 }

@@ -4,9 +4,11 @@
 //! An N word that the program uses more than once names no place.
 
 use truepath_core::gcode::{LineRange, Lines, Token, Words};
+use truepath_ground::codes::Row;
 use truepath_ground::diagnostics::{InputError, Source};
 
 use super::marker::Marked;
+use crate::codes::{N007, N008};
 use crate::job::{FeaturePlace, FeatureTable, Job};
 
 /// The lines of every feature of a job that names its own; `None` for those that markers show.
@@ -28,34 +30,34 @@ pub(super) fn lines(
     program: &Source,
     marked: &[Marked],
 ) -> Result<LineRange, InputError> {
-    let wrong = |code: &str, found: String, expected: String, help: &str| {
-        InputError::new(code, found, expected, help).at(job.source(), feature.place_span.clone())
+    let wrong = |row: Row, found: String, expected: String, help: &str| {
+        InputError::new(row, found, expected, help).at(job.source(), feature.place_span.clone())
     };
     match feature.place {
         FeaturePlace::Markers => marked.iter().find(|m| m.id == feature.id).map(|m| m.lines).ok_or_else(|| {
             let found = format!("the feature \"{}\" has no place: no blocks, no lines, no markers", feature.id);
             let expected = format!("blocks, or (TRUEPATH BEGIN {}) in {}", feature.id, program.name());
-            wrong("N007", found, expected, "add blocks = [first, last], or put the two comments around the cut")
+            wrong(N007, found, expected, "add blocks = [first, last], or put the two comments around the cut")
         }),
         FeaturePlace::Lines([first, last]) => by_lines(first, last, program)
-            .map_err(|(found, expected)| wrong("N008", found, expected, "count the lines of the program from 1")),
+            .map_err(|(found, expected)| wrong(N008, found, expected, "count the lines of the program from 1")),
         FeaturePlace::Blocks([first, last]) => {
             let numbers = numbers(program);
             if numbers.is_empty() {
                 return by_lines(first, last, program).map_err(|(found, expected)| {
-                    wrong("N008", found, expected, "the program has no N words, so that blocks are line numbers")
+                    wrong(N008, found, expected, "the program has no N words, so that blocks are line numbers")
                 });
             }
             let line = |number: u32| match numbers.iter().filter(|(n, _)| *n == number).collect::<Vec<_>>()[..] {
                 [(_, line)] => Ok(*line),
                 [] => Err(wrong(
-                    "N008",
+                    N008,
                     format!("{} has no block N{number}", program.name()),
                     "the N word of a block".to_owned(),
                     "the program has N words, so that blocks are those; for line numbers write lines = [first, last]",
                 )),
                 [(_, a), (_, b), ..] => Err(wrong(
-                    "N008",
+                    N008,
                     format!("{} has N{number} more than once, on lines {a} and {b}", program.name()),
                     "an N word that names one block".to_owned(),
                     "write lines = [first, last] with line numbers, or put markers into the program",

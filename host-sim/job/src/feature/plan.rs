@@ -12,6 +12,7 @@ use super::listing::{FeatureSummary, PassRow, Row, rows};
 use super::marker::marked;
 use super::region::{Origin, Region, regions};
 use super::survey::{LARGEST_SEARCH, Survey};
+use crate::codes::{N009, N010, N011, N012};
 use crate::job::{Job, Which};
 
 /// One pass of a feature along its wall.
@@ -85,7 +86,7 @@ pub fn plan(job: &Job, program: &Source) -> Result<Option<Plan>, Failure> {
         let found = format!("{} has {} runs of cutting moves", region.name(), runs.len());
         let help = "name the lines of the cut with [[feature]] in the job, or with markers in the program";
         let expected = format!("at most {LARGEST_SEARCH}, which are compared with each other");
-        return Err(region.error(InputError::new("N010", found, expected, help)).into());
+        return Err(region.error(InputError::new(N010, found, expected, help)).into());
     }
     let numbers = &job.numbers;
     let tool = region.tool.or(numbers.tool.number);
@@ -153,8 +154,7 @@ fn check_heights(region: &Region, passes: &[FeaturePass]) -> Result<(), InputErr
     let heights: Vec<String> = heights.iter().map(text).collect();
     let seen: Vec<String> = found.iter().map(text).collect();
     let found = format!("z_mm names passes at {}, the program has them at {}", heights.join(", "), seen.join(", "));
-    let help = "give one height for every pass along this wall, in program coordinates, or leave z_mm out";
-    Err(region.heights_error(InputError::new("N009", found, "the heights of the program", help)))
+    Err(region.heights_error(N009.error(found, "the heights of the program")))
 }
 
 /// No run makes a wall.
@@ -166,7 +166,7 @@ fn nothing(region: &Region, runs: &[Found], tool: Option<u32>) -> Failure {
         None => format!("{} has no cutting move in X or Y at constant Z", region.name()),
     };
     let help = "correct the number of the tool, or the place of the feature";
-    region.error(InputError::new("N011", found, "a cut along the wall", help)).into()
+    region.error(InputError::new(N011, found, "a cut along the wall", help)).into()
 }
 
 fn why(region: &Region, runs: &[Found], tool: Option<u32>) -> String {
@@ -215,7 +215,7 @@ impl Plan {
         levels().find(|p| p.number == number).ok_or_else(|| {
             let found = format!("there is no pass {number}");
             let expected = format!("1 to {}", levels().count());
-            InputError::new("N012", found, expected, "passes are the depths of the feature in the order of the program")
+            N012.error(found, expected)
         })
     }
 

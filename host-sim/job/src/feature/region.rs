@@ -9,6 +9,7 @@ use truepath_ground::diagnostics::{InputError, Source};
 
 use super::marker::Marked;
 use super::place;
+use crate::codes::N007;
 use crate::job::{FeatureRole, FeatureTable, Job};
 
 /// Who says where a feature is.
@@ -74,7 +75,7 @@ pub(super) fn regions(job: &Job, program: &Source, marked: &[Marked]) -> Result<
         let found = format!("\"{}\" is marked here, and {} does not know it", unknown.id, job.source().name());
         let known: Vec<&str> = job.features.iter().map(|f| f.id.as_str()).collect();
         let help = "add a [[feature]] of that name to the job, or remove the markers";
-        return Err(InputError::new("N007", found, format!("one of {}", known.join(", ")), help)
+        return Err(InputError::new(N007, found, format!("one of {}", known.join(", ")), help)
             .at(program, unknown.span.clone()));
     }
     let region = |(index, table): (usize, &FeatureTable)| {

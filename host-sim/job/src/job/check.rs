@@ -7,6 +7,7 @@ use truepath_core::gcode::{Dialect, PointlessLength};
 use truepath_core::geometry::Side;
 use truepath_core::job::{Cut, Force, ForceModel, Machine};
 use truepath_core::units::{Offset, Real};
+use truepath_ground::codes::J008;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::{Section, Spans};
@@ -40,8 +41,27 @@ pub const DIALECTS: [(&str, Dialect); 5] = [
 pub const DECIMALS: [(&str, PointlessLength); 2] =
     [("calculator", PointlessLength::Calculator), ("least", PointlessLength::Least)];
 
+impl Job {
+    /// Reads and checks a job file.
+    ///
+    /// # Errors
+    /// An [`InputError`] at the first thing that is wrong.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(Source::read(path)?, folder)
+    }
+
+    /// Checks the text of a job whose relative paths start at `folder`.
+    ///
+    /// # Errors
+    /// An [`InputError`] at the first thing that is wrong.
+    pub fn parse(source: Source, folder: &Path) -> Result<Self, InputError> {
+        job(source, folder)
+    }
+}
+
 /// Reads the whole job.
-pub(super) fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
+fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     let table = notation::parse(&source, "the job file")?;
     let spans = RefCell::new(Spans::new());
     let root = Section::root(&source, &table, &spans);
@@ -143,7 +163,7 @@ fn force(source: &Source, section: &Section<'_>) -> Result<Force, InputError> {
         let found = format!("{} is given as well as force.material", value.path);
         let help = "remove material to use your own coefficients, or remove the coefficients";
         return Err(
-            InputError::new("J008", found, "either a material or the four coefficients", help).at(source, value.span)
+            InputError::new(J008, found, "either a material or the four coefficients", help).at(source, value.span)
         );
     }
     section.close()?;
@@ -166,9 +186,4 @@ fn machine(section: &Section<'_>) -> Result<(Machine, [Offset; 2]), InputError> 
     let backlash = [backlash("backlash_x_mm")?, backlash("backlash_y_mm")?];
     section.close()?;
     Ok((machine, backlash))
-}
-
-/// Millimetres as a person writes them.
-pub(super) fn text_of(length: Offset) -> String {
-    format!("{}", length.nm() as f64 / 1e6)
 }

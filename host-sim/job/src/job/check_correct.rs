@@ -7,9 +7,9 @@ use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::Section;
 use truepath_ground::limits::Limits;
+use truepath_ground::units::mm;
 
 use super::Route;
-use super::check::text_of;
 
 /// Correction allowed when the job does not say: 0.5 mm.
 const DEFAULT_CLAMP: Offset = Offset::from_um(500);
@@ -76,7 +76,7 @@ pub(super) fn correct(
 
 fn band(source: &Source, section: &Section<'_>, depth: Offset) -> Result<Option<[Offset; 2]>, InputError> {
     let Some(value) = section.value("band_mm") else { return Ok(None) };
-    let expected = format!("two heights above the cutter's tip, rising, within 0 to {} mm", text_of(depth));
+    let expected = format!("two heights above the cutter's tip, rising, within 0 to {} mm", mm(depth));
     let help = "write band_mm = [low, high]; cut.axial_depth_mm bounds it";
     let Some([low, high]) =
         value.raw.as_array().map(|a| a.iter().collect::<Vec<_>>()).and_then(|v| <[_; 2]>::try_from(v).ok())

@@ -10,12 +10,12 @@ use toml::Spanned;
 use toml::de::DeValue;
 use truepath_core::geometry::Side;
 use truepath_core::units::{Offset, Position};
+use truepath_ground::codes::J008;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::{Section, Value};
 use truepath_ground::limits::Limits;
-
-use super::check::text_of;
+use truepath_ground::units::mm;
 
 /// What a cut is for; only finishing is corrected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,7 +77,7 @@ pub(super) fn features(source: &Source, root: &Section<'_>, diameter: Offset) ->
             let (line, _) = source.line_column(first.id_span.start);
             let found = format!("the feature \"{}\" is given twice, first on line {line}", feature.id);
             let help = "give every feature a name of its own";
-            return Err(InputError::new("J008", found, "every name once", help).at(source, feature.id_span));
+            return Err(InputError::new(J008, found, "every name once", help).at(source, feature.id_span));
         }
         list.push(feature);
     }
@@ -161,7 +161,7 @@ fn allowance(section: &Section<'_>, diameter: Offset) -> Result<Option<Offset>, 
     if allowance < diameter {
         return Ok(Some(allowance));
     }
-    let expected = format!("less than the cutter's diameter, {} mm", text_of(diameter));
+    let expected = format!("less than the cutter's diameter, {} mm", mm(diameter));
     Err(section.out_of_range(&value, &expected, "take the stock off in more passes, or correct tool.diameter_mm"))
 }
 

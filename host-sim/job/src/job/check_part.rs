@@ -4,6 +4,7 @@
 //! and tolerance. Tolerances are limits of the wall error: material left is positive.
 
 use truepath_core::units::Offset;
+use truepath_ground::codes::C001;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::{Section, Value};
@@ -86,7 +87,7 @@ impl PartFlags {
                     all if all > LONGEST => format!("{flag} on the command line has {all} characters"),
                     _ => format!("{flag} on the command line is {text:?}"),
                 };
-                Err(InputError::new("C001", found, TEXT_EXPECTED, "write it shorter, on one line, or leave it away"))
+                Err(InputError::new(C001, found, TEXT_EXPECTED, "write it shorter, on one line, or leave it away"))
             }
         };
         let tolerance = match &self.tolerance {
@@ -96,7 +97,7 @@ impl PartFlags {
                 let half = half.ok_or_else(|| {
                     let found = format!("--tolerance on the command line is {text:?}");
                     let expected = format!("half the width of the tolerance, {}", HALF_WIDTH.phrase());
-                    InputError::new("C001", found, expected, "write --tolerance 0.02 for ±0.02 mm")
+                    InputError::new(C001, found, expected, "write --tolerance 0.02 for ±0.02 mm")
                 })?;
                 Some(Tolerance { lower: -half, upper: half, from_command_line: true })
             }

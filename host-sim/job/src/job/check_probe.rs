@@ -4,6 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use truepath_core::job::{Probe, ZReference};
 use truepath_core::probe::{Columns, DecimalSign, Format, Frame, Layout, LengthUnit, PointKind, Separator};
 use truepath_core::units::Offset;
+use truepath_ground::codes::{C001, J008};
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::Section;
@@ -82,7 +83,7 @@ impl ProbeFlags {
         ]
         .contains(&true);
         let format = self.format.unwrap_or(if of_columns { Format::Columns } else { probe.format });
-        let refused = |(found, expected, help): Wrong| InputError::new("C001", found, expected, help);
+        let refused = |(found, expected, help): Wrong| InputError::new(C001, found, expected, help);
         if format != Format::Columns {
             let wrong = "the command line describes columns and names another format";
             return match of_columns {
@@ -182,7 +183,7 @@ pub(super) fn probe(source: &Source, section: &Section<'_>) -> Result<Probe, Inp
             "decimal"
         };
         let span = section.value(key).map_or(0..0, |value| value.span);
-        return Err(InputError::new("J008", found, expected, help).at(source, span));
+        return Err(InputError::new(J008, found, expected, help).at(source, span));
     }
     section.close()?;
     Ok(probe)
@@ -193,7 +194,7 @@ fn layout(source: &Source, section: &Section<'_>, format: Format) -> Result<Opti
         let Some(value) = LAYOUT.into_iter().find_map(|key| section.value(key)) else { return Ok(None) };
         let found = format!("{} is given, and format is not \"columns\"", value.path);
         let help = "remove it: frame, unit and point follow from the other formats; or say format = \"columns\"";
-        return Err(InputError::new("J008", found, "keys of one format", help).at(source, value.span));
+        return Err(InputError::new(J008, found, "keys of one format", help).at(source, value.span));
     }
     let columns = match section.text("columns")? {
         None => None,
@@ -221,7 +222,7 @@ fn work_offset(source: &Source, section: &Section<'_>, format: Format) -> Result
     if !matches!(format, Format::Columns | Format::Grbl) {
         let found = "probe.work_offset_mm is given for a format in work coordinates";
         let help = "remove it; only \"grbl\" and columns in machine coordinates need it";
-        return Err(InputError::new("J008", found, "a format in machine coordinates", help).at(source, value.span));
+        return Err(InputError::new(J008, found, "a format in machine coordinates", help).at(source, value.span));
     }
     let expected = "three lengths, -10000 to 10000 mm";
     let help = "write work_offset_mm = [x, y, z], the machine position of the work zero";

@@ -6,8 +6,7 @@ use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::InputError;
 use truepath_ground::document::Section;
 use truepath_ground::limits::Limits;
-
-use super::check::text_of;
+use truepath_ground::units::mm;
 
 /// The shape of a cutter as a beam; used by `truepath pocket`. What is not given follows from the rest of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,7 +48,7 @@ pub(super) fn within_stickout(section: &Section<'_>, tool: &Tool, shank: &Shank)
     };
     match (shank.flute_length, section.value("flute_length_mm")) {
         (Some(length), Some(value)) if length > cantilever.length => {
-            let expected = format!("at most tool.stickout_mm, {} mm", text_of(cantilever.length));
+            let expected = format!("at most tool.stickout_mm, {} mm", mm(cantilever.length));
             let help = "count only the flutes outside the collet, or measure the stick-out again";
             Err(section.contradiction(&value, "the flutes are longer than the cutter sticks out", &expected, help))
         }

@@ -5,8 +5,7 @@ use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::InputError;
 use truepath_ground::document::Section;
 use truepath_ground::limits::Limits;
-
-use super::check::text_of;
+use truepath_ground::units::mm;
 
 /// What the table says.
 pub(super) struct Stock {
@@ -45,7 +44,7 @@ pub(super) fn stock(section: &Section<'_>, diameter: Offset) -> Result<Stock, In
         return Err(section.contradiction(&place, found, "an even allowance or an actual surface", help));
     }
     if allowance >= diameter {
-        let expected = format!("less than the cutter's diameter, {} mm", text_of(diameter));
+        let expected = format!("less than the cutter's diameter, {} mm", mm(diameter));
         let help = "take the stock off in more passes, or correct tool.diameter_mm";
         return Err(section.out_of_range(&value, &expected, help));
     }

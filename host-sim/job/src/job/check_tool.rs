@@ -2,12 +2,13 @@
 
 use truepath_core::cut::ToolMaterial;
 use truepath_core::job::{Compensation, Cut, Stickout, Tool};
+use truepath_ground::codes::J008;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::Section;
 use truepath_ground::limits::Limits;
+use truepath_ground::units::mm;
 
-use super::check::text_of;
 use super::check_shank::{Shank, shank, within_stickout};
 
 /// Where numbers of tools and their offsets come from.
@@ -22,7 +23,7 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<(Tool, Shan
         Some(value) => {
             let measured = section.number_in(value, Limits::within("0.1", "110", "mm"))?.as_mm();
             if (measured - diameter).abs().nm() > diameter.nm() / 10 {
-                let expected = format!("a diameter within 10 % of diameter_mm, {} mm", text_of(diameter));
+                let expected = format!("a diameter within 10 % of diameter_mm, {} mm", mm(diameter));
                 return Err(section.out_of_range(value, &expected, "check which of the two is mistyped"));
             }
             Some(measured)
@@ -47,13 +48,8 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<(Tool, Shan
             let place = section.value(there).map_or(0..0, |v| v.span);
             let help = format!("add {other}, or remove {there}");
             let found = format!("tool.{there} is given without tool.{other}");
-            return Err(InputError::new(
-                "J008",
-                found,
-                "both or neither: the cutter's own compliance needs both",
-                help,
-            )
-            .at(source, place));
+            return Err(InputError::new(J008, found, "both or neither: the cutter's own compliance needs both", help)
+                .at(source, place));
         }
     };
     let choices = [("centre", Compensation::Centre), ("radius", Compensation::Radius)];
@@ -75,15 +71,15 @@ pub(super) fn reach(
     if let (Some(length), Some(value)) = (shank.flute_length, section.value("flute_length_mm"))
         && length < cut.axial_depth
     {
-        let expected = format!("at least cut.axial_depth_mm, {} mm", text_of(cut.axial_depth));
+        let expected = format!("at least cut.axial_depth_mm, {} mm", mm(cut.axial_depth));
         let help = "flutes shorter than the cut is deep do not cut at its top: correct one of them";
         return Err(section.contradiction(&value, "the flutes are shorter than the cut is deep", &expected, help));
     }
     match (tool.cantilever, section.value("stickout_mm")) {
         (Some(c), Some(value)) if c.length < cut.axial_depth => {
-            let expected = format!("at least cut.axial_depth_mm, {} mm", text_of(cut.axial_depth));
+            let expected = format!("at least cut.axial_depth_mm, {} mm", mm(cut.axial_depth));
             let found = format!("tool.stickout_mm is {}", source.excerpt(value.span.clone()));
-            Err(InputError::new("J008", found, expected, "measure from the collet to the cutter's tip")
+            Err(InputError::new(J008, found, expected, "measure from the collet to the cutter's tip")
                 .at(source, value.span))
         }
         _ => Ok(()),

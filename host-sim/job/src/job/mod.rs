@@ -3,20 +3,7 @@
 //! Reading has two stages. `document` turns the text into tables, keys and spans; `check` turns those into a [`Job`]
 //! in which every quantity is in range, in the units of the core, and every choice is made. Lengths come out as exact
 //! nanometres of the decimal text. Unknown keys are errors. Every error names file, line and column, what was found,
-//! what was expected and what to do; the codes are
-//!
-//! | code | meaning |
-//! |---|---|
-//! | J001 | a file named by the job cannot be read |
-//! | J002 | not TOML |
-//! | J003 | unknown key |
-//! | J004 | missing key or table |
-//! | J005 | value of the wrong type |
-//! | J006 | value out of range |
-//! | J007 | unknown name |
-//! | J008 | keys that contradict each other |
-//! | J009 | recognised, not supported |
-//! | J010 | version of the format |
+//! what was expected and what to do.
 //!
 //! Limits: one cutter and one correction a job; of several features one is corrected at a time.
 
@@ -33,12 +20,14 @@ mod check_tool;
 mod material;
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use truepath_core::job::Probe;
 use truepath_core::units::Offset;
+use truepath_ground::codes::J004;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
+use crate::codes::{J001, J009};
 use crate::surface::Surface;
 
 pub use check::{DECIMALS, DIALECTS};
@@ -109,23 +98,6 @@ pub enum Route {
 }
 
 impl Job {
-    /// Reads and checks a job file.
-    ///
-    /// # Errors
-    /// An [`InputError`] at the first thing that is wrong.
-    pub fn read(path: &Path) -> Result<Self, InputError> {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        Self::parse(Source::read(path)?, folder)
-    }
-
-    /// Checks the text of a job whose relative paths start at `folder`.
-    ///
-    /// # Errors
-    /// An [`InputError`] at the first thing that is wrong.
-    pub fn parse(source: Source, folder: &Path) -> Result<Self, InputError> {
-        check::job(source, folder)
-    }
-
     /// Reads the program.
     ///
     /// # Errors
@@ -133,13 +105,7 @@ impl Job {
     pub fn read_program(&self) -> Result<Source, InputError> {
         let bytes = std::fs::read(&self.program).map_err(|error| {
             let reason = InputError::unreadable(&self.program, &error);
-            InputError::new(
-                "J001",
-                reason.found(),
-                "a readable program",
-                "correct the name: it is taken relative to the job file's folder",
-            )
-            .at(&self.source, self.span("program"))
+            J001.error(reason.found(), "a readable program").at(&self.source, self.span("program"))
         })?;
         Ok(Source::new(self.program.display().to_string(), bytes))
     }
@@ -152,9 +118,7 @@ impl Job {
         let Some(path) = &self.surface else { return Ok(None) };
         let bytes = std::fs::read(path).map_err(|error| {
             let reason = InputError::unreadable(path, &error);
-            let help = "correct the name: it is taken relative to the job file's folder";
-            InputError::new("J001", reason.found(), "a readable surface", help)
-                .at(&self.source, self.span("stock.surface"))
+            J001.error(reason.found(), "a readable surface").at(&self.source, self.span("stock.surface"))
         })?;
         Surface::read(&Source::new(path.display().to_string(), bytes)).map(Some)
     }
@@ -166,8 +130,7 @@ impl Job {
     pub fn compact(&self) -> Result<Vec<u8>, Failure> {
         if self.surface.is_some() {
             let found = "stock.surface is given: a device takes an even allowance only";
-            let help = "make the image here, with truepath correct --route coprocessor, and upload it";
-            let error = InputError::new("J009", found, "stock.allowance_mm", help);
+            let error = J009.error(found, "stock.allowance_mm");
             return Err(error.at(&self.source, self.span("stock.surface")).into());
         }
         let mut compact = [0; truepath_core::job::COMPACT_BYTES];
@@ -183,7 +146,7 @@ impl Job {
         self.numbers.probe.ok_or_else(|| {
             let end = self.source.bytes().len();
             InputError::new(
-                "J004",
+                J004,
                 "[probe] is missing",
                 "a table [probe]",
                 "add [probe] with ball_diameter_mm, format and z_reference",

@@ -103,14 +103,14 @@ fn of_job(error: &JobError) -> InputError {
     };
     let sentence = error.to_string();
     let found = error.line().and_then(|line| sentence.strip_prefix(&format!("line {line}: "))).unwrap_or(&sentence);
-    InputError::new(error.code(), found, expected, help)
+    InputError::of_core(error.code(), found, expected, help)
 }
 
 /// A correction that must not be made.
 fn of_correction(error: &JobError) -> InputError {
     let code = error.code();
     match *error {
-        JobError::Unfit { s, measured, fitting, .. } => InputError::new(
+        JobError::Unfit { s, measured, fitting, .. } => InputError::of_core(
             code,
             format!(
                 "{error}; at s = {:.2} mm {:.4} mm were measured, {:.4} mm would fit",
@@ -121,7 +121,7 @@ fn of_correction(error: &JobError) -> InputError {
             "probe points of one part cut by this program",
             "check ball_diameter_mm, allowance_mm, the side of the wall and that the probed part is the one of this program",
         ),
-        JobError::BeyondClamp { reach, clamp, at } => InputError::new(
+        JobError::BeyondClamp { reach, clamp, at } => InputError::of_core(
             code,
             format!(
                 "the correction reaches {:.3} mm at X{:.3} Y{:.3}, beyond clamp_mm = {}",
@@ -133,7 +133,7 @@ fn of_correction(error: &JobError) -> InputError {
             "a correction inside the clamp",
             clamp_help(reach),
         ),
-        JobError::NoFeedWindow { reach, clamp } => InputError::new(
+        JobError::NoFeedWindow { reach, clamp } => InputError::of_core(
             code,
             format!(
                 "at 110 % of the programmed feed the correction reaches {:.3} mm, beyond clamp_mm = {}",
@@ -143,13 +143,13 @@ fn of_correction(error: &JobError) -> InputError {
             "a correction that leaves room for a feed override of 110 %",
             clamp_help(reach),
         ),
-        JobError::TooManyNodes { limit, .. } => InputError::new(
+        JobError::TooManyNodes { limit, .. } => InputError::of_core(
             code,
             error.to_string(),
             format!("at most {limit} nodes: about {:.1} m of contour at 0.1 mm", f64::from(limit) / 10_000.0),
             "cut the contour in two programs, or correct in the program instead (route = \"program\")",
         ),
-        _ => InputError::new(code, error.to_string(), "", "correct in the program instead (route = \"program\")"),
+        _ => InputError::of_core(code, error.to_string(), "", "correct in the program instead (route = \"program\")"),
     }
 }
 

@@ -16,7 +16,7 @@ pub(super) fn of_probe(file: &Source, error: &ProbeError) -> InputError {
     };
     let (found, expected) = found.split_once("; ").map_or((found.as_str(), ""), |(a, b)| (a, b));
     let expected = expected.trim_end_matches(" was expected").trim_start_matches("expected ");
-    InputError::new(error.kind.code(), found, expected, error.kind.help())
+    InputError::of_core(error.kind.code(), found, expected, error.kind.help())
         .at(file, error.start..error.start + error.len)
 }
 
@@ -29,19 +29,19 @@ pub(super) fn of_contacts(error: &JobError, job: &Job) -> InputError {
                 Suspicion::Normals => format!("most readings are on the wall, but {guess}"),
                 _ => format!("most readings are farther than {} mm from the nominal wall; {guess}", mm(REACH)),
             };
-            InputError::new(error.code(), found, "readings on the wall of this contour", help)
+            InputError::of_core(error.code(), found, "readings on the wall of this contour", help)
         }
         JobError::NoContact { reason, tip, .. } => {
             let tip = tip.nm() as f64 / 1e6;
             let top = tip + mm(job.numbers.cut.axial_depth);
-            InputError::new(
+            InputError::of_core(
                 error.code(),
                 format!("no reading can be used; the first one is {}", why(reason)),
                 format!("ball centres between Z {tip} and Z {top} beside the wall"),
                 "probe within the engaged depth; check axial_depth_mm and z_reference in the job",
             )
         }
-        _ => InputError::new(error.code(), error.to_string(), "", "check the probe file"),
+        _ => InputError::of_core(error.code(), error.to_string(), "", "check the probe file"),
     }
 }
 

@@ -1,19 +1,77 @@
-//! The calls that set modes.
+//! The calls: what they have set, and those that set modes.
 
 use std::io::Write;
 
 use truepath_core::gcode::{
-    Canon, Coolant, Event, FeedMode, Modal, NineAxes, PathControl, Plane, ShiftKind, Spindle, Units,
+    Axes, Canon, Coolant, Event, FeedMode, HostMemory, Memory, Modal, NineAxes, PathControl, Plane, ShiftKind, Spindle,
+    Units,
 };
 use truepath_core::geometry::Side;
 use truepath_core::units::Real;
 
-use super::printer::Printer;
+use super::lines::Lines;
+use super::options::CanonOptions;
 
 /// One degree, or millimetre, in the whole numbers of the core.
 pub(super) const MILLION: i64 = 1_000_000;
 
-impl<W: Write> Printer<'_, W> {
+/// Writes calls, and knows what they have set.
+pub(super) struct Calls<'a, W> {
+    options: &'a CanonOptions,
+    pub(super) lines: Lines<W>,
+    /// Where the axes stand, nanometres.
+    pub(super) at: [i64; 3],
+    coolant: [bool; 2],
+    work_offset: u16,
+}
+
+impl<'a, W: Write> Calls<'a, W> {
+    /// With the calls by which the reference begins.
+    pub(super) fn new(options: &'a CanonOptions, out: W) -> Self {
+        let mut calls = Self { options, lines: Lines::new(out), at: [0; 3], coolant: [false; 2], work_offset: 1 };
+        calls.begin();
+        calls
+    }
+
+    /// What the machine was left in.
+    fn begin(&mut self) {
+        let mut buffers = Box::new(HostMemory::new());
+        let mut memory = buffers.lend();
+        self.options.parameters.load(&mut memory);
+        let system = memory.get(5220).clamp(1.0, 9.0) as u16;
+        let (work, rotation) = self.stored_offset(system, &memory);
+        let local = if memory.get(5210) > 0.5 { self.stored_axes(5211, &memory) } else { [0; 9] };
+        self.work_offset = system;
+        self.lines.call("USE_LENGTH_UNITS", "CANON_UNITS_MM");
+        self.offset("SET_G5X_OFFSET", Some(system), &work, Units::Millimetres);
+        self.offset("SET_G92_OFFSET", None, &local, Units::Millimetres);
+        self.rotation(rotation);
+        self.lines.call("SET_FEED_REFERENCE", "CANON_XYZ");
+        self.lines.call("ON_RESET", "");
+    }
+
+    /// A work offset as the parameters hold it, and its rotation.
+    fn stored_offset(&self, system: u16, memory: &Memory<'_>) -> (NineAxes, i64) {
+        let first = 5201 + 20 * system;
+        (self.stored_axes(first, memory), scaled(memory.get(first + 9), MILLION))
+    }
+
+    fn stored_axes(&self, first: u16, memory: &Memory<'_>) -> NineAxes {
+        let unit = self.options.machine_units.nanometres();
+        let mut values: NineAxes = [0; 9];
+        for ((value, number), axis) in values.iter_mut().zip(first..).zip(0..) {
+            *value = scaled(memory.get(number), if (3..6).contains(&axis) { MILLION } else { unit });
+        }
+        values
+    }
+
+    /// Moves to a place; an axis that is not known stays.
+    pub(super) fn go(&mut self, to: Axes) {
+        for (at, to) in self.at.iter_mut().zip([to.x, to.y, to.z]) {
+            *at = to.map_or(*at, |p| p.nm());
+        }
+    }
+
     /// Prints one step. `event` is there for those that come as they are executed.
     pub(super) fn call(&mut self, canon: &Canon, modal: &Modal, event: Option<&Event<'_>>) {
         match *canon {
@@ -70,7 +128,7 @@ impl<W: Write> Printer<'_, W> {
         }
     }
 
-    pub(super) fn plane(&mut self, plane: Plane) {
+    fn plane(&mut self, plane: Plane) {
         let name = match plane {
             Plane::Xy => "XY",
             Plane::Zx => "XZ",
@@ -145,7 +203,7 @@ impl<W: Write> Printer<'_, W> {
     }
 
     /// A call with the number of a coordinate system, when it has one, and six axes.
-    pub(super) fn offset(&mut self, name: &str, system: Option<u16>, offset: &NineAxes, units: Units) {
+    fn offset(&mut self, name: &str, system: Option<u16>, offset: &NineAxes, units: Units) {
         let unit = units.nanometres();
         let [x, y, z, a, b, c, ..] = *offset;
         self.lines.open(name);
@@ -160,7 +218,7 @@ impl<W: Write> Printer<'_, W> {
         self.lines.close();
     }
 
-    pub(super) fn rotation(&mut self, millionths: i64) {
+    fn rotation(&mut self, millionths: i64) {
         self.lines.open("SET_XY_ROTATION");
         self.lines.push_values(&[(millionths, MILLION)], "");
         self.lines.close();
@@ -224,6 +282,11 @@ impl<W: Write> Printer<'_, W> {
         self.lines.call("ON_RESET", "");
         self.lines.call("ON_RESET", "");
     }
+}
+
+/// A parameter in whole numbers.
+fn scaled(value: f64, unit: i64) -> i64 {
+    (value * unit as f64).round() as i64
 }
 
 pub(super) fn real(value: Real) -> f64 {

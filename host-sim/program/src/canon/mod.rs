@@ -10,7 +10,7 @@
 //! | `printer.rs` | the order of the calls of a block |
 //! | `call.rs`, `moves.rs`, `comment.rs` | the calls |
 //! | `lines.rs`, `number.rs` | the text |
-//! | `tool_table.rs`, `parameter_file.rs` | what is known of the machine |
+//! | `options.rs`, `tool_table.rs`, `parameter_file.rs` | what is known of control and machine |
 //!
 //! Limits: what the interpreter of the core does not execute is an error, as everywhere; a zero never carries a minus
 //! sign; the exact-path switches around the moves of canned cycles are left out; M codes that are not known are shown
@@ -21,60 +21,26 @@ mod comment;
 mod lines;
 mod moves;
 mod number;
+mod options;
 mod parameter_file;
 mod printer;
 mod tool_table;
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use printer::Printer;
-use truepath_core::gcode::{
-    Axes, CompensationBy, Dialect, HostMemory, Interpreter, Machine, Options, PointlessLength, Program, ProgramSummary,
-    Units,
-};
+use truepath_core::gcode::{Axes, CompensationBy, HostMemory, Interpreter, Machine, Options, Program, ProgramSummary};
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::library::Folder;
 
+pub use options::CanonOptions;
 pub use parameter_file::ParameterFile;
 pub use tool_table::ToolTable;
 
 /// Without a machine the reference stands 0.01 in before the end of a probing move after it.
 const PROBE_BEFORE_END: Offset = Offset::from_nm(254_000);
-
-/// What the interpreter is told besides the program.
-#[derive(Clone, Debug)]
-pub struct CanonOptions {
-    /// Offsets for G43, diameters for G41.
-    pub tools: ToolTable,
-    /// Offsets and reference points.
-    pub parameters: ParameterFile,
-    /// The unit of the machine: of the parameters.
-    pub machine_units: Units,
-    /// The control the program is written for.
-    pub dialect: Dialect,
-    /// What a length without a point is.
-    pub decimal: PointlessLength,
-    /// Whether blocks with `/` are skipped.
-    pub skip_block_delete: bool,
-    /// The folder with the files of subprograms; by default that of the program.
-    pub subprograms: Option<PathBuf>,
-}
-
-impl Default for CanonOptions {
-    fn default() -> Self {
-        Self {
-            tools: ToolTable::default(),
-            parameters: ParameterFile::default(),
-            machine_units: Units::Millimetres,
-            dialect: Dialect::Linuxcnc,
-            decimal: PointlessLength::Calculator,
-            skip_block_delete: false,
-            subprograms: None,
-        }
-    }
-}
 
 /// Writes the canonical moves of a program; what the writer answers is returned inside.
 ///

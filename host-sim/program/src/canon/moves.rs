@@ -6,8 +6,7 @@ use truepath_core::gcode::{Axes, Canon, FeedMode, Modal, Plane};
 use truepath_core::geometry::Point;
 use truepath_core::units::Position;
 
-use super::call::{MILLION, real};
-use super::printer::Printer;
+use super::call::{Calls, MILLION, real};
 
 /// An arc in any plane: its ends and centre in the order of the plane's axes.
 struct Arc {
@@ -18,7 +17,7 @@ struct Arc {
     turns: u32,
 }
 
-impl<W: Write> Printer<'_, W> {
+impl<W: Write> Calls<'_, W> {
     /// Prints a step that moves an axis.
     pub(super) fn motion(&mut self, canon: &Canon, modal: &Modal) {
         match *canon {

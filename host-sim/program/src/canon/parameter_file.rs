@@ -7,6 +7,8 @@
 use truepath_core::gcode::Memory;
 use truepath_ground::diagnostics::{InputError, Source};
 
+use crate::codes::T002;
+
 /// Parameters by number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParameterFile {
@@ -31,10 +33,8 @@ impl ParameterFile {
             let mut words = words.split_ascii_whitespace();
             let first = words.next().unwrap_or_default();
             if first.starts_with(|c: char| c.is_ascii_digit()) {
-                let refused = |found: &str| {
-                    let help = "write rows like 5221 12.500000";
-                    InputError::new("T002", found, "a parameter number and its value", help).at(source, start..end)
-                };
+                let refused =
+                    |found: &str| T002.error(found, "a parameter number and its value").at(source, start..end);
                 let number: Option<u16> = first.parse().ok().filter(|n| (1..=LARGEST).contains(n));
                 let number = number.ok_or_else(|| refused(&format!("{first} is no parameter of a machine")))?;
                 let value = words.next().ok_or_else(|| refused("this parameter has no value"))?;

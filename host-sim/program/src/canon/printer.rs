@@ -6,37 +6,28 @@
 
 use std::io::{self, Write};
 
-use truepath_core::gcode::{
-    Axes, Canon, Event, HostMemory, Line, Memory, Modal, NineAxes, RetractLevel, Source, Span, Token, Units, Words,
-    WrittenWord,
-};
+use truepath_core::gcode::{Canon, Event, Line, Modal, RetractLevel, Source, Span, Token, Words, WrittenWord};
 
-use super::CanonOptions;
-use super::call::MILLION;
+use super::call::Calls;
 use super::comment::Remark;
-use super::lines::Lines;
+use super::options::CanonOptions;
 
 /// What sets modes, with the modes after it.
-pub(super) struct Step {
-    pub(super) canon: Canon,
-    pub(super) modal: Modal,
+struct Step {
+    canon: Canon,
+    modal: Modal,
     rank: u8,
 }
 
 /// The state of the text: what the reference knows between blocks.
 pub(super) struct Printer<'a, W> {
-    pub(super) options: &'a CanonOptions,
-    pub(super) lines: Lines<W>,
+    calls: Calls<'a, W>,
     /// The block whose calls are gathered: file, line, and how often the program had jumped.
     block: Option<(u16, u32, u32)>,
     steps: Vec<Step>,
     remark: Option<Remark>,
     /// Whether a program's name stands in the block: the reference then shows no comment.
     named: bool,
-    /// Where the axes stand, nanometres.
-    pub(super) at: [i64; 3],
-    pub(super) coolant: [bool; 2],
-    pub(super) work_offset: u16,
     /// Distance modes and retract level as last told.
     told: (bool, bool, RetractLevel),
     /// Whether a motion was in force, which G80 ends.
@@ -76,54 +67,16 @@ const fn rank(canon: &Canon) -> u8 {
 impl<'a, W: Write> Printer<'a, W> {
     /// With the calls by which the reference begins.
     pub(super) fn new(options: &'a CanonOptions, out: W) -> Self {
-        let mut printer = Self {
-            options,
-            lines: Lines::new(out),
+        Self {
+            calls: Calls::new(options, out),
             block: None,
             steps: Vec::new(),
             remark: None,
             named: false,
-            at: [0; 3],
-            coolant: [false; 2],
-            work_offset: 1,
             told: (true, false, RetractLevel::Clearance),
             moving: false,
             cancels: false,
-        };
-        printer.begin();
-        printer
-    }
-
-    /// What the machine was left in.
-    fn begin(&mut self) {
-        let mut buffers = Box::new(HostMemory::new());
-        let mut memory = buffers.lend();
-        self.options.parameters.load(&mut memory);
-        let system = memory.get(5220).clamp(1.0, 9.0) as u16;
-        let (work, rotation) = self.stored_offset(system, &memory);
-        let local = if memory.get(5210) > 0.5 { self.stored_axes(5211, &memory) } else { [0; 9] };
-        self.work_offset = system;
-        self.lines.call("USE_LENGTH_UNITS", "CANON_UNITS_MM");
-        self.offset("SET_G5X_OFFSET", Some(system), &work, Units::Millimetres);
-        self.offset("SET_G92_OFFSET", None, &local, Units::Millimetres);
-        self.rotation(rotation);
-        self.lines.call("SET_FEED_REFERENCE", "CANON_XYZ");
-        self.lines.call("ON_RESET", "");
-    }
-
-    /// A work offset as the parameters hold it, and its rotation.
-    pub(super) fn stored_offset(&self, system: u16, memory: &Memory<'_>) -> (NineAxes, i64) {
-        let first = 5201 + 20 * system;
-        (self.stored_axes(first, memory), scaled(memory.get(first + 9), MILLION))
-    }
-
-    fn stored_axes(&self, first: u16, memory: &Memory<'_>) -> NineAxes {
-        let unit = self.options.machine_units.nanometres();
-        let mut values: NineAxes = [0; 9];
-        for ((value, number), axis) in values.iter_mut().zip(first..).zip(0..) {
-            *value = scaled(memory.get(number), if (3..6).contains(&axis) { MILLION } else { unit });
         }
-        values
     }
 
     /// Takes one step of the program.
@@ -133,7 +86,7 @@ impl<'a, W: Write> Printer<'a, W> {
         if self.block != Some(block) {
             self.end_block();
             self.block = Some(block);
-            self.lines.set_label(source.number.and_then(|_| label(event.text, source)));
+            self.calls.lines.set_label(source.number.and_then(|_| label(event.text, source)));
             // Motion ends without a step of its own: perhaps in this block, perhaps in one before.
             let still = event.modal.motion.is_none();
             self.cancels = still && (self.moving || has_g(event.text, source, &[800]));
@@ -151,7 +104,7 @@ impl<'a, W: Write> Printer<'a, W> {
                 } else {
                     self.settle();
                     self.tell_modes(event.modal);
-                    self.call(&canon, event.modal, Some(event));
+                    self.calls.call(&canon, event.modal, Some(event));
                 }
             }
         }
@@ -168,13 +121,13 @@ impl<'a, W: Write> Printer<'a, W> {
     fn settle(&mut self) {
         match self.remark.take().filter(|_| !self.named) {
             Some(Remark::Call(name, text)) => {
-                self.lines.open(name);
-                self.lines.push("\"");
-                self.lines.push(&text);
-                self.lines.push("\"");
-                self.lines.close();
+                self.calls.lines.open(name);
+                self.calls.lines.push("\"");
+                self.calls.lines.push(&text);
+                self.calls.lines.push("\"");
+                self.calls.lines.close();
             }
-            Some(Remark::Bare(text)) => self.lines.bare(text.as_bytes()),
+            Some(Remark::Bare(text)) => self.calls.lines.bare(text.as_bytes()),
             None => {}
         }
         if self.steps.is_empty() {
@@ -186,7 +139,7 @@ impl<'a, W: Write> Printer<'a, W> {
             if step.rank > DISTANCE_RANK {
                 self.tell_modes(&step.modal);
             }
-            self.call(&step.canon, &step.modal, None);
+            self.calls.call(&step.canon, &step.modal, None);
         }
         if let Some(last) = steps.last() {
             self.tell_distance(&last.modal);
@@ -203,7 +156,7 @@ impl<'a, W: Write> Printer<'a, W> {
 
     fn tell_cancel(&mut self) {
         if std::mem::take(&mut self.cancels) {
-            self.lines.remark("motion mode set to none");
+            self.calls.lines.remark("motion mode set to none");
         }
     }
 
@@ -220,23 +173,16 @@ impl<'a, W: Write> Printer<'a, W> {
         }
         let name = |absolute: bool| if absolute { "absolute" } else { "incremental" };
         if now.0 != self.told.0 {
-            self.lines.remark(&format!("distance mode changed to {}", name(now.0)));
+            self.calls.lines.remark(&format!("distance mode changed to {}", name(now.0)));
         }
         if now.1 != self.told.1 {
-            self.lines.remark(&format!("IJK distance mode changed to {}", name(now.1)));
+            self.calls.lines.remark(&format!("IJK distance mode changed to {}", name(now.1)));
         }
         if now.2 != self.told.2 {
             let level = if now.2 == RetractLevel::Before { "old_z" } else { "r_plane" };
-            self.lines.remark(&format!("retract mode set to {level}"));
+            self.calls.lines.remark(&format!("retract mode set to {level}"));
         }
         self.told = now;
-    }
-
-    /// Moves to a place; an axis that is not known stays.
-    pub(super) fn go(&mut self, to: Axes) {
-        for (at, to) in self.at.iter_mut().zip([to.x, to.y, to.z]) {
-            *at = to.map_or(*at, |p| p.nm());
-        }
     }
 
     /// Prints what is left; `whole` when the program was read to its end.
@@ -247,13 +193,8 @@ impl<'a, W: Write> Printer<'a, W> {
         if whole {
             self.end_block();
         }
-        self.lines.finish()
+        self.calls.lines.finish()
     }
-}
-
-/// A parameter in whole numbers.
-fn scaled(value: f64, unit: i64) -> i64 {
-    (value * unit as f64).round() as i64
 }
 
 /// Whether one of these G codes (in tenths) stands in a block.

@@ -11,6 +11,8 @@ use truepath_core::gcode::{AXIS_LETTERS, Decimal, Lines, NineAxes, Token, Tool, 
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{InputError, Source};
 
+use crate::codes::T001;
+
 /// Rows of a table.
 const LIMIT: usize = 1_000;
 
@@ -30,10 +32,7 @@ impl ToolTable {
         let mut table = Self::default();
         for line in Lines::new(source.bytes()) {
             let span = line.span();
-            let refused = |found: &str| {
-                let help = "write rows like T1 P1 X0 Z12.98 D3.175 ;comment";
-                InputError::new("T001", found, "a row of a tool table", help).at(source, span.start..span.end())
-            };
+            let refused = |found: &str| T001.error(found, "a row of a tool table").at(source, span.start..span.end());
             let mut row = Row::default();
             for token in Words::new(line) {
                 let Token::Word(word) = token.map_err(|_| refused("this line cannot be read"))? else { continue };

@@ -9,20 +9,7 @@ use std::f64::consts::TAU;
 
 use super::passes::{Pass, Passes, around};
 use super::refusal::Refusal;
-use super::sweep::Round;
-
-/// A stretch of wall left by one pass.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
-    /// Where it begins, rad; ascending from stretch to stretch, over one turn in all.
-    pub from: f64,
-    /// Where it ends.
-    pub to: f64,
-    /// Index of the pass.
-    pub pass: usize,
-    /// Place of the pass's crest, rad, within half a turn of the stretch.
-    pub crest: f64,
-}
+use super::sweep::{Round, Stretch};
 
 /// The most steps of comparison for one profile.
 pub const MAX_STEPS: u64 = 20_000_000;

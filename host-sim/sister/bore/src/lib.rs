@@ -12,6 +12,7 @@
 
 pub mod arc;
 pub mod circle;
+pub mod codes;
 pub mod dependence;
 pub mod depth;
 pub mod envelope;

@@ -2,10 +2,22 @@
 
 use std::f64::consts::TAU;
 
-use super::envelope::Stretch;
 use super::passes::Passes;
 use super::refusal::Refusal;
 use super::takeover::{Steps, takeover};
+
+/// A stretch of wall left by one pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Where it begins, rad; ascending from stretch to stretch, over one turn in all.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Index of the pass.
+    pub pass: usize,
+    /// Place of the pass's crest, rad, within half a turn of the stretch.
+    pub crest: f64,
+}
 
 /// The passes round and round: index `i + count` is pass `i` one turn later.
 pub(super) struct Round<'a> {

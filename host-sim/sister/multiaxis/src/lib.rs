@@ -10,6 +10,7 @@
 
 pub mod ball;
 pub mod chord;
+pub mod codes;
 pub mod division;
 pub mod kinematics;
 pub mod machine;

@@ -1,16 +1,9 @@
 //! Why a pocket cannot be compensated.
-//!
-//! | code | meaning |
-//! |---|---|
-//! | D001 | the job has no cutter that can bend: `stickout_mm` and `material` are missing |
-//! | D002 | the deflection is larger than what there is to cut |
-//! | D003 | the elastic loop does not settle |
-//! | D004 | a tolerance out of 0.000001 to 1 mm |
-//! | D005 | the path is too long for the slot's memory of where it has been |
-//! | D006 | the shift is beyond the clamp of the job |
 
-use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::diagnostics::Failure;
 use truepath_job::job::Job;
+
+use crate::codes::{D001, D002, D003, D004, D005, D006};
 
 /// A refusal.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,51 +49,42 @@ pub enum PocketError {
 impl PocketError {
     /// As the user meets it, pointing into the job.
     pub fn failure(&self, job: &Job) -> Failure {
-        let (code, found, expected, help, key) = match self {
+        let (row, found, expected, key) = match self {
             Self::NoCutter => (
-                "D001",
+                D001,
                 "tool.stickout_mm and tool.material are missing".to_owned(),
                 "the cutter's free length and what it is made of".to_owned(),
-                "add stickout_mm and material = \"HSS\" or \"carbide\" to [tool]; flute_length_mm and shank_diameter_mm are optional",
                 "tool.diameter_mm",
             ),
             Self::TooSoft { deflection_mm, limit_mm, s_mm } => (
-                "D002",
+                D002,
                 format!("the cutter would bend by {deflection_mm:.3} mm at {s_mm:.1} mm of the contour"),
                 format!("less than there is to cut, {limit_mm:.3} mm"),
-                "shorten the stick-out, take a thicker cutter, or cut less deep or slower; check the force coefficients",
                 "tool.stickout_mm",
             ),
             Self::Unsettled { places, worst_mm } => (
-                "D003",
+                D003,
                 format!("force and deflection do not settle at {places} places (residual {worst_mm:.4} mm)"),
                 "a cutter stiff enough for this cut".to_owned(),
-                "shorten the stick-out, take a thicker cutter, or cut less deep; check the force coefficients",
                 "tool.stickout_mm",
             ),
-            Self::Tolerance(value) => (
-                "D004",
-                format!("the tolerance is {value} mm"),
-                "0.000001 to 1 mm".to_owned(),
-                "give --tolerance or tolerance_mm in [pocket] as half of the width of the band the wall may lie in",
-                "pocket.tolerance_mm",
-            ),
+            Self::Tolerance(value) => {
+                (D004, format!("the tolerance is {value} mm"), "0.000001 to 1 mm".to_owned(), "pocket.tolerance_mm")
+            }
             Self::TooLong { needed, most } => (
-                "D005",
+                D005,
                 format!("the path of the slot has {needed} samples"),
                 format!("at most {most}: 40 m at 0.1 mm"),
-                "divide the program, or name a part of it with [[feature]]",
                 "program",
             ),
             Self::Clamp { shift_mm, clamp_mm, s_mm } => (
-                "D006",
+                D006,
                 format!("the path would be shifted by {shift_mm:.3} mm at {s_mm:.1} mm of the contour"),
                 format!("at most correct.clamp_mm, {clamp_mm} mm"),
-                "raise clamp_mm in [correct] if that is right, or use a stiffer cutter",
                 "correct.clamp_mm",
             ),
         };
-        let error = InputError::new(code, found, expected, help);
+        let error = row.error(found, expected);
         let span = job.span(key);
         if span.is_empty() {
             error.in_file(std::path::Path::new(job.source().name())).into()

@@ -10,6 +10,7 @@
 
 pub mod beam;
 mod choose;
+pub mod codes;
 mod corner;
 mod design;
 mod edits;

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use truepath_bench::codes::H007;
 use truepath_bench::traffic::{Command, Controller, ControllerOptions, Recorded};
 use truepath_bench::{
     Board, Campaign, Faults, Plan, Probability, RunStatus, Traffic, Watch, identify, prepare, to_off,
@@ -110,7 +111,7 @@ pub fn settings(options: &Options, stepped: bool) -> Result<DeviceSettings, Inpu
     let rewriter = replay::settings(period_ns);
     let (deadline_us, silence_us) = if stepped { (500, SILENCE_US) } else { (1_000_000, 10_000_000) };
     let settings = DeviceSettings { rewriter, axes: options.axes, deadline_us, silence_us };
-    settings.check().map_err(|e| InputError::new("H007", e.to_string(), "", "choose other --rate or --axes"))?;
+    settings.check().map_err(|e| InputError::new(H007, e.to_string(), "", "choose other --rate or --axes"))?;
     Ok(settings)
 }
 
@@ -161,7 +162,7 @@ pub fn recorded(path: &Path) -> Result<Setpoints, InputError> {
     if setpoints.frame == Frame::Machine {
         let found = "the setpoints are in machine coordinates";
         let help = "record them in program coordinates (# frame = program): the bench arms with the identity frame";
-        return Err(InputError::new("H007", found, "program coordinates", help).at(&source, 0..1));
+        return Err(InputError::new(H007, found, "program coordinates", help).at(&source, 0..1));
     }
     Ok(setpoints)
 }

@@ -14,6 +14,7 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFile, OutputFolder, json};
 use truepath_job::job::{DECIMALS, DIALECTS, one_of};
 use truepath_multiaxis::ball::Contacts;
+use truepath_multiaxis::codes::{A008, A009, A010, A011, A014};
 use truepath_multiaxis::machine::{Coordinates, Kind, Letter};
 use truepath_multiaxis::program::{
     At, CentrePoint, Digits, Outcome, PassError, Reading, Report, Settings, Sinks, Splitter, UnrollOptions, picture,
@@ -192,7 +193,7 @@ fn steered(
         let found = format!("line {line} steers the program or computes a place, and the file has {bytes} bytes");
         let expected = format!("at most {LARGEST_STEERED} bytes of such a program");
         let help = "divide the program into plain files, which may be of any size";
-        return Err(InputError::new("A011", found, expected, help).in_file(&options.file).into());
+        return Err(InputError::new(A011, found, expected, help).in_file(&options.file).into());
     }
     let source = Source::read(&options.file)?;
     let plain = unroll(
@@ -221,7 +222,7 @@ fn steered(
         );
         let help = "add --unroll to have the program written out plainly, or --partial to leave it as it is";
         let expected = "a program whose lines can be rewritten in place";
-        return Err(At::error_in(&options.file, worst.0, "A011", [&found, expected, help]).into());
+        return Err(At::error_in(&options.file, worst.0, A011, [&found, expected, help]).into());
     }
     if let Some(out) = &mut found.out {
         out.write_all(source.bytes()).map_err(|e| unwritable(options.output.as_deref(), e))?;
@@ -242,14 +243,14 @@ fn finish(
     if report.blocks == 0 {
         let found = format!("{} has no block", options.file.display());
         let help = "check that this is a program of G1 moves";
-        return Err(InputError::new("A008", found, "a program", help).in_file(&options.file).into());
+        return Err(InputError::new(A008, found, "a program", help).in_file(&options.file).into());
     }
     if let (Some(first), Some(_), false) = (report.left.moves.first(), &out, options.partial) {
         let many = report.left.count;
         let found = format!("the move cannot be brought within the tolerance: {}", first.reason);
         let expected = format!("five-axis moves that can all be checked and divided ({many} cannot)");
         let help = "correct it, or add --partial to leave such moves as they are";
-        return Err(At::error_in(&options.file, first.line, "A009", [&found, &expected, help]).into());
+        return Err(At::error_in(&options.file, first.line, A009, [&found, &expected, help]).into());
     }
     let mut summary = summary(&options.file, machine, settings, &report);
     if let Some(line) = steered {
@@ -279,7 +280,7 @@ fn check_tolerance(tolerance_mm: f64) -> Result<(), InputError> {
     }
     let found = format!("the tolerance is {tolerance_mm} mm");
     Err(InputError::new(
-        "A010",
+        A010,
         found,
         "a length above 0, at most 1000 mm",
         "give --tolerance 0.005, or what the part needs",
@@ -301,7 +302,7 @@ fn check_normal(options: &Options, machine: &Machine) -> Result<(), InputError> 
     } else {
         ("the normal has no direction", "three numbers that are not all zero", "give --normal 0,0,1 for a floor")
     };
-    Err(InputError::new("A014", found, expected, help).in_file(&options.machine))
+    Err(InputError::new(A014, found, expected, help).in_file(&options.machine))
 }
 
 fn settings<'m>(options: &Options, machine: &'m Machine) -> Settings<'m> {

@@ -21,6 +21,7 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::OutputFile;
 use truepath_ground::sheet::{names as names_of, read_bounded};
 use truepath_job::job::Which;
+use truepath_report::codes::{Z011, Z012, Z013, Z014};
 use truepath_report::plot::{Column, Compared, LawWall, PASSES, Place, Probed, Wall};
 use truepath_report::{Trace, plot, read_correction, read_points, read_trace, read_walls};
 use wall::OfJob;
@@ -165,12 +166,12 @@ fn run(kind: &Kind) -> Result<PlotSummary, Failure> {
         && *which != Which::default()
     {
         let help = "give --job, the job of the tables, or leave --feature and --pass out";
-        return Err(InputError::new("Z012", "--feature and --pass without --job", "a job", help).into());
+        return Err(InputError::new(Z012, "--feature and --pass without --job", "a job", help).into());
     }
     let format = format(&picture.output)?;
     if format == "svg" && picture.scale.is_some() {
         let help = "an SVG picture is sharp at any size: leave --scale out, or name a .png";
-        return Err(InputError::new("Z011", "--scale was given for an SVG picture", "a .png", help).into());
+        return Err(InputError::new(Z011, "--scale was given for an SVG picture", "a .png", help).into());
     }
     let mut file = OutputFile::create(&picture.output, picture.force)?;
     let svg = drawn(kind)?;
@@ -195,7 +196,7 @@ fn format(output: &FilePath) -> Result<&'static str, InputError> {
         _ => {
             let found = format!("{} is neither .svg nor .png", output.display());
             let help = "the ending of the output says what kind of picture is written";
-            Err(InputError::new("Z011", found, "a name that ends in .svg or .png", help).in_file(output))
+            Err(InputError::new(Z011, found, "a name that ends in .svg or .png", help).in_file(output))
         }
     }
 }
@@ -228,7 +229,7 @@ fn traces(
     if tables.len() > PASSES || names.len() > tables.len() {
         let found = format!("there are {} tables and {} names", tables.len(), names.len());
         let help = "one name a table, in their order";
-        return Err(InputError::new("Z013", found, format!("at most {PASSES} tables"), help).into());
+        return Err(InputError::new(Z013, found, format!("at most {PASSES} tables"), help).into());
     }
     let each = tables.iter().enumerate().map(|(k, table)| {
         let file = table_in(table, &["trace.csv"])?;
@@ -253,7 +254,7 @@ fn table_in(path: &FilePath, wanted: &[&str]) -> Result<PathBuf, InputError> {
     there.ok_or_else(|| {
         let found = format!("{} holds no {}", path.display(), wanted.join(" and no "));
         let help = "simulate writes trace.csv, correct and learn write correction.csv, compare writes walls.csv";
-        InputError::new("Z012", found, "a folder of the command that writes it", help).in_file(path)
+        InputError::new(Z012, found, "a folder of the command that writes it", help).in_file(path)
     })
 }
 
@@ -319,13 +320,13 @@ fn compared(path: &FilePath) -> Result<Compared, InputError> {
     let summary: Summary = serde_json::from_slice(source.bytes()).map_err(|e| {
         let (line, column) = (u32::try_from(e.line()).unwrap_or(1), u32::try_from(e.column()).unwrap_or(1));
         let help = "summary.json lies beside walls.csv in the folder of compare";
-        InputError::new("Z014", e.to_string(), "the summary of compare", help)
+        InputError::new(Z014, e.to_string(), "the summary of compare", help)
             .at(&source, source.span_at(line, column, 0))
     })?;
     if walls.len() > LAWS {
         let found = format!("{} holds {} laws", file.display(), walls.len());
         let help = "the lines of a law stand together in the table";
-        return Err(InputError::new("Z013", found, format!("at most {LAWS}"), help).in_file(&file));
+        return Err(InputError::new(Z013, found, format!("at most {LAWS}"), help).in_file(&file));
     }
     let law = |(law, places): (String, Vec<[f64; 4]>)| {
         let row = summary.laws.iter().find(|row| row.law == law);

@@ -12,6 +12,7 @@ use truepath_ground::sheet::{each_line, read_bounded};
 use truepath_ground::units::{float, mm};
 use truepath_job::job::{Job, Which};
 use truepath_job::pass::{Pass, PathBuffer};
+use truepath_report::codes::{Z012, Z013};
 use truepath_report::{WallRow, read_wall};
 
 /// Arc lengths are told apart to half of the last digit of a table, mm.
@@ -42,7 +43,7 @@ fn beside(table: &FilePath) -> Result<Vec<WallRow>, InputError> {
         let found = format!("there is no wall.csv beside {}", table.display());
         let help = "the wall to scale needs the wall.csv that simulate, correct and learn write beside their table: name \
                     their folder, or give --job, the job of the table";
-        return Err(InputError::new("Z012", found, "a folder with both tables, or --job", help).in_file(&file));
+        return Err(InputError::new(Z012, found, "a folder with both tables, or --job", help).in_file(&file));
     }
     read_wall(&read_bounded(&file)?)
 }
@@ -76,7 +77,7 @@ fn of_job(table: &FilePath, source: &Source, of: &OfJob) -> Result<Vec<WallRow>,
     );
     let found = format!("at s = {s} mm the table has X {x:.3} Y {y:.3}, and the path of {} {there}", of.job.display());
     let help = "give the job the table was made from, with --feature and --pass where its program has several cuts";
-    Err(InputError::new("Z013", found, "a table of this job", help).in_file(table).into())
+    Err(InputError::new(Z013, found, "a table of this job", help).in_file(table).into())
 }
 
 /// A place of a path.

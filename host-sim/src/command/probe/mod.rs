@@ -2,6 +2,8 @@
 
 mod next;
 
+pub use next::{next, next_part};
+
 use std::fmt::Write as _;
 use std::io::Write;
 use std::path::{Path as FilePath, PathBuf};

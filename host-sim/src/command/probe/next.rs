@@ -11,11 +11,13 @@ use std::path::Path as FilePath;
 use truepath_core::correct::{Law, Node};
 use truepath_core::cut::Path;
 use truepath_core::job;
+use truepath_correction::codes::{Q002, Q003, Q007};
 use truepath_correction::correction::{DesignRequest, Identification, design_correction, identify};
 use truepath_correction::feeds;
 use truepath_correction::learn::refuse_feeds;
 use truepath_correction::learning::{History, Part, PartPoints, Residual, joint, refuse_uncorrected};
 use truepath_correction::verification::{Goal, Measured, Plan, Settings, plan_next};
+use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
 use truepath_job::job::Route;
@@ -38,7 +40,7 @@ pub(super) fn of_files(
     let Some(folder) = from else {
         let Some(file) = file else {
             let help = "give --probe, --from or both";
-            return Err(InputError::new("C001", "--next without anything measured", "measured points", help).into());
+            return Err(InputError::new(C001, "--next without anything measured", "measured points", help).into());
         };
         let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
         let mut plan = next(&pass, &measurement, settings, progress)?;
@@ -51,7 +53,7 @@ pub(super) fn of_files(
     let measurement = file.as_ref().map(|file| Measurement::read(&pass, file)).transpose()?;
     let mut plan = next_part(&pass, &history, measurement.as_ref(), settings, progress).map_err(|failure| {
         match (failure, probe) {
-            (Failure::Input(error), Some(probe)) if matches!(error.code(), "Q003" | "Q007") => {
+            (Failure::Input(error), Some(probe)) if [Q003.code, Q007.code].contains(&error.code()) => {
                 error.in_file(probe).into()
             }
             (failure, _) => failure,
@@ -146,5 +148,5 @@ fn places(measurement: &Measurement) -> Vec<f64> {
 fn other_contour(path: &Path) -> InputError {
     let help = "correct again with truepath correct";
     let expected = format!("one entry for each of {} samples", path.count());
-    InputError::new("Q002", "a correction of the history does not lie along this contour", expected, help)
+    InputError::new(Q002, "a correction of the history does not lie along this contour", expected, help)
 }

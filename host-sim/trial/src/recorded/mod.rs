@@ -23,6 +23,7 @@ use truepath_ground::diagnostics::InputError;
 use truepath_plant as plant;
 use truepath_plant::{FeedChange, Path, Point};
 
+use crate::codes::S006;
 use crate::replay::Placement;
 use crate::setpoints::Setpoints;
 
@@ -117,12 +118,7 @@ fn nothing(rows: &[[f64; 3]], path: &Path, z_mm: f64) -> InputError {
     let start = path.centre[0];
     let nearest = rows.iter().map(|r| (r[0] - start[0]).hypot(r[1] - start[1])).fold(f64::INFINITY, f64::min);
     let (low, high) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), r| (l.min(r[2]), h.max(r[2])));
-    InputError::new(
-        "S006",
-        format!(
+    S006.error(format!(
             "no rows follow the contour at its depth: they come within {nearest:.3} mm of its start, with Z {low:.3} to {high:.3} mm"
-        ),
-        format!("rows from the start of the contour ({:.3}, {:.3}) to its end at Z {z_mm:.3} mm", start[0], start[1]),
-        "record the whole pass; check the frame, --origin-mm and --rotation-deg, and that it is the program of the job",
-    )
+        ), format!("rows from the start of the contour ({:.3}, {:.3}) to its end at Z {z_mm:.3} mm", start[0], start[1]))
 }

@@ -12,6 +12,7 @@ use truepath_plant as plant;
 use truepath_plant::{FeedChange, Path};
 
 use super::follow::Followed;
+use crate::codes::S007;
 use crate::setpoints::Setpoints;
 
 /// Steps of the feed, as a share of the program's.
@@ -53,7 +54,7 @@ pub(super) fn pace(
         if rpm < 1.0 {
             let time = (setpoints.start_ns as f64 + setpoints.period_ns as f64 * (pass.first + k) as f64) / 1e9;
             let found = format!("the spindle stands still in the pass, at {time:.3} s");
-            return Err(InputError::new("S007", found, "a pass that cuts", "record a pass with the spindle on"));
+            return Err(S007.error(found, "a pass that cuts"));
         }
         let half = (30.0 / (rpm * cut.teeth as f64) / period_s).max(0.5);
         let (from, to) = (k as f64 - half, k as f64 + half);

@@ -17,7 +17,7 @@ use truepath_core::units::{Offset, Real};
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 
-use super::Row;
+use crate::codes::{S002, S003};
 
 /// In every file, in this order.
 const FIRST: [&str; 4] = ["t_s", "x_mm", "y_mm", "z_mm"];
@@ -29,6 +29,21 @@ const FARTHEST: Offset = Offset::from_um(4_000_000);
 const FASTEST: Real = Real::from_int(200_000);
 /// All flags there are.
 const ALL_FLAGS: u16 = 0x7f;
+
+/// One tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// X, Y, Z, nm.
+    pub position_nm: [i64; 3],
+    /// Spindle speed, rev/min; `None` when the file has no such column.
+    pub spindle_rpm: Option<Real>,
+    /// What the controller said with it; drives enabled and spindle loaded when the file has no such column.
+    pub flags: Flags,
+    /// Checksum of the frame in force; `None` when the file has no such column: the frame that was armed.
+    pub frame_crc: Option<u32>,
+    /// Whether the arming was ended by command before this tick.
+    pub disarm: bool,
+}
 
 /// Which columns a file has.
 #[derive(Debug)]
@@ -65,7 +80,7 @@ impl Columns {
             let found = format!("this line has {} fields", fields.record.len());
             let expected = format!("{}, as in the line with the names", self.count);
             let help = "a line that was cut off? remove it or record again";
-            return Err(InputError::new("S002", found, expected, help).at(fields.source, fields.span(usize::MAX)));
+            return Err(InputError::new(S002, found, expected, help).at(fields.source, fields.span(usize::MAX)));
         }
         let time_ns = fields.number(0, FIRST[0])?.as_billionths();
         let mut position_nm = [0; 3];
@@ -114,7 +129,7 @@ impl Fields<'_> {
         };
         let expected = format!("{}, then any of {}, each once", FIRST.join(","), OPTIONAL.join(", "));
         let help = "name the columns in the second line of the file";
-        InputError::new("S002", found, expected, help).at(self.source, self.span(index))
+        InputError::new(S002, found, expected, help).at(self.source, self.span(index))
     }
 
     fn text(&self, index: usize) -> Option<&str> {
@@ -146,6 +161,6 @@ impl Fields<'_> {
     fn refused(&self, index: usize, name: &str, expected: &str) -> InputError {
         let span = self.span(index);
         let found = format!("{name} is \"{}\"", self.source.excerpt(span.clone()));
-        InputError::new("S003", found, expected, "correct the field").at(self.source, span)
+        S003.error(found, expected).at(self.source, span)
     }
 }

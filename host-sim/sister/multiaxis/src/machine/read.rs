@@ -27,12 +27,13 @@
 //! x_mm = [-300.0, 300.0]
 //! ```
 //!
-//! Errors carry the codes of all our TOML files, J002 to J010, and point at the value.
+//! Errors carry the codes of all TOML files, J002 to J010, and point at the value.
 
 use std::cell::RefCell;
 
 use toml::Spanned;
 use toml::de::DeValue;
+use truepath_ground::codes::J008;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::{Section, Spans, Value};
@@ -75,7 +76,7 @@ impl Machine {
         if kind == Kind::TableHead && rotary[0].side == rotary[1].side {
             let value = second.value("on").map_or(0..0, |value| value.span);
             return Err(InputError::new(
-                "J008",
+                J008,
                 "both axes are on the same side",
                 "one on = \"table\" and one on = \"head\"",
                 "correct one of them, or the kind",
@@ -90,9 +91,9 @@ impl Machine {
                 let span = second.value("axis").map_or(0..0, |value| value.span);
                 let found = format!("both rotary axes are {letter}");
                 let help = "name the letter the program uses for each of them";
-                InputError::new("J008", found, "two different letters", help).at(source, span)
+                InputError::new(J008, found, "two different letters", help).at(source, span)
             }
-            other => InputError::new("J008", other.to_string(), "", "correct the machine file").at(source, 0..0),
+            other => InputError::new(J008, other.to_string(), "", "correct the machine file").at(source, 0..0),
         })?;
         let pole = pole.unwrap_or(machine.pole);
         Ok(Self { coordinates, travel_mm, pole, orientation_tolerance: orientation, ..machine })
@@ -105,7 +106,7 @@ fn two_axes(source: &Source, root: &Section<'_>, found: usize) -> InputError {
         Some(value) => {
             let help = "a five-axis machine has two rotary axes: write one [[rotary]] for each";
             let found = format!("there are {found} tables [[rotary]]");
-            InputError::new("J008", found, "two", help).at(source, value.span)
+            InputError::new(J008, found, "two", help).at(source, value.span)
         }
     }
 }
@@ -121,7 +122,7 @@ fn rotary(source: &Source, section: &Section<'_>, side: Option<Side>) -> Result<
             let value = section.value("on").map_or(0..0, |value| value.span);
             let found = "the axis is on the other side than the kind says";
             let help = "leave the key out, or correct the kind";
-            return Err(InputError::new("J008", found, "a side that fits the kind", help).at(source, value));
+            return Err(InputError::new(J008, found, "a side that fits the kind", help).at(source, value));
         }
         (Some(said), _) => said,
         (None, Some(must)) => must,
@@ -144,7 +145,7 @@ fn tool(source: &Source, section: &Section<'_>) -> Result<Tool, InputError> {
     if let (None, Counted::BallCentre, Some(value)) = (ball_radius, counted, section.value("counts")) {
         let help = "add ball_radius_mm, or let the tip count";
         let found = "the ball's centre counts, but there is no tool.ball_radius_mm";
-        return Err(InputError::new("J008", found, "the radius of the ball", help).at(source, value.span));
+        return Err(InputError::new(J008, found, "the radius of the ball", help).at(source, value.span));
     }
     section.close()?;
     let number = |n: Option<Decimal>| n.map(Decimal::as_f64);
@@ -177,7 +178,7 @@ fn range(
     }
     let span = section.value(key).map_or(0..0, |value| value.span);
     let found = format!("{key} goes from {} down to {}", range[0], range[1]);
-    Err(InputError::new("J008", found, "the lower end first", "swap the two numbers").at(source, span))
+    Err(InputError::new(J008, found, "the lower end first", "swap the two numbers").at(source, span))
 }
 
 /// A list of `N` numbers, each within the limits.

@@ -7,7 +7,7 @@
 //! | a move → its error and its pieces, as they are written | `split.rs`, `digits.rs` |
 //! | pieces → lines | `writer.rs` |
 //! | one pass, and what it found | `run.rs`, `settings.rs`, `report.rs`, `profile.rs`, `picture.rs`, `notes.rs`, `reason.rs` |
-//! | programs with loops, calls and computed places | `unroll.rs`, `calls.rs`, with the interpreter of the core |
+//! | programs with loops, calls and computed places | `unroll.rs`, with the interpreter of the core |
 //!
 //! Two rules. Nothing is silently wrong: a move with a rotary axis that cannot be checked has a [`Reason`], and where
 //! the program does not say where an axis stands it is unknown. And nothing is changed that need not be: only the lines
@@ -15,7 +15,6 @@
 
 mod apply;
 mod block;
-mod calls;
 mod codes;
 mod digits;
 mod lines;
@@ -41,8 +40,8 @@ pub use profile::Profile;
 pub use reason::Reason;
 pub use refusal::At;
 pub use report::{Left, LeftMove, MoveRow, Places, Report};
-pub use run::run;
-pub use settings::{CentrePoint, Outcome, PassError, Settings, Sinks};
+pub use run::{Outcome, PassError, Sinks, run};
+pub use settings::{CentrePoint, Settings};
 pub use split::Splitter;
 pub use state::Reading;
 pub use unroll::{UnrollOptions, Unrolled, unroll};

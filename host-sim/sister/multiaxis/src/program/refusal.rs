@@ -9,11 +9,13 @@ use std::ops::Range;
 use std::path::Path;
 
 use truepath_core::gcode::GcodeError;
+use truepath_ground::codes::Row;
 use truepath_ground::diagnostics::{InputError, Source};
 
 use super::lines::{LONGEST, Line, LineReader};
 use super::quantity::FARTHEST;
 use super::step::Trouble;
+use crate::codes::{A001, A002, A003, A004, A005, A006};
 
 /// A line of a program, for errors.
 #[derive(Clone, Copy, Debug)]
@@ -35,25 +37,25 @@ impl At<'_> {
     }
 
     /// An error at a span of the line.
-    pub fn error(&self, code: &str, found: String, expected: &str, help: &str, span: Range<usize>) -> InputError {
+    pub fn error(&self, row: Row, [found, expected, help]: [&str; 3], span: Range<usize>) -> InputError {
         let (source, before) = self.source();
-        InputError::new(code, found, expected, help).at(&source, before + span.start..before + span.end)
+        InputError::new(row, found, expected, help).at(&source, before + span.start..before + span.end)
     }
 
     /// The same for a whole line of a file, which is read once more; without its text when that is no longer there.
-    pub fn error_in(path: &Path, number: u32, code: &str, [found, expected, help]: [&str; 3]) -> InputError {
+    pub fn error_in(path: &Path, number: u32, row: Row, [found, expected, help]: [&str; 3]) -> InputError {
         let mut line = Line::default();
         let file = File::open(path).map(BufReader::new);
         if let Ok(mut reader) = file.map(LineReader::new) {
             while reader.number() < number && matches!(reader.next(&mut line), Ok(true)) {}
         }
         if line.number != number || line.text.is_empty() {
-            return InputError::new(code, format!("line {number}: {found}"), expected, help).in_file(path);
+            return InputError::new(row, format!("line {number}: {found}"), expected, help).in_file(path);
         }
         let blanks = line.text.iter().take_while(|b| b.is_ascii_whitespace()).count();
         let name = path.display().to_string();
         let at = At { name: &name, number, text: &line.text };
-        at.error(code, found.to_owned(), expected, help, blanks..line.text.len())
+        at.error(row, [found, expected, help], blanks..line.text.len())
     }
 
     /// What the lexer does not understand.
@@ -64,54 +66,42 @@ impl At<'_> {
 
     /// A line that is too long.
     pub fn too_long(&self) -> InputError {
-        self.error(
-            "A001",
-            format!("line {} is longer than {LONGEST} bytes", self.number),
-            "a line as controls read them",
-            "check that this is a program, and that its lines end",
-            0..0,
-        )
+        let found = format!("line {} is longer than {LONGEST} bytes", self.number);
+        self.error(A001, [&found, "a line as controls read them", A001.remedy], 0..0)
     }
 
     /// What the control would refuse.
     pub fn trouble(&self, trouble: Trouble) -> InputError {
         let letter = |word: &super::block::Word| char::from(word.letter);
-        match trouble {
-            Trouble::Twice(word) => self.error(
-                "A002",
-                format!("{} stands twice in one block", letter(&word)),
-                "every axis once",
-                "remove one of them, or write two blocks",
-                word.span(),
-            ),
-            Trouble::NoAxis(word) => self.error(
-                "A003",
+        let (row, found, expected, span) = match trouble {
+            Trouble::Twice(word) => {
+                (A002, format!("{} stands twice in one block", letter(&word)), "every axis once", word.span())
+            }
+            Trouble::NoAxis(word) => (
+                A003,
                 format!("the machine file has no axis {}", letter(&word)),
                 "X, Y, Z and the two rotary axes of the machine file",
-                "name the axis in the machine file, or take the file of the machine the program is for",
                 word.span(),
             ),
-            Trouble::NoMotion(word) => self.error(
-                "A004",
+            Trouble::NoMotion(word) => (
+                A004,
                 "axis words without a motion".to_owned(),
                 "G0, G1, G2 or G3 before them, or in their block",
-                "write the motion that the control has at power-up into the program",
                 word.span(),
             ),
-            Trouble::TooFar(word) => self.error(
-                "A005",
+            Trouble::TooFar(word) => (
+                A005,
                 format!("{} leads beyond the farthest place", letter(&word)),
-                &format!("a place within ±{FARTHEST} mm, or a hundred times as many degrees"),
-                "correct the number",
+                &*format!("a place within ±{FARTHEST} mm, or a hundred times as many degrees"),
                 word.span(),
             ),
-            Trouble::FeedMissing => self.error(
-                "A006",
+            Trouble::FeedMissing => (
+                A006,
                 "a cutting block without F while G93 is in force".to_owned(),
                 "an F in every block that cuts under G93",
-                "add the F, or G94 where the inverse time ends",
                 0..self.text.len(),
             ),
-        }
+        };
+        self.error(row, [&found, expected, row.remedy], span)
     }
 }

@@ -2,22 +2,61 @@
 //!
 //! Memory does not grow with the program: one line, the state of the control, statistics and a profile of fixed size.
 
-use std::io::BufRead;
+use std::io::{self, BufRead, Write};
+
+use truepath_ground::diagnostics::InputError;
 
 use super::block::Block;
 use super::lines::{Line, LineError, LineReader};
 use super::notes::Note;
 use super::refusal::At;
 use super::report::{MoveRow, Report};
-use super::settings::{CentrePoint, Outcome, PassError, Settings, Sinks};
+use super::settings::{CentrePoint, Settings};
 use super::split::{Plan, Writing};
 use super::state::State;
 use super::step::{Move, Step};
 use super::writer::{Original, write};
+use crate::codes::A007;
 use crate::machine::Coordinates;
 
 /// Lines between two tellings of the progress.
 const TELL_EVERY: u32 = 2048;
+
+/// How a pass ended.
+#[derive(Debug)]
+pub enum Outcome {
+    /// The program was read to its end.
+    Done(Box<Report>),
+    /// This line steers the program, or computes a place: reading it line by line is not enough.
+    Steered(u32),
+}
+
+/// Why it did not.
+#[derive(Debug)]
+pub enum PassError {
+    /// The program is wrong.
+    Input(InputError),
+    /// It cannot be read.
+    Read(io::Error),
+    /// The result cannot be written.
+    Write(io::Error),
+}
+
+impl From<InputError> for PassError {
+    fn from(error: InputError) -> Self {
+        Self::Input(error)
+    }
+}
+
+/// Where the results of a pass go.
+pub struct Sinks<'s> {
+    /// The rewritten program.
+    pub text: &'s mut dyn Write,
+    /// One row a move.
+    pub row: &'s mut dyn FnMut(&MoveRow) -> Result<(), InputError>,
+    /// Told the bytes read, now and then.
+    pub progress: &'s mut dyn FnMut(u64),
+}
 
 struct Pass<'s, 'm> {
     settings: &'s Settings<'m>,
@@ -122,9 +161,9 @@ impl Pass<'_, '_> {
         }
         if self.closed && !self.opened {
             let at = At { name: self.name, number: line.number, text: &line.text };
-            let help = "remove the text in front of the %, or the % that closes too early";
-            let found = "a block behind a %, and blocks in front of it".to_owned();
-            return Err(at.error("A007", found, "the program between two %", help, 0..line.text.len()).into());
+            let found = "a block behind a %, and blocks in front of it";
+            let texts = [found, "the program between two %", A007.remedy];
+            return Err(at.error(A007, texts, 0..line.text.len()).into());
         }
         self.report.notes.add(Note::TextBehindEnd, line.number);
         Ok(())

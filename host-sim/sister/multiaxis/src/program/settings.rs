@@ -1,11 +1,7 @@
-//! How a program is worked on, where the results go, and how a pass ends.
-
-use std::io::{self, Write};
+//! How a program is worked on.
 
 use truepath_core::gcode::Units;
-use truepath_ground::diagnostics::InputError;
 
-use super::report::{MoveRow, Report};
 use super::split::Splitter;
 use super::state::Reading;
 use crate::machine::Coordinates;
@@ -38,40 +34,4 @@ pub struct Settings<'m> {
     pub splitter: Splitter<'m>,
     /// The surface whose contact point is followed, if one is named: its normal out of the part.
     pub normal: Option<[f64; 3]>,
-}
-
-/// How a pass ended.
-#[derive(Debug)]
-pub enum Outcome {
-    /// The program was read to its end.
-    Done(Box<Report>),
-    /// This line steers the program, or computes a place: reading it line by line is not enough.
-    Steered(u32),
-}
-
-/// Why it did not.
-#[derive(Debug)]
-pub enum PassError {
-    /// The program is wrong.
-    Input(InputError),
-    /// It cannot be read.
-    Read(io::Error),
-    /// The result cannot be written.
-    Write(io::Error),
-}
-
-impl From<InputError> for PassError {
-    fn from(error: InputError) -> Self {
-        Self::Input(error)
-    }
-}
-
-/// Where the results of a pass go.
-pub struct Sinks<'s> {
-    /// The rewritten program.
-    pub text: &'s mut dyn Write,
-    /// One row a move.
-    pub row: &'s mut dyn FnMut(&MoveRow) -> Result<(), InputError>,
-    /// Told the bytes read, now and then.
-    pub progress: &'s mut dyn FnMut(u64),
 }

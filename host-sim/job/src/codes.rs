@@ -1,0 +1,38 @@
+//! Errors of the job, of its features and of what it names.
+
+truepath_ground::codes! {
+    J001 => "a file named by the job cannot be read"
+        / "correct the name: it is taken relative to the job file's folder",
+    J009 => "the actual surface of the stock is for the host only: a device takes an even allowance"
+        / "make the image here, with truepath correct --route coprocessor, and upload it",
+    K001 => "the surface of the stock is no table of points"
+        / "write a first line x_mm,y_mm and then one point of the surface a line, decimal points, in the order of travel",
+    K002 => "the surface of the stock does not lie along the contour, or not between wall and cutter"
+        / "check frame and unit of the surface, and that it belongs to this program",
+    M040 => "more probe points than are taken at once"
+        / "keep every n-th reading of a scan: some places on each wall and in every corner, each at several heights, tell all there is; truepath inspect takes the whole file",
+    N001 => "several features can be corrected, and none is named"
+        / "add --feature and one of these names; each of them is a correction of its own",
+    N002 => "no feature of that name"
+        / "name one of those the error lists",
+    N003 => "a marker BEGIN inside another feature"
+        / "features do not nest: end one before the next",
+    N004 => "a marker END without its BEGIN or of another name, or a comment that only begins like a marker"
+        / "write (TRUEPATH BEGIN id) before the cut and (TRUEPATH END) behind it",
+    N005 => "a marker BEGIN without its END"
+        / "add (TRUEPATH END) behind the last block of the feature",
+    N006 => "a name used by two markers"
+        / "give every feature a name of its own",
+    N007 => "a feature without a place in the program, or markers of a feature that the job does not have"
+        / "give the feature blocks, lines or markers, or remove the markers",
+    N008 => "a block number that the program does not have, or has several times"
+        / "write lines = [first, last] with line numbers, or put markers into the program",
+    N009 => "heights of passes that differ from those of the program"
+        / "give one height for every pass along this wall, in program coordinates, or leave z_mm out",
+    N010 => "several finishing contours in one feature"
+        / "name the lines of the cut with [[feature]] in the job, or with markers in the program",
+    N011 => "nothing to correct: no cut of the tool, or a role that is not corrected"
+        / "name a feature with role = \"finish\", its tool and its place",
+    N012 => "no pass of that number"
+        / "passes are the depths of the feature in the order of the program",
+}
