@@ -34,14 +34,14 @@ pub struct Machine {
     pub probe_before_end: Offset,
 }
 
-/// By what G41 and G42 move the path aside.
+/// What G41 and G42 move the path aside by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CompensationBy {
     /// By nothing: the program is the path of the cutter's centre, as it is where D holds wear only, and G41 or G42
     /// tell the side of the wall. G41.1 and G42.1 still count, as they name their diameter.
     #[default]
     Nothing,
-    /// By this radius, whatever D says.
+    /// This radius, whatever D says.
     Radius(Offset),
     /// By half of the diameter that the tool table has for D, or for the tool in the spindle.
     Table,
@@ -76,7 +76,7 @@ pub struct Options<'t> {
     pub decimal: PointlessLength,
     /// How many blocks may be executed beyond as many as the program has lines; loops that run longer are an error.
     pub block_limit: u32,
-    /// By what G41 and G42 move the path aside.
+    /// What G41 and G42 move the path aside by.
     pub compensation: CompensationBy,
     /// The tool table; empty when it is not known.
     pub tools: &'t [Tool],

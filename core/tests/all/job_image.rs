@@ -241,8 +241,8 @@ fn what_job_program_and_measurement_lack_is_named() {
         p.job.cut.feed_mm_per_min = None;
         p.program = b"G21 G90 S3000 M3\nG0 X0 Y0\nG0 Z-4\nG1 X8\nM30\n";
     };
-    let failed = error(&no_feed).failed();
-    assert_eq!((&failed.code, failed.line), (b"J012", 4));
+    let failed = error(&no_feed);
+    assert_eq!((failed.code(), failed.line()), ("J012", Some(4)));
 }
 
 /// A short wall whose program changes no tool.

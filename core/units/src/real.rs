@@ -79,7 +79,7 @@ impl Real {
         let q = (c.bits() as i128).saturating_mul(d.bits() as i128);
         Self::narrow(shift_rounded(p.saturating_add(q), 32))
     }
-    /// Magnitude.
+    /// The magnitude.
     pub const fn abs(self) -> Self {
         Self::from_bits(self.bits().saturating_abs())
     }
@@ -98,7 +98,7 @@ impl Real {
     pub const fn floor(self) -> i64 {
         self.bits() >> 32
     }
-    /// Of the sign of `other`, with this magnitude.
+    /// This magnitude with the sign of `other`.
     pub fn with_sign_of(self, other: Self) -> Self {
         if other < Self::ZERO { -self.abs() } else { self.abs() }
     }

@@ -30,7 +30,7 @@ const fn floor_64(value: u64) -> u64 {
     normalised(value << shift).0 >> (shift / 2)
 }
 
-/// For a value of more than 64 bits.
+/// The root of a value of more than 64 bits, rounded down.
 const fn floor_128(value: u128) -> u64 {
     let shift = value.leading_zeros() & !1;
     let n = value << shift;

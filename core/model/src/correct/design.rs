@@ -24,9 +24,9 @@ pub enum Law {
 /// Wall errors beside one sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Predicted {
-    /// Without correction.
+    /// The error without correction.
     pub before: Profile,
-    /// With it.
+    /// The error with the correction.
     pub after: Profile,
 }
 

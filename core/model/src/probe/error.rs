@@ -142,18 +142,18 @@ pub struct ProbeError {
 }
 
 impl ProbeError {
-    /// At some bytes of a line.
+    /// An error at some bytes of a line.
     pub(super) fn at(kind: ProbeErrorKind, line: &Line, offset: usize, len: usize) -> Self {
         let column = u32::try_from(offset.saturating_add(1)).unwrap_or(u32::MAX);
         Self { kind, line: line.number, column, start: line.start.saturating_add(offset), len }
     }
 
-    /// At a whole line.
+    /// An error of a whole line.
     pub(super) fn of_line(kind: ProbeErrorKind, line: &Line) -> Self {
         Self::at(kind, line, 0, line.text.len())
     }
 
-    /// At a part of a line: `rest` is what follows it.
+    /// An error at a part of a line: `rest` is what follows it.
     pub(super) fn before(kind: ProbeErrorKind, line: &Line, part: &[u8], rest: &[u8]) -> Self {
         Self::at(kind, line, line.text.len().saturating_sub(rest.len()).saturating_sub(part.len()), part.len())
     }

@@ -46,22 +46,22 @@ impl Number {
         self.0.decimals()
     }
 
-    /// With the other sign.
+    /// This number with the other sign.
     pub(super) const fn negated(self) -> Self {
         Self(self.0.negated())
     }
 
-    /// As a length in nanometres, rounded to nearest.
+    /// The length in nanometres, rounded to nearest.
     pub(super) fn nm(self, unit: LengthUnit) -> Result<i64, ProbeErrorKind> {
         i64::try_from(self.0.times(unit.nm())).map_err(|_| ProbeErrorKind::NumberTooLarge)
     }
 
-    /// As a number without a unit.
+    /// The number without a unit.
     pub(super) const fn real(self) -> Real {
         self.0.real()
     }
 
-    /// As a whole number; `None` when it is not one or is negative.
+    /// The whole number; `None` when it is not one or is negative.
     pub(super) fn whole(self) -> Option<u32> {
         u32::try_from(self.0.exactly_times(1)?).ok()
     }

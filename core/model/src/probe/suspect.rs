@@ -40,7 +40,7 @@ errors! {
             /// What the readings have too much, rounded to a tenth of a millimetre.
             by: [Offset; 2],
         } = "M014", "they fit after one shift of all";
-        /// Nothing simple.
+        /// Nothing simple explains it.
         Frame = "M014", "probably they are in another frame";
     }
 }

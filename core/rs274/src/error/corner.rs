@@ -6,10 +6,10 @@ errors! {
     /// What is wrong with `,R` or `,C`.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum CornerError {
-        /// On a block that is no line (G1) in the plane.
+        /// The word stands on a block that is no line (G1) in the plane.
         WithoutLine = "G058",
             "`,R` and `,C` stand between two lines (G1) of the plane, and this block is none; remove the word or write the corner out";
-        /// Followed by something else than a line (G1) in the plane.
+        /// Something else than a line (G1) in the plane follows.
         NotFollowed {
             /// The line of what follows.
             line: u32,
@@ -29,14 +29,14 @@ errors! {
         /// The second line goes back along the first.
         TurnsBack = "G110",
             "the second line goes back along the first, and nothing can be cut off there; remove the word";
-        /// `,A`.
+        /// `,A` is given.
         Angle = "G111", "`,A` (the direction of a line) is not computed; write the end of the line with its axes";
-        /// `,R` and `,C` in one block.
+        /// `,R` and `,C` stand in one block.
         Twice = "G112", "`,R` and `,C` stand in one block; keep one of them";
-        /// A line that moves more than the two axes of the plane.
+        /// A line moves more than the two axes of the plane.
         OtherAxis = "G113",
             "a corner is cut between lines of the two axes of the plane, and another axis moves here; give that move a block of its own";
-        /// In inverse time (G93), where F is the time of the whole block.
+        /// Inverse time (G93) is on, where F is the time of the whole block.
         InverseTime = "G114",
             "a corner has no feed of its own in inverse time (G93); write G94 before it, or write the corner out";
         /// More steps between the two lines than can wait.

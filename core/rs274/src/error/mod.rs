@@ -45,13 +45,13 @@ pub struct GcodeError {
 }
 
 impl GcodeError {
-    /// At a span of a line.
+    /// An error at a span of a line.
     pub(super) fn new(kind: GcodeErrorKind, line: &Line<'_>, span: Span) -> Self {
         let column = span.start.saturating_sub(line.start).saturating_add(1);
         let column = u32::try_from(column).unwrap_or(u32::MAX);
         Self { kind, file: 0, line: line.number, column, start: span.start, len: span.len }
     }
-    /// The same in another file.
+    /// The same error in another file.
     pub(super) const fn in_file(self, file: u16) -> Self {
         Self { file, ..self }
     }

@@ -105,7 +105,7 @@ impl<'p, 's, 'm, S> Execution<'p, 's, 'm, S>
 where
     S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
 {
-    /// At the start of a program.
+    /// The machine at the start of a program.
     pub(super) fn new(
         options: Options<'p>,
         memory: &'s mut Memory<'m>,

@@ -42,7 +42,7 @@ pub(in super::super) struct Evaluator<'e, P> {
 }
 
 impl<'e, P: MachineParameters> Evaluator<'e, P> {
-    /// With these parameters.
+    /// An evaluator with these parameters.
     pub(in super::super) const fn new(parameters: &'e P, dialect: Dialect) -> Self {
         Self { parameters, dialect, operands: heapless::Vec::new(), waiting: heapless::Vec::new() }
     }

@@ -119,7 +119,7 @@ impl<'p> Reader<'p> {
         self.place = call.back;
     }
 
-    /// To a block number.
+    /// Jumps to a block number.
     pub(super) fn jump(&mut self, number: u32, span: Span) -> Result<(), GcodeError> {
         let lines = self.place.block(number);
         self.place.lines = lines.ok_or_else(|| self.error(FlowError::NoSuchBlock { number }, span))?;

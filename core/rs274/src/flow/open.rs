@@ -39,7 +39,7 @@ pub(super) enum Kind {
     If,
     While,
     Do,
-    /// With the turns that are left.
+    /// `repeat` with the turns that are left.
     Repeat(u32),
     /// `WHILE … DO1` or `DO1`.
     Macro,

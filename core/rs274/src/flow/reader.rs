@@ -37,7 +37,7 @@ enum Read {
 }
 
 impl<'p> Reader<'p> {
-    /// Before the first block.
+    /// A reader before the first block.
     pub(in super::super) fn new(program: Program<'p>, options: &Options) -> Self {
         Self {
             program,

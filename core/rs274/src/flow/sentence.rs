@@ -41,7 +41,7 @@ pub(in super::super) struct Sentence<'p> {
 }
 
 impl<'p> Sentence<'p> {
-    /// Before the first block.
+    /// A sentence before the first block.
     pub(in super::super) const fn new(text: &'p [u8]) -> Self {
         Self {
             text,

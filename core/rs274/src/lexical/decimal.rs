@@ -86,7 +86,7 @@ impl Decimal {
     pub const fn is_negative(self) -> bool {
         self.mantissa < 0
     }
-    /// With the other sign.
+    /// This number with the other sign.
     #[must_use]
     pub const fn negated(self) -> Self {
         Self { mantissa: self.mantissa.wrapping_neg(), ..self }

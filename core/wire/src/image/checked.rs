@@ -88,7 +88,7 @@ impl<'a> Image<'a> {
     pub const fn len(&self) -> usize {
         self.nodes.len()
     }
-    /// Never: an image has at least two nodes.
+    /// Whether it has no nodes; never, an image has at least two.
     pub const fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }

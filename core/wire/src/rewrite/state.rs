@@ -19,7 +19,7 @@ pub(super) enum Phase {
     /// Over the start, above the pass: place frozen at the first node, the correction ramps in.
     #[default]
     Entry,
-    /// In the pass.
+    /// The cutter is in the pass.
     Path,
     /// Behind the end: the correction ramps out.
     Leaving,
@@ -33,9 +33,9 @@ pub struct State {
     pub(super) reason: Reason,
     pub(super) drives_seen_enabled: bool,
     pub(super) phase: Phase,
-    /// Of the image that was armed.
+    /// Checksum of the image that was armed.
     pub(super) image_crc: u32,
-    /// Of the frame that was armed.
+    /// Checksum of the frame that was armed.
     pub(super) frame_crc: u32,
     pub(super) mapping: Option<Mapping>,
     /// The setpoint before, in program coordinates, while armed or on.
