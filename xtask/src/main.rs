@@ -231,6 +231,7 @@ fn test(report: &mut Report, all: bool) {
     let boards: &[Board] = if all { &Board::ALL } else { &[Board::Virtual] };
     report.run(Step::new("fmt", || checks::format(false)));
     report.run(Step::new("lint", checks::lint));
+    report.run(Step::new("rooms", || rooms::check(false, None)));
     report.run(Step::new("test-only", || checks::tests(all, &[])));
     report.run(Step::new("firmware", || firmware::build(boards, false)));
     report.run(Step::new("budget", || firmware::budget::check(false)));

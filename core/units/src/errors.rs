@@ -1,7 +1,7 @@
 //! Errors, each declared in one row: code, variant, sentence and, where there is one, help.
 //!
 //! A code is a letter and three digits and keeps its meaning: `G…` program, `J…` job, `M…` measurement, `I…` image,
-//! `K…` link, `W…` warnings and, from `W101` on, full buffers. The rows of an enum are its `CATALOGUE`.
+//! `K101` on link, `W…` warnings and, from `W101` on, full buffers. The rows of an enum are its `CATALOGUE`.
 
 /// One row of a catalogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use truepath_ground::codes::Row;
 
-/// The rooms with their rows, in the order of the document. Those of the core go behind the last.
+/// The rooms of the host with their rows, in the order of the document; those of the core follow.
 const CATALOGUES: [(&str, &[Row]); 12] = [
     ("Files, tables and the command line", truepath_ground::codes::CATALOGUE),
     ("The job and its features", truepath_job::codes::CATALOGUE),
@@ -22,6 +22,21 @@ const CATALOGUES: [(&str, &[Row]); 12] = [
     ("Pockets", truepath_pocket::codes::CATALOGUE),
 ];
 
+/// The core's rows by the letter of their codes.
+const OF_THE_CORE: [(&str, char); 6] = [
+    ("Reading a program", 'G'),
+    ("Reading a measurement", 'M'),
+    ("Warnings, and full buffers of a device", 'W'),
+    ("A job on the device", 'J'),
+    ("Correction images", 'I'),
+    ("The setpoint link", 'K'),
+];
+
+/// Text in a cell of a table.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
 /// The document.
 fn document() -> String {
     let mut text = "# Error codes\n\nEvery error has a code that stays. Beside it a message names the place, what was \
@@ -31,7 +46,22 @@ fn document() -> String {
     for (title, rows) in CATALOGUES {
         let _ = write!(text, "\n## {title}\n\n| code | meaning | what to do |\n|---|---|---|\n");
         for Row { code, says, remedy, .. } in rows {
-            let _ = writeln!(text, "| {code} | {says} | {remedy} |");
+            let _ = writeln!(text, "| {code} | {} | {} |", cell(says), cell(remedy));
+        }
+    }
+    text += "\nThe core says with the error itself what to do; names in braces stand for what it found.\n";
+    for (title, letter) in OF_THE_CORE {
+        let _ = write!(text, "\n## {title}\n\n| code | what is said | what to do |\n|---|---|---|\n");
+        let mut rows: Vec<_> = truepath_core::errors::CATALOGUE.into_iter().flatten().collect();
+        rows.retain(|row| row.code.starts_with(letter));
+        rows.sort_by_key(|row| row.code);
+        for row in rows {
+            // A sentence without help of its own ends in what to do.
+            let parted = |says: &'static str| says.rsplit_once("; ").unwrap_or((says, ""));
+            let parts = row.says.iter().map(|says| if row.help.is_empty() { parted(says) } else { (*says, row.help) });
+            let (says, mut help): (Vec<_>, Vec<_>) = parts.map(|(says, help)| (cell(says), cell(help))).unzip();
+            help.dedup();
+            let _ = writeln!(text, "| {} | {} | {} |", row.code, says.join("<br>"), help.join("<br>"));
         }
     }
     text
@@ -46,6 +76,11 @@ fn a_code_is_a_letter_and_three_digits_and_means_one_thing() {
         assert!(digits.bytes().all(|b| b.is_ascii_digit()), "{}", row.code);
         assert!(!row.says.is_empty() && !row.remedy.is_empty(), "{}", row.code);
         assert_eq!(known.insert(row.code, title), None, "{} stands twice", row.code);
+    }
+    // Of one meaning inside the core: its own test.
+    for row in truepath_core::errors::CATALOGUE.into_iter().flatten() {
+        assert!(!known.contains_key(row.code), "{} is the host's, too", row.code);
+        assert!(OF_THE_CORE.iter().any(|(_, letter)| row.code.starts_with(*letter)), "{} has no section", row.code);
     }
 }
 
