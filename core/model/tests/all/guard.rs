@@ -66,7 +66,7 @@ impl Case {
         })
     }
 
-    /// Designed without guard and prudence.
+    /// Designed without guard and shrinkage.
     fn plain(&self, wanted: &Design) -> Made {
         self.run(|machine, made, workspace| {
             design(machine, wanted, made.nodes, made.predicted, workspace, &mut |_| ());
