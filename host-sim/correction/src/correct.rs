@@ -13,7 +13,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
 
-use crate::correction::{Correction, DesignRequest, Identified, design_correction, identify};
+use crate::correction::{Correction, DesignRequest, Identification, design_correction, identify};
 use crate::edits::block_edits;
 use crate::remarks::Remarks;
 use crate::rows::{CorrectionRow, correction_rows};
@@ -25,7 +25,7 @@ use crate::{feeds, image};
 #[derive(Clone, Debug)]
 pub struct Corrected {
     /// Machine and material.
-    pub identified: Identified,
+    pub identified: Identification,
     /// The correction.
     pub correction: Correction,
     /// Feeds in place of the programmed ones, where the job wants any.
@@ -76,7 +76,7 @@ pub fn correct(
 pub fn design(
     pass: &Pass,
     sampled: &Path,
-    identified: Identified,
+    identified: Identification,
     request: &DesignRequest<'_>,
     remarks: Remarks<'_>,
     routes: &[Route],

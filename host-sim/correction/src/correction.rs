@@ -19,7 +19,7 @@ use crate::parallel_walls::ParallelWalls;
 
 /// What the probe points say about machine and material.
 #[derive(Clone, Debug)]
-pub struct Identified {
+pub struct Identification {
     /// The result of the core.
     pub core: job::Identified,
     /// The points with predictions and weights.
@@ -56,17 +56,17 @@ pub fn identify(
     path: &Path,
     measurement: &Measurement,
     mut progress: impl FnMut(f64),
-) -> Result<Identified, Failure> {
+) -> Result<Identification, Failure> {
     let observations = measurement.observations()?;
     let points = Points { earlier: &[], observations: &observations };
     let law = asked(pass.core.job.force.model);
     let uncorrected = |_, _| Vector::ZERO;
     let Found { core, observations, .. } = found(&pass.core, path, law, points, uncorrected, &mut progress);
     core.check(&observations).map_err(|error| pass.refused(&error))?;
-    Ok(Identified { core, observations })
+    Ok(Identification { core, observations })
 }
 
-impl Identified {
+impl Identification {
     /// The wall law, given or found.
     pub const fn law(&self) -> WallLaw {
         self.core.law
@@ -116,7 +116,7 @@ impl DesignRequest<'_> {
 pub fn design_correction(
     pass: &Pass,
     machine: &Loop,
-    identified: &Identified,
+    identified: &Identification,
     request: &DesignRequest,
     mut progress: impl FnMut(f64),
 ) -> Result<Correction, Failure> {
@@ -131,7 +131,7 @@ pub fn design_correction(
 pub fn evaluate(
     pass: &Pass,
     machine: &Loop,
-    identified: &Identified,
+    identified: &Identification,
     nodes: &[Node],
     request: &DesignRequest,
 ) -> Correction {
@@ -142,7 +142,7 @@ pub fn evaluate(
 /// A correction by its design and request.
 fn guarded_correction(
     machine: &Loop,
-    identified: &Identified,
+    identified: &Identification,
     wanted: Design,
     request: &DesignRequest,
     progress: &mut dyn FnMut(f64),

@@ -8,7 +8,7 @@ use truepath_job::feed::{FeedSummary, Schedule, Unscheduled, Wanted, largest_for
 use truepath_job::job::{ForceLimit, Route};
 use truepath_job::pass::Pass;
 
-use crate::correction::{DesignRequest, Identified, design_correction};
+use crate::correction::{DesignRequest, Identification, design_correction};
 use crate::summary::correct_summary;
 
 /// The feeds along a contour.
@@ -31,7 +31,7 @@ const TRUSTED: f64 = 0.3;
 pub fn planned(
     pass: &Pass,
     machine: &Loop,
-    identified: &Identified,
+    identified: &Identification,
     probed: bool,
     routes: &[Route],
 ) -> Result<Feeds, Failure> {
@@ -89,7 +89,7 @@ fn contradiction(pass: &Pass, key: &str, found: &str, expected: &str, help: &str
 
 impl Feeds {
     /// Notes what a correction at the feeds of the program would leave; `machine` is on the path with these.
-    pub fn compare(&mut self, pass: &Pass, machine: &Loop, identified: &Identified, request: &DesignRequest<'_>) {
+    pub fn compare(&mut self, pass: &Pass, machine: &Loop, identified: &Identification, request: &DesignRequest<'_>) {
         let (Some(_), Some(summary)) = (&self.schedule, &mut self.summary) else { return };
         // Beyond the clamp there is none.
         let Ok(plain) = design_correction(pass, machine, identified, request, |_| ()) else { return };

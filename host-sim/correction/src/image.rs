@@ -6,13 +6,18 @@ use truepath_core::job;
 use truepath_ground::diagnostics::Failure;
 use truepath_job::pass::Pass;
 
-use crate::correction::{Correction, Identified};
+use crate::correction::{Correction, Identification};
 
 /// Makes the image of a correction.
 ///
 /// # Errors
 /// A correction beyond the clamp somewhere in the feed window, or a contour too large for the coprocessor.
-pub fn build(pass: &Pass, identified: &Identified, path: &Path, correction: &Correction) -> Result<Vec<u8>, Failure> {
+pub fn build(
+    pass: &Pass,
+    identified: &Identification,
+    path: &Path,
+    correction: &Correction,
+) -> Result<Vec<u8>, Failure> {
     let mut nodes = correction.nodes.clone();
     let mut bytes = vec![0; image_bytes(DEVICE_NODES)];
     let (core, found, blocks) = (&pass.core, &identified.core, &pass.blocks);

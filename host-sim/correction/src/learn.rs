@@ -10,7 +10,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 use crate::as_milled::WholeContour;
 use crate::codes::{Q002, Q006};
 use crate::correct::{Corrected, design};
-use crate::correction::{DesignRequest, Identified};
+use crate::correction::{DesignRequest, Identification};
 use crate::learning::{History, MOST_PARTS, Part, PartPoints, Update, Verdict, update};
 use crate::remarks::Remarks;
 use crate::summary::CorrectSummary;
@@ -71,7 +71,7 @@ pub fn learn(
         update(pass, &sampled, parts, newest, &history.next.promised(), &mut |share| progress(0.5 * share))?;
     part.set_aside = set_aside;
     let observations = joint.observations.last().cloned().unwrap_or_default();
-    let identified = Identified { core: joint.core, observations };
+    let identified = Identification { core: joint.core, observations };
     let request =
         DesignRequest { law: Law::Model, residual: &residual, residual_sigma: &residual_sigma, kept: kept.as_deref() };
     let mut texts = remarks.to_vec();

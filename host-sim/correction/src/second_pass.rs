@@ -21,7 +21,7 @@ use truepath_program::first_pass_of;
 use super::remarks::Remarks;
 use crate::codes::K003;
 use crate::correct::{Corrected, design};
-use crate::correction::{DesignRequest, Identified, identify};
+use crate::correction::{DesignRequest, Identification, identify};
 
 /// Corrects the second pass from a measurement of the first, in memory; gives the surface it is made over as well.
 ///
@@ -52,7 +52,7 @@ pub fn correct(
 }
 
 /// The wall of a pass as it stands: the identified model's, with the measured difference.
-fn left_by(sampled: &Path, known: &Identified) -> Surface {
+fn left_by(sampled: &Path, known: &Identification) -> Surface {
     let path = sampled.with_law(known.law());
     let table = known.table();
     let machine = known.machine(&path, &table);
@@ -74,7 +74,7 @@ fn left_by(sampled: &Path, known: &Identified) -> Surface {
 }
 
 /// Measured less predicted wall error at every probed place, mean over its heights, in the order of the contour, mm.
-fn differences(known: &Identified) -> Vec<(f64, f64)> {
+fn differences(known: &Identification) -> Vec<(f64, f64)> {
     let mut places: Vec<(f64, f64, f64)> = Vec::new();
     for o in known.observations.iter().filter(|o| float(o.weight) > 0.3) {
         let (s, d) = (mm(o.s), mm(o.error - o.predicted));

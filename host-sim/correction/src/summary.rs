@@ -11,7 +11,7 @@ use truepath_job::feed::FeedSummary;
 use truepath_job::pass::{Pass, milling_name};
 use truepath_program::Difference;
 
-use crate::correction::{Correction, Identified};
+use crate::correction::{Correction, Identification};
 use crate::damped::{DampedSummary, damped_summary};
 use crate::guard::{GuardSummary, guard_summary};
 
@@ -105,7 +105,7 @@ fn largest(values: impl Iterator<Item = Offset>) -> f64 {
 /// Makes the summary of `correct`.
 pub fn correct_summary(
     pass: &Pass,
-    identified: &Identified,
+    identified: &Identification,
     correction: &Correction,
     rejected: usize,
     warnings: Vec<String>,
@@ -155,7 +155,7 @@ impl CorrectSummary {
     }
 }
 
-fn parameters(identified: &Identified) -> BTreeMap<&'static str, Parameter> {
+fn parameters(identified: &Identification) -> BTreeMap<&'static str, Parameter> {
     let (fitted, believed) = (&identified.fit().parameters, &identified.prior().mean);
     let (values, prior) = (fitted.values(), believed.values());
     let (sigma, prior_sigma) = (identified.prior().deviations(fitted), identified.prior().deviations(believed));

@@ -8,12 +8,17 @@ use truepath_ground::units::mm;
 use truepath_job::pass::Pass;
 use truepath_program::Difference;
 
-use crate::correction::{Correction, Identified};
+use crate::correction::{Correction, Identification};
 use crate::damped::damped_summary;
 use crate::guard::guard_summary;
 
 /// What the user should doubt.
-pub fn model_warnings(pass: &Pass, identified: &Identified, correction: &Correction, machine: &Loop) -> Vec<String> {
+pub fn model_warnings(
+    pass: &Pass,
+    identified: &Identification,
+    correction: &Correction,
+    machine: &Loop,
+) -> Vec<String> {
     let mut out = Vec::new();
     if identified.fit().outliers > 0 {
         let lines: Vec<String> = identified
@@ -91,7 +96,7 @@ pub fn model_warnings(pass: &Pass, identified: &Identified, correction: &Correct
 }
 
 /// A correction that a part was cut with takes off nearly the same everywhere: the fit finds a cutter that is too large.
-pub fn cut_corrected(identified: &Identified, correction: &Correction) -> Option<String> {
+pub fn cut_corrected(identified: &Identification, correction: &Correction) -> Option<String> {
     let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
     let undersize = identified.fit().parameters.undersize;
     let is_far = Parameter::ALL

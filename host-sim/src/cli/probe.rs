@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use truepath_correction::verification::{Dialect, Settings};
+use truepath_correction::verification::{ProbeDialect, Settings};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::json;
 
@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     job: PathBuf,
     /// The control the program is for.
     #[arg(long, value_enum, required_unless_present = "next", requires = "output")]
-    dialect: Option<Dialect>,
+    dialect: Option<ProbeDialect>,
     /// The program to write.
     #[arg(short, long, value_name = "FILE", required_unless_present = "next", requires = "dialect")]
     output: Option<PathBuf>,

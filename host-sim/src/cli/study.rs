@@ -10,7 +10,7 @@ use truepath_study::id::{Axis, CaseId};
 use truepath_study::reference::words as words_of_goals;
 use truepath_study::seeds::Set;
 use truepath_study::summary::{Row, Summary};
-use truepath_study::{export, pool};
+use truepath_study::{export, parallel};
 
 use super::{Terminal, print};
 use crate::command::study::{Options, reference, run as study};
@@ -113,7 +113,7 @@ pub(super) fn run(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fail
 /// The reference goals.
 fn goals(output: &Path, arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
     let mut bar = terminal.progress("studying", 1000);
-    let threads = arguments.threads.unwrap_or_else(pool::cores);
+    let threads = arguments.threads.unwrap_or_else(parallel::cores);
     let reached = reference(arguments.seeds, threads, output, arguments.force, &mut |done, all| {
         bar.reached(done * 1000 / all.max(1));
     })?;

@@ -2,7 +2,7 @@
 
 use std::path::Path as FilePath;
 
-use truepath_correction::verification::{Dialect, Gained, KeptOff, Plan, Settings, Unknown, plan, write};
+use truepath_correction::verification::{Gained, KeptOff, Plan, ProbeDialect, Settings, Unknown, plan, write};
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFile;
 use truepath_job::job::{Job, ProbeFlags, Which};
@@ -16,7 +16,7 @@ pub struct Options<'a> {
     /// The job.
     pub job: &'a FilePath,
     /// The control and the program to write; without them the places are listed only.
-    pub program: Option<(Dialect, &'a FilePath)>,
+    pub program: Option<(ProbeDialect, &'a FilePath)>,
     /// Replace an existing file.
     pub force: bool,
     /// Choices.
@@ -86,7 +86,7 @@ pub struct Kept {
 pub struct Report {
     /// The control; absent when no program was written.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub dialect: Option<Dialect>,
+    pub dialect: Option<ProbeDialect>,
     /// `[probe] format` for the file of results.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probe_format: Option<&'static str>,
@@ -135,7 +135,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, F
 }
 
 /// The report of a plan.
-pub fn report(plan: &Plan, dialect: Option<Dialect>) -> Report {
+pub fn report(plan: &Plan, dialect: Option<ProbeDialect>) -> Report {
     let points = plan.touches().map(|touch| Point {
         id: touch.id,
         s_mm: touch.place.s_mm,
@@ -153,7 +153,7 @@ pub fn report(plan: &Plan, dialect: Option<Dialect>) -> Report {
     });
     Report {
         dialect,
-        probe_format: dialect.map(Dialect::probe_format),
+        probe_format: dialect.map(ProbeDialect::probe_format),
         points: points.collect(),
         safe_z_mm: plan.safe_z_mm,
         clearance_mm: plan.settings.clearance,

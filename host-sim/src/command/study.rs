@@ -5,17 +5,17 @@ use std::path::Path as FilePath;
 
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFile, json};
+use truepath_study::case_table::{CaseTable, program_key};
 use truepath_study::codes::{Y003, Y004};
 use truepath_study::families::{FAMILIES, Family, family};
 use truepath_study::id::{Axis, CaseId, Cell};
-use truepath_study::ledger::{Ledger, program_key};
 use truepath_study::markdown::{results, written_into};
 use truepath_study::outcome::Outcome;
 use truepath_study::page::page;
 use truepath_study::reference::{Reached, reference as goals};
 use truepath_study::seeds::Set;
 use truepath_study::summary::{Summary, summary};
-use truepath_study::{carry, pool};
+use truepath_study::{parallel, workflow};
 
 /// File of the reference goals.
 const GOALS: &str = "reference.json";
@@ -99,14 +99,14 @@ pub struct Studied {
 pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Studied, Failure> {
     let cases = cases(options)?;
     let key = program_key();
-    let mut ledger = Ledger::open(options.out, &key, options.force)?;
+    let mut ledger = CaseTable::open(options.out, &key, options.force)?;
     let all = cases.len() as u64;
     let left: Vec<CaseId> = cases.into_iter().filter(|id| !ledger.finished.contains_key(&id.to_string())).collect();
     let mut finished = all - left.len() as u64;
     progress(finished, all);
-    let threads = options.threads.unwrap_or_else(pool::cores);
-    let carried = |id: &CaseId| carry::outcome(id, options.first_only);
-    pool::each(&left, threads, carried, |outcome| {
+    let threads = options.threads.unwrap_or_else(parallel::cores);
+    let carried = |id: &CaseId| workflow::outcome(id, options.first_only);
+    parallel::for_each(&left, threads, carried, |outcome| {
         finished += 1;
         progress(finished, all);
         ledger.append(outcome)

@@ -3,9 +3,9 @@
 
 use truepath::command::study::{Options, cases, run};
 use truepath_study::case::Case;
+use truepath_study::case_table::NAME;
 use truepath_study::families::FAMILIES;
 use truepath_study::id::{Axis, CaseId};
-use truepath_study::ledger::NAME;
 use truepath_study::seeds::Set;
 
 fn options<'a>(out: &'a std::path::Path, families: &'a [String]) -> Options<'a> {

@@ -8,7 +8,7 @@ use super::{fanuc, grbl, haas, linuxcnc};
 /// A control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Dialect {
+pub enum ProbeDialect {
     /// Haas NGC with Renishaw Inspection Plus: results as inspection text through DPRNT.
     Haas,
     /// Fanuc with a probe on the skip signal: G31, results as inspection text through DPRNT.
@@ -19,7 +19,7 @@ pub enum Dialect {
     Grbl,
 }
 
-impl Dialect {
+impl ProbeDialect {
     /// `[probe] format` of the file that the program makes.
     pub const fn probe_format(self) -> &'static str {
         match self {
@@ -34,11 +34,11 @@ impl Dialect {
 ///
 /// # Errors
 /// `V005` when the control has no word for something in the plan.
-pub fn write(plan: &Plan, dialect: Dialect, log: &str) -> Result<String, InputError> {
+pub fn write(plan: &Plan, dialect: ProbeDialect, log: &str) -> Result<String, InputError> {
     match dialect {
-        Dialect::Haas => haas::write(plan),
-        Dialect::Fanuc => fanuc::write(plan),
-        Dialect::Linuxcnc => linuxcnc::write(plan, log),
-        Dialect::Grbl => grbl::write(plan),
+        ProbeDialect::Haas => haas::write(plan),
+        ProbeDialect::Fanuc => fanuc::write(plan),
+        ProbeDialect::Linuxcnc => linuxcnc::write(plan, log),
+        ProbeDialect::Grbl => grbl::write(plan),
     }
 }

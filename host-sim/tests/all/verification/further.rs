@@ -4,7 +4,7 @@ use truepath::command::probe_next::{next, next_part};
 use truepath_core::checksum::crc32;
 use truepath_correction::correct::correct;
 use truepath_correction::learning::History;
-use truepath_correction::verification::{Dialect, Plan, Settings, write};
+use truepath_correction::verification::{Plan, ProbeDialect, Settings, write};
 use truepath_ground::diagnostics::{Form, Source};
 use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
@@ -95,10 +95,10 @@ fn on_the_next_part_the_places_are_chosen_from_the_history_and_its_datum_is_open
     let crc = format!("{:08x}", crc32(done.program.as_deref().unwrap()));
     assert_eq!(plan.correction.map(|crc| format!("{crc:08x}")), Some(crc.clone()));
     for (dialect, line) in [
-        (Dialect::Linuxcnc, format!("(LOG,# correction {crc})")),
-        (Dialect::Grbl, format!(";VERIFY CORRECTION {crc}")),
-        (Dialect::Fanuc, format!("DPRNT[CORRECTION*{}]", crc.to_uppercase())),
-        (Dialect::Haas, format!("DPRNT[CORRECTION*{}]", crc.to_uppercase())),
+        (ProbeDialect::Linuxcnc, format!("(LOG,# correction {crc})")),
+        (ProbeDialect::Grbl, format!(";VERIFY CORRECTION {crc}")),
+        (ProbeDialect::Fanuc, format!("DPRNT[CORRECTION*{}]", crc.to_uppercase())),
+        (ProbeDialect::Haas, format!("DPRNT[CORRECTION*{}]", crc.to_uppercase())),
     ] {
         assert!(write(&plan, dialect, "log.txt").unwrap().lines().any(|l| l == line), "{dialect:?}");
         assert!(!write(&same, dialect, "log.txt").unwrap().contains(&crc), "{dialect:?}");

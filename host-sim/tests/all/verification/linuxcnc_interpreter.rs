@@ -5,7 +5,7 @@
 
 use std::process::{Command, Stdio};
 
-use truepath_correction::verification::{Dialect, Plan, Settings, write};
+use truepath_correction::verification::{Plan, ProbeDialect, Settings, write};
 
 use super::parts::{PARTS, pass, planned, pocket_in_inches};
 
@@ -63,7 +63,7 @@ fn linuxcnc_accepts_the_program_without_a_message_and_moves_as_planned() {
     for part in PARTS {
         for probe_tool in [None, Some(20)] {
             let plan = planned(&pass(part, &[]), &Settings { probe_tool, ..Settings::default() });
-            let Some((said, message)) = interpreted(&write(&plan, Dialect::Linuxcnc, "log.txt").unwrap()) else {
+            let Some((said, message)) = interpreted(&write(&plan, ProbeDialect::Linuxcnc, "log.txt").unwrap()) else {
                 return;
             };
             assert_eq!(message.trim(), "executing", "a message of the interpreter");
@@ -77,7 +77,7 @@ fn linuxcnc_accepts_the_program_without_a_message_and_moves_as_planned() {
 fn linuxcnc_accepts_the_program_in_inches() {
     let inches = pocket_in_inches();
     let plan = planned(&pass([&inches[0], &inches[1]], &[]), &Settings::default());
-    let Some((said, message)) = interpreted(&write(&plan, Dialect::Linuxcnc, "log.txt").unwrap()) else { return };
+    let Some((said, message)) = interpreted(&write(&plan, ProbeDialect::Linuxcnc, "log.txt").unwrap()) else { return };
     assert_eq!(message.trim(), "executing");
     agrees(&plan, &said, 25.4);
 }

@@ -1,10 +1,10 @@
 //! What stands in the programs, and what never does.
 
-use truepath_correction::verification::{Dialect, Settings, write};
+use truepath_correction::verification::{ProbeDialect, Settings, write};
 
 use super::parts::{PARTS, POCKET, pass, planned, pocket_in_inches};
 
-const ALL: [Dialect; 4] = [Dialect::Haas, Dialect::Fanuc, Dialect::Linuxcnc, Dialect::Grbl];
+const ALL: [ProbeDialect; 4] = [ProbeDialect::Haas, ProbeDialect::Fanuc, ProbeDialect::Linuxcnc, ProbeDialect::Grbl];
 
 /// The lines that are executed, without comments.
 fn code(program: &str) -> impl Iterator<Item = &str> {
@@ -55,7 +55,7 @@ fn a_probe_in_the_tool_table_is_called_and_else_the_operator_is_asked() {
     let pass = pass(POCKET, &[]);
     let with = planned(&pass, &Settings { probe_tool: Some(20), ..Settings::default() });
     let without = planned(&pass, &Settings::default());
-    for dialect in [Dialect::Haas, Dialect::Fanuc, Dialect::Linuxcnc] {
+    for dialect in [ProbeDialect::Haas, ProbeDialect::Fanuc, ProbeDialect::Linuxcnc] {
         let called = write(&with, dialect, "log.txt").unwrap();
         assert!(called.contains("T20 M6\n") && called.contains("G43 H20") && !called.contains("\nM0\n"), "{called}");
         let asked = write(&without, dialect, "log.txt").unwrap();
@@ -64,7 +64,7 @@ fn a_probe_in_the_tool_table_is_called_and_else_the_operator_is_asked() {
         let first = code(&asked).find(|l| l.contains(['X', 'Y', 'Z'])).unwrap();
         assert_eq!(first.split(' ').next_back().unwrap().parse_z(), 100.0);
     }
-    assert_eq!(write(&with, Dialect::Grbl, "log.txt").unwrap_err().code(), "V005");
+    assert_eq!(write(&with, ProbeDialect::Grbl, "log.txt").unwrap_err().code(), "V005");
 }
 
 /// The page of the documentation shows a program of each control as it is written: one place, one height.
@@ -102,13 +102,13 @@ impl ParseZ for str {
 #[test]
 fn work_offsets_that_a_control_lacks_are_refused() {
     let mut plan = planned(&pass(POCKET, &[("G54\n", "G57\n")]), &Settings::default());
-    assert_eq!(plan.shop.work_offset, 4);
+    assert_eq!(plan.program.work_offset, 4);
     for (offset, codes) in [
         (8, [None, None, Some("G59.2"), None]),
         (21, [Some("G154 P12"), Some("G54.1 P12"), None, None]),
         (4, [Some("G57"); 4]),
     ] {
-        plan.shop.work_offset = offset;
+        plan.program.work_offset = offset;
         for (dialect, code) in ALL.into_iter().zip(codes) {
             match (write(&plan, dialect, "log.txt"), code) {
                 (Ok(program), Some(code)) => assert!(program.lines().any(|l| l == code), "{dialect:?} {offset}"),
@@ -123,7 +123,7 @@ fn work_offsets_that_a_control_lacks_are_refused() {
 fn an_inch_program_is_probed_in_inches() {
     let inches = pocket_in_inches();
     let inch = planned(&pass([&inches[0], &inches[1]], &[]), &Settings::default());
-    let program = write(&inch, Dialect::Linuxcnc, "log.txt").unwrap();
+    let program = write(&inch, ProbeDialect::Linuxcnc, "log.txt").unwrap();
     assert!(
         program.contains("\nG20 G17")
             && program.contains("(LOG,# unit inch)")

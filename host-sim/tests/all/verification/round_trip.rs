@@ -1,6 +1,6 @@
 //! Programs executed beside a wall with a known error; what they print gives that error back.
 
-use truepath_correction::verification::{Dialect, Settings, write};
+use truepath_correction::verification::{ProbeDialect, Settings, write};
 use truepath_ground::diagnostics::Source;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -15,21 +15,21 @@ fn error(s: f64) -> f64 {
 }
 
 /// Executes the program of a pass beside its wall.
-fn touched(pass: &Pass, dialect: Dialect, error: impl Fn(f64) -> f64) -> Result<Printed, String> {
+fn touched(pass: &Pass, dialect: ProbeDialect, error: impl Fn(f64) -> f64) -> Result<Printed, String> {
     let plan = planned(pass, &Settings::default());
     let program = write(&plan, dialect, "log.txt").unwrap();
     Control::new(&Wall::of(pass, error), plan.ball_mm / 2.0).run(&program)
 }
 
 /// The same pass, its job saying that the probe file is of this dialect.
-fn read_as(part: [&str; 2], dialect: Dialect) -> Pass {
+fn read_as(part: [&str; 2], dialect: ProbeDialect) -> Pass {
     pass(part, &[("format = \"linuxcnc\"", &format!("format = \"{}\"", dialect.probe_format()))])
 }
 
 /// The file that the user has after the program has run: grbl's console with the answers to `$#` and `$$`.
-fn file(dialect: Dialect, printed: &Printed) -> String {
+fn file(dialect: ProbeDialect, printed: &Printed) -> String {
     match dialect {
-        Dialect::Grbl => {
+        ProbeDialect::Grbl => {
             let offset = "[G54:-310.000,-205.500,-99.250]\n[G92:0.000,0.000,0.000]\n[TLO:0.000]\n";
             format!("$13=0\nok\n{}{offset}ok\n", printed.console)
         }
@@ -52,11 +52,11 @@ fn recovered(pass: &Pass, text: &str) -> Measurement {
 #[test]
 fn what_every_program_prints_gives_the_wall_error_back() {
     for part in PARTS {
-        for dialect in [Dialect::Linuxcnc, Dialect::Grbl, Dialect::Fanuc, Dialect::Haas] {
+        for dialect in [ProbeDialect::Linuxcnc, ProbeDialect::Grbl, ProbeDialect::Fanuc, ProbeDialect::Haas] {
             let printed = touched(&pass(part, &[]), dialect, error).unwrap();
             let measurement = recovered(&read_as(part, dialect), &file(dialect, &printed));
             // Of grbl's reports those of the way down and of the first touch are set aside: they were not the measurement.
-            let aside = if dialect == Dialect::Grbl { 48 } else { 0 };
+            let aside = if dialect == ProbeDialect::Grbl { 48 } else { 0 };
             assert_eq!(measurement.rejected.len(), aside, "{dialect:?}");
         }
     }
@@ -65,7 +65,9 @@ fn what_every_program_prints_gives_the_wall_error_back() {
 #[test]
 fn results_of_another_part_or_cut_off_are_refused() {
     let printed = |dialect| file(dialect, &touched(&pass(POCKET, &[]), dialect, error).unwrap());
-    for (dialect, footer) in [(Dialect::Linuxcnc, "# end 24"), (Dialect::Haas, "END 24"), (Dialect::Fanuc, "END 24")] {
+    for (dialect, footer) in
+        [(ProbeDialect::Linuxcnc, "# end 24"), (ProbeDialect::Haas, "END 24"), (ProbeDialect::Fanuc, "END 24")]
+    {
         let text = printed(dialect);
         let refused = |pass: &Pass, text: &str| {
             Measurement::read(pass, &Source::new("probe.txt", text.as_bytes().to_vec())).unwrap_err().to_string()
@@ -81,7 +83,7 @@ fn results_of_another_part_or_cut_off_are_refused() {
 fn inches_come_back_as_inches() {
     let inches = pocket_in_inches();
     let inches = [inches[0].as_str(), inches[1].as_str()];
-    for dialect in [Dialect::Linuxcnc, Dialect::Haas, Dialect::Fanuc] {
+    for dialect in [ProbeDialect::Linuxcnc, ProbeDialect::Haas, ProbeDialect::Fanuc] {
         let printed = touched(&pass(inches, &[]), dialect, error).unwrap();
         recovered(&read_as(inches, dialect), &file(dialect, &printed));
     }
@@ -91,11 +93,11 @@ fn inches_come_back_as_inches() {
 fn every_control_finds_the_wall_at_every_point() {
     let pass = pass(POCKET, &[]);
     let points = |printed: &Printed| printed.text.lines().filter(|l| l.starts_with("G801")).count();
-    let haas = touched(&pass, Dialect::Haas, error).unwrap();
+    let haas = touched(&pass, ProbeDialect::Haas, error).unwrap();
     assert_eq!((haas.touches, points(&haas)), (24, 24));
-    let fanuc = touched(&pass, Dialect::Fanuc, error).unwrap();
+    let fanuc = touched(&pass, ProbeDialect::Fanuc, error).unwrap();
     assert_eq!((fanuc.touches, points(&fanuc)), (48, 24));
-    let grbl = touched(&pass, Dialect::Grbl, error).unwrap();
+    let grbl = touched(&pass, ProbeDialect::Grbl, error).unwrap();
     assert_eq!(grbl.touches, 48);
     assert_eq!(grbl.console.lines().filter(|l| l.ends_with(":1]")).count(), 48);
 }
@@ -105,15 +107,15 @@ fn a_wall_that_is_not_there_is_a_miss_and_not_a_reading() {
     let pass = pass(POCKET, &[]);
     // Cut 3 mm too deep on the second half.
     let gone = |s: f64| if s > 100.0 { -3.0 } else { 0.1 };
-    let linuxcnc = touched(&pass, Dialect::Linuxcnc, gone).unwrap();
+    let linuxcnc = touched(&pass, ProbeDialect::Linuxcnc, gone).unwrap();
     let hits = linuxcnc.text.lines().filter(|l| l.ends_with(",1.000000")).count();
     let misses = linuxcnc.text.lines().filter(|l| l.ends_with(",0.000000")).count();
     assert!(hits > 0 && misses > 0 && hits + misses == 24, "{}", linuxcnc.text);
-    let fanuc = touched(&pass, Dialect::Fanuc, gone).unwrap();
+    let fanuc = touched(&pass, ProbeDialect::Fanuc, gone).unwrap();
     assert_eq!(fanuc.text.lines().filter(|l| l.starts_with("G800")).count(), 24);
     assert_eq!(fanuc.text.lines().filter(|l| l.starts_with("G801")).count(), hits);
     assert!(
-        touched(&pass, Dialect::Haas, gone).unwrap_err().contains("no surface found"),
+        touched(&pass, ProbeDialect::Haas, gone).unwrap_err().contains("no surface found"),
         "Inspection Plus stops by itself"
     );
 }
@@ -122,7 +124,7 @@ fn a_wall_that_is_not_there_is_a_miss_and_not_a_reading() {
 fn a_wall_in_the_way_down_stops_every_program() {
     let pass = pass(POCKET, &[]);
     // 2.5 mm left: the ball's stand-off is 2 mm before the nominal wall.
-    for dialect in [Dialect::Linuxcnc, Dialect::Grbl, Dialect::Fanuc, Dialect::Haas] {
+    for dialect in [ProbeDialect::Linuxcnc, ProbeDialect::Grbl, ProbeDialect::Fanuc, ProbeDialect::Haas] {
         let stopped = touched(&pass, dialect, |_| 2.5);
         assert!(stopped.is_err(), "{dialect:?}: {stopped:?}");
     }

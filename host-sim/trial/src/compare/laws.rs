@@ -6,7 +6,7 @@ use truepath_core::geometry::Vector;
 use truepath_core::job::{self, LawName};
 use truepath_core::probe::Contact;
 use truepath_core::units::{Offset, Real};
-use truepath_correction::correction::{Buffers, Identified};
+use truepath_correction::correction::{Buffers, Identification};
 use truepath_ground::units::mm;
 use truepath_job::pass::Pass;
 
@@ -27,7 +27,7 @@ pub struct Candidate {
 pub fn candidates(
     pass: &Pass,
     machine: &Loop,
-    identified: &Identified,
+    identified: &Identification,
     contacts: &[Contact],
     mut progress: impl FnMut(f64),
 ) -> Vec<Candidate> {
@@ -86,7 +86,12 @@ fn unguarded(pass: &Pass, machine: &Loop, law: Law) -> Vec<Node> {
     nodes
 }
 
-fn model(pass: &Pass, machine: &Loop, identified: &Identified, progress: &mut dyn FnMut(f64)) -> (Vec<Node>, String) {
+fn model(
+    pass: &Pass,
+    machine: &Loop,
+    identified: &Identification,
+    progress: &mut dyn FnMut(f64),
+) -> (Vec<Node>, String) {
     let wanted = pass.job.numbers.design(Law::Model);
     let mut buffers = Buffers::of(machine.path);
     let mut nodes = vec![Node::default(); machine.path.count()];
