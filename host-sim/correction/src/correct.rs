@@ -15,8 +15,8 @@ use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_pro
 
 use crate::correction::{Correction, DesignRequest, Identification, design_correction, identify};
 use crate::edits::block_edits;
-use crate::remarks::Remarks;
 use crate::rows::{CorrectionRow, correction_rows};
+use crate::summary::Remarks;
 use crate::summary::{CorrectSummary, correct_summary};
 use crate::warnings::{cut_corrected, kinked, model_warnings};
 use crate::{feeds, image};

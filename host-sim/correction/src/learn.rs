@@ -12,8 +12,8 @@ use crate::codes::{Q002, Q006};
 use crate::correct::{Corrected, design};
 use crate::correction::{DesignRequest, Identification};
 use crate::learning::{History, MOST_PARTS, Part, PartPoints, Update, Verdict, update};
-use crate::remarks::Remarks;
 use crate::summary::CorrectSummary;
+use crate::summary::Remarks;
 
 /// The correction of the next part.
 #[derive(Clone, Debug)]

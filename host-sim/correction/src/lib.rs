@@ -25,7 +25,6 @@ pub mod inspection;
 pub mod learn;
 pub mod learning;
 mod parallel_walls;
-pub mod remarks;
 pub mod rows;
 pub mod second_pass;
 pub mod summary;

@@ -18,7 +18,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 use truepath_job::surface::Surface;
 use truepath_program::first_pass_of;
 
-use super::remarks::Remarks;
+use super::summary::Remarks;
 use crate::codes::K003;
 use crate::correct::{Corrected, design};
 use crate::correction::{DesignRequest, Identification, identify};

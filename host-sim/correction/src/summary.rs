@@ -8,12 +8,33 @@ use truepath_core::units::{Offset, Real};
 use truepath_ground::units::{float, mm};
 use truepath_job::feature::FeatureSummary;
 use truepath_job::feed::FeedSummary;
+use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, milling_name};
 use truepath_program::Difference;
 
 use crate::correction::{Correction, Identification};
 use crate::damped::{DampedSummary, damped_summary};
 use crate::guard::{GuardSummary, guard_summary};
+
+/// What a measurement leaves to be said.
+#[derive(Clone, Copy, Debug)]
+pub struct Remarks<'a> {
+    /// Readings set aside.
+    pub set_aside: usize,
+    /// Sentences for the summary.
+    pub texts: &'a [String],
+    /// CRC-32 of the probe file.
+    pub probe: u32,
+    /// Whether it is of the pass that is corrected, and not of one before it.
+    pub of_this_pass: bool,
+}
+
+impl<'a> Remarks<'a> {
+    /// Of a measurement, with sentences about it.
+    pub const fn of(measurement: &Measurement, texts: &'a [String]) -> Self {
+        Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc, of_this_pass: true }
+    }
+}
 
 /// An identified quantity.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]

@@ -14,7 +14,6 @@ mod check_feed;
 mod check_part;
 mod check_pocket;
 mod check_probe;
-mod check_shank;
 mod check_stock;
 mod check_tool;
 mod material;
@@ -35,7 +34,7 @@ pub use check_feed::{FeedTable, ForceLimit};
 pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
 pub use check_pocket::{Mode, PerSection, PocketTable};
 pub use check_probe::{DECIMALS, FORMATS, FRAMES, POINTS, ProbeFlags, SEPARATORS, columns};
-pub use check_shank::Shank;
+pub use check_tool::Shank;
 pub use material::{MATERIALS, Material};
 
 pub(crate) use check_feature::is_id;
