@@ -18,7 +18,6 @@
 //! Limits: G17; coordinates are written with four decimals of a millimetre or six of an inch.
 
 mod approach;
-mod assemble;
 pub mod canon;
 mod centre_path;
 pub mod codes;

@@ -1,17 +1,19 @@
 //! What has been written so far of a corrected program, and what every part of the writing asks of it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use truepath_core::gcode::{Line, Modal, Motion};
 use truepath_ground::codes::Row;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
-use super::assemble::Replaced;
 use super::edit::RewriteOptions;
 use super::line::Block;
 use super::pen::Pen;
 use super::survey::Move;
 use crate::codes::P004;
+
+/// New text of a line: one or more lines without their ends.
+pub(super) type Replaced = BTreeMap<u32, Vec<Vec<u8>>>;
 
 /// The feed in force in the written text where it is not that of the program.
 #[derive(Clone, Debug)]

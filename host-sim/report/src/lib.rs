@@ -3,7 +3,6 @@
 //! Nothing is computed here that decides a correction.
 
 pub mod codes;
-mod compare;
 mod inspection;
 pub mod page;
 pub mod pages;
@@ -14,10 +13,9 @@ mod summary;
 mod tables;
 mod wall;
 
-pub use compare::{compare_csv, walls_csv};
 pub use inspection::{InspectSummary, ToleranceSummary, inspect_summary};
 pub use points::{judged_points_csv, points_csv};
 pub use reading::{LawPlaces, PointRow, read_correction, read_points, read_trace, read_wall, read_walls};
 pub use summary::{SimulateSummary, simulate_summary};
-pub use tables::{Trace, TraceRow, correction_csv, trace, trace_csv};
+pub use tables::{Trace, TraceRow, compare_csv, correction_csv, trace, trace_csv, walls_csv};
 pub use wall::{WallRow, wall_csv};

@@ -8,17 +8,17 @@ use clap::Args;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFile, json};
 use truepath_job::job::one_of;
+use truepath_study::case_table::{CaseTable, program_key};
 use truepath_study::codes::{Y003, Y004};
 use truepath_study::families::{FAMILIES, Family, family};
 use truepath_study::id::{Axis, CaseId, Cell};
-use truepath_study::ledger::{Ledger, program_key};
 use truepath_study::markdown::{results, written_into};
 use truepath_study::outcome::Outcome;
 use truepath_study::page::page;
 use truepath_study::reference::{Reached, reference as goals, words as words_of_goals};
 use truepath_study::seeds::Set;
 use truepath_study::summary::{Row, Summary, summary};
-use truepath_study::{carry, export, pool};
+use truepath_study::{export, parallel, workflow};
 
 use crate::terminal::Terminal;
 
@@ -78,7 +78,7 @@ impl Options {
         self.random.map_or((self.set, self.seeds), |count| (Set::Random, count))
     }
     fn threads(&self) -> usize {
-        self.threads.unwrap_or_else(pool::cores)
+        self.threads.unwrap_or_else(parallel::cores)
     }
     /// Folder of the results; clap has seen to it that there is one where it is needed.
     fn out(&self) -> &FilePath {
@@ -201,13 +201,13 @@ pub struct Studied {
 pub fn run(options: &Options, progress: &mut dyn FnMut(u64, u64)) -> Result<Studied, Failure> {
     let cases = cases(options)?;
     let key = program_key();
-    let mut ledger = Ledger::open(options.out(), &key, options.force)?;
+    let mut ledger = CaseTable::open(options.out(), &key, options.force)?;
     let all = cases.len() as u64;
     let left: Vec<CaseId> = cases.into_iter().filter(|id| !ledger.finished.contains_key(&id.to_string())).collect();
     let mut finished = all - left.len() as u64;
     progress(finished, all);
-    let carried = |id: &CaseId| carry::outcome(id, options.first);
-    pool::each(&left, options.threads(), carried, |outcome| {
+    let carried = |id: &CaseId| workflow::outcome(id, options.first);
+    parallel::for_each(&left, options.threads(), carried, |outcome| {
         finished += 1;
         progress(finished, all);
         ledger.append(outcome)

@@ -12,12 +12,12 @@ use truepath_job::pass::Pass;
 use truepath_plant::{Judged, Machine, Milled, judged_trim_mm};
 use truepath_trial::virtual_mill;
 
-use super::belief::Mistakes;
 use super::draw::Draw;
 use super::families::family;
 use super::id::{Axis, CaseId};
 use super::machine::{Drawn, Width, machine};
 use super::part::Part;
+use super::prior::Mistakes;
 use super::seeds::Set;
 use super::{places, text};
 

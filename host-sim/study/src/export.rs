@@ -7,10 +7,10 @@ use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::OutputFolder;
 use truepath_plant::Judged;
 
-use super::carry::{Carried, Taught, described, first, second};
 use super::case::Case;
 use super::id::CaseId;
 use super::outcome::Outcome;
+use super::workflow::{FirstPart, SecondPart, described, first, second};
 
 /// Files an export may write.
 const FILES: &[&str] =
@@ -24,9 +24,9 @@ pub struct Detail {
     /// Its outcome.
     pub outcome: Outcome,
     /// The correction, when there is one, or why not.
-    pub carried: Result<Carried, Failure>,
+    pub first_part: Result<FirstPart, Failure>,
     /// What was learned from the corrected part, or why nothing.
-    pub taught: Option<Result<Taught, Failure>>,
+    pub second_part: Option<Result<SecondPart, Failure>>,
 }
 
 /// Carries one case through.
@@ -36,15 +36,15 @@ pub struct Detail {
 pub fn detail(id: &CaseId) -> Result<Detail, Failure> {
     let case = Case::draw(id)?;
     let mut outcome = described(&case);
-    let carried = first(&case, &mut outcome);
-    if let Err(failure) = &carried {
+    let first_part = first(&case, &mut outcome);
+    if let Err(failure) = &first_part {
         outcome.failure = failure.to_string();
     }
-    let taught = carried.as_ref().ok().map(|carried| second(&case, carried, &mut outcome));
-    if let Some(Err(failure)) = &taught {
+    let second_part = first_part.as_ref().ok().map(|first_part| second(&case, first_part, &mut outcome));
+    if let Some(Err(failure)) = &second_part {
         outcome.learn_failure = failure.to_string();
     }
-    Ok(Detail { case, outcome, carried, taught })
+    Ok(Detail { case, outcome, first_part, second_part })
 }
 
 /// Writes the files of a case.
@@ -59,20 +59,20 @@ pub fn export(detail: &Detail, folder: &FilePath, force: bool) -> Result<(), Fai
     let plant = toml::to_string(&case.machine).map_err(|e| Failure::Internal(format!("plant.toml: {e}")))?;
     out.write("plant.toml", plant.as_bytes())?;
     out.write("probe.txt", case.probe(1, &case.first, &case.places_mm)?.as_bytes())?;
-    if let Ok(carried) = &detail.carried {
-        if let Some(program) = &carried.corrected.program {
+    if let Ok(first_part) = &detail.first_part {
+        if let Some(program) = &first_part.corrected.program {
             out.write("corrected.nc", program)?;
         }
-        let taught = detail.taught.as_ref().and_then(|taught| taught.as_ref().ok());
-        if let Some(taught) = taught {
-            out.write("probe-2.txt", taught.probe.as_bytes())?;
-            out.write("learned.nc", taught.learned.corrected.program.as_deref().unwrap_or_default())?;
+        let second_part = detail.second_part.as_ref().and_then(|second_part| second_part.as_ref().ok());
+        if let Some(second_part) = second_part {
+            out.write("probe-2.txt", second_part.probe.as_bytes())?;
+            out.write("learned.nc", second_part.learned.corrected.program.as_deref().unwrap_or_default())?;
         }
         let mut errors = "s_mm,before_mm,after_mm,learned_mm\n".to_owned();
         for (k, (s, before)) in case.before.mean_mm.iter().enumerate() {
             let at = |judged: &Judged| judged.mean_mm.get(k).map_or(f64::NAN, |(_, error)| *error);
-            let learned = taught.map_or(f64::NAN, |taught| at(&taught.after));
-            let _ = writeln!(errors, "{s:.4},{before:.6},{:.6},{learned:.6}", at(&carried.after));
+            let learned = second_part.map_or(f64::NAN, |second_part| at(&second_part.after));
+            let _ = writeln!(errors, "{s:.4},{before:.6},{:.6},{learned:.6}", at(&first_part.after));
         }
         out.write("errors.csv", errors.as_bytes())?;
     }
@@ -122,9 +122,9 @@ pub fn words(detail: &Detail) -> String {
     );
     let mm = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.4} mm"));
     line("error before", format!("{} (worst height {})", mm(o.before_mm), mm(o.worst_height_before_mm)));
-    match &detail.carried {
+    match &detail.first_part {
         Err(failure) => line("refused", failure.to_string()),
-        Ok(carried) => {
+        Ok(first_part) => {
             line(
                 "error after",
                 format!(
@@ -137,7 +137,7 @@ pub fn words(detail: &Detail) -> String {
             );
             line("within 2 sigma", format!("{:.1} % of the contour", 100.0 * o.coverage.unwrap_or_default()));
             line("wall law found", o.law.clone());
-            for (name, p) in &carried.corrected.summary.identified {
+            for (name, p) in &first_part.corrected.summary.identified {
                 let seen = if p.observable { "" } else { "  (not decided)" };
                 line(
                     name,
@@ -147,15 +147,15 @@ pub fn words(detail: &Detail) -> String {
                     ),
                 );
             }
-            for warning in &carried.corrected.summary.warnings {
+            for warning in &first_part.corrected.summary.warnings {
                 line("warning", warning.clone());
             }
         }
     }
-    match &detail.taught {
+    match &detail.second_part {
         None => {}
         Some(Err(failure)) => line("learning refused", failure.to_string()),
-        Some(Ok(taught)) => {
+        Some(Ok(second_part)) => {
             line(
                 "after learning",
                 format!(
@@ -166,7 +166,7 @@ pub fn words(detail: &Detail) -> String {
                 ),
             );
             line("within 2 sigma", format!("{:.1} % of the contour", 100.0 * o.learned_coverage.unwrap_or_default()));
-            for remark in taught.learned.verdict.remarks() {
+            for remark in second_part.learned.verdict.remarks() {
                 line("remark", remark.clone());
             }
         }

@@ -4,26 +4,26 @@
 //! milled and probed, the program corrected, the next part milled with it and judged. What is refused or fails is kept
 //! as a failure. Results are appended to a table as they come, so an interrupted study goes on where it was.
 
-pub mod belief;
-pub mod carry;
 pub mod case;
+pub mod case_table;
 pub mod codes;
 pub mod contour;
 pub mod draw;
 pub mod export;
 pub mod families;
 pub mod id;
-pub mod ledger;
 pub mod machine;
 pub mod markdown;
 pub mod outcome;
 pub mod page;
+pub mod parallel;
 pub mod part;
 pub mod places;
 pub mod plots;
-pub mod pool;
+pub mod prior;
 pub mod reference;
 pub mod seeds;
 pub mod statistics;
 pub mod summary;
 pub mod text;
+pub mod workflow;

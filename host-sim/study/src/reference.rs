@@ -15,7 +15,7 @@ use truepath_job::pass::Pass;
 use truepath_plant::{Machine, Milled};
 use truepath_trial::virtual_mill;
 
-use super::pool;
+use super::parallel;
 use super::statistics::quantile;
 
 const PROGRAM: &str = include_str!("../../demo/corner/program.nc");
@@ -104,7 +104,7 @@ pub fn reference(seeds: u64, threads: usize, progress: &mut dyn FnMut(u64, u64))
         let numbers: Vec<u64> = (FIRST_SEED..FIRST_SEED + seeds).collect();
         let mut after = Vec::new();
         let one = |seed: &u64| left(&pass, &first, setting, *seed);
-        pool::each(&numbers, threads, one, |result| -> Result<(), Failure> {
+        parallel::for_each(&numbers, threads, one, |result| -> Result<(), Failure> {
             finished += 1;
             progress(finished, all);
             after.extend(result.ok());

@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use truepath_plant::{Side, Spindle};
 
-use super::belief::Belief;
 use super::contour::Contour;
 use super::draw::rounded;
 use super::part::Part;
+use super::prior::Prior;
 
 /// Z of the cutter's tip in the pass, mm.
 pub const TIP_Z_MM: f64 = -15.0;
@@ -60,11 +60,11 @@ fn feed(part: &Part, contour: &Contour, k: usize) -> f64 {
 }
 
 /// The job.
-pub fn job(part: &Part, belief: &Belief) -> String {
+pub fn job(part: &Part, prior: &Prior) -> String {
     let cut = &part.cut;
     let wall = if part.contour.side == Side::Right { "right" } else { "left" };
-    let [ktc, krc, kte, kre] = belief.coefficients;
-    let k = belief.stiffness_n_per_mm;
+    let [ktc, krc, kte, kre] = prior.coefficients;
+    let k = prior.stiffness_n_per_mm;
     format!(
         "version = 1\nprogram = \"program.nc\"\nwall = \"{wall}\"\n\n\
          [stock]\nallowance_mm = {}\n\n\

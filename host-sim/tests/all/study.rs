@@ -4,9 +4,9 @@
 use clap::Parser;
 use truepath::command::study::{Options, cases, run};
 use truepath_study::case::Case;
+use truepath_study::case_table::NAME;
 use truepath_study::families::FAMILIES;
 use truepath_study::id::{Axis, CaseId};
-use truepath_study::ledger::NAME;
 use truepath_study::seeds::Set;
 
 #[derive(Parser)]

@@ -50,4 +50,4 @@ pub use points::Point;
 pub use residual::Residual;
 pub use uncorrected::{refuse_corrected, refuse_uncorrected};
 pub use update::{Update, update};
-pub use verdict::{Beside, Promise, UsedAgain, Verdict};
+pub use verdict::{Promise, UnmodelledError, UsedAgain, Verdict};

@@ -12,7 +12,7 @@ use super::joint::{Joint, PartPoints, joint};
 use super::monitor::Monitor;
 use super::residual::Residual;
 use super::uncorrected::refuse_uncorrected;
-use super::verdict::{Beside, Promise, Verdict};
+use super::verdict::{Promise, UnmodelledError, Verdict};
 
 /// What follows for the next part.
 #[derive(Clone, Debug)]
@@ -90,7 +90,7 @@ pub fn update(
     chosen.core.check(&all).map_err(|error| pass.refused(&error))?;
     let mut verdict = Verdict::of(&parts, &monitor, promise, holdout, set_aside.then_some(again), fits);
     let along = beside.map(|residual| (residual.amplitudes(), residual.along(path, &chosen)));
-    verdict.residual = along.as_ref().map(|(amplitudes, (mean, _))| Beside::of(*amplitudes, mean));
+    verdict.residual = along.as_ref().map(|(amplitudes, (mean, _))| UnmodelledError::of(*amplitudes, mean));
     let (residual, residual_sigma) = along.map(|(_, along)| along).unwrap_or_default();
     Ok(Update { joint: chosen, residual, residual_sigma, kept, set_aside, verdict })
 }

@@ -27,7 +27,7 @@ pub struct Verdict {
     pub holdout_residual_mm: Option<Residuals>,
     /// What was learned beside the model; absent when the points fit the model within their noise.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub residual: Option<Beside>,
+    pub residual: Option<UnmodelledError>,
     /// Whether the next part goes back to what an earlier one was cut with.
     pub rolled_back: bool,
     /// What is used again instead of a new correction; absent when the correction is a new one.
@@ -62,7 +62,7 @@ pub struct Promise {
 
 /// The wall error that parts have shown beside the model.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Beside {
+pub struct UnmodelledError {
     /// Largest magnitude along the contour, mm.
     pub max_mm: f64,
     /// Standard deviation of what holds around a place only, mm.
@@ -71,7 +71,7 @@ pub struct Beside {
     pub keyed_mm: f64,
 }
 
-impl Beside {
+impl UnmodelledError {
     pub(super) fn of([local_mm, keyed_mm]: [f64; 2], along: &[Offset]) -> Self {
         Self { max_mm: mm(along.iter().map(|r| r.abs()).max().unwrap_or_default()), local_mm, keyed_mm }
     }

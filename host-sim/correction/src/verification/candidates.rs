@@ -14,7 +14,7 @@ use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
 use super::approach::{Ball, Xy, along, distance};
-use super::belief::Belief;
+use super::estimate::Estimate;
 use super::leads::milled_once;
 
 /// Why a place is not touched.
@@ -87,7 +87,7 @@ const CUT_AWAY: f64 = 0.02;
 pub(super) fn candidates(
     pass: &Pass,
     path: &Path,
-    belief: &Belief,
+    estimate: &Estimate,
     ball: Ball,
     (noise, unsteady): (f64, bool),
 ) -> (Vec<Site>, Vec<KeptOff>) {
@@ -95,7 +95,7 @@ pub(super) fn candidates(
     let radius = mm(path.setup().radius);
     let walls: Vec<Option<Xy>> = final_walls(path, samples, radius);
     let standing: Vec<Xy> = walls.iter().copied().flatten().collect();
-    let states = states(path, belief);
+    let states = states(path, estimate);
     let start = path.working().start;
     let state = |sample: usize| states.get(sample.saturating_sub(start)).copied().unwrap_or(State::REST);
     let deflection = |sample: usize| {
@@ -143,14 +143,14 @@ pub(super) fn candidates(
     (sites, kept_off)
 }
 
-/// The states of the elastic loop along the path, by what is believed of machine and material.
-fn states(path: &Path, belief: &Belief) -> Vec<State> {
-    let parameters = belief.parameters();
+/// The states of the elastic loop along the path, at the estimate of machine and material.
+fn states(path: &Path, estimate: &Estimate) -> Vec<State> {
+    let parameters = estimate.parameters();
     let table = ForceTable::new(parameters.coefficients.size_exponent);
     let machine = parameters.machine(path, &table);
     let working = path.working();
     let mut states = vec![State::REST; working.len()];
-    machine.run(working.start, &mut states, |i| belief.commanded(path, i));
+    machine.run(working.start, &mut states, |i| estimate.commanded(path, i));
     states
 }
 

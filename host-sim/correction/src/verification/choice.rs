@@ -10,16 +10,16 @@
 
 use super::approach::distance;
 use super::candidates::Site;
-use super::knowledge::{Knowledge, products};
-use super::sensitivity::Telling;
+use super::covariance::{Covariance, products};
+use super::sensitivity::Sensitivity;
 
 /// A chosen place and what was known before and after it.
 #[derive(Clone, Debug)]
 pub(super) struct Choice {
     /// Index of the site.
     pub(super) site: usize,
-    pub(super) before: Knowledge,
-    pub(super) after: Knowledge,
+    pub(super) before: Covariance,
+    pub(super) after: Covariance,
 }
 
 /// The choice and what it leaves.
@@ -30,18 +30,18 @@ pub(super) struct Chosen {
     /// Standard deviation of the wall error, root mean square over all places and heights, mm: before and after.
     pub(super) wall_sigma: [f64; 2],
     /// What is known at the end.
-    pub(super) known: Knowledge,
+    pub(super) known: Covariance,
 }
 
 /// Share of the contour that a place has to itself, as long as possible.
 const OWN_SHARE: f64 = 0.35;
 
 /// Chooses up to `count` sites at least `least` millimetres from each other, on a contour of a length in mm.
-pub(super) fn choose(sites: &[Site], tellings: &[Telling], count: usize, least: f64, length: f64) -> Chosen {
-    let goal = products(tellings.iter().flat_map(|t| &t.wall));
-    let things = tellings.iter().map(|t| t.wall.len()).sum::<usize>().max(1) as f64;
-    let sigma = |known: &Knowledge| (known.total(&goal).max(0.0) / things).sqrt();
-    let mut known = Knowledge::prior();
+pub(super) fn choose(sites: &[Site], sensitivities: &[Sensitivity], count: usize, least: f64, length: f64) -> Chosen {
+    let wall = products(sensitivities.iter().flat_map(|t| &t.wall));
+    let things = sensitivities.iter().map(|t| t.wall.len()).sum::<usize>().max(1) as f64;
+    let sigma = |known: &Covariance| (known.total(&wall).max(0.0) / things).sqrt();
+    let mut known = Covariance::prior();
     let before = sigma(&known);
     let mut choices: Vec<Choice> = Vec::new();
     let mut apart = (OWN_SHARE * length / count as f64).max(least);
@@ -49,8 +49,8 @@ pub(super) fn choose(sites: &[Site], tellings: &[Telling], count: usize, least: 
         let allowed = |k: &usize| choices.iter().all(|c| distance(sites[c.site].wall, sites[*k].wall) >= apart);
         let ranked = (0..sites.len())
             .filter(allowed)
-            .map(|k| (k, known.after_all(&tellings[k].rows)))
-            .min_by(|a, b| a.1.total(&goal).total_cmp(&b.1.total(&goal)));
+            .map(|k| (k, known.after_all(&sensitivities[k].rows)))
+            .min_by(|a, b| a.1.total(&wall).total_cmp(&b.1.total(&wall)));
         let Some((site, after)) = ranked else {
             if apart <= least {
                 break;

@@ -9,9 +9,9 @@
 use super::approach::{Xy, distance};
 use super::candidates::Site;
 use super::choice::Choice;
-use super::goal::Goal;
-use super::knowledge::Knowledge;
-use super::sensitivity::Telling;
+use super::covariance::Covariance;
+use super::sensitivity::Sensitivity;
+use super::wall_sensitivity::WallSensitivity;
 
 /// A chosen place with the largest standard deviation of the corrected wall before and after its touches, mm.
 #[derive(Clone, Debug)]
@@ -34,9 +34,9 @@ impl Gain {
 /// the last that is worth its touches, but gives one at least where there is one.
 pub(super) fn choose_next(
     sites: &[Site],
-    tellings: &[Telling],
-    goal: &Goal,
-    mut known: Knowledge,
+    sensitivities: &[Sensitivity],
+    wall: &WallSensitivity,
+    mut known: Covariance,
     probed: &[Xy],
     (count, least, noise): (usize, f64, f64),
 ) -> Vec<Gain> {
@@ -49,11 +49,11 @@ pub(super) fn choose_next(
         };
         let ranked = (0..sites.len())
             .filter(allowed)
-            .map(|k| (k, known.after_all(&tellings[k].rows)))
-            .map(|(k, after)| (k, ruled_by_worst(&after, goal), after))
+            .map(|k| (k, known.after_all(&sensitivities[k].rows)))
+            .map(|(k, after)| (k, ruled_by_worst(&after, wall), after))
             .min_by(|a, b| a.1.total_cmp(&b.1));
         let Some((site, _, after)) = ranked else { break };
-        let ((before_mm, worst_s), (after_mm, _)) = (largest(&known, goal), largest(&after, goal));
+        let ((before_mm, worst_s), (after_mm, _)) = (largest(&known, wall), largest(&after, wall));
         let choice = Choice { site, before: std::mem::replace(&mut known, after.clone()), after };
         let gain = Gain { choice, sigma: [before_mm, after_mm], worst_s };
         if !gains.is_empty() && !gain.is_worth_it(noise) {
@@ -64,11 +64,11 @@ pub(super) fn choose_next(
     gains
 }
 
-fn ruled_by_worst(known: &Knowledge, goal: &Goal) -> f64 {
-    goal.rows.iter().map(|(_, row)| known.sigma(row).powi(8)).sum()
+fn ruled_by_worst(known: &Covariance, wall: &WallSensitivity) -> f64 {
+    wall.rows.iter().map(|(_, row)| known.sigma(row).powi(8)).sum()
 }
 
 /// The largest standard deviation of the wall, and where it is.
-pub(super) fn largest(known: &Knowledge, goal: &Goal) -> (f64, f64) {
-    goal.rows.iter().map(|(s, row)| (known.sigma(row), *s)).fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a })
+pub(super) fn largest(known: &Covariance, wall: &WallSensitivity) -> (f64, f64) {
+    wall.rows.iter().map(|(s, row)| (known.sigma(row), *s)).fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a })
 }

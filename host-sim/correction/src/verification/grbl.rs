@@ -55,7 +55,7 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     page.line("M9");
     page.line("M0");
     page.line(format!("G0 Z{}", n.number(plan.safe_z_mm)));
-    page.line(format!(";VERIFY PROGRAM {:08x}", plan.shop.crc));
+    page.line(format!(";VERIFY PROGRAM {:08x}", plan.program.crc));
     if let Some(correction) = plan.correction {
         page.line(format!(";VERIFY CORRECTION {correction:08x}"));
     }

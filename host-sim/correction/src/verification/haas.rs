@@ -8,7 +8,7 @@
 
 use truepath_ground::diagnostics::InputError;
 
-use super::fanuc::{close, digits, nominal, open};
+use super::dprnt::{close, digits, nominal, open};
 use super::plan::{Place, Plan};
 use super::text::{MoreOffsets, Notation, Page, fixed, work_offset};
 

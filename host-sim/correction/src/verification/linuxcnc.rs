@@ -60,7 +60,7 @@ pub(super) fn write(plan: &Plan, log: &str) -> Result<String, InputError> {
     page.line(format!("G0 Z{}", n.number(plan.safe_z_mm)));
     page.line(format!("(LOGOPEN,{log})"));
     let correction = plan.correction.map(|crc| format!("correction {crc:08x}"));
-    let first = ["truepath probe log 1".to_owned(), format!("program {:08x}", plan.shop.crc)];
+    let first = ["truepath probe log 1".to_owned(), format!("program {:08x}", plan.program.crc)];
     let rest =
         [format!("unit {}", n.unit_name()), format!("ball {}", n.number(plan.ball_mm)), format!("points {count}")];
     for line in first.into_iter().chain(correction).chain(rest) {

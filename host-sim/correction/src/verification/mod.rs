@@ -3,14 +3,14 @@
 //! | step | where |
 //! |---|---|
 //! | what the user may choose, checked | `settings` |
-//! | what the part's program says besides its contour | `shop` |
+//! | what the part's program says besides its contour | `part_program` |
 //! | heights at which the ball meets the wall | `heights` |
 //! | places that may be touched at all, the others with the reason | `candidates`, `leads`, `approach` |
-//! | what a touch there would tell, by the model of the job or of a fit | `belief`, `sensitivity`, `knowledge` |
+//! | what a touch there would tell, by the model of the job or of a fit | `estimate`, `sensitivity`, `covariance` |
 //! | the choice of places, each with its reason | `choice`, `reason` |
-//! | the plan: touches in order, every coordinate | `ground`, `plan` |
-//! | further places, given what was measured: the corrected wall is to become certain | `goal`, `choice_next`, `next` |
-//! | the program of a control | `dialect`, `text`, `walk`, `linuxcnc`, `grbl`, `fanuc`, `haas` |
+//! | the plan: touches in order, every coordinate | `probing_setup`, `plan` |
+//! | further places, given what was measured: the corrected wall is to become certain | `wall_sensitivity`, `choice_next`, `next` |
+//! | the program of a control | `dialect`, `text`, `walk`, `linuxcnc`, `grbl`, `fanuc`, `haas`, `dprnt` |
 //!
 //! A verification program never changes an offset, a parameter of the control or the part: it moves, touches and
 //! writes. The ball comes down on the free side, at the stand-off (clearance and ball radius before the wall), and
@@ -19,35 +19,36 @@
 //! Limits: walls of the contour in the job are known, nothing else: clamps and islands are the operator's to look for.
 
 mod approach;
-mod belief;
 mod candidates;
 mod choice;
 mod choice_next;
+mod covariance;
 mod dialect;
+mod dprnt;
+mod estimate;
 mod fanuc;
-mod goal;
 mod grbl;
-mod ground;
 mod haas;
 mod heights;
-mod knowledge;
 mod leads;
 mod linuxcnc;
 mod next;
+mod part_program;
 mod plan;
+mod probing_setup;
 mod reason;
 mod sensitivity;
 mod settings;
-mod shop;
 mod text;
 mod walk;
+mod wall_sensitivity;
 
 pub use candidates::KeptOff;
 pub use dialect::{ProbeDialect, write};
-pub use goal::Goal;
 pub use heights::Height;
 pub use next::{Measured, plan_next};
+pub use part_program::PartProgram;
 pub use plan::{Gained, Place, Plan, Touch, plan};
 pub use reason::Unknown;
 pub use settings::Settings;
-pub use shop::Shop;
+pub use wall_sensitivity::WallSensitivity;

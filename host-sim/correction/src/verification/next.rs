@@ -15,15 +15,15 @@ use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
 use super::approach::{Xy, along};
-use super::belief::Belief;
 use super::choice_next::{Gain, choose_next, largest};
-use super::goal::Goal;
-use super::ground::Ground;
-use super::knowledge::Knowledge;
+use super::covariance::Covariance;
+use super::estimate::Estimate;
 use super::plan::{Gained, Place, Plan};
+use super::probing_setup::ProbingSetup;
 use super::reason;
-use super::sensitivity::tellings;
+use super::sensitivity::sensitivities;
 use super::settings::Settings;
+use super::wall_sensitivity::WallSensitivity;
 use crate::correction::Identification;
 
 /// What was measured, and which part will be touched.
@@ -38,7 +38,7 @@ pub struct Measured<'a> {
     /// Whether it is another part than those measured.
     pub is_next: bool,
     /// The corrected wall, which is to become certain.
-    pub goal: &'a Goal,
+    pub wall: &'a WallSensitivity,
     /// Places touched on the same part already, along the contour, mm.
     pub touched_mm: &'a [f64],
 }
@@ -53,18 +53,18 @@ pub fn plan_next(
     measured: &Measured,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Plan, Failure> {
-    let ground = Ground::of(pass, settings)?;
+    let setup = ProbingSetup::of(pass, settings)?;
     let (path, identified) = (measured.path, measured.identified);
     let (prior, fit) = (identified.prior(), identified.fit());
-    let belief = Belief { prior, theta: fit.theta, nodes: measured.nodes };
-    let (sites, kept_off) = ground.sites(pass, path, &belief, true)?;
-    let tellings = tellings(path, &belief, &sites, &ground.heights, ground.probe.noise, progress);
-    let known = Knowledge::of(&fit.covariance, measured.is_next);
-    let noise = mm(ground.probe.noise);
+    let estimate = Estimate { prior, theta: fit.theta, nodes: measured.nodes };
+    let (sites, kept_off) = setup.sites(pass, path, &estimate, true)?;
+    let sensitivities = sensitivities(path, &estimate, &sites, &setup.heights, setup.probe.noise, progress);
+    let known = Covariance::of(&fit.covariance, measured.is_next);
+    let noise = mm(setup.probe.noise);
     let touched: Vec<Xy> = measured.touched_mm.iter().map(|s| wall(path, *s)).collect();
-    let limits = (settings.places as usize, ground.apart(), noise);
-    let before = largest(&known, measured.goal).0;
-    let gains = choose_next(&sites, &tellings, measured.goal, known.clone(), &touched, limits);
+    let limits = (settings.places as usize, setup.apart(), noise);
+    let before = largest(&known, measured.wall).0;
+    let gains = choose_next(&sites, &sensitivities, measured.wall, known.clone(), &touched, limits);
     let after = gains.last().map_or(&known, |gain| &gain.choice.after);
     let place = |(rank, gain): (usize, &Gain)| Place {
         gain: Some(Gained {
@@ -79,8 +79,8 @@ pub fn plan_next(
     let mut plan = Plan {
         kept_off,
         unknowns: reason::unknowns(after, prior),
-        wall_sigma_mm: [before, largest(after, measured.goal).0],
-        ..Plan::of(ground, pass, settings, places)
+        wall_sigma_mm: [before, largest(after, measured.wall).0],
+        ..Plan::of(setup, pass, settings, places)
     };
     plan.warnings.extend(doubt(&gains, settings, noise));
     progress(1.0);

@@ -9,15 +9,15 @@ use truepath_ground::units::mm;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use super::approach::along;
-use super::belief::Belief;
 use super::candidates::{KeptOff, Site};
 use super::choice::{Choice, choose};
-use super::ground::Ground;
+use super::estimate::Estimate;
 use super::heights::Height;
+use super::part_program::PartProgram;
+use super::probing_setup::ProbingSetup;
 use super::reason::{self, Unknown};
-use super::sensitivity::tellings;
+use super::sensitivity::sensitivities;
 use super::settings::Settings;
-use super::shop::Shop;
 
 /// A place of the wall.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,7 +84,7 @@ pub struct Touch<'p> {
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// What the part's program says.
-    pub shop: Shop,
+    pub program: PartProgram,
     /// CRC-32 of the correction that the touched part is cut with; `None` where it is cut with none, or nothing is said.
     pub correction: Option<u32>,
     /// The choices it was made with.
@@ -112,17 +112,17 @@ pub struct Plan {
 
 impl Plan {
     /// A plan of these places, which are put into the order of the contour; nothing is said yet of what they tell.
-    pub(super) fn of(ground: Ground, pass: &Pass, settings: &Settings, mut places: Vec<Place>) -> Self {
+    pub(super) fn of(setup: ProbingSetup, pass: &Pass, settings: &Settings, mut places: Vec<Place>) -> Self {
         places.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
         Self {
-            shop: ground.shop,
+            program: setup.program,
             correction: None,
             settings: settings.clone(),
-            ball_mm: 2.0 * ground.ball.radius,
-            z_is_tip: ground.probe.z_reference == truepath_core::job::ZReference::Tip,
-            safe_z_mm: ground.safe_z_mm,
+            ball_mm: 2.0 * setup.ball.radius,
+            z_is_tip: setup.probe.z_reference == truepath_core::job::ZReference::Tip,
+            safe_z_mm: setup.safe_z_mm,
             places,
-            heights: ground.heights,
+            heights: setup.heights,
             kept_off: BTreeMap::new(),
             unknowns: Vec::new(),
             wall_sigma_mm: [0.0; 2],
@@ -150,22 +150,22 @@ impl Plan {
 /// A job without probe, settings out of range, a ball without room (`V002`, `V003`), no place that may be touched
 /// (`V004`), and whatever is wrong with the program.
 pub fn plan(pass: &Pass, settings: &Settings, progress: &mut dyn FnMut(f64)) -> Result<Plan, Failure> {
-    let ground = Ground::of(pass, settings)?;
+    let setup = ProbingSetup::of(pass, settings)?;
     let mut buffer = PathBuffer::default();
     let path = pass.sample(&mut buffer)?;
     let law = path.setup().law;
     let prior = pass.core.prior(law);
-    let belief = Belief::stated(&prior);
-    let (sites, kept_off) = ground.sites(pass, &path, &belief, false)?;
-    let tellings = tellings(&path, &belief, &sites, &ground.heights, ground.probe.noise, progress);
-    let chosen = choose(&sites, &tellings, settings.places as usize, ground.apart(), mm(path.length()));
+    let estimate = Estimate::stated(&prior);
+    let (sites, kept_off) = setup.sites(pass, &path, &estimate, false)?;
+    let sensitivities = sensitivities(&path, &estimate, &sites, &setup.heights, setup.probe.noise, progress);
+    let chosen = choose(&sites, &sensitivities, settings.places as usize, setup.apart(), mm(path.length()));
     let reasoned = chosen.choices.iter().enumerate();
     let places = reasoned.map(|(rank, choice)| Place::of(&sites[choice.site], choice, rank, &prior)).collect();
     let mut plan = Plan {
         kept_off,
         unknowns: reason::unknowns(&chosen.known, &prior),
         wall_sigma_mm: chosen.wall_sigma,
-        ..Plan::of(ground, pass, settings, places)
+        ..Plan::of(setup, pass, settings, places)
     };
     plan.warnings.extend(plan_warnings(&plan, law));
     progress(1.0);

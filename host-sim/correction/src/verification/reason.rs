@@ -4,7 +4,7 @@ use truepath_core::identify::{Parameter, Prior};
 use truepath_core::units::{Offset, Real};
 
 use super::candidates::{Form, Site};
-use super::knowledge::Knowledge;
+use super::covariance::Covariance;
 
 /// An unknown and what the plan leaves of its uncertainty.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -41,7 +41,7 @@ const fn words(parameter: Parameter) -> &'static str {
 }
 
 /// What the plan leaves of every unknown that the job leaves open.
-pub(super) fn unknowns(known: &Knowledge, prior: &Prior) -> Vec<Unknown> {
+pub(super) fn unknowns(known: &Covariance, prior: &Prior) -> Vec<Unknown> {
     open(prior)
         .map(|(k, parameter)| {
             let remaining = known.remaining(k);
@@ -74,7 +74,7 @@ fn facing(normal: [f64; 2]) -> String {
 
 /// What the touches there tell: `tells stiffness 100 -> 12 %, …`, the share of its uncertainty
 /// before and after.
-pub(super) fn tells([before, after]: [&Knowledge; 2], prior: &Prior) -> String {
+pub(super) fn tells([before, after]: [&Covariance; 2], prior: &Prior) -> String {
     let mut told: Vec<(f64, String)> = open(prior)
         .map(|(k, parameter)| (before.remaining(k), after.remaining(k), parameter))
         .filter(|(before, after, _)| 1.0 - after / before > TOLD)

@@ -1,6 +1,6 @@
-//! What a touch would tell, by the model at what is believed.
+//! What a touch would tell, by the model at the present estimate.
 //!
-//! Difference quotients of the predicted readings about the parameters believed: those the job states before anything
+//! Difference quotients of the predicted readings about the estimate: those the job states before anything
 //! is measured, those of the fit afterwards. A machine far from them is probed at places that are a little less telling,
 //! never at wrong ones.
 
@@ -10,14 +10,14 @@ use truepath_core::identify::{COUNT, Observation, Parameter, PredictionWorkspace
 use truepath_core::units::{Offset, Real, hypot_nm};
 use truepath_ground::units::{float, mm};
 
-use super::belief::{Belief, of_measurement};
 use super::candidates::Site;
+use super::covariance::Row;
+use super::estimate::{Estimate, of_measurement};
 use super::heights::Height;
-use super::knowledge::Row;
 
 /// What the touches of one place would tell.
 #[derive(Clone, Debug)]
-pub(super) struct Telling {
+pub(super) struct Sensitivity {
     /// Sensitivities of the readings, one row a height.
     pub(super) rows: Vec<Row>,
     /// Change of the wall itself, mm, one row a height: without the unknowns of the measurement.
@@ -27,15 +27,15 @@ pub(super) struct Telling {
 /// Step of the difference quotients, in standard deviations of what the job states.
 const DIFFERENCE: Real = Real::ratio(1, 32);
 
-/// The telling of every site, in their order. `progress` is told the share done, 0…1.
-pub(super) fn tellings(
+/// The sensitivities of every site, in their order. `progress` is told the share done, 0…1.
+pub(super) fn sensitivities(
     path: &Path,
-    belief: &Belief,
+    estimate: &Estimate,
     sites: &[Site],
     heights: &[Height],
     noise: Offset,
     progress: &mut dyn FnMut(f64),
-) -> Vec<Telling> {
+) -> Vec<Sensitivity> {
     let needed = PredictionWorkspace::needed(path);
     let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
     let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
@@ -47,12 +47,12 @@ pub(super) fn tellings(
     let mut touches: Vec<Observation> =
         sites.iter().flat_map(|site| heights.iter().map(move |height| blank(site, height))).collect();
     let mut readings = |touches: &mut [Observation], parameters: &_, table: &ForceTable| {
-        predict(path, table, parameters, |i| belief.commanded(path, i), touches, &mut workspace);
+        predict(path, table, parameters, |i| estimate.commanded(path, i), touches, &mut workspace);
         touches.iter().map(|o| o.predicted).collect::<Vec<_>>()
     };
-    let believed = belief.parameters();
-    let table = ForceTable::new(believed.coefficients.size_exponent);
-    let expected = readings(&mut touches, &believed, &table);
+    let parameters = estimate.parameters();
+    let table = ForceTable::new(parameters.coefficients.size_exponent);
+    let expected = readings(&mut touches, &parameters, &table);
     for (touch, expected) in touches.iter_mut().zip(&expected) {
         touch.error = *expected;
     }
@@ -60,7 +60,7 @@ pub(super) fn tellings(
     let mut rows = vec![[0.0; COUNT]; touches.len()];
     for (k, parameter) in Parameter::ALL.into_iter().enumerate() {
         progress(k as f64 / COUNT as f64);
-        let sigma = float(belief.prior.sigma[k]);
+        let sigma = float(estimate.prior.sigma[k]);
         if sigma == 0.0 {
             continue;
         }
@@ -71,7 +71,7 @@ pub(super) fn tellings(
             continue;
         }
         let mut at = |by: Real| {
-            let moved = belief.displaced(k, by);
+            let moved = estimate.displaced(k, by);
             let exponent = moved.coefficients.size_exponent;
             let other = (exponent != table.size_exponent()).then(|| ForceTable::new(exponent));
             readings(&mut touches, &moved, other.as_ref().unwrap_or(&table))
@@ -81,11 +81,11 @@ pub(super) fn tellings(
             row[k] = mm(*a - *b) / (2.0 * float(DIFFERENCE)) / deviation;
         }
     }
-    let telling = |(rows, deviations): (&[Row], &[f64])| {
+    let sensitivity = |(rows, deviations): (&[Row], &[f64])| {
         let wall = rows.iter().zip(deviations).map(|(row, deviation)| wall_row(row, *deviation)).collect();
-        Telling { rows: rows.to_vec(), wall }
+        Sensitivity { rows: rows.to_vec(), wall }
     };
-    rows.chunks(heights.len()).zip(deviations.chunks(heights.len())).map(telling).collect()
+    rows.chunks(heights.len()).zip(deviations.chunks(heights.len())).map(sensitivity).collect()
 }
 
 /// What a unit of an unknown of the measurement does to a reading.

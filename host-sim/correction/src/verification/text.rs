@@ -19,7 +19,7 @@ pub(super) struct Notation {
 impl Notation {
     /// For the unit of a plan.
     pub(super) fn of(plan: &Plan, decimals: usize) -> Self {
-        Self { inch: plan.shop.units == Units::Inches, decimals }
+        Self { inch: plan.program.units == Units::Inches, decimals }
     }
     /// G20 or G21.
     pub(super) const fn unit_code(self) -> &'static str {
@@ -75,11 +75,11 @@ impl Page {
     }
     /// What every program says of itself before it moves.
     pub(super) fn header(&mut self, plan: &Plan, control: &str, results: &str) {
-        let shop = &plan.shop;
+        let program = &plan.program;
         let touches = plan.places.len() * plan.heights.len();
         let unit = Notation::of(plan, 3);
         self.comment(&format!("truepath verification program, {control}"));
-        self.comment(&format!("part program {}, CRC32 {:08X}", shop.program, shop.crc));
+        self.comment(&format!("part program {}, CRC32 {:08X}", program.name, program.crc));
         if let Some(correction) = plan.correction {
             self.comment(&format!("for the part cut with the correction of CRC32 {correction:08X}"));
         }
@@ -135,7 +135,7 @@ pub(super) enum MoreOffsets {
 /// # Errors
 /// `V005` for one that the control does not have.
 pub(super) fn work_offset(plan: &Plan, more: MoreOffsets) -> Result<String, InputError> {
-    match (plan.shop.work_offset, more) {
+    match (plan.program.work_offset, more) {
         (n @ 1..=6, _) => Ok(format!("G{}", 53 + n)),
         (n @ 7..=9, MoreOffsets::Points) => Ok(format!("G59.{}", n - 6)),
         (n @ 10.., MoreOffsets::Code(code)) => Ok(format!("{code} P{}", n - 9)),

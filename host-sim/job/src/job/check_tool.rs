@@ -1,7 +1,8 @@
-//! The `[tool]` table.
+//! The `[tool]` table: the cutter, and its shape as a beam.
 
 use truepath_core::cut::ToolMaterial;
 use truepath_core::job::{Compensation, Cut, Stickout, Tool};
+use truepath_core::units::Offset;
 use truepath_ground::codes::J008;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
@@ -9,10 +10,21 @@ use truepath_ground::document::Section;
 use truepath_ground::limits::Limits;
 use truepath_ground::units::mm;
 
-use super::check_shank::{Shank, shank, within_stickout};
-
 /// Where numbers of tools and their offsets come from.
 const TABLE: &str = "take the number from the tool table of the control";
+
+/// The shape of a cutter as a beam; used by `truepath pocket`. What is not given follows from the rest of the table.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shank {
+    /// Length of the fluted part, up to the stick-out; without it all of the stick-out is fluted.
+    pub flute_length: Option<Offset>,
+    /// Diameter of the shank; without it the cutting diameter.
+    pub diameter: Option<Offset>,
+    /// Equivalent diameter of the fluted part over the cutting diameter, 0.3…1; without it by tooth count.
+    pub core_ratio: Option<f64>,
+    /// Young's modulus, 50…800 kN/mm²; without it that of the material.
+    pub modulus_kn_per_mm2: Option<f64>,
+}
 
 /// What the table says of the cutter, and of its shape as a beam.
 pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<(Tool, Shank), InputError> {
@@ -81,6 +93,41 @@ pub(super) fn reach(
             let found = format!("tool.stickout_mm is {}", source.excerpt(value.span.clone()));
             Err(InputError::new(J008, found, expected, "measure from the collet to the cutter's tip")
                 .at(source, value.span))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Reads the keys; the section stays open.
+fn shank(section: &Section<'_>) -> Result<Shank, InputError> {
+    let length = |key, limits| Ok::<_, InputError>(section.number(key, limits)?.map(Decimal::as_mm));
+    let plain = |number: Decimal| number.as_billionths() as f64 / 1e9;
+    Ok(Shank {
+        flute_length: length("flute_length_mm", Limits::above("0", "500", "mm"))?,
+        diameter: length("shank_diameter_mm", Limits::within("0.1", "100", "mm"))?,
+        core_ratio: section.number("core_ratio", Limits::within("0.3", "1", ""))?.map(plain),
+        modulus_kn_per_mm2: section.number("modulus_kn_per_mm2", Limits::within("50", "800", "kN/mm²"))?.map(plain),
+    })
+}
+
+/// The fluted part cannot be longer than what sticks out, and without a stick-out there is no beam to describe.
+fn within_stickout(section: &Section<'_>, tool: &Tool, shank: &Shank) -> Result<(), InputError> {
+    let keys = ["flute_length_mm", "shank_diameter_mm", "core_ratio", "modulus_kn_per_mm2"];
+    let Some(cantilever) = tool.cantilever else {
+        return match keys.into_iter().find_map(|key| section.value(key)) {
+            None => Ok(()),
+            Some(value) => {
+                let found = format!("{} is given without tool.stickout_mm", value.path);
+                let expected = "stickout_mm and material beside it: the cutter is a beam only with both";
+                Err(section.contradiction(&value, &found, expected, "add stickout_mm and material, or remove this key"))
+            }
+        };
+    };
+    match (shank.flute_length, section.value("flute_length_mm")) {
+        (Some(length), Some(value)) if length > cantilever.length => {
+            let expected = format!("at most tool.stickout_mm, {} mm", mm(cantilever.length));
+            let help = "count only the flutes outside the collet, or measure the stick-out again";
+            Err(section.contradiction(&value, "the flutes are longer than the cutter sticks out", &expected, help))
         }
         _ => Ok(()),
     }

@@ -14,7 +14,6 @@ mod check_feed;
 mod check_part;
 mod check_pocket;
 mod check_probe;
-mod check_shank;
 mod check_stock;
 mod check_tool;
 mod material;
@@ -37,7 +36,7 @@ pub use check_feed::{FeedTable, ForceLimit};
 pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
 pub use check_pocket::{Mode, PerSection, PocketTable};
 pub use check_probe::{ProbeFlags, columns, one_of};
-pub use check_shank::Shank;
+pub use check_tool::Shank;
 pub use material::{MATERIALS, Material};
 
 pub(crate) use check_feature::is_id;

@@ -7,7 +7,7 @@
 
 use std::f64::consts::TAU;
 
-use super::passes::{Pass, Passes, around};
+use super::passes::{Passes, ToothPass, around};
 use super::refusal::Refusal;
 use super::sweep::{Round, Stretch};
 
@@ -43,7 +43,7 @@ impl Profile {
         Ok(Self { passes, stretches })
     }
     /// Radius of the wall on the ray φ, mm, and the pass that cut it.
-    pub fn at(&self, phi: f64) -> (f64, &Pass) {
+    pub fn at(&self, phi: f64) -> (f64, &ToothPass) {
         let first = self.stretches.first().map_or(0.0, |s| s.from);
         let phi = first + around(phi - first);
         let index = self.stretches.partition_point(|s| s.to <= phi).min(self.stretches.len() - 1);
@@ -96,7 +96,7 @@ impl Steady {
     pub fn of(passes: Passes, one_lap: bool) -> Result<Self, Refusal> {
         let (passes, stretches) = if one_lap {
             let from = 2.0 * passes.motion.spacing();
-            let of = |p: &Pass, after: f64| p.arc == passes.longest && p.crest >= after;
+            let of = |p: &ToothPass, after: f64| p.arc == passes.longest && p.crest >= after;
             let start = passes.passes.iter().position(|p| of(p, from)).ok_or(Refusal::Unfinished)?;
             let tooth = passes.passes[start].tooth;
             let next = passes.passes[start + 1..].iter().position(|p| p.tooth == tooth).ok_or(Refusal::Unfinished)?;

@@ -26,7 +26,7 @@ const SAME_PLACE: f64 = 1e-12;
 
 /// One pass of one tooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pass {
+pub struct ToothPass {
     /// Index of the tooth, from 0.
     pub tooth: usize,
     /// Index of the curve it leaves.
@@ -49,7 +49,7 @@ pub struct Passes {
     /// Index of the curve of each tooth.
     pub arc_of: Vec<usize>,
     /// The passes in the order of their crests.
-    pub passes: Vec<Pass>,
+    pub passes: Vec<ToothPass>,
     /// Laps of the centre.
     pub laps: f64,
     /// Index of the curve of the longest edge.
@@ -85,7 +85,9 @@ impl Passes {
         }
         let mut passes = Vec::with_capacity(found as usize + teeth.len());
         for (tooth, &arc) in arc_of.iter().enumerate() {
-            each_pass(&motion, teeth[tooth].angle, laps, |tau, crest| passes.push(Pass { tooth, arc, tau, crest }));
+            each_pass(&motion, teeth[tooth].angle, laps, |tau, crest| {
+                passes.push(ToothPass { tooth, arc, tau, crest })
+            });
         }
         passes.sort_by(|a, b| a.crest.total_cmp(&b.crest).then(a.tau.total_cmp(&b.tau)));
         passes.dedup_by(|b, a| a.arc == b.arc && (b.crest - a.crest) <= SAME_PLACE);
@@ -102,7 +104,7 @@ impl Passes {
         Ok(Self { motion, teeth, arcs, arc_of, passes, laps, longest, reach })
     }
     /// The curve of a pass.
-    pub fn arc(&self, pass: &Pass) -> &Arc {
+    pub fn arc(&self, pass: &ToothPass) -> &Arc {
         &self.arcs[pass.arc]
     }
     /// The largest radius of the wall, mm.

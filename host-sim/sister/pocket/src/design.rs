@@ -101,7 +101,7 @@ pub fn design(process: &dyn Process, wanted: &Wanted, progress: &mut dyn FnMut(f
 }
 
 /// Whether the neighbours of a section stay as they are.
-fn beside(sections: &[Section], shifted: &[bool], k: usize, closed: bool) -> ramp::Beside {
+fn beside(sections: &[Section], shifted: &[bool], k: usize, closed: bool) -> ramp::Neighbours {
     let count = sections.len();
     let still = |i: usize| !shifted[i] && sections[i].kind != Kind::Sharp;
     let before = if k > 0 { Some(k - 1) } else { closed.then_some(count - 1) };

@@ -16,13 +16,13 @@ const MARGIN: f64 = 0.9;
 const MOST: f64 = 0.995;
 
 /// Whether the neighbours of a section, before and behind, stay as they are.
-pub(super) type Beside = [bool; 2];
+pub(super) type Neighbours = [bool; 2];
 
 /// Share of the shift at every station of a section, 0…1; `errors` are those before, NaN where there is no wall.
 pub(super) fn shares(
     stations: &[Station],
     section: &Section,
-    beside: Beside,
+    beside: Neighbours,
     errors: &[f64],
     tolerance: f64,
 ) -> Vec<f64> {

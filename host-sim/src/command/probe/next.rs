@@ -16,7 +16,7 @@ use truepath_correction::correction::{DesignRequest, Identification, design_corr
 use truepath_correction::feeds;
 use truepath_correction::learn::refuse_feeds;
 use truepath_correction::learning::{History, Part, PartPoints, Residual, joint, refuse_uncorrected};
-use truepath_correction::verification::{Goal, Measured, Plan, Settings, plan_next};
+use truepath_correction::verification::{Measured, Plan, Settings, WallSensitivity, plan_next};
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
@@ -86,10 +86,11 @@ pub fn next(
     let to_cut = pass.sample_fed(&mut fed, feeds.schedule.as_ref())?.with_law(known.law());
     let machine = known.machine(&to_cut, &table);
     let correction = design_correction(pass, &machine, &known, &request, |share| progress(0.2 + 0.3 * share))?;
-    let goal = Goal::of(&to_cut, &known, &correction.wanted, &correction.nodes, &mut |s| progress(0.5 + 0.2 * s));
+    let goal =
+        WallSensitivity::of(&to_cut, &known, &correction.wanted, &correction.nodes, &mut |s| progress(0.5 + 0.2 * s));
     let touched = places(measurement);
     let measured =
-        Measured { identified: &known, path: &path, nodes: &[], is_next: false, goal: &goal, touched_mm: &touched };
+        Measured { identified: &known, path: &path, nodes: &[], is_next: false, wall: &goal, touched_mm: &touched };
     plan_next(pass, settings, &measured, &mut |share| progress(0.7 + 0.3 * share))
 }
 
@@ -132,13 +133,19 @@ pub fn next_part(
     let goal = goal(pass, &path, &known, &nodes, &mut |share| progress(0.5 + 0.2 * share));
     let is_next = measurement.is_none();
     let measured =
-        Measured { identified: &known, path: &path, nodes: &nodes, is_next, goal: &goal, touched_mm: &touched };
+        Measured { identified: &known, path: &path, nodes: &nodes, is_next, wall: &goal, touched_mm: &touched };
     let plan = plan_next(pass, settings, &measured, &mut |share| progress(0.7 + 0.3 * share))?;
     Ok(Plan { correction: history.correction(), ..plan })
 }
 
-fn goal(pass: &Pass, path: &Path, known: &Identification, nodes: &[Node], progress: &mut dyn FnMut(f64)) -> Goal {
-    Goal::of(path, known, &pass.job.numbers.design(Law::Model), nodes, progress)
+fn goal(
+    pass: &Pass,
+    path: &Path,
+    known: &Identification,
+    nodes: &[Node],
+    progress: &mut dyn FnMut(f64),
+) -> WallSensitivity {
+    WallSensitivity::of(path, known, &pass.job.numbers.design(Law::Model), nodes, progress)
 }
 
 fn places(measurement: &Measurement) -> Vec<f64> {

@@ -1,7 +1,7 @@
 //! The families of cases: each is a distribution over geometry, cut, machine, beliefs and probe places.
 //!
 //! The numbers of a case are drawn from the ranges written in the family's function; what is not said there comes from the
-//! general ranges of [`super::part`], [`super::machine`], [`super::belief`] and [`super::places`]. The families are fixed: their ranges
+//! general ranges of [`super::part`], [`super::machine`], [`super::prior`] and [`super::places`]. The families are fixed: their ranges
 //! say what is milled in workshops, not what the method does well.
 
 mod closed;

@@ -102,13 +102,13 @@ impl ParseZ for str {
 #[test]
 fn work_offsets_that_a_control_lacks_are_refused() {
     let mut plan = planned(&pass(POCKET, &[("G54\n", "G57\n")]), &Settings::default());
-    assert_eq!(plan.shop.work_offset, 4);
+    assert_eq!(plan.program.work_offset, 4);
     for (offset, codes) in [
         (8, [None, None, Some("G59.2"), None]),
         (21, [Some("G154 P12"), Some("G54.1 P12"), None, None]),
         (4, [Some("G57"); 4]),
     ] {
-        plan.shop.work_offset = offset;
+        plan.program.work_offset = offset;
         for (dialect, code) in ALL.into_iter().zip(codes) {
             match (write(&plan, dialect, "log.txt"), code) {
                 (Ok(program), Some(code)) => assert!(program.lines().any(|l| l == code), "{dialect:?} {offset}"),

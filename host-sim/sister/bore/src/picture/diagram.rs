@@ -8,7 +8,7 @@ use truepath_ground::diagnostics::Failure;
 
 use super::{BLUE, DARK, FINE, FONT, LIGHT, TEETH, failed, legend, shown};
 use crate::envelope::Profile;
-use crate::passes::Pass;
+use crate::passes::ToothPass;
 
 /// Marks in the enlarged part: this many turns of the cutter.
 const TURNS: f64 = 3.0;
@@ -88,7 +88,7 @@ fn enlarged(panel: &Panel, profile: &Profile) -> Result<(), Failure> {
         let (arc, colour) = (&passes.arcs[passes.arc_of[tooth]], TEETH[tooth % TEETH.len()]);
         let reach = (1.6 * passes.reach).min(arc.half_width());
         let mut named = false;
-        let near = |p: &&Pass| p.tooth == tooth && (p.crest - middle).abs() < half + 1.6 * passes.reach;
+        let near = |p: &&ToothPass| p.tooth == tooth && (p.crest - middle).abs() < half + 1.6 * passes.reach;
         for pass in passes.passes.iter().filter(near) {
             let curve = (0..=120).map(|n| pass.crest + reach * (f64::from(n) / 60.0 - 1.0));
             let curve = curve.map(|phi| (x(phi), deviation(profile, arc.wall(phi - pass.crest).0)));

@@ -23,11 +23,8 @@
 //! Limits: ideal geometry (axes parallel to X, Y, Z; no 45° nutating heads), two rotary axes about different letters.
 
 mod read;
-mod travel;
 
 use super::vector::Vector;
-
-pub use travel::Beyond;
 
 /// Which side the rotary axes are on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -225,6 +222,20 @@ pub enum MachineError {
 /// Lengths beyond this, mm, are refused.
 pub const LONGEST_MM: f64 = 100_000.0;
 
+/// Positions beyond the end of a travel by less than this (mm, degrees) are rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A joint beyond the end of its travel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beyond {
+    /// Its letter: X, Y, Z, A, B or C.
+    pub letter: char,
+    /// Where it should go, mm or degrees.
+    pub position: f64,
+    /// Its travel.
+    pub travel: [f64; 2],
+}
+
 impl Machine {
     /// A machine of two rotary axes, the carrying one first; of a table and a head axis the order does not matter.
     /// Linear words are joint positions, travel is unlimited, the pole's neighbourhood is 5°.
@@ -297,5 +308,17 @@ impl Machine {
             Counted::Tip => 0.0,
             Counted::BallCentre => self.tool.ball_radius_mm.unwrap_or(0.0),
         }
+    }
+
+    /// The first joint that a position takes beyond its travel.
+    pub fn beyond(&self, joints: &Joints) -> Option<Beyond> {
+        let linear = ['X', 'Y', 'Z'].into_iter().zip(joints.xyz).zip(self.travel_mm);
+        let letters = self.rotary.map(|axis| axis.letter.name());
+        let rotary = letters.into_iter().zip(joints.rotary_deg()).zip(self.rotary.map(|axis| axis.limits_deg));
+        linear.chain(rotary).find_map(|((letter, position), travel)| {
+            let travel = travel?;
+            let inside = position >= travel[0] - ROUNDING && position <= travel[1] + ROUNDING;
+            (!inside).then_some(Beyond { letter, position, travel })
+        })
     }
 }

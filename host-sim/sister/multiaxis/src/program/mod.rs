@@ -9,6 +9,12 @@
 //! | one pass, and what it found | `run.rs`, `settings.rs`, `report.rs`, `profile.rs`, `picture.rs`, `notes.rs`, `reason.rs` |
 //! | programs with loops, calls and computed places | `unroll.rs`, with the interpreter of the core |
 //!
+//! Modes are followed here and not by the interpreter of the core, which reads only what it executes. It keeps a program
+//! whole in memory, where these are streamed at any length; it refuses a code that it does not know (G43.4, G43.5, G234,
+//! G68.2, G254 among them), where such a line must pass on unchanged and only its moves stay unchecked; its rotary axes
+//! start at 0, where a place that the program has not said must stay unknown; and its events no longer hold the digits
+//! of a word, which a rewritten line keeps. Where a program must be executed to be read, `unroll` uses its events.
+//!
 //! Two rules. Nothing is silently wrong: a move with a rotary axis that cannot be checked has a [`Reason`], and where
 //! the program does not say where an axis stands it is unknown. And nothing is changed that need not be: only the lines
 //! of moves that err too much are replaced, every other byte of the program stays.

@@ -8,7 +8,7 @@ use std::sync::mpsc;
 ///
 /// # Errors
 /// That of `done`.
-pub fn each<I: Sync, O: Send, E>(
+pub fn for_each<I: Sync, O: Send, E>(
     items: &[I],
     threads: usize,
     work: impl Fn(&I) -> O + Sync,
@@ -52,7 +52,7 @@ mod tests {
     fn every_item_is_worked_on_once() {
         let items: Vec<u32> = (0..100).collect();
         let mut got = Vec::new();
-        each(
+        for_each(
             &items,
             4,
             |i| i * 2,
@@ -64,6 +64,6 @@ mod tests {
         .expect("no error");
         got.sort_unstable();
         assert_eq!(got, (0..100).map(|i| i * 2).collect::<Vec<_>>());
-        assert_eq!(each(&items, 2, |i| *i, |o| if o == 50 { Err(o) } else { Ok(()) }), Err(50));
+        assert_eq!(for_each(&items, 2, |i| *i, |o| if o == 50 { Err(o) } else { Ok(()) }), Err(50));
     }
 }

@@ -11,9 +11,9 @@ use crate::codes::V006;
 
 /// What the part's program says.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shop {
+pub struct PartProgram {
     /// Name of the program, without its folder.
-    pub program: String,
+    pub name: String,
     /// CRC-32 of its bytes.
     pub crc: u32,
     /// Unit of its words.
@@ -24,7 +24,7 @@ pub struct Shop {
     pub highest_nm: Option<i64>,
 }
 
-impl Shop {
+impl PartProgram {
     /// Reads it off the program.
     ///
     /// # Errors
@@ -55,7 +55,7 @@ impl Shop {
             ));
         }
         let name = pass.program.name();
-        let program = name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned();
-        Ok(Self { program, crc: pass.core.program_crc, units: pass.core.contour.units, work_offset, highest_nm })
+        let name = name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned();
+        Ok(Self { name, crc: pass.core.program_crc, units: pass.core.contour.units, work_offset, highest_nm })
     }
 }

@@ -1,4 +1,4 @@
-//! What is to become certain: the corrected wall.
+//! Sensitivity of the corrected wall, which is to become certain.
 //!
 //! The correction is held and the machine is another one: every unknown is displaced to both sides and the pass cut
 //! again, heights and envelope included. The change of the target quantity beside every sample is what the unknown does
@@ -11,23 +11,23 @@ use truepath_core::identify::{COUNT, Parameter, Parameters};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::units::{float, mm};
 
-use super::belief::{Belief, of_measurement};
-use super::knowledge::Row;
+use super::covariance::Row;
+use super::estimate::{Estimate, of_measurement};
 use crate::correction::Identification;
 
 /// Step of the difference quotients, in standard deviations of what the job states.
 const DIFFERENCE: Real = Real::ratio(1, 8);
-/// Between two places of the goal, at least, mm.
+/// Between two places of the wall, at least, mm.
 const SPACING: f64 = 0.4;
 
 /// The corrected wall along a contour: what the unknowns do to it.
 #[derive(Clone, Debug, Default)]
-pub struct Goal {
+pub struct WallSensitivity {
     /// Place along the contour, mm, and the change of the target quantity per standard deviation of the prior, mm.
     pub(super) rows: Vec<(f64, Row)>,
 }
 
-impl Goal {
+impl WallSensitivity {
     /// Of a correction on a path under the identified wall law. `progress` is told the share done, 0…1.
     pub fn of(
         path: &Path,
@@ -37,7 +37,7 @@ impl Goal {
         progress: &mut dyn FnMut(f64),
     ) -> Self {
         let fit = identified.fit();
-        let belief = Belief { prior: identified.prior(), theta: fit.theta, nodes };
+        let estimate = Estimate { prior: identified.prior(), theta: fit.theta, nodes };
         let samples = &path.samples()[path.first()..path.first() + path.count()];
         let mut kept: Vec<usize> = Vec::new();
         for (k, sample) in samples.iter().enumerate().filter(|(_, s)| s.on_wall && !s.near_corner) {
@@ -48,10 +48,10 @@ impl Goal {
         let mut rows: Vec<(f64, Row)> = kept.iter().map(|&k| (mm(samples[k].s), [0.0; COUNT])).collect();
         for (k, parameter) in Parameter::ALL.into_iter().enumerate() {
             progress(k as f64 / COUNT as f64);
-            if of_measurement(parameter) || belief.prior.sigma[k] == Real::ZERO {
+            if of_measurement(parameter) || estimate.prior.sigma[k] == Real::ZERO {
                 continue;
             }
-            let wall = |by| wall(path, &belief, &belief.displaced(k, by), wanted);
+            let wall = |by| wall(path, &estimate, &estimate.displaced(k, by), wanted);
             let (above, below) = (wall(DIFFERENCE), wall(-DIFFERENCE));
             for ((_, row), &at) in rows.iter_mut().zip(&kept) {
                 row[k] = mm(above[at] - below[at]) / (2.0 * float(DIFFERENCE));
@@ -62,12 +62,12 @@ impl Goal {
 }
 
 /// The target quantity beside every sample when a machine of these parameters cuts with the correction.
-fn wall(path: &Path, belief: &Belief, parameters: &Parameters, wanted: &Design) -> Vec<Offset> {
+fn wall(path: &Path, estimate: &Estimate, parameters: &Parameters, wanted: &Design) -> Vec<Offset> {
     let table = ForceTable::new(parameters.coefficients.size_exponent);
     let machine = parameters.machine(path, &table);
     let working = path.working();
     let mut states = vec![State::REST; working.len()];
-    machine.run(working.start, &mut states, |i| belief.commanded(path, i));
+    machine.run(working.start, &mut states, |i| estimate.commanded(path, i));
     let mut displacements = vec![Vector::ZERO; states.len()];
     let mut profiles = vec![Profile::default(); path.count()];
     profile(&machine, &states, wanted.band, &mut displacements, &mut profiles);

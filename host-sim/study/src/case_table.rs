@@ -19,7 +19,7 @@ pub const NAME: &str = "cases.csv";
 
 /// The table, open for appending.
 #[derive(Debug)]
-pub struct Ledger {
+pub struct CaseTable {
     path: PathBuf,
     file: File,
     /// Finished cases by name.
@@ -32,7 +32,7 @@ pub fn program_key() -> String {
     format!("# truepath {} {own:08x}", env!("CARGO_PKG_VERSION"))
 }
 
-impl Ledger {
+impl CaseTable {
     /// Opens the table in a folder, which is made when it is not there. `afresh` drops what it holds.
     ///
     /// # Errors
@@ -102,20 +102,20 @@ mod tests {
     fn a_half_line_at_the_end_is_dropped_and_the_rest_is_kept() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join(NAME);
-        let mut ledger = Ledger::open(folder.path(), "# key", false).expect("a new table");
-        ledger.append(outcome("bore/1001")).expect("room");
-        ledger.append(outcome("boss/1002")).expect("room");
-        drop(ledger);
+        let mut table = CaseTable::open(folder.path(), "# key", false).expect("a new table");
+        table.append(outcome("bore/1001")).expect("room");
+        table.append(outcome("boss/1002")).expect("room");
+        drop(table);
         let whole = std::fs::read(&path).expect("the table");
         for cut in [1, 5, 12] {
             std::fs::write(&path, &whole[..whole.len() - cut]).expect("writable");
-            let ledger = Ledger::open(folder.path(), "# key", false).expect("the same table");
-            assert_eq!(ledger.finished.values().collect::<Vec<_>>(), [&outcome("bore/1001")]);
+            let table = CaseTable::open(folder.path(), "# key", false).expect("the same table");
+            assert_eq!(table.finished.values().collect::<Vec<_>>(), [&outcome("bore/1001")]);
         }
-        let mut ledger = Ledger::open(folder.path(), "# key", false).expect("the same table");
-        ledger.append(outcome("boss/1002")).expect("room");
+        let mut table = CaseTable::open(folder.path(), "# key", false).expect("the same table");
+        table.append(outcome("boss/1002")).expect("room");
         assert_eq!(std::fs::read(&path).expect("the table"), whole);
-        assert!(Ledger::open(folder.path(), "# other", false).is_err());
-        assert!(Ledger::open(folder.path(), "# other", true).expect("afresh").finished.is_empty());
+        assert!(CaseTable::open(folder.path(), "# other", false).is_err());
+        assert!(CaseTable::open(folder.path(), "# other", true).expect("afresh").finished.is_empty());
     }
 }

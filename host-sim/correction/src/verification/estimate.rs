@@ -1,4 +1,4 @@
-//! What is believed of machine and material when places are chosen, and how the part was cut that will be touched.
+//! The estimate of machine and material by which places are chosen, and how the part was cut that will be touched.
 
 use truepath_core::correct::{Node, commanded};
 use truepath_core::cut::Path;
@@ -6,9 +6,9 @@ use truepath_core::geometry::Vector;
 use truepath_core::identify::{COUNT, Parameter, Parameters, Prior};
 use truepath_core::units::Real;
 
-/// Where the model stands.
+/// Parameters of the model at a distance from the prior.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Belief<'a> {
+pub(super) struct Estimate<'a> {
     /// What the job states.
     pub(super) prior: &'a Prior,
     /// Distance from it, in its standard deviations.
@@ -17,12 +17,12 @@ pub(super) struct Belief<'a> {
     pub(super) nodes: &'a [Node],
 }
 
-impl<'a> Belief<'a> {
+impl<'a> Estimate<'a> {
     /// Before any touch, of an uncorrected part.
     pub(super) const fn stated(prior: &'a Prior) -> Self {
         Self { prior, theta: [Real::ZERO; COUNT], nodes: &[] }
     }
-    /// The parameters believed.
+    /// The parameters estimated.
     pub(super) fn parameters(&self) -> Parameters {
         self.prior.at(&self.theta)
     }

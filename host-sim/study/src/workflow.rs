@@ -1,4 +1,4 @@
-//! Carries a case through: probe, correct, mill, judge; then probe that part, learn, mill, judge.
+//! The whole way of a case: probe, correct, mill, judge; then probe that part, learn, mill, judge.
 
 use std::time::Instant;
 
@@ -19,7 +19,7 @@ use super::places::together;
 
 /// A corrected part.
 #[derive(Clone, Debug)]
-pub struct Carried {
+pub struct FirstPart {
     /// The probe file the correction is made from.
     pub probe: String,
     /// What it says.
@@ -34,7 +34,7 @@ pub struct Carried {
 
 /// A part cut with what was learned.
 #[derive(Clone, Debug)]
-pub struct Taught {
+pub struct SecondPart {
     /// The probe file learned from.
     pub probe: String,
     /// What was learned.
@@ -50,8 +50,8 @@ pub fn outcome(id: &CaseId, first_only: bool) -> Outcome {
         let mut outcome = described(&case);
         match first(&case, &mut outcome) {
             Ok(_) if first_only => {}
-            Ok(carried) => {
-                if let Err(failure) = second(&case, &carried, &mut outcome) {
+            Ok(first_part) => {
+                if let Err(failure) = second(&case, &first_part, &mut outcome) {
                     outcome.learn_failure = one_line(&failure.to_string());
                 }
             }
@@ -85,7 +85,7 @@ pub fn described(case: &Case) -> Outcome {
 ///
 /// # Errors
 /// What probing or the correction refuse.
-pub fn first(case: &Case, outcome: &mut Outcome) -> Result<Carried, Failure> {
+pub fn first(case: &Case, outcome: &mut Outcome) -> Result<FirstPart, Failure> {
     let probe = case.probe(1, &case.first, &case.places_mm)?;
     let measurement = measured(case, "probe.txt", &probe)?;
     let begun = Instant::now();
@@ -108,18 +108,18 @@ pub fn first(case: &Case, outcome: &mut Outcome) -> Result<Carried, Failure> {
     outcome.worst_height_mm = some(score.worst_height_mm);
     outcome.axial_form_mm = some(score.axial_form_mm);
     outcome.coverage = coverage(&after, &corrected.rows);
-    Ok(Carried { probe, measurement, corrected, milled, after })
+    Ok(FirstPart { probe, measurement, corrected, milled, after })
 }
 
 /// One more part: the corrected one is touched where the first was and in three more places, and learned from.
 ///
 /// # Errors
 /// What probing or learning refuse.
-pub fn second(case: &Case, carried: &Carried, outcome: &mut Outcome) -> Result<Taught, Failure> {
+pub fn second(case: &Case, first_part: &FirstPart, outcome: &mut Outcome) -> Result<SecondPart, Failure> {
     let places = together(&case.places_mm, &case.more_mm);
-    let probe = case.probe(2, &carried.milled, &places)?;
+    let probe = case.probe(2, &first_part.milled, &places)?;
     let measurement = measured(case, "probe-2.txt", &probe)?;
-    let history = History::first(&case.pass, &carried.measurement, &carried.corrected)?;
+    let history = History::first(&case.pass, &first_part.measurement, &first_part.corrected)?;
     let begun = Instant::now();
     let learned = learn(&case.pass, &history, &measurement, &[], &[Route::Program], &mut |_| ())?;
     outcome.learn_s = some(begun.elapsed().as_secs_f64());
@@ -130,7 +130,7 @@ pub fn second(case: &Case, carried: &Carried, outcome: &mut Outcome) -> Result<T
     outcome.learned_factor = some(case.before.score.max_error_mm / after.score.max_error_mm.max(1e-6));
     outcome.learned_gouge_mm = some(after.score.gouge_mm);
     outcome.learned_coverage = coverage(&after, &learned.corrected.rows);
-    Ok(Taught { probe, learned, after })
+    Ok(SecondPart { probe, learned, after })
 }
 
 fn measured(case: &Case, name: &str, probe: &str) -> Result<Measurement, Failure> {

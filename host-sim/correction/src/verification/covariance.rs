@@ -1,4 +1,4 @@
-//! What is known of the unknowns: their covariance in units of the prior's standard deviations.
+//! Covariance of the unknowns, in units of the prior's standard deviations.
 //!
 //! A touch with sensitivities g (change of its reading per prior standard deviation, in standard deviations of the
 //! reading) turns the covariance P into P − P g gᵀ P / (1 + gᵀ P g).
@@ -11,9 +11,9 @@ pub(super) type Row = [f64; COUNT];
 
 /// A covariance.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Knowledge([[f64; COUNT]; COUNT]);
+pub(super) struct Covariance([[f64; COUNT]; COUNT]);
 
-impl Knowledge {
+impl Covariance {
     /// Before any touch.
     pub(super) fn prior() -> Self {
         let mut matrix = [[0.0; COUNT]; COUNT];
@@ -103,7 +103,7 @@ mod tests {
     fn a_touch_tells_what_it_is_sensitive_to_and_nothing_else() {
         let mut row = [0.0; COUNT];
         row[2] = 3.0;
-        let known = Knowledge::prior().after(&row);
+        let known = Covariance::prior().after(&row);
         // 1 / (1 + 3²) of the variance remains.
         assert!((known.remaining(2) - 0.1f64.sqrt()).abs() < 1e-12);
         assert_eq!(known.remaining(3), 1.0);

@@ -1,4 +1,4 @@
-//! What every plan stands on: part, probe, heights, the ball and its room, and the places that may be touched.
+//! What every plan takes as given: part, probe, heights, the ball and its room, and the places that may be touched.
 
 use std::collections::BTreeMap;
 
@@ -9,16 +9,16 @@ use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
 use super::approach::Ball;
-use super::belief::Belief;
 use super::candidates::{KeptOff, Site, candidates};
+use super::estimate::Estimate;
 use super::heights::{Height, heights};
+use super::part_program::PartProgram;
 use super::settings::Settings;
-use super::shop::Shop;
 use crate::codes::{V001, V003, V004};
 
 /// Part, probe and ball.
-pub(super) struct Ground {
-    pub(super) shop: Shop,
+pub(super) struct ProbingSetup {
+    pub(super) program: PartProgram,
     pub(super) probe: Probe,
     pub(super) heights: Vec<Height>,
     pub(super) ball: Ball,
@@ -30,7 +30,7 @@ const APART: f64 = 1.0;
 /// Above the engaged depth, when neither user nor program says how high is safe, mm.
 const SAFE_ABOVE: f64 = 50.0;
 
-impl Ground {
+impl ProbingSetup {
     /// Of a pass.
     ///
     /// # Errors
@@ -39,15 +39,15 @@ impl Ground {
     pub(super) fn of(pass: &Pass, settings: &Settings) -> Result<Self, Failure> {
         settings.check()?;
         let probe = pass.job.require_probe()?;
-        let shop = Shop::read(pass)?;
+        let program = PartProgram::read(pass)?;
         let heights = heights(pass, &probe, settings)?;
         let ball = Ball { radius: mm(probe.ball_diameter) / 2.0, clearance: settings.clearance };
         let free = settings.free_width.unwrap_or(2.0 * mm(pass.core.setup.radius));
         if ball.width() > free + 1e-9 {
             return Err(no_width(ball, free, settings).into());
         }
-        let safe_z_mm = safe_z(pass, settings, &shop)?;
-        Ok(Self { shop, probe, heights, ball, safe_z_mm })
+        let safe_z_mm = safe_z(pass, settings, &program)?;
+        Ok(Self { program, probe, heights, ball, safe_z_mm })
     }
 
     /// The places that may be touched, `unsteady` ones too or not, and how many may not, by reason.
@@ -58,10 +58,10 @@ impl Ground {
         &self,
         pass: &Pass,
         path: &Path,
-        belief: &Belief,
+        estimate: &Estimate,
         unsteady: bool,
     ) -> Result<(Vec<Site>, BTreeMap<KeptOff, usize>), InputError> {
-        let (sites, kept_off) = candidates(pass, path, belief, self.ball, (mm(self.probe.noise), unsteady));
+        let (sites, kept_off) = candidates(pass, path, estimate, self.ball, (mm(self.probe.noise), unsteady));
         let mut counts = BTreeMap::new();
         for reason in kept_off {
             *counts.entry(reason).or_insert(0) += 1;
@@ -76,9 +76,9 @@ impl Ground {
 }
 
 /// Height of the moves between places: above the engaged depth, and no lower than the part's program ever moved.
-fn safe_z(pass: &Pass, settings: &Settings, shop: &Shop) -> Result<f64, InputError> {
+fn safe_z(pass: &Pass, settings: &Settings, program: &PartProgram) -> Result<f64, InputError> {
     let top = pass.core.contour.z.nm() as f64 / 1e6 + float(pass.core.setup.axial_depth);
-    let highest = shop.highest_nm.map_or(f64::NEG_INFINITY, |z| z as f64 / 1e6);
+    let highest = program.highest_nm.map_or(f64::NEG_INFINITY, |z| z as f64 / 1e6);
     match settings.safe_z {
         None => Ok((top + SAFE_ABOVE).max(highest)),
         Some(z) if z > top => Ok(z),

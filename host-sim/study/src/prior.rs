@@ -1,4 +1,4 @@
-//! What the user believes of machine and material, and writes into the job: wrong, as in life.
+//! The prior: what the user states of machine and material in the job, wrong as in life.
 //!
 //! Every coefficient is off by a log-normal factor of its own (about ±30 %), the stiffness by up to 2 and equal in x and y;
 //! nobody knows cross compliance, bending, the size exponent or the runout. The factors are kept as logarithms, so that
@@ -9,7 +9,7 @@ use truepath_plant::Machine;
 use super::draw::Draw;
 use super::machine::Width;
 
-/// Logarithms of the factors between belief and truth.
+/// Logarithms of the factors between prior and truth.
 #[derive(Clone, Copy, Debug)]
 pub struct Mistakes {
     coefficients: [f64; 4],
@@ -18,7 +18,7 @@ pub struct Mistakes {
 
 /// The numbers of the job.
 #[derive(Clone, Copy, Debug)]
-pub struct Belief {
+pub struct Prior {
     /// ktc, krc in N/mm², kte, kre in N/mm.
     pub coefficients: [f64; 4],
     /// Stiffness in x and in y, N/mm.
@@ -35,8 +35,8 @@ impl Mistakes {
         }
     }
 
-    /// What that user believes of a machine; `times` scales the mistakes, 0 for none.
-    pub fn about(&self, machine: &Machine, times: f64) -> Belief {
+    /// What that user states of a machine; `times` scales the mistakes, 0 for none.
+    pub fn about(&self, machine: &Machine, times: f64) -> Prior {
         let truth = [machine.ktc_n_per_mm2, machine.krc_n_per_mm2, machine.kte_n_per_mm, machine.kre_n_per_mm];
         let c = &machine.compliance_mm_per_n;
         let stiffness = 2.0 / (c[0][0] + c[1][1]);
@@ -44,7 +44,7 @@ impl Mistakes {
         for (value, mistake) in coefficients.iter_mut().zip(self.coefficients) {
             *value = figures(*value * (mistake * times).exp());
         }
-        Belief { coefficients, stiffness_n_per_mm: figures(stiffness * (self.stiffness * times).exp()) }
+        Prior { coefficients, stiffness_n_per_mm: figures(stiffness * (self.stiffness * times).exp()) }
     }
 }
 
@@ -70,10 +70,10 @@ mod tests {
             ..Machine::rigid()
         };
         let mistakes = Mistakes::draw(&mut Draw::new("belief", 1), Width::Usual);
-        let belief = mistakes.about(&machine, 0.0);
-        assert!((belief.coefficients[0] - 1230.0).abs() < 1e-9);
-        assert!((belief.coefficients[2] - 12.3).abs() < 1e-9);
-        assert!((belief.stiffness_n_per_mm - 1000.0).abs() < 1e-9);
+        let prior = mistakes.about(&machine, 0.0);
+        assert!((prior.coefficients[0] - 1230.0).abs() < 1e-9);
+        assert!((prior.coefficients[2] - 12.3).abs() < 1e-9);
+        assert!((prior.stiffness_n_per_mm - 1000.0).abs() < 1e-9);
         assert!((mistakes.about(&machine, 3.0).coefficients[0] / 1234.5).ln().abs() < 3.0 * 0.53);
     }
 }
