@@ -70,7 +70,7 @@ impl InputError {
     ) -> Self {
         Self(Box::new(Body {
             code: code.into(),
-            found: visible(&found.into()).into_owned(),
+            found: visible_lines(&found.into()).into_owned(),
             expected: visible(&expected.into()).into_owned(),
             help: visible(&help.into()).into_owned(),
             file: None,

@@ -176,6 +176,7 @@ fn a_pocket_with_an_island_is_ambiguous_until_one_is_named() {
     for part in ["2 finishing contours", "lines 23-31", "lines 36-44", "tool 1", "Z -8", "271.416 mm", "[[feature]]"] {
         assert!(shown.contains(part), "{part} is missing in\n{shown}");
     }
+    assert!(!shown.lines().any(|line| line.contains("23-31") && line.contains("36-44")), "one a line:\n{shown}");
     let pass = job("island.toml", "[[feature]]\nid = \"wall\"\nblocks = [20, 31]\n", None, None).unwrap();
     let (pass, done) = corrected(&pass, 4.0);
     let lines = changed(pass.program.bytes(), &done.program.unwrap());
