@@ -113,7 +113,7 @@ fn a_failure_names_step_code_line_and_column() {
     rig.done(Ask::Compute).unwrap();
     assert!(work(&mut rig));
     let failed = progress(&mut rig).result.unwrap().unwrap_err();
-    assert_eq!(failed, ComputeFailure { stage: Stage::Job, code: 2, line: 0, column: 0 });
+    assert_eq!(failed, ComputeFailure { stage: Stage::Job, code: 24, line: 0, column: 0 });
     // And the way is free for the next one.
     computed(&mut rig, &short()).unwrap();
 }

@@ -60,7 +60,7 @@ const NUCLEO_H743: &[Level] = &[
 /// What a waker can do.
 const WAKER: &[&str] = &["embassy_executor::raw::waker::"];
 /// Closures that are told how far an on-board correction is, outermost first.
-const TOLD: &[&str] = &["Computation>::run::{closure#0}>::{closure#2}", "Computation>::run::{closure#0}>::{closure#3}"];
+const TOLD: &[&str] = &["Computation>::run::{closure#0}>::{closure#3}", "Computation>::run::{closure#0}>::{closure#4}"];
 /// Of one of the fits under both wall laws.
 const LAW: &str = "identified::{closure#0}>::{closure#0}::{closure#0}";
 const FIT: &str = ">::settle::{closure#";
