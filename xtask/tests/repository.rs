@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 /// The crates of the core, and the modules of those that hold several in the order in which data flows; none uses one
 /// that comes later.
 const CORE: [(&str, &[&str]); 5] = [
-    ("core/units", &["checksum", "geometry"]),
+    ("core/units", &["errors", "checksum", "geometry"]),
     ("core/rs274", &[]),
     ("core/wire", &["image", "rewrite", "link"]),
     ("core/model", &["probe", "cut", "identify", "correct"]),
-    ("core", &["job"]),
+    ("core", &["job", "errors"]),
 ];
 /// Names under which unrelated things gather.
 const CATCH_ALL: [&str; 6] = ["util", "utils", "common", "helpers", "manager", "misc"];
