@@ -17,7 +17,7 @@ use crate::codes::K002;
 use crate::feature;
 use crate::feature::{FeaturePass, FeatureSummary, Plan};
 use crate::feed::Schedule;
-use crate::job::Job;
+use crate::job::JobFile;
 use crate::refusal::Inputs;
 use crate::surface::{Surface, stock_point};
 
@@ -30,7 +30,7 @@ const LARGEST_BUFFER: usize = 1 << 24;
 #[derive(Clone, Debug)]
 pub struct Pass {
     /// The job.
-    pub job: Job,
+    pub job: JobFile,
     /// The program.
     pub program: Source,
     /// Job and program in numbers.
@@ -54,7 +54,7 @@ impl Pass {
     ///
     /// # Errors
     /// Whatever is wrong with either, and what they contradict each other in.
-    pub fn read(job: Job) -> Result<Self, Failure> {
+    pub fn read(job: JobFile) -> Result<Self, Failure> {
         let program = job.read_program()?;
         Self::new(job, program)
     }
@@ -63,7 +63,7 @@ impl Pass {
     ///
     /// # Errors
     /// As [`Pass::read`].
-    pub fn new(mut job: Job, program: Source) -> Result<Self, Failure> {
+    pub fn new(mut job: JobFile, program: Source) -> Result<Self, Failure> {
         let plan = feature::plan(&job, &program)?;
         let level = job.which.pass.unwrap_or(1);
         job.numbers.part = plan.as_ref().map(|plan| plan.level(level).map(|pass| pass.part)).transpose()?;
@@ -71,7 +71,7 @@ impl Pass {
     }
 
     /// Reads the part of the program that the job names by now.
-    fn of_part(mut job: Job, program: Source, plan: Option<Plan>) -> Result<Self, Failure> {
+    fn of_part(mut job: JobFile, program: Source, plan: Option<Plan>) -> Result<Self, Failure> {
         if let Some(plan) = &plan {
             let numbers = &mut job.numbers;
             numbers.wall = plan.wall.or(numbers.wall);

@@ -8,7 +8,7 @@ use truepath_correction::correction::identify;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm};
-use truepath_job::job::{Job, ProbeFlags, Which};
+use truepath_job::job::{JobFile, ProbeFlags, Which};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_report::plot::{Compared, LawWall};
@@ -108,7 +108,7 @@ pub struct CompareSummary {
 /// # Errors
 /// Whatever is wrong with job, program, probe file or plant, and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CompareSummary, Failure> {
-    let mut job = Job::read(&options.job)?;
+    let mut job = JobFile::read(&options.job)?;
     job.override_probe(&options.probe_flags)?;
     job.which = options.which.clone();
     let pass = Pass::read(job)?;

@@ -11,7 +11,7 @@ use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::feature::listing;
-use truepath_job::job::{Job, ProbeFlags, ROUTES, Route, Which, one_of};
+use truepath_job::job::{JobFile, ProbeFlags, ROUTES, Route, Which, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::first_pass_of;
@@ -108,7 +108,7 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
 /// As [`correct`], and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSummary, Failure> {
     let read = |job: &FilePath| {
-        let mut job = Job::read(job)?;
+        let mut job = JobFile::read(job)?;
         job.override_probe(&options.probe_flags)?;
         job.which = options.which.clone();
         Pass::read(job)

@@ -10,7 +10,7 @@ use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::codes::F003;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::{Milled, Score};
@@ -208,7 +208,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Vec<Outco
 fn tell(part: &Part, progress: &mut dyn FnMut(f64)) -> Result<Outcome, Failure> {
     let story = part.story;
     let source = |name: &str, text: &str| Source::new(format!("demo/{}/{name}", story.name), text.as_bytes().to_vec());
-    let job = Job::parse(source("job.toml", story.job), FilePath::new(""))?;
+    let job = JobFile::parse(source("job.toml", story.job), FilePath::new(""))?;
     let machine = toml::from_str(story.plant).map_err(|e| Failure::Internal(format!("demo plant: {e}")))?;
     let pass = Pass::new(job, source("program.nc", story.program))?;
 

@@ -11,7 +11,7 @@ use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
 use truepath_job::feature::listing;
-use truepath_job::job::{Job, PartFlags, ProbeFlags, Which};
+use truepath_job::job::{JobFile, PartFlags, ProbeFlags, Which};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::page::render;
@@ -134,7 +134,7 @@ const fn word(verdict: PointVerdict) -> &'static str {
 /// # Errors
 /// Whatever is wrong with job, program or probe file, and outputs that cannot be written.
 pub fn run(options: &Options) -> Result<Inspection, Failure> {
-    let mut job = Job::read(&options.job)?;
+    let mut job = JobFile::read(&options.job)?;
     job.override_probe(&options.probe_flags)?;
     job.override_part(&options.part)?;
     job.which = options.which.clone();

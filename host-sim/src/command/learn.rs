@@ -10,7 +10,7 @@ use truepath_correction::learn::{LearnSummary, learn};
 use truepath_correction::learning::History;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
-use truepath_job::job::{Job, ProbeFlags, ROUTES, Route, Which, one_of};
+use truepath_job::job::{JobFile, ProbeFlags, ROUTES, Route, Which, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::correction_csv;
@@ -99,7 +99,7 @@ fn words(s: &LearnSummary) -> String {
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSummary, Failure> {
     refuse_same_folder(options)?;
     let history = history_in(&options.from)?;
-    let mut job = Job::read(&options.job)?;
+    let mut job = JobFile::read(&options.job)?;
     job.override_probe(&options.probe_flags)?;
     job.which = options.which.clone();
     let pass = Pass::read(job)?;

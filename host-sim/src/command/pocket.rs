@@ -12,7 +12,7 @@ use truepath_correction::edits::block_edits;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
-use truepath_job::job::{Job, Mode, PerSection, PocketTable, Which};
+use truepath_job::job::{JobFile, Mode, PerSection, PocketTable, Which};
 use truepath_job::levels;
 use truepath_job::pass::{Pass, PathBuffer, read_blocks};
 use truepath_pocket::{
@@ -134,7 +134,7 @@ fn run(
     out: &FilePath,
     progress: &mut dyn FnMut(f64),
 ) -> Result<PocketSummary, Failure> {
-    let mut job = Job::read(job)?;
+    let mut job = JobFile::read(job)?;
     job.which = options.which.clone();
     let mut table = job.pocket.unwrap_or_default();
     table.per_section = options.per_section.unwrap_or(table.per_section);

@@ -12,7 +12,7 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
 use truepath_job::feature::listing;
-use truepath_job::job::{Job, Which};
+use truepath_job::job::{JobFile, Which};
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_plant as plant;
 use truepath_plant::Milled;
@@ -108,7 +108,7 @@ fn words(summary: &SimulateSummary, output: &FilePath) -> String {
 /// Whatever is wrong with job, program or plant, and outputs that cannot be written.
 pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     let recording = options.setpoints.as_deref().map(|file| recording(file, &options.placement)).transpose()?;
-    let mut job = Job::read(&options.job)?;
+    let mut job = JobFile::read(&options.job)?;
     job.which = options.which.clone();
     let pass = Pass::read(job)?;
     let folder = OutputFolder::create(&options.output, options.force, FILES)?;

@@ -16,7 +16,7 @@ use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFolder;
 use truepath_ground::units::mm;
 use truepath_job::feature::lines_named;
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 use truepath_job::pass::Pass;
 use truepath_program::{Purpose, RewriteOptions, Rewritten, rewrite_program};
 
@@ -84,7 +84,7 @@ fn words(split: &Split, job: &FilePath) -> String {
 /// Whatever is wrong with job or program, an inside corner without room for the first pass, and outputs that cannot be
 /// written.
 pub fn run(options: &Options) -> Result<Split, Failure> {
-    let mut job = Job::read(&options.job)?;
+    let mut job = JobFile::read(&options.job)?;
     job.which.feature = options.feature.clone();
     let pass = Pass::read(job)?;
     if pass.surface.is_some() {

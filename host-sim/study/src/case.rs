@@ -7,7 +7,7 @@ use std::path::Path as FilePath;
 
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::units::mm;
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 use truepath_job::pass::Pass;
 use truepath_plant::{Judged, Machine, Milled, judged_trim_mm};
 use truepath_trial::virtual_mill;
@@ -99,7 +99,7 @@ impl Case {
         let program = text::program(&part, &id.family);
         let read = |job: &str| {
             let source = |name: &str, text: &str| Source::new(format!("{id}/{name}"), text.as_bytes().to_vec());
-            Pass::new(Job::parse(source("job.toml", job), FilePath::new(""))?, source("program.nc", &program))
+            Pass::new(JobFile::parse(source("job.toml", job), FilePath::new(""))?, source("program.nc", &program))
         };
         let trial = read(&text::job(&part, &mistakes.about(&drawn.machine, 1.0)))?;
         let (mut first, before) = scaled(&trial, &mut drawn)?;

@@ -9,7 +9,7 @@ use std::path::Path as FilePath;
 use serde::{Deserialize, Serialize};
 use truepath_correction::correct::correct;
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::{Machine, Milled};
@@ -141,7 +141,7 @@ fn pass(setting: &Setting, machine: &Machine) -> Result<Pass, Failure> {
         share(1.0 / c[1][1], setting.stiffness[1]),
     );
     let source = |name: &str, text: &str| Source::new(format!("reference/{name}"), text.as_bytes().to_vec());
-    Pass::new(Job::parse(source("job.toml", &job), FilePath::new(""))?, source("program.nc", PROGRAM))
+    Pass::new(JobFile::parse(source("job.toml", &job), FilePath::new(""))?, source("program.nc", PROGRAM))
 }
 
 /// Ball of the probe, mm.

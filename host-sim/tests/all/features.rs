@@ -7,7 +7,7 @@ use truepath::command::{correct, inspect, simulate};
 use truepath_core::image::Image;
 use truepath_correction::correct::{CorrectedPass, correct as corrected_in_memory};
 use truepath_ground::diagnostics::{Failure, Form, InputError, Source};
-use truepath_job::job::{Job, Route, Which};
+use truepath_job::job::{JobFile, Route, Which};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
@@ -22,7 +22,7 @@ fn data(name: &str) -> PathBuf {
 /// A job of the folder with lines added and another feature or pass asked for.
 fn job(name: &str, more: &str, feature: Option<&str>, pass: Option<u32>) -> Result<Pass, Failure> {
     let text = std::fs::read_to_string(data(name)).unwrap() + more;
-    let mut job = Job::parse(Source::new(name, text.into_bytes()), &data(""))?;
+    let mut job = JobFile::parse(Source::new(name, text.into_bytes()), &data(""))?;
     job.which.feature = feature.map(str::to_owned);
     job.which.pass = pass;
     Pass::read(job)
@@ -134,7 +134,7 @@ fn what_is_chosen_is_told_with_its_reasons() {
 fn an_allowance_that_the_roughing_does_not_leave_is_told() {
     let text =
         std::fs::read_to_string(data("pocket.toml")).unwrap().replace("allowance_mm = 0.5", "allowance_mm = 0.8");
-    let job = Job::parse(Source::new("pocket.toml", text.into_bytes()), &data("")).unwrap();
+    let job = JobFile::parse(Source::new("pocket.toml", text.into_bytes()), &data("")).unwrap();
     let pass = Pass::read(job).unwrap();
     let told = "the pass before the finishing one (lines 28-36) leaves 0.5000 mm, the job says allowance_mm = 0.8";
     assert!(pass.warnings.iter().any(|w| w == told), "{:?}", pass.warnings);
@@ -236,7 +236,7 @@ fn wrong_markers_are_told_with_their_place() {
         assert_eq!(text.matches(from).count(), 1, "{from}");
         std::fs::write(folder.path().join("markers.nc"), text.replace(from, to)).unwrap();
         let (error, shown) =
-            refused(Job::read(&folder.path().join("job.toml")).map_err(Failure::from).and_then(Pass::read));
+            refused(JobFile::read(&folder.path().join("job.toml")).map_err(Failure::from).and_then(Pass::read));
         assert_eq!((error.code(), error.line_column().map(|p| p.0)), (code, Some(line)), "{shown}");
     }
 }
@@ -316,7 +316,7 @@ fn every_depth_gets_its_image_however_many_there_are_and_none_of_a_deeper_pocket
     };
     for (depths, force, expected) in [(11, false, 10), (3, true, 2)] {
         at_depths(folder.path(), depths);
-        let mut asked = Job::read(&job).unwrap();
+        let mut asked = JobFile::read(&job).unwrap();
         asked.which.pass = Some(2);
         let pass = Pass::read(asked).unwrap();
         let milled = virtual_mill::mill(&pass, &toml::from_str(PLANT).unwrap(), None).unwrap();
@@ -351,7 +351,7 @@ fn more_runs_than_can_be_compared_are_refused() {
     let line = |k: i32| format!("G0 X0 Y{k} Z2\nG1 Z-5 F100\nG1 X9\nG0 Z2\n");
     let program = format!("G21 G90\nT1 M6\nS900 M3\n{}M30\n", (0..1001).map(line).collect::<String>());
     let text = std::fs::read_to_string(data("pocket.toml")).unwrap();
-    let job = Job::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).unwrap();
+    let job = JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).unwrap();
     let (error, shown) = refused(Pass::new(job, Source::new("many.nc", program.into_bytes())));
     assert_eq!(error.code(), "N010");
     assert!(shown.contains("1001 runs of cutting moves") && shown.contains("at most 1000"), "{shown}");

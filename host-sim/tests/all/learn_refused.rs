@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use truepath::command::{correct, learn};
 use truepath_correction::learn::LearnSummary;
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
 use truepath_trial::virtual_mill;
@@ -23,7 +23,7 @@ static BENCH: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     }
     let plant = fs::read_to_string(Path::new(DEMO).join("plant.toml")).unwrap();
     let machine: Machine = toml::from_str(&plant).unwrap();
-    let pass = Pass::read(Job::read(&at("job.toml")).unwrap()).unwrap();
+    let pass = Pass::read(JobFile::read(&at("job.toml")).unwrap()).unwrap();
     let probe = |commanded: Option<&[[f64; 2]]>, places: &[f64], name: &str| {
         let milled = virtual_mill::mill(&pass, &machine, commanded).unwrap();
         fs::write(at(name), virtual_mill::probe(&pass, &milled, places, &[0.1, 0.5, 0.9], 6.0).unwrap()).unwrap();

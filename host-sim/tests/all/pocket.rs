@@ -108,7 +108,7 @@ fn the_straight_walls_of_the_finishing_pass_stay_and_its_corners_are_shifted() {
         assert_eq!((&corner["shifted"], &corner["in_band_after"]), (&Value::Bool(true), &Value::Bool(true)));
     }
     // Away from the corners the corrected program runs on the very path of the original.
-    let job = truepath_job::job::Job::read(&desk.path().join("job.toml")).expect("a job");
+    let job = truepath_job::job::JobFile::read(&desk.path().join("job.toml")).expect("a job");
     let pass = truepath_job::pass::Pass::read(job).expect("a pass");
     let text = std::fs::read(desk.path().join("out/corrected.nc")).expect("a program");
     let path = truepath_trial::virtual_mill::commanded(&pass, &text).expect("a contour");

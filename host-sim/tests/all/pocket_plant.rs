@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 use truepath_job::pass::Pass;
 use truepath_plant as plant;
 use truepath_plant::{Cut, Machine, Point, Segment, Side, Spindle, WallLaw};
@@ -26,7 +26,7 @@ fn example(name: &str) -> Example {
         .expect("the program runs");
     assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
     let corrected = std::fs::read(folder.join("corrected.nc")).expect("a program");
-    Example { pass: Pass::read(Job::read(&job).expect("a job")).expect("a pass"), corrected }
+    Example { pass: Pass::read(JobFile::read(&job).expect("a job")).expect("a pass"), corrected }
 }
 
 impl Example {

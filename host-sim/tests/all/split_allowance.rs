@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use truepath::command::{correct, split};
 use truepath_ground::diagnostics::Failure;
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::pass::Pass;
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/features");
@@ -59,7 +59,7 @@ fn every_depth_and_the_spring_pass_leave_half_of_the_allowance() {
         assert!(near(reach(&here[..end], "G0 X"), [24.75, 14.75]), "{part}: {}", &here[..end]);
     }
     assert_eq!(reach(&program, "(FINISHING Z-6)"), [25.0, 15.0]);
-    let first = Pass::read(Job::read(&written.job).unwrap()).unwrap();
+    let first = Pass::read(JobFile::read(&written.job).unwrap()).unwrap();
     assert_eq!(first.plan.as_ref().map(|plan| plan.passes.len()), Some(3));
     assert_eq!(first.core.setup.allowance.nm(), 250_000);
 }
@@ -116,8 +116,8 @@ fn the_job_of_the_first_pass_names_the_same_cut_in_the_longer_program_with_half_
         let feature = format!("{job}\n[[feature]]\nid = \"pocket\"\nblocks = {blocks:?}\nallowance_mm = 0.4\n");
         let job = write(&folder, program, &feature);
         let written = run(&job, &folder.join("first")).unwrap();
-        let whole = Pass::read(Job::read(&job).unwrap()).unwrap();
-        let first = Pass::read(Job::read(&written.job).unwrap()).unwrap();
+        let whole = Pass::read(JobFile::read(&job).unwrap()).unwrap();
+        let first = Pass::read(JobFile::read(&written.job).unwrap()).unwrap();
         assert_eq!(first.core.setup.allowance.nm(), 200_000, "{name}");
         let roles = |pass: &Pass| {
             pass.plan.iter().flat_map(|p| &p.passes).map(|p| (p.number, p.spring, p.z)).collect::<Vec<_>>()

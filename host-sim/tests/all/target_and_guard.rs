@@ -6,7 +6,7 @@ use truepath::command::compare;
 use truepath::command::compare::CompareSummary;
 use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Form, Source};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::{Machine, Milled};
@@ -30,7 +30,7 @@ fn machine() -> Machine {
 
 fn pass(correct: &str) -> Pass {
     let text = JOB.replace("[correct]", &format!("[correct]\n{correct}"));
-    let job = Job::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).unwrap();
+    let job = JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).unwrap();
     shown(Pass::new(job, Source::new("program.nc", PROGRAM.as_bytes().to_vec())))
 }
 

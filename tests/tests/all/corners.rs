@@ -4,7 +4,7 @@ use std::path::Path;
 
 use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::{Machine, Milled};
@@ -21,7 +21,7 @@ fn pass(moves: &str, wall: &str, allowance: f64) -> Pass {
          kte_n_per_mm = 0\nkre_n_per_mm = 0\nmodel = \"mean\"\n[machine]\nstiffness_x_n_per_mm = 1000\n\
          stiffness_y_n_per_mm = 1300\n[probe]\nball_diameter_mm = 6.0\nformat = \"linuxcnc\"\nz_reference = \"centre\"\n"
     );
-    let job = Job::parse(Source::new("job.toml", job.into_bytes()), Path::new("")).unwrap();
+    let job = JobFile::parse(Source::new("job.toml", job.into_bytes()), Path::new("")).unwrap();
     Pass::new(job, Source::new("p.nc", program.into_bytes())).unwrap()
 }
 

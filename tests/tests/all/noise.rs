@@ -5,7 +5,7 @@ use std::path::Path;
 
 use truepath_correction::correct::correct;
 use truepath_ground::diagnostics::Source;
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
@@ -27,7 +27,7 @@ fn left(changes: &[(&str, &str)], places: &[f64]) -> Vec<f64> {
     }
     let source = |name: &str, text: String| Source::new(name, text.into_bytes());
     let pass = |text: &str| {
-        let job = Job::parse(source("job.toml", text.to_owned()), Path::new("")).unwrap();
+        let job = JobFile::parse(source("job.toml", text.to_owned()), Path::new("")).unwrap();
         Pass::new(job, source("program.nc", PROGRAM.to_owned())).unwrap()
     };
     let pass = pass(&job);

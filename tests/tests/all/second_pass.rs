@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use truepath::command::{correct, split};
 use truepath_correction::second_pass;
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_job::surface::Surface;
@@ -25,7 +25,7 @@ fn machine(name: &str) -> plant::Machine {
 }
 
 fn pass(job: &Path) -> Pass {
-    Pass::read(Job::read(job).unwrap()).unwrap()
+    Pass::read(JobFile::read(job).unwrap()).unwrap()
 }
 
 /// Mills what a program leaves of the actual surface of an earlier pass.
@@ -111,7 +111,7 @@ fn a_sharp_inside_corner_cannot_be_split_and_other_jobs_are_no_first_pass() {
 
     let whole = pass(&demo("corner").join("job.toml"));
     let other =
-        Job::parse(Source::new("other.toml", text.replace("teeth = 6", "teeth = 4").into_bytes()), &demo("corner"));
+        JobFile::parse(Source::new("other.toml", text.replace("teeth = 6", "teeth = 4").into_bytes()), &demo("corner"));
     let other = Pass::read(other.unwrap()).unwrap();
     let milled = virtual_mill::mill(&other, &machine("corner"), None).unwrap();
     let probe = virtual_mill::probe(&other, &milled, &[30.0, 75.0], &[0.5], 6.0).unwrap();

@@ -5,7 +5,7 @@ use std::path::Path;
 use truepath_correction::correct::correct;
 use truepath_correction::verification::{Settings, plan};
 use truepath_ground::diagnostics::Source;
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_trial::virtual_mill;
@@ -17,7 +17,7 @@ fn demo(name: &str, file: &str) -> Vec<u8> {
 
 /// Largest wall error of the part cut before and after a correction from touches at these places and levels.
 fn corrected(name: &str, places: &[f64], levels: &[f64]) -> (f64, f64) {
-    let job = Job::parse(Source::new("job.toml", demo(name, "job.toml")), Path::new("")).unwrap();
+    let job = JobFile::parse(Source::new("job.toml", demo(name, "job.toml")), Path::new("")).unwrap();
     let pass = Pass::new(job, Source::new("program.nc", demo(name, "program.nc"))).unwrap();
     let plant = toml::from_str(std::str::from_utf8(&demo(name, "plant.toml")).unwrap()).unwrap();
     let first = virtual_mill::mill(&pass, &plant, None).unwrap();
@@ -33,7 +33,7 @@ fn corrected(name: &str, places: &[f64], levels: &[f64]) -> (f64, f64) {
 #[test]
 fn a_part_probed_at_the_chosen_places_comes_out_ten_times_better() {
     for name in ["corner-helix", "pocket"] {
-        let job = Job::parse(Source::new("job.toml", demo(name, "job.toml")), Path::new("")).unwrap();
+        let job = JobFile::parse(Source::new("job.toml", demo(name, "job.toml")), Path::new("")).unwrap();
         let pass = Pass::new(job, Source::new("program.nc", demo(name, "program.nc"))).unwrap();
         let plan = plan(&pass, &Settings::default(), &mut |_| ()).unwrap();
         let places: Vec<f64> = plan.places.iter().map(|p| p.s_mm).collect();

@@ -64,7 +64,9 @@ fn factor_table(factor: &[u32]) -> Result<(), ImageError> {
 pub(super) fn nodes(header: &Header, nodes: impl ExactSizeIterator<Item = Node>) -> Result<(), ImageError> {
     let count = nodes.len();
     let mut before: Option<Node> = None;
-    for (index, node) in nodes.enumerate() {
+    // Counted by hand: the sum within `enumerate` could panic for all that the compiler knows.
+    let mut index = 0usize;
+    for node in nodes {
         if let Some(previous) = before {
             link(index.saturating_sub(1), &previous, &node)?;
         } else if (node.x, node.y) != (0, 0) {
@@ -72,6 +74,7 @@ pub(super) fn nodes(header: &Header, nodes: impl ExactSizeIterator<Item = Node>)
         }
         clamp(index, &node, header)?;
         before = Some(node);
+        index = index.saturating_add(1);
     }
     let Some(last) = before else {
         return Ok(());

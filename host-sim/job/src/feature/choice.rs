@@ -10,10 +10,10 @@ use super::listing::{listed, rows};
 use super::region::{Origin, Region};
 use super::survey::Survey;
 use crate::codes::{N001, N002, N010, N011};
-use crate::job::{FeatureRole, Job};
+use crate::job::{FeatureRole, JobFile};
 
 /// The feature named by the user, or the only one that can be meant.
-pub(super) fn chosen<'r>(job: &Job, regions: &'r [Region], survey: &Survey) -> Result<&'r Region, Failure> {
+pub(super) fn chosen<'r>(job: &JobFile, regions: &'r [Region], survey: &Survey) -> Result<&'r Region, Failure> {
     let region = match &job.which.feature {
         Some(id) => named(regions, id)?,
         None => only(job, regions, survey)?,
@@ -46,7 +46,7 @@ fn named<'r>(regions: &'r [Region], id: &str) -> Result<&'r Region, Failure> {
     Err(InputError::new(N002, format!("there is no feature \"{id}\""), expected, help).into())
 }
 
-fn only<'r>(job: &Job, regions: &'r [Region], survey: &Survey) -> Result<&'r Region, Failure> {
+fn only<'r>(job: &JobFile, regions: &'r [Region], survey: &Survey) -> Result<&'r Region, Failure> {
     if let [only] = regions {
         return Ok(only);
     }

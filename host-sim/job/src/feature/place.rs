@@ -9,13 +9,13 @@ use truepath_ground::diagnostics::{InputError, Source};
 
 use super::marker::Marked;
 use crate::codes::{N007, N008};
-use crate::job::{FeaturePlace, FeatureTable, Job};
+use crate::job::{FeaturePlace, FeatureTable, JobFile};
 
 /// The lines of every feature of a job that names its own; `None` for those that markers show.
 ///
 /// # Errors
 /// `N008` when a feature names blocks or lines that the program does not have.
-pub fn lines_named(job: &Job, program: &Source) -> Result<Vec<Option<LineRange>>, InputError> {
+pub fn lines_named(job: &JobFile, program: &Source) -> Result<Vec<Option<LineRange>>, InputError> {
     let named = |feature: &FeatureTable| match feature.place {
         FeaturePlace::Markers => Ok(None),
         FeaturePlace::Lines(_) | FeaturePlace::Blocks(_) => lines(job, feature, program, &[]).map(Some),
@@ -25,7 +25,7 @@ pub fn lines_named(job: &Job, program: &Source) -> Result<Vec<Option<LineRange>>
 
 /// The lines of a feature.
 pub(super) fn lines(
-    job: &Job,
+    job: &JobFile,
     feature: &FeatureTable,
     program: &Source,
     marked: &[Marked],

@@ -13,7 +13,7 @@ use super::marker::marked;
 use super::region::{Origin, Region, regions};
 use super::survey::{LARGEST_SEARCH, Survey};
 use crate::codes::{N009, N010, N011, N012};
-use crate::job::{Job, Which};
+use crate::job::{JobFile, Which};
 
 /// One pass of a feature along its wall.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,7 +64,7 @@ pub struct Plan {
 ///
 /// # Errors
 /// What is wrong with the program, its markers or the features of the job, and what is ambiguous.
-pub fn plan(job: &Job, program: &Source) -> Result<Option<Plan>, Failure> {
+pub fn plan(job: &JobFile, program: &Source) -> Result<Option<Plan>, Failure> {
     if is_marked_corrected(program.bytes()) {
         // The pass refuses it, whatever it holds.
         return Ok(None);

@@ -10,7 +10,7 @@ use truepath_ground::diagnostics::{InputError, Source};
 use super::marker::Marked;
 use super::place;
 use crate::codes::N007;
-use crate::job::{FeatureRole, FeatureTable, Job};
+use crate::job::{FeatureRole, FeatureTable, JobFile};
 
 /// Who says where a feature is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +67,7 @@ impl Region {
 }
 
 /// The features of a program in their order.
-pub(super) fn regions(job: &Job, program: &Source, marked: &[Marked]) -> Result<Vec<Region>, InputError> {
+pub(super) fn regions(job: &JobFile, program: &Source, marked: &[Marked]) -> Result<Vec<Region>, InputError> {
     if job.features.is_empty() {
         return Ok(if marked.is_empty() { vec![whole(job)] } else { of_markers(program, marked) });
     }
@@ -98,7 +98,7 @@ pub(super) fn regions(job: &Job, program: &Source, marked: &[Marked]) -> Result<
 }
 
 /// The whole program, to be searched.
-const fn whole(job: &Job) -> Region {
+const fn whole(job: &JobFile) -> Region {
     Region {
         number: 1,
         id: None,

@@ -7,7 +7,7 @@ use truepath_core::geometry::Block;
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{InputError, Source};
 
-use crate::job::Job;
+use crate::job::JobFile;
 
 /// Different runs that are compared with each other at most; the time grows with the square of their number.
 pub(super) const LARGEST_SEARCH: usize = 1_000;
@@ -29,7 +29,7 @@ impl Survey {
     ///
     /// # Errors
     /// What is wrong with the program.
-    pub fn read(job: &Job, program: &Source) -> Result<Self, InputError> {
+    pub fn read(job: &JobFile, program: &Source) -> Result<Self, InputError> {
         let mut blocks: Vec<Block> = Vec::new();
         let mut read: Vec<Candidate> = Vec::new();
         let mut memory = Box::new(HostMemory::new());

@@ -1,4 +1,4 @@
-//! From tables and keys to a [`Job`]: presence, ranges, choices and contradictions.
+//! From tables and keys to a [`JobFile`]: presence, ranges, choices and contradictions.
 
 use std::cell::RefCell;
 use std::path::Path;
@@ -23,7 +23,7 @@ use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
 use super::check_tool::{reach, tool};
 use super::material::MATERIALS;
-use super::{Job, Which};
+use super::{JobFile, Which};
 
 /// The stiffest machine a job can state; where none is stated only the cutter bends.
 const RIGID: Machine = Machine { stiffness_x: Real::from_int(1_000_000), stiffness_y: Real::from_int(1_000_000) };
@@ -41,7 +41,7 @@ pub const DIALECTS: [(&str, Dialect); 5] = [
 pub const DECIMALS: [(&str, PointlessLength); 2] =
     [("calculator", PointlessLength::Calculator), ("least", PointlessLength::Least)];
 
-impl Job {
+impl JobFile {
     /// Reads and checks a job file.
     ///
     /// # Errors
@@ -61,7 +61,7 @@ impl Job {
 }
 
 /// Reads the whole job.
-fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
+fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     let table = notation::parse(&source, "the job file")?;
     let spans = RefCell::new(Spans::new());
     let root = Section::root(&source, &table, &spans);
@@ -103,7 +103,7 @@ fn job(source: Source, folder: &Path) -> Result<Job, InputError> {
     let Stock { allowance, surface } = stock;
     let surface = surface.map(|name| folder.join(name));
     drop(root);
-    Ok(Job {
+    Ok(JobFile {
         program,
         numbers: truepath_core::job::Job {
             dialect,

@@ -1,6 +1,6 @@
 //! The job file: what is cut, with what, how it is probed and how it is to be corrected.
 //!
-//! Reading has two stages. `document` turns the text into tables, keys and spans; `check` turns those into a [`Job`]
+//! Reading has two stages. `document` turns the text into tables, keys and spans; `check` turns those into a [`JobFile`]
 //! in which every quantity is in range, in the units of the core, and every choice is made. Lengths come out as exact
 //! nanometres of the decimal text. Unknown keys are errors. Every error names file, line and column, what was found,
 //! what was expected and what to do.
@@ -43,7 +43,7 @@ pub(crate) use check_feature::is_id;
 
 /// A checked job.
 #[derive(Clone, Debug)]
-pub struct Job {
+pub struct JobFile {
     /// The program, as a path that can be opened.
     pub program: PathBuf,
     /// What the correction follows from, as the device takes it; without a probe when the job has no `[probe]`.
@@ -96,7 +96,7 @@ pub enum Route {
     Coprocessor,
 }
 
-impl Job {
+impl JobFile {
     /// Reads the program.
     ///
     /// # Errors

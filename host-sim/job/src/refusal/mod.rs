@@ -7,7 +7,7 @@ use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
 
-use crate::job::Job;
+use crate::job::JobFile;
 
 mod readings;
 
@@ -19,7 +19,7 @@ pub use readings::why;
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs<'a> {
     /// The job.
-    pub job: &'a Job,
+    pub job: &'a JobFile,
     /// Its program.
     pub program: &'a Source,
     /// The probe file, once there is one.

@@ -6,7 +6,7 @@ use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::units::mm;
 
-use crate::job::Job;
+use crate::job::JobFile;
 
 /// What is wrong with a probe file.
 pub(super) fn of_probe(file: &Source, error: &ProbeError) -> InputError {
@@ -21,7 +21,7 @@ pub(super) fn of_probe(file: &Source, error: &ProbeError) -> InputError {
 }
 
 /// Readings that do not belong to the wall of the job.
-pub(super) fn of_contacts(error: &JobError, job: &Job) -> InputError {
+pub(super) fn of_contacts(error: &JobError, job: &JobFile) -> InputError {
     match error {
         JobError::OffTheWall { suspicion, .. } => {
             let (guess, help) = suspected(*suspicion);

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use truepath_ground::diagnostics::{Failure, Form, Source};
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 
 fn cases() -> Vec<std::path::PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/job_errors");
@@ -21,7 +21,7 @@ fn cases() -> Vec<std::path::PathBuf> {
 fn failure(path: &Path) -> Failure {
     let name = path.file_name().expect("a name").to_string_lossy().into_owned();
     let source = Source::new(name, std::fs::read(path).expect("a readable job"));
-    let error = Job::parse(source, Path::new("")).expect_err(&format!("{} was accepted", path.display()));
+    let error = JobFile::parse(source, Path::new("")).expect_err(&format!("{} was accepted", path.display()));
     Failure::from(error)
 }
 

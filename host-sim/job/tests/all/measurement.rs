@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use truepath_ground::diagnostics::{Failure, Form, Source};
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
@@ -17,7 +17,7 @@ fn pass(change: &[(&str, &str)], program: &str) -> Pass {
         assert!(job.contains(from), "the job has no `{from}`");
         job = job.replace(from, to);
     }
-    let job = Job::parse(Source::new("job.toml", job.into_bytes()), Path::new("")).unwrap();
+    let job = JobFile::parse(Source::new("job.toml", job.into_bytes()), Path::new("")).unwrap();
     Pass::new(job, Source::new("program.nc", program.as_bytes().to_vec())).unwrap()
 }
 

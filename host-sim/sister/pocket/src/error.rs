@@ -1,7 +1,7 @@
 //! Why a pocket cannot be compensated.
 
 use truepath_ground::diagnostics::Failure;
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 
 use crate::codes::{D001, D002, D003, D004, D005, D006};
 
@@ -48,7 +48,7 @@ pub enum PocketError {
 
 impl PocketError {
     /// As the user meets it, pointing into the job.
-    pub fn failure(&self, job: &Job) -> Failure {
+    pub fn failure(&self, job: &JobFile) -> Failure {
         let (row, found, expected, key) = match self {
             Self::NoCutter => (
                 D001,

@@ -1,7 +1,7 @@
 //! How far a newton moves the cutter at every height: the cutter as a beam, and what holds it.
 
 use truepath_ground::units::{float, mm};
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 
 use super::beam::{Beam, Load};
 use super::error::PocketError;
@@ -25,7 +25,7 @@ impl Machine {
     ///
     /// # Errors
     /// [`PocketError::NoCutter`] without stick-out and tool material.
-    pub fn of(job: &Job) -> Result<Self, PocketError> {
+    pub fn of(job: &JobFile) -> Result<Self, PocketError> {
         let (numbers, shank) = (&job.numbers, &job.shank);
         let cantilever = numbers.tool.cantilever.ok_or(PocketError::NoCutter)?;
         let diameter_mm = mm(numbers.tool.diameter);

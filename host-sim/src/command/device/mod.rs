@@ -13,7 +13,7 @@ use truepath_bench::{BenchError, Client, Ingredients, Line, compute};
 use truepath_core::link::{Ask, Counters, DeviceStatus, Slot};
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::write_file;
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 
 use super::hil::Counts;
 use super::image;
@@ -241,7 +241,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
         }
         Task::Restart { watchdog } => done(&mut client, Ask::Restart { watchdog: *watchdog }, terminal, "restarted"),
         Task::Compute { job, probe, activate: after, minutes } => {
-            let job = Job::read(job)?;
+            let job = JobFile::read(job)?;
             let program = job.read_program()?;
             let probe = Source::read(probe)?;
             let compact = job.compact()?;

@@ -10,7 +10,7 @@ use truepath_core::link::{Computed, DeviceSettings};
 use truepath_core::rewrite::SettingsError;
 use truepath_correction::correct::correct;
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
@@ -87,7 +87,7 @@ pub fn on_board(
     probe: &Path,
     progress: &mut dyn FnMut(&str),
 ) -> Result<OnBoard, Failure> {
-    let job = Job::read(job)?;
+    let job = JobFile::read(job)?;
     let program = job.read_program()?;
     let compact = job.compact()?;
     let probe = Source::read(probe)?;

@@ -10,7 +10,7 @@ use truepath_core::cut::Sample;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::sheet::{each_line, read_bounded};
 use truepath_ground::units::{float, mm};
-use truepath_job::job::{Job, Which};
+use truepath_job::job::{JobFile, Which};
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_report::codes::{Z012, Z013};
 use truepath_report::{WallRow, read_wall};
@@ -49,7 +49,7 @@ fn beside(table: &FilePath) -> Result<Vec<WallRow>, InputError> {
 }
 
 fn of_job(table: &FilePath, source: &Source, of: &OfJob) -> Result<Vec<WallRow>, Failure> {
-    let mut job = Job::read(of.job)?;
+    let mut job = JobFile::read(of.job)?;
     job.which = of.which.clone();
     let pass = Pass::read(job)?;
     let mut buffer = PathBuffer::default();

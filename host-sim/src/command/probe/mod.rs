@@ -12,7 +12,7 @@ use clap::{ArgGroup, Args};
 use truepath_correction::verification::{Gained, KeptOff, Plan, ProbeDialect, Settings, Unknown, plan, write};
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFile;
-use truepath_job::job::{Job, ProbeFlags, Which};
+use truepath_job::job::{JobFile, ProbeFlags, Which};
 use truepath_job::pass::Pass;
 
 use crate::terminal::Terminal;
@@ -198,7 +198,7 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failu
     let file = options.output.as_ref().map(|out| OutputFile::create(out, options.force)).transpose()?;
     let usual = if options.next { FURTHER } else { options.settings.places };
     let settings = Settings { places: options.points.unwrap_or(usual), ..options.settings.clone() };
-    let mut job = Job::read(&options.job)?;
+    let mut job = JobFile::read(&options.job)?;
     job.which = options.which.clone();
     let plan = if options.next {
         job.override_probe(&options.probe_flags)?;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use truepath::command::{correct, inspect, simulate};
-use truepath_job::job::{Job, Which};
+use truepath_job::job::{JobFile, Which};
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
 use truepath_trial::virtual_mill;
@@ -69,7 +69,7 @@ fn a_page_of_one_of_several_depths_names_it_and_lists_the_others() {
 fn a_correction_tells_which_depths_got_it_and_an_inspection_which_it_judged() {
     let (folder, job) = copied("pocket");
     let at = |name: &str| folder.path().join(name);
-    let pass = shown(Job::read(&job).map_err(Into::into).and_then(Pass::read));
+    let pass = shown(JobFile::read(&job).map_err(Into::into).and_then(Pass::read));
     let machine: Machine = toml::from_str(MACHINE).unwrap();
     let milled = shown(virtual_mill::mill(&pass, &machine, None));
     let places: Vec<f64> = [0.1, 0.35, 0.6, 0.9].iter().map(|share| share * milled.path.length_mm).collect();

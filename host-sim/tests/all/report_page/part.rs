@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use truepath::command::{correct, learn, simulate};
 use truepath_ground::diagnostics::{Failure, Form};
 use truepath_ground::units::mm;
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::pass::Pass;
 use truepath_plant::Milled;
 use truepath_trial::virtual_mill;
@@ -40,7 +40,7 @@ impl Part {
     }
 
     pub fn pass(&self) -> Pass {
-        shown(Job::read(&self.at("job.toml")).map_err(Failure::from).and_then(Pass::read))
+        shown(JobFile::read(&self.at("job.toml")).map_err(Failure::from).and_then(Pass::read))
     }
 
     /// Mills it, with a corrected program where one is named.

@@ -3,7 +3,7 @@
 use std::fs;
 
 use truepath::command::{simulate, split};
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 use truepath_job::pass::Pass;
 use truepath_trial::virtual_mill;
 
@@ -15,7 +15,7 @@ fn a_second_pass_is_shown_over_the_surface_that_the_first_has_left() {
     let part = Part::of_the_demonstration("pocket", "");
     let options = split::Options { job: part.at("job.toml"), output: part.at("split"), ..split::Options::default() };
     let first = shown(split::run(&options)).job;
-    let pass = shown(Job::read(&first).map_err(Into::into).and_then(Pass::read));
+    let pass = shown(JobFile::read(&first).map_err(Into::into).and_then(Pass::read));
     let machine = shown(simulate::read_machine(&part.at("plant.toml")));
     part.touched_along(&pass, &shown(virtual_mill::mill(&pass, &machine, None)), &ROUND, "probe.txt");
     part.correct_after(Some(&first), "probe.txt", "out", None);

@@ -6,7 +6,7 @@ use std::sync::{LazyLock, Mutex};
 
 use truepath_correction::verification::{Plan, Settings, plan};
 use truepath_ground::diagnostics::Source;
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 use truepath_job::pass::Pass;
 
 pub const CORNER: [&str; 2] =
@@ -25,7 +25,7 @@ pub fn pass([job, program]: [&str; 2], changes: &[(&str, &str)]) -> Pass {
         job = job.replace(from, to);
         program = program.replace(from, to);
     }
-    let job = Job::parse(Source::new("job.toml", job.into_bytes()), Path::new("")).unwrap();
+    let job = JobFile::parse(Source::new("job.toml", job.into_bytes()), Path::new("")).unwrap();
     Pass::new(job, Source::new("program.nc", program.into_bytes())).unwrap()
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Form, Source};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, read_blocks};
 use truepath_plant::Machine;
@@ -20,7 +20,7 @@ const CENTRE: &str = "%\nG21 G90 G17 G40\nT1 M6\nS1000 M3\nG0 X24 Y100 Z50\nG0 Z
 
 fn pass(program: &str, compensation: &str) -> Result<Pass, Failure> {
     let text = JOB.replace("teeth = 6", &format!("teeth = 6\n{compensation}"));
-    let job = Job::parse(Source::new("job.toml", text.into_bytes()), Path::new(""))?;
+    let job = JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new(""))?;
     Pass::new(job, Source::new("part.nc", program.as_bytes().to_vec()))
 }
 

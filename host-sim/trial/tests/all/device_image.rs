@@ -7,7 +7,7 @@ use truepath_core::job::{self, Buffers, COMPACT_BYTES, JobError};
 use truepath_core::units::{Offset, Real};
 use truepath_correction::correct::correct;
 use truepath_ground::diagnostics::{Failure, Form, Source};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
@@ -40,7 +40,7 @@ fn changed(name: &str, change: &[(&str, &str)], program: Source) -> Result<Pass,
         assert!(text.contains(from), "the job has no `{from}`");
         text = text.replace(from, to);
     }
-    let job = Job::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).unwrap();
+    let job = JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).unwrap();
     Pass::new(job, program)
 }
 
@@ -214,7 +214,7 @@ const ENDS: [(&str, &str, &str); 29] = [
 #[test]
 fn the_ranges_of_the_job_file_are_those_of_the_compact_form() {
     let text = String::from_utf8(source("pocket", "job.toml").bytes().to_vec()).unwrap();
-    let parse = |text: &str| Job::parse(Source::new("job.toml", text.as_bytes().to_vec()), Path::new(""));
+    let parse = |text: &str| JobFile::parse(Source::new("job.toml", text.as_bytes().to_vec()), Path::new(""));
     for (key, inside, outside) in ENDS {
         assert!(text.contains(key), "{key}");
         let job = parse(&text.replace(key, inside)).unwrap_or_else(|e| panic!("{inside}: {e}"));

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use truepath_core::gcode::Units;
 use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Form, Source};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, read_blocks};
 use truepath_plant::Machine;
@@ -21,7 +21,7 @@ const STRAIGHT: [f64; 4] = [30.0, 37.0, 75.0, 85.0];
 fn pass(program: &str, feed: &str) -> Result<Pass, Failure> {
     let job = JOB.lines().filter(|l| !l.starts_with("feed_mm_per_min")).collect::<Vec<_>>().join("\n");
     let text = format!("{job}\n{feed}\n[[feature]]\nid = \"wall\"\nlines = [8, 10]\nrole = \"finish\"\n");
-    let job = Job::parse(Source::new("job.toml", text.into_bytes()), Path::new(""))?;
+    let job = JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new(""))?;
     Pass::new(job, Source::new("part.nc", program.as_bytes().to_vec()))
 }
 
@@ -129,7 +129,8 @@ fn the_feed_rises_only_where_the_job_says_so_and_a_closed_contour_has_no_jump_at
     let machine: Machine = toml::from_str(include_str!("../../../demo/pocket/plant.toml")).unwrap();
     let used = |highest: u16, limit: &str| {
         let text = format!("{job}\n[feed]\nmin_percent = 50\nmax_percent = {highest}\n{limit}\n");
-        let job = shown(Job::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).map_err(Failure::from));
+        let job =
+            shown(JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).map_err(Failure::from));
         let pass = shown(Pass::new(job, Source::new("part.nc", program.as_bytes().to_vec())));
         let milled = shown(virtual_mill::mill(&pass, &machine, None));
         let probe = shown(virtual_mill::probe(&pass, &milled, &[45.0, 92.0, 145.0], &[0.3, 0.8], 4.0));

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_ground::diagnostics::{Failure, Form, Source};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
@@ -23,7 +23,7 @@ fn shown<T>(result: Result<T, Failure>) -> T {
 }
 
 fn pass() -> Pass {
-    let job = Job::parse(Source::new("job.toml", JOB.as_bytes().to_vec()), Path::new("")).unwrap();
+    let job = JobFile::parse(Source::new("job.toml", JOB.as_bytes().to_vec()), Path::new("")).unwrap();
     shown(Pass::new(job, Source::new("program.nc", PROGRAM.as_bytes().to_vec())))
 }
 

@@ -12,7 +12,7 @@ use truepath_core::job;
 use truepath_core::units::Offset;
 use truepath_correction::correction::{Buffers, DesignRequest, design_correction, identify};
 use truepath_ground::diagnostics::Source;
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_plant::Machine;
@@ -24,7 +24,7 @@ const HELICAL: &str = include_str!("../../../demo/corner-helix/plant.toml");
 
 fn pass(keys: &str) -> Pass {
     let text = JOB.replace("[correct]", &format!("[correct]\n{keys}"));
-    let job = Job::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).unwrap();
+    let job = JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).unwrap();
     Pass::new(job, Source::new("program.nc", PROGRAM.as_bytes().to_vec())).unwrap()
 }
 

@@ -6,7 +6,7 @@ use truepath_correction::correct::{CorrectedPass, correct};
 use truepath_correction::learn::{Learned, learn};
 use truepath_correction::learning::History;
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_job::job::{Job, Route};
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::{Machine, Milled};
@@ -28,7 +28,7 @@ pub fn source(name: &str, text: &str) -> Source {
 
 impl Shop {
     pub fn new(program: &str, job: &str, plant: &str) -> Self {
-        let job = Job::parse(source("job.toml", job), Path::new("")).unwrap();
+        let job = JobFile::parse(source("job.toml", job), Path::new("")).unwrap();
         let ball_mm = job.numbers.probe.unwrap().ball_diameter.nm() as f64 / 1e6;
         let pass = Pass::new(job, source("program.nc", program)).unwrap();
         Self { pass, machine: toml::from_str(plant).unwrap(), ball_mm }

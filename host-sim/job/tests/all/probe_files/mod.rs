@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
@@ -21,7 +21,7 @@ pub fn file(name: &str) -> Vec<u8> {
 pub fn pass(format: &str, ball: &str) -> Pass {
     let job = JOB.replace("format = \"linuxcnc\"", format);
     let job = job.replace("ball_diameter_mm = 6.0", &format!("ball_diameter_mm = {ball}"));
-    let job = Job::parse(Source::new("job.toml", job.into_bytes()), Path::new("")).unwrap();
+    let job = JobFile::parse(Source::new("job.toml", job.into_bytes()), Path::new("")).unwrap();
     Pass::new(job, Source::new("program.nc", PROGRAM.as_bytes().to_vec())).unwrap()
 }
 
