@@ -5,7 +5,7 @@ use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
 use truepath_ground::diagnostics::Source;
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 
 fuzz_target!(|bytes: &[u8]| {
     // The compact form comes over the wire.
@@ -14,7 +14,7 @@ fuzz_target!(|bytes: &[u8]| {
         let compact = job.to_compact(&mut buffer).expect("room for every job");
         assert_eq!(truepath_core::job::Job::from_compact(compact), Ok(job));
     }
-    match Job::parse(Source::new("job.toml", bytes.to_vec()), Path::new("")) {
+    match JobFile::parse(Source::new("job.toml", bytes.to_vec()), Path::new("")) {
         Ok(job) => {
             let mut buffer = [0; truepath_core::job::COMPACT_BYTES];
             let compact = job.numbers.to_compact(&mut buffer).expect("room for every job");

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use libfuzzer_sys::fuzz_target;
 use truepath_ground::diagnostics::Source;
-use truepath_job::job::Job;
+use truepath_job::job::JobFile;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
@@ -21,7 +21,7 @@ fn passes() -> &'static [Pass] {
         let program = include_bytes!("../../host-sim/demo/corner/program.nc");
         let pass = |format: &&str| {
             let text = job.replace("format = \"linuxcnc\"", &format!("format = \"{format}\""));
-            let job = Job::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).expect("a job");
+            let job = JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new("")).expect("a job");
             Pass::new(job, Source::new("program.nc", program.to_vec())).expect("a pass")
         };
         FORMATS.iter().map(pass).collect()

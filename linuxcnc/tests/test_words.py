@@ -37,7 +37,7 @@ class WordsTest(unittest.TestCase):
         self.assertLess(max(words.REFUSALS), arming.CONFIGURATION)
 
     def test_every_error_of_an_image_has_words(self):
-        found = codes(CORE / "image/error.rs", r"=> (\d+),$")
+        found = codes(CORE / "image/error.rs", r'= "I0*(\d+)"')
         self.assertGreater(len(found), 13)
         self.assertLessEqual(found, set(words.IMAGE_ERRORS))
 
