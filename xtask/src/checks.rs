@@ -29,8 +29,11 @@ pub fn doc() -> Outcome {
 /// What decides the random cases of property tests.
 const SEED: &str = "PROPTEST_RNG_SEED";
 
-/// The tests. Without arguments those of the whole workspace, and all of them even when one fails. Property tests take
-/// the same cases on every repeat, other ones each time when `all` is wanted.
+/// Start of the names of tests that others call in a process of their own.
+const CHILD: &str = "child_";
+
+/// The tests. Without arguments those of the whole workspace, and all of them even when one fails. With `all` also those
+/// that are ignored for being slow, and other cases of the property tests on every repeat.
 pub fn tests(all: bool, arguments: &[String]) -> Outcome {
     let mut command = cargo();
     command.arg("test");
@@ -40,7 +43,14 @@ pub fn tests(all: bool, arguments: &[String]) -> Outcome {
     if arguments.is_empty() {
         command.args(["--workspace", "--no-fail-fast"]);
     }
-    run(command.args(arguments))?;
+    command.args(arguments);
+    if all {
+        if !arguments.iter().any(|argument| argument == "--") {
+            command.arg("--");
+        }
+        command.args(["--include-ignored", "--skip", CHILD]);
+    }
+    run(&mut command)?;
     Ok(Passed::Done)
 }
 

@@ -40,9 +40,9 @@ struct Arguments {
 enum Task {
     /// What a change has to pass; with --all everything there is.
     ///
-    /// fmt, lint, rooms, test-only, firmware, budget and hil, the same on every repeat. With --all also other random cases
-    /// each time, the image of the real board, doc, device, elf, all setpoints of hil and its release build, page,
-    /// conformance, judge, bench, fuzz and linuxcnc.
+    /// fmt, rooms, test-only, firmware, budget and hil, the same on every repeat. With --all also the slow tests, other
+    /// random cases each time, the image of the real board, all setpoints of hil and its release build, lint, doc,
+    /// device, elf, page, conformance, judge, bench, fuzz and linuxcnc.
     Test {
         /// Also what takes long.
         #[arg(long)]
@@ -60,7 +60,7 @@ enum Task {
     Doc,
     /// The tests of all packages, examples in the documentation included.
     TestOnly {
-        /// Other random cases on every repeat.
+        /// Also the slow ones, and other random cases on every repeat.
         #[arg(long)]
         all: bool,
         /// Handed to `cargo test`, for instance `-p truepath-core engagement`.
@@ -230,13 +230,13 @@ fn main() -> ExitCode {
 fn test(report: &mut Report, all: bool) {
     let boards: &[Board] = if all { &Board::ALL } else { &[Board::Virtual] };
     report.run(Step::new("fmt", || checks::format(false)));
-    report.run(Step::new("lint", checks::lint));
     report.run(Step::new("rooms", || rooms::check(false, None)));
     report.run(Step::new("test-only", || checks::tests(all, &[])));
     report.run(Step::new("firmware", || firmware::build(boards, false)));
     report.run(Step::new("budget", || firmware::budget::check(false)));
     report.run(Step::new("hil", || hil::check(all)));
     if all {
+        report.run(Step::new("lint", checks::lint));
         report.run(Step::new("doc", checks::doc));
         report.run(Step::new("device", device::check));
         report.run(Step::new("elf", || firmware::elf::check(boards, false)));

@@ -218,6 +218,7 @@ fn a_history_that_was_changed_or_is_cut_short_is_refused() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn a_worse_part_whose_points_contradict_each_other_takes_the_correction_back() {
     let (_guard, folder) = copy();
     run(&folder, "part-2.txt", "first", "learned").unwrap();
@@ -239,6 +240,7 @@ fn a_worse_part_whose_points_contradict_each_other_takes_the_correction_back() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn a_correction_is_not_replaced_by_one_made_from_the_part_that_was_cut_with_it() {
     let (_guard, folder) = copy();
     let again = |probe: &str, out: &str| {

@@ -21,6 +21,7 @@ fn options(words: &[&str]) -> Options {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn two_cases_go_the_whole_way_and_an_interrupted_study_goes_on() {
     let folder = tempfile::tempdir().expect("a folder");
     let families = ["corner-papers", "bore"];
@@ -49,6 +50,7 @@ fn two_cases_go_the_whole_way_and_an_interrupted_study_goes_on() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn every_family_draws_cases_that_can_be_milled_and_touched() {
     for family in FAMILIES {
         let id = CaseId { family: family.name.to_owned(), seed: Set::Tuning.seeds().start, cell: None };

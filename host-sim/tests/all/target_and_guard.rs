@@ -62,6 +62,7 @@ fn errors(milled: &Milled, levels: &[f64]) -> Vec<Vec<f64>> {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn each_target_brings_its_own_quantity_nearest_to_zero() {
     let levels: Vec<f64> = (0..20).map(|k| (f64::from(k) + 0.5) / 20.0).collect();
     let largest = |milled: &Milled, levels: &[f64], quantity: fn(&[f64]) -> f64| {

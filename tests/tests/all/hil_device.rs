@@ -31,7 +31,7 @@ fn device_with_errors(folder: &Path, arguments: &[&str]) -> (u8, String) {
 
 fn called(folder: &Path, arguments: &[&str]) -> (u8, String, String) {
     let Output { status, stdout, stderr } = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "hil_device::the_command_line_itself", "--nocapture", "--ignored"])
+        .args(["--exact", "hil_device::child_that_is_the_command_line", "--nocapture", "--ignored"])
         .env("TRUEPATH_ARGUMENTS", arguments.join("\n"))
         .env("TRUEPATH_PORT", folder.join("config.sock"))
         .output()
@@ -47,7 +47,7 @@ const END: &str = "said>>>";
 
 #[test]
 #[ignore = "called by the others, in a process of its own"]
-fn the_command_line_itself() {
+fn child_that_is_the_command_line() {
     let Ok(arguments) = std::env::var("TRUEPATH_ARGUMENTS") else { return };
     let port = std::env::var("TRUEPATH_PORT").unwrap();
     print!("{BEGIN}");

@@ -66,6 +66,7 @@ fn a_pocket_is_closer_after_every_part_and_the_history_survives_its_file() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn an_error_that_no_machine_of_the_model_makes_is_learned_beside_it() {
     // Edges that wear fast, an allowance that varies, compliance that is not symmetric.
     let plant = HELIX[2]
@@ -87,6 +88,7 @@ fn an_error_that_no_machine_of_the_model_makes_is_learned_beside_it() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn a_machine_that_the_model_describes_leaves_nothing_to_learn_beside_it() {
     let shop = shop(HELIX);
     let (corrected, history) = shop.first(&WITH_CORNER);
@@ -97,6 +99,7 @@ fn a_machine_that_the_model_describes_leaves_nothing_to_learn_beside_it() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn a_part_that_came_out_worse_for_no_reason_of_the_machine_takes_the_correction_back() {
     let shop = shop(HELIX);
     let (corrected, history) = shop.first(&STRAIGHT);
@@ -118,6 +121,7 @@ fn a_part_that_came_out_worse_for_no_reason_of_the_machine_takes_the_correction_
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn what_is_learned_turns_with_the_part_to_the_last_bit() {
     let shop = shop(HELIX);
     let quarter = |x: f64, y: f64| (-y, x);

@@ -72,6 +72,7 @@ fn the_same_inputs_give_the_same_bytes() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn an_edited_file_of_the_demonstration_is_replaced_only_when_told_to() {
     let folder = tempfile::tempdir().unwrap();
     let usual = demo::Options { output: folder.path().to_owned(), keep: false, force: false };

@@ -12,6 +12,7 @@ const STRAIGHT: [f64; 4] = [20.0, 32.0, 68.0, 80.0];
 const WITH_CORNER: [f64; 7] = [21.0, 33.0, 45.0, 49.0, 53.0, 69.0, 81.0];
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn a_correction_that_is_used_again_stands_under_the_guard_of_the_job() {
     let shop = Shop::new(DEMO[0], DEMO[1], DEMO[2]);
     let (corrected, history) = shop.first(&STRAIGHT);
@@ -41,6 +42,7 @@ fn a_correction_that_is_used_again_stands_under_the_guard_of_the_job() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn going_back_to_the_first_part_is_said_to_be_no_correction() {
     let shop = Shop::new(DEMO[0], DEMO[1], DEMO[2]);
     let (corrected, history) = shop.first(&STRAIGHT);

@@ -52,7 +52,7 @@ fn ready() {
 
 #[test]
 #[ignore = "called by others, in a process of its own"]
-fn a_run_that_does_not_end() {
+fn child_that_does_not_end() {
     listen().unwrap();
     let folder = OutputFolder::create(Path::new("new/out"), false, &OWNED).unwrap();
     folder.write("corrected.nc", b"G1").unwrap();
@@ -68,7 +68,7 @@ fn a_run_that_does_not_end() {
 
 #[test]
 #[ignore = "called by others, in a process of its own"]
-fn a_run_that_is_moving_its_outputs() {
+fn child_that_is_moving_its_outputs() {
     listen().unwrap();
     let folder = OutputFolder::create(Path::new("out"), false, &OWNED).unwrap();
     folder.write("corrected.nc", b"G1").unwrap();
@@ -82,7 +82,7 @@ fn a_run_that_is_moving_its_outputs() {
 
 #[test]
 #[ignore = "called by others, in a process of its own"]
-fn a_run_that_moves_its_outputs_for_ever() {
+fn child_that_moves_its_outputs_for_ever() {
     listen().unwrap();
     let _held = hold();
     ready();
@@ -105,7 +105,7 @@ fn a_signal_takes_everything_temporary_along_in_the_middle_of_work() {
             continue;
         }
         let place = tempfile::tempdir().unwrap();
-        let process = process("a_run_that_does_not_end", place.path());
+        let process = process("child_that_does_not_end", place.path());
         assert_eq!(names(place.path()), ["new", "other"]);
         assert_eq!((names(&place.path().join("new")).len(), names(&place.path().join("other")).len()), (2, 1));
         signal(&process, name);
@@ -117,13 +117,13 @@ fn a_signal_takes_everything_temporary_along_in_the_middle_of_work() {
 #[test]
 fn a_signal_waits_until_files_are_moved_and_a_second_one_does_not() {
     let place = tempfile::tempdir().unwrap();
-    let waiting = process("a_run_that_is_moving_its_outputs", place.path());
+    let waiting = process("child_that_is_moving_its_outputs", place.path());
     signal(&waiting, "-INT");
     assert_eq!(ended(waiting).code(), Some(130));
     let left = names(place.path());
     assert!(left.is_empty() || left == ["out"], "{left:?}");
 
-    let mut stuck = process("a_run_that_moves_its_outputs_for_ever", place.path());
+    let mut stuck = process("child_that_moves_its_outputs_for_ever", place.path());
     let start = Instant::now();
     while stuck.try_wait().unwrap().is_none() {
         assert!(start.elapsed() < Duration::from_secs(120), "it does not end");
@@ -139,7 +139,7 @@ fn a_hang_up_does_not_end_what_runs_under_nohup() {
     let mut command = Command::new("nohup");
     command.arg(std::env::current_exe().unwrap()).args([
         "--exact",
-        "interrupted::a_run_that_does_not_end",
+        "interrupted::child_that_does_not_end",
         "--ignored",
     ]);
     command.arg("--nocapture").current_dir(place.path()).stdin(Stdio::null()).stderr(Stdio::null());
@@ -157,14 +157,14 @@ fn a_hang_up_does_not_end_what_runs_under_nohup() {
 #[test]
 fn a_second_run_into_a_folder_is_told_which_process_writes_it() {
     let place = tempfile::tempdir().unwrap();
-    let first = process("a_run_that_does_not_end", place.path());
+    let first = process("child_that_does_not_end", place.path());
     let target = place.path().join("new/out");
     for other in [target.clone(), place.path().join("new/../new/./out")] {
         let error = OutputFolder::create(&other, true, &OWNED).expect_err("it is being written");
         let shown = error.to_string();
         assert_eq!(error.code(), "F004");
         assert!(shown.contains(&format!("is being written by process {}", first.id())), "{shown}");
-        assert!(shown.contains("a_run_that_does_not_end"), "{shown}");
+        assert!(shown.contains("child_that_does_not_end"), "{shown}");
     }
     // Other folders beside it are free.
     OutputFolder::create(&place.path().join("new/out2"), false, &OWNED).unwrap().commit().unwrap();

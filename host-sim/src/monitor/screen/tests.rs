@@ -8,7 +8,7 @@ use super::Screen;
 
 #[test]
 #[ignore = "called by the other, in a process of its own on a terminal of its own"]
-fn a_view_that_panics() {
+fn child_whose_view_panics() {
     let mut screen = Screen::open().unwrap();
     screen.draw(|frame| frame.render_widget("drawn", frame.area())).unwrap();
     screen.draw(|_| panic!("on purpose")).unwrap();
@@ -20,7 +20,7 @@ fn a_panic_gives_the_terminal_back_before_it_tells_of_itself() {
     let modes = |master: &dyn portable_pty::MasterPty| format!("{:?}", master.get_termios().unwrap());
     let before = modes(&*pair.master);
     let mut command = CommandBuilder::new(std::env::current_exe().unwrap());
-    command.args(["--exact", "monitor::screen::tests::a_view_that_panics", "--ignored", "--nocapture"]);
+    command.args(["--exact", "monitor::screen::tests::child_whose_view_panics", "--ignored", "--nocapture"]);
     let mut child = pair.slave.spawn_command(command).unwrap();
     let mut reader = pair.master.try_clone_reader().unwrap();
     let output = std::thread::spawn(move || {

@@ -69,6 +69,7 @@ const ALONG_X: &str = "#009E73";
 const ALONG_Y: &str = "#CC79A7";
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn every_kind_is_drawn_as_svg_and_as_png_of_the_size_asked_for() {
     for kind in
         ["trace core", "trace core plant", "correction correct", "error correct", "error core plant", "compare compare"]

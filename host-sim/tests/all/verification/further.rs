@@ -50,6 +50,7 @@ impl Shop {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn with_straight_walls_known_the_corner_comes_next_and_touching_it_pays() {
     let shop = Shop::open();
     let plan = shop.next(&STRAIGHT, 3);
@@ -71,6 +72,7 @@ fn with_straight_walls_known_the_corner_comes_next_and_touching_it_pays() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn on_the_next_part_the_places_are_chosen_from_the_history_and_its_datum_is_open_again() {
     let shop = Shop::open();
     let measurement = shop.measured(&STRAIGHT);

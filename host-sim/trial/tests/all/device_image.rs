@@ -72,6 +72,7 @@ fn on_the_device(part: &Part) -> Result<Vec<u8>, JobError> {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn the_image_of_the_device_is_that_of_the_host_byte_for_byte() {
     let heights = [0.1, 0.5, 0.9];
     let pocket = [12.0, 45.0, 92.0, 145.0, 180.0];
