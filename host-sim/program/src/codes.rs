@@ -15,6 +15,8 @@ truepath_ground::codes! {
         / "use --route coprocessor, or post the line in a plain form",
     P007 => "the compensation of the control (G41, G42) cannot be taken out"
         / "use --route coprocessor, or post the program with the path of the cutter's centre",
+    P008 => "the corrected program is not proved to do what the original does beside the contour"
+        / "use --route coprocessor; nothing was written. The program does something the writer does not know: please send it in",
     T001 => "a line of the tool table that cannot be read"
         / "write rows like T1 P1 X0 Z12.98 D3.175 ;comment",
     T002 => "a line of the parameter file that cannot be read"

@@ -82,8 +82,8 @@ impl Rewritten {
 /// contour, `P003` when one that cannot be displaced (a G18 arc, a probing move) begins at its end, `P004` when a line
 /// of the contour is executed several times, `P005` when the origin is set at the displaced end, `P006` for lines that
 /// cannot be divided (G93, arcs of several turns), `P007` when the control's
-/// cutter compensation cannot be taken out,
-/// the interpreter's own errors; internal when the edits do not belong to the program or the text fails the proof.
+/// cutter compensation cannot be taken out, `P008` when the edits do not belong to the program or the text fails the proof,
+/// the interpreter's own errors.
 pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOptions) -> Result<Rewritten, Failure> {
     let original = source.bytes();
     if is_marked_corrected(original) {
@@ -93,6 +93,7 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
             .into());
     }
     let moves = survey::survey(original, options.program).map_err(|e| InputError::of_program(source, &e))?;
+    let edits = &joined(&moves, edits);
     let (written, proof) = within_kinks(source, &moves, edits, options)?;
     let changed = (written.touched.keys().copied(), written.unchanged, written.centre_path);
     let difference = Difference::new(original, &moves, edits, changed, &proof, options);
@@ -101,6 +102,25 @@ pub fn rewrite_program(source: &Source, edits: &[BlockEdit], options: &RewriteOp
     added.push((written.head.0, head as u32));
     added.sort_unstable();
     Ok(Rewritten { text: written.text, difference, added })
+}
+
+/// Between two stretches the cutter may only plunge where it stands: a contour that begins at a corner, cut at several
+/// depths. Then the second begins, at its own depth, with a step from the end of the first to its own start, as behind a
+/// sharp corner.
+fn joined(moves: &[survey::Move], edits: &[BlockEdit]) -> Vec<BlockEdit> {
+    let mut edits = edits.to_vec();
+    for at in 1..edits.len() {
+        let [before, line] = [edits[at - 1].line, edits[at].line];
+        let (Some(&end), Some(&start)) = (edits[at - 1].samples.last(), edits[at].samples.first()) else { continue };
+        let last = moves.iter().rposition(|m| m.line == before && m.cuts());
+        let between =
+            last.map_or(&[][..], |last| &moves[last + 1..]).iter().take_while(|m| m.line != line || !m.cuts());
+        if start != end && between.into_iter().all(survey::Move::stands_still) {
+            edits[at].samples.insert(0, end);
+            edits[at].feeds.iter_mut().skip(1).for_each(|from| from.sample += 1);
+        }
+    }
+    edits
 }
 
 /// Attempts to keep kinks below the limit.

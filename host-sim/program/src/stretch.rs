@@ -13,7 +13,7 @@ use super::pen::{Pen, place};
 use super::spacing::bulges;
 use super::survey::{Kind, Move};
 use super::writer::Writer;
-use crate::codes::P006;
+use crate::codes::{P006, P008};
 
 impl Writer<'_> {
     /// Writes consecutive lines of the contour, from the move `first`; `edits` are in reverse order, with their
@@ -77,7 +77,9 @@ impl Writer<'_> {
         };
         let gap = [0, 1].map(|axis| (begin[axis] as f64 - pen.at[axis]).abs());
         if gap[0].max(gap[1]) > tolerance.max(200.0) {
-            return Err(Failure::Internal(format!("the corrected path jumps at line {}", edit.line)));
+            let found = "the correction changes between the moves before this line and the contour";
+            let wanted = "a contour that goes on where the line before it has ended";
+            return Err(self.refusal(P008, edit.line, [found, wanted, P008.remedy]));
         }
         let beside = |s: &[i64; 2]| curves.iter().map(|c| distance(*s, c)).fold(f64::INFINITY, f64::min);
         let stays = || {

@@ -1,13 +1,13 @@
 //! What is answered when a written text fails its proof.
 //!
-//! That is a fault of the writer, except where the program does more than can be written: under cutter compensation,
-//! and where it computes with the place at which it stands, which is displaced.
+//! The program does more than the writer knows: under cutter compensation, where it computes with the place at which it
+//! stands, which is displaced, or in a way nobody has thought of. It is an answer about the program, not a crash.
 
 use truepath_core::gcode::Lines;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::edit::BlockEdit;
-use crate::codes::{P003, P007};
+use crate::codes::{P003, P007, P008};
 
 /// How a program reads where it stands: LinuxCNC's parameters of the present position.
 const POSITIONS: [&str; 6] = ["#542", "#<_x>", "#<_y>", "#<_abs_x>", "#<_abs_y>", "#[542"];
@@ -23,12 +23,13 @@ pub(super) fn failure(source: &Source, edits: &[BlockEdit], centre_path: bool, w
         let help = "keep places in parameters of the program, or use --route coprocessor";
         return at(InputError::new(P003, found, "moves that do not depend on the present position", help), line);
     }
+    let line = edits.first().map_or(0, |e| e.line);
     if centre_path {
         let found = format!("the path that G41 or G42 leads along cannot be written without them ({what})");
-        let line = edits.first().map_or(0, |e| e.line);
         return at(P007.error(found, "the path of the cutter's centre"), line);
     }
-    Failure::Internal(format!("the corrected program is not what it should be: {what}"))
+    let found = format!("the program written for this contour does more than correct it: {what}");
+    at(P008.error(found, "a program that differs in the contour alone"), line)
 }
 
 /// The first line that names the present position.

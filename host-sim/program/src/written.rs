@@ -16,6 +16,7 @@ use super::header;
 use super::line::Block;
 use super::survey::Move;
 use super::writer::{Replaced, Writer};
+use crate::codes::P008;
 
 /// The written text and which lines of the original it changes.
 pub(super) struct Written {
@@ -66,8 +67,9 @@ pub(super) fn write(
     while let Some(&(edit, _)) = edits.last() {
         let Some(first) = moves[at..].iter().position(|m| m.line == edit.line && m.cuts()).map(|i| at + i) else {
             moves.iter().try_for_each(|m| writer.refuse_other_file(m))?;
-            let text = format!("line {} is out of order or does not cut in the plane", edit.line);
-            return Err(Failure::Internal(text));
+            let found = "this line of the contour comes before the one it follows, or does not cut in the plane";
+            let wanted = "lines of the contour in the order in which they are cut";
+            return Err(writer.refusal(P008, edit.line, [found, wanted, P008.remedy]));
         };
         let displaced = match end {
             Some(pen) => writer.depart(pen, &moves[at - 1], &moves[at..first])?,

@@ -3,6 +3,7 @@
 use super::node::Node;
 use super::profile::{Profile, Target};
 use crate::cut::Path;
+use truepath_units::geometry::Vector;
 use truepath_units::{Offset, Real};
 
 /// What one refinement does to a cutter position.
@@ -83,9 +84,10 @@ fn fill_gaps(updates: &mut [Update]) {
     }
 }
 
-/// Closes a closed correction, and holds it around sharp inside corners: up to the corner that of the wall before, from
-/// it on that of the wall behind.
+/// Closes a closed correction, turns it round outside corners from that of one leg to that of the other, and holds it
+/// around sharp inside corners: up to the corner that of the wall before, from it on that of the wall behind.
 pub(super) fn settle_ends(path: &Path, nodes: &mut [Node]) {
+    round_corners(path, nodes);
     if path.is_closed()
         && let Some(&first) = nodes.first()
         && let Some(last) = nodes.last_mut()
@@ -113,4 +115,50 @@ pub(super) fn settle_ends(path: &Path, nodes: &mut [Node]) {
         }
         at = end.saturating_add(1);
     }
+}
+
+/// Round an outside corner the cutter makes no wall: from the end of one leg to the start of the other the correction
+/// goes over smoothly. At an end of the contour it is held.
+fn round_corners(path: &Path, nodes: &mut [Node]) {
+    let samples = path.samples().get(path.first()..).unwrap_or_default();
+    let count = nodes.len().min(samples.len());
+    let rounds = |i: usize| samples.get(i).is_some_and(|s| s.rounds_corner);
+    let run = |from: usize| (from..count).take_while(|i| rounds(*i)).count();
+    if count == 0 || run(0) == count {
+        return;
+    }
+    // Of a closed contour a corner may lie across its seam: its last sample is its first.
+    let tail = (0..count).rev().take_while(|i| path.is_closed() && rounds(*i)).count();
+    let mut at = 0usize;
+    while at < count {
+        let zone = run(at);
+        let end = at.saturating_add(zone);
+        if zone > 0 {
+            let wraps = path.is_closed() && (at == 0 || end == count);
+            let (from, to) = if wraps {
+                (count.saturating_sub(tail).checked_sub(1), Some(run(0)))
+            } else {
+                (at.checked_sub(1), Some(end).filter(|end| *end < count))
+            };
+            let known = |i: Option<usize>| Some((samples.get(i?)?.s, *nodes.get(i?)?));
+            let legs = [known(from).or(known(to)), known(to).or(known(from))];
+            if let [Some((begin, first)), Some((stop, last))] = legs {
+                let turn = if stop < begin { path.length() } else { Offset::ZERO };
+                for (node, sample) in nodes.iter_mut().zip(samples).take(end).skip(at) {
+                    let before_seam = sample.s >= begin;
+                    let way = sample.s - begin + if before_seam { Offset::ZERO } else { turn };
+                    *node = blend(first, last, way.over(stop + turn - begin));
+                }
+            }
+        }
+        at = end.saturating_add(1);
+    }
+}
+
+/// From one correction to another, with neither kink at the ends, at a share 0…1 of the way.
+fn blend(from: Node, to: Node, way: Real) -> Node {
+    let u = way.max(Real::ZERO).min(Real::ONE);
+    let share = u * u * (Real::from_int(3) - u - u);
+    let mix = |a: Vector, b: Vector| a + (b - a).scaled(share);
+    Node { chip: mix(from.chip, to.chip), edge: mix(from.edge, to.edge) }
 }

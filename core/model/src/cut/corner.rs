@@ -6,7 +6,7 @@
 
 use super::sample::Sample;
 use super::setup::CutSetup;
-use truepath_units::geometry::{FACET_TURN_LIMIT, Point, Side};
+use truepath_units::geometry::{Block, Contour, FACET_TURN_LIMIT, Point, Side};
 use truepath_units::{Offset, Real};
 
 /// How much nearer than the parallel curve the other leg must be to take stock away.
@@ -14,6 +14,14 @@ const MARGIN: Offset = Offset::from_um(-2);
 /// How near the edge of an outside corner the wall is no longer looked at: a correction of one wall shifts the end of
 /// the other, which along its own normal would look like a deep cut.
 const EDGE: Offset = Offset::from_um(1_000);
+/// A wall of a smaller radius than this is an edge that the cutter rolls round.
+const ROLLED: Offset = Offset::from_um(100);
+/// How much of a path made of short lines is looked at to see how it turns, as a share of the cutter's radius, and how
+/// many lines at most to either side.
+const TURN_WINDOW: Real = Real::ratio(1, 5);
+const TURN_LINES: usize = 32;
+/// A turn of short lines by less is none to speak of, rad.
+const LEAST_TURN: Real = Real::ratio(3, 20);
 
 /// Marks stock and wall that an outside corner cuts away, and the surroundings of inside corners.
 pub(super) fn mark(samples: &mut [Sample], setup: &CutSetup) {
@@ -25,15 +33,10 @@ pub(super) fn mark(samples: &mut [Sample], setup: &CutSetup) {
             let towards_wall = (before.normal.cross(behind.normal) > Real::ZERO) == (setup.wall == Side::Left);
             if towards_wall {
                 let (wall, stock) = (setup.radius, setup.radius - setup.allowance);
-                cut_away(
-                    left,
-                    right,
-                    wall + EDGE,
-                    |s| &mut s.on_wall,
-                    |s, radius| s.point + s.normal.times(radius),
-                    wall,
-                );
-                cut_away(left, right, stock + MARGIN, |s| &mut s.on_surface, |s, _| s.stock, stock);
+                let parallel = |s: &Sample, radius| s.point + s.normal.times(radius);
+                cut_away([left, right], wall + EDGE, |s| s.on_wall = false, parallel, wall);
+                cut_away([left, right], wall + MARGIN, |s| s.rounds_corner = true, parallel, wall);
+                cut_away([left, right], stock + MARGIN, |s| s.on_surface = false, |s, _| s.stock, stock);
             }
         } else if spread == Offset::ZERO {
             let reach = setup.radius + Offset::from_nm(setup.radius.nm() / 5);
@@ -48,13 +51,78 @@ pub(super) fn mark(samples: &mut [Sample], setup: &CutSetup) {
     }
 }
 
-/// Clears a mark of the samples on either side of a corner whose parallel point the other side of it cuts away, from
+/// Marks the edges of the wall that the path rolls round, and what lies beside them.
+pub(super) fn mark_rolled(samples: &mut [Sample], contour: &Contour, setup: &CutSetup) {
+    let blocks = contour.blocks();
+    let mut known: Option<(u32, bool)> = None;
+    let mut is_rolled = |sample: &Sample| match known {
+        Some((block, rolled)) if block == sample.block => rolled,
+        _ => {
+            let rolled = rolls(blocks, sample.block as usize, setup);
+            known = Some((sample.block, rolled));
+            rolled
+        }
+    };
+    let mut clear = |sample: &mut Sample, last: &mut Option<Offset>| {
+        if is_rolled(sample) {
+            *last = Some(sample.s);
+            sample.rounds_corner = true;
+        }
+        if last.is_some_and(|s| (sample.s - s).abs() <= EDGE) {
+            sample.on_wall = false;
+        }
+    };
+    let (mut ahead, mut back) = (None, None);
+    samples.iter_mut().for_each(|sample| clear(sample, &mut ahead));
+    samples.iter_mut().rev().for_each(|sample| clear(sample, &mut back));
+}
+
+/// Whether the path beside a block rolls round an edge of the wall: it turns, on an arc or on short lines, with the wall
+/// inside the turn and hardly wider than the cutter.
+fn rolls(blocks: &[Block], index: usize, setup: &CutSetup) -> bool {
+    let sense = if setup.wall == Side::Left { Real::ONE } else { -Real::ONE };
+    let Some(block) = blocks.get(index) else { return false };
+    if let Some(radius) = block.curve.signed_radius() {
+        let towards_wall = radius.scaled(sense);
+        return towards_wall > Offset::ZERO && towards_wall < setup.radius + ROLLED;
+    }
+    // Of short lines: the sum of the turns at their joints (the sine will do) over the way between their middles; a long
+    // line beside them only ends the turn.
+    let window = setup.radius.scaled(TURN_WINDOW);
+    if block.curve.length() > window + window {
+        return false;
+    }
+    let half = |b: &Block| {
+        let length = b.curve.length();
+        if length > window + window { Offset::ZERO } else { Offset::from_nm(length.nm() / 2) }
+    };
+    let side = |joints: &mut dyn Iterator<Item = (&Block, &Block)>| {
+        let (mut way, mut turn) = (Offset::ZERO, Real::ZERO);
+        for (a, b) in joints.take(TURN_LINES) {
+            let (from, to) = (a.curve.end_heading(), b.curve.start_heading());
+            let bend = from.cross(to) * sense;
+            let is_line = |b: &Block| b.curve.signed_radius().is_none();
+            let goes_on = is_line(a) && is_line(b) && bend > Real::ZERO && from.dot(to) >= FACET_TURN_LIMIT;
+            if !goes_on || way >= window {
+                break;
+            }
+            (way, turn) = (way + half(a) + half(b), turn + bend);
+        }
+        (way, turn)
+    };
+    let (head, tail) = blocks.split_at_checked(index).unwrap_or_default();
+    let behind = side(&mut tail.iter().zip(tail.iter().skip(1)));
+    let before = side(&mut head.iter().rev().zip(core::iter::once(block).chain(head.iter().rev())));
+    let (way, turn) = (behind.0 + before.0, behind.1 + before.1);
+    turn > LEAST_TURN && way < (setup.radius + ROLLED).scaled(turn)
+}
+
+/// Marks the samples on either side of a corner whose parallel point the other side of it cuts away, from
 /// the corner outwards until the first that stands.
 fn cut_away(
-    left: &mut [Sample],
-    right: &mut [Sample],
+    [left, right]: [&mut [Sample]; 2],
     limit: Offset,
-    flag: fn(&mut Sample) -> &mut bool,
+    mark: fn(&mut Sample),
     parallel: fn(&Sample, Offset) -> Point,
     radius: Offset,
 ) {
@@ -62,13 +130,13 @@ fn cut_away(
         if !reaches(parallel(sample, radius), right.iter(), limit) {
             break;
         }
-        *flag(sample) = false;
+        mark(sample);
     }
     for sample in right.iter_mut() {
         if !reaches(parallel(sample, radius), left.iter().rev(), limit) {
             break;
         }
-        *flag(sample) = false;
+        mark(sample);
     }
 }
 

@@ -44,8 +44,9 @@ pub enum PathError {
     },
 }
 
-/// What programs lose by rounding their coordinates.
-const ROUNDING: Offset = Offset::from_um(2);
+/// How much narrower than the cutter an arc round an edge may be: a cutter measures a little more than it is called, and
+/// programs round.
+const TOO_WIDE: Offset = Offset::from_um(50);
 impl<'a> Path<'a> {
     /// How many samples [`Path::sample`] needs at a step.
     pub fn samples_needed(contour: &Contour, setup: &CutSetup, step: Offset) -> usize {
@@ -72,7 +73,7 @@ impl<'a> Path<'a> {
             // exactly that where a control rolls round a sharp corner).
             if let Some(radius) = block.curve.signed_radius() {
                 let towards_wall = (radius > Offset::ZERO) == (setup.wall == Side::Left);
-                if towards_wall && radius.abs() + ROUNDING < setup.radius {
+                if towards_wall && radius.abs() + TOO_WIDE < setup.radius {
                     return Err(PathError::NoWall { line: block.line });
                 }
             }
@@ -91,6 +92,7 @@ impl<'a> Path<'a> {
         });
         let used = buffer.get_mut(..needed).unwrap_or_default();
         corner::mark(used, setup);
+        corner::mark_rolled(used, contour, setup);
         let samples: &'a [Sample] = used;
         let inside = |s: &&Sample| s.s >= Offset::ZERO && s.s <= contour.length();
         let first = samples.iter().take_while(|s| s.s < Offset::ZERO).count();

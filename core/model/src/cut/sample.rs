@@ -22,6 +22,9 @@ pub struct Sample {
     pub on_surface: bool,
     /// Whether a wall stands beside it; at a sharp outside corner the rest of the path cuts it away.
     pub on_wall: bool,
+    /// Whether it only leads round an outside corner and makes no wall: the correction turns there from that of one leg to
+    /// that of the other. Never where a wall stands.
+    pub rounds_corner: bool,
     /// Whether it lies so near to a sharp inside corner that the load changes faster than a machine can follow.
     pub near_corner: bool,
 }
@@ -37,6 +40,7 @@ impl Sample {
         block: 0,
         on_surface: true,
         on_wall: true,
+        rounds_corner: false,
         near_corner: false,
     };
 }

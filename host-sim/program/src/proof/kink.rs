@@ -12,6 +12,9 @@ use super::along::difference;
 /// Turns of the original up to here count as tangent, radians (half a degree: rounded coordinates of short blocks).
 const TANGENT: f64 = 0.0087;
 
+/// Behind a sharp corner the correction steps from one wall's to the next one's; what is shorter is that step, nm.
+const STEP: i64 = 500_000;
+
 /// A heading step of the written path in a place where the original goes on smoothly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in super::super) struct Kink {
@@ -32,6 +35,8 @@ pub(super) struct Turns {
     original_end: Option<[f64; 2]>,
     original_turn: f64,
     written_end: Option<[f64; 2]>,
+    /// Whether the last curve was the step behind a sharp corner.
+    stepped: bool,
     /// The last chord of the wanted path.
     pub(super) wanted_end: Option<[f64; 2]>,
 }
@@ -67,7 +72,12 @@ impl Turns {
         let [start, end] = headings(curve);
         let before = self.written_end.replace(end)?;
         let expected = if begins_line { self.original_turn } else { 0.0 };
+        let behind_step = std::mem::take(&mut self.stepped) && !begins_line;
         if expected.abs() > TANGENT {
+            self.stepped = curve.length().nm() < STEP;
+            return None;
+        }
+        if behind_step {
             return None;
         }
         let (kink, own) = (turn(before, start) - expected, wanted.turn());

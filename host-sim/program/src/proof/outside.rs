@@ -78,10 +78,14 @@ pub(super) fn compare(original: &[Fact], written: &[Fact], bounds: &Bounds) -> R
 fn hanging_ends(facts: &[Fact], bounds: &Bounds) -> Vec<Shift> {
     let mut ends = vec![[0.0; 2]; facts.len()];
     let carries = |fact: &Fact| !fact.travels() || matches!(fact.what, What::Arc { .. });
-    if let Some(shift) = bounds.before {
+    if let Some(mut shift) = bounds.before {
         for (fact, end) in facts.iter().zip(&mut ends) {
-            if !carries(fact) {
-                break;
+            // An axis that leaves for a place of the machine takes its displacement with it, the other keeps its own.
+            match fact.what {
+                What::Other(Canon::Reference { axes: [x, y, _], .. }) => clear(&mut shift, [x, y]),
+                What::Other(Canon::MachineMove { to, .. }) => clear(&mut shift, [to.x.is_some(), to.y.is_some()]),
+                _ if carries(fact) => (),
+                _ => break,
             }
             *end = shift;
         }
@@ -95,6 +99,10 @@ fn hanging_ends(facts: &[Fact], bounds: &Bounds) -> Vec<Shift> {
         }
     }
     ends
+}
+
+fn clear(shift: &mut Shift, axes: [bool; 2]) {
+    shift.iter_mut().zip(axes).filter(|(_, leaves)| *leaves).for_each(|(shift, _)| *shift = 0.0);
 }
 
 /// Whether `b` is `a` moved by `shift` in the plane; Z is the same.
