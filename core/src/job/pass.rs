@@ -18,13 +18,14 @@ const STEP: Offset = Offset::from_um(100);
 /// A pass: what job and program say together.
 #[derive(Clone, Debug)]
 pub struct Pass {
-    /// The job.
+    /// The job as it was given.
     pub job: Job,
     /// What the program says about the contour.
     pub contour: ContourProgram,
     /// CRC-32 of the program.
     pub program_crc: u32,
-    /// The cut; its law is helical unless the job says mean.
+    /// The cut; its law is helical unless the job says mean. Its allowance is the job's until a caller that knows the actual
+    /// surface of the stock gives another: whoever wants to know what is cut asks here.
     pub setup: CutSetup,
     /// The correction that measured parts have to be cut with: none, unless the caller says another.
     pub cut_with: CutWith,
