@@ -15,9 +15,9 @@ use crate::units::{Offset, Real};
 /// Largest distance between the samples of a path.
 const STEP: Offset = Offset::from_um(100);
 
-/// A pass: what job and program say together.
+/// A pass along a contour: what job and program say together.
 #[derive(Clone, Debug)]
-pub struct Pass {
+pub struct ContourPass {
     /// The job as it was given.
     pub job: Job,
     /// What the program says about the contour.
@@ -31,7 +31,7 @@ pub struct Pass {
     pub cut_with: CutWith,
 }
 
-impl Pass {
+impl ContourPass {
     /// Reads the contour of a program into `blocks` and puts it together with a job. The blocks carry the feed of the
     /// job where it gives one; those in use are the first [`ContourProgram::blocks`].
     ///

@@ -51,7 +51,7 @@ pub struct CorrectedPass {
 ///
 /// # Errors
 /// What is wrong with program or measurement, and a correction beyond the clamp.
-pub fn correct(
+pub fn correct_pass(
     pass: &Pass,
     measurement: &Measurement,
     remarks: &[String],
@@ -65,14 +65,14 @@ pub fn correct(
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let law = job::law(&pass.core, &identified.machine(&path, &table), &measurement.contacts);
-    design(pass, &sampled, identified, &DesignRequest::of(law), remarks, routes, progress)
+    correct_identified(pass, &sampled, identified, &DesignRequest::of(law), remarks, routes, progress)
 }
 
 /// Designs the correction of a pass for an identified machine and writes it for the routes.
 ///
 /// # Errors
 /// A correction beyond the clamp, a contour that cannot be written.
-pub fn design(
+pub fn correct_identified(
     pass: &Pass,
     sampled: &Path,
     identified: Identification,
@@ -108,7 +108,7 @@ pub fn design(
                     edits.extend(block_edits(pass, path, &correction.nodes, feeds.schedule.as_ref()));
                     Ok(())
                 })?;
-                let rewritten = corrected_program(pass, remarks.probe, &edits)?;
+                let rewritten = written_program(pass, remarks.probe, &edits)?;
                 warnings.extend(kinked(&rewritten.difference));
                 written = Some(rewritten);
             }
@@ -152,7 +152,7 @@ pub fn design(
     })
 }
 
-fn corrected_program(pass: &Pass, probe: u32, edits: &[BlockEdit]) -> Result<Rewritten, Failure> {
+fn written_program(pass: &Pass, probe: u32, edits: &[BlockEdit]) -> Result<Rewritten, Failure> {
     let origin = Origin { job: Some(crc32(pass.job.source().bytes())), probe: Some(probe) };
     let options = RewriteOptions {
         tolerance: pass.job.tolerance,

@@ -26,7 +26,7 @@ const FIRST_BUFFER: usize = 1 << 12;
 /// Blocks a program may hold at all.
 const LARGEST_BUFFER: usize = 1 << 24;
 
-/// A pass on the host: [`job::Pass`], which is all that the core knows of it, with the files and the feature it comes
+/// A pass on the host: [`job::ContourPass`], which is all that the core knows of it, with the files and the feature it comes
 /// from and the memory it takes.
 #[derive(Clone, Debug)]
 pub struct Pass {
@@ -35,7 +35,7 @@ pub struct Pass {
     /// The program.
     pub program: Source,
     /// Job and program in numbers; `core.setup.allowance` is the allowance of the cut, whatever it came from.
-    pub core: job::Pass,
+    pub core: job::ContourPass,
     /// The contour, with the feed of the job where it gives one.
     pub blocks: Vec<Block>,
     /// The actual surface of the stock; without one the stock is the parallel curve at the allowance.
@@ -81,7 +81,7 @@ impl Pass {
         }
         let read = |blocks: &mut [Block]| {
             let mut memory = Box::new(HostMemory::new());
-            job::Pass::read(&job.numbers, program.bytes(), &mut memory.lend(), blocks)
+            job::ContourPass::read(&job.numbers, program.bytes(), &mut memory.lend(), blocks)
         };
         let too_long = |e: &JobError| matches!(e, JobError::Program(e) if is_too_long(e));
         let (mut blocks, core) = with_enough_blocks(read, too_long)
