@@ -1,6 +1,6 @@
 //! The image of a correction: the array with what it belongs to and what it may do.
 
-use super::{Buffer, Identified, JobError, Pass};
+use super::{Buffer, ContourPass, Identified, JobError};
 use crate::correct::Node;
 use crate::cut::{Path, Sample};
 use crate::geometry::Block;
@@ -42,7 +42,7 @@ pub struct Written {
 /// # Errors
 /// [`JobError::NoFeedWindow`] when a part is beyond what an image can hold.
 pub fn to_nominal_feed(
-    pass: &Pass,
+    pass: &ContourPass,
     identified: &Identified,
     path: &Path,
     blocks: &[Block],
@@ -76,7 +76,7 @@ pub fn to_nominal_feed(
 /// # Errors
 /// No tool number, a correction beyond the clamp at 110 % of the feed, more nodes than the coprocessor holds, or a buffer too short.
 pub fn write_image(
-    pass: &Pass,
+    pass: &ContourPass,
     identified: &Identified,
     path: &Path,
     blocks: &[Block],
@@ -151,7 +151,7 @@ const fn fine(component: Offset) -> Option<FineOffset> {
 }
 
 fn settings(
-    pass: &Pass,
+    pass: &ContourPass,
     identified: &Identified,
     lowest: Real,
     (nominal, highest): (Real, Real),

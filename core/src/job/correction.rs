@@ -1,6 +1,6 @@
 //! What the job wants of a correction, and whether the correction stays inside its clamp.
 
-use super::{Job, JobError, LawName, Pass};
+use super::{ContourPass, Job, JobError, LawName};
 use crate::correct::{Band, Design, Law, Node, PaperRatio, PaperTransfer};
 use crate::cut::{Loop, Path, State};
 use crate::geometry::Vector;
@@ -22,7 +22,7 @@ impl Job {
 }
 
 /// The law the job names, with what it needs of the measurement.
-pub fn law(pass: &Pass, machine: &Loop, contacts: &[Contact]) -> Law {
+pub fn law(pass: &ContourPass, machine: &Loop, contacts: &[Contact]) -> Law {
     match pass.job.correct.law {
         LawName::Model => Law::Model,
         LawName::Mirror => Law::Mirror,
@@ -32,7 +32,7 @@ pub fn law(pass: &Pass, machine: &Loop, contacts: &[Contact]) -> Law {
 
 /// P23 eq. (9) from one probe per wall: for each axis the contact whose normal is nearest to it, at mid-height where
 /// there are several.
-fn paper_transfer(pass: &Pass, machine: &Loop, contacts: &[Contact]) -> PaperTransfer {
+fn paper_transfer(pass: &ContourPass, machine: &Loop, contacts: &[Contact]) -> PaperTransfer {
     let path = machine.path;
     let ratio = |component: fn(&Contact) -> Real, coordinate: fn(&Contact, Offset) -> (Position, Offset)| {
         let best = contacts.iter().max_by_key(|c| (component(c).abs(), -(c.height - Real::HALF).abs()));

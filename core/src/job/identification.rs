@@ -1,6 +1,6 @@
 //! What the probe points say about machine and material.
 
-use super::{ForceModel, JobError, Pass};
+use super::{ContourPass, ForceModel, JobError};
 use crate::cut::{ForceTable, Loop, Path, WallLaw};
 use crate::geometry::Vector;
 use crate::identify::{Fit, Observation, PredictionWorkspace, Prior, identify, identify_law};
@@ -19,7 +19,7 @@ pub struct Identified {
 /// Fits machine and material to the measurement of an uncorrected part. On return the observations hold predictions and
 /// weights. `observe` is told the share of the longest possible fit that is done, ‰.
 pub fn identified(
-    pass: &Pass,
+    pass: &ContourPass,
     path: &Path,
     observations: &mut [Observation],
     workspace: &mut PredictionWorkspace,

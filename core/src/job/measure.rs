@@ -1,6 +1,6 @@
 //! A probe file → contacts on the wall → observations for the fit.
 
-use super::{Buffer, JobError, Pass, ZReference};
+use super::{Buffer, ContourPass, JobError, ZReference};
 use crate::geometry::Contour;
 use crate::identify::Observation;
 use crate::probe::{Contact, Contacts, Reading, Rejected, Setting, read, suspect};
@@ -19,7 +19,7 @@ const ONE_PLACE: Offset = Offset::from_um(5);
 /// A job without probe, what is wrong with the file, a buffer too short, and a wrong unit, frame, side or ball, named,
 /// when most readings are off the wall or none can be used.
 pub fn contacts(
-    pass: &Pass,
+    pass: &ContourPass,
     contour: Contour,
     file: &[u8],
     readings: &mut [Reading],

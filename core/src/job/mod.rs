@@ -1,7 +1,7 @@
 //! Job, program and measurement → the image of a correction: what the command line and the device both run.
 //!
 //! ```text
-//! Job ── Pass::read ── Pass::sample ── contacts ── identified ── law, design ── check_clamp ── write_image
+//! Job ── ContourPass::read ── ContourPass::sample ── contacts ── identified ── law, design ── check_clamp ── write_image
 //!        program        path           probe file   machine       correction                    bytes
 //! ```
 //!
@@ -37,7 +37,7 @@ pub use facts::{
 };
 pub use identification::{Identified, identified};
 pub use measure::{REACH, contacts, observations, same_place};
-pub use pass::Pass;
+pub use pass::ContourPass;
 pub use stage::Stage;
 pub use whole::{Made, image};
 pub use workspace::{BLOCK_BYTES, Buffers, Counts, NODE_BYTES, POINT_BYTES, SAMPLE_BYTES, STATE_BYTES, Workspace};

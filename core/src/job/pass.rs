@@ -15,22 +15,23 @@ use crate::units::{Offset, Real};
 /// Largest distance between the samples of a path.
 const STEP: Offset = Offset::from_um(100);
 
-/// A pass: what job and program say together.
+/// A pass along a contour: what job and program say together.
 #[derive(Clone, Debug)]
-pub struct Pass {
-    /// The job.
+pub struct ContourPass {
+    /// The job as it was given.
     pub job: Job,
     /// What the program says about the contour.
     pub contour: ContourProgram,
     /// CRC-32 of the program.
     pub program_crc: u32,
-    /// The cut; its law is helical unless the job says mean.
+    /// The cut; its law is helical unless the job says mean. Its allowance is the job's until a caller that knows the actual
+    /// surface of the stock gives another: whoever wants to know what is cut asks here.
     pub setup: CutSetup,
     /// The correction that measured parts have to be cut with: none, unless the caller says another.
     pub cut_with: CutWith,
 }
 
-impl Pass {
+impl ContourPass {
     /// Reads the contour of a program into `blocks` and puts it together with a job. The blocks carry the feed of the
     /// job where it gives one; those in use are the first [`ContourProgram::blocks`].
     ///

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::stage::Gauge;
 use super::workspace::room;
 use super::{
-    Buffer, Counts, Identified, Job, JobError, Pass, Stage, Workspace, array, correction, identification, measure,
+    Buffer, ContourPass, Counts, Identified, Job, JobError, Stage, Workspace, array, correction, identification,
+    measure,
 };
 use crate::correct::{DesignStep, DesignWorkspace, Guarded, InOrder, Node, Profile, Target, guarded_design};
 use crate::cut::{ForceTable, Path, WallLaw};
@@ -65,11 +66,11 @@ pub fn image(
 ) -> Result<Made, JobError> {
     let mut gauge = Gauge::new(progress);
     gauge.tell(Stage::Reading, 0);
-    let pass = Pass::read(job, program, &mut workspace.parameters, workspace.blocks)?;
+    let pass = ContourPass::read(job, program, &mut workspace.parameters, workspace.blocks)?;
     // Refused now and not after minutes of work.
     pass.binding()?;
     let blocks = workspace.blocks.get(..pass.contour.blocks).unwrap_or_default();
-    let contour = Pass::path_contour(blocks)?;
+    let contour = ContourPass::path_contour(blocks)?;
 
     gauge.tell(Stage::Sampling, 0);
     let sampled = pass.sample(&contour, workspace.samples, |_| ())?;
@@ -149,7 +150,7 @@ struct Designed {
 /// not stand on the stack at the same time.
 #[inline(never)]
 fn designed(
-    pass: &Pass,
+    pass: &ContourPass,
     path: &Path,
     identified: &Identified,
     contacts: &[Contact],

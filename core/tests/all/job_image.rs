@@ -7,8 +7,8 @@ use truepath_core::cut::WallLaw;
 use truepath_core::gcode::{Dialect, PointlessLength};
 use truepath_core::image::{Binding, DEVICE_NODES, Image, image_bytes};
 use truepath_core::job::{
-    Buffer, Buffers, COMPACT_BYTES, Counts, ForceModel, Job, JobError, LARGEST_NUMBER, LawName, Pass, Stage, Stickout,
-    Workspace, image,
+    Buffer, Buffers, COMPACT_BYTES, ContourPass, Counts, ForceModel, Job, JobError, LARGEST_NUMBER, LawName, Stage,
+    Stickout, Workspace, image,
 };
 use truepath_core::units::{Offset, Real};
 
@@ -77,8 +77,8 @@ fn what_the_buffers_held_before_does_not_matter() {
 fn needed(part: &Part) -> Counts {
     let mut room: Box<Room> = Box::default();
     let mut workspace = room.workspace();
-    let pass = Pass::read(&part.job, part.program, &mut workspace.parameters, workspace.blocks).unwrap();
-    let contour = Pass::path_contour(&workspace.blocks[..pass.contour.blocks]).unwrap();
+    let pass = ContourPass::read(&part.job, part.program, &mut workspace.parameters, workspace.blocks).unwrap();
+    let contour = ContourPass::path_contour(&workspace.blocks[..pass.contour.blocks]).unwrap();
     let path = pass.sample(&contour, workspace.samples, |_| ()).unwrap();
     Counts::needed(&contour, &path, part.probe.iter().filter(|b| **b == b'\n').count())
 }
@@ -280,6 +280,6 @@ fn without_a_tool_number_there_is_no_image_but_everything_else() {
         // At once, and not after the work is done.
         assert_eq!((refused, stages.as_slice()), (Err(JobError::NoTool), &[Stage::Reading][..]));
         let mut lent = room.workspace();
-        assert!(Pass::read(&part.job, part.program, &mut lent.parameters, lent.blocks).is_ok());
+        assert!(ContourPass::read(&part.job, part.program, &mut lent.parameters, lent.blocks).is_ok());
     }
 }

@@ -52,7 +52,7 @@ impl AsMilled {
     }
 
     /// Whether it was cut with any correction.
-    pub fn corrected(&self) -> bool {
+    pub fn had_correction(&self) -> bool {
         self.correction.nodes.iter().any(|node| *node != Node::default())
     }
 

@@ -2,6 +2,7 @@
 
 use truepath_core::checksum::crc32;
 use truepath_core::cut::Path;
+use truepath_core::image::{DEVICE_NODES, image_bytes};
 use truepath_core::job;
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
@@ -15,11 +16,11 @@ use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_pro
 
 use crate::correction::{Correction, DesignRequest, Identification, design_correction, identify};
 use crate::edits::block_edits;
+use crate::feeds;
 use crate::remarks::{MeasuredPart, Remarks};
 use crate::rows::{CorrectionRow, correction_rows};
 use crate::summary::{CorrectSummary, correct_summary};
 use crate::warnings::{cut_corrected, kinked, model_warnings};
-use crate::{feeds, image};
 
 /// A correction in memory: everything the command writes follows from it.
 #[derive(Clone, Debug)]
@@ -50,7 +51,7 @@ pub struct CorrectedPass {
 ///
 /// # Errors
 /// What is wrong with program or measurement, and a correction beyond the clamp.
-pub fn correct(
+pub fn correct_pass(
     pass: &Pass,
     measurement: &Measurement,
     remarks: &[String],
@@ -64,14 +65,14 @@ pub fn correct(
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let law = job::law(&pass.core, &identified.machine(&path, &table), &measurement.contacts);
-    design(pass, &sampled, identified, &DesignRequest::of(law), remarks, routes, progress)
+    correct_identified(pass, &sampled, identified, &DesignRequest::of(law), remarks, routes, progress)
 }
 
 /// Designs the correction of a pass for an identified machine and writes it for the routes.
 ///
 /// # Errors
 /// A correction beyond the clamp, a contour that cannot be written.
-pub fn design(
+pub fn correct_identified(
     pass: &Pass,
     sampled: &Path,
     identified: Identification,
@@ -107,13 +108,13 @@ pub fn design(
                     edits.extend(block_edits(pass, path, &correction.nodes, feeds.schedule.as_ref()));
                     Ok(())
                 })?;
-                let rewritten = corrected_program(pass, remarks.probe, &edits)?;
+                let rewritten = written_program(pass, remarks.probe, &edits)?;
                 warnings.extend(kinked(&rewritten.difference));
                 written = Some(rewritten);
             }
             Route::Coprocessor => {
                 levels = levels::each(pass, &path, |number, other, path| {
-                    let bytes = image::build(other, &identified, path, &correction)?;
+                    let bytes = written_image(other, &identified, path, &correction)?;
                     if number == pass.level() {
                         image = Some(bytes);
                     } else {
@@ -151,7 +152,7 @@ pub fn design(
     })
 }
 
-fn corrected_program(pass: &Pass, probe: u32, edits: &[BlockEdit]) -> Result<Rewritten, Failure> {
+fn written_program(pass: &Pass, probe: u32, edits: &[BlockEdit]) -> Result<Rewritten, Failure> {
     let origin = Origin { job: Some(crc32(pass.job.source().bytes())), probe: Some(probe) };
     let options = RewriteOptions {
         tolerance: pass.job.tolerance,
@@ -162,4 +163,24 @@ fn corrected_program(pass: &Pass, probe: u32, edits: &[BlockEdit]) -> Result<Rew
         ..RewriteOptions::default()
     };
     rewrite_program(&pass.program, edits, &options)
+}
+
+/// Makes the image of a correction.
+///
+/// # Errors
+/// A correction beyond the clamp somewhere in the feed window, or a contour too large for the coprocessor.
+fn written_image(
+    pass: &Pass,
+    identified: &Identification,
+    path: &Path,
+    correction: &Correction,
+) -> Result<Vec<u8>, Failure> {
+    let mut nodes = correction.nodes.clone();
+    let mut bytes = vec![0; image_bytes(DEVICE_NODES)];
+    let (core, found, blocks) = (&pass.core, &identified.core, &pass.blocks);
+    let written = job::to_nominal_feed(core, found, path, blocks, &mut nodes)
+        .and_then(|()| job::write_image(core, found, path, blocks, &nodes, &mut bytes))
+        .map_err(|error| pass.refused(&error))?;
+    bytes.truncate(written.bytes);
+    Ok(bytes)
 }

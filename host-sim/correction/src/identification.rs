@@ -40,7 +40,7 @@ pub const fn asked(model: ForceModel) -> Option<WallLaw> {
 /// Fits machine and material to points under a law, or under the one they speak for. `commanded(part, sample)` is the
 /// displacement that the program of a part, counted from 0, commanded. `progress` is told the share done, 0…1.
 pub fn found(
-    pass: &job::Pass,
+    pass: &job::ContourPass,
     path: &Path,
     law: Option<WallLaw>,
     points: Points<'_>,

@@ -9,7 +9,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::as_milled::WholeContour;
 use crate::codes::{Q002, Q006};
-use crate::correct::{CorrectedPass, design};
+use crate::correct::{CorrectedPass, correct_identified};
 use crate::correction::{DesignRequest, Identification};
 use crate::learning::{History, MOST_PARTS, Part, PartPoints, Update, Verdict, update};
 use crate::remarks::{MeasuredPart, Remarks};
@@ -42,7 +42,7 @@ pub struct LearnSummary {
 /// Learns from the part that was cut with the history's correction, in memory, for one or both routes.
 ///
 /// # Errors
-/// A history of another cut, a measurement it already holds or of a part without its correction, and what [`correct`](crate::correct::correct) refuses.
+/// A history of another cut, a measurement it already holds or of a part without its correction, and what [`correct_pass`](crate::correct::correct_pass) refuses.
 pub fn learn(
     pass: &Pass,
     history: &History,
@@ -61,8 +61,7 @@ pub fn learn(
     let of = |part: &Part| {
         PartPoints::of(part, &sampled).ok_or_else(|| {
             let found = format!("the correction of part {} does not lie along this contour", part.number);
-            let help = "correct again with truepath correct, and learn from there";
-            InputError::new(Q002, found, format!("one entry for each of {} samples", sampled.count()), help)
+            Q002.error(found, format!("one entry for each of {} samples", sampled.count()))
         })
     };
     let parts: Vec<PartPoints> = history.parts.iter().filter(|p| !p.set_aside).map(of).collect::<Result<_, _>>()?;
@@ -81,7 +80,7 @@ pub fn learn(
     }
     let texts = Remarks::of(measurement, &texts, MeasuredPart::Corrected);
     let later = &mut |share| progress(0.5 + 0.5 * share);
-    let corrected = design(pass, &sampled, identified, &request, texts, routes, later)?;
+    let corrected = correct_identified(pass, &sampled, identified, &request, texts, routes, later)?;
     let history = history.with(part, &corrected);
     Ok(Learned { corrected, history, verdict })
 }

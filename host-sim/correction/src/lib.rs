@@ -20,7 +20,6 @@ pub mod feeds;
 pub mod first_pass;
 pub mod guard;
 pub mod identification;
-pub mod image;
 pub mod inspection;
 pub mod learn;
 pub mod learning;

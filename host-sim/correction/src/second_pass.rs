@@ -19,7 +19,7 @@ use truepath_job::surface::Surface;
 use truepath_program::first_pass_of;
 
 use crate::codes::K003;
-use crate::correct::{CorrectedPass, design};
+use crate::correct::{CorrectedPass, correct_identified};
 use crate::correction::{DesignRequest, Identification, identify};
 use crate::remarks::{MeasuredPart, Remarks};
 
@@ -27,7 +27,7 @@ use crate::remarks::{MeasuredPart, Remarks};
 ///
 /// # Errors
 /// Jobs that are not of one part, what is wrong with the measurement, and a correction beyond the clamp.
-pub fn correct(
+pub fn correct_second_pass(
     second: &Pass,
     first: &Pass,
     measurement: &Measurement,
@@ -47,7 +47,7 @@ pub fn correct(
     let path = sampled.with_law(known.law());
     let table = known.table();
     let law = job::law(&second.core, &known.machine(&path, &table), &[]);
-    let done = design(&second, &sampled, known, &DesignRequest::of(law), remarks, routes, progress)?;
+    let done = correct_identified(&second, &sampled, known, &DesignRequest::of(law), remarks, routes, progress)?;
     Ok((done, surface))
 }
 

@@ -122,7 +122,7 @@ pub fn misread(measured: &Pass, first_pass: bool, contacts: &[Contact]) -> Vec<S
             spring.lines.first, spring.lines.last
         ));
     }
-    let allowance = measured.job.numbers.allowance;
+    let allowance = measured.core.setup.allowance;
     let mut errors: Vec<Offset> = contacts.iter().map(|contact| contact.error).collect();
     errors.sort_unstable();
     // An allowance below 0.1 mm is of the size of ordinary errors.

@@ -245,7 +245,7 @@ impl<'d> Section<'d> {
         );
         let help = match nearest(name, &asked) {
             Some(known) => format!("did you mean {known}?"),
-            None => "remove it, or correct its name".to_owned(),
+            None => J003.remedy.to_owned(),
         };
         let mut known = asked.clone();
         known.sort_unstable();

@@ -34,7 +34,7 @@ fn syntax_error(source: &Source, what: &str, error: &toml::de::Error) -> InputEr
     let around = source.bytes().get(span.start.saturating_sub(1)..=span.start).unwrap_or_default();
     let help = match around {
         [digit, b','] if digit.is_ascii_digit() => "write a decimal point, not a comma",
-        _ => "correct the line; https://toml.io shows the notation",
+        _ => J002.remedy,
     };
     InputError::new(J002, format!("{what} is not TOML here: {reason}"), expected, help).at(source, span)
 }

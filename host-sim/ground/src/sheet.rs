@@ -27,7 +27,7 @@ pub fn read_bounded(path: &Path) -> Result<Source, InputError> {
     File::open(path).map_err(unreadable)?.take(BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > BYTES {
         let found = format!("{} has more than {BYTES} bytes", path.display());
-        return Err(InputError::new(Z010, found, "a table of at most 1 GB", "cut it into pieces").in_file(path));
+        return Err(Z010.error(found, "a table of at most 1 GB").in_file(path));
     }
     Ok(Source::new(path.display().to_string(), bytes))
 }
@@ -83,8 +83,7 @@ pub fn each_line(
         let line = Line { source, record: &record, places: &places, wanted };
         if lines > LINES {
             let found = format!("the table has more than {LINES} lines");
-            let help = "cut it into pieces";
-            return Err(InputError::new(Z010, found, format!("at most {LINES}"), help).at(source, line.span(None)));
+            return Err(Z010.error(found, format!("at most {LINES}")).at(source, line.span(None)));
         }
         if record.len() != head.len() {
             let found = format!("this line has {} fields", record.len());

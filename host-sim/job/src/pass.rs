@@ -26,15 +26,16 @@ const FIRST_BUFFER: usize = 1 << 12;
 /// Blocks a program may hold at all.
 const LARGEST_BUFFER: usize = 1 << 24;
 
-/// A pass: what the core needs to know of it, and where it comes from.
+/// A pass on the host: [`job::ContourPass`], which is all that the core knows of it, with the files and the feature it comes
+/// from and the memory it takes.
 #[derive(Clone, Debug)]
 pub struct Pass {
-    /// The job.
+    /// The job, with wall, allowance and tool of its feature.
     pub job: JobFile,
     /// The program.
     pub program: Source,
-    /// Job and program in numbers.
-    pub core: job::Pass,
+    /// Job and program in numbers; `core.setup.allowance` is the allowance of the cut, whatever it came from.
+    pub core: job::ContourPass,
     /// The contour, with the feed of the job where it gives one.
     pub blocks: Vec<Block>,
     /// The actual surface of the stock; without one the stock is the parallel curve at the allowance.
@@ -80,7 +81,7 @@ impl Pass {
         }
         let read = |blocks: &mut [Block]| {
             let mut memory = Box::new(HostMemory::new());
-            job::Pass::read(&job.numbers, program.bytes(), &mut memory.lend(), blocks)
+            job::ContourPass::read(&job.numbers, program.bytes(), &mut memory.lend(), blocks)
         };
         let too_long = |e: &JobError| matches!(e, JobError::Program(e) if is_too_long(e));
         let (mut blocks, core) = with_enough_blocks(read, too_long)
@@ -133,8 +134,6 @@ impl Pass {
         allowances.sort_by(f64::total_cmp);
         let median = allowances.get(allowances.len() / 2).copied().unwrap_or_default();
         let allowance = Offset::from_nm((median * 1e6).round() as i64);
-        self.job.numbers.allowance = allowance;
-        self.core.job.allowance = allowance;
         self.core.setup.allowance = allowance;
         self.surface = Some(surface);
         Ok(self)
@@ -177,7 +176,7 @@ impl Pass {
     /// # Errors
     /// As [`Pass::read`], and when there is no such level.
     pub fn at_level(&self, number: u32) -> Result<Self, Failure> {
-        let mut job = self.job.clone();
+        let mut job = self.job_as_cut();
         job.which.pass = Some(number);
         Ok(Self::new(job, self.program.clone())?.cut_with(self.core.cut_with))
     }
@@ -188,11 +187,18 @@ impl Pass {
     /// # Errors
     /// As [`Pass::read`].
     pub fn along(&self, pass: &FeaturePass, wall: Option<Side>) -> Result<Self, Failure> {
-        let mut job = self.job.clone();
+        let mut job = self.job_as_cut();
         job.numbers.part = Some(pass.part);
         job.numbers.wall = wall;
         let plan = self.plan.clone().map(|plan| Plan { wall, ..plan });
         Self::of_part(job, self.program.clone(), plan)
+    }
+
+    /// The job with the allowance of the cut, for another pass of the same feature.
+    fn job_as_cut(&self) -> JobFile {
+        let mut job = self.job.clone();
+        job.numbers.allowance = self.core.setup.allowance;
+        job
     }
 
     /// The failure for an error of the core, pointing into job or program.

@@ -3,7 +3,7 @@
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
-use truepath_correction::correct::correct;
+use truepath_correction::correct::correct_pass;
 use truepath_correction::learning::{History, Part, refuse_corrected};
 use truepath_correction::second_pass;
 use truepath_correction::summary::CorrectSummary;
@@ -144,11 +144,12 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     remarks.extend(misread(first.as_ref().unwrap_or(&pass), first.is_some(), &measurement.contacts));
     let (pass, done, points) = match &first {
         None => {
-            let done = correct(&pass, &measurement, &remarks, &[route], progress)?;
+            let done = correct_pass(&pass, &measurement, &remarks, &[route], progress)?;
             (pass, done, Points::ThisPass)
         }
         Some(first) => {
-            let (done, surface) = second_pass::correct(&pass, first, &measurement, &remarks, &[route], progress)?;
+            let (done, surface) =
+                second_pass::correct_second_pass(&pass, first, &measurement, &remarks, &[route], progress)?;
             folder.write("first-pass-surface.csv", &surface.table())?;
             (pass.over(surface)?, done, Points::FirstPass)
         }

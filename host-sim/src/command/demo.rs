@@ -6,7 +6,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
 use truepath_chart::view::View;
-use truepath_correction::correct::{CorrectedPass, correct};
+use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::codes::F003;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
@@ -222,7 +222,7 @@ fn tell(part: &Part, progress: &mut dyn FnMut(f64)) -> Result<Outcome, Failure> 
     let remarks = measurement.remarks(&file);
     // A user takes one of the routes; the demonstration shows both.
     let routes = [Route::Program, Route::Coprocessor];
-    let corrected = correct(&pass, &measurement, &remarks, &routes, &mut |share| progress(0.3 + 0.3 * share))?;
+    let corrected = correct_pass(&pass, &measurement, &remarks, &routes, &mut |share| progress(0.3 + 0.3 * share))?;
     let text = corrected.program.as_deref().unwrap_or_default();
     let second = virtual_mill::mill(&pass, &machine, Some(&virtual_mill::commanded(&pass, text)?))?;
     progress(0.9);

@@ -152,8 +152,7 @@ pub(super) fn history_in(folder: &FilePath) -> Result<History, InputError> {
         if crc != file.crc32 {
             let found = format!("{} has the CRC-32 {crc}", place.display());
             let expected = format!("{}, as {HISTORY} says of the correction it was cut with", file.crc32);
-            let help = "the part must be cut with the correction of this folder, unchanged; put the file back, or correct again";
-            return Err(InputError::new(Q004, found, expected, help).in_file(&place));
+            return Err(Q004.error(found, expected).in_file(&place));
         }
     }
     if held == 0 {
@@ -175,6 +174,5 @@ fn refuse_same_folder(options: &Options) -> Result<(), InputError> {
         return Ok(());
     }
     let found = format!("--from and -o are both {}", options.from.display());
-    let help = "name another folder with -o: the correction of each part is kept";
-    Err(InputError::new(Q005, found, "two folders", help).in_file(&options.output))
+    Err(Q005.error(found, "two folders").in_file(&options.output))
 }

@@ -8,7 +8,7 @@ use truepath_chart::view::View;
 use truepath_core::correct::{Band, Profile, profile};
 use truepath_core::cut::{ForceTable, State};
 use truepath_core::geometry::Vector;
-use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
 use truepath_job::feature::listing;
@@ -237,12 +237,10 @@ pub fn read_machine(file: &FilePath) -> Result<plant::Machine, Failure> {
     let source = Source::read(file)?;
     let text = std::str::from_utf8(source.bytes()).map_err(|e| {
         let at = e.valid_up_to();
-        let help = "save the file as UTF-8";
-        InputError::new(L001, "a byte that is not UTF-8", "a text file", help).at(&source, at..at + 1)
+        L001.error("a byte that is not UTF-8", "a text file").at(&source, at..at + 1)
     })?;
     toml::from_str(text).map_err(|e| {
         let span = e.span().unwrap_or(0..0);
-        let help = "see docs/plant.md for the keys of a plant and their units";
-        InputError::new(L002, e.message().to_owned(), "", help).at(&source, span).into()
+        L002.error(e.message(), "").at(&source, span).into()
     })
 }

@@ -151,7 +151,7 @@ fn row(row: &Row) -> String {
 pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
     let unknown = |name: &str| {
         let names: Vec<&str> = FAMILIES.iter().map(|f| f.name).collect();
-        InputError::new(Y003, format!("no family `{name}`"), format!("one of {}", names.join(", ")), "correct the name")
+        Y003.error(format!("no family `{name}`"), format!("one of {}", names.join(", ")))
     };
     let chosen: Vec<&Family> = if options.families.is_empty() {
         FAMILIES.iter().collect()
@@ -163,8 +163,7 @@ pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
     let seeds = set.seeds();
     let most = seeds.end - seeds.start;
     if count == 0 || count > most {
-        let found = format!("{count} seeds");
-        return Err(InputError::new(Y004, found, format!("1 to {most}"), "ask for another number").into());
+        return Err(Y004.error(format!("{count} seeds"), format!("1 to {most}")).into());
     }
     let cells: Vec<Option<Cell>> = match options.axis {
         None => vec![None],

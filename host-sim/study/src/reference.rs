@@ -7,7 +7,7 @@
 use std::path::Path as FilePath;
 
 use serde::{Deserialize, Serialize};
-use truepath_correction::correct::correct;
+use truepath_correction::correct::correct_pass;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -153,7 +153,7 @@ fn left(pass: &Pass, first: &Milled, setting: &Setting, seed: u64) -> Result<f64
     touched.machine.seed = seed;
     let probe = virtual_mill::probe(pass, &touched, setting.places_mm, &[0.5], BALL_MM)?;
     let measurement = Measurement::read(pass, &Source::new("reference/probe.txt", probe.into_bytes()))?;
-    let corrected = correct(pass, &measurement, &[], &[Route::Program], &mut |_| ())?;
+    let corrected = correct_pass(pass, &measurement, &[], &[Route::Program], &mut |_| ())?;
     let commanded = virtual_mill::commanded(pass, &corrected.program.unwrap_or_default())?;
     Ok(virtual_mill::mill(pass, &first.machine, Some(&commanded))?.score().max_error_mm)
 }

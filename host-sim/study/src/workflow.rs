@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use truepath_correction::correct::{CorrectedPass, correct};
+use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_correction::learn::{Learned, learn};
 use truepath_correction::learning::History;
 use truepath_correction::rows::CorrectionRow;
@@ -89,7 +89,7 @@ pub fn first(case: &Case, outcome: &mut Outcome) -> Result<FirstPart, Failure> {
     let probe = case.probe(1, &case.first, &case.places_mm)?;
     let measurement = measured(case, "probe.txt", &probe)?;
     let begun = Instant::now();
-    let corrected = correct(&case.pass, &measurement, &[], &[Route::Program], &mut |_| ())?;
+    let corrected = correct_pass(&case.pass, &measurement, &[], &[Route::Program], &mut |_| ())?;
     outcome.correct_s = some(begun.elapsed().as_secs_f64());
     let summary = &corrected.summary;
     outcome.predicted_mm = some(summary.max_error_after_mm);

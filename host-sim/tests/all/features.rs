@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 use truepath::command::{correct, inspect, simulate};
 use truepath_core::image::Image;
-use truepath_correction::correct::{CorrectedPass, correct as corrected_in_memory};
+use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Form, InputError, Source};
 use truepath_job::job::{JobFile, Route, Which};
 use truepath_job::measurement::Measurement;
@@ -47,7 +47,7 @@ fn corrected(pass: &Pass, ball: f64) -> (Pass, CorrectedPass) {
     let mut asked = pass.job.clone();
     asked.which.pass = None;
     let (pass, measurement) = Measurement::of_any_depth(Pass::read(asked).unwrap(), &file).unwrap();
-    let done = corrected_in_memory(&pass, &measurement, &[], &[Route::Coprocessor, Route::Program], &mut |_| ())
+    let done = correct_pass(&pass, &measurement, &[], &[Route::Coprocessor, Route::Program], &mut |_| ())
         .unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)));
     (pass, done)
 }

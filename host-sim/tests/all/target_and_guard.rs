@@ -4,7 +4,7 @@ use std::path::Path;
 
 use truepath::command::compare;
 use truepath::command::compare::CompareSummary;
-use truepath_correction::correct::{CorrectedPass, correct};
+use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -44,7 +44,7 @@ fn milled(keys: &str) -> (CorrectedPass, Milled) {
     let pass = pass(keys);
     let file = Source::new("probe.txt", probed(&pass).into_bytes());
     let measurement = shown(Measurement::read(&pass, &file));
-    let done = shown(correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ()));
+    let done = shown(correct_pass(&pass, &measurement, &[], &[Route::Program], &mut |_| ()));
     let text = done.program.as_deref().unwrap();
     let part = shown(virtual_mill::mill(&pass, &machine(), Some(&shown(virtual_mill::commanded(&pass, text)))));
     (done, part)

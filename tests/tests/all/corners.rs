@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use truepath_correction::correct::{CorrectedPass, correct};
+use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -37,7 +37,7 @@ fn told(pass: Pass, places: &[f64]) -> Told {
     let first = virtual_mill::mill(&pass, &machine, None).unwrap();
     let probe = virtual_mill::probe(&pass, &first, places, &[0.5], 6.0).unwrap();
     let measurement = Measurement::read(&pass, &Source::new("probe.txt", probe.into_bytes())).unwrap();
-    let corrected = correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ())
+    let corrected = correct_pass(&pass, &measurement, &[], &[Route::Program], &mut |_| ())
         .unwrap_or_else(|e: Failure| panic!("{}", e.render(truepath_ground::diagnostics::Form::Plain)));
     let commanded = virtual_mill::commanded(&pass, corrected.program.as_deref().unwrap()).unwrap();
     let second = virtual_mill::mill(&pass, &machine, Some(&commanded)).unwrap();

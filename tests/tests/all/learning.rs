@@ -141,7 +141,7 @@ fn what_is_learned_turns_with_the_part_to_the_last_bit() {
         let measurement = shop.measured(&texts[0]);
         let routes = [truepath_job::job::Route::Program];
         let corrected =
-            truepath_correction::correct::correct(&shop.pass, &measurement, &[], &routes, &mut |_| ()).unwrap();
+            truepath_correction::correct::correct_pass(&shop.pass, &measurement, &[], &routes, &mut |_| ()).unwrap();
         let history = truepath_correction::learning::History::first(&shop.pass, &measurement, &corrected).unwrap();
         let learned = shop.learn(&history, &texts[1]).unwrap();
         let vectors = learned.corrected.correction.nodes.iter().map(|n| {

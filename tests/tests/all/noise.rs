@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use truepath_correction::correct::correct;
+use truepath_correction::correct::correct_pass;
 use truepath_ground::diagnostics::Source;
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -40,7 +40,7 @@ fn left(changes: &[(&str, &str)], places: &[f64]) -> Vec<f64> {
             touched.machine.seed = machine.seed;
             let probe = virtual_mill::probe(&pass, &touched, places, &[0.5], 6.0).unwrap();
             let measurement = Measurement::read(&pass, &source("probe.txt", probe)).unwrap();
-            let corrected = correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
+            let corrected = correct_pass(&pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
             let commanded = virtual_mill::commanded(&pass, &corrected.program.unwrap()).unwrap();
             virtual_mill::mill(&pass, &machine, Some(&commanded)).unwrap().score().max_error_mm
         })

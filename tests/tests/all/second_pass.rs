@@ -116,7 +116,7 @@ fn a_sharp_inside_corner_cannot_be_split_and_other_jobs_are_no_first_pass() {
     let milled = virtual_mill::mill(&other, &machine("corner"), None).unwrap();
     let probe = virtual_mill::probe(&other, &milled, &[30.0, 75.0], &[0.5], 6.0).unwrap();
     let measurement = Measurement::read(&other, &Source::new("probe.txt", probe.into_bytes())).unwrap();
-    let refused = second_pass::correct(&whole, &other, &measurement, &[], &[Route::Program], &mut |_| ());
+    let refused = second_pass::correct_second_pass(&whole, &other, &measurement, &[], &[Route::Program], &mut |_| ());
     let Err(Failure::Input(error)) = refused else { panic!("two machines' passes were taken for one part's") };
     assert_eq!(error.code(), "K003");
 }

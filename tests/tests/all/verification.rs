@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use truepath_correction::correct::correct;
+use truepath_correction::correct::correct_pass;
 use truepath_correction::verification::{Settings, plan};
 use truepath_ground::diagnostics::Source;
 use truepath_job::job::{JobFile, Route};
@@ -24,7 +24,7 @@ fn corrected(name: &str, places: &[f64], levels: &[f64]) -> (f64, f64) {
     let ball = pass.job.require_probe().unwrap().ball_diameter.nm() as f64 / 1e6;
     let text = virtual_mill::probe(&pass, &first, places, levels, ball).unwrap();
     let measurement = Measurement::read(&pass, &Source::new("probe.txt", text.into_bytes())).unwrap();
-    let done = correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
+    let done = correct_pass(&pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
     let program = done.program.unwrap();
     let second = virtual_mill::mill(&pass, &plant, Some(&virtual_mill::commanded(&pass, &program).unwrap())).unwrap();
     (first.score().max_error_mm, second.score().max_error_mm)

@@ -95,10 +95,7 @@ fn no_width(ball: Ball, free: f64, settings: &Settings) -> InputError {
     let (found, help) = if settings.free_width.is_some() {
         (format!("--free-width {free}"), "use a smaller ball, or a smaller --clearance")
     } else {
-        (
-            format!("the pass has cleared {free} mm before the wall, the cutter's diameter"),
-            "use a smaller ball or a smaller --clearance, or say with --free-width how much is free before the wall",
-        )
+        (format!("the pass has cleared {free} mm before the wall, the cutter's diameter"), V003.remedy)
     };
     let expected = format!("{} mm: the ball of {} mm and its clearance", ball.width(), 2.0 * ball.radius);
     InputError::new(V003, found, expected, help)

@@ -139,8 +139,7 @@ pub(super) fn work_offset(plan: &Plan, more: MoreOffsets) -> Result<String, Inpu
         (n @ 1..=6, _) => Ok(format!("G{}", 53 + n)),
         (n @ 7..=9, MoreOffsets::Points) => Ok(format!("G59.{}", n - 6)),
         (n @ 10.., MoreOffsets::Code(code)) => Ok(format!("{code} P{}", n - 9)),
-        (n, _) => Err(InputError::new(
-            V005,
+        (n, _) => Err(V005.error(
             format!(
                 "the part's program cuts in {}",
                 match n {
@@ -149,7 +148,6 @@ pub(super) fn work_offset(plan: &Plan, more: MoreOffsets) -> Result<String, Inpu
                 }
             ),
             "a work offset that this control has",
-            "use another --dialect, or cut and probe in one of G54 to G59",
         )),
     }
 }

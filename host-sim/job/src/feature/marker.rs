@@ -49,17 +49,12 @@ pub(super) fn marked(program: &Source) -> Result<Vec<Marked>, InputError> {
                 (Marker::Begin(id), Some(before)) => {
                     let (at, _) = program.line_column(before.span.start);
                     let found = format!("\"{id}\" begins inside \"{}\", which began on line {at}", before.id);
-                    return error(
-                        N003,
-                        found,
-                        "TRUEPATH END before it",
-                        "features do not nest: end one before the next",
-                    );
+                    return error(N003, found, "TRUEPATH END before it", N003.remedy);
                 }
                 (Marker::Begin(id), None) => {
                     if let Some(first) = list.iter().find(|m| m.id == id) {
                         let found = format!("\"{id}\" is marked twice, first on line {}", first.lines.first);
-                        return error(N006, found, "every name once", "give every feature a name of its own");
+                        return error(N006, found, "every name once", N006.remedy);
                     }
                     let lines = LineRange { first: line.number, last: line.number };
                     open = Some(Marked { id, lines, span });

@@ -60,7 +60,7 @@ pub(super) fn lines(
                     N008,
                     format!("{} has N{number} more than once, on lines {a} and {b}", program.name()),
                     "an N word that names one block".to_owned(),
-                    "write lines = [first, last] with line numbers, or put markers into the program",
+                    N008.remedy,
                 )),
             };
             let (first, last) = (line(first)?, line(last)?);

@@ -84,9 +84,8 @@ pub fn plan(job: &JobFile, program: &Source) -> Result<Option<Plan>, Failure> {
     }
     if runs.len() > LARGEST_SEARCH {
         let found = format!("{} has {} runs of cutting moves", region.name(), runs.len());
-        let help = "name the lines of the cut with [[feature]] in the job, or with markers in the program";
         let expected = format!("at most {LARGEST_SEARCH}, which are compared with each other");
-        return Err(region.error(InputError::new(N010, found, expected, help)).into());
+        return Err(region.error(N010.error(found, expected)).into());
     }
     let numbers = &job.numbers;
     let tool = region.tool.or(numbers.tool.number);

@@ -24,10 +24,10 @@ pub fn learned(
     summary: &LearnSummary,
 ) -> Result<Page, Failure> {
     let verdict = &summary.verdict;
-    let [before, cut, next] = words(verdict, milled.corrected());
+    let [before, cut, next] = words(verdict, milled.had_correction());
     let passes = PredictedPasses {
         // A part that was cut without correction is the uncorrected one.
-        before: milled.corrected().then_some(before),
+        before: milled.had_correction().then_some(before),
         milled: Some((cut, &milled.correction)),
         after: next,
         correction: &done.correction,

@@ -9,7 +9,6 @@
 //! and Y only: what varies over the height, and the width of a slot, stay.
 
 pub mod beam;
-mod choose;
 pub mod codes;
 mod corner;
 mod design;
@@ -32,7 +31,6 @@ mod text;
 pub mod tool;
 mod wall;
 
-pub use choose::{finishing, slotting};
 pub use design::{Designed, Wanted, design};
 pub use error::PocketError;
 pub use machine::Machine;
@@ -42,6 +40,8 @@ pub use process::{Cutting, Process, Walls};
 pub use rows::{CorrectionRow, SectionRow, correction_csv, section_rows, sections_csv};
 pub use section::{Kind, Section, sections};
 pub use sensitivity::{Sensitivity, sensitivity};
+pub use slot::slotting;
 pub use station::{Station, edits};
 pub use summary::{CutterSummary, PocketSummary, Told, pocket_summary};
 pub use text::sections_text;
+pub use wall::finishing;

@@ -16,12 +16,13 @@ use std::f64::consts::PI;
 use truepath_core::cut::{Coefficients, CutSetup, ForceTable, Milling, SplitForce, WallLaw};
 use truepath_core::units::Real;
 use truepath_ground::units::{float, mm};
+use truepath_job::pass::Pass;
 
 use super::envelope::Side;
 use super::error::PocketError;
 use super::machine::Machine;
 use super::process::{Cutting, Process, Walls};
-use super::station::{MOST_STATIONS, Station};
+use super::station::{MOST_STATIONS, Station, slot_stations};
 use super::swept::{Cells, Frame, engaged};
 
 /// Heights of the walls: midpoints of even slices of the engaged depth.
@@ -69,6 +70,17 @@ fn minus(a: SplitForce, b: SplitForce) -> SplitForce {
         edge_n: a.edge_n - b.edge_n,
         edge_t: a.edge_t - b.edge_t,
     }
+}
+
+/// The slot of a job along its contour.
+///
+/// # Errors
+/// A cutter that is not described, a path that is too long, a cutter too soft for it.
+pub fn slotting(pass: &Pass) -> Result<Slot, PocketError> {
+    let machine = Machine::of(&pass.job)?;
+    let stations =
+        slot_stations(&pass.path_contour(), (pass.core.setup.wall, pass.core.setup.radius), pass.core.step())?;
+    Slot::new(stations, pass.core.setup, pass.core.coefficients(), machine)
 }
 
 impl Slot {

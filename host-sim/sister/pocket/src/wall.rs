@@ -4,16 +4,17 @@
 //! with its exact mean and the rise from the top to the tip, so that the mean over the height, at which a correction
 //! aims, is that of the beam.
 
-use truepath_core::correct::{Design, Profile, profile};
+use truepath_core::correct::{Design, Law, Profile, profile};
 use truepath_core::cut::{Coefficients, Compliance, ForceTable, Loop, Path, State};
 use truepath_core::geometry::Vector;
 use truepath_core::units::{Offset, Real};
 use truepath_ground::units::{float, mm};
+use truepath_job::pass::Pass;
 
 use super::error::PocketError;
 use super::machine::Machine;
 use super::process::{Cutting, Process, Walls};
-use super::station::{Station, components, coordinates};
+use super::station::{Station, components, coordinates, is_arc};
 
 /// A finishing pass.
 #[derive(Debug)]
@@ -49,6 +50,17 @@ fn compliance(machine: &Machine) -> Compliance {
         bend: real(1000.0 * rise / mean),
         ..Compliance::default()
     }
+}
+
+/// The finishing pass of a job along its sampled path.
+///
+/// # Errors
+/// A cutter that is not described.
+pub fn finishing<'a>(pass: &Pass, path: &'a Path<'a>) -> Result<Wall<'a>, PocketError> {
+    let machine = Machine::of(&pass.job)?;
+    let blocks: Vec<(bool, u32)> = pass.blocks.iter().map(|block| (is_arc(block), block.line)).collect();
+    let wanted = pass.job.numbers.design(Law::Model);
+    Ok(Wall::new(path, &blocks, pass.core.coefficients(), &machine, wanted))
 }
 
 impl<'a> Wall<'a> {

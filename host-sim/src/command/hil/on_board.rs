@@ -8,7 +8,7 @@ use truepath_bench::{BenchError, Board, Ingredients, Load, RoundTrip, begin, con
 use truepath_core::image::Image;
 use truepath_core::link::{Computed, DeviceSettings};
 use truepath_core::rewrite::SettingsError;
-use truepath_correction::correct::correct;
+use truepath_correction::correct::correct_pass;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -93,7 +93,7 @@ pub fn on_board(
     let probe = Source::read(probe)?;
     let pass = Pass::new(job, program.clone())?;
     let measurement = Measurement::read(&pass, &probe)?;
-    let here = correct(&pass, &measurement, &[], &[Route::Coprocessor], &mut |_| ())?;
+    let here = correct_pass(&pass, &measurement, &[], &[Route::Coprocessor], &mut |_| ())?;
     let image = here.image.unwrap_or_default();
     let host_crc = Image::new_checked(&image).map_err(|e| Failure::Internal(e.to_string()))?.crc();
     let ingredients = Ingredients { program: program.bytes(), job: &compact, probe: probe.bytes() };

@@ -242,15 +242,13 @@ fn finish(
     let Found { report, out, folder } = *found;
     if report.blocks == 0 {
         let found = format!("{} has no block", options.file.display());
-        let help = "check that this is a program of G1 moves";
-        return Err(InputError::new(A008, found, "a program", help).in_file(&options.file).into());
+        return Err(A008.error(found, "a program").in_file(&options.file).into());
     }
     if let (Some(first), Some(_), false) = (report.left.moves.first(), &out, options.partial) {
         let many = report.left.count;
         let found = format!("the move cannot be brought within the tolerance: {}", first.reason);
         let expected = format!("five-axis moves that can all be checked and divided ({many} cannot)");
-        let help = "correct it, or add --partial to leave such moves as they are";
-        return Err(At::error_in(&options.file, first.line, A009, [&found, &expected, help]).into());
+        return Err(At::error_in(&options.file, first.line, A009, [&found, &expected, A009.remedy]).into());
     }
     let mut summary = summary(&options.file, machine, settings, &report);
     if let Some(line) = steered {
@@ -279,12 +277,7 @@ fn check_tolerance(tolerance_mm: f64) -> Result<(), InputError> {
         return Ok(());
     }
     let found = format!("the tolerance is {tolerance_mm} mm");
-    Err(InputError::new(
-        A010,
-        found,
-        "a length above 0, at most 1000 mm",
-        "give --tolerance 0.005, or what the part needs",
-    ))
+    Err(A010.error(found, "a length above 0, at most 1000 mm"))
 }
 
 /// A surface is of use to a ball end only.

@@ -319,9 +319,7 @@ fn compared(path: &FilePath) -> Result<Compared, InputError> {
     let source = read_bounded(&file.with_file_name("summary.json"))?;
     let summary: Summary = serde_json::from_slice(source.bytes()).map_err(|e| {
         let (line, column) = (u32::try_from(e.line()).unwrap_or(1), u32::try_from(e.column()).unwrap_or(1));
-        let help = "summary.json lies beside walls.csv in the folder of compare";
-        InputError::new(Z014, e.to_string(), "the summary of compare", help)
-            .at(&source, source.span_at(line, column, 0))
+        Z014.error(e.to_string(), "the summary of compare").at(&source, source.span_at(line, column, 0))
     })?;
     if walls.len() > LAWS {
         let found = format!("{} holds {} laws", file.display(), walls.len());

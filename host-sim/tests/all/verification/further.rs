@@ -2,7 +2,7 @@
 
 use truepath::command::probe::{next, next_part};
 use truepath_core::checksum::crc32;
-use truepath_correction::correct::correct;
+use truepath_correction::correct::correct_pass;
 use truepath_correction::learning::History;
 use truepath_correction::verification::{Plan, ProbeDialect, Settings, write};
 use truepath_ground::diagnostics::{Form, Source};
@@ -43,7 +43,7 @@ impl Shop {
     }
     /// Largest wall error of the part cut with the correction from these places, mm.
     fn corrected(&self, places: &[f64]) -> f64 {
-        let done = correct(&self.pass, &self.measured(places), &[], &[Route::Program], &mut |_| ()).unwrap();
+        let done = correct_pass(&self.pass, &self.measured(places), &[], &[Route::Program], &mut |_| ()).unwrap();
         let text = done.program.unwrap();
         virtual_mill::mill_program(&self.pass, &self.machine, &text).unwrap().score().max_error_mm
     }
@@ -76,7 +76,7 @@ fn with_straight_walls_known_the_corner_comes_next_and_touching_it_pays() {
 fn on_the_next_part_the_places_are_chosen_from_the_history_and_its_datum_is_open_again() {
     let shop = Shop::open();
     let measurement = shop.measured(&STRAIGHT);
-    let done = correct(&shop.pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
+    let done = correct_pass(&shop.pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
     let history = History::first(&shop.pass, &measurement, &done).unwrap();
     let settings = Settings { places: 2, ..Settings::default() };
     let planned = |points: Option<&Measurement>| next_part(&shop.pass, &history, points, &settings, &mut |_| ());

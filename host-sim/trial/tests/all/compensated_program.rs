@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use truepath_correction::correct::{CorrectedPass, correct};
+use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -47,7 +47,7 @@ fn corrected(pass: &Pass) -> CorrectedPass {
     let probe = virtual_mill::probe(pass, &milled, &[25.0, 40.0, 55.0, 70.0, 90.0], &[0.3, 0.8], 6.0).unwrap();
     let file = Source::new("probe.txt", probe.into_bytes());
     let measurement = shown(Measurement::read(pass, &file));
-    shown(correct(pass, &measurement, &[], &[Route::Program], &mut |_| ()))
+    shown(correct_pass(pass, &measurement, &[], &[Route::Program], &mut |_| ()))
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use truepath_core::image::{DEVICE_NODES, Image, image_bytes};
 use truepath_core::job::{self, Buffers, COMPACT_BYTES, JobError};
 use truepath_core::units::{Offset, Real};
-use truepath_correction::correct::correct;
+use truepath_correction::correct::correct_pass;
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -55,7 +55,7 @@ fn milled(name: &str, pass: Pass, places_mm: &[f64], levels: &[f64]) -> Part {
 /// As the command line does it.
 fn on_the_host(part: &Part) -> Result<Vec<u8>, Failure> {
     let measurement = Measurement::read(&part.pass, &part.probe)?;
-    let corrected = correct(&part.pass, &measurement, &[], &[Route::Coprocessor], &mut |_| ())?;
+    let corrected = correct_pass(&part.pass, &measurement, &[], &[Route::Coprocessor], &mut |_| ())?;
     Ok(corrected.image.expect("the route of the coprocessor"))
 }
 
@@ -144,7 +144,7 @@ fn an_image_needs_the_number_of_its_tool_from_job_or_program() {
     // The program needs no such number to be corrected itself.
     let part = milled("corner", changed("corner", &[], corner_with("")).unwrap(), &[30.0, 75.0], &[0.5]);
     let measurement = Measurement::read(&part.pass, &part.probe).unwrap();
-    assert!(correct(&part.pass, &measurement, &[], &[Route::Program], &mut |_| ()).is_ok());
+    assert!(correct_pass(&part.pass, &measurement, &[], &[Route::Program], &mut |_| ()).is_ok());
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use truepath_core::gcode::Units;
-use truepath_correction::correct::{CorrectedPass, correct};
+use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -39,7 +39,7 @@ fn corrected(pass: &Pass, routes: &[Route]) -> Result<CorrectedPass, Failure> {
         probe = probe.lines().map(row).collect::<Vec<_>>().join("\n");
     }
     let measurement = Measurement::read(pass, &Source::new("probe.txt", probe.into_bytes()))?;
-    correct(pass, &measurement, &[], routes, &mut |_| ())
+    correct_pass(pass, &measurement, &[], routes, &mut |_| ())
 }
 
 fn program(corrected: &CorrectedPass) -> String {
@@ -135,7 +135,7 @@ fn the_feed_rises_only_where_the_job_says_so_and_a_closed_contour_has_no_jump_at
         let milled = shown(virtual_mill::mill(&pass, &machine, None));
         let probe = shown(virtual_mill::probe(&pass, &milled, &[45.0, 92.0, 145.0], &[0.3, 0.8], 4.0));
         let measurement = shown(Measurement::read(&pass, &Source::new("probe.txt", probe.into_bytes())));
-        let done = shown(correct(&pass, &measurement, &[], &[Route::Program], &mut |_| ()));
+        let done = shown(correct_pass(&pass, &measurement, &[], &[Route::Program], &mut |_| ()));
         let blocks = shown(read_blocks(&Source::new("corrected.nc", done.program.unwrap()))).0;
         let feeds = [blocks.first(), blocks.last()].map(|b| b.map_or(0, |b| b.feed.round_to_int()));
         (done.summary.feed.unwrap(), feeds)

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use truepath_correction::correct::{CorrectedPass, correct};
+use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -29,7 +29,7 @@ fn pass() -> Pass {
 
 fn corrected(pass: &Pass, probe: &str) -> CorrectedPass {
     let measurement = shown(Measurement::read(pass, &Source::new("probe.txt", probe.as_bytes().to_vec())));
-    shown(correct(pass, &measurement, &[], &[Route::Program], &mut |_| ()))
+    shown(correct_pass(pass, &measurement, &[], &[Route::Program], &mut |_| ()))
 }
 
 /// The largest mean error of the part that is milled with a program, mm.

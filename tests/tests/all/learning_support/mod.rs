@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use truepath_correction::correct::{CorrectedPass, correct};
+use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_correction::learn::{Learned, learn};
 use truepath_correction::learning::History;
 use truepath_ground::diagnostics::{Failure, Source};
@@ -60,7 +60,7 @@ impl Shop {
     /// The first part: measured and corrected.
     pub fn first(&self, places: &[f64]) -> (CorrectedPass, History) {
         let measurement = self.measured(&self.probe(None, places, 11));
-        let corrected = correct(&self.pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
+        let corrected = correct_pass(&self.pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
         let history = History::first(&self.pass, &measurement, &corrected).unwrap();
         (corrected, history)
     }

@@ -30,7 +30,7 @@ pub struct Insertion {
     pub inserted: Vec<Joints>,
     /// Chord error of the move as it was.
     pub before: ChordError,
-    /// Largest certified chord error of a piece, mm; at most the tolerance.
+    /// Largest chord error of a piece, mm, certified, as in [`Division`](super::Division).
     pub after: f64,
     /// The passage of the move as it was.
     pub passage: Passage,

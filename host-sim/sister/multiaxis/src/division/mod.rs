@@ -36,7 +36,8 @@ pub struct Division {
     pub inserted: Vec<(f64, Joints)>,
     /// Largest chord error of the undivided move, mm, certified.
     pub before: f64,
-    /// Largest chord error of a piece, mm, certified; at most the tolerance.
+    /// Largest chord error of a piece, mm, certified: [`ChordError::bound`](super::chord::ChordError::bound), which may be
+    /// above a tolerance that the piece is proved to keep, by its slack.
     pub after: f64,
 }
 
@@ -90,7 +91,7 @@ fn divide_known(
     let mut after = 0.0f64;
     let mut last = 0.0;
     for &knot in knots.iter().chain([&1.0]) {
-        after = after.max(span.error(last, knot).min(tolerance_mm));
+        after = after.max(span.error(last, knot));
         last = knot;
     }
     let inserted = knots.into_iter().map(|s| (s, span.joints(s))).collect();

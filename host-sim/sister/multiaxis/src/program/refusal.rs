@@ -36,13 +36,17 @@ impl At<'_> {
         (Source::new(self.name, bytes), before)
     }
 
-    /// An error at a span of the line.
-    pub fn error(&self, row: Row, [found, expected, help]: [&str; 3], span: Range<usize>) -> InputError {
-        let (source, before) = self.source();
-        InputError::new(row, found, expected, help).at(&source, before + span.start..before + span.end)
+    /// An error with the remedy of its row, at a span of the line.
+    pub fn error(&self, row: Row, found: &str, expected: &str, span: Range<usize>) -> InputError {
+        self.place(row.error(found, expected), span)
     }
 
-    /// The same for a whole line of a file, which is read once more; without its text when that is no longer there.
+    fn place(&self, error: InputError, span: Range<usize>) -> InputError {
+        let (source, before) = self.source();
+        error.at(&source, before + span.start..before + span.end)
+    }
+
+    /// An error of a whole line of a file, which is read once more; without its text when that is no longer there.
     pub fn error_in(path: &Path, number: u32, row: Row, [found, expected, help]: [&str; 3]) -> InputError {
         let mut line = Line::default();
         let file = File::open(path).map(BufReader::new);
@@ -55,7 +59,7 @@ impl At<'_> {
         let blanks = line.text.iter().take_while(|b| b.is_ascii_whitespace()).count();
         let name = path.display().to_string();
         let at = At { name: &name, number, text: &line.text };
-        at.error(row, [found, expected, help], blanks..line.text.len())
+        at.place(InputError::new(row, found, expected, help), blanks..line.text.len())
     }
 
     /// What the lexer does not understand.
@@ -67,7 +71,7 @@ impl At<'_> {
     /// A line that is too long.
     pub fn too_long(&self) -> InputError {
         let found = format!("line {} is longer than {LONGEST} bytes", self.number);
-        self.error(A001, [&found, "a line as controls read them", A001.remedy], 0..0)
+        self.error(A001, &found, "a line as controls read them", 0..0)
     }
 
     /// What the control would refuse.
@@ -102,6 +106,6 @@ impl At<'_> {
                 0..self.text.len(),
             ),
         };
-        self.error(row, [&found, expected, row.remedy], span)
+        self.error(row, &found, expected, span)
     }
 }

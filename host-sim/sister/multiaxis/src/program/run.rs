@@ -162,8 +162,7 @@ impl Pass<'_, '_> {
         if self.closed && !self.opened {
             let at = At { name: self.name, number: line.number, text: &line.text };
             let found = "a block behind a %, and blocks in front of it";
-            let texts = [found, "the program between two %", A007.remedy];
-            return Err(at.error(A007, texts, 0..line.text.len()).into());
+            return Err(at.error(A007, found, "the program between two %", 0..line.text.len()).into());
         }
         self.report.notes.add(Note::TextBehindEnd, line.number);
         Ok(())

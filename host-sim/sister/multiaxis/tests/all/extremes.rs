@@ -6,7 +6,7 @@ use truepath_multiaxis::machine::{Letter, Machine, Rotary, Sense, Side, Tool};
 use truepath_multiaxis::singular::passage;
 use truepath_multiaxis::{DivisionError, Joints, Rule, chord_error, divide, insert};
 
-use crate::machines::{Draw, from_segment, place_by_matrices, types};
+use crate::machines::{Draw, from_segment, place_by_matrices, types, with_slack};
 
 const RULES: [Rule; 4] = [Rule::Equal, Rule::Midpoint, Rule::Longest, Rule::Fewest];
 
@@ -57,7 +57,7 @@ fn a_standing_tip_errs_by_the_sagitta_and_is_divided() {
         assert!(error.exact <= sagitta * 1.02 + 1e-9, "{error:?} {sagitta}");
         for rule in RULES {
             let division = divide(&machine, &ends[0], &ends[1], 0.01, rule).expect("a division");
-            assert!(division.after <= 0.01);
+            assert!(division.after <= with_slack(0.01));
             for (_, joints) in &division.inserted {
                 assert!(from_segment(machine.counted(joints), [80.0, 0.0, 0.0], [80.0, 0.0, 0.0]) < 1e-9);
             }
@@ -105,7 +105,7 @@ fn hundreds_of_turns_end_in_an_error_and_the_bound_stays_true() {
         assert_eq!(divide(&machine, &from, &to, 0.001, rule), Err(DivisionError::TooManyPieces), "{rule:?}");
     }
     let coarse = divide(&machine, &from, &Joints { rotary: [0.0, 40.0], ..from }, 0.01, Rule::Equal).expect("coarse");
-    assert!(coarse.pieces() < MOST_PIECES && coarse.after <= 0.01);
+    assert!(coarse.pieces() < MOST_PIECES && coarse.after <= with_slack(0.01));
 }
 
 #[test]

@@ -5,7 +5,7 @@
 
 use truepath_multiaxis::{Joints, Machine, Rule, chord_error, divide};
 
-use crate::machines::{Draw, from_segment, place_by_matrices, types};
+use crate::machines::{Draw, from_segment, place_by_matrices, types, with_slack};
 
 /// Moves in all; threads share them.
 const MOVES: u64 = 100_000;
@@ -40,15 +40,17 @@ fn check(seed: u64) -> Tally {
             divide(&machine, &from, &to, tolerance, Rule::Fewest).unwrap_or_else(|e| panic!("{e} {}", context()));
         let halved = divide(&machine, &from, &to, tolerance, Rule::Midpoint).expect("midpoint halving");
         assert!(division.pieces() <= halved.pieces(), "{}", context());
-        assert!(division.after <= tolerance, "{}", context());
-        let mut last = from;
+        let (mut last, mut certified) = (from, 0.0f64);
         let (start, end) = (machine.counted(&from), machine.counted(&to));
         for joints in division.inserted.iter().map(|(_, joints)| joints).chain([&to]) {
             let error = sampled(&machine, &last, joints, SAMPLES);
             assert!(error <= tolerance + ROUNDING, "{error} > {tolerance}: {}", context());
             assert!(from_segment(machine.counted(joints), start, end) <= ROUNDING, "off the chord: {}", context());
+            certified = certified.max(chord_error(&machine, &last, joints).bound);
             last = *joints;
         }
+        assert_eq!(division.after, certified, "{}", context());
+        assert!(certified <= with_slack(tolerance), "{certified} > {tolerance}: {}", context());
         tally[0] += 1;
         tally[1] += division.pieces() as u64;
         tally[2] += halved.pieces() as u64;

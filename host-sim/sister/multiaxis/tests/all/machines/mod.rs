@@ -4,6 +4,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use truepath_multiaxis::Joints;
+use truepath_multiaxis::chord::SLACK_MM;
 use truepath_multiaxis::machine::{Counted, Letter, Machine, Rotary, Sense, Side, Tool};
 use truepath_multiaxis::vector::Vector;
 
@@ -14,6 +15,12 @@ pub const SIDES: [[Side; 2]; 3] = [[Side::Table, Side::Table], [Side::Table, Sid
 pub fn types() -> Vec<([Side; 2], [Letter; 2])> {
     let pairs = LETTERS.iter().flat_map(|&a| LETTERS.iter().filter(move |&&b| a != b).map(move |&b| [a, b]));
     pairs.flat_map(|pair| SIDES.map(|sides| (sides, pair))).collect()
+}
+
+/// What the certified error of a piece that is proved to keep a tolerance is at most, mm: the slack of the certificate is
+/// not that of the proof.
+pub fn with_slack(tolerance: f64) -> f64 {
+    tolerance + SLACK_MM.max(1e-5 * tolerance) + 1e-9
 }
 
 /// A draw of reproducible numbers.
