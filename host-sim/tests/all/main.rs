@@ -20,6 +20,7 @@ mod probe_command;
 mod recorded;
 mod replay;
 mod report_page;
+mod shop_corners;
 mod split_allowance;
 mod study;
 mod target_and_guard;
