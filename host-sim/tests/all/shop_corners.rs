@@ -47,7 +47,9 @@ const PLANT: &str = "ktc_n_per_mm2 = 900\nkrc_n_per_mm2 = 250\nkte_n_per_mm = 10
 
 /// Two legs of 50 and 100 mm, wall on the right, and what joins them.
 fn legs(corner: &str) -> String {
-    format!("G21 G90 G17\nT1 M6\nS4000 M3\nG0 X-5 Y-12 Z10\nG1 Z-10 F500\nG1 Y50 F600\n{corner}\nG1 X100\nG0 Z10\nM30\n")
+    format!(
+        "G21 G90 G17\nT1 M6\nS4000 M3\nG0 X-5 Y-12 Z10\nG1 Z-10 F500\nG1 Y50 F600\n{corner}\nG1 X100\nG0 Z10\nM30\n"
+    )
 }
 
 fn faceted(lines: u32) -> String {

@@ -2,8 +2,8 @@
 //!
 //! The rules, in this order:
 //! 1. A run cut with another tool than the one asked for does not count.
-//! 2. Leads are split off ([`without_leads`]); the only run of a program is left as it is unless G41, G42 and G40 show
-//!    its leads.
+//! 2. Leads are split off ([`without_leads`]); the only run on lines that the caller named is left as it is unless G41,
+//!    G42 and G40 show its leads.
 //! 3. The same path at another height is another level of the same contour; the same path at the same height again is a
 //!    spring pass, in whichever direction and from wherever it goes round.
 //! 4. A path that lies wholly on the free side of another one, no farther from it than a cutter's diameter, and that
@@ -106,15 +106,17 @@ pub struct Criteria {
     pub wall: Option<Side>,
     /// The cutter's diameter.
     pub diameter: Offset,
+    /// Whether the caller named the lines: the only run on them is taken as it is, but for what G41, G42 and G40 show.
+    pub named: bool,
 }
 
 /// Gives every run its role and returns the number of finishing contours. `runs` are in the order of execution,
 /// `blocks` those of all of them.
 pub fn search(runs: &mut [Found], blocks: &[Block], criteria: &Criteria) -> u32 {
-    let several = runs.len() > 1;
+    let as_named = criteria.named && runs.len() == 1;
     for found in runs.iter_mut().filter(|f| counts(f, criteria)) {
-        if several || told(found) {
-            split(found, blocks);
+        if !as_named || found.run.entry > 0 || found.run.exit > 0 {
+            split(found, blocks, criteria);
         }
     }
     for index in 0..runs.len() {
@@ -146,18 +148,14 @@ pub fn search(runs: &mut [Found], blocks: &[Block], criteria: &Criteria) -> u32 
     contours
 }
 
-/// Whether G41, G42 or G40 in the run say where its leads are.
-const fn told(found: &Found) -> bool {
-    found.run.entry > 0 || found.run.exit > 0
-}
-
 fn counts(found: &Found, criteria: &Criteria) -> bool {
     criteria.tool.is_none_or(|tool| found.run.tool.is_none_or(|t| t == tool))
 }
 
 /// Takes the leads off a run.
-fn split(found: &mut Found, blocks: &[Block]) {
-    let kept = without_leads(found.blocks(blocks), &found.run);
+fn split(found: &mut Found, blocks: &[Block], criteria: &Criteria) {
+    let wall = criteria.wall.or(found.run.wall);
+    let kept = without_leads(found.blocks(blocks), &found.run, wall, criteria.diameter);
     if let Some(narrowed) = found.narrowed(kept, blocks) {
         *found = narrowed;
     }

@@ -11,7 +11,7 @@ const ISLAND: &str = include_str!("../../../../host-sim/tests/data/features/isla
 const TWO_TOOLS: &str = include_str!("../../../../host-sim/tests/data/features/two-tools.nc");
 
 fn criteria(tool: Option<u32>) -> Criteria {
-    Criteria { tool, wall: Some(Side::Right), diameter: Offset::from_um(10_000) }
+    Criteria { tool, wall: Some(Side::Right), diameter: Offset::from_um(10_000), named: false }
 }
 
 fn searched(program: &str, criteria: &Criteria) -> (u32, Vec<Found>, Vec<Block>) {
@@ -172,4 +172,45 @@ fn moves_before_the_offset_is_taken_and_after_it_is_given_up_are_leads() {
         assert_eq!((found.skipped, found.run.blocks), (2, 2));
         assert_eq!(found.run.lines, LineRange { first, last: first + 1 });
     }
+}
+
+/// The only finishing contour of a program with the wall on the right of a cutter of 10 mm: its lines, and whether it is
+/// closed.
+fn only(moves: &str) -> (u32, u32, bool) {
+    let program = format!("G21 G90 G17\nT1 M6\nS3000 M3\nG0 X0 Y0 Z10\n{moves}\nG0 Z10\nM2\n");
+    let (count, runs, _) = searched(&program, &criteria(None));
+    assert_eq!(count, 1, "{moves}");
+    let found = runs.iter().find(|f| matches!(f.role, Role::Finish { .. })).unwrap();
+    (found.run.lines.first, found.run.lines.last, found.run.closed)
+}
+
+#[test]
+fn leads_without_cutter_compensation_are_no_wall() {
+    // Line 5 is the first move. Tangent quarter circles on either side of an open wall.
+    assert_eq!(only("G3 X5 Y-5 I5 J0 F500\nG1 X60\nG3 X65 Y0 I0 J5"), (6, 6, false));
+    // Of 1 mm, in the manner of CAM systems.
+    assert_eq!(only("G3 X1 Y-1 I1 J0 F500\nG1 X60\nG2 X65 Y-6 I0 J-5\nG3 X66 Y-7 I1 J0"), (6, 7, false));
+    // A line and an arc on both sides.
+    assert_eq!(only("G1 Y-2 F500\nG3 X5 Y-7 I5 J0\nG1 X60\nG3 X65 Y-2 I0 J5\nG1 Y3"), (7, 7, false));
+    // Straight and short, straight and slanted.
+    assert_eq!(only("G1 Y-4 F500\nG1 X60\nG1 Y0"), (6, 6, false));
+    assert_eq!(only("G1 X8 Y-8 F500\nG1 X60\nG1 X68 Y0"), (6, 6, false));
+    // What may be a wall stays: a leg, a quarter circle and a leg; a long leg; an arc that turns towards the wall.
+    assert_eq!(only("G1 Y-20 F500\nG3 X5 Y-25 I5 J0\nG1 X60"), (5, 7, false));
+    assert_eq!(only("G1 Y-20 F500\nG1 X60\nG1 Y0"), (5, 7, false));
+    assert_eq!(only("G2 X5 Y5 I5 J0 F500\nG1 X60"), (5, 6, false));
+}
+
+#[test]
+fn a_lap_that_runs_over_its_own_start_is_one_contour_without_its_leads() {
+    let pocket = "G1 X40\nG1 Y30\nG1 X-40\nG1 Y-20";
+    // From line 6: 2 mm milled twice, leads of quarter circles; the same without overlap.
+    let arcs = |end: &str| format!("G0 Y-17\nG3 X3 Y-20 I3 J0 F500\n{pocket}\n{end}");
+    assert_eq!(only(&arcs("G1 X5\nG3 X8 Y-17 I0 J3")), (7, 11, false));
+    assert_eq!(only(&arcs("G1 X3\nG3 X6 Y-17 I0 J3")), (7, 11, true));
+    // Where a loop closes at the ends of blocks, what is beside it is lead: an overlap of its own, or round a corner.
+    assert_eq!(only(&arcs("G1 X3\nG1 X5\nG3 X8 Y-17 I0 J3")), (7, 11, true));
+    let corner =
+        "G0 X35 Y-17\nG3 X38 Y-20 I3 J0 F500\nG1 X40\nG1 Y30\nG1 X-40\nG1 Y-20\nG1 X40\nG1 Y-15\nG3 X37 Y-12 I-3 J0";
+    assert_eq!(only(corner), (8, 11, true));
 }

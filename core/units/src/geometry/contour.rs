@@ -41,6 +41,13 @@ pub struct Place {
 /// cos 15°: a corner flatter than this is a facet of a smooth curve, not a corner of the part.
 pub const FACET_TURN_LIMIT: Real = Real::from_bits(4_148_619_834);
 
+/// Blocks at its start and end that a contour is looked for running over again.
+const OVERLAPPED: usize = 8;
+/// How near its end is to its start then: what programs round.
+const ON_ITSELF: Offset = Offset::from_um(3);
+/// Cosine of one degree.
+const ALONG: Real = Real::from_bits(4_294_313_152);
+
 impl<'a> Contour<'a> {
     /// Takes blocks that are end to end and whose arc lengths add up; `None` when there is none or they are not.
     pub fn new(blocks: &'a [Block]) -> Option<Self> {
@@ -74,6 +81,30 @@ impl<'a> Contour<'a> {
             (Some(first), Some(last)) => first.curve.start() == last.curve.end(),
             _ => false,
         }
+    }
+
+    /// How far it runs over its own start again, where it does: its end lies on one of the first blocks, its start on one
+    /// of the last, each with their heading, no more than a quarter of its length apart. `None` of a contour that ends
+    /// where it starts.
+    pub fn overlap(&self) -> Option<Offset> {
+        let (first, last) = (self.blocks.first()?, self.blocks.last()?);
+        let count = self.blocks.len().min(OVERLAPPED);
+        let head = Contour::new(self.blocks.get(..count)?)?;
+        let tail = Contour::new(self.blocks.get(self.blocks.len().saturating_sub(count)..)?)?;
+        let on = |of: &Contour, point: Point, heading: Direction| {
+            let mut at = None;
+            of.feet(point, |foot| {
+                let along = |s| of.at(s, 0).is_some_and(|place| place.heading.dot(heading) >= ALONG);
+                if at.is_none() && foot.beside && foot.left.abs() <= ON_ITSELF && along(foot.s) {
+                    at = Some(foot.s);
+                }
+            });
+            at
+        };
+        let overlap = on(&head, last.curve.end(), last.curve.end_heading())?;
+        let back = tail.length() - on(&tail, first.curve.start(), first.curve.start_heading())?;
+        let short = |s: Offset| s > ON_ITSELF && s.nm() <= self.length().nm() / 4;
+        (short(overlap) && short(back)).then_some(overlap)
     }
 
     /// The place at arc length `s` (limited to the contour), found from the block `hint` onwards or backwards, so

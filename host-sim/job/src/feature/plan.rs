@@ -60,7 +60,7 @@ pub struct Plan {
 }
 
 /// Finds the feature; `None` when job and program name none and the program has one run of cutting moves at most,
-/// without leads that G41, G42 and G40 show.
+/// without leads.
 ///
 /// # Errors
 /// What is wrong with the program, its markers or the features of the job, and what is ambiguous.
@@ -73,9 +73,14 @@ pub fn plan(job: &JobFile, program: &Source) -> Result<Option<Plan>, Failure> {
     let survey = Survey::read(job, program)?;
     let regions = regions(job, program, &marked)?;
     let simple = regions.iter().all(|r| r.origin == Origin::Search) && job.which == Which::default();
-    let leads = survey.runs.iter().any(|found| found.run.entry > 0 || found.run.exit > 0);
-    if simple && survey.runs.len() <= 1 && !leads {
-        return Ok(None);
+    if simple && survey.runs.len() <= 1 {
+        let numbers = &job.numbers;
+        let criteria = Criteria { tool: None, wall: numbers.wall, diameter: numbers.tool.diameter, named: false };
+        let mut only = survey.runs.clone();
+        survey.sort(&mut only, &criteria);
+        if only.iter().zip(&survey.runs).all(|(kept, run)| kept.run.blocks == run.run.blocks) {
+            return Ok(None);
+        }
     }
     let region = chosen(job, &regions, &survey)?;
     let mut runs = region.lines.map_or_else(|| survey.runs.clone(), |lines| survey.within(lines));
@@ -89,7 +94,8 @@ pub fn plan(job: &JobFile, program: &Source) -> Result<Option<Plan>, Failure> {
     }
     let numbers = &job.numbers;
     let tool = region.tool.or(numbers.tool.number);
-    let criteria = Criteria { tool, wall: region.wall.or(numbers.wall), diameter: numbers.tool.diameter };
+    let named = region.origin != Origin::Search;
+    let criteria = Criteria { tool, wall: region.wall.or(numbers.wall), diameter: numbers.tool.diameter, named };
     let count = survey.sort(&mut runs, &criteria);
     let allowance = region.allowance.unwrap_or(numbers.allowance);
     match count {
