@@ -139,6 +139,10 @@ pub fn mill_executed(pass: &Pass, machine: &plant::Machine, program: &Source) ->
             let skip = i64::from(!rows.is_empty());
             rows.extend((skip..=ticks).map(|k| row(block.curve.point(Real::ratio(k, ticks)), z.nm())));
         }
+        // A correction may end a contour short of its nominal end, which a recording has to pass.
+        if let [.., before, end] = rows[..] {
+            rows.extend((1..=BEYOND_TICKS).map(|k| beyond(before, end, k)));
+        }
         // Between two runs the cutter is lifted.
         rows.extend(rows.last().copied().map(|last: Row| Row { position_nm: lifted(last.position_nm), ..last }));
     }
@@ -150,6 +154,15 @@ pub fn mill_executed(pass: &Pass, machine: &plant::Machine, program: &Source) ->
 const TICK_MM: f64 = 0.05;
 /// Depths nearer to each other than this are one, nm.
 const SAME_DEPTH_NM: i64 = 20_000;
+
+/// Ticks that a run is drawn out at its end.
+const BEYOND_TICKS: i64 = 20;
+
+/// The row `ticks` after the last two, straight on.
+const fn beyond(before: Row, end: Row, ticks: i64) -> Row {
+    let ([x0, y0, _], [x, y, z]) = (before.position_nm, end.position_nm);
+    Row { position_nm: [x + (x - x0) * ticks, y + (y - y0) * ticks, z], ..end }
+}
 
 const fn lifted([x, y, z]: [i64; 3]) -> [i64; 3] {
     [x, y, z + 10_000_000]

@@ -7,6 +7,7 @@
 
 mod document;
 mod table;
+mod wall;
 mod way;
 
 use std::collections::BTreeMap;

@@ -102,3 +102,28 @@ pub fn renewed(text: &str, end: impl Fn(&str) -> Option<String>) -> String {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TABLE: &str = "# words\n\
+        file,manner,dialect,wall,allowance_mm,diameter_mm,teeth,helix_deg,depth_mm,keys,wall_lines,expected\n\
+        a.nc,hand; Haas,haas,,0.5,12,4,35,10,!tool.compensation = \"radius\",13-17 20-24,through\n\
+        b.nc,hand,mach,left,0.3,6,2,30,4.5,,5-9,new\n";
+
+    #[test]
+    fn the_table_says_what_a_machinist_knows_and_where_the_wall_is() {
+        let programs = read(TABLE).expect("a table");
+        assert_eq!(programs[0].wall_lines, [[13, 17], [20, 24]]);
+        assert_eq!((programs[0].wall.as_str(), programs[0].keys.len(), programs[1].keys.len()), ("", 1, 0));
+        assert_eq!(read(&TABLE.replace("5-9", "5")).expect_err("no lines"), "line 4: 5 are no lines");
+        assert_eq!(read(&TABLE.replace(",new", "")).expect_err("a field less"), "line 4: 11 fields instead of 12");
+    }
+
+    #[test]
+    fn only_the_expectations_that_are_known_are_renewed() {
+        let renewed = renewed(TABLE, |file| (file == "b.nc").then(|| "probe V002".to_owned()));
+        assert_eq!(renewed, TABLE.replace(",new", ",probe V002"));
+    }
+}

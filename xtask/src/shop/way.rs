@@ -8,6 +8,7 @@ use std::time::Instant;
 use serde_json::Value;
 
 use super::table::Program;
+use super::wall;
 use crate::repository::{program, target};
 use crate::step::Failure;
 
@@ -184,10 +185,9 @@ fn steps(
     let first = truepath(place, name, &[&mill[..], &["--touch", "verify.nc", "-o", "first"]].concat());
     let first = first.map_err(unjudged("touch"))?;
     users("correct", &["correct", "job.toml", "--probe", "first/probe.txt", "-o", "out"])?;
-    let second =
-        truepath(place, name, &[&mill[..], &["--from", "out", "-o", "second"]].concat()).map_err(unjudged("cut"))?;
-    let error = |summary: &Value| summary["judged"]["max_error_mm"].as_f64().unwrap_or(f64::NAN);
-    let errors = [error(&first), error(&second)];
+    truepath(place, name, &[&mill[..], &["--from", "out", "-o", "second"]].concat()).map_err(unjudged("cut"))?;
+    let error = |part: &str| wall::largest_error_mm(&place.join(part), shop.diameter_mm).unwrap_or(f64::NAN);
+    let errors = [error("first"), error("second")];
     run.errors_mm = Some(errors);
     if errors[1].is_nan() || errors[1] > WORSE * errors[0] {
         run.said = format!("{:.4} mm became {:.4} mm", errors[0], errors[1]);
@@ -246,7 +246,13 @@ fn job(shop: &Program, name: &str, told: impl Fn(&str) -> bool) -> String {
         plain.map(|key| format!("{key}\n")).collect()
     };
     let wall = if shop.wall.is_empty() { String::new() } else { format!("wall = \"{}\"\n", shop.wall) };
-    let ball = if *depth_mm < 6.0 { 2.0 } else { 4.0 };
+    // A ball that has room beside the cutter's own slot.
+    let ball = match *diameter_mm {
+        ..4.0 => 1.0,
+        ..8.0 => 2.0,
+        _ if *depth_mm < 6.0 => 2.0,
+        _ => 4.0,
+    };
     format!(
         "version = 1\nprogram = \"{name}\"\ndialect = \"{dialect}\"\n{wall}{}\
          [stock]\nallowance_mm = {allowance_mm}\n{}\

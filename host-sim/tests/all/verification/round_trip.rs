@@ -53,7 +53,7 @@ fn what_every_program_prints_gives_the_wall_error_back() {
 
 #[test]
 fn results_of_another_part_or_cut_off_are_refused() {
-    let printed = |dialect| file(dialect, &touched(&pass(POCKET, &[]), dialect, error).unwrap());
+    let printed = |dialect| touched(&pass(POCKET, &[]), dialect, error).unwrap().file();
     for (dialect, footer) in
         [(ProbeDialect::Linuxcnc, "# end 24"), (ProbeDialect::Haas, "END 24"), (ProbeDialect::Fanuc, "END 24")]
     {

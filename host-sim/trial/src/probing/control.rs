@@ -103,7 +103,7 @@ impl<'w, W: Wall> Control<'w, W> {
                 }
             } else if matches!(line, "M2" | "M30") {
                 return if self.trip[3] != 0.0 && line == "M2" && lines[next..].iter().any(|l| l.contains("G38.3")) {
-                    Err("ended in the middle".to_owned())
+                    Err("the ball touches where nothing should be: the program ends itself in the middle".to_owned())
                 } else {
                     Ok(self.out)
                 };
