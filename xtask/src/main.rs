@@ -17,6 +17,7 @@ mod linuxcnc;
 mod page;
 mod repository;
 mod rooms;
+mod shop;
 mod step;
 mod toolchain;
 
@@ -42,7 +43,7 @@ enum Task {
     ///
     /// fmt, rooms, test-only, firmware, budget and hil, the same on every repeat. With --all also the slow tests, other
     /// random cases each time, the image of the real board, all setpoints of hil and its release build, lint, doc,
-    /// device, elf, page, conformance, judge, bench, fuzz and linuxcnc.
+    /// device, elf, page, conformance, shop, judge, bench, fuzz and linuxcnc.
     Test {
         /// Also what takes long.
         #[arg(long)]
@@ -143,6 +144,17 @@ enum Task {
         #[arg(long)]
         write: bool,
     },
+    /// Programs as shops write them, the whole way: places, touches, correction, cut again.
+    Shop {
+        /// A folder with other programs and their table, programs.csv.
+        folder: Option<PathBuf>,
+        /// Only programs whose file name holds this text.
+        #[arg(long)]
+        only: Option<String>,
+        /// Renew what the table expects, and docs/shop.md.
+        #[arg(long)]
+        write: bool,
+    },
     /// Random bytes, guided by coverage, into everything that reads a file.
     Fuzz {
         /// Only this target: program, probe, job or image.
@@ -213,6 +225,9 @@ fn main() -> ExitCode {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))
         }
         Task::Conformance { write } => report.run(Step::new("conformance", || conformance::check(write))),
+        Task::Shop { folder, only, write } => {
+            report.run(Step::new("shop", || shop::check(folder.as_deref(), only.as_deref(), write)));
+        }
         Task::Fuzz { target, runs, seconds } => {
             let length = runs.map_or(fuzz::Length::Seconds(seconds), fuzz::Length::Runs);
             report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
@@ -242,6 +257,7 @@ fn test(report: &mut Report, all: bool) {
         report.run(Step::new("elf", || firmware::elf::check(boards, false)));
         report.run(Step::new("page", || page::check(false)));
         report.run(Step::new("conformance", || conformance::check(false)));
+        report.run(Step::new("shop", || shop::check(None, None, false)));
         report.run(Step::new("judge", || judge::run_all(None)));
         report.run(Step::new("bench", || bench::time(true, false, &[])));
         report.run(Step::new("fuzz", || fuzz::check(None, fuzz::Length::Seconds(15))));

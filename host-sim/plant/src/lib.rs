@@ -34,6 +34,7 @@
 mod arcs;
 mod chip;
 mod error;
+mod feel;
 mod flutes;
 mod follow;
 mod grid;
@@ -54,6 +55,7 @@ mod wall;
 
 pub use arcs::EngagedArcs;
 pub use error::PlantError;
+pub use feel::Felt;
 pub use flutes::{Flutes, NormalTangential};
 pub use machine::{Machine, WallLaw};
 pub use mill::{Milled, Sample, Track, mill};

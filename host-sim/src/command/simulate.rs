@@ -29,10 +29,14 @@ use super::placement::PlacementOptions;
 use crate::terminal::Terminal;
 
 /// Files this command may write.
-const FILES: &[&str] = &["trace.csv", "wall.csv", PROBED, "summary.json", "trace.svg", REPORT];
+const FILES: &[&str] = &["trace.csv", "wall.csv", PROBED, TOUCHED, "summary.json", "trace.svg", REPORT];
 /// The wall as cut, at several heights.
 const PROBED: &str = "probed-wall.csv";
-/// Heights of that file, over the whole depth.
+/// What the machine writes while it runs the probing program.
+const TOUCHED: &str = "probe.txt";
+/// The corrected program in the folder of a correction.
+const CORRECTED: &str = "corrected.nc";
+/// Heights of probed-wall.csv, over the whole depth.
 const HEIGHTS: usize = 21;
 
 /// What is simulated.
@@ -47,6 +51,13 @@ pub struct Options {
     /// and other columns as for `truepath replay`.
     #[arg(long, value_name = "FILE", requires = "plant")]
     pub setpoints: Option<PathBuf>,
+    /// Cut with the corrected program in DIR, written by truepath correct or learn.
+    #[arg(long, value_name = "DIR", requires = "plant", conflicts_with = "setpoints")]
+    pub from: Option<PathBuf>,
+    /// Touch the wall with this program, written by truepath probe, and write probe.txt, the file that the machine would
+    /// have written.
+    #[arg(long, value_name = "FILE", requires = "plant")]
+    pub touch: Option<PathBuf>,
     /// Where the program stood in the machine.
     #[command(flatten)]
     pub placement: PlacementOptions,
@@ -111,6 +122,9 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     let mut job = JobFile::read(&options.job)?;
     job.which = options.which.clone();
     let pass = Pass::read(job)?;
+    let source = |file: &FilePath| Source::read(file);
+    let corrected = options.from.as_ref().map(|dir| source(&dir.join(CORRECTED))).transpose()?;
+    let probing = options.touch.as_deref().map(source).transpose()?;
     let folder = OutputFolder::create(&options.output, options.force, FILES)?;
     let mut warnings = pass.warnings.clone();
     let done = match &options.plant {
@@ -118,7 +132,14 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
             let (trace, along) = predicted(&pass, &mut warnings)?;
             Done { by: "core", trace, along, milled: None, facts: None }
         }
-        Some(file) => milled(&pass, &read_machine(file)?, recording.as_ref(), &mut warnings)?,
+        Some(file) => {
+            let commanded = match (&recording, &corrected) {
+                (Some((setpoints, placement)), _) => Commanded::Recorded(setpoints, placement),
+                (None, Some(program)) => Commanded::Program(program),
+                (None, None) => Commanded::Nominal,
+            };
+            milled(&pass, &read_machine(file)?, &commanded, &mut warnings)?
+        }
     };
     let Done { by, trace, along, milled, facts } = done;
     let summary = SimulateSummary {
@@ -126,8 +147,11 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
         recorded: facts,
         ..simulate_summary(&pass, by, &trace, warnings)
     };
-    if let Some(milled) = milled.filter(|_| options.probed_wall) {
-        folder.write(PROBED, probed_wall(&pass, &milled).as_bytes())?;
+    if let Some(milled) = milled.as_ref().filter(|_| options.probed_wall) {
+        folder.write(PROBED, probed_wall(&pass, milled).as_bytes())?;
+    }
+    if let Some((milled, program)) = milled.as_ref().zip(probing.as_ref()) {
+        folder.write(TOUCHED, virtual_mill::touch(&pass, milled, program)?.as_bytes())?;
     }
     folder.write("trace.csv", &trace_csv(&trace)?)?;
     folder.write("wall.csv", &wall_csv(&trace)?)?;
@@ -183,19 +207,30 @@ struct Done {
     facts: Option<recorded::Facts>,
 }
 
-/// The pass as a virtual machine cuts it: uncorrected along its nominal path, or as it was recorded.
+/// What the virtual machine is told to do.
+enum Commanded<'a> {
+    /// The nominal path of the job's program.
+    Nominal,
+    /// What a controller was recorded to do.
+    Recorded(&'a Setpoints, &'a Placement),
+    /// Another program of the same cut.
+    Program(&'a Source),
+}
+
+/// The pass as a virtual machine cuts it.
 ///
 /// # Errors
 /// What the plant refuses, and a recording without the pass.
 fn milled(
     pass: &Pass,
     machine: &plant::Machine,
-    recording: Option<&(Setpoints, Placement)>,
+    commanded: &Commanded,
     warnings: &mut Vec<String>,
 ) -> Result<Done, Failure> {
-    let (milled, facts) = match recording {
-        None => (virtual_mill::mill(pass, machine, None)?, None),
-        Some((setpoints, placement)) => {
+    let (milled, facts) = match commanded {
+        Commanded::Nominal => (virtual_mill::mill(pass, machine, None)?, None),
+        Commanded::Program(program) => (virtual_mill::mill_executed(pass, machine, program)?, None),
+        Commanded::Recorded(setpoints, placement) => {
             let (milled, facts) = virtual_mill::mill_recorded(pass, machine, setpoints, placement)?;
             if facts.passes > 1 {
                 warnings.push(format!(
@@ -207,10 +242,10 @@ fn milled(
         }
     };
     let trace = page::trace_of(&milled);
-    let label = if facts.is_some() {
-        "cut by the virtual machine along the recorded path"
-    } else {
-        "cut by the virtual machine"
+    let label = match commanded {
+        Commanded::Nominal => "cut by the virtual machine",
+        Commanded::Recorded(..) => "cut by the virtual machine along the recorded path",
+        Commanded::Program(_) => "cut by the virtual machine with the corrected program",
     };
     let along = page::milled(&milled, &trace, label);
     Ok(Done { by: "plant", trace, along, milled: Some(milled), facts })

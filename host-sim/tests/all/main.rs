@@ -18,6 +18,7 @@ mod pocket_plant;
 mod pocket_slot;
 mod probe_command;
 mod recorded;
+mod rehearsal;
 mod replay;
 mod report_page;
 mod shop_corners;

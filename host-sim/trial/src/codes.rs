@@ -7,6 +7,8 @@ truepath_ground::codes! {
         / "see docs/plant.md for the keys of a plant and their units",
     L003 => "the virtual machine cannot mill this contour"
         / "correct the plant or the job; the plant mills contours with real-world dimensions",
+    L004 => "a probing program that the virtual machine cannot execute"
+        / "give a program as truepath probe writes it; one that drives the ball into the wall must not run on a machine",
     R001 => "settings or rate of a replay out of range"
         / "record the setpoints at the rate of the machine's servo cycle; give settings within their ranges",
     R002 => "the image refuses to be armed for the replay"

@@ -3,6 +3,7 @@
 
 pub mod codes;
 pub mod compare;
+pub mod probing;
 pub mod recorded;
 pub mod replay;
 pub mod setpoints;

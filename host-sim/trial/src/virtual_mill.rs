@@ -2,17 +2,21 @@
 
 use truepath_core::gcode::Spindle;
 use truepath_core::geometry::{Block, Point, Shape, Side};
+use truepath_core::job::ZReference;
+use truepath_core::rewrite::Flags;
 use truepath_core::units::Real;
-use truepath_ground::diagnostics::Failure;
+use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::units::{float, mm};
+use truepath_job::feature::Survey;
 use truepath_job::pass::Pass;
 use truepath_plant as plant;
 use truepath_plant::{Milled, PlantError};
 
-use crate::codes::L003;
+use crate::codes::{L003, L004};
+use crate::probing::{Control, Wall, Xy};
 use crate::recorded;
 use crate::replay::Placement;
-use crate::setpoints::Setpoints;
+use crate::setpoints::{Frame, Row, Setpoints};
 
 fn coordinates(p: Point) -> [f64; 2] {
     [p.x.nm() as f64 / 1e6, p.y.nm() as f64 / 1e6]
@@ -111,6 +115,102 @@ pub fn mill_recorded(
     Ok((milled, found.facts))
 }
 
+/// Mills a pass with another program of the same cut, as a control would run it: of all that the program does at the
+/// depth of the pass, what goes along its contour is cut.
+///
+/// Unlike [`mill_program`] this asks nothing of where the program has its contour: it may be one that a correction gave
+/// other lines, leads and blocks.
+///
+/// # Errors
+/// What the plant refuses, whatever is wrong with the program, and one without such a pass.
+pub fn mill_executed(pass: &Pass, machine: &plant::Machine, program: &Source) -> Result<Milled, Failure> {
+    let survey = Survey::read(&pass.job, program)?;
+    let fastest = pass.blocks.iter().map(|b| float(b.feed)).fold(1.0, f64::max);
+    // Finer than the shortest block matters: a tick is a tenth of a millimetre.
+    let period_ns = (TICK_MM / fastest * 60e9).round() as i64;
+    let mut rows = Vec::new();
+    for run in &survey.runs {
+        let Some(z) = run.run.z.filter(|z| (z.nm() - pass.core.contour.z.nm()).abs() <= SAME_DEPTH_NM) else {
+            continue;
+        };
+        for block in run.blocks(&survey.blocks) {
+            let ticks = mm(block.curve.length()) / (float(block.feed) / 60e9 * period_ns as f64);
+            let ticks = ticks.ceil().clamp(1.0, 1e6) as i64;
+            let skip = i64::from(!rows.is_empty());
+            rows.extend((skip..=ticks).map(|k| row(block.curve.point(Real::ratio(k, ticks)), z.nm())));
+        }
+        // A correction may end a contour short of its nominal end, which a recording has to pass.
+        if let [.., before, end] = rows[..] {
+            rows.extend((1..=BEYOND_TICKS).map(|k| beyond(before, end, k)));
+        }
+        // Between two runs the cutter is lifted.
+        rows.extend(rows.last().copied().map(|last: Row| Row { position_nm: lifted(last.position_nm), ..last }));
+    }
+    let setpoints = Setpoints { frame: Frame::Program, start_ns: 0, period_ns, rows };
+    mill_recorded(pass, machine, &setpoints, &Placement::default()).map(|(milled, _)| milled)
+}
+
+/// A tick of the control at the greatest feed, mm.
+const TICK_MM: f64 = 0.05;
+/// Depths nearer to each other than this are one, nm.
+const SAME_DEPTH_NM: i64 = 20_000;
+
+/// Ticks that a run is drawn out at its end.
+const BEYOND_TICKS: i64 = 20;
+
+/// The row `ticks` after the last two, straight on.
+const fn beyond(before: Row, end: Row, ticks: i64) -> Row {
+    let ([x0, y0, _], [x, y, z]) = (before.position_nm, end.position_nm);
+    Row { position_nm: [x + (x - x0) * ticks, y + (y - y0) * ticks, z], ..end }
+}
+
+const fn lifted([x, y, z]: [i64; 3]) -> [i64; 3] {
+    [x, y, z + 10_000_000]
+}
+
+const fn row(point: Point, z_nm: i64) -> Row {
+    let flags = Flags::DRIVES_ENABLED.with(Flags::SPINDLE_LOADED);
+    Row { position_nm: [point.x.nm(), point.y.nm(), z_nm], spindle_rpm: None, flags, frame_crc: None, disarm: false }
+}
+
+/// Touches a milled pass by executing a probing program beside it, and gives the file that the machine would have
+/// written.
+///
+/// # Errors
+/// `L004` for a program that cannot be executed, or that drives the ball into the wall.
+pub fn touch(pass: &Pass, milled: &Milled, program: &Source) -> Result<String, Failure> {
+    let probe = pass.job.require_probe()?;
+    let ball = 0.5 * mm(probe.ball_diameter);
+    let centre_above = if probe.z_reference == ZReference::Tip { ball } else { 0.0 };
+    let tip_z = pass.core.contour.z.nm() as f64 / 1e6;
+    let mut wall = Beside { felt: plant::Felt::new(milled, tip_z), centre_above };
+    let text = String::from_utf8_lossy(program.bytes());
+    let printed = Control::new(&mut wall, ball).run(&text);
+    printed.map(|p| p.file()).map_err(|why| L004.error(why, "").in_file(program.name().as_ref()).into())
+}
+
+/// A milled wall as the control of a probing program meets it.
+struct Beside<'m> {
+    felt: plant::Felt<'m>,
+    /// The ball's centre over what the program calls Z, mm.
+    centre_above: f64,
+}
+
+impl Wall for Beside<'_> {
+    fn top(&self) -> f64 {
+        self.felt.top_mm() - self.centre_above
+    }
+    fn meets(&mut self, z: f64, from: Xy, to: Xy, radius: f64) -> Option<f64> {
+        self.felt.meets(z + self.centre_above, from, to, radius)
+    }
+    fn distance(&mut self, z: f64, point: Xy) -> f64 {
+        self.felt.distance_mm(z + self.centre_above, point)
+    }
+    fn noise(&mut self) -> f64 {
+        self.felt.noise_mm()
+    }
+}
+
 /// How far beyond the length of a block its end is looked for, mm.
 const DRIFT_MM: f64 = 2.0;
 
@@ -180,8 +280,7 @@ pub fn commanded(pass: &Pass, text: &[u8]) -> Result<Vec<plant::Point>, Failure>
 
 /// The contour of a corrected program.
 fn contour(pass: &Pass, text: &[u8]) -> Result<Vec<Block>, Failure> {
-    let source =
-        truepath_ground::diagnostics::Source::new(format!("{} (corrected)", pass.program.name()), text.to_vec());
+    let source = Source::new(format!("{} (corrected)", pass.program.name()), text.to_vec());
     Ok(truepath_job::pass::read_blocks(&source)?.0)
 }
 

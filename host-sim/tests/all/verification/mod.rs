@@ -1,7 +1,6 @@
 //! Verification programs: planned by the rules, executed line by line on a simulated control, their results read back.
 
 mod command_line;
-mod control;
 mod further;
 mod linuxcnc_interpreter;
 mod parts;

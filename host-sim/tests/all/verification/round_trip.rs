@@ -4,8 +4,8 @@ use truepath_correction::verification::{ProbeDialect, Settings, write};
 use truepath_ground::diagnostics::Source;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
+use truepath_trial::probing::{Control, Printed};
 
-use super::control::{Control, Printed};
 use super::parts::{PARTS, POCKET, pass, planned, pocket_in_inches};
 use super::wall::Wall;
 
@@ -18,23 +18,12 @@ fn error(s: f64) -> f64 {
 fn touched(pass: &Pass, dialect: ProbeDialect, error: impl Fn(f64) -> f64) -> Result<Printed, String> {
     let plan = planned(pass, &Settings::default());
     let program = write(&plan, dialect, "log.txt").unwrap();
-    Control::new(&Wall::of(pass, error), plan.ball_mm / 2.0).run(&program)
+    Control::new(&mut Wall::of(pass, error), plan.ball_mm / 2.0).run(&program)
 }
 
 /// The same pass, its job saying that the probe file is of this dialect.
 fn read_as(part: [&str; 2], dialect: ProbeDialect) -> Pass {
     pass(part, &[("format = \"linuxcnc\"", &format!("format = \"{}\"", dialect.probe_format()))])
-}
-
-/// The file that the user has after the program has run: grbl's console with the answers to `$#` and `$$`.
-fn file(dialect: ProbeDialect, printed: &Printed) -> String {
-    match dialect {
-        ProbeDialect::Grbl => {
-            let offset = "[G54:-310.000,-205.500,-99.250]\n[G92:0.000,0.000,0.000]\n[TLO:0.000]\n";
-            format!("$13=0\nok\n{}{offset}ok\n", printed.console)
-        }
-        _ => printed.text.clone(),
-    }
 }
 
 fn recovered(pass: &Pass, text: &str) -> Measurement {
@@ -54,7 +43,7 @@ fn what_every_program_prints_gives_the_wall_error_back() {
     for part in PARTS {
         for dialect in [ProbeDialect::Linuxcnc, ProbeDialect::Grbl, ProbeDialect::Fanuc, ProbeDialect::Haas] {
             let printed = touched(&pass(part, &[]), dialect, error).unwrap();
-            let measurement = recovered(&read_as(part, dialect), &file(dialect, &printed));
+            let measurement = recovered(&read_as(part, dialect), &printed.file());
             // Of grbl's reports those of the way down and of the first touch are set aside: they were not the measurement.
             let aside = if dialect == ProbeDialect::Grbl { 48 } else { 0 };
             assert_eq!(measurement.rejected.len(), aside, "{dialect:?}");
@@ -64,7 +53,7 @@ fn what_every_program_prints_gives_the_wall_error_back() {
 
 #[test]
 fn results_of_another_part_or_cut_off_are_refused() {
-    let printed = |dialect| file(dialect, &touched(&pass(POCKET, &[]), dialect, error).unwrap());
+    let printed = |dialect| touched(&pass(POCKET, &[]), dialect, error).unwrap().file();
     for (dialect, footer) in
         [(ProbeDialect::Linuxcnc, "# end 24"), (ProbeDialect::Haas, "END 24"), (ProbeDialect::Fanuc, "END 24")]
     {
@@ -85,7 +74,7 @@ fn inches_come_back_as_inches() {
     let inches = [inches[0].as_str(), inches[1].as_str()];
     for dialect in [ProbeDialect::Linuxcnc, ProbeDialect::Haas, ProbeDialect::Fanuc] {
         let printed = touched(&pass(inches, &[]), dialect, error).unwrap();
-        recovered(&read_as(inches, dialect), &file(dialect, &printed));
+        recovered(&read_as(inches, dialect), &printed.file());
     }
 }
 

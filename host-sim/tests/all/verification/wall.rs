@@ -3,8 +3,7 @@
 use truepath_core::geometry::Side;
 use truepath_core::units::Offset;
 use truepath_job::pass::Pass;
-
-pub type Xy = [f64; 2];
+use truepath_trial::probing::{self, Xy};
 
 /// Points of the wall as it is, 0.02 mm apart.
 pub struct Wall {
@@ -56,5 +55,17 @@ impl Wall {
     /// Distance of a point from the wall.
     pub fn distance(&self, p: Xy) -> f64 {
         self.points.iter().map(|w| (w[0] - p[0]).hypot(w[1] - p[1])).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl probing::Wall for Wall {
+    fn top(&self) -> f64 {
+        self.top
+    }
+    fn meets(&mut self, _: f64, from: Xy, to: Xy, radius: f64) -> Option<f64> {
+        Self::meets(self, from, to, radius)
+    }
+    fn distance(&mut self, _: f64, point: Xy) -> f64 {
+        Self::distance(self, point)
     }
 }

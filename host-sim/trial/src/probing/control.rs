@@ -1,7 +1,24 @@
-//! A control that executes verification programs line by line beside a simulated wall: as much of each dialect as the
-//! programs use, from the controls' documentation. A move that should touch nothing and does is an error.
+//! A control that executes verification programs line by line beside a wall: as much of each dialect as the programs of
+//! `truepath probe` use, from the controls' documentation. A move that should touch nothing and does is an error.
+//!
+//! It knows nothing of the planner: what it is given is text and a wall.
 
-use super::wall::Wall;
+/// A point of the XY plane, mm.
+pub type Xy = [f64; 2];
+
+/// What a ball is moved beside.
+pub trait Wall {
+    /// Z at which it ends, mm.
+    fn top(&self) -> f64;
+    /// The share of the way at which a ball of a radius, its centre at the height `z`, meets it first.
+    fn meets(&mut self, z: f64, from: Xy, to: Xy, radius: f64) -> Option<f64>;
+    /// Distance of a point from it at a height, mm.
+    fn distance(&mut self, z: f64, point: Xy) -> f64;
+    /// What a reading is off along the way of the ball, mm.
+    fn noise(&mut self) -> f64 {
+        0.0
+    }
+}
 
 /// What a control prints, by the channels of the dialects.
 #[derive(Debug, Default)]
@@ -16,13 +33,28 @@ pub struct Printed {
     pub lines: usize,
 }
 
+impl Printed {
+    /// The file that the user has after the program has run: the log, what DPRNT sent, or grbl's console with the answers
+    /// to `$$` and `$#`.
+    pub fn file(&self) -> String {
+        if !self.text.is_empty() {
+            return self.text.clone();
+        }
+        let [x, y, z] = ORIGIN_MM;
+        let offsets: String = (54..60).map(|g| format!("[G{g}:{x:.3},{y:.3},{z:.3}]\n")).collect();
+        format!("$13=0\nok\n{}{offsets}[G92:0.000,0.000,0.000]\n[TLO:0.000]\nok\n", self.console)
+    }
+}
+
+/// Machine coordinates of the work origin.
+const ORIGIN_MM: [f64; 3] = [-310.0, -205.5, -99.25];
+
 /// The machine.
-pub struct Control<'w> {
-    wall: &'w Wall,
+#[derive(Debug)]
+pub struct Control<'w, W> {
+    wall: &'w mut W,
     /// Radius of the ball.
     ball: f64,
-    /// Machine coordinates of the work origin.
-    origin: [f64; 3],
     unit: f64,
     at: [f64; 3],
     /// #5061…#5063 and #5070.
@@ -33,12 +65,12 @@ pub struct Control<'w> {
     out: Printed,
 }
 
-impl<'w> Control<'w> {
-    pub fn new(wall: &'w Wall, ball: f64) -> Self {
+impl<'w, W: Wall> Control<'w, W> {
+    /// Beside a wall, with a ball of a radius in the spindle, mm.
+    pub fn new(wall: &'w mut W, ball: f64) -> Self {
         Self {
             wall,
             ball,
-            origin: [-310.0, -205.5, -99.25],
             unit: 1.0,
             at: [0.0, 0.0, 150.0],
             trip: [0.0; 4],
@@ -49,6 +81,9 @@ impl<'w> Control<'w> {
     }
 
     /// Executes a program to its end.
+    ///
+    /// # Errors
+    /// The line that this control does not know or that drives the ball into the wall, in words.
     pub fn run(mut self, program: &str) -> Result<Printed, String> {
         let lines: Vec<&str> = program.lines().collect();
         let mut next = 0;
@@ -57,7 +92,7 @@ impl<'w> Control<'w> {
             let line = line.trim();
             self.out.lines += 1;
             if let Some(rest) = line.strip_prefix("IF[[ABS[#5061-[") {
-                if let Some(target) = self.compare(rest) {
+                if let Some(target) = self.compare(rest)? {
                     let label = format!("N{target} ");
                     next = lines.iter().position(|l| l.starts_with(&label)).ok_or(format!("no block {label}"))?;
                 }
@@ -68,7 +103,7 @@ impl<'w> Control<'w> {
                 }
             } else if matches!(line, "M2" | "M30") {
                 return if self.trip[3] != 0.0 && line == "M2" && lines[next..].iter().any(|l| l.contains("G38.3")) {
-                    Err("ended in the middle".to_owned())
+                    Err("the ball touches where nothing should be: the program ends itself in the middle".to_owned())
                 } else {
                     Ok(self.out)
                 };
@@ -82,20 +117,20 @@ impl<'w> Control<'w> {
     }
 
     /// `a]]+ABS[#5062-[b]]]LTv]GOTOn`: the target when the comparison holds.
-    fn compare(&self, text: &str) -> Option<u32> {
+    fn compare(&self, text: &str) -> Result<Option<u32>, String> {
         let numbers: Vec<f64> = text
             .replace("#5062-", " ")
             .split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'))
             .filter_map(|t| t.parse().ok())
             .collect();
-        let [x, y, limit, target] = numbers[..] else { panic!("IF {text}: {numbers:?}") };
+        let [x, y, limit, target] = numbers[..] else { return Err(format!("IF {text}: four numbers expected")) };
         let [sx, sy, ..] = self.trip.map(|v| v / self.unit);
-        ((sx - x).abs() + (sy - y).abs() < limit).then_some(target as u32)
+        Ok(((sx - x).abs() + (sy - y).abs() < limit).then_some(target as u32))
     }
 
     fn block(&mut self, line: &str) -> Result<(), String> {
         if let Some(message) = line.strip_prefix("(LOG,") {
-            let mut text = message.strip_suffix(')').unwrap().to_owned();
+            let mut text = message.strip_suffix(')').ok_or("a comment without its end")?.to_owned();
             for (k, v) in self.trip.into_iter().enumerate() {
                 let number = if k < 3 { format!("{:.6}", v / self.unit) } else { format!("{v:.6}") };
                 text = text.replace(["#5061", "#5062", "#5063", "#5070"][k], &number);
@@ -104,17 +139,18 @@ impl<'w> Control<'w> {
             return Ok(());
         }
         if let Some(message) = line.strip_prefix("DPRNT[") {
-            self.print(message.strip_suffix(']').unwrap());
-            return Ok(());
+            return self.print(message.strip_suffix(']').ok_or("DPRNT without its end")?);
         }
         if line.starts_with(['(', ';', '%', 'O', 'P']) {
             return Ok(());
         }
-        let words: Vec<(char, f64)> = line
-            .split_whitespace()
-            .take_while(|w| !w.starts_with('('))
-            .map(|w| (w.chars().next().unwrap(), w[1..].parse().unwrap_or_else(|_| panic!("word {w}"))))
-            .collect();
+        let read = |word: &str| {
+            let mut letters = word.chars();
+            let (letter, value) = (letters.next(), letters.as_str().parse().ok());
+            letter.zip(value).ok_or_else(|| format!("the word {word} is not known"))
+        };
+        let words = line.split_whitespace().take_while(|w| !w.starts_with('(')).map(read);
+        let words: Vec<(char, f64)> = words.collect::<Result<_, _>>()?;
         let word = |letter| words.iter().find(|w| w.0 == letter).map(|w| w.1);
         if words.contains(&('G', 20.0)) {
             self.unit = 25.4;
@@ -123,8 +159,8 @@ impl<'w> Control<'w> {
         let length = |letter| word(letter).map(|v| v * unit);
         let g = words.iter().find(|w| w.0 == 'G').map(|w| (w.1 * 10.0).round() as u32);
         match g {
-            Some(650) => return self.call(word('P').unwrap() as u32, &length, word('A')),
-            Some(0 | 10 | 310 | 383) => self.mode = g.unwrap(),
+            Some(650) => return self.call(word('P').ok_or("G65 without P")? as u32, &length, word('A')),
+            Some(mode @ (0 | 10 | 310 | 383)) => self.mode = mode,
             _ => {}
         }
         let [x, y, z] = ['X', 'Y', 'Z'].map(length);
@@ -140,38 +176,48 @@ impl<'w> Control<'w> {
 
     /// A move without touching.
     fn travel(&mut self, to: [f64; 3]) -> Result<(), String> {
-        let (from, low) = (self.at, self.at[2].min(to[2]) < self.wall.top);
+        let (from, z) = (self.at, self.at[2].min(to[2]));
         // Moving away while touching is how every touch ends.
-        let leaves = self.wall.distance([to[0], to[1]]) > self.wall.distance([from[0], from[1]]);
-        let meets = self.wall.meets([from[0], from[1]], [to[0], to[1]], self.ball);
-        if low && meets.is_some_and(|t| t > 0.0 || !leaves) {
+        let leaves = self.wall.distance(z, [to[0], to[1]]) > self.wall.distance(z, [from[0], from[1]]);
+        let meets = self.wall.meets(z, [from[0], from[1]], [to[0], to[1]], self.ball);
+        if z < self.wall.top() && meets.is_some_and(|t| t > 0.0 || !leaves) {
             return Err(format!("runs into the wall on the way to {to:?}"));
         }
         self.at = to;
         Ok(())
     }
 
+    /// A reading off by so much along the way from `start` to where the ball is now, x, y and z.
+    fn noise(&self, start: [f64; 3], off: f64) -> [f64; 3] {
+        let way: [f64; 3] = std::array::from_fn(|k| self.at[k] - start[k]);
+        let length = way.iter().map(|v| v * v).sum::<f64>().sqrt();
+        way.map(|v| if length > 0.0 { v / length * off } else { 0.0 })
+    }
+
     /// G38.3 or G31.
     fn search(&mut self, to: [f64; 3]) -> Result<(), String> {
-        let meets = self.wall.meets([self.at[0], self.at[1]], [to[0], to[1]], self.ball);
-        let meets = meets.filter(|_| self.at[2].min(to[2]) < self.wall.top);
-        if meets == Some(0.0) && self.mode == 383 && self.at[2] < self.wall.top {
+        let (z, top) = (self.at[2].min(to[2]), self.wall.top());
+        let meets = self.wall.meets(z, [self.at[0], self.at[1]], [to[0], to[1]], self.ball);
+        let meets = meets.filter(|_| z < top);
+        if meets == Some(0.0) && self.mode == 383 && self.at[2] < top {
             return Err("alarm: the probe is on before the search".to_owned());
         }
-        let share = meets.unwrap_or(1.0);
+        let (share, start) = (meets.unwrap_or(1.0), self.at);
         if share == 0.0 && to[2] < self.at[2] {
             // From above: the ball stops on the wall.
-            self.at[2] = self.at[2].min(self.wall.top - 0.01);
+            self.at[2] = self.at[2].min(top - 0.01);
         } else {
             for (at, to) in self.at.iter_mut().zip(to) {
                 *at += (to - *at) * share;
             }
         }
-        let [x, y, z] = self.at;
         let hit = f64::from(u8::from(meets.is_some()));
-        self.trip = [x, y, z, hit];
+        let noise = if meets.is_some() { self.wall.noise() } else { 0.0 };
+        let off = self.noise(start, noise);
+        let read = [0, 1, 2].map(|k| self.at[k] + off[k]);
+        self.trip = [read[0], read[1], read[2], hit];
         self.out.touches += usize::from(meets.is_some());
-        let [mx, my, mz] = [0, 1, 2].map(|k| self.at[k] + self.origin[k]);
+        let [mx, my, mz] = [0, 1, 2].map(|k| read[k] + ORIGIN_MM[k]);
         self.out.console += &format!("ok\n[PRB:{mx:.3},{my:.3},{mz:.3}:{hit}]\n");
         Ok(())
     }
@@ -198,9 +244,10 @@ impl<'w> Control<'w> {
         };
         let way = distance - self.ball + word('Q').ok_or("no Q")?;
         let end = [at[0] + direction[0] * way, at[1] + direction[1] * way];
-        let t = self.wall.meets([at[0], at[1]], end, self.ball).ok_or("alarm: no surface found")?;
+        let t = self.wall.meets(at[2], [at[0], at[1]], end, self.ball).ok_or("alarm: no surface found")?;
         self.out.touches += 1;
-        self.surface = [0, 1].map(|k| at[k] + direction[k] * (way * t + self.ball));
+        let reached = way * t + self.ball + self.wall.noise();
+        self.surface = [0, 1].map(|k| at[k] + direction[k] * reached);
         if number == 9811 {
             // Only the axis that moved has a result.
             self.surface = [0, 1].map(|k| if direction[k] == 0.0 { f64::NAN } else { self.surface[k] });
@@ -208,7 +255,7 @@ impl<'w> Control<'w> {
         Ok(())
     }
 
-    fn print(&mut self, text: &str) {
+    fn print(&mut self, text: &str) -> Result<(), String> {
         let mut text = text.replace('*', " ");
         let values =
             [("#5061", self.trip[0]), ("#5062", self.trip[1]), ("#185", self.surface[0]), ("#186", self.surface[1])];
@@ -218,7 +265,10 @@ impl<'w> Control<'w> {
                 text = text.replace(&format!("{name}{digits}"), &number);
             }
         }
-        assert!(!text.contains("NaN") && !text.contains('#'), "{text}");
+        if text.contains("NaN") || text.contains('#') {
+            return Err(format!("what it prints has no value: {text}"));
+        }
         self.out.text += &format!("{text}\r\n");
+        Ok(())
     }
 }

@@ -1,0 +1,131 @@
+//! A ball that is moved about beside a milled wall, wherever a program sends it.
+//!
+//! Unlike [`super::probe::probe`], which is told the place on the contour, this knows ways only: where on the way from one
+//! point to another does a ball meet the wall as it was cut? The wall is that of the height of the ball's centre.
+//!
+//! What lies behind the wall is material: a ball whose centre is there touches.
+//!
+//! Limit: as for the probe, the slope of the wall over the height is not seen, and nothing but the wall of the pass is
+//! there: neither floor nor clamps nor the walls of other passes.
+
+use std::collections::BTreeMap;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::mill::Milled;
+use super::vector::{Point, along, dot, mix, norm, squared_distance, sub};
+
+/// Points of the wall lie this near to each other, mm: a ball of 2 mm sinks 0.03 µm between them.
+const SPACING_MM: f64 = 0.02;
+/// Heights nearer to each other than this have one wall, mm.
+const LAYER_MM: f64 = 0.001;
+/// Neighbours farther apart than this, in steps of the path, are the ends of two walls.
+const GAP_STEPS: f64 = 5.0;
+
+/// A point beside which the wall is this far away along its own heading belongs to no place of it, mm.
+const BESIDE_MM: f64 = 0.5;
+
+/// A point of the wall with the unit normal into the material.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    place: Point,
+    normal: Point,
+}
+
+/// A milled wall, felt with a ball.
+#[derive(Debug)]
+pub struct Felt<'m> {
+    milled: &'m Milled,
+    tip_z_mm: f64,
+    layers: BTreeMap<i64, Vec<Spot>>,
+    noise: ChaCha8Rng,
+}
+
+impl<'m> Felt<'m> {
+    /// A wall; `tip_z_mm` is the Z of the cutter's tip in its pass.
+    pub fn new(milled: &'m Milled, tip_z_mm: f64) -> Self {
+        let mut noise = ChaCha8Rng::seed_from_u64(milled.machine.seed);
+        noise.set_stream(3);
+        Self { milled, tip_z_mm, layers: BTreeMap::new(), noise }
+    }
+
+    /// Z at which the wall ends, mm.
+    pub fn top_mm(&self) -> f64 {
+        self.tip_z_mm + self.milled.cut.axial_depth_mm
+    }
+
+    /// The share of the way at which a ball, its centre at the height `z_mm`, meets the wall first; 0 where it touches it
+    /// from the beginning, `None` where it does not meet it. Radius in mm.
+    pub fn meets(&mut self, z_mm: f64, from: Point, to: Point, radius_mm: f64) -> Option<f64> {
+        let way = sub(to, from);
+        let square = dot(way, way);
+        let middle = mix(from, to, 0.5);
+        let reach = (0.5 * norm(way) + radius_mm).powi(2);
+        if self.is_inside(z_mm, from) {
+            return Some(0.0);
+        }
+        let first = |wall: &Spot| {
+            let off = sub(from, wall.place);
+            let ahead = dot(off, off) - radius_mm * radius_mm;
+            if ahead <= 0.0 {
+                return Some(0.0);
+            }
+            let closing = dot(off, way);
+            let root = closing * closing - square * ahead;
+            (square > 0.0 && root >= 0.0 && closing < 0.0)
+                .then(|| (-closing - root.sqrt()) / square)
+                .filter(|share| *share <= 1.0)
+        };
+        let near = self.layer(z_mm).iter().filter(|wall| squared_distance(wall.place, middle) <= reach);
+        near.filter_map(first).min_by(f64::total_cmp)
+    }
+
+    /// Distance of a point from the wall at a height, mm.
+    pub fn distance_mm(&mut self, z_mm: f64, point: Point) -> f64 {
+        self.layer(z_mm).iter().map(|w| squared_distance(w.place, point)).fold(f64::INFINITY, f64::min).sqrt()
+    }
+
+    /// Whether a point lies behind the wall, in the material.
+    fn is_inside(&mut self, z_mm: f64, point: Point) -> bool {
+        let off = |spot: &&Spot| squared_distance(spot.place, point);
+        let nearest = self.layer(z_mm).iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        nearest.is_some_and(|spot| {
+            let away = sub(point, spot.place);
+            let depth = dot(away, spot.normal);
+            depth > 0.0 && dot(away, away) - depth * depth < BESIDE_MM * BESIDE_MM
+        })
+    }
+
+    /// What the next reading is off along the way of the ball, mm: Gaussian, by the probe of the machine.
+    pub fn noise_mm(&mut self) -> f64 {
+        let drawn: f64 = StandardNormal.sample(&mut self.noise);
+        self.milled.machine.probe_noise_mm * drawn
+    }
+
+    /// The wall at a height; beyond tip and top that of tip and top.
+    fn layer(&mut self, z_mm: f64) -> &[Spot] {
+        let (milled, tip) = (self.milled, self.tip_z_mm);
+        self.layers.entry((z_mm / LAYER_MM).round() as i64).or_insert_with(|| {
+            let level = ((z_mm - tip) / milled.cut.axial_depth_mm).clamp(0.0, 1.0);
+            let path = &milled.path;
+            let errors = milled.wall_errors(&[level]).into_iter().next().unwrap_or_default();
+            let spot = |(k, error): (usize, f64)| Spot {
+                place: along(path.wall(k, milled.cut.radius_mm), path.normal[k], -error),
+                normal: path.normal[k],
+            };
+            let wall: Vec<Spot> = errors.into_iter().enumerate().filter(|(_, e)| e.is_finite()).map(spot).collect();
+            let gap = GAP_STEPS * path.step_mm;
+            let mut dense = Vec::new();
+            for pair in wall.windows(2) {
+                let length = norm(sub(pair[1].place, pair[0].place));
+                let pieces = if length > gap { 1.0 } else { (length / SPACING_MM).ceil().max(1.0) };
+                let place = |k: usize| mix(pair[0].place, pair[1].place, k as f64 / pieces);
+                dense.extend((0..pieces as usize).map(|k| Spot { place: place(k), normal: pair[0].normal }));
+            }
+            dense.extend(wall.last());
+            dense
+        })
+    }
+}

@@ -1,0 +1,5 @@
+//! Probing programs, executed as a control would execute them.
+
+mod control;
+
+pub use control::{Control, Printed, Wall, Xy};

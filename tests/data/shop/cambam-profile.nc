@@ -1,0 +1,54 @@
+( Made using CamBam - http://www.cambam.co.uk )
+( Untitled 5/20/2024 8:15:22 PM )
+( T1 : 6.0 )
+G21 G90 G91.1 G64 G40
+G0 Z3.0
+( T1 : 6.0 )
+T1 M6
+( Profile1 )
+G17
+M3 S1000
+G0 X64. Y31.
+G0 Z1.0
+G1 F300. Z-2.5
+G2 F800. X67. Y28. I0. J-3.
+G1 Y0.
+G2 X64. Y-3. I-3. J0.
+G1 X0.
+G2 X-3. Y0. I0. J3.
+G1 Y44.
+G2 X0. Y47. I3. J0.
+G1 X38.
+G2 X41. Y44. I0. J-3.
+G1 Y33.
+G3 X43. Y31. I2. J0.
+G1 X64.
+G1 F300. Z-5.
+G2 F800. X67. Y28. I0. J-3.
+G1 Y0.
+G2 X64. Y-3. I-3. J0.
+G1 X0.
+G2 X-3. Y0. I0. J3.
+G1 Y44.
+G2 X0. Y47. I3. J0.
+G1 X38.
+G2 X41. Y44. I0. J-3.
+G1 Y33.
+G3 X43. Y31. I2. J0.
+G1 X64.
+G1 F300. Z-7.5
+G2 F800. X67. Y28. I0. J-3.
+G1 Y0.
+G2 X64. Y-3. I-3. J0.
+G1 X0.
+G2 X-3. Y0. I0. J3.
+G1 Y44.
+G2 X0. Y47. I3. J0.
+G1 X38.
+G2 X41. Y44. I0. J-3.
+G1 Y33.
+G3 X43. Y31. I2. J0.
+G1 X64.
+G0 Z3.0
+M5
+M30

@@ -1,0 +1,62 @@
+(Platte)
+(T1 D=6 CR=0 - ZMIN=-9 - flat end mill)
+G90 G94
+G17
+G21
+
+(When using Fusion for Personal Use, the feedrate of rapid)
+(moves is reduced to match the feedrate of cutting moves,)
+(which can increase machining time. Unrestricted rapid moves)
+(are available with a Fusion Subscription.)
+G28 G91 Z0
+G90
+
+(2D Kontur1)
+M3 S18000
+G54
+G0 X-0.6 Y29.581
+Z15
+G1 Z5 F1200
+Z-3.5 F400
+Z-4.5
+G3 X0 Y28.981 I0.6 J0 F1200
+G1 X15
+G2 X17.598 Y27.481 I0 J-3
+G1 X32.598 Y1.5
+G2 Y-1.5 I-2.598 J-1.5
+G1 X17.598 Y-27.481
+G2 X15 Y-28.981 I-2.598 J1.5
+G1 X-15
+G2 X-17.598 Y-27.481 I0 J3
+G1 X-32.598 Y-1.5
+G2 Y1.5 I2.598 J1.5
+G1 X-17.598 Y27.481
+G2 X-15 Y28.981 I2.598 J-1.5
+G1 X0
+G3 X0.6 Y29.581 I0 J0.6
+G1 Z5
+X-0.6
+Z-8 F400
+Z-9
+G3 X0 Y28.981 I0.6 J0 F1200
+G1 X15
+G2 X17.598 Y27.481 I0 J-3
+G1 X32.598 Y1.5
+G2 Y-1.5 I-2.598 J-1.5
+G1 X17.598 Y-27.481
+G2 X15 Y-28.981 I-2.598 J1.5
+G1 X-15
+G2 X-17.598 Y-27.481 I0 J3
+G1 X-32.598 Y-1.5
+G2 Y1.5 I2.598 J1.5
+G1 X-17.598 Y27.481
+G2 X-15 Y28.981 I2.598 J-1.5
+G1 X0
+G3 X0.6 Y29.581 I0 J0.6
+G1 Z15
+M5
+G28 G91 Z0
+G90
+G28 G91 X0 Y0
+G90
+M30

@@ -1,0 +1,100 @@
+//! What became of the programs: for the terminal, and docs/shop.md.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use super::table::Program;
+use super::way::{End, Run, Way};
+
+type Results<'a> = [(&'a Program, &'a Way)];
+
+/// A line for every program.
+pub fn table(results: &Results) -> String {
+    let mut out = format!(
+        "{:<44}{:<22}{:<22}{:>10}{:>9}{:>8}{:>7}\n",
+        "program", "bare job", "lines named", "before mm", "after mm", "times", "s"
+    );
+    for (program, way) in results {
+        let named = way.named.as_ref().map(|run| run.end.word()).unwrap_or_default();
+        let (before, after, times) = numbers(way);
+        let _ = writeln!(
+            out,
+            "{:<44}{:<22}{named:<22}{before:>10}{after:>9}{times:>8}{:>7.1}",
+            program.file,
+            way.bare.end.word(),
+            way.bare.seconds
+        );
+    }
+    out + &counts(results)
+}
+
+fn numbers(way: &Way) -> (String, String, String) {
+    let run = [Some(&way.bare), way.named.as_ref()].into_iter().flatten().find(|run| run.errors_mm.is_some());
+    let Some([before, after]) = run.and_then(|run| run.errors_mm) else { return Default::default() };
+    (format!("{before:.4}"), format!("{after:.4}"), format!("{:.1}", before / after.max(1e-9)))
+}
+
+/// How many go through.
+fn counts(results: &Results) -> String {
+    let bare = results.iter().filter(|(_, way)| way.bare.end == End::Through).count();
+    let other = results.iter().filter(|(_, way)| matches!(way.bare.end, End::OtherContour(_))).count();
+    let named = results.iter().filter(|(_, way)| way.named.as_ref().is_some_and(|r| r.end == End::Through)).count();
+    format!(
+        "\nof {} programs {bare} go through with a bare job, {other} more with another contour than the wall, {named} more \
+         with the lines named\n",
+        results.len()
+    )
+}
+
+/// Every way to end that is not through, with how many programs and what was said of the shortest of them.
+pub fn refusals(results: &Results) -> String {
+    let mut by: BTreeMap<String, Vec<(&Program, &Run)>> = BTreeMap::new();
+    for (program, way) in results.iter().filter(|(_, way)| way.bare.end != End::Through) {
+        by.entry(way.bare.end.word()).or_default().push((program, &way.bare));
+    }
+    let mut sorted: Vec<_> = by.into_iter().collect();
+    sorted.sort_by_key(|(_, list)| std::cmp::Reverse(list.len()));
+    let mut out = String::new();
+    for (word, list) in sorted {
+        let _ = writeln!(out, "{:>3}  {word}", list.len());
+        for (program, run) in list {
+            let line = run.line.as_ref().map_or(String::new(), |(n, text)| format!(" line {n} `{text}`"));
+            let _ = writeln!(out, "       {}:{line} {}", program.file, run.said);
+        }
+    }
+    out
+}
+
+/// docs/shop.md.
+pub fn document(results: &Results) -> String {
+    let mut out = format!(
+        "# Programs as shops write them\n\nWritten by `cargo xtask shop --write`; the command without `--write` fails when a \
+         program ends worse than the table in `tests/data/shop/programs.csv` expects, when a wall becomes worse, when a probing \
+         program drives into the wall, and when a command has a fault.\n\nThe programs are our own, in the manner of the posts \
+         and hands named. Each goes the whole way with a job that says cutter, wall side (where no G41 says it), allowance, and \
+         what the format of a job asks for besides: `truepath probe`, touches by `truepath simulate --touch` on a virtual machine \
+         that shares no physics with the model and knows the wall from the table, `truepath correct`, and `truepath simulate \
+         --from`. *Lines named*: the same with the lines of the wall in `[[feature]]`, where the bare job did not go through.\n\
+         {}\n| program | in the manner of | bare job | lines named | before mm | after mm | times less |\n\
+         |---|---|---|---|--:|--:|--:|\n",
+        counts(results)
+    );
+    for (program, way) in results {
+        let named = way.named.as_ref().map(|run| run.end.word()).unwrap_or_default();
+        let (before, after, times) = numbers(way);
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {named} | {before} | {after} | {times} |",
+            program.file,
+            program.manner,
+            way.bare.end.word()
+        );
+    }
+    out += "\n## What does not go through with a bare job\n\n| end | program | line | what was said |\n|---|---|---|---|\n";
+    for (program, way) in results.iter().filter(|(_, way)| way.bare.end != End::Through) {
+        let cell = |text: &str| text.replace('|', "\\|").replace(['\n', '\r'], " ");
+        let line = way.bare.line.as_ref().map_or(String::new(), |(n, text)| format!("{n}: `{}`", cell(text)));
+        let _ = writeln!(out, "| {} | {} | {line} | {} |", way.bare.end.word(), program.file, cell(&way.bare.said));
+    }
+    out
+}
