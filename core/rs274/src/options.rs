@@ -43,6 +43,14 @@ pub enum CompensationBy {
     Nothing,
     /// This radius, whatever D says.
     Radius(Offset),
+    /// This radius while this tool, or none that the program names, is in the spindle; the path of any other tool is read
+    /// as that of its centre.
+    ToolRadius {
+        /// T of the tool.
+        tool: u32,
+        /// Its radius.
+        radius: Offset,
+    },
     /// By half of the diameter that the tool table has for D, or for the tool in the spindle.
     Table,
 }

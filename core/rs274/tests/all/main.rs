@@ -3,6 +3,7 @@
 mod canon;
 mod compensation;
 mod compensation_properties;
+mod compensation_start;
 mod contour;
 mod corner;
 mod decimal;
