@@ -130,6 +130,11 @@ impl<'s> BlockWords<'s> {
         Some(word)
     }
 
+    /// The same on a condition.
+    pub(super) fn use_word_if(&mut self, letter: u8, wanted: bool) -> Option<Word> {
+        if wanted { self.use_word(letter) } else { None }
+    }
+
     /// Whether any of these letters stands here unused.
     pub(super) fn has_unused(&self, letters: &[u8]) -> bool {
         let mask = letters.iter().fold(0, |mask, &letter| mask | bit(letter));

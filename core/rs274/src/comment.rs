@@ -63,8 +63,7 @@ impl<'t> Comment<'t> {
             Some((word, rest)) => (word, rest.get(1..).unwrap_or(&[])),
             None => split_word(body),
         };
-        let letters = || word.iter().filter(|b| !is_blank(**b)).map(u8::to_ascii_uppercase);
-        let kind = KINDS.iter().find(|(name, _)| letters().eq(name.iter().copied()));
+        let kind = KINDS.iter().find(|(name, _)| trimmed(word).eq_ignore_ascii_case(name));
         match kind {
             Some(&(_, kind)) if kind.has_comma() == comma.is_some() => Self { kind, text },
             _ => Self { kind: CommentKind::Plain, text: body },

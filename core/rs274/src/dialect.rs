@@ -1,5 +1,7 @@
 //! Dialects of G-code: controls that give the same words another meaning.
 
+use super::compensation::StartUp;
+
 /// The control a program is written for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Dialect {
@@ -29,6 +31,19 @@ impl Dialect {
     /// Whether G70 and G71 are inches and millimetres.
     pub const fn has_metric_g71(self) -> bool {
         matches!(self, Self::Siemens | Self::Mach)
+    }
+    /// Whether the last G0 or G1 is in force again behind G80, which ends a cycle in a group of its own, and whether R, the
+    /// depth and Q go on to a cycle of another code until then: Fanuc, and those that follow it.
+    pub const fn keeps_motion_behind_cycle(self) -> bool {
+        matches!(self, Self::Fanuc | Self::Haas | Self::Siemens)
+    }
+    /// Where the first move under G41 or G42 leads: on Fanuc and Haas set to start-up type A, as they are delivered, and with
+    /// Siemens' NORM to beside the start of the next move, whatever its own length and direction.
+    pub const fn start_up(self) -> StartUp {
+        match self {
+            Self::Fanuc | Self::Haas | Self::Siemens => StartUp::Next,
+            Self::Linuxcnc | Self::Mach => StartUp::Own,
+        }
     }
     /// The largest number of a parameter.
     pub const fn largest_parameter(self) -> u16 {

@@ -90,7 +90,7 @@ pub use interpreter::{Interpreter, ProgramSummary};
 pub use lexical::{Decimal, Number, NumberError, Token, Words, WrittenWord};
 pub use modal::{Modal, Motion};
 pub use mode::{Coolant, FeedMode, PathControl, Plane, RetractLevel, Spindle, ToolLength, Units};
-pub use options::{CompensationBy, Machine, Options, PointlessLength, Tool};
+pub use options::{ArcCentres, CompensationBy, Machine, Options, PointlessLength, Tool};
 pub use parameter::{DeviceMemory, HostMemory, MachineParameters, Memory, MemoryBuffers, NamedSlot};
 pub use place::Axes;
 pub use shifts::{AXIS_LETTERS, NineAxes, Shifts};

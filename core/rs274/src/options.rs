@@ -43,6 +43,14 @@ pub enum CompensationBy {
     Nothing,
     /// This radius, whatever D says.
     Radius(Offset),
+    /// This radius while this tool, or none that the program names, is in the spindle; the path of any other tool is read
+    /// as that of its centre.
+    ToolRadius {
+        /// T of the tool.
+        tool: u32,
+        /// Its radius.
+        radius: Offset,
+    },
     /// By half of the diameter that the tool table has for D, or for the tool in the spindle.
     Table,
 }
@@ -61,6 +69,19 @@ pub enum PointlessLength {
     Least,
 }
 
+/// How I, J and K of arcs count until G90.1 or G91.1 says it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ArcCentres {
+    /// From the start of the arc, unless the first arc that closes in one way only does so with absolute places: then they
+    /// are, for that arc and all behind it, with a warning.
+    #[default]
+    Detect,
+    /// From the start of the arc.
+    Incremental,
+    /// As places.
+    Absolute,
+}
+
 /// What the program does not say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options<'t> {
@@ -74,6 +95,8 @@ pub struct Options<'t> {
     pub dialect: Dialect,
     /// What a length without a point is.
     pub decimal: PointlessLength,
+    /// How I, J and K of arcs count until the program says it.
+    pub arc_centres: ArcCentres,
     /// How many blocks may be executed beyond as many as the program has lines; loops that run longer are an error.
     pub block_limit: u32,
     /// What G41 and G42 move the path aside by.
@@ -99,6 +122,7 @@ impl Default for Options<'_> {
             skip_block_delete: false,
             dialect: Dialect::Linuxcnc,
             decimal: PointlessLength::Calculator,
+            arc_centres: ArcCentres::Detect,
             block_limit: 1_000_000,
             compensation: CompensationBy::Nothing,
             tools: &[],

@@ -1,7 +1,8 @@
 //! Where things stand in a program: lines and spans of bytes.
 //!
-//! A program is bytes, not characters: comments may be in any code page. Lines end with CR, LF or CR LF. Columns are
-//! bytes, counted from 1.
+//! A program is bytes, not characters: comments may be in any code page. Lines end with LF or CR LF; with CR only in a
+//! file without any LF, elsewhere a CR is a blank (LinuxCNC reads it so, and a tape in ISO code has LF alone as the end
+//! of a block). Columns are bytes, counted from 1.
 
 use core::fmt;
 
@@ -97,17 +98,20 @@ pub struct Lines<'a> {
     program: &'a [u8],
     at: usize,
     number: u32,
+    /// What ends a line.
+    end: u8,
 }
 
 impl<'a> Lines<'a> {
     /// From the first line.
     pub fn new(program: &'a [u8]) -> Self {
         let at = if program.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
-        Self { program, at, number: 0 }
+        let end = if program.contains(&b'\n') { b'\n' } else { b'\r' };
+        Self { program, at, number: 0, end }
     }
     /// From a line of them on.
     pub(super) const fn again(&self, line: &Line<'a>) -> Self {
-        Self { program: self.program, at: line.start, number: line.number.saturating_sub(1) }
+        Self { program: self.program, at: line.start, number: line.number.saturating_sub(1), end: self.end }
     }
 }
 
@@ -116,16 +120,14 @@ impl<'a> Iterator for Lines<'a> {
 
     fn next(&mut self) -> Option<Line<'a>> {
         let rest = self.program.get(self.at..).filter(|r| !r.is_empty())?;
-        let len = rest.iter().position(|b| matches!(b, b'\r' | b'\n')).unwrap_or(rest.len());
-        let (text, end) = rest.split_at_checked(len)?;
-        let end_len = match end {
-            [b'\r', b'\n', ..] => 2,
-            [] => 0,
-            _ => 1,
-        };
+        let len = rest.iter().position(|b| *b == self.end).unwrap_or(rest.len());
+        let mut text = rest.get(..len)?;
+        while let [before @ .., b'\r'] = text {
+            text = before;
+        }
         self.number = self.number.saturating_add(1);
         let line = Line { number: self.number, start: self.at, text };
-        self.at = self.at.saturating_add(len).saturating_add(end_len);
+        self.at = self.at.saturating_add(len).saturating_add(1);
         Some(line)
     }
 }
@@ -137,8 +139,11 @@ mod tests {
 
     #[test]
     fn every_line_end_counts_once() {
-        let lines: Vec<_> = Lines::new(b"\xEF\xBB\xBFa\r\nb\rc\n\nd").map(|l| (l.number, l.start, l.text)).collect();
-        assert_eq!(lines, [(1, 3, &b"a"[..]), (2, 6, b"b"), (3, 8, b"c"), (4, 10, b""), (5, 11, b"d")]);
+        let lines = |text: &'static [u8]| Lines::new(text).map(|l| (l.number, l.start, l.text)).collect::<Vec<_>>();
+        let expected = [(1, 3, &b"a"[..]), (2, 6, b"b\rc"), (3, 10, b""), (4, 11, b"d")];
+        assert_eq!(lines(b"\xEF\xBB\xBFa\r\nb\rc\n\nd"), expected);
+        assert_eq!(lines(b"a\r\rb"), [(1, 0, &b"a"[..]), (2, 2, b""), (3, 3, b"b")]);
+        assert_eq!(lines(b"a\r\r\nb\r"), [(1, 0, &b"a"[..]), (2, 4, b"b")]);
     }
 
     #[test]

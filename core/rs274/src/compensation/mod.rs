@@ -25,7 +25,7 @@ pub(crate) mod unit;
 
 pub use super::error::CompensationError;
 pub use leg::{Cutter, Piece, Shape};
-pub use path::{CutterPath, Step};
+pub use path::{CutterPath, StartUp, Step};
 pub use stage::WAITING;
 pub(crate) use stage::{CompensationStage, Waiting, in_plane, moved, put};
 use unit::FINE_BITS;

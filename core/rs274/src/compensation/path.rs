@@ -2,7 +2,9 @@
 //!
 //! A move's end depends on the corner after it, so each move waits for the next one. The first move leads from where
 //! the cutter stands to beside its own end; it must be longer than the cutter's radius. A first move along an arc
-//! becomes the arc through the cutter's place that leaves in the same direction.
+//! becomes the arc through the cutter's place that leaves in the same direction. That is LinuxCNC's way ([`StartUp::Own`]).
+//! On controls with start-up type A ([`StartUp::Next`]) the first move is a line of any length, and leads to beside the
+//! start of the move after it.
 //!
 //! Neighbouring moves are compared, no others: a slot narrower than the cutter whose walls are not neighbours is not
 //! noticed, as on the machine.
@@ -37,17 +39,28 @@ pub struct Step {
     pub corner: Option<Piece>,
 }
 
+/// Where the first move under G41 or G42 leads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StartUp {
+    /// To beside its own end.
+    #[default]
+    Own,
+    /// To beside the start of the next move.
+    Next,
+}
+
 /// The cutter's path between G41 or G42 and G40.
 #[derive(Clone, Copy, Debug)]
 pub struct CutterPath {
     cutter: Cutter,
+    start_up: StartUp,
     pending: Option<Pending>,
 }
 
 impl CutterPath {
     /// With no move yet.
-    pub const fn new(cutter: Cutter) -> Self {
-        Self { cutter, pending: None }
+    pub const fn new(cutter: Cutter, start_up: StartUp) -> Self {
+        Self { cutter, start_up, pending: None }
     }
 
     /// The cutter.
@@ -66,6 +79,9 @@ impl CutterPath {
     /// # Errors
     /// The cutter cannot follow; see [`CompensationError`]. The path is of no more use then.
     pub fn push(&mut self, next: Piece) -> Result<Step, CompensationError> {
+        if self.pending.is_none() && self.start_up == StartUp::Next && next.shape != Shape::Line {
+            return Err(CompensationError::EntryArc);
+        }
         for place in [next.from, next.to] {
             next.circle(place, self.cutter)?;
         }
@@ -75,17 +91,18 @@ impl CutterPath {
         };
         let too_short = CompensationError::MoveUnreachable { length: Offset::ZERO, radius: self.cutter.radius };
         let mut corner = None;
-        let joint = Corner::between(&pending.programmed, &next, self.cutter).ok_or(too_short)?;
+        let joint = if pending.entry && self.start_up == StartUp::Next {
+            None
+        } else {
+            Some(Corner::between(&pending.programmed, &next, self.cutter).ok_or(too_short)?)
+        };
         let end = match joint {
-            Corner::Straight | Corner::Outside => pending.programmed.beside_end(self.cutter).ok_or(too_short)?,
-            Corner::Inside | Corner::Cusp => {
-                let circle = self.circle(&pending)?;
-                meeting(&pending.programmed, circle, &next, joint == Corner::Cusp, self.cutter)?
-            }
+            None => next.beside_start(self.cutter).ok_or(too_short)?,
+            Some(joint) => self.end(&pending, &next, joint).ok_or(too_short)??,
         };
         let finished = self.finished(&pending, end)?;
         let mut from = end;
-        if joint == Corner::Outside {
+        if joint == Some(Corner::Outside) {
             from = next.beside_start(self.cutter).ok_or(too_short)?;
             let counter_clockwise = self.cutter.side == Side::Right;
             let shape = Shape::Arc { centre: next.from, counter_clockwise, turns: 0 };
@@ -93,6 +110,16 @@ impl CutterPath {
         }
         self.pending = Some(Pending { programmed: next, from, entry_centre: None, entry: false });
         Ok(Step { finished: Some(finished), corner })
+    }
+
+    /// Where the cutter's centre ends a move before a corner; `None` when the move has no direction.
+    fn end(&self, pending: &Pending, next: &Piece, joint: Corner) -> Option<Result<Point, CompensationError>> {
+        Some(match joint {
+            Corner::Straight | Corner::Outside => Ok(pending.programmed.beside_end(self.cutter)?),
+            Corner::Inside | Corner::Cusp => self
+                .circle(pending)
+                .and_then(|circle| meeting(&pending.programmed, circle, next, joint == Corner::Cusp, self.cutter)),
+        })
     }
 
     /// The last move, when there was any: the path ends beside its end.
@@ -113,7 +140,11 @@ impl CutterPath {
         let pending = Pending { programmed: first, from: first.from, entry_centre: None, entry: true };
         let Shape::Arc { centre, .. } = first.shape else {
             let length = first.from.distance(first.to);
-            return if length <= radius { Err(too_short(length)) } else { Ok(pending) };
+            return if length <= radius && self.start_up == StartUp::Own {
+                Err(too_short(length))
+            } else {
+                Ok(pending)
+            };
         };
         let too_small = |arc| CompensationError::EntryArcTooSmall { arc, radius };
         let (Some(end), Some(inwards)) = (first.beside_end(self.cutter), Unit::of(centre.from(first.to))) else {

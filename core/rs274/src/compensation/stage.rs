@@ -3,13 +3,13 @@
 //! The end of a move is known when the next one is. Until then everything the program does waits: the move itself,
 //! moves of the third axis, feeds, comments, M codes; then all of it goes on in its order. A corner's arc belongs to
 //! the block after the corner. After G40 the next move leads straight from where the cutter stands to where the
-//! program wants it.
+//! program wants it; with [`StartUp::Next`] that is the next move in the plane.
 //!
 //! Limit: [`WAITING`] steps between two moves in the plane.
 
 use heapless::Deque;
 
-use super::{CompensationError, Cutter, CutterPath, Piece, Shape};
+use super::{CompensationError, Cutter, CutterPath, Piece, Shape, StartUp};
 use crate::{Axes, Canon, Modal, Plane, Source};
 use truepath_units::geometry::{Curve, Point};
 
@@ -34,6 +34,7 @@ pub(crate) struct Waiting<'p> {
 pub(crate) struct CompensationStage<'p> {
     path: Option<CutterPath>,
     plane: Plane,
+    start_up: StartUp,
     /// Where the cutter was left by G40, until the next move.
     beside: Option<Point>,
     queue: Deque<Waiting<'p>, WAITING>,
@@ -50,9 +51,9 @@ impl<'p> CompensationStage<'p> {
     }
 
     /// G41 or G42 in a plane.
-    pub(crate) fn start(&mut self, cutter: Cutter, plane: Plane) {
-        self.path = Some(CutterPath::new(cutter));
-        self.plane = plane;
+    pub(crate) fn start(&mut self, cutter: Cutter, plane: Plane, start_up: StartUp) {
+        self.path = Some(CutterPath::new(cutter, start_up));
+        (self.plane, self.start_up) = (plane, start_up);
     }
 
     /// G40 or the end of the program: what waits becomes ready.
@@ -99,6 +100,12 @@ impl<'p> CompensationStage<'p> {
             return Ok(());
         };
         if piece.from == piece.to && piece.shape == Shape::Line {
+            if path.is_before_entry() && self.start_up == StartUp::Next {
+                // The start-up is that of the first move in the plane.
+                self.push(step)?;
+                self.ready = self.queue.len();
+                return Ok(());
+            }
             if path.is_before_entry() {
                 let radius = path.cutter().radius;
                 return Err(CompensationError::EntryTooShort { length: piece.from.distance(piece.to), radius });
@@ -197,6 +204,15 @@ impl<'p> CompensationStage<'p> {
 
     /// The first move after G40 begins where the cutter stands.
     fn leave(&mut self, canon: &mut Canon, beside: Point) -> Result<(), CompensationError> {
+        // Where the start-up waits for a move in the plane, the end does too.
+        if let Canon::Traverse { from, to } | Canon::Feed { from, to } = canon
+            && self.start_up == StartUp::Next
+            && in_plane(*from, self.plane) == in_plane(*to, self.plane)
+        {
+            put(from, beside, self.plane);
+            put(to, beside, self.plane);
+            return Ok(());
+        }
         match canon {
             Canon::Traverse { from, .. }
             | Canon::Feed { from, .. }

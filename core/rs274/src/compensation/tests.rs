@@ -13,7 +13,7 @@ mod symmetry;
 
 use std::vec::Vec;
 
-use super::{CompensationError, Cutter, CutterPath, Piece, Shape};
+use super::{CompensationError, Cutter, CutterPath, Piece, Shape, StartUp};
 use truepath_units::Offset;
 use truepath_units::geometry::{Point, Side};
 
@@ -38,7 +38,7 @@ fn arc(from: Point, to: Point, centre: Point, counter_clockwise: bool) -> Piece 
 
 /// The whole path of the cutter.
 fn path(cutter: Cutter, pieces: &[Piece]) -> Result<Vec<Piece>, CompensationError> {
-    let mut path = CutterPath::new(cutter);
+    let mut path = CutterPath::new(cutter, StartUp::Own);
     let mut out = Vec::new();
     for &piece in pieces {
         let step = path.push(piece)?;

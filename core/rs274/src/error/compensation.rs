@@ -13,7 +13,7 @@ errors! {
             /// The cutter's radius.
             radius: Offset,
         } = "G120",
-            "the first move under G41/G42 is {length:.3} mm long in the plane and must be longer than the cutter's radius, {radius:.3} mm; start farther away",
+            "the first move under G41/G42 is {length:.3} mm long in the plane and must be longer than the cutter's radius, {radius:.3} mm; start farther away, or name the dialect of the control (Fanuc, Haas and Siemens take it)",
                 length = Millimetres(length), radius = Millimetres(radius);
         /// The arc from where the cutter stands to beside the end of the first arc is not larger than the cutter.
         EntryArcTooSmall {
@@ -31,14 +31,14 @@ errors! {
             /// The cutter's radius.
             radius: Offset,
         } = "G122",
-            "an inside arc of {arc:.3} mm must be larger than the cutter's radius, {radius:.3} mm; take a smaller cutter",
+            "an inside arc of {arc:.3} mm must be larger than the cutter's radius, {radius:.3} mm; read the program as the path of the cutter's centre if it is (D holds wear only), or take a smaller cutter",
                 arc = Millimetres(arc), radius = Millimetres(radius);
         /// The paths beside the two moves of an inside corner never meet.
         CornerUnreachable {
             /// The cutter's radius.
             radius: Offset,
         } = "G123",
-            "the inside corner before this move is too tight for a cutter radius of {radius:.3} mm; take a smaller cutter",
+            "the inside corner before this move is too tight for a cutter radius of {radius:.3} mm; read the program as the path of the cutter's centre if it is (D holds wear only), or take a smaller cutter",
                 radius = Millimetres(radius);
         /// Nothing is left of a move between its corners: the cutter would cut into the neighbouring walls.
         MoveUnreachable {
@@ -47,7 +47,7 @@ errors! {
             /// The cutter's radius.
             radius: Offset,
         } = "G124",
-            "the move before this one is {length:.3} mm long, too short between its corners for a cutter radius of {radius:.3} mm; it would be gouged: take a smaller cutter",
+            "the move before this one is {length:.3} mm long, too short between its corners for a cutter radius of {radius:.3} mm; it would be gouged: read the program as the path of the cutter's centre if it is (D holds wear only), or take a smaller cutter",
                 length = Millimetres(length), radius = Millimetres(radius);
         /// An arc is met at an angle too large for a tangent joint, and too small for a corner.
         ArcDistorted {
@@ -74,7 +74,7 @@ errors! {
             /// How many can.
             limit: usize,
         } = "G131",
-            "more than {limit} steps between two moves under G41/G42; put them outside of the compensated contour";
+            "more than {limit} steps (moves of the third axis alone, feeds, codes, comments) between two moves in the plane under G41/G42; write G40 before them, or put some of them outside";
         /// G41.1 or G42.1 without D.
         DiameterMissing = "G132", "G41.1 and G42.1 need D, the cutter's diameter; add it";
         /// A tool that is not in the tool table.
@@ -84,6 +84,8 @@ errors! {
         } = "G133", "tool {number} is not in the tool table; correct D, or add the tool with its diameter";
         /// A radius beyond 100 m.
         RadiusTooLarge = "G134", "a cutter radius beyond 100 m; correct D";
+        /// A first move along an arc, where the control wants a line.
+        EntryArc = "G135", "the first move under G41/G42 is an arc, at which this control stops; switch on along a line before it";
     }
 }
 

@@ -37,7 +37,7 @@ errors! {
         UnclosedComment = "G004", "the comment opened by `(` is not closed in this line; add `)`";
         /// `)` without `(`.
         StrayParenthesis = "G005",
-            "`)` without `(`: comments do not nest, so the comment ended at the first `)`; remove the inner parentheses";
+            "`)` without `(`: in this dialect comments do not stand inside each other; remove the inner parentheses, or name the dialect of the control";
         /// `#`, `[`, `]`, `=` or `*` where none belongs.
         Stray(byte: u8) = "G006",
             "{byte} does not belong here; a parameter is set with `#1=…`, and an expression stands in [ ] behind a letter",
@@ -183,6 +183,9 @@ errors! {
         } = "G055",
             "the start of this arc is {start} mm from its centre but the end {end} mm; correct the end, I or J, or check G90.1/G91.1",
                 start = Millimetres(start), end = Millimetres(end);
+        /// An arc that closes with absolute I and J only, behind arcs that close with incremental ones.
+        ArcCentreAbsolute = "G057",
+            "this arc closes only if I and J are absolute places, but arcs before it were read with I and J from their start; write G90.1 at the start of the program, or set its arc centres to absolute";
         /// The centre coincides with the start or the end.
         ArcNoRadius = "G056", "the centre of this arc coincides with its start or end; correct I and J";
         /// No cutting move in X or Y at constant Z.

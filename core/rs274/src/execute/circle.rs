@@ -1,12 +1,14 @@
 //! G2 and G3 in the three planes, with the third axis moving along (helix) and extra turns (P).
 
 use super::super::block::BlockWords;
-use super::super::{Axes, Canon, Event, GcodeError, GcodeErrorKind, Plane, Units};
+use super::super::{
+    ArcCentres, Axes, Canon, Decimal, Event, GcodeError, GcodeErrorKind, Number, Plane, Units, WarningKind,
+};
 use super::Execution;
 use super::arc::{absolute_centre, centre_from_offsets, centre_from_radius};
 use super::cycle::centre_letter;
 use truepath_units::Offset;
-use truepath_units::geometry::{Curve, Point};
+use truepath_units::geometry::{ARC_TOLERANCE, ArcError, Curve, Point};
 
 /// How far the two radii of an arc may differ unless they agree to 0.1 %: LinuxCNC's value for programs in inches,
 /// 0.00283 in; in millimetres it is that of [`Curve::arc`].
@@ -30,12 +32,9 @@ where
             Some(word) => self.between(word, 1, TURNS)?.saturating_sub(1),
             None => 0,
         };
+        let digit = self.last_digit(block);
         let centre = self.centre(block, start, end, counter_clockwise)?;
-        let arc = match self.modal.units {
-            Units::Millimetres => Curve::arc(start, end, centre, counter_clockwise),
-            Units::Inches => Curve::arc_within(start, end, centre, counter_clockwise, INCH_TOLERANCE),
-        };
-        let curve = arc.map_err(|e| self.error(e.into(), span))?;
+        let (centre, curve) = self.curve(start, end, centre, counter_clockwise, digit)?;
         self.check_feed()?;
         self.check_revolutions()?;
         self.at = to;
@@ -47,9 +46,23 @@ where
         self.emit(canon, span)
     }
 
-    fn centre(&mut self, block: &mut BlockWords<'_>, start: Point, end: Point, ccw: bool) -> Result<Point, GcodeError> {
-        let [first, second, _] = self.modal.plane.axes();
+    /// The centre, and where it would be if I and J are absolute places although no G90.1 says so.
+    fn centre(
+        &mut self,
+        block: &mut BlockWords<'_>,
+        start: Point,
+        end: Point,
+        ccw: bool,
+    ) -> Result<(Point, Option<Point>), GcodeError> {
+        let [first, second, third] = self.modal.plane.axes();
         let letters = [centre_letter(first), centre_letter(second)];
+        let idle = centre_letter(third);
+        if let Some(word) = block.word(idle)
+            && word.value.exactly_times(1) == Some(0)
+        {
+            block.use_word(idle);
+            self.warn(WarningKind::IdleWord { letter: idle }, word.span);
+        }
         let radius = block.use_word(b'R');
         let i = self.use_length(block, letters[0])?.map(Offset::from_nm);
         let j = self.use_length(block, letters[1])?.map(Offset::from_nm);
@@ -58,14 +71,86 @@ where
                 return Err(self.error(GcodeErrorKind::ArcMixed, word.span));
             }
             let radius = self.length(word)?;
-            return centre_from_radius(start, end, radius, ccw).map_err(|kind| self.error(kind, word.span));
+            let centre = centre_from_radius(start, end, radius, ccw).map_err(|kind| self.error(kind, word.span))?;
+            return Ok((centre, None));
         }
         let span = self.block_span();
+        let absolute = absolute_centre(i, j, letters);
         match (i, j) {
             (None, None) => Err(self.error(GcodeErrorKind::ArcWithoutCentre, span)),
-            _ if self.modal.absolute_centres => absolute_centre(i, j, letters).map_err(|kind| self.error(kind, span)),
-            _ => Ok(centre_from_offsets(start, i, j)),
+            _ if self.modal.absolute_centres => {
+                absolute.map(|centre| (centre, None)).map_err(|kind| self.error(kind, span))
+            }
+            _ => Ok((centre_from_offsets(start, i, j), absolute.ok())),
         }
+    }
+
+    /// The arc, with the centre that makes it one. Where the program does not say how I and J count, the first arc that
+    /// is one in a single way tells it for all that follow; none is read in two ways.
+    fn curve(
+        &mut self,
+        start: Point,
+        end: Point,
+        (centre, absolute): (Point, Option<Point>),
+        ccw: bool,
+        digit: i64,
+    ) -> Result<(Point, Curve), GcodeError> {
+        let span = self.block_span();
+        let tolerance = if self.modal.units == Units::Inches { INCH_TOLERANCE } else { ARC_TOLERANCE };
+        let about = |centre| Curve::arc_within(start, end, centre, ccw, tolerance);
+        let read = about(centre);
+        // A full circle is one about any centre.
+        let other = absolute
+            .filter(|other| *other != centre && start != end)
+            .and_then(|other| Some((other, about(other).ok()?)));
+        match (read, other) {
+            (Ok(curve), None) => {
+                if absolute.is_some_and(|other| other != centre) {
+                    self.centres = ArcCentres::Incremental;
+                }
+                Ok((centre, curve))
+            }
+            // Both fit.
+            (Ok(curve), Some(_)) => {
+                self.centres = ArcCentres::Incremental;
+                Ok((centre, curve))
+            }
+            (Err(_), Some(other)) if self.centres == ArcCentres::Detect => {
+                self.warn(WarningKind::CentresFoundAbsolute, span);
+                self.modal.absolute_centres = true;
+                Ok(other)
+            }
+            (Err(error), other) => {
+                if let ArcError::RadiusMismatch { start: a, end: b } = error {
+                    let limit = tolerance.nm().max(a.nm().min(b.nm()) / 1000).saturating_add(digit);
+                    let wider = Curve::arc_within(start, end, centre, ccw, Offset::from_nm(limit));
+                    if let Ok(curve) = wider
+                        && (a - b).abs().nm() <= limit
+                    {
+                        self.warn(WarningKind::ArcBeyondLimit, span);
+                        return Ok((centre, curve));
+                    }
+                }
+                let kind = if other.is_some() { GcodeErrorKind::ArcCentreAbsolute } else { error.into() };
+                Err(self.error(kind, span))
+            }
+        }
+    }
+
+    /// What the rounding of the numbers of an arc can change of its radii: √2 times the last digit of its most exact
+    /// word at each end, no more than 0.01 mm or 0.001 in each; nothing without a decimal.
+    fn last_digit(&self, block: &BlockWords<'_>) -> i64 {
+        let decimals = |letter| match block.word(letter).map(|word| word.value) {
+            Some(Number::Exact(number)) => number.decimals(),
+            _ => 0,
+        };
+        let most = b"XYZIJK".iter().map(|&letter| decimals(letter)).max().unwrap_or(0);
+        let (unit, coarsest) = match self.modal.units {
+            Units::Millimetres => (1_000_000, 10_000),
+            Units::Inches => (25_400_000, 25_400),
+        };
+        let digit: i64 = Decimal::new(1, most).map_or(0, |digit| i64::try_from(digit.times(unit)).unwrap_or(0));
+        if most == 0 { 0 } else { digit.min(coarsest).saturating_mul(283) / 100 }
     }
 
     /// The place in the plane of arcs.

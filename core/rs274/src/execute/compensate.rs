@@ -1,7 +1,7 @@
 //! G40, G41, G42, G41.1, G42.1: which cutter keeps beside the path, and from where to where.
 
 use super::super::block::BlockWords;
-use super::super::compensation::{CompensationError, Cutter, Waiting};
+use super::super::compensation::{CompensationError, Cutter, StartUp, Waiting};
 use super::super::group::Group;
 use super::super::{Canon, CompensationBy, Event, GcodeError, GcodeErrorKind, Line, Plane, Source, Span, WarningKind};
 use super::Execution;
@@ -37,14 +37,22 @@ where
             return self.emit(Canon::Compensation { wall: None, offset_number: None }, span);
         }
         let left = matches!(code.tenths(), 410 | 411);
+        let wall = Some(if left { Side::Right } else { Side::Left });
+        let start_up = self.options.dialect.start_up();
         if self.modal.compensated {
+            // Said once more, which changes nothing.
+            let number = block.use_word(b'D').map(|word| self.whole(word)).transpose()?;
+            let same = wall == self.modal.wall && (number.is_none() || number == self.modal.radius_offset);
+            if same && start_up == StartUp::Next && matches!(code.tenths(), 410 | 420) {
+                return self.refuse_cycles(block);
+            }
             return Err(self.error(CompensationError::AlreadyOn.into(), span));
         }
         let diameter = match code.tenths() {
             411 | 421 => Some(self.diameter_in_program(block, span)?),
             _ => self.diameter_of_table(block, span)?,
         };
-        self.modal.wall = Some(if left { Side::Right } else { Side::Left });
+        self.modal.wall = wall;
         self.modal.compensated = diameter.is_some();
         self.emit(Canon::Compensation { wall: self.modal.wall, offset_number: self.modal.radius_offset }, span)?;
         let Some(diameter) = diameter else {
@@ -64,7 +72,7 @@ where
         // A negative radius keeps to the other side: that is how wear is entered where the program is the centre's.
         let side = if left == (radius > 0) { Side::Left } else { Side::Right };
         let cutter = Cutter { side, radius: Offset::from_nm(radius).abs() };
-        self.compensation.start(cutter, self.modal.plane);
+        self.compensation.start(cutter, self.modal.plane, start_up);
         Ok(())
     }
 
@@ -82,6 +90,10 @@ where
         match self.options.compensation {
             CompensationBy::Nothing => Ok(None),
             CompensationBy::Radius(radius) => Ok(Some(radius + radius)),
+            CompensationBy::ToolRadius { tool, radius } => {
+                let other = self.modal.tool.is_some_and(|number| number != tool);
+                Ok(if other { None } else { Some(radius + radius) })
+            }
             CompensationBy::Table => {
                 let Some(number) = word.and(self.modal.radius_offset).or(self.modal.tool) else {
                     return Ok(Some(Offset::ZERO));

@@ -1,9 +1,10 @@
 //! The words of canned cycles: those of a block, and those that stay while the cycle stays.
 //!
 //! LinuxCNC's rule: R, the depth, Q, P, I, J, K stay from hole to hole of one cycle; another code needs them again.
+//! Fanuc's: they stay until G80 or another motion.
 
 use super::super::block::BlockWords;
-use super::super::{CycleError, Event, GCode, GcodeError, GcodeErrorKind, Span};
+use super::super::{CycleError, Event, GCode, GcodeError, GcodeErrorKind, Span, WarningKind};
 use super::Execution;
 use super::memory::CycleMemory;
 
@@ -21,7 +22,14 @@ where
         code: GCode,
         span: Span,
     ) -> Result<CycleMemory, GcodeError> {
-        let before = self.cycle.filter(|memory| memory.code == code);
+        let keeps = self.options.dialect.keeps_motion_behind_cycle();
+        let before = self.cycle.filter(|memory| memory.code == code || keeps);
+        if let Some(memory) = self.cycle.filter(|memory| memory.code != code) {
+            let kept = [b'R', self.letter(self.modal.plane.axes()[2])].into_iter().find(|&l| block.word(l).is_none());
+            if let Some(letter) = kept.filter(|_| keeps && memory.code.tenths() != 870) {
+                self.warn(WarningKind::CycleWordKept { letter }, span);
+            }
+        }
         let [_, _, third] = self.modal.plane.axes();
         let depth_letter = self.letter(third);
         let missing = |letter| GcodeErrorKind::from(CycleError::WordMissing { code, letter });

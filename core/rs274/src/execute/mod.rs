@@ -44,8 +44,8 @@ use super::corner::CornerStage;
 use super::flow::{Next, Sentence};
 use super::parameter::Surroundings;
 use super::{
-    Axes, Canon, Event, GcodeError, GcodeErrorKind, Line, Memory, Modal, Options, PointlessLength, Source, Span, Token,
-    Tool, WarningKind, Warnings, Words,
+    ArcCentres, Axes, Canon, Comment, CommentKind, Event, GcodeError, GcodeErrorKind, Line, Memory, Modal, Motion,
+    Options, PointlessLength, Source, Span, Token, Tool, WarningKind, Warnings, Words,
 };
 
 use memory::{CHANGED_TOOLS, CycleMemory, LEVELS, SavedModes, SplineMemory};
@@ -76,6 +76,10 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     /// Whether the present block gives F.
     feed_given: bool,
     cycle: Option<CycleMemory>,
+    /// G0 or G1, with which axis words go on behind G80 in dialects that have it so.
+    before_cycle: Option<Motion>,
+    /// What is known of the centres of arcs beside `modal.absolute_centres`.
+    centres: ArcCentres,
     /// The line that is being read.
     reading: u32,
     /// Whether mist and flood are on.
@@ -132,6 +136,8 @@ where
             sink: Some(sink),
             feed_given: false,
             cycle: None,
+            before_cycle: None,
+            centres: options.arc_centres,
             reading: 1,
             coolant: (false, false),
             initial_level: None,
@@ -140,6 +146,7 @@ where
             saved: [None; LEVELS],
             returning: None,
         };
+        execution.modal.absolute_centres = options.arc_centres == ArcCentres::Absolute;
         execution.load_machine();
         execution
     }
@@ -149,6 +156,9 @@ where
         self.text = sentence.text;
         self.line = sentence.line;
         self.source = sentence.source;
+        if sentence.line.text.contains(&b'\r') {
+            self.warn(WarningKind::ReturnInLine, sentence.line.span());
+        }
         self.restore_returning()?;
         let mut block = BlockWords::gather(sentence)?;
         if sentence.has_comments {
@@ -164,13 +174,32 @@ where
         self.execute(&mut block)
     }
 
+    /// Of several comments in a block only the last one speaks, as in LinuxCNC.
     fn comments(&mut self) -> Result<(), GcodeError> {
+        let mut last = None;
         for token in Words::new(self.line) {
-            if let Token::Comment { span, body } = token? {
+            let Token::Comment { span, body } = token? else { continue };
+            // Behind a semicolon.
+            if body.end() == span.end() {
+                if let Some((span, body)) = last.take() {
+                    self.emit(Canon::Comment(body), span)?;
+                }
+                self.emit(Canon::Comment(body), span)?;
+                continue;
+            }
+            if body.of(self.text).contains(&b'(') {
+                self.warn(WarningKind::CommentInComment, span);
+            }
+            if let Some((span, body)) = last.replace((span, body))
+                && Comment::of(body.of(self.text)).kind == CommentKind::Plain
+            {
                 self.emit(Canon::Comment(body), span)?;
             }
         }
-        Ok(())
+        match last {
+            Some((span, body)) => self.emit(Canon::Comment(body), span),
+            None => Ok(()),
+        }
     }
 
     /// Gives one step to the sink; what it answers is an error at `span`.

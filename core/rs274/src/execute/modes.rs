@@ -8,8 +8,8 @@ use super::super::flow::Next;
 use super::super::group::Group;
 use super::super::mcode::MCodes;
 use super::super::{
-    Canon, CornerError, Event, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel, SettingError, WarningKind,
-    Word,
+    ArcCentres, Canon, CornerError, Event, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel, SettingError,
+    WarningKind, Word,
 };
 use super::Execution;
 
@@ -66,6 +66,11 @@ where
                 self.warn(WarningKind::UnusedOffsetNumber { letter }, word.span);
             }
         }
+        if m.spindle.is_some()
+            && let Some(word) = block.use_word(b'P')
+        {
+            self.warn(WarningKind::IdleWord { letter: b'P' }, word.span);
+        }
         if let Some(word) = block.first_unused() {
             let kind = match word.letter {
                 b'E' => GcodeErrorKind::ForeignDialect(Foreign::Printer),
@@ -79,7 +84,7 @@ where
     }
 
     /// Refuses codes that the dialect does not have, and two that both use the axis words.
-    fn check_codes(&self, block: &BlockWords<'_>) -> Result<(), GcodeError> {
+    fn check_codes(&mut self, block: &BlockWords<'_>) -> Result<(), GcodeError> {
         let dialect = self.options.dialect;
         if let Some((code, span)) = block.code(Group::Units)
             && matches!(code.tenths(), 700 | 710)
@@ -93,19 +98,26 @@ where
         {
             return Err(self.error(SettingError::Lathe(code).into(), span));
         }
-        let Some((first, _)) = block.code(Group::OneShot) else { return Ok(()) };
-        let uses_axes = match first.tenths() {
-            100 | 520 | 920 => true,
-            // Fanuc's posts write G0 beside G28.
-            280 | 300 => self.options.machine.is_some(),
-            _ => false,
-        };
-        match block.code(Group::Motion) {
-            Some((second, span)) if uses_axes && second.tenths() != 800 => {
-                Err(self.error(SettingError::AxesUsedTwice { first, second }.into(), span))
-            }
-            _ => Ok(()),
+        // G50 of a lathe moves the origin.
+        if let Some((code, span)) = block.code(Group::Cancel)
+            && code.tenths() == 500
+            && Self::names_axes(block)
+        {
+            return Err(self.error(SettingError::Lathe(code).into(), span));
         }
+        let Some((first, _)) = block.code(Group::OneShot) else { return Ok(()) };
+        let Some((second, span)) = block.code(Group::Motion).filter(|(code, _)| code.tenths() != 800) else {
+            return Ok(());
+        };
+        match (first.tenths(), second.tenths()) {
+            // Posts for Fanuc and Haas write G0 beside G28.
+            (280 | 300, 0 | 10) => self.warn(WarningKind::ReferenceWithMotion, span),
+            (100 | 280 | 300 | 520 | 920, _) => {
+                return Err(self.error(SettingError::AxesUsedTwice { first, second }.into(), span));
+            }
+            _ => {}
+        }
+        Ok(())
     }
 
     fn plane(&mut self, block: &BlockWords<'_>) -> Result<(), GcodeError> {
@@ -125,6 +137,7 @@ where
         }
         if let Some((code, _)) = block.code(Group::ArcDistance) {
             self.modal.absolute_centres = code.tenths() == 901;
+            self.centres = ArcCentres::Incremental;
         }
         if let Some((code, _)) = block.code(Group::ReturnLevel) {
             let before = code.tenths() == 980;

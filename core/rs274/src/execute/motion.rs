@@ -25,6 +25,13 @@ where
             return Ok(());
         }
         let named = block.has_unused(&PLACE_LETTERS);
+        if named
+            && self.modal.motion.is_none()
+            && let Some(motion) = self.before_cycle
+        {
+            self.warn(WarningKind::MotionBehindCycle, self.first_axis(block));
+            self.modal.motion = Some(motion);
+        }
         if !named && explicit.is_none() && !block.has_unused(b"IJKRP") {
             return Ok(());
         }
@@ -77,7 +84,10 @@ where
         }
         match code.tenths() {
             100 => self.set_table(block, span)?,
-            280 | 300 => self.reference(block, code.tenths() == 300, span)?,
+            280 | 300 => {
+                self.reference(block, code.tenths() == 300, span)?;
+                return Ok(true);
+            }
             281 | 301 => self.store_reference(code.tenths() == 301, span)?,
             520 => self.local_origin(block, code, span)?,
             920 => self.name_place(block, code, span)?,
@@ -136,10 +146,16 @@ where
                 return Err(self.error(CycleError::SplineOpen.into(), span));
             }
             self.splines.interrupted();
-            self.cycle = None;
+            let series = matches!((before, motion), (Some(Motion::Cycle(_)), Some(Motion::Cycle(_))));
+            if !series || !self.options.dialect.keeps_motion_behind_cycle() {
+                self.cycle = None;
+            }
         }
         if !matches!(motion, Some(Motion::Cycle(_))) {
             self.initial_level = None;
+        }
+        if matches!(motion, Some(Motion::Traverse | Motion::Feed)) && self.options.dialect.keeps_motion_behind_cycle() {
+            self.before_cycle = motion;
         }
         self.modal.motion = motion;
         Ok(())

@@ -3,7 +3,8 @@
 use super::super::block::BlockWords;
 use super::super::group::Group;
 use super::super::{
-    Canon, CycleError, Event, FeedMode, GCode, GcodeError, GcodeErrorKind, SettingError, Units, WarningKind, Word,
+    Canon, CycleError, Dialect, Event, FeedMode, GCode, GcodeError, GcodeErrorKind, SettingError, Units, WarningKind,
+    Word,
 };
 use super::Execution;
 use truepath_units::Real;
@@ -42,8 +43,12 @@ where
             }
             self.emit(Canon::FeedMode(mode), span)?;
         }
-        self.feed_given = block.word(b'F').is_some();
-        if let Some(word) = block.use_word(b'F') {
+        // The S, and for Siemens the F, of G4 is its time.
+        let dwells = block.code(Group::OneShot).is_some_and(|(code, _)| code.tenths() == 40)
+            && [b'P', b'X', b'U'].iter().all(|&letter| block.word(letter).is_none());
+        let is_time = dwells && self.options.dialect == Dialect::Siemens;
+        self.feed_given = block.word(b'F').is_some() && !is_time;
+        if let Some(word) = block.use_word_if(b'F', !is_time) {
             let feed = if self.modal.feed_mode == FeedMode::InverseTime {
                 word.value.real()
             } else {
@@ -56,7 +61,7 @@ where
             self.modal.feed = Some(self.rate(word, feed)?);
             self.emit(Canon::FeedRate(feed), word.span)?;
         }
-        if let Some(word) = block.use_word(b'S') {
+        if let Some(word) = block.use_word_if(b'S', !dwells) {
             let speed = self.rate(word, word.value.real())?;
             self.modal.speed = Some(speed);
             self.emit(Canon::SpindleSpeed(speed), word.span)?;

@@ -4,8 +4,8 @@ use super::super::block::BlockWords;
 use super::super::group::Group;
 use super::super::mcode::{MCode, MCodes};
 use super::super::{
-    Canon, Coolant, CycleError, Event, GcodeError, GcodeErrorKind, PathControl, SettingError, Span, Spindle,
-    WarningKind,
+    Canon, Coolant, CycleError, Dialect, Event, GcodeError, GcodeErrorKind, Number, PathControl, SettingError, Span,
+    Spindle, WarningKind,
 };
 use super::Execution;
 use truepath_units::Offset;
@@ -112,14 +112,33 @@ where
             return Ok(());
         };
         // X and U are Fanuc's other letters for the time: no axis moves.
-        let word = block.use_word(b'P').or_else(|| block.use_word(b'X')).or_else(|| block.use_word(b'U'));
+        let siemens = self.options.dialect == Dialect::Siemens;
+        let word = [b'P', b'X', b'U'].iter().find_map(|&letter| block.use_word(letter));
+        let word = word.or_else(|| block.use_word_if(b'F', siemens)).or_else(|| block.use_word(b'S'));
         let Some(word) = word else {
             return Err(self.error(GcodeErrorKind::DwellWithoutTime, span));
         };
         if word.value.is_negative() {
             return Err(self.error(GcodeErrorKind::Negative { letter: word.letter }, word.span));
         }
-        self.emit(Canon::Dwell(word.value), span)
+        let time = match word.letter {
+            b'S' if siemens => self.revolutions(word.value),
+            b'S' => {
+                self.warn(WarningKind::DwellByS, word.span);
+                word.value
+            }
+            _ => word.value,
+        };
+        self.emit(Canon::Dwell(time), span)
+    }
+
+    /// The seconds of some turns of the spindle; 0 while it has no speed.
+    #[expect(clippy::float_arithmetic, reason = "a time, of which no place depends")]
+    fn revolutions(&self, turns: Number) -> Number {
+        match self.modal.speed.map(|speed| Number::of_real(speed, 1, 1)) {
+            Some(speed) if speed > 0.0 => Number::Computed(turns.value() * 60.0 / speed),
+            _ => Number::ZERO,
+        }
     }
 
     /// G61, G61.1, G64 P Q; G187 P E is Haas' word for the same and sets nothing that is known here.

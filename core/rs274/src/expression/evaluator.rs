@@ -121,7 +121,11 @@ impl<'e, P: MachineParameters> Evaluator<'e, P> {
                     };
                     let behind = next.get(len..).unwrap_or(&[]);
                     if function == Function::Exists {
-                        return self.exists(behind, at);
+                        match self.exists(behind, at)? {
+                            (true, end) => return Ok(end),
+                            (false, number) => rest = number,
+                        }
+                        continue;
                     }
                     self.wait(Waiting::Function(function), at)?;
                     rest = behind;
@@ -132,21 +136,25 @@ impl<'e, P: MachineParameters> Evaluator<'e, P> {
         }
     }
 
-    /// `EXISTS[#<name>]`, `EXISTS[#5]`.
-    fn exists<'t>(&mut self, text: &'t [u8], at: usize) -> Result<&'t [u8], Fault> {
+    /// `EXISTS[#<name>]`, `EXISTS[#5]`; `false` with the text of the number where that is computed, `EXISTS[##1]`.
+    fn exists<'t>(&mut self, text: &'t [u8], at: usize) -> Result<(bool, &'t [u8]), Fault> {
         let wrong = fault(ExpressionError::ExistsWithoutParameter, at, 0);
         let inside = trimmed(text).strip_prefix(b"[").ok_or(wrong)?;
         let inside = trimmed(trimmed(inside).strip_prefix(b"#").ok_or(wrong)?);
         let (known, end) = if inside.first() == Some(&b'<') {
             let (name, len) = name(inside).map_err(|kind| fault(kind, at, 0))?;
             (self.named(&name).is_some(), inside.get(len..).unwrap_or(&[]))
+        } else if matches!(inside.first(), Some(b'#' | b'[')) {
+            self.wait(Waiting::Function(Function::Exists), at)?;
+            self.wait(Waiting::Bracket, at)?;
+            return Ok((false, inside));
         } else {
             let (end, value) = number(inside);
             (value.is_ok(), end)
         };
         let end = trimmed(end).strip_prefix(b"]").ok_or(wrong)?;
         self.push(if known { 1.0 } else { 0.0 }, at)?;
-        Ok(end)
+        Ok((true, end))
     }
 
     /// Closes a bracket; `false` when another operand must follow (`ATAN[y]/`).
@@ -165,6 +173,13 @@ impl<'e, P: MachineParameters> Evaluator<'e, P> {
                 self.waiting.pop();
                 let (x, y) = (self.pop(at)?, self.pop(at)?);
                 self.push(Function::atan(y, x), at)?;
+                Ok(true)
+            }
+            Some((Waiting::Function(Function::Exists), start)) => {
+                self.waiting.pop();
+                let number = self.pop(at)?;
+                let known = parameter_number(number, self.dialect).is_ok_and(|number| number > 0);
+                self.push(if known { 1.0 } else { 0.0 }, start)?;
                 Ok(true)
             }
             Some((Waiting::Function(function), start)) => {

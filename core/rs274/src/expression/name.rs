@@ -12,12 +12,15 @@ pub(in super::super) type Name = heapless::Vec<u8, BYTES>;
 /// The name that `<` opens at the start of a text, and the length of the text up to and with `>`.
 ///
 /// # Errors
-/// No `>`, or a name too long.
+/// No `>` before the line or a comment (`;`) ends it, or a name too long.
 pub(in super::super) fn name(text: &[u8]) -> Result<(Name, usize), ExpressionError> {
     let end = text.iter().position(|&b| b == b'>').ok_or(ExpressionError::NameNotClosed)?;
     let inside = text.get(1..end).unwrap_or(&[]);
     let mut name = Name::new();
     for byte in inside.iter().filter(|b| !is_blank(**b)) {
+        if *byte == b';' {
+            return Err(ExpressionError::NameNotClosed);
+        }
         let limit = BYTES as u8;
         name.push(byte.to_ascii_lowercase()).map_err(|_| ExpressionError::NameTooLong { limit })?;
     }

@@ -1,8 +1,8 @@
 //! Calls of subprograms and the way back.
 
-use super::super::lexical::trimmed;
+use super::super::lexical::behind_comments;
 use super::super::parameter::Surroundings;
-use super::super::{FlowError, GcodeError, Span};
+use super::super::{FlowError, GcodeError, GcodeErrorKind, Span};
 use super::keyword::digits;
 use super::next::{Next, Target};
 use super::open::{CALLS, Call, CallKind};
@@ -169,9 +169,13 @@ impl<'p> Reader<'p> {
 
     /// Refuses text behind a complete statement; comments may follow.
     pub(super) fn nothing_behind(&self, rest: &[u8]) -> Result<(), GcodeError> {
-        let rest = trimmed(rest);
-        if matches!(rest.first(), None | Some(b'(' | b';')) {
+        let rest = behind_comments(rest);
+        if matches!(rest.first(), None | Some(b';')) {
             return Ok(());
+        }
+        if rest.first() == Some(&b'(') {
+            let start = self.line.span().end().saturating_sub(rest.len());
+            return Err(self.error(GcodeErrorKind::UnclosedComment, Span { start, len: rest.len() }));
         }
         let start = self.line.span().end().saturating_sub(rest.len());
         Err(self.error(FlowError::TextBehind, Span { start, len: rest.trim_ascii_end().len() }))

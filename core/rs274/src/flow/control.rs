@@ -1,6 +1,6 @@
 //! O words: subprograms, conditions and loops of LinuxCNC.
 
-use super::super::lexical::trimmed;
+use super::super::lexical::{behind_comments, trimmed};
 use super::super::parameter::Surroundings;
 use super::super::{FlowError, GcodeError, Lines, Span};
 use super::keyword::{Keyword, Label, OLine, digits, keyword, label};
@@ -93,10 +93,10 @@ impl<'p> Reader<'p> {
 
     /// The number in brackets behind a keyword.
     fn bracket(&self, word: OWord<'p>, machine: &impl Surroundings) -> Result<(f64, &'p [u8]), GcodeError> {
-        if trimmed(word.rest).first() != Some(&b'[') {
+        if behind_comments(word.rest).first() != Some(&b'[') {
             return Err(self.error(FlowError::Condition, word.span));
         }
-        self.evaluate(machine, word.rest, false)
+        self.evaluate(machine, behind_comments(word.rest), false)
     }
 
     pub(super) fn is_true(&self, word: OWord<'p>, machine: &impl Surroundings) -> Result<bool, GcodeError> {
@@ -109,7 +109,8 @@ impl<'p> Reader<'p> {
     fn seek(&mut self, word: OWord<'p>, keywords: &[Keyword]) -> Result<(Keyword, OWord<'p>), GcodeError> {
         let mut lines = self.place.lines.clone();
         while let Some(line) = lines.next() {
-            if let Some(o) = OLine::of(&line)
+            let read = OLine::checked(&line).map_err(|kind| GcodeError::new(kind.into(), &line, line.span()));
+            if let Some(o) = read.map_err(|error| error.in_file(self.place.file))?
                 && o.label == word.label
                 && keywords.contains(&o.keyword)
             {
@@ -223,12 +224,12 @@ impl<'p> Reader<'p> {
 
     fn call_sub(&mut self, word: OWord<'p>, name: &[u8], machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         let mut arguments = heapless::Vec::<f64, { ARGUMENTS as usize }>::new();
-        let mut rest = word.rest;
-        while trimmed(rest).first() == Some(&b'[') {
+        let mut rest = behind_comments(word.rest);
+        while rest.first() == Some(&b'[') {
             let (value, behind) = self.evaluate(machine, rest, false)?;
             let full = |_| self.error(FlowError::TooManyArguments { limit: ARGUMENTS }, word.span);
             arguments.push(value).map_err(full)?;
-            rest = behind;
+            rest = behind_comments(behind);
         }
         self.nothing_behind(rest)?;
         let place = self.sub_place(word.label, name).ok_or_else(|| self.error(FlowError::NoSuchProgram, word.span))?;
@@ -264,8 +265,9 @@ impl<'p> Reader<'p> {
         if !self.calls.last().is_some_and(|call| call.kind == CallKind::Sub) {
             return Err(self.error(FlowError::ReturnOutside, word.span));
         }
-        let given = trimmed(word.rest).first() == Some(&b'[');
-        let (value, rest) = if given { self.evaluate(machine, word.rest, false)? } else { (0.0, word.rest) };
+        let given = behind_comments(word.rest).first() == Some(&b'[');
+        let (value, rest) =
+            if given { self.evaluate(machine, behind_comments(word.rest), false)? } else { (0.0, word.rest) };
         self.nothing_behind(rest)?;
         let returned = if given { 1.0 } else { 0.0 };
         for (name, value) in [(&b"_value"[..], value), (b"_value_returned", returned)] {

@@ -1,8 +1,8 @@
 //! The O words of LinuxCNC: their labels and keywords.
 
-use super::super::Line;
 use super::super::expression::name;
-use super::super::lexical::{is_blank, number, trimmed};
+use super::super::lexical::{behind_comments, is_blank, number, spelled, trimmed};
+use super::super::{FlowError, Line};
 use super::place::statement;
 
 /// What an O word does.
@@ -46,23 +46,8 @@ const WORDS: [(&[u8], Keyword); 15] = [
 impl Keyword {
     /// The keyword at the start of a text, blanks inside it allowed, and what follows it. The longest one wins.
     fn at(text: &[u8]) -> Option<(Self, &[u8])> {
-        let word = |(word, keyword): &(&[u8], Self)| {
-            let mut left = word.iter();
-            let mut end = 0usize;
-            for (index, &byte) in text.iter().enumerate() {
-                if left.as_slice().is_empty() {
-                    break;
-                }
-                if is_blank(byte) {
-                    continue;
-                }
-                if left.next() != Some(&byte.to_ascii_uppercase()) {
-                    return None;
-                }
-                end = index.saturating_add(1);
-            }
-            if left.as_slice().is_empty() { Some((*keyword, text.get(end..)?)) } else { None }
-        };
+        let text = trimmed(text);
+        let word = |(word, keyword): &(&[u8], Self)| Some((*keyword, text.get(spelled(text, word)?..)?));
         WORDS.iter().filter_map(word).min_by_key(|(_, rest)| rest.len())
     }
 }
@@ -111,14 +96,30 @@ pub(super) struct OLine<'t> {
 impl<'t> OLine<'t> {
     /// Of a line; `None` when it is no such line.
     pub(super) fn of(line: &Line<'t>) -> Option<Self> {
-        let first = line.text.iter().find(|b| !is_blank(**b))?;
-        if !matches!(first, b'o' | b'O' | b'n' | b'N' | b'/') {
-            return None;
+        Self::checked(line).ok().flatten()
+    }
+
+    /// Of a line that is passed over.
+    ///
+    /// # Errors
+    /// It begins with an O word that is neither such a line nor the number of a program.
+    pub(super) fn checked(line: &Line<'t>) -> Result<Option<Self>, FlowError> {
+        let first = line.text.iter().find(|b| !is_blank(**b));
+        if !matches!(first, Some(b'o' | b'O' | b'n' | b'N' | b'/')) {
+            return Ok(None);
         }
-        let (b'o' | b'O', behind) = statement(line).split_first()? else { return None };
-        let (label, rest) = label(trimmed(behind))?;
-        let (keyword, rest) = Keyword::at(rest)?;
-        Some(Self { label, keyword, rest })
+        let Some((b'o' | b'O', behind)) = statement(line).split_first() else { return Ok(None) };
+        let behind = trimmed(behind);
+        match (label(behind), behind.first()) {
+            (Some((label, rest)), _) => match Keyword::at(rest) {
+                Some((keyword, rest)) => Ok(Some(Self { label, keyword, rest })),
+                None if behind_comments(rest).is_empty() => Ok(None),
+                None => Err(FlowError::Keyword),
+            },
+            // Its label is computed when it is executed.
+            (None, Some(b'[' | b'#')) => Ok(None),
+            (None, _) => Err(FlowError::Label),
+        }
     }
 }
 

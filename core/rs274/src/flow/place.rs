@@ -1,6 +1,6 @@
 //! A place in a program or in a file it calls, and the search for another one.
 
-use super::super::lexical::{is_blank, number, trimmed};
+use super::super::lexical::{is_blank, is_word, number, spelled, trimmed};
 use super::super::{Line, Lines};
 
 /// A place: the next line to be read.
@@ -91,9 +91,11 @@ fn program_number(text: &[u8]) -> Option<u32> {
     let (rest, value) = number(behind);
     // `O100 if` is no program; `O100 sub` is one that M98 may call too.
     let rest = trimmed(rest);
-    let letters = rest.iter().take_while(|b| b.is_ascii_alphabetic()).count();
-    let named = rest.get(..letters).is_some_and(|word| word.eq_ignore_ascii_case(b"sub"));
-    if letters > 1 && !named { None } else { u32::try_from(value.ok()?.exactly_times(1)?).ok() }
+    if is_word(rest) && spelled(rest, b"SUB").is_none() {
+        None
+    } else {
+        u32::try_from(value.ok()?.exactly_times(1)?).ok()
+    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::super::parameter::Surroundings;
 use super::super::{Dialect, FlowError, GcodeError, GcodeErrorKind, Line, Number, Options, Source, Span};
 use super::Program;
 use super::frame::Frame;
-use super::open::{CALLS, Call, OpenList};
+use super::open::{CALLS, Call, CallKind, OpenList};
 use super::place::Place;
 use super::sentence::{ASSIGNMENTS, Assignments, Sentence, Word};
 
@@ -149,7 +149,13 @@ impl<'p> Reader<'p> {
                         return Err(self.error(GcodeErrorKind::DuplicateWord { letter: b'N' }, word.span));
                     }
                 }
-                Token::Comment { .. } => sentence.has_comments = true,
+                Token::Comment { span, body } => {
+                    let nested = body.end() < span.end() && body.of(self.place.text).contains(&b')');
+                    if nested && self.dialect == Dialect::Linuxcnc {
+                        return Err(self.error(GcodeErrorKind::StrayParenthesis, span));
+                    }
+                    sentence.has_comments = true;
+                }
                 Token::Percent(_) => {}
                 Token::BlockDelete { span, .. } => {
                     if begun || sentence.block_delete.is_some() {
@@ -184,6 +190,12 @@ impl<'p> Reader<'p> {
                 }
                 Token::Control(span) => return Ok(Read::Control(span)),
             }
+        }
+        // The number of a program is none inside of a subprogram that an O word has begun.
+        if self.calls.last().is_some_and(|call| call.kind == CallKind::Sub)
+            && let Some(word) = sentence.words.iter().find(|word| word.letter == b'O')
+        {
+            return Err(self.error(FlowError::Keyword, word.span));
         }
         self.assign(machine, &assignments)?;
         let empty = sentence.words.is_empty() && !sentence.has_comments && sentence.block_delete.is_none();

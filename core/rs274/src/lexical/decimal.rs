@@ -131,9 +131,9 @@ pub enum NumberError {
     TooLarge,
 }
 
-/// A blank between the parts of a block: space, tab, and what punched-tape and DOS files carry (NUL, VT, FF, ^Z).
+/// A blank between the parts of a block: space, tab, and what punched-tape and DOS files carry (NUL, VT, FF, CR, ^Z).
 pub(in super::super) const fn is_blank(byte: u8) -> bool {
-    matches!(byte, b' ' | b'\t' | 0 | 0x0B | 0x0C | 0x1A)
+    matches!(byte, b' ' | b'\t' | b'\r' | 0 | 0x0B | 0x0C | 0x1A)
 }
 
 /// The bytes behind the blanks in front.

@@ -1,6 +1,6 @@
 //! How far a value, a parameter or a statement reaches, without computing it.
 
-use super::decimal::{number, trimmed};
+use super::decimal::{is_blank, number, trimmed};
 use super::symbol::{Function, Operator};
 
 /// Bytes of the value at the start of a text, blanks before it included: a number, a parameter, a function, an
@@ -73,19 +73,53 @@ pub(super) fn is_statement(text: &[u8]) -> bool {
         || is_here(b"PCLOS")
 }
 
-/// Bytes of a statement: up to a comment or the end of the line, without the blanks before that.
+/// Bytes of a statement: up to the comments and blanks at the end of the line, which are no part of it.
 pub(super) fn statement(text: &[u8]) -> usize {
-    let mut name = false;
-    let end = text.iter().position(|&byte| {
-        name = match byte {
-            b'<' => true,
-            b'>' => false,
-            _ => name,
+    let mut rest = text;
+    let mut end = text;
+    while let Some((&byte, behind)) = rest.split_first() {
+        rest = match byte {
+            b';' => break,
+            b'(' => match comment(rest).and_then(|len| rest.get(len..)) {
+                Some(behind) => behind,
+                None => break,
+            },
+            _ => {
+                let behind = if byte == b'<' { after(behind, b'>') } else { behind };
+                if !is_blank(byte) {
+                    end = behind;
+                }
+                behind
+            }
         };
-        !name && matches!(byte, b'(' | b';')
+    }
+    length(text, end)
+}
+
+/// Bytes of the comment that opens at the start of a text, its parentheses included: up to the one that closes it where
+/// comments stand inside each other, or up to the first `)` where they do not match. `None` when nothing closes it.
+pub(super) fn comment(text: &[u8]) -> Option<usize> {
+    let mut depth = 0u32;
+    let matching = text.iter().position(|&byte| {
+        match byte {
+            b'(' => depth = depth.saturating_add(1),
+            b')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        depth == 0
     });
-    let text = text.get(..end.unwrap_or(text.len())).unwrap_or(text);
-    text.trim_ascii_end().len()
+    matching.or_else(|| text.iter().position(|&b| b == b')')).map(|n| n.saturating_add(1))
+}
+
+/// What follows the blanks and comments at the start of a text.
+pub(in super::super) fn behind_comments(text: &[u8]) -> &[u8] {
+    let mut rest = trimmed(text);
+    while let Some(b'(') = rest.first()
+        && let Some(behind) = comment(rest).and_then(|len| rest.get(len..))
+    {
+        rest = trimmed(behind);
+    }
+    rest
 }
 
 fn length(text: &[u8], rest: &[u8]) -> usize {

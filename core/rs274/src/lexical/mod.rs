@@ -9,7 +9,9 @@ mod word;
 
 pub use decimal::{Decimal, NumberError};
 pub(super) use decimal::{is_blank, number, trimmed};
+pub(super) use extent::behind_comments;
 pub use number::Number;
-pub(super) use symbol::{Function, Operator};
+pub(super) use symbol::{Function, Operator, spelled};
 pub use token::{Token, WrittenWord};
 pub use word::Words;
+pub(super) use word::is_word;

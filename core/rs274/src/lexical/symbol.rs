@@ -1,6 +1,26 @@
 //! The names of functions and operators in expressions.
 
-use super::decimal::trimmed;
+use super::decimal::{is_blank, trimmed};
+
+/// The length of a word of letters or signs at the start of a text, in any case and with blanks inside it, as LinuxCNC
+/// reads it.
+pub(in super::super) fn spelled(text: &[u8], word: &[u8]) -> Option<usize> {
+    let mut left = word.iter();
+    let mut expected = left.next()?;
+    for (index, byte) in text.iter().enumerate() {
+        if index > 0 && is_blank(*byte) {
+            continue;
+        }
+        if byte.to_ascii_uppercase() != *expected {
+            return None;
+        }
+        match left.next() {
+            Some(next) => expected = next,
+            None => return Some(index.saturating_add(1)),
+        }
+    }
+    None
+}
 
 /// A function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,11 +61,8 @@ const NAMES: [(&[u8], Function); 14] = [
 impl Function {
     /// The function at the start of a text, and the length of its name. A bracket must follow.
     pub(in super::super) fn at(text: &[u8]) -> Option<(Self, usize)> {
-        let is_here = |name: &[u8]| {
-            text.split_at_checked(name.len())
-                .is_some_and(|(here, rest)| here.eq_ignore_ascii_case(name) && trimmed(rest).first() == Some(&b'['))
-        };
-        NAMES.iter().find(|(name, _)| is_here(name)).map(|(name, function)| (*function, name.len()))
+        let before_bracket = |len: &usize| text.get(*len..).map(trimmed).and_then(|r| r.first()) == Some(&b'[');
+        NAMES.iter().find_map(|(name, function)| Some((*function, spelled(text, name).filter(before_bracket)?)))
     }
 }
 
@@ -87,14 +104,12 @@ impl Operator {
     /// The operator at the start of a text, and its length.
     pub(in super::super) fn at(text: &[u8]) -> Option<(Self, usize)> {
         match text {
-            [b'*', b'*', ..] => Some((Self::Power, 2)),
-            [b'*', ..] => Some((Self::Times, 1)),
+            [b'*', ..] => Some(spelled(text, b"**").map_or((Self::Times, 1), |len| (Self::Power, len))),
             [b'/', ..] => Some((Self::Over, 1)),
             [b'+', ..] => Some((Self::Plus, 1)),
             [b'-', ..] => Some((Self::Minus, 1)),
             [first, ..] if first.is_ascii_alphabetic() => {
-                let is_here = |name: &[u8]| text.get(..name.len()).is_some_and(|t| t.eq_ignore_ascii_case(name));
-                WORDS.iter().find(|(name, _)| is_here(name)).map(|(name, operator)| (*operator, name.len()))
+                WORDS.iter().find_map(|(name, operator)| Some((*operator, spelled(text, name)?)))
             }
             _ => None,
         }

@@ -39,7 +39,8 @@ pub enum Token {
         /// The switch, 1 when no digit is given.
         switch: u8,
     },
-    /// `%` as the first character of a line, with nothing but comments after it.
+    /// `%` as the first character of a line, with nothing but comments or a program number after it; or a line that names
+    /// the file, `%_N_PART_MPF` or `$PART.MIN%`.
     Percent(Span),
 }
 

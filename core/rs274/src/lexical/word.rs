@@ -1,13 +1,13 @@
 //! Bytes → words: the lexical layer, one line at a time.
 //!
 //! A line is an optional `/`, words of one letter and one number in any case and with blanks anywhere, assignments of
-//! parameters, comments in `( )` (they do not nest) and a comment after `;`; or a statement that steers the program.
+//! parameters, comments in `( )` (one inside another belongs to it) and a comment after `;`; or a statement that steers the program.
 //! `:1234` is the program name `O1234`. Sources: RS274/NGC interpreter version 3 (Kramer, Proctor, Messina, NIST 6556)
 //! §3.3, and the Fanuc and Haas spellings of the same. Nothing is skipped: a byte that belongs to none of these is an
 //! error with its place. Expressions are measured here, not computed.
 
 use super::super::{CornerError, Foreign, GcodeError, GcodeErrorKind, Line, Span};
-use super::decimal::{NumberError, number, trimmed};
+use super::decimal::{NumberError, is_blank, number, trimmed};
 use super::extent;
 use super::{Token, WrittenWord};
 
@@ -57,6 +57,9 @@ impl<'a> Words<'a> {
             return Err(self.error(from, GcodeErrorKind::ForeignDialect(Foreign::Heidenhain)));
         }
         self.advance(1);
+        if self.percent && matches!(byte, b'O' | b'o' | b':') {
+            self.percent = false;
+        }
         if self.percent && !matches!(byte, b'(' | b';') {
             self.rest = &[];
             return Err(self.error(from, GcodeErrorKind::TextAfterPercent));
@@ -70,6 +73,10 @@ impl<'a> Words<'a> {
                 Ok(Token::Comment { span, body })
             }
             b'/' => Ok(self.block_delete(from)),
+            b'%' | b'$' if first && is_header(from) => {
+                self.rest = &[];
+                Ok(Token::Percent(self.span_from(from)))
+            }
             b'%' if first => {
                 self.percent = true;
                 Ok(Token::Percent(self.span_from(from)))
@@ -108,12 +115,12 @@ impl<'a> Words<'a> {
     }
 
     fn comment(&mut self, from: &'a [u8]) -> Result<Token, GcodeError> {
-        let Some(len) = self.rest.iter().position(|&b| b == b')') else {
+        let Some(len) = extent::comment(from) else {
             self.rest = &[];
             return Err(self.error(from, GcodeErrorKind::UnclosedComment));
         };
-        let body = Span { start: self.offset(self.rest), len };
-        self.advance(len.saturating_add(1));
+        let body = Span { start: self.offset(self.rest), len: len.saturating_sub(2) };
+        self.rest = from.get(len..).unwrap_or(&[]);
         Ok(Token::Comment { span: self.span_from(from), body })
     }
 
@@ -197,16 +204,32 @@ impl Iterator for Words<'_> {
     }
 }
 
+/// Whether the first line of a program names its file: `%_N_PART_MPF` (Siemens), `$PART.MIN%` (Okuma).
+fn is_header(line: &[u8]) -> bool {
+    let text = line.trim_ascii_end();
+    let is_name = |name: &[u8]| name.iter().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-' | b'.'));
+    match (text.strip_prefix(b"%_N_"), text.strip_prefix(b"$").and_then(|name| name.strip_suffix(b"%"))) {
+        (Some(name), _) | (None, Some(name)) => is_name(name),
+        _ => false,
+    }
+}
+
 /// How many letters stand here without a blank between them.
 fn letters(text: &[u8]) -> usize {
     text.iter().take_while(|b| b.is_ascii_alphabetic()).count()
+}
+
+/// Whether two letters in a row stand here, blanks between them not counted: a word of a language.
+pub(in super::super) fn is_word(text: &[u8]) -> bool {
+    let mut letters = text.iter().filter(|b| !is_blank(**b));
+    letters.next().is_some_and(u8::is_ascii_alphabetic) && letters.next().is_some_and(u8::is_ascii_alphabetic)
 }
 
 /// Whether what stands behind an O steers the program: a name, an expression, or a number with a word of letters.
 fn is_control(text: &[u8]) -> bool {
     match trimmed(text).first() {
         Some(b'<' | b'[' | b'#') => true,
-        Some(b'0'..=b'9') => letters(trimmed(number(text).0)) > 1,
+        Some(b'0'..=b'9') => is_word(trimmed(number(text).0)),
         _ => false,
     }
 }

@@ -66,7 +66,7 @@ fn every_way_to_write_the_corner_gives_the_same_nanometres() {
         "G21 G90\nG0 X34 Y80 Z-15\nG1 Y35 F250\nG3 X39 Y30 R5\nG1 X90\nM2",
         "G21 G90\nG0 X34 Y80 Z-15\nG1 Y35 F250\nG90.1 G3 X39 Y30 I39 J35\nG91.1 G1 X90\nM2",
         "G21 G90\nG0 X34 Y80 Z-15\nG91 G1 Y-45 F250\nG3 X5 Y-5 I5\nG1 X51\nM2",
-        "g21g90\r\ng0 x34y80z-15\r\ng1 y3 5.00 f 2 50;\rG3x39 y30 (quarter turn) i5\nx90 g1\nm2",
+        "g21g90\r\ng0 x34y80z-15\r\ng1 y3 5.00 f 2 50; \r \r\r\nG3x39 y30 (quarter turn) i5\nx90 g1\nm2",
         "G20 G90\nG0 X1.33858267717 Y3.14960629921 Z-.590551181102\nG1 Y1.37795275591 F10\nG3 X1.53543307087 Y1.1811023622 I.196850393701 J0\nG1 X3.54330708661\nM2",
         "/G21 G90\n:77\nN1 G0 X34 Y80 Z-15\nN1.5 G1 Y35 F250\nY35\nN2 G3 X39 Y30 I5\nN3 G1 X90 Y30\nM30",
     ];

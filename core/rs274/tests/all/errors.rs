@@ -37,7 +37,7 @@ const TABLE: &[(&[u8], &str)] = &[
     (b"S\nG1 X1 (to the wall", "line 2, column 7: G004: the comment opened by `(` is not closed in this line; add `)`"),
     (
         b"S\nG1 X1 (a (b) )",
-        "line 2, column 14: G005: `)` without `(`: comments do not nest, so the comment ended at the first `)`; remove the inner parentheses",
+        "line 2, column 7: G005: `)` without `(`: in this dialect comments do not stand inside each other; remove the inner parentheses, or name the dialect of the control",
     ),
     (
         b"S\n#1",
@@ -97,7 +97,7 @@ const TABLE: &[(&[u8], &str)] = &[
         b"S\nG1 X1e3",
         "line 2, column 6: G009: an E word: this is a 3D printer's program, or a number with an exponent; post it for a milling machine, with plain numbers",
     ),
-    (b"%_N_CORNER_MPF\nG1 X1", "line 1, column 2: G010: text after `%`; only a comment may follow it on its line"),
+    (b"%N_CORNER_MPF\nG1 X1", "line 1, column 2: G010: text after `%`; only a comment may follow it on its line"),
     (b"S\nG1 X1 X2", "line 2, column 7: G022: X is given twice in this block; keep one"),
     (b"N1 N2 G0", "line 1, column 4: G022: N is given twice in this block; keep one"),
     (

@@ -3,11 +3,14 @@
 mod canon;
 mod compensation;
 mod compensation_properties;
+mod compensation_start;
 mod contour;
 mod corner;
 mod decimal;
+mod disturbed;
 mod errors;
 mod flow;
 mod machine;
 mod properties;
 mod search;
+mod tolerance;

@@ -43,7 +43,7 @@ pub enum ArcError {
 }
 
 /// LinuxCNC's tolerance on an arc's end: an error above 100 times this, or above this and 0.1 % of the radius.
-const ARC_TOLERANCE_NM: i64 = 28_300;
+pub const ARC_TOLERANCE: Offset = Offset::from_nm(28_300);
 
 impl Curve {
     /// A line of one nanometre along x from the origin, with which buffers are filled.
@@ -67,7 +67,7 @@ impl Curve {
     /// # Errors
     /// [`ArcError`] when a radius vanishes or the radii of start and end disagree beyond LinuxCNC's rule.
     pub fn arc(start: Point, end: Point, centre: Point, counter_clockwise: bool) -> Result<Self, ArcError> {
-        Self::arc_within(start, end, centre, counter_clockwise, Offset::from_nm(ARC_TOLERANCE_NM))
+        Self::arc_within(start, end, centre, counter_clockwise, ARC_TOLERANCE)
     }
 
     /// An arc whose two radii may differ by a tolerance, or by 0.1 % up to 100 times the tolerance.

@@ -19,7 +19,7 @@ mod side;
 mod vector;
 
 pub use contour::{Block, Contour, FACET_TURN_LIMIT, Place};
-pub use curve::{ArcError, Curve, Shape};
+pub use curve::{ARC_TOLERANCE, ArcError, Curve, Shape};
 pub use nearest::Nearest;
 pub use side::Side;
 pub use vector::{Direction, Point, Vector};

@@ -53,7 +53,7 @@ proptest! {
         let start = pieces[0].from;
         let away = Point::from_nm(start.x.nm() - 400 * MM, start.y.nm() - 7 * MM);
         let pieces: Vec<Piece> = core::iter::once(line(away, start)).chain(pieces).collect();
-        let mut cutter_path = CutterPath::new(cutter(side, radius));
+        let mut cutter_path = CutterPath::new(cutter(side, radius), StartUp::Own);
         let wanted = if left { radius as f64 } else { -radius as f64 };
         for (i, piece) in pieces.iter().enumerate() {
             let Ok(step) = cutter_path.push(*piece) else { return Ok(()) };
