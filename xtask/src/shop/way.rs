@@ -9,9 +9,11 @@ use serde_json::Value;
 
 use super::table::Program;
 use super::wall;
-use crate::repository::{program, target};
+use crate::repository::{program, root, target};
 use crate::step::Failure;
 
+/// The machine of a folder without one of its own, from the root.
+const PLANT: &str = "tests/data/shop/plant.toml";
 /// Lengths of contours that differ by less are the same, mm.
 const SAME_MM: f64 = 0.05;
 /// A wall whose error grows by more than this, as a share, has become worse.
@@ -165,7 +167,7 @@ fn steps(
     let within =
         |range: &&[u32; 2]| touched.iter().filter(|l| (range[0].into()..=range[1].into()).contains(*l)).count();
     let wall = shop.wall_lines.iter().rev().max_by_key(within).copied().unwrap_or_default();
-    let plant = [folder.join("plant.toml"), crate::repository::root().join(super::FOLDER).join("plant.toml")];
+    let plant = [folder.join("plant.toml"), root().join(PLANT)];
     let plant = plant.into_iter().find(|p| p.exists()).unwrap_or_default().display().to_string();
     let unjudged = |step| {
         move |stopped: Stopped| {
