@@ -11,6 +11,9 @@ use super::error::{PlantError, require};
 use super::segment::Segment;
 use super::vector::{Point, along, distance, left_of, scaled, turn, turned};
 
+/// A wall that advances by less than this share of the path stands still.
+const STANDS: f64 = 0.05;
+
 /// A vertex that turns less than this is a facet of a smooth curve.
 pub(super) const FACET_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
 /// Half-length over which a facet of turn α is smoothed is at most this / α, mm·rad: a chord error of a quarter of it.
@@ -183,6 +186,20 @@ impl Path {
     pub fn index_at(&self, s_mm: f64) -> usize {
         let k = self.s_mm.partition_point(|&s| s < s_mm).clamp(1, self.len() - 1);
         if s_mm - self.s_mm[k - 1] < self.s_mm[k] - s_mm { k - 1 } else { k }
+    }
+
+    /// Whether the cutter rolls about an edge of the part beside a sample: the nominal wall stands still while the centre moves
+    /// on. No wall is made there, and its normal is anybody's choice.
+    pub fn rolls(&self, index: usize, radius_mm: f64) -> bool {
+        let last = self.len().saturating_sub(1);
+        // The first and the last sample of a closed path are one place.
+        let before = if index == 0 { self.closed.then(|| last.saturating_sub(1)) } else { Some(index - 1) };
+        let behind = if index >= last { self.closed.then_some(1.min(last)) } else { Some(index + 1) };
+        let stands = |other: usize| {
+            let wall = distance(self.wall(index, radius_mm), self.wall(other, radius_mm));
+            wall < STANDS * distance(self.centre[index], self.centre[other])
+        };
+        [before, behind].into_iter().flatten().any(stands)
     }
 
     /// Point of the finished wall that sample `index` generates with a rigid cutter of `radius_mm`.

@@ -14,7 +14,7 @@ const UNDERCUT_MM: f64 = 0.02;
 
 impl Milled {
     /// Wall error at each nominal sample for each height (0 tip … 1 top), mm: positive = material left, NaN where no wall is
-    /// defined (never reached, or cut away at an outside corner).
+    /// defined (never reached, cut away at an outside corner, or the edge of one that the cutter rolls about).
     pub fn wall_errors(&self, levels: &[f64]) -> Vec<Vec<f64>> {
         let path = &self.path;
         let radius = self.cut.radius_mm;
@@ -26,7 +26,7 @@ impl Milled {
         for (i, &normal) in path.normal.iter().enumerate() {
             let wall = path.wall(i, radius);
             nominal.near(wall, radius - UNDERCUT_MM, &mut near);
-            if !near.is_empty() {
+            if !near.is_empty() || path.rolls(i, radius) {
                 continue;
             }
             commanded.near(wall, radius + REACH_MM, &mut near);

@@ -1,7 +1,6 @@
 //! A wall as the virtual machine left it, judged where there is one.
 //!
-//! `judged` of `simulate` leaves out both ends of every contour and counts the point about which an outside corner is rolled as
-//! wall. Here a closed contour is judged all round, its seam included, and nothing is judged beside a place where the wall
+//! `judged` of `simulate` leaves out both ends of every contour. Here a closed contour is judged all round, its seam included, and nothing is judged beside a place where the wall
 //! ends: at a corner the direction of the error is anybody's choice.
 
 use std::fs;
@@ -46,6 +45,12 @@ fn largest(rows: &[Row], diameter_mm: f64) -> Option<f64> {
         if wall < ROLLED * path || wall > 10.0 * path {
             corners.extend([pair[0].s_mm, pair[1].s_mm]);
         }
+    }
+    // Across the seam of a closed contour as well.
+    let length = last.s_mm - first.s_mm;
+    if is_closed {
+        let beyond: Vec<f64> = corners.iter().flat_map(|s| [s - length, s + length]).collect();
+        corners.extend(beyond);
     }
     corners.sort_by(f64::total_cmp);
     let near_corner = |s: f64| {
