@@ -2,8 +2,8 @@
 //!
 //! Signs that count:
 //! * G41 or G42 takes its offset along one move and G40 gives it up along one; what lies before and behind is no wall;
-//! * a run holds a closed loop, or one that runs a little over its own start, with at most four blocks before and four
-//!   behind it, and the loop is more than half of it;
+//! * a run holds a closed loop, or one that runs a little over its own start, with a few blocks before and behind it (some
+//!   CAM systems write arcs as short lines), and the loop is more than half of it;
 //! * an open run begins or ends with an arc that turns away from the wall, tangent to the rest, no wider than two
 //!   diameters: what CAM systems write. With a straight move outside it only where both ends are alike;
 //! * an open run begins or ends with a straight move no longer than the cutter's radius, at 20 degrees or more to the
@@ -20,7 +20,9 @@ use truepath_units::geometry::{Block, Contour, Curve, Shape, Side};
 use truepath_units::{Offset, Real};
 
 /// The most blocks that lead to a loop, and away from it.
-const LEAD_BLOCKS: usize = 4;
+const LEAD_BLOCKS: usize = 24;
+/// Of more blocks than this a lead may be no longer than an eighth of its run.
+const FEW: usize = 4;
 
 /// The blocks of a run that are its contour. Without a known side of the wall, arcs and straight moves of open runs stay.
 pub(super) fn without_leads(blocks: &[Block], run: &Candidate, wall: Option<Side>, diameter: Offset) -> Range<usize> {
@@ -112,19 +114,36 @@ fn look(at: &dyn Fn(usize) -> Option<Curve>, from_end: bool, wall: Side, diamete
 /// The loop inside a run that has leads, by what counts as one: where it closes at the end of a block, what comes behind is
 /// no part of it.
 fn inner_loop(blocks: &[Block], is_loop: fn(&[Block]) -> bool) -> Option<Range<usize>> {
-    let half = Offset::from_nm(length(blocks).nm() / 2);
+    let whole = length(blocks);
+    let short =
+        |lead: Option<&[Block]>| lead.is_some_and(|lead| lead.len() <= FEW || length(lead).nm() <= whole.nm() / 8);
     let mut best: Option<Range<usize>> = None;
-    for lead_in in 0..=LEAD_BLOCKS {
-        for lead_out in 0..=LEAD_BLOCKS {
+    for lead_in in 0..=LEAD_BLOCKS.min(blocks.len()) {
+        if !short(blocks.get(..lead_in)) || !comes_back(blocks, lead_in) {
+            continue;
+        }
+        for lead_out in 0..=LEAD_BLOCKS.min(blocks.len()) {
             let found = lead_in..blocks.len().saturating_sub(lead_out);
             let Some(inner) = blocks.get(found.clone()).filter(|b| !b.is_empty()) else { continue };
             let shorter = best.as_ref().is_some_and(|b| b.len() >= found.len());
-            if found.len() < blocks.len() && !shorter && is_loop(inner) && length(inner) > half {
+            let leads = found.len() < blocks.len() && short(blocks.get(found.end..));
+            if leads && !shorter && length(inner).nm() > whole.nm() / 2 && is_loop(inner) {
                 best = Some(found);
             }
         }
     }
     best
+}
+
+/// Whether the end of a run comes near the start of a block: a loop that begins there may close.
+fn comes_back(blocks: &[Block], index: usize) -> bool {
+    let Some(start) = blocks.get(index).map(|b| b.curve.start()) else { return false };
+    let tail = blocks.get(blocks.len().saturating_sub(LEAD_BLOCKS.saturating_mul(2))..).and_then(Contour::new);
+    let mut near = false;
+    if let Some(tail) = tail {
+        tail.feet(start, |foot| near = near || foot.left.abs() <= Offset::from_um(3));
+    }
+    near
 }
 
 /// Whether blocks run on over their own start.
