@@ -16,9 +16,22 @@ use super::corner::CornerStage;
 use super::execute::Execution;
 use super::flow::{Next, Reader, Sentence};
 use super::{
-    Event, GcodeError, GcodeErrorKind, Memory, Options, Program, WarningKind, Warnings, is_marked_corrected,
-    program_crc,
+    Event, GcodeError, GcodeErrorKind, Line, Memory, Options, Program, Source, WarningKind, Warnings, Word,
+    is_marked_corrected, program_crc,
 };
+
+/// A block that was executed.
+#[derive(Clone, Copy, Debug)]
+pub struct Executed<'a> {
+    /// Where it stands.
+    pub source: Source,
+    /// Its line.
+    pub line: Line<'a>,
+    /// Its words but for the N word, with the values of parameters and expressions, in the order of the text.
+    pub words: &'a [Word],
+    /// Whether it steers the program: a call, a return, a jump.
+    pub steers: bool,
+}
 
 /// What is known of a program after it was read to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,6 +77,25 @@ impl<'t> Interpreter<'t> {
         't: 'p,
         S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
     {
+        self.run_observed(program, memory, sink, |_| ())
+    }
+
+    /// The same; every block that is executed is given to `observe`. Statements of control flow and lines that only assign
+    /// parameters are none.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_observed<'p, S>(
+        &self,
+        program: impl Into<Program<'p>>,
+        memory: &mut Memory<'_>,
+        sink: &mut S,
+        mut observe: impl FnMut(&Executed<'_>),
+    ) -> Result<ProgramSummary, GcodeError>
+    where
+        't: 'p,
+        S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
+    {
         let program = program.into();
         memory.start(self.options.dialect);
         let mut reader = Reader::new(program, &self.options);
@@ -76,6 +108,12 @@ impl<'t> Interpreter<'t> {
         let mut execution = Execution::new(self.options, memory, stages, warnings, sink);
         while reader.next(&mut execution, &mut sentence)? {
             let next = execution.sentence(&sentence)?;
+            observe(&Executed {
+                source: sentence.source,
+                line: sentence.line,
+                words: &sentence.words,
+                steers: !matches!(next, Next::Continue | Next::End),
+            });
             if next != Next::Continue {
                 reader.follow(next, &sentence, &mut execution)?;
             }

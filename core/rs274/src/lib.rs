@@ -86,7 +86,7 @@ pub use error::{
 };
 pub use flow::{Library, LibraryFile, Program, Word};
 pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};
-pub use interpreter::{Interpreter, ProgramSummary};
+pub use interpreter::{Executed, Interpreter, ProgramSummary};
 pub use lexical::{Decimal, Number, NumberError, Token, Words, WrittenWord};
 pub use modal::{Modal, Motion};
 pub use mode::{Coolant, FeedMode, PathControl, Plane, RetractLevel, Spindle, ToolLength, Units};

@@ -2,17 +2,20 @@
 
 use truepath_core::checksum::crc32;
 use truepath_core::cut::Path;
+use truepath_core::gcode::program_crc;
 use truepath_core::image::{DEVICE_NODES, image_bytes};
 use truepath_core::job;
 use truepath_core::units::Offset;
-use truepath_ground::diagnostics::Failure;
+use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::units::mm;
+use truepath_job::feature::Plan;
 use truepath_job::feed::Schedule;
 use truepath_job::job::Route;
 use truepath_job::levels::{self, Levels};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
-use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
+use truepath_program::codes::P004;
+use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program, unrolled};
 
 use crate::correction::{Correction, DesignRequest, Identification, design_correction, identify};
 use crate::edits::block_edits;
@@ -103,12 +106,19 @@ pub fn correct_identified(
     for route in routes {
         match route {
             Route::Program => {
-                let mut edits = Vec::new();
-                levels = levels::each(pass, &path, |_, pass, path| {
-                    edits.extend(block_edits(pass, path, &correction.nodes, feeds.schedule.as_ref()));
-                    Ok(())
+                let write = |pass: &Pass, levels: &mut Levels, original: Option<u32>| {
+                    let mut edits = Vec::new();
+                    *levels = levels::each(pass, &path, |_, pass, path| {
+                        edits.extend(block_edits(pass, path, &correction.nodes, feeds.schedule.as_ref()));
+                        Ok(())
+                    })?;
+                    written_program(pass, remarks.probe, &edits, original)
+                };
+                let rewritten = write(pass, &mut levels, None).or_else(|failure| {
+                    let (flat, said) = written_out(pass, &failure).ok_or(failure)?;
+                    warnings.push(said);
+                    write(&flat, &mut levels, Some(program_crc(pass.program.bytes())))
                 })?;
-                let rewritten = written_program(pass, remarks.probe, &edits)?;
                 warnings.extend(kinked(&rewritten.difference));
                 written = Some(rewritten);
             }
@@ -152,8 +162,27 @@ pub fn correct_identified(
     })
 }
 
-fn written_program(pass: &Pass, probe: u32, edits: &[BlockEdit]) -> Result<Rewritten, Failure> {
-    let origin = Origin { job: Some(crc32(pass.job.source().bytes())), probe: Some(probe) };
+/// The same pass of the program with its subprograms and loops written out, and what is said about it, where a line of
+/// the contour is executed several times; `None` where that is not what failed, or the cuts would be others.
+fn written_out(pass: &Pass, failure: &Failure) -> Option<(Pass, String)> {
+    let Failure::Input(error) = failure else { return None };
+    if error.code() != P004.code || !pass.job.features.is_empty() {
+        return None;
+    }
+    let text = unrolled(pass.program.bytes(), pass.job.numbers.program_options())?;
+    let mut job = pass.job.clone();
+    job.which.pass = pass.plan.as_ref().map(|_| pass.level());
+    let flat = Pass::new(job, Source::new(pass.program.name(), text)).ok()?;
+    let curves = |pass: &Pass| pass.blocks.iter().map(|b| (b.curve, b.feed)).collect::<Vec<_>>();
+    let levels = |pass: &Pass| pass.plan.as_ref().map(Plan::levels);
+    (curves(&flat) == curves(pass) && levels(&flat) == levels(pass)).then(|| {
+        let said = "lines of the contour are executed several times, each with a correction of its own: the corrected program has its subprograms and loops written out";
+        (flat, format!("{}: {said}", pass.program.name()))
+    })
+}
+
+fn written_program(pass: &Pass, probe: u32, edits: &[BlockEdit], original: Option<u32>) -> Result<Rewritten, Failure> {
+    let origin = Origin { program: original, job: Some(crc32(pass.job.source().bytes())), probe: Some(probe) };
     let options = RewriteOptions {
         tolerance: pass.job.tolerance,
         max_arc_radius: pass.job.max_arc_radius,

@@ -83,6 +83,8 @@ impl Default for RewriteOptions {
 /// What a corrected program was made from, as its head names it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Origin {
+    /// CRC-32 of the program, where the one that is written is that program with its subprograms and loops written out.
+    pub program: Option<u32>,
     /// CRC-32 of the job file.
     pub job: Option<u32>,
     /// CRC-32 of the probe file.

@@ -36,6 +36,7 @@ mod spacing;
 mod stretch;
 mod survey;
 mod unproved;
+mod unrolled;
 mod vector;
 mod writer;
 mod written;
@@ -52,6 +53,7 @@ pub use edit::{BlockEdit, FeedFrom, Origin, Purpose, RewriteOptions};
 pub use fit::{Piece, Samples, Shape, fit};
 pub use grid::Grid;
 pub use header::first_pass_of;
+pub use unrolled::unrolled;
 
 /// The corrected program and what it took.
 #[derive(Clone, Debug)]

@@ -98,7 +98,7 @@ fn assemble(
     let next_starts = lines.iter().skip(1).map(|l| l.start).chain([program.len()]);
     let ends: Vec<&[u8]> = lines.iter().zip(next_starts).map(|(l, next)| &program[l.span().end()..next]).collect();
     let usual = ends.iter().copied().find(|end| !end.is_empty()).unwrap_or(b"\n");
-    let head = header::text(program_crc(program), options, usual);
+    let head = header::text(options.origin.program.unwrap_or_else(|| program_crc(program)), options, usual);
     let head_after = header::place(program);
 
     let mut text = program[..lines.first().map_or(0, |l| l.start)].to_vec();

@@ -254,7 +254,7 @@ fn corrected_program(pass: &Pass, edits: &[BlockEdit]) -> Result<Rewritten, Fail
         max_arc_radius: pass.job.max_arc_radius,
         max_kink_deg: pass.job.max_kink_deg,
         program: pass.job.numbers.program_options(),
-        origin: Origin { job: Some(crc32(pass.job.source().bytes())), probe: None },
+        origin: Origin { job: Some(crc32(pass.job.source().bytes())), ..Origin::default() },
         notes: vec!["FROM TOOL AND MATERIAL DATA ALONE, NOT FROM A PROBE".to_owned()],
         ..RewriteOptions::default()
     };

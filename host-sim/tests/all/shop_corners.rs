@@ -1,5 +1,5 @@
-//! Corners as CAM systems and machinists write them: rolled with the cutter's own radius, and the start of a closed
-//! contour at several depths. Each program is the smallest that shows it.
+//! What CAM systems and machinists write at corners: rolled with the cutter's own radius, and the start of a closed
+//! contour at several depths, plain, in a loop and in a subprogram. Each program is the smallest that shows it.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -131,5 +131,23 @@ fn a_closed_contour_that_begins_at_a_corner_is_corrected_at_every_depth() {
         }
         let steps = done.summary.warnings.iter().filter(|w| w.contains("on the spot")).count();
         assert_eq!(steps, 0, "{:?}", done.summary.warnings);
+    }
+}
+
+#[test]
+fn a_contour_in_a_loop_or_a_subprogram_is_written_out_for_every_depth() {
+    let lap = "G1 X80 F600\nG1 Y60\nG1 X0\nG1 Y0\n";
+    let head = "G21 G90 G17\nT1 M6\nS4000 M3\nG0 X0 Y0 Z10\n";
+    let subprogram =
+        format!("o1 sub\nG1 Z[-4 * #1] F300\n{lap}o1 endsub\n{head}o1 call [1]\no1 call [2]\nG0 Z10\nM2\n");
+    let whole =
+        format!("{head}#5 = 1\no2 while [#5 LE 2]\nG1 Z[-4 * #5] F300\n{lap}#5 = [#5 + 1]\no2 endwhile\nG0 Z10\nM2\n");
+    for program in [subprogram, whole] {
+        let pass = pass(&job(10.0, "left", "auto").replace("axial_depth_mm = 10.0", "axial_depth_mm = 4.0"), &program);
+        let done = corrected(&pass, beside_boss(-4.0));
+        let text = text(&done);
+        assert!(!text.contains("o1") && !text.contains("o2"), "{text}");
+        assert!(text.contains("G1 Z-4. F300") && text.contains("G1 Z-8. F300"), "{text}");
+        assert!(done.summary.warnings.iter().any(|w| w.contains("written out")), "{:?}", done.summary.warnings);
     }
 }

@@ -17,7 +17,7 @@ mod outside;
 
 use std::collections::BTreeMap;
 
-use facts::{Fact, facts};
+use facts::{Fact, What, facts};
 use inside::{Along, Terms};
 use outside::Bounds;
 use truepath_core::gcode::{Lines, Options};
@@ -115,6 +115,19 @@ pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
     proof.kinks = along.kinks;
     proof.feeds = along.feeds;
     Ok(proof)
+}
+
+/// Whether two programs do the same, step by step with all modes, on whatever lines and under whatever block numbers.
+pub(super) fn same_steps(a: &[u8], b: &[u8], options: Options<'static>) -> bool {
+    let read = |text| {
+        let facts = facts(text, options, false).ok()?;
+        let plain = |fact: Fact| match fact.what {
+            What::Comment(_) => None,
+            what => Some((fact.block_delete, what, fact.modal)),
+        };
+        Some(facts.into_iter().filter_map(plain).collect::<Vec<_>>())
+    };
+    read(a).is_some_and(|a| read(b).is_some_and(|b| a == b))
 }
 
 /// Where a stretch that begins at `begin` ends: after its last cutting step.
