@@ -60,7 +60,9 @@ pub(super) fn without_switches(
 pub(super) fn noted(options: &RewriteOptions) -> RewriteOptions {
     let mut noted = options.clone();
     let radius = match options.program.compensation {
-        CompensationBy::Radius(radius) => format!("the cutter radius of {} mm", radius.nm() as f64 / 1e6),
+        CompensationBy::Radius(radius) | CompensationBy::ToolRadius { radius, .. } => {
+            format!("the cutter radius of {} mm", radius.nm() as f64 / 1e6)
+        }
         CompensationBy::Nothing | CompensationBy::Table => "the cutter radius".to_owned(),
     };
     noted.notes.push(format!("path of the cutter centre: {radius} is part of it, D is not used"));
