@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::correct::Target;
 use crate::cut::ToolMaterial;
-use crate::gcode::{Dialect, PointlessLength};
+use crate::gcode::{ArcCentres, Dialect, PointlessLength};
 use crate::geometry::Side;
 use crate::probe::{Format, Layout};
 use crate::units::{Offset, Real};
@@ -22,6 +22,9 @@ pub struct Job {
     /// What a length without a point is in the program.
     #[serde(with = "super::wire")]
     pub decimal: PointlessLength,
+    /// How I, J and K of arcs count in the program until G90.1 or G91.1.
+    #[serde(with = "super::wire")]
+    pub arc_centres: ArcCentres,
     /// Side of travel of the finished wall; `None` leaves it to G41/G42 of the program.
     #[serde(with = "super::wire")]
     pub wall: Option<Side>,

@@ -148,11 +148,14 @@ impl ContourPass {
 impl Job {
     /// How the program of the job is read.
     pub fn program_options(&self) -> Options<'static> {
-        let compensation = match self.tool.compensation {
-            Compensation::Centre => CompensationBy::Nothing,
-            Compensation::Radius => CompensationBy::Radius(Offset::from_nm(self.tool.diameter.nm() / 2)),
+        let radius = Offset::from_nm(self.tool.diameter.nm() / 2);
+        let compensation = match (self.tool.compensation, self.tool.number) {
+            (Compensation::Centre, _) => CompensationBy::Nothing,
+            (Compensation::Radius, Some(tool)) => CompensationBy::ToolRadius { tool, radius },
+            (Compensation::Radius, None) => CompensationBy::Radius(radius),
         };
-        Options { compensation, dialect: self.dialect, decimal: self.decimal, ..Options::default() }
+        let Self { dialect, decimal, arc_centres, .. } = *self;
+        Options { compensation, dialect, decimal, arc_centres, ..Options::default() }
     }
 }
 

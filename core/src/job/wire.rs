@@ -8,7 +8,7 @@ use serde::ser::{Serialize, Serializer};
 use super::facts::Compensation;
 use crate::correct::Target;
 use crate::cut::{ToolMaterial, WallLaw};
-use crate::gcode::{Dialect, PointlessLength};
+use crate::gcode::{ArcCentres, Dialect, PointlessLength};
 use crate::geometry::Side;
 use crate::probe::Format;
 use crate::units::Real;
@@ -84,6 +84,7 @@ choice!(
     Dialect: 0 = Dialect::Linuxcnc, 1 = Dialect::Fanuc, 2 = Dialect::Haas, 3 = Dialect::Siemens, 4 = Dialect::Mach
 );
 choice!(PointlessLength: 0 = PointlessLength::Calculator, 1 = PointlessLength::Least);
+choice!(ArcCentres: 0 = ArcCentres::Detect, 1 = ArcCentres::Incremental, 2 = ArcCentres::Absolute);
 choice!(Compensation: 0 = Compensation::Centre, 1 = Compensation::Radius);
 choice!(Target: 0 = Target::Mean, 1 = Target::Tip, 2 = Target::Minimax);
 choice!(WallLaw: 0 = WallLaw::Mean, 1 = WallLaw::Helical);

@@ -4,7 +4,7 @@ use crate::job_support;
 
 use job_support::{Part, Room, corner, made, pocket, short, um};
 use truepath_core::cut::WallLaw;
-use truepath_core::gcode::{Dialect, PointlessLength};
+use truepath_core::gcode::{ArcCentres, Dialect, PointlessLength};
 use truepath_core::image::{Binding, DEVICE_NODES, Image, image_bytes};
 use truepath_core::job::{
     Buffer, Buffers, COMPACT_BYTES, ContourPass, Counts, ForceModel, Job, JobError, LARGEST_NUMBER, LawName, Stage,
@@ -192,6 +192,7 @@ fn a_job_survives_its_compact_form_and_nothing_else_is_one() {
     let mut largest = corner().job;
     largest.wall = None;
     (largest.dialect, largest.decimal) = (Dialect::Mach, PointlessLength::Least);
+    largest.arc_centres = ArcCentres::Absolute;
     largest.tool.measured_diameter = Some(um(20_001));
     largest.tool.cantilever =
         Some(Stickout { length: Offset::from_nm(499_999_999), material: truepath_core::cut::ToolMaterial::Carbide });

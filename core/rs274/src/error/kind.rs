@@ -12,6 +12,8 @@ pub enum Foreign {
     Heidenhain,
     /// `E` words: a program of a 3D printer.
     Printer,
+    /// `TRANS`, `CYCLE81(…)`, `T="…"`: Siemens' own language.
+    Siemens,
 }
 
 errors! {
@@ -48,6 +50,8 @@ errors! {
         ForeignDialect(language: Foreign) = "G009",
             if matches!(language, Foreign::Heidenhain) =>
                 "this is a Heidenhain conversational program (BEGIN PGM), not G-code; post it for an ISO control";
+            if matches!(language, Foreign::Siemens) =>
+                "this word of Siemens' own language is not computed; write the number of a tool instead of its name, set origins with G54 to G59 instead of frames, write out cycles as moves, or post the program for ISO mode";
             "an E word: this is a 3D printer's program, or a number with an exponent; post it for a milling machine, with plain numbers";
         /// Something else than a comment after `%`.
         TextAfterPercent = "G010", "text after `%`; only a comment may follow it on its line";

@@ -1,7 +1,7 @@
 //! Walks a program: block after block, each with the values of its words.
 
 use super::super::expression::{Evaluator, Fault};
-use super::super::lexical::{Token, Words, trimmed};
+use super::super::lexical::{Token, Words, spelled, trimmed};
 use super::super::parameter::Surroundings;
 use super::super::{Dialect, FlowError, GcodeError, GcodeErrorKind, Line, Number, Options, Source, Span};
 use super::Program;
@@ -127,12 +127,14 @@ impl<'p> Reader<'p> {
         let mut assignments = Assignments::new();
         let mut begun = false;
         for token in Words::new(line) {
-            match token.map_err(|e| e.in_file(self.place.file))? {
+            let token = token.map_err(|e| e.in_file(self.place.file))?;
+            self.check_siemens(&token)?;
+            match token {
                 Token::Word(word) if word.letter != b'N' => {
                     begun = true;
                     let value = match word.value {
                         Some(value) => Number::Exact(value),
-                        None => match self.value(machine, word.span, 1)? {
+                        None => match self.value(machine, word.span, self.before_value(word.span))? {
                             Some(value) => Number::Computed(value),
                             None => continue,
                         },
@@ -200,6 +202,28 @@ impl<'p> Reader<'p> {
         self.assign(machine, &assignments)?;
         let empty = sentence.words.is_empty() && !sentence.has_comments && sentence.block_delete.is_none();
         Ok(if empty { Read::Empty } else { Read::Block })
+    }
+
+    /// Refuses a word of Siemens' own language in another dialect.
+    fn check_siemens(&self, token: &Token) -> Result<(), GcodeError> {
+        let first = self.rest(token.span().start).first().map(u8::to_ascii_uppercase);
+        let foreign = match token {
+            Token::Word(word) => matches!((first, word.letter), (Some(b'C'), b'R') | (Some(b'S'), b'G')),
+            Token::Comment { .. } => matches!(first, Some(b'M' | b'C')),
+            _ => false,
+        };
+        if foreign && self.dialect != Dialect::Siemens {
+            return Err(self.error(GcodeErrorKind::Text, token.span()));
+        }
+        Ok(())
+    }
+
+    /// Bytes of a word before its value: its letter, or `CR=`.
+    fn before_value(&self, span: Span) -> usize {
+        let text = self.rest(span.start);
+        let equals =
+            spelled(text, b"CR").and_then(|len| text.get(len..)).map(trimmed).and_then(|r| r.strip_prefix(b"="));
+        equals.map_or(1, |rest| text.len().saturating_sub(rest.len()))
     }
 
     /// Bytes of a corner word behind its letter.

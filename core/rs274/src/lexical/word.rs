@@ -7,8 +7,9 @@
 //! error with its place. Expressions are measured here, not computed.
 
 use super::super::{CornerError, Foreign, GcodeError, GcodeErrorKind, Line, Span};
-use super::decimal::{NumberError, is_blank, number, trimmed};
+use super::decimal::{Decimal, NumberError, is_blank, number, trimmed};
 use super::extent;
+use super::symbol::spelled;
 use super::{Token, WrittenWord};
 
 /// The tokens of one line in the order of the text.
@@ -84,6 +85,9 @@ impl<'a> Words<'a> {
             b':' => self.word(from, b'O'),
             b'A'..=b'Z' | b'a'..=b'z' => {
                 let letter = byte.to_ascii_uppercase();
+                if let Some(token) = self.siemens(from) {
+                    return token;
+                }
                 if !self.begun {
                     let next_is_letter = self.rest.first().is_some_and(u8::is_ascii_alphabetic);
                     if (next_is_letter && extent::is_statement(from)) || (letter == b'O' && is_control(self.rest)) {
@@ -112,6 +116,35 @@ impl<'a> Words<'a> {
             b'[' | b']' | b'=' | b'*' => Err(self.error(from, GcodeErrorKind::Stray(byte))),
             _ => Err(self.error(from, GcodeErrorKind::UnexpectedByte(byte))),
         }
+    }
+
+    /// A word of Siemens' own language that has a meaning here: `CR=5` is R, `SUPA` is G53; what `MSG("…")` shows and how
+    /// `CYCLE832(…)` smooths is a comment. Its first letter tells it from the word that it stands for, so that a reader of
+    /// another dialect can refuse it.
+    fn siemens(&mut self, from: &'a [u8]) -> Option<Result<Token, GcodeError>> {
+        let behind = |word: &[u8]| spelled(from, word).and_then(|len| from.get(len..)).map(trimmed);
+        if let Some(value) = behind(b"CR").and_then(|rest| rest.strip_prefix(b"=")) {
+            self.rest = value;
+            self.begun = true;
+            return Some(self.word(from, b'R'));
+        }
+        if let Some(rest) = behind(b"SUPA") {
+            self.rest = rest;
+            self.begun = true;
+            let value = Decimal::new(53, 0);
+            let end = from.len().saturating_sub(rest.len());
+            let len = from.get(..end).unwrap_or(from).trim_ascii_end().len();
+            return Some(Ok(Token::Word(WrittenWord {
+                letter: b'G',
+                value,
+                span: Span { start: self.offset(from), len },
+            })));
+        }
+        let rest = behind(b"MSG").or_else(|| behind(b"CYCLE832")).filter(|rest| rest.first() == Some(&b'('))?;
+        let len = extent::comment(rest)?;
+        let body = Span { start: self.offset(rest).saturating_add(1), len: len.saturating_sub(2) };
+        self.rest = rest.get(len..).unwrap_or(&[]);
+        Some(Ok(Token::Comment { span: self.span_from(from), body }))
     }
 
     fn comment(&mut self, from: &'a [u8]) -> Result<Token, GcodeError> {
@@ -177,6 +210,11 @@ impl<'a> Words<'a> {
         let next = trimmed(self.rest).first().copied();
         let run = letters(from);
         let kind = match next {
+            Some(b'=') if letter == b'T' => GcodeErrorKind::ForeignDialect(Foreign::Siemens),
+            _ if SIEMENS.iter().any(|word| spelled(from, word).is_some()) => {
+                self.advance(run.saturating_sub(1));
+                GcodeErrorKind::ForeignDialect(Foreign::Siemens)
+            }
             Some(byte @ (b'[' | b'#' | b'=')) => GcodeErrorKind::Stray(byte),
             // Three letters in a row are a word of a language; two are more likely a forgotten number.
             _ if run > 2 => {
@@ -213,6 +251,24 @@ fn is_header(line: &[u8]) -> bool {
         _ => false,
     }
 }
+
+/// Words of Siemens' own language that change where the cutter goes, or the order of the blocks.
+const SIEMENS: [&[u8]; 14] = [
+    b"TRANS",
+    b"ATRANS",
+    b"ROT",
+    b"AROT",
+    b"MIRROR",
+    b"AMIRROR",
+    b"SCALE",
+    b"ASCALE",
+    b"CYCLE",
+    b"POCKET",
+    b"TURN=",
+    b"REPEAT",
+    b"MCALL",
+    b"WORKPIECE",
+];
 
 /// How many letters stand here without a blank between them.
 fn letters(text: &[u8]) -> usize {

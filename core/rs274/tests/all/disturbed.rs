@@ -316,7 +316,7 @@ fn record_what_the_reference_makes_of_disturbed_statements() {
             }
             let _ = writeln!(lines, "{kind} {marks}");
         }
-        let _ = write!(out, "{head}stream {stream}\n");
+        let _ = writeln!(out, "{head}stream {stream}");
         for other in others {
             let _ = writeln!(out, "other {other}");
         }

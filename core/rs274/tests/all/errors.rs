@@ -83,7 +83,7 @@ const TABLE: &[(&[u8], &str)] = &[
     ),
     (
         b"CYCLE800()",
-        "line 1, column 1: G008: text outside a comment; put it in ( ) if it is a remark, or post the program in plain G-code",
+        "line 1, column 1: G009: this word of Siemens' own language is not computed; write the number of a tool instead of its name, set origins with G54 to G59 instead of frames, write out cycles as moves, or post the program for ISO mode",
     ),
     (
         b"0 BEGIN PGM CORNER MM\n1 L X+0",

@@ -195,3 +195,22 @@ fn a_return_inside_a_line_is_a_blank() {
     is_read(&ALL, "G21 G0\rX1.\r\r\nY1.\nM30", "T10,0,0 T10,10,0", &["W017"]);
     is_read(&ALL, "G21 G0 X1.\rY1.\rM30", "T10,0,0 T10,10,0", &[]);
 }
+
+#[test]
+fn words_of_siemens_own_language_are_read_or_refused_by_name() {
+    let siemens = [Dialect::Siemens];
+    let others = [Dialect::Linuxcnc, Dialect::Fanuc, Dialect::Haas, Dialect::Mach];
+    let arc = "G21 G90 G17 G0 X0. Y0.\nG2 X10. Y0. CR=5. F100.\nM30";
+    is_read(&siemens, arc, "T0,0,? A100,0,? about 50,0".replace('?', "0").as_str(), &[]);
+    is_read(&siemens, &arc.replace("CR=5.", "CR=[2*2.5]"), "T0,0,0 A100,0,0 about 50,0", &[]);
+    is_refused(&others, arc, "G008");
+    let home = "G21 G90 G0 X1.\nG0 SUPA Z0. D0\nX2.\nM30";
+    is_read(&siemens, home, "T10,0,0 T20,0,?", &["W012"]);
+    is_refused(&others, home, "G008");
+    let shown = "MSG(\"finish (wall)\")\nCYCLE832(0.01,_FINISH,1)\nG21 G0 X1.\nMSG()\nM30";
+    is_read(&siemens, shown, "T10,0,0", &["W016"]);
+    is_refused(&others, shown, "G008");
+    for word in ["TRANS X10", "ATRANS Z1", "T=\"MILL_10\" M6", "CYCLE81(5,0,1)", "G0 ROT Z30"] {
+        is_refused(&ALL, word, "G009");
+    }
+}

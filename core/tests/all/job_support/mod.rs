@@ -68,6 +68,7 @@ pub fn corner() -> Part {
         part: None,
         dialect: truepath_core::gcode::Dialect::Linuxcnc,
         decimal: truepath_core::gcode::PointlessLength::Calculator,
+        arc_centres: truepath_core::gcode::ArcCentres::Detect,
     };
     let program = include_bytes!("../../../../host-sim/demo/corner/program.nc");
     Part { job, program, probe: include_bytes!("../../data/corner-probe.txt") }

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::path::Path;
 
-use truepath_core::gcode::{Dialect, PointlessLength};
+use truepath_core::gcode::{ArcCentres, Dialect, PointlessLength};
 use truepath_core::geometry::Side;
 use truepath_core::job::{Cut, Force, ForceModel, Machine};
 use truepath_core::units::{Offset, Real};
@@ -41,6 +41,10 @@ pub const DIALECTS: [(&str, Dialect); 5] = [
 pub const DECIMALS: [(&str, PointlessLength); 2] =
     [("calculator", PointlessLength::Calculator), ("least", PointlessLength::Least)];
 
+/// How the centres of arcs may count.
+const ARC_CENTRES: [(&str, ArcCentres); 2] =
+    [("incremental", ArcCentres::Incremental), ("absolute", ArcCentres::Absolute)];
+
 impl JobFile {
     /// Reads and checks a job file.
     ///
@@ -77,6 +81,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     let wall = root.choice("wall", &[("left", Side::Left), ("right", Side::Right)])?;
     let dialect = root.choice("dialect", &DIALECTS)?.unwrap_or_default();
     let decimal = root.choice("decimal", &DECIMALS)?.unwrap_or_default();
+    let arc_centres = root.choice("arc_centres", &ARC_CENTRES)?.unwrap_or_default();
     let tool_section = root.required_section("tool", "diameter_mm, teeth and helix_deg")?;
     let (tool, shank) = tool(&source, &tool_section)?;
     let features = features(&source, &root, tool.diameter)?;
@@ -108,6 +113,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         numbers: truepath_core::job::Job {
             dialect,
             decimal,
+            arc_centres,
             wall,
             allowance,
             tool,
