@@ -7,6 +7,8 @@ truepath_ground::codes! {
         / "make the image here, with truepath correct --route coprocessor, and upload it",
     K001 => "the surface of the stock is no table of points"
         / "write a first line x_mm,y_mm and then one point of the surface a line, decimal points, in the order of travel",
+    J027 => "the path under G41 or G42 may be the part's outline or that of the cutter's centre"
+        / "write compensation = \"radius\" in [tool] when D holds the cutter's radius (the outline), \"centre\" when it holds wear or nothing",
     K002 => "the surface of the stock does not lie along the contour, or not between wall and cutter"
         / "check frame and unit of the surface, and that it belongs to this program",
     M040 => "more probe points than are taken at once"

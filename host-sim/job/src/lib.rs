@@ -4,6 +4,7 @@
 //! | step | where |
 //! |---|---|
 //! | the job file, checked | [`job`] |
+//! | what a path under G41 is, where the job does not say it | `drawn` |
 //! | the cuts of a program, and which of them the job means | [`feature`] |
 //! | the surface the stock really has | [`surface`] |
 //! | feeds in place of the programmed ones | [`feed`] |
@@ -12,6 +13,7 @@
 //! | what refuses a job, a program or a point, as an error with its place | [`refusal`] |
 
 pub mod codes;
+mod drawn;
 pub mod feature;
 pub mod feed;
 pub mod job;

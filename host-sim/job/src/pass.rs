@@ -8,12 +8,13 @@ use truepath_core::gcode::{
     ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, HostMemory, Program, Spindle, read_contour,
 };
 use truepath_core::geometry::{Block, Contour, Point, Side};
-use truepath_core::job::{self, JobError};
+use truepath_core::job::{self, Compensation, JobError};
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
 
 use crate::codes::K002;
+use crate::drawn::drawn;
 use crate::feature;
 use crate::feature::{FeaturePass, FeatureSummary, Plan};
 use crate::feed::Schedule;
@@ -65,10 +66,24 @@ impl Pass {
     /// # Errors
     /// As [`Pass::read`].
     pub fn new(mut job: JobFile, program: Source) -> Result<Self, Failure> {
+        let drawn = if job.drawn { None } else { drawn(&job, &program)? };
+        job.drawn = true;
+        if let Some(drawn) = &drawn {
+            job.numbers.tool.compensation = drawn.compensation;
+        }
         let plan = feature::plan(&job, &program)?;
         let level = job.which.pass.unwrap_or(1);
         job.numbers.part = plan.as_ref().map(|plan| plan.level(level).map(|pass| pass.part)).transpose()?;
-        Self::of_part(job, program, plan)
+        let mut pass = Self::of_part(job, program, plan)?;
+        pass.warnings.extend(drawn.map(|drawn| {
+            let (path, key) = match drawn.compensation {
+                Compensation::Centre => ("the path of the cutter's centre", "centre"),
+                Compensation::Radius => ("the outline of the part", "radius"),
+            };
+            let name = pass.program.name();
+            format!("{name}: G41 or G42 leads along {path}: {}; tool.compensation = \"{key}\" says so", drawn.why)
+        }));
+        Ok(pass)
     }
 
     /// Reads the part of the program that the job names by now.

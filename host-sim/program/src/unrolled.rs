@@ -30,7 +30,9 @@ pub fn unrolled(program: &[u8], options: Options<'static>) -> Option<Vec<u8>> {
     let read = Interpreter::new(options).run_observed(program, &mut memory.lend(), &mut |_| Ok(()), |block| {
         count += 1;
         foreign |= block.source.file != 0;
-        if !block.steers && count <= LONGEST {
+        // The number of a subprogram is none of the program it is written into.
+        let names = block.source.depth > 0 && block.words.iter().any(|word| word.letter == b'O');
+        if !block.steers && !names && count <= LONGEST {
             put(&line_of(block, written.insert(block.source.line)));
         }
     });
@@ -116,6 +118,15 @@ mod tests {
             written_out(program),
             "%\nG21 G90\nG0 X0 Y0 Z2\nN10 G1 Z-4. F100. (down)\nG1 X10\nG1 Y2.\nG1 Y1.\nM2\n%\n"
         );
+    }
+
+    #[test]
+    fn subprograms_of_fanuc_lose_their_number() {
+        let options = Options { dialect: truepath_core::gcode::Dialect::Fanuc, ..Options::default() };
+        let program = "%\nO1\nG21 G90\nG0 X0 Y0 Z2\nM98 P7 L2\nM30\nO7\nN1 G91 G1 Z-2. F99\nG90\nM99\n%\n";
+        let text = unrolled(program.as_bytes(), options).expect("a program that can be written out");
+        let expected = "%\nO1\nG21 G90\nG0 X0 Y0 Z2\nN1 G91 G1 Z-2. F99\nG90\nG91 G1 Z-2. F99\nG90\nM30\n%\n";
+        assert_eq!(String::from_utf8(text).unwrap(), expected);
     }
 
     #[test]

@@ -77,7 +77,7 @@ impl Survey {
     }
 
     /// Gives the runs of a list their roles and returns the number of finishing contours.
-    pub(super) fn sort(&self, runs: &mut [Found], criteria: &Criteria) -> u32 {
+    pub(crate) fn sort(&self, runs: &mut [Found], criteria: &Criteria) -> u32 {
         search(runs, &self.blocks, criteria)
     }
 }

@@ -136,6 +136,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         surface,
         features,
         which: Which::default(),
+        drawn: false,
         spans: spans.into_inner(),
         source: source.clone(),
     })

@@ -72,6 +72,8 @@ pub struct JobFile {
     pub features: Vec<FeatureTable>,
     /// Which feature and pass the command is about.
     pub which: Which,
+    /// Whether it has been found out what a path under G41 or G42 is, where the file does not say it.
+    pub drawn: bool,
     source: Source,
     spans: truepath_ground::document::Spans,
 }
