@@ -102,8 +102,10 @@ impl<'t> Interpreter<'t> {
         let mut warnings = Warnings::default();
         reader.frame().warn(&mut warnings);
         let mut sentence = Sentence::new(program.text);
-        // Large, and lent so that they are never moved: the stack of a board has room for one of each.
-        let (mut corner, mut compensation) = (CornerStage::default(), CompensationStage::default());
+        // Large, and lent so that they are never moved: the stack of a board has room for one of each. Made one by one, as a pair of
+        // them is made elsewhere and copied.
+        let mut corner = CornerStage::default();
+        let mut compensation = CompensationStage::default();
         let stages = (&mut corner, &mut compensation);
         let mut execution = Execution::new(self.options, memory, stages, warnings, sink);
         while reader.next(&mut execution, &mut sentence)? {

@@ -118,6 +118,8 @@ impl<'a> Lines<'a> {
 impl<'a> Iterator for Lines<'a> {
     type Item = Line<'a>;
 
+    // One copy in the flash of a board.
+    #[inline(never)]
     fn next(&mut self) -> Option<Line<'a>> {
         let rest = self.program.get(self.at..).filter(|r| !r.is_empty())?;
         let len = rest.iter().position(|b| *b == self.end).unwrap_or(rest.len());

@@ -51,29 +51,29 @@ errors! {
         Repeats = "W015", "M99 in the main program repeats it without end; it is read once";
         /// A comment inside another one.
         CommentInComment = "W016",
-            "a comment stands inside another one and is read as part of it; some controls stop here";
+            "a comment inside another one is read as part of it; some controls stop here";
         /// A CR inside a line of a file whose lines end with LF.
         ReturnInLine = "W017",
-            "a carriage return (CR) without a line feed stands inside this line and counts as a blank; make sure that it is one line";
+            "a CR without LF inside this line counts as a blank; make sure that it is one line";
         /// G28 or G30 beside G0 or G1.
         ReferenceWithMotion = "W018",
-            "G28 or G30 stands beside G0 or G1: the axes go to the reference point as with G28 or G30 alone, and LinuxCNC stops here";
+            "G28 or G30 beside G0 or G1 is read as G28 or G30 alone; LinuxCNC stops here";
         /// A word that has no meaning for the code it stands with.
         IdleWord {
             /// The letter.
             letter: u8,
         } = "W019", "{letter} means nothing here and is left out; LinuxCNC stops at it", letter = Letter(letter);
         /// The time of G4 by S.
-        DwellByS = "W020", "S in the block of G4 is read as its time in seconds, not as the speed of the spindle";
+        DwellByS = "W020", "S beside G4 is read as its time in seconds, not as a speed";
         /// Axis words behind G80.
         MotionBehindCycle = "W021",
-            "axis words behind G80 without a code of motion go on with G0 or G1 as before the cycle; write it, some controls stop here";
+            "axis words behind G80 go on with G0 or G1 as before the cycle; write it, some controls stop here";
         /// The centres of arcs turn out to be absolute.
         CentresFoundAbsolute = "W022",
-            "I and J are read as absolute places, as this arc closes only so; write G90.1 before it if that is right, G91.1 if it is not";
+            "I and J are read as absolute places, as this arc closes only so; write G90.1 before it if that is right, else G91.1";
         /// An arc whose radii differ by what the digits leave open.
         ArcBeyondLimit = "W023",
-            "the radii of this arc differ by a little more than LinuxCNC allows, but no more than the last written digit explains";
+            "the radii of this arc differ by more than LinuxCNC allows, but no more than the last written digit explains";
         /// A word of the cycle before, with another code.
         CycleWordKept {
             /// The letter.

@@ -31,14 +31,14 @@ errors! {
             /// The cutter's radius.
             radius: Offset,
         } = "G122",
-            "an inside arc of {arc:.3} mm must be larger than the cutter's radius, {radius:.3} mm; read the program as the path of the cutter's centre if it is (D holds wear only), or take a smaller cutter",
+            "an inside arc of {arc:.3} mm must be larger than the cutter's radius, {radius:.3} mm; read the program as the centre's path if it is (D holds wear), or take a smaller cutter",
                 arc = Millimetres(arc), radius = Millimetres(radius);
         /// The paths beside the two moves of an inside corner never meet.
         CornerUnreachable {
             /// The cutter's radius.
             radius: Offset,
         } = "G123",
-            "the inside corner before this move is too tight for a cutter radius of {radius:.3} mm; read the program as the path of the cutter's centre if it is (D holds wear only), or take a smaller cutter",
+            "the inside corner before this move is too tight for a cutter radius of {radius:.3} mm; read the program as the centre's path if it is (D holds wear), or take a smaller cutter",
                 radius = Millimetres(radius);
         /// Nothing is left of a move between its corners: the cutter would cut into the neighbouring walls.
         MoveUnreachable {
@@ -47,7 +47,7 @@ errors! {
             /// The cutter's radius.
             radius: Offset,
         } = "G124",
-            "the move before this one is {length:.3} mm long, too short between its corners for a cutter radius of {radius:.3} mm; it would be gouged: read the program as the path of the cutter's centre if it is (D holds wear only), or take a smaller cutter",
+            "the move before this one is {length:.3} mm long, too short between its corners for a cutter radius of {radius:.3} mm; it would be gouged: read the program as the centre's path if it is (D holds wear), or take a smaller cutter",
                 length = Millimetres(length), radius = Millimetres(radius);
         /// An arc is met at an angle too large for a tangent joint, and too small for a corner.
         ArcDistorted {
@@ -74,7 +74,7 @@ errors! {
             /// How many can.
             limit: usize,
         } = "G131",
-            "more than {limit} steps (moves of the third axis alone, feeds, codes, comments) between two moves in the plane under G41/G42; write G40 before them, or put some of them outside";
+            "more than {limit} steps (moves of the third axis, feeds, codes, comments) between two moves in the plane under G41/G42; write G40 before them";
         /// G41.1 or G42.1 without D.
         DiameterMissing = "G132", "G41.1 and G42.1 need D, the cutter's diameter; add it";
         /// A tool that is not in the tool table.

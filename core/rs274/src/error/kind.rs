@@ -51,7 +51,7 @@ errors! {
             if matches!(language, Foreign::Heidenhain) =>
                 "this is a Heidenhain conversational program (BEGIN PGM), not G-code; post it for an ISO control";
             if matches!(language, Foreign::Siemens) =>
-                "this word of Siemens' own language is not computed; write the number of a tool instead of its name, set origins with G54 to G59 instead of frames, write out cycles as moves, or post the program for ISO mode";
+                "this word of Siemens' own language is not computed; write tools by number, origins by G54 to G59 and cycles as moves, or post the program for ISO mode";
             "an E word: this is a 3D printer's program, or a number with an exponent; post it for a milling machine, with plain numbers";
         /// Something else than a comment after `%`.
         TextAfterPercent = "G010", "text after `%`; only a comment may follow it on its line";
@@ -189,7 +189,7 @@ errors! {
                 start = Millimetres(start), end = Millimetres(end);
         /// An arc that closes with absolute I and J only, behind arcs that close with incremental ones.
         ArcCentreAbsolute = "G057",
-            "this arc closes only if I and J are absolute places, but arcs before it were read with I and J from their start; write G90.1 at the start of the program, or set its arc centres to absolute";
+            "this arc closes only if I and J are absolute places, but arcs before it were read with I and J from their start; write G90.1 or G91.1 at the start of the program, or say arc_centres";
         /// The centre coincides with the start or the end.
         ArcNoRadius = "G056", "the centre of this arc coincides with its start or end; correct I and J";
         /// No cutting move in X or Y at constant Z.

@@ -98,6 +98,7 @@ pub(super) fn statement(text: &[u8]) -> usize {
 
 /// Bytes of the comment that opens at the start of a text, its parentheses included: up to the one that closes it where
 /// comments stand inside each other, or up to the first `)` where they do not match. `None` when nothing closes it.
+#[inline(never)]
 pub(super) fn comment(text: &[u8]) -> Option<usize> {
     let mut depth = 0u32;
     let matching = text.iter().position(|&byte| {
@@ -112,6 +113,7 @@ pub(super) fn comment(text: &[u8]) -> Option<usize> {
 }
 
 /// What follows the blanks and comments at the start of a text.
+#[inline(never)]
 pub(in super::super) fn behind_comments(text: &[u8]) -> &[u8] {
     let mut rest = trimmed(text);
     while let Some(b'(') = rest.first()

@@ -4,6 +4,7 @@ use super::decimal::{is_blank, trimmed};
 
 /// The length of a word of letters or signs at the start of a text, in any case and with blanks inside it, as LinuxCNC
 /// reads it.
+#[inline(never)]
 pub(in super::super) fn spelled(text: &[u8], word: &[u8]) -> Option<usize> {
     let mut left = word.iter();
     let mut expected = left.next()?;

@@ -82,8 +82,12 @@ const TABLE: &[(&[u8], &str)] = &[
         "line 2, column 1: G154: this statement belongs to the macro language of another control; name the control's dialect, or write it in the language of this one",
     ),
     (
+        b"G0 FASTER X1",
+        "line 1, column 4: G008: text outside a comment; put it in ( ) if it is a remark, or post the program in plain G-code",
+    ),
+    (
         b"CYCLE800()",
-        "line 1, column 1: G009: this word of Siemens' own language is not computed; write the number of a tool instead of its name, set origins with G54 to G59 instead of frames, write out cycles as moves, or post the program for ISO mode",
+        "line 1, column 1: G009: this word of Siemens' own language is not computed; write tools by number, origins by G54 to G59 and cycles as moves, or post the program for ISO mode",
     ),
     (
         b"0 BEGIN PGM CORNER MM\n1 L X+0",

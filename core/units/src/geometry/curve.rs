@@ -74,6 +74,7 @@ impl Curve {
     ///
     /// # Errors
     /// As [`Self::arc`].
+    #[inline(never)]
     pub fn arc_within(
         start: Point,
         end: Point,

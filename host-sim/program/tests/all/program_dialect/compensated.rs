@@ -13,6 +13,7 @@ const DEFAULT: Options<'static> = Options {
     skip_block_delete: false,
     dialect: truepath_core::gcode::Dialect::Linuxcnc,
     decimal: truepath_core::gcode::PointlessLength::Calculator,
+    arc_centres: truepath_core::gcode::ArcCentres::Detect,
     block_limit: 1_000_000,
     compensation: CompensationBy::Nothing,
     tools: &[],
