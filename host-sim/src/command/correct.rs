@@ -105,7 +105,7 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
 /// Corrects and writes the outputs.
 ///
 /// # Errors
-/// As [`correct`], and outputs that cannot be written.
+/// As [`correct_pass`], and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSummary, Failure> {
     let read = |job: &FilePath| {
         let mut job = JobFile::read(job)?;
