@@ -1,7 +1,5 @@
 //! Dialects of G-code: controls that give the same words another meaning.
 
-use super::compensation::StartUp;
-
 /// The control a program is written for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Dialect {
@@ -36,14 +34,6 @@ impl Dialect {
     /// depth and Q go on to a cycle of another code until then: Fanuc, and those that follow it.
     pub const fn keeps_motion_behind_cycle(self) -> bool {
         matches!(self, Self::Fanuc | Self::Haas | Self::Siemens)
-    }
-    /// Where the first move under G41 or G42 leads: on Fanuc and Haas set to start-up type A, as they are delivered, and with
-    /// Siemens' NORM to beside the start of the next move, whatever its own length and direction.
-    pub const fn start_up(self) -> StartUp {
-        match self {
-            Self::Fanuc | Self::Haas | Self::Siemens => StartUp::Next,
-            Self::Linuxcnc | Self::Mach => StartUp::Own,
-        }
     }
     /// The largest number of a parameter.
     pub const fn largest_parameter(self) -> u16 {

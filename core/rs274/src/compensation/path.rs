@@ -14,6 +14,7 @@ use super::leg::{Circle, Cutter, Piece, Shape};
 use super::remains::remaining;
 use super::unit::{Unit, fine, length};
 use super::{CompensationError, FINE_BITS};
+use crate::Dialect;
 use truepath_units::geometry::{Point, Side};
 use truepath_units::{Offset, div_rounded, shift_rounded};
 
@@ -47,6 +48,17 @@ pub enum StartUp {
     Own,
     /// To beside the start of the next move.
     Next,
+}
+
+impl StartUp {
+    /// That of a dialect: the next move's on Fanuc and Haas set to start-up type A, as they are delivered, and with Siemens'
+    /// NORM, whatever the first move's own length and direction.
+    pub const fn of(dialect: Dialect) -> Self {
+        match dialect {
+            Dialect::Fanuc | Dialect::Haas | Dialect::Siemens => Self::Next,
+            Dialect::Linuxcnc | Dialect::Mach => Self::Own,
+        }
+    }
 }
 
 /// The cutter's path between G41 or G42 and G40.

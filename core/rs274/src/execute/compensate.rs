@@ -38,7 +38,7 @@ where
         }
         let left = matches!(code.tenths(), 410 | 411);
         let wall = Some(if left { Side::Right } else { Side::Left });
-        let start_up = self.options.dialect.start_up();
+        let start_up = StartUp::of(self.options.dialect);
         if self.modal.compensated {
             // Said once more, which changes nothing.
             let number = block.use_word(b'D').map(|word| self.whole(word)).transpose()?;
