@@ -3,7 +3,7 @@
 use super::{ContourPass, ForceModel, JobError};
 use crate::cut::{ForceTable, Loop, Path, WallLaw};
 use crate::geometry::Vector;
-use crate::identify::{Fit, Observation, PredictionWorkspace, Prior, identify, identify_law};
+use crate::identify::{Cut, Fit, Observation, PredictionWorkspace, Prior, identify, identify_law};
 
 /// Machine and material of a pass.
 #[derive(Clone, Copy, Debug)]
@@ -29,14 +29,15 @@ pub fn identified(
     let law = match pass.job.force.model {
         ForceModel::Auto => {
             let around = |law| pass.prior(law);
-            let (law, prior, fit) = identify_law(path, around, &mut [], observations, uncorrected, workspace, observe);
+            let (law, prior, fit) = identify_law(path, around, observations, uncorrected, workspace, observe);
             return Identified { law, prior, fit };
         }
         ForceModel::Mean => WallLaw::Mean,
         ForceModel::Helical => WallLaw::Helical,
     };
     let prior = pass.prior(law);
-    let fit = identify(&path.with_law(law), &prior, &mut [], observations, uncorrected, workspace, observe);
+    let cuts = [Cut { path: path.with_law(law), points: observations.len(), part: 0 }];
+    let fit = identify(&cuts, &prior, &mut [], observations, uncorrected, workspace, observe);
     Identified { law, prior, fit }
 }
 

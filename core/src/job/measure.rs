@@ -24,41 +24,69 @@ pub fn contacts(
     file: &[u8],
     readings: &mut [Reading],
     contacts: &mut [Contact],
-    mut set_aside: impl FnMut(&Reading, Rejected),
+    set_aside: impl FnMut(&Reading, Rejected),
 ) -> Result<usize, JobError> {
-    let probe = pass.job.probe.ok_or(JobError::NoProbe)?;
-    let count = read(file, &pass.probe_given(&probe), readings).map_err(JobError::Measurement)?;
+    let count = self::readings(pass, file, readings)?;
     let readings = readings.get(..count).unwrap_or_default();
-    let on_wall = Contacts::new(
-        contour,
-        Setting {
-            ball_radius: Offset::from_nm(probe.ball_diameter.nm() / 2),
-            cutter_radius: pass.setup.radius,
-            wall: pass.setup.wall,
-            tip_z: pass.contour.z,
-            axial_depth: pass.job.cut.axial_depth,
-            z_is_tip: probe.z_reference == ZReference::Tip,
-            reach: REACH,
-        },
-    );
+    let on_wall = on_wall(pass, contour)?;
     if let Some(suspicion) = suspect(&on_wall, readings) {
         let off = readings
             .iter()
             .find(|r| matches!(on_wall.contact(r), Err(Rejected::OffTheWall { .. } | Rejected::Normal { .. })));
         return Err(JobError::OffTheWall { suspicion, line: off.map_or(1, |r| r.line) });
     }
+    contacts_among(&on_wall, readings, contacts, set_aside)
+}
+
+/// Reads a probe file into `readings`, in the order of the file; returns how many there are.
+///
+/// # Errors
+/// A job without probe, what is wrong with the file, a buffer too short.
+pub fn readings(pass: &ContourPass, file: &[u8], readings: &mut [Reading]) -> Result<usize, JobError> {
+    let probe = pass.job.probe.ok_or(JobError::NoProbe)?;
+    read(file, &pass.probe_given(&probe), readings).map_err(JobError::Measurement)
+}
+
+/// What turns readings into contacts on the wall of a pass.
+///
+/// # Errors
+/// A job without probe.
+pub fn on_wall<'a>(pass: &ContourPass, contour: Contour<'a>) -> Result<Contacts<'a>, JobError> {
+    let probe = pass.job.probe.ok_or(JobError::NoProbe)?;
+    let setting = Setting {
+        ball_radius: Offset::from_nm(probe.ball_diameter.nm() / 2),
+        cutter_radius: pass.setup.radius,
+        wall: pass.setup.wall,
+        tip_z: pass.contour.z,
+        axial_depth: pass.job.cut.axial_depth,
+        z_is_tip: probe.z_reference == ZReference::Tip,
+        reach: REACH,
+    };
+    Ok(Contacts::new(contour, setting))
+}
+
+/// The contacts of readings that are of one wall, as [`contacts`] gives them; the readings are in the order of the file.
+///
+/// # Errors
+/// A buffer too short, and why the first reading cannot be used when none can.
+pub fn contacts_among(
+    on_wall: &Contacts,
+    readings: &[Reading],
+    contacts: &mut [Contact],
+    mut set_aside: impl FnMut(&Reading, Rejected),
+) -> Result<usize, JobError> {
     let lent = contacts.len();
     let mut used = 0usize;
     let mut first_rejected = None;
     for reading in readings {
         match on_wall.contact(reading) {
             Ok(contact) => {
-                *contacts.get_mut(used).ok_or(JobError::full(Buffer::Points, count, lent))? = contact;
+                *contacts.get_mut(used).ok_or(JobError::full(Buffer::Points, readings.len(), lent))? = contact;
                 used = used.saturating_add(1);
             }
             Err(reason) => {
                 first_rejected =
-                    first_rejected.or(Some(JobError::NoContact { line: reading.line, reason, tip: pass.contour.z }));
+                    first_rejected.or(Some(JobError::NoContact { line: reading.line, reason, tip: on_wall.tip_z() }));
                 set_aside(reading, reason);
             }
         }

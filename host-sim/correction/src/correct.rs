@@ -17,7 +17,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::codes::P004;
 use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program, unrolled};
 
-use crate::correction::{Correction, DesignRequest, Identification, design_correction, identify};
+use crate::correction::{Correction, DesignRequest, Identification, MeasuredCut, design_correction, identify_together};
 use crate::edits::block_edits;
 use crate::feeds;
 use crate::remarks::{MeasuredPart, Remarks};
@@ -61,14 +61,57 @@ pub fn correct_pass(
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<CorrectedPass, Failure> {
-    let mut buffer = PathBuffer::default();
-    let sampled = pass.sample(&mut buffer)?;
-    let identified = identify(pass, &sampled, measurement, |share| progress(0.2 * share))?;
-    let remarks = Remarks::of(measurement, remarks, MeasuredPart::Uncorrected);
-    let path = sampled.with_law(identified.law());
-    let table = identified.table();
-    let law = job::law(&pass.core, &identified.machine(&path, &table), &measurement.contacts);
-    correct_identified(pass, &sampled, identified, &DesignRequest::of(law), remarks, routes, progress)
+    let walls = [MeasuredWall { pass, measurement, remarks }];
+    let corrected = correct_every(&walls, routes, progress)?;
+    corrected.into_iter().next().ok_or_else(|| Failure::Internal("a pass without its correction".to_owned()))
+}
+
+/// A wall of a part, and what was measured on it.
+#[derive(Clone, Copy, Debug)]
+pub struct MeasuredWall<'a> {
+    /// The pass that cut it.
+    pub pass: &'a Pass,
+    /// Its points.
+    pub measurement: &'a Measurement,
+    /// Sentences for its summary.
+    pub remarks: &'a [String],
+}
+
+/// Corrects the walls of one part together: one machine is identified from the points of all, and one program is written
+/// with the corrections of all, which every result carries.
+///
+/// # Errors
+/// As [`correct_pass`].
+pub fn correct_every(
+    walls: &[MeasuredWall<'_>],
+    routes: &[Route],
+    progress: &mut dyn FnMut(f64),
+) -> Result<Vec<CorrectedPass>, Failure> {
+    let mut buffers: Vec<[PathBuffer; 2]> = walls.iter().map(|_| Default::default()).collect();
+    let (mut sampled, mut fed) = (Vec::new(), Vec::new());
+    for (wall, [buffer, other]) in walls.iter().zip(&mut buffers) {
+        sampled.push(wall.pass.sample(buffer)?);
+        fed.push(other);
+    }
+    let cuts: Vec<MeasuredCut> = walls
+        .iter()
+        .zip(&sampled)
+        .map(|(wall, path)| MeasuredCut { pass: wall.pass, path, measurement: wall.measurement })
+        .collect();
+    let identified = identify_together(&cuts, |share| progress(0.2 * share))?;
+    let count = walls.len() as f64;
+    let mut designed = Vec::new();
+    for (at, (((wall, path), identified), fed)) in walls.iter().zip(&sampled).zip(identified).zip(fed).enumerate() {
+        let remarks = Remarks::of(wall.measurement, wall.remarks, MeasuredPart::Uncorrected);
+        let lawful = path.with_law(identified.law());
+        let table = identified.table();
+        let law = job::law(&wall.pass.core, &identified.machine(&lawful, &table), &wall.measurement.contacts);
+        let later = &mut |share| progress(0.2 + (at as f64 + share) / count * 0.7);
+        designed.push(design(wall.pass, path, fed, identified, &DesignRequest::of(law), remarks, routes, later)?);
+    }
+    let corrected = write_every(designed, routes)?;
+    progress(1.0);
+    Ok(corrected)
 }
 
 /// Designs the correction of a pass for an identified machine and writes it for the routes.
@@ -85,104 +128,181 @@ pub fn correct_identified(
     progress: &mut dyn FnMut(f64),
 ) -> Result<CorrectedPass, Failure> {
     progress(0.2);
+    let mut fed = PathBuffer::default();
+    let later = &mut |share| progress(0.2 + 0.7 * share);
+    let designed = design(pass, sampled, &mut fed, identified, request, remarks, routes, later)?;
+    let corrected = write_every(vec![designed], routes)?;
+    progress(1.0);
+    corrected.into_iter().next().ok_or_else(|| Failure::Internal("a pass without its correction".to_owned()))
+}
+
+/// A correction that was designed and not yet written.
+struct Designed<'a> {
+    pass: &'a Pass,
+    /// The path at the feeds it will be cut with.
+    path: Path<'a>,
+    identified: Identification,
+    correction: Correction,
+    feeds: feeds::Feeds,
+    residual: Vec<Offset>,
+    residual_sigma: Vec<Offset>,
+    set_aside: usize,
+    probe: u32,
+    part: MeasuredPart,
+    warnings: Vec<String>,
+}
+
+/// Designs the correction of a pass; `fed` takes the samples of its path at scheduled feeds.
+#[expect(clippy::too_many_arguments, reason = "each is a part of what a correction follows from")]
+fn design<'a>(
+    pass: &'a Pass,
+    sampled: &Path<'a>,
+    fed: &'a mut PathBuffer,
+    identified: Identification,
+    request: &DesignRequest<'_>,
+    remarks: Remarks<'_>,
+    routes: &[Route],
+    progress: &mut dyn FnMut(f64),
+) -> Result<Designed<'a>, Failure> {
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let machine = identified.machine(&path, &table);
     let mut feeds = feeds::planned(pass, &machine, &identified, remarks.part != MeasuredPart::FirstPass, routes)?;
     feeds.compare(pass, &machine, &identified, request);
-    let mut fed = PathBuffer::default();
     let path = match &feeds.schedule {
-        Some(schedule) => pass.sample_fed(&mut fed, Some(schedule))?.with_law(identified.law()),
+        Some(schedule) => pass.sample_fed(fed, Some(schedule))?.with_law(identified.law()),
         None => path,
     };
     let machine = identified.machine(&path, &table);
-    let correction = design_correction(pass, &machine, &identified, request, |share| progress(0.2 + 0.7 * share))?;
+    let correction = design_correction(pass, &machine, &identified, request, progress)?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.texts.iter().cloned());
     warnings.extend(model_warnings(pass, &identified, &correction, &machine));
     warnings.extend(feeds.warnings(mm(correction.sigma.iter().copied().max().unwrap_or_default())));
-    let (mut written, mut image, mut other_images) = (None, None, Vec::new());
-    let mut levels = Levels::default();
+    Ok(Designed {
+        pass,
+        path,
+        correction,
+        feeds,
+        residual: request.residual.to_vec(),
+        residual_sigma: request.residual_sigma.to_vec(),
+        set_aside: remarks.set_aside,
+        probe: remarks.probe,
+        part: remarks.part,
+        warnings,
+        identified,
+    })
+}
+
+impl Designed<'_> {
+    /// What the lines of every depth that is cut alike become, with the place of the depth in the program, in `edits`;
+    /// `pass` is its own, or the same of the program written out.
+    fn edits(&self, pass: &Pass, edits: &mut Vec<([u32; 2], Vec<BlockEdit>)>) -> Result<Levels, Failure> {
+        levels::each(pass, &self.path, |_, pass, path| {
+            let place = pass.job.numbers.part.map_or([0, 0], |part| [part.run, part.first_block]);
+            edits.push((place, block_edits(pass, path, &self.correction.nodes, self.feeds.schedule.as_ref())));
+            Ok(())
+        })
+    }
+}
+
+/// Writes corrections for the routes: their images, and one program with all of them.
+fn write_every(mut designed: Vec<Designed<'_>>, routes: &[Route]) -> Result<Vec<CorrectedPass>, Failure> {
+    let mut levels: Vec<Levels> = vec![Levels::default(); designed.len()];
+    let mut images = vec![(None, Vec::new()); designed.len()];
+    let mut written = None;
     for route in routes {
         match route {
             Route::Program => {
-                let write = |pass: &Pass, levels: &mut Levels, original: Option<u32>| {
-                    let mut edits = Vec::new();
-                    *levels = levels::each(pass, &path, |_, pass, path| {
-                        edits.extend(block_edits(pass, path, &correction.nodes, feeds.schedule.as_ref()));
-                        Ok(())
-                    })?;
-                    written_program(pass, remarks.probe, &edits, original)
+                let passes: Vec<&Pass> = designed.iter().map(|one| one.pass).collect();
+                let rewritten = match written_program(&designed, &passes, &mut levels, None) {
+                    Ok(rewritten) => rewritten,
+                    Err(failure) => {
+                        let (flat, said) = written_out(&passes, &failure).ok_or(failure)?;
+                        let original = passes.first().map(|pass| program_crc(pass.program.bytes()));
+                        let flat: Vec<&Pass> = flat.iter().collect();
+                        let rewritten = written_program(&designed, &flat, &mut levels, original)?;
+                        designed.iter_mut().take(1).for_each(|one| one.warnings.push(said.clone()));
+                        rewritten
+                    }
                 };
-                let rewritten = write(pass, &mut levels, None).or_else(|failure| {
-                    let (flat, said) = written_out(pass, &failure).ok_or(failure)?;
-                    warnings.push(said);
-                    write(&flat, &mut levels, Some(program_crc(pass.program.bytes())))
-                })?;
-                warnings.extend(kinked(&rewritten.difference));
+                designed.iter_mut().take(1).for_each(|one| one.warnings.extend(kinked(&rewritten.difference)));
                 written = Some(rewritten);
             }
             Route::Coprocessor => {
-                levels = levels::each(pass, &path, |number, other, path| {
-                    let bytes = written_image(other, &identified, path, &correction)?;
-                    if number == pass.level() {
-                        image = Some(bytes);
-                    } else {
-                        other_images.push((number, bytes));
-                    }
-                    Ok(())
-                })?;
+                for ((one, levels), (image, others)) in designed.iter().zip(&mut levels).zip(&mut images) {
+                    *levels = levels::each(one.pass, &one.path, |number, other, path| {
+                        let bytes = written_image(other, &one.identified, path, &one.correction)?;
+                        if number == one.pass.level() {
+                            *image = Some(bytes);
+                        } else {
+                            others.push((number, bytes));
+                        }
+                        Ok(())
+                    })?;
+                }
             }
         }
     }
-    warnings.append(&mut levels.left);
-    if remarks.part == MeasuredPart::Uncorrected {
-        warnings.extend(cut_corrected(&identified, &correction));
+    let done = designed.into_iter().zip(levels).zip(images);
+    Ok(done.map(|((one, levels), images)| one.done(levels, images, written.as_ref())).collect())
+}
+
+impl Designed<'_> {
+    /// The result, for what was written.
+    fn done(
+        self,
+        levels: Levels,
+        (image, other_images): (Option<Vec<u8>>, Vec<(u32, Vec<u8>)>),
+        written: Option<&Rewritten>,
+    ) -> CorrectedPass {
+        let Self { pass, path, identified, correction, feeds, mut warnings, .. } = self;
+        warnings.extend(levels.left);
+        if self.part == MeasuredPart::Uncorrected {
+            warnings.extend(cut_corrected(&identified, &correction));
+        }
+        let summary = CorrectSummary {
+            program: written.map(|rewritten| rewritten.difference.clone()),
+            feed: feeds.summary,
+            feature: pass.feature(&levels.written),
+            ..correct_summary(pass, &identified, &path, &correction, self.set_aside, warnings)
+        };
+        let table = identified.table();
+        let rows = correction_rows(&identified.machine(&path, &table), &correction);
+        CorrectedPass {
+            identified,
+            correction,
+            schedule: feeds.schedule,
+            residual: self.residual,
+            residual_sigma: self.residual_sigma,
+            summary,
+            program: written.map(|rewritten| rewritten.text.clone()),
+            image,
+            other_images,
+            rows,
+        }
     }
-    let (program, difference) = written.map(|rewritten| (rewritten.text, rewritten.difference)).unzip();
-    let summary = CorrectSummary {
-        program: difference,
-        feed: feeds.summary,
-        feature: pass.feature(&levels.written),
-        ..correct_summary(pass, &identified, &path, &correction, remarks.set_aside, warnings)
+}
+
+/// The program with all corrections. `passes` are those of `designed`, or the same of the program with its subprograms and
+/// loops written out, whose `original` has this CRC-32.
+fn written_program(
+    designed: &[Designed<'_>],
+    passes: &[&Pass],
+    levels: &mut [Levels],
+    original: Option<u32>,
+) -> Result<Rewritten, Failure> {
+    let mut edits = Vec::new();
+    for ((one, pass), levels) in designed.iter().zip(passes).zip(levels) {
+        *levels = one.edits(pass, &mut edits)?;
+    }
+    let (Some(pass), Some(one)) = (passes.first(), designed.first()) else {
+        return Err(Failure::Internal("no contour to be written".to_owned()));
     };
-    let rows = correction_rows(&machine, &correction);
-    progress(1.0);
-    Ok(CorrectedPass {
-        identified,
-        correction,
-        schedule: feeds.schedule,
-        residual: request.residual.to_vec(),
-        residual_sigma: request.residual_sigma.to_vec(),
-        summary,
-        program,
-        image,
-        other_images,
-        rows,
-    })
-}
-
-/// The same pass of the program with its subprograms and loops written out, and what is said about it, where a line of
-/// the contour is executed several times; `None` where that is not what failed, or the cuts would be others.
-fn written_out(pass: &Pass, failure: &Failure) -> Option<(Pass, String)> {
-    let Failure::Input(error) = failure else { return None };
-    if error.code() != P004.code || !pass.job.features.is_empty() {
-        return None;
-    }
-    let text = unrolled(pass.program.bytes(), pass.job.numbers.program_options())?;
-    let mut job = pass.job.clone();
-    job.which.pass = pass.plan.as_ref().map(|_| pass.level());
-    let flat = Pass::new(job, Source::new(pass.program.name(), text)).ok()?;
-    let curves = |pass: &Pass| pass.blocks.iter().map(|b| (b.curve, b.feed)).collect::<Vec<_>>();
-    let levels = |pass: &Pass| pass.plan.as_ref().map(Plan::levels);
-    (curves(&flat) == curves(pass) && levels(&flat) == levels(pass)).then(|| {
-        let said = "lines of the contour are executed several times, each with a correction of its own: the corrected program has its subprograms and loops written out";
-        (flat, format!("{}: {said}", pass.program.name()))
-    })
-}
-
-fn written_program(pass: &Pass, probe: u32, edits: &[BlockEdit], original: Option<u32>) -> Result<Rewritten, Failure> {
-    let origin = Origin { program: original, job: Some(crc32(pass.job.source().bytes())), probe: Some(probe) };
+    // Several contours may be cut in turn, depth by depth.
+    edits.sort_by_key(|(place, _)| *place);
+    let edits: Vec<BlockEdit> = edits.into_iter().flat_map(|(_, edits)| edits).collect();
+    let origin = Origin { program: original, job: Some(crc32(pass.job.source().bytes())), probe: Some(one.probe) };
     let options = RewriteOptions {
         tolerance: pass.job.tolerance,
         max_arc_radius: pass.job.max_arc_radius,
@@ -191,7 +311,32 @@ fn written_program(pass: &Pass, probe: u32, edits: &[BlockEdit], original: Optio
         origin,
         ..RewriteOptions::default()
     };
-    rewrite_program(&pass.program, edits, &options)
+    rewrite_program(&pass.program, &edits, &options)
+}
+
+/// The same passes of the program with its subprograms and loops written out, and what is said about it, where a line of
+/// a contour is executed several times; `None` where that is not what failed, or the cuts would be others.
+fn written_out(passes: &[&Pass], failure: &Failure) -> Option<(Vec<Pass>, String)> {
+    let Failure::Input(error) = failure else { return None };
+    let first = passes.first()?;
+    if error.code() != P004.code || !first.job.features.is_empty() {
+        return None;
+    }
+    let text = unrolled(first.program.bytes(), first.job.numbers.program_options())?;
+    let curves = |pass: &Pass| pass.blocks.iter().map(|b| (b.curve, b.feed)).collect::<Vec<_>>();
+    let levels = |pass: &Pass| pass.plan.as_ref().map(Plan::levels);
+    let mut all = Vec::new();
+    for pass in passes {
+        let mut job = pass.job.clone();
+        job.which.pass = pass.plan.as_ref().map(|_| pass.level());
+        let flat = Pass::new(job, Source::new(pass.program.name(), text.clone())).ok()?;
+        if curves(&flat) != curves(pass) || levels(&flat) != levels(pass) {
+            return None;
+        }
+        all.push(flat);
+    }
+    let said = "lines of the contour are executed several times, each with a correction of its own: the corrected program has its subprograms and loops written out";
+    Some((all, format!("{}: {said}", first.program.name())))
 }
 
 /// Makes the image of a correction.

@@ -7,7 +7,7 @@ use truepath_core::correct::{
 };
 use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{Fit, Observation, Prior};
+use truepath_core::identify::{Cut, Fit, Observation, Prior};
 use truepath_core::job;
 use truepath_core::units::{Offset, hypot_nm};
 use truepath_ground::diagnostics::Failure;
@@ -55,18 +55,55 @@ pub fn identify(
     pass: &Pass,
     path: &Path,
     measurement: &Measurement,
-    mut progress: impl FnMut(f64),
+    progress: impl FnMut(f64),
 ) -> Result<Identification, Failure> {
-    let observations = measurement.observations()?;
-    let points = Points { earlier: &[], observations: &observations };
-    let law = asked(pass.core.job.force.model);
+    let found = identify_together(&[MeasuredCut { pass, path, measurement }], progress)?;
+    found.into_iter().next().ok_or_else(|| Failure::Internal("a cut without what its points say".to_owned()))
+}
+
+/// One of the cuts of an uncorrected part, and what was measured of it.
+#[derive(Clone, Copy, Debug)]
+pub struct MeasuredCut<'a> {
+    /// The cut.
+    pub pass: &'a Pass,
+    /// Its path.
+    pub path: &'a Path<'a>,
+    /// Its points.
+    pub measurement: &'a Measurement,
+}
+
+/// Fits one machine and material to the points of all cuts of an uncorrected part, which one cutter made. Every cut is given
+/// what is known of them and its own points.
+///
+/// # Errors
+/// As [`identify`], of all points together.
+pub fn identify_together(
+    cuts: &[MeasuredCut<'_>],
+    mut progress: impl FnMut(f64),
+) -> Result<Vec<Identification>, Failure> {
+    let Some(first) = cuts.first() else { return Ok(Vec::new()) };
+    let mut observations = Vec::new();
+    let mut points = Vec::new();
+    for cut in cuts {
+        let own = cut.measurement.observations()?;
+        points.push(Cut { path: *cut.path, points: own.len(), part: 0 });
+        observations.extend(own);
+    }
+    let law = asked(first.pass.core.job.force.model);
+    let points = Points { cuts: &points, earlier: &[], observations: &observations };
     let uncorrected = |_, _| Vector::ZERO;
-    let Found { core, observations, .. } = found(&pass.core, path, law, points, uncorrected, &mut progress);
-    core.check(&observations).map_err(|error| pass.refused(&error))?;
-    Ok(Identification { core, observations })
+    let Found { core, observations, .. } = found(&first.pass.core, law, points, uncorrected, &mut progress);
+    core.check(&observations).map_err(|error| first.pass.refused(&error))?;
+    let mut rest = observations.into_iter();
+    let own = |cut: &Cut| Identification { core, observations: rest.by_ref().take(cut.points).collect() };
+    Ok(points.cuts.iter().map(own).collect())
 }
 
 impl Identification {
+    /// How many of the points do not fit and have little weight.
+    pub fn outlying(&self) -> usize {
+        self.observations.iter().filter(|o| o.is_outlying()).count()
+    }
     /// The wall law, given or found.
     pub const fn law(&self) -> WallLaw {
         self.core.law

@@ -3,9 +3,9 @@
 //! Which law that is only a fit under either can tell ([`truepath_core::identify`]). The device fits one after the other;
 //! here both run at the same time, on points of their own, and give the same bits.
 
-use truepath_core::cut::{Path, State, WallLaw};
+use truepath_core::cut::{State, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{EarlierPart, Observation, PredictionWorkspace, identify, speaks_for_mean};
+use truepath_core::identify::{Cut, EarlierPart, Observation, PredictionWorkspace, identify, speaks_for_mean};
 use truepath_core::job::{self, ForceModel};
 
 /// What a fit has found, with the points as it left them.
@@ -19,12 +19,14 @@ pub struct Found {
     pub observations: Vec<Observation>,
 }
 
-/// The points of one part or several.
+/// The points of one cut or several.
 #[derive(Clone, Copy, Debug)]
 pub struct Points<'a> {
+    /// The cuts they are of, in their order; the wall law of the paths does not matter.
+    pub cuts: &'a [Cut<'a>],
     /// The parts before the last one.
     pub earlier: &'a [EarlierPart],
-    /// The points, one part behind the other.
+    /// The points, one cut behind the other.
     pub observations: &'a [Observation],
 }
 
@@ -37,11 +39,10 @@ pub const fn asked(model: ForceModel) -> Option<WallLaw> {
     }
 }
 
-/// Fits machine and material to points under a law, or under the one they speak for. `commanded(part, sample)` is the
-/// displacement that the program of a part, counted from 0, commanded. `progress` is told the share done, 0…1.
+/// Fits machine and material to points under a law, or under the one they speak for. `commanded(cut, sample)` is the
+/// displacement that the program commanded at a sample of a cut. `progress` is told the share done, 0…1.
 pub fn found(
     pass: &job::ContourPass,
-    path: &Path,
     law: Option<WallLaw>,
     points: Points<'_>,
     commanded: impl Fn(usize, usize) -> Vector + Copy + Sync,
@@ -49,13 +50,13 @@ pub fn found(
 ) -> Found {
     let under = |law, progress: &mut dyn FnMut(f64)| {
         let (mut earlier, mut observations) = (points.earlier.to_vec(), points.observations.to_vec());
-        let needed = path.working().len() + 1;
+        let cuts: Vec<Cut> = points.cuts.iter().map(|cut| Cut { path: cut.path.with_law(law), ..*cut }).collect();
+        let needed = cuts.iter().map(|cut| cut.path.working().len()).max().unwrap_or_default() + 1;
         let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
         let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
         let prior = pass.prior(law);
         let mut observe = |permille| progress(f64::from(permille) / 1000.0);
-        let path = path.with_law(law);
-        let fit = identify(&path, &prior, &mut earlier, &mut observations, commanded, &mut workspace, &mut observe);
+        let fit = identify(&cuts, &prior, &mut earlier, &mut observations, commanded, &mut workspace, &mut observe);
         Found { core: job::Identified { law, prior, fit }, earlier, observations }
     };
     if let Some(law) = law {

@@ -87,9 +87,55 @@ pub struct CorrectSummary {
     pub feature: Option<FeatureSummary>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// Each of several contours that were corrected together, of which the rest is the worst or the sum; absent for one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contours: Vec<ContourSummary>,
+}
+
+/// One of several contours that were corrected together.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct ContourSummary {
+    /// Its name.
+    pub contour: String,
+    /// Whether it was corrected: one that no point touches stays as it is.
+    pub corrected: bool,
+    /// First and last line of the depth that was probed.
+    pub lines: [u32; 2],
+    /// Its figures, as those of a single contour; absent where it was not corrected.
+    #[serde(flatten)]
+    pub summary: Option<CorrectSummary>,
 }
 
 impl CorrectSummary {
+    /// Of several contours that were corrected together: errors are those of the worst, counts are sums.
+    pub fn of_every(contours: Vec<ContourSummary>, warnings: Vec<String>) -> Option<Self> {
+        let all: Vec<&Self> = contours.iter().filter_map(|contour| contour.summary.as_ref()).collect();
+        let worst = *all.iter().max_by(|a, b| a.max_error_after_mm.total_cmp(&b.max_error_after_mm))?;
+        let largest = |of: fn(&Self) -> f64| all.iter().map(|one| of(one)).fold(0.0, f64::max);
+        let sum = |of: fn(&Self) -> usize| all.iter().map(|one| of(one)).sum::<usize>();
+        let used = sum(|s| s.points_used);
+        let squares: f64 = all.iter().map(|s| s.fit_residual_mm.powi(2) * s.points_used as f64).sum();
+        Some(Self {
+            max_error_before_mm: largest(|s| s.max_error_before_mm),
+            max_sigma_mm: largest(|s| s.max_sigma_mm),
+            axial_form_error_mm: largest(|s| s.axial_form_error_mm),
+            worst_gouge_mm: largest(|s| s.worst_gouge_mm),
+            max_correction_mm: largest(|s| s.max_correction_mm),
+            points_used: used,
+            points_outlying: sum(|s| s.points_outlying),
+            points_rejected: sum(|s| s.points_rejected),
+            fit_residual_mm: (squares / used.max(1) as f64).sqrt(),
+            guard: None,
+            damped: None,
+            feed: None,
+            feature: None,
+            warnings,
+            contours: Vec::new(),
+            ..worst.clone()
+        })
+        .map(|joint| Self { contours, ..joint })
+    }
+
     /// `difference.txt`, for a program of this name; empty when no program was written.
     pub fn difference(&self, original: &str) -> String {
         let program = self.program.as_ref().map(|difference| difference.text(original));
@@ -148,7 +194,7 @@ pub fn correct_summary(
         milling: milling_name(pass.core.setup.milling),
         identified: parameters(identified),
         points_used: observations.len(),
-        points_outlying: identified.fit().outliers,
+        points_outlying: identified.outlying(),
         points_rejected: rejected,
         fit_residual_mm: (squares / observations.len().max(1) as f64).sqrt(),
         program_crc32: format!("{:08x}", pass.core.program_crc),
@@ -156,6 +202,7 @@ pub fn correct_summary(
         feed: None,
         feature: None,
         warnings,
+        contours: Vec::new(),
     }
 }
 

@@ -20,11 +20,11 @@ pub fn model_warnings(
     machine: &Loop,
 ) -> Vec<String> {
     let mut out = Vec::new();
-    if identified.fit().outliers > 0 {
+    if identified.outlying() > 0 {
         let lines: Vec<String> = identified
             .observations
             .iter()
-            .filter(|o| truepath_ground::units::float(o.weight) < 0.3)
+            .filter(|o| o.is_outlying())
             .map(|o| format!("s = {:.2} mm (measured {:.4}, model {:.4} mm)", mm(o.s), mm(o.error), mm(o.predicted)))
             .collect();
         out.push(format!("{} points do not fit and were given little weight: {}", lines.len(), lines.join("; ")));

@@ -137,7 +137,7 @@ impl Drop for Parents {
 
 impl OutputFolder {
     /// Opens a folder beside `target`. `owned` are the names this command may write, `#` in them stands for a number
-    /// from 1: with `force` every one of them that lies in the target is replaced or, when this run does not write it,
+    /// from 1, and one that ends in `/` is a folder with whatever is in it: with `force` every one of them that lies in the target is replaced or, when this run does not write it,
     /// removed, so that no file of an earlier run stays behind beside newer ones. Other files in the target are left
     /// alone.
     ///
@@ -186,11 +186,18 @@ impl OutputFolder {
         }
         // After a signal the folder is gone.
         let _hold = hold();
-        let mut file = fs::File::create(self.staged.path().join(name)).map_err(|e| failed(&e))?;
+        let place = self.staged.path().join(name);
+        fs::create_dir_all(folder_of(&place)).map_err(|e| failed(&e))?;
+        let mut file = fs::File::create(place).map_err(|e| failed(&e))?;
         file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|e| failed(&e))
     }
 
+    /// Whether a name is one of the owned ones, or begins with the owned folder it lies in.
     fn owns(&self, name: &str) -> bool {
+        let folder = name.split_once('/').map(|(folder, _)| folder);
+        if let Some(folder) = folder {
+            return self.owns_folder(folder) && !name.split('/').any(|part| matches!(part, "" | "." | ".."));
+        }
         self.owned.iter().any(|owned| match owned.split_once('#') {
             None => *owned == name,
             Some((before, after)) => {
@@ -200,10 +207,14 @@ impl OutputFolder {
         })
     }
 
+    fn owns_folder(&self, name: &str) -> bool {
+        self.owned.iter().any(|owned| owned.strip_suffix('/') == Some(name))
+    }
+
     /// The owned names in a folder.
     fn names_in(&self, folder: &Path) -> io::Result<Vec<String>> {
         let names = fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()));
-        names.filter(|name| name.as_ref().map_or(true, |name| self.owns(name))).collect()
+        names.filter(|name| name.as_ref().map_or(true, |name| self.owns(name) || self.owns_folder(name))).collect()
     }
 
     /// Opens one of the owned files to be written piece by piece, for tables too large for memory.
@@ -244,8 +255,11 @@ impl OutputFolder {
         }
         let moved = names.iter().try_for_each(|name| {
             let place = self.target.join(name);
-            if place.is_dir() {
-                return Err(io::Error::other(format!("{name} is a folder there")));
+            if place.is_dir() != self.owns_folder(name) && place.exists() {
+                return Err(io::Error::other(format!(
+                    "{name} is {} there",
+                    if place.is_dir() { "a folder" } else { "a file" }
+                )));
             }
             if place.exists() {
                 exchange.rename(&place, &aside.path().join(name))?;

@@ -9,7 +9,7 @@
 //! | the surface the stock really has | [`surface`] |
 //! | feeds in place of the programmed ones | [`feed`] |
 //! | contour, cut and machine as the core takes them | [`pass`], at every depth [`levels`] |
-//! | the points of a probe file on that contour | [`measurement`] |
+//! | the points of a probe file on that contour | [`measurement`], on several of them `sharing` |
 //! | what refuses a job, a program or a point, as an error with its place | [`refusal`] |
 
 pub mod codes;
@@ -21,4 +21,5 @@ pub mod levels;
 pub mod measurement;
 pub mod pass;
 pub mod refusal;
+mod sharing;
 pub mod surface;

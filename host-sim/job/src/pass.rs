@@ -14,7 +14,7 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
 
 use crate::codes::K002;
-use crate::drawn::drawn;
+use crate::drawn::{Drawn, drawn};
 use crate::feature;
 use crate::feature::{FeaturePass, FeatureSummary, Plan};
 use crate::feed::Schedule;
@@ -66,12 +66,36 @@ impl Pass {
     /// # Errors
     /// As [`Pass::read`].
     pub fn new(mut job: JobFile, program: Source) -> Result<Self, Failure> {
-        let drawn = if job.drawn { None } else { drawn(&job, &program)? };
-        job.drawn = true;
-        if let Some(drawn) = &drawn {
-            job.numbers.tool.compensation = drawn.compensation;
-        }
+        let drawn = find_out_drawn(&mut job, &program)?;
         let plan = feature::plan(&job, &program)?;
+        Self::of_plan(job, program, plan, drawn.as_ref())
+    }
+
+    /// Reads job and program: a pass for every contour that the job's cutter finishes, in the order of the program; the one
+    /// that the job names, where it names one.
+    ///
+    /// # Errors
+    /// As [`Pass::read`].
+    pub fn every(mut job: JobFile) -> Result<Vec<Self>, Failure> {
+        let program = job.read_program()?;
+        let drawn = find_out_drawn(&mut job, &program)?;
+        let plans = feature::plans(&job, &program)?;
+        if plans.is_empty() {
+            return Ok(vec![Self::of_plan(job, program, None, drawn.as_ref())?]);
+        }
+        let several = plans.len() > 1;
+        let pass = |plan: Plan| {
+            let mut job = job.clone();
+            if several {
+                job.which.feature.clone_from(&plan.id);
+            }
+            Self::of_plan(job, program.clone(), Some(plan), drawn.as_ref())
+        };
+        plans.into_iter().map(pass).collect()
+    }
+
+    /// The level of a feature that the job is about, or its first.
+    fn of_plan(mut job: JobFile, program: Source, plan: Option<Plan>, drawn: Option<&Drawn>) -> Result<Self, Failure> {
         let level = job.which.pass.unwrap_or(1);
         job.numbers.part = plan.as_ref().map(|plan| plan.level(level).map(|pass| pass.part)).transpose()?;
         let mut pass = Self::of_part(job, program, plan)?;
@@ -193,7 +217,7 @@ impl Pass {
     pub fn at_level(&self, number: u32) -> Result<Self, Failure> {
         let mut job = self.job_as_cut();
         job.which.pass = Some(number);
-        Ok(Self::new(job, self.program.clone())?.cut_with(self.core.cut_with))
+        Ok(Self::of_plan(job, self.program.clone(), self.plan.clone(), None)?.cut_with(self.core.cut_with))
     }
 
     /// One of the passes of the same feature, spring passes included. `wall` is the side of its own travel; `None` where
@@ -276,6 +300,16 @@ impl Pass {
         };
         self.core.sample(&contour, &mut buffer.0, shape).map_err(|error| self.refused(&error))
     }
+}
+
+/// What a path under G41 or G42 is: where the job does not say it, it is found out and the job says it from now on.
+fn find_out_drawn(job: &mut JobFile, program: &Source) -> Result<Option<Drawn>, InputError> {
+    let drawn = if job.drawn { None } else { drawn(job, program)? };
+    job.drawn = true;
+    if let Some(drawn) = &drawn {
+        job.numbers.tool.compensation = drawn.compensation;
+    }
+    Ok(drawn)
 }
 
 /// Reads the contour of a program, whatever its length.

@@ -46,13 +46,50 @@ pub struct InspectSummary {
     pub points_by_verdict: Option<Count>,
     /// Decision rule and what the verdict does not cover, in sentences.
     pub statements: Vec<String>,
-    /// Stretches of the contour that no point speaks for.
-    pub coverage: Coverage,
+    /// Stretches of the contour that no point speaks for; each of several contours has its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coverage: Option<Coverage>,
+    /// Its name, where it is one of several contours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contour: Option<String>,
     /// The feature it is about; absent in a program with one cut and no names.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feature: Option<FeatureSummary>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// Each of several contours that was touched, of all of which the rest is said; absent for one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contours: Vec<InspectSummary>,
+}
+
+impl InspectSummary {
+    /// Of several contours of a part and the judgement on all their points. `None` without any.
+    pub fn of_every(contours: Vec<Self>, judgement: &Judgement, warnings: Vec<String>) -> Option<Self> {
+        let first = contours.first()?.clone();
+        let points: usize = contours.iter().map(|one| one.points).sum();
+        let mean = |of: fn(&Self) -> f64| {
+            contours.iter().map(|one| of(one) * one.points as f64).sum::<f64>() / points.max(1) as f64
+        };
+        let most = |of: fn(&Self) -> f64| contours.iter().map(of).fold(f64::MIN, f64::max);
+        Some(Self {
+            points,
+            points_rejected: contours.iter().map(|one| one.points_rejected).sum(),
+            mean_error_mm: mean(|one| one.mean_error_mm),
+            max_error_mm: most(|one| one.max_error_mm),
+            min_error_mm: -most(|one| -one.min_error_mm),
+            rms_error_mm: mean(|one| one.rms_error_mm.powi(2)).sqrt(),
+            spread_over_height_mm: most(|one| one.spread_over_height_mm),
+            verdict: judgement.verdict.clone(),
+            points_by_verdict: judgement.count,
+            statements: judgement.statements.clone(),
+            coverage: None,
+            contour: None,
+            feature: None,
+            warnings,
+            contours,
+            ..first
+        })
+    }
 }
 
 /// Limits of the wall error.
@@ -105,9 +142,11 @@ pub fn inspect_summary(
         verdict: judgement.verdict.clone(),
         points_by_verdict: judgement.count,
         statements: judgement.statements.iter().cloned().chain(beyond).collect(),
-        coverage,
+        coverage: Some(coverage),
+        contour: None,
         feature,
         warnings,
+        contours: Vec::new(),
     }
 }
 

@@ -40,8 +40,48 @@ pub struct SimulateSummary {
     /// The feature it is about; absent in a program with one cut and no names.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feature: Option<FeatureSummary>,
+    /// Its name, where it is one of several contours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contour: Option<String>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// Each of several contours, of which the rest is the worst or the sum; absent for one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contours: Vec<SimulateSummary>,
+}
+
+impl SimulateSummary {
+    /// Of the contours of a program: largest values are those of the worst, the length is the sum. `None` without any.
+    pub fn of_every(contours: Vec<Self>) -> Option<Self> {
+        if contours.len() < 2 {
+            return contours.into_iter().next();
+        }
+        let first = contours.first()?.clone();
+        let most = |of: fn(&Self) -> f64| contours.iter().map(of).fold(0.0, f64::max);
+        let length_mm: f64 = contours.iter().map(|one| one.length_mm).sum();
+        let squares: f64 = contours.iter().map(|one| one.rms_error_mm.powi(2) * one.length_mm).sum();
+        let mut warnings: Vec<String> = Vec::new();
+        for one in &contours {
+            let name = one.contour.as_deref().unwrap_or_default();
+            warnings.extend(one.warnings.iter().map(|said| format!("{name}: {said}")));
+        }
+        Some(Self {
+            length_mm,
+            max_error_mm: most(|one| one.max_error_mm),
+            rms_error_mm: (squares / length_mm).sqrt(),
+            max_arc_deg: most(|one| one.max_arc_deg),
+            max_force_n: most(|one| one.max_force_n),
+            max_chip_area_mm2: most(|one| one.max_chip_area_mm2),
+            max_chip_volume_mm3: most(|one| one.max_chip_volume_mm3),
+            judged: None,
+            recorded: None,
+            feature: None,
+            contour: None,
+            warnings,
+            contours,
+            ..first
+        })
+    }
 }
 
 /// Makes the summary of `simulate`.
@@ -62,6 +102,8 @@ pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warni
         judged: None,
         recorded: None,
         feature: pass.feature(&[]),
+        contour: None,
         warnings,
+        contours: Vec::new(),
     }
 }

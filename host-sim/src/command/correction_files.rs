@@ -30,7 +30,11 @@ pub(super) const FILES: &[&str] = &[
     "probe-raw.txt",
     "first-pass-surface.csv",
     "correction-pass-#.tpi",
+    CONTOURS,
 ];
+
+/// The folder of what belongs to one of several contours.
+pub(super) const CONTOURS: &str = "contours/";
 
 /// Writes what a correction in memory holds beside its summary.
 pub(super) fn write(
@@ -39,19 +43,52 @@ pub(super) fn write(
     measurement: &Measurement,
     done: &CorrectedPass,
 ) -> Result<(), Failure> {
+    write_program(folder, pass, done)?;
+    write_contour(folder, "", measurement, done)
+}
+
+/// Writes the corrected program, where there is one.
+pub(super) fn write_program(folder: &OutputFolder, pass: &Pass, done: &CorrectedPass) -> Result<(), Failure> {
     if let Some(text) = &done.program {
         folder.write("corrected.nc", text)?;
         folder.write("difference.txt", done.summary.difference(pass.program.name()).as_bytes())?;
     }
+    Ok(())
+}
+
+/// Writes what a correction in memory holds beside its summary and its program, in the folder `place` of the outputs.
+pub(super) fn write_contour(
+    folder: &OutputFolder,
+    place: &str,
+    measurement: &Measurement,
+    done: &CorrectedPass,
+) -> Result<(), Failure> {
+    let write = |name: &str, bytes: &[u8]| folder.write(&format!("{place}{name}"), bytes);
     if let Some(bytes) = &done.image {
-        folder.write("correction.tpi", bytes)?;
+        write("correction.tpi", bytes)?;
     }
     for (number, bytes) in &done.other_images {
-        folder.write(&format!("correction-pass-{number}.tpi"), bytes)?;
+        write(&format!("correction-pass-{number}.tpi"), bytes)?;
     }
-    folder.write("correction.csv", &correction_csv(&done.rows)?)?;
-    folder.write("wall.csv", &wall_csv(&done.rows)?)?;
-    folder.write("points.csv", &points_csv(measurement, &done.identified.observations)?)?;
-    folder.write("correction.svg", &predicted_error(&View::default(), &done.rows, &[])?)?;
+    write("correction.csv", &correction_csv(&done.rows)?)?;
+    write("wall.csv", &wall_csv(&done.rows)?)?;
+    write("points.csv", &points_csv(measurement, &done.identified.observations)?)?;
+    write("correction.svg", &predicted_error(&View::default(), &done.rows, &[])?)?;
     Ok(())
+}
+
+/// The folder of the outputs of one of several contours, by its name where that can be one.
+pub(super) fn contour_folder(pass: &Pass) -> String {
+    format!("{CONTOURS}{}/", contour_name(pass))
+}
+
+/// What one of several contours is called in files and tables: its name where that can be a file's, or its number.
+pub(super) fn contour_name(pass: &Pass) -> String {
+    let plain = |id: &&String| {
+        let usual = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
+        (1..=64).contains(&id.len()) && id.chars().all(usual)
+    };
+    let plan = pass.plan.as_ref();
+    let id = plan.and_then(|plan| plan.id.as_ref()).filter(plain);
+    id.cloned().unwrap_or_else(|| format!("contour-{}", plan.map_or(1, |plan| plan.number)))
 }

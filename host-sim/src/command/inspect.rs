@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use truepath_core::probe::{Contact, CutWith};
 use truepath_core::units::Offset;
-use truepath_correction::inspection::{Extent, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge};
+use truepath_correction::inspection::{
+    Extent, Judgement, NamedWall, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge, judge_every,
+};
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
@@ -14,15 +16,19 @@ use truepath_job::feature::listing;
 use truepath_job::job::{JobFile, PartFlags, ProbeFlags, Which};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
-use truepath_report::page::render;
-use truepath_report::pages::{REPORT, inspected};
+use truepath_report::page::render_all;
+use truepath_report::pages::{self, REPORT};
 use truepath_report::{InspectSummary, inspect_summary, judged_points_csv, points_csv};
 
+use super::correction_files::{CONTOURS, contour_folder, contour_name};
 use crate::terminal::Terminal;
 
 /// One contact, for the list that is printed.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Point {
+    /// The contour it is on, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contour: Option<String>,
     /// Line of the probe file.
     pub line: u32,
     /// Place along the contour, mm.
@@ -53,7 +59,7 @@ pub struct Inspection {
 }
 
 /// Files this command may write.
-const FILES: &[&str] = &["points.csv", "summary.json", "probe-raw.txt", REPORT];
+const FILES: &[&str] = &["points.csv", "summary.json", "probe-raw.txt", REPORT, CONTOURS];
 
 /// What is inspected.
 #[derive(Clone, Debug, Default, Args)]
@@ -92,7 +98,12 @@ fn words(inspection: &Inspection) -> String {
     let judged = inspection.summary.tolerance.is_some();
     text.push_str("  line     s mm       X mm       Y mm   height mm   error mm");
     text.push_str(if judged { "  verdict\n" } else { "\n" });
+    let mut contour = None;
     for p in &inspection.contacts {
+        if p.contour != contour {
+            contour.clone_from(&p.contour);
+            text += &format!("{}\n", contour.as_deref().unwrap_or_default());
+        }
         text += &format!(
             "{:>6} {:>8.2} {:>10.4} {:>10.4} {:>11.3} {:>10.*}{}\n",
             p.line,
@@ -128,7 +139,7 @@ const fn word(verdict: PointVerdict) -> &'static str {
     }
 }
 
-/// Compares a probe file with the wall of the job. A part that fails is no error: the command did its work, and the verdict
+/// Compares a probe file with the walls of the job. A part that fails is no error: the command did its work, and the verdict
 /// is in the summary.
 ///
 /// # Errors
@@ -139,12 +150,65 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     job.override_part(&options.part)?;
     job.which = options.which.clone();
     // What a part was cut with does not matter for how far its wall is off.
-    let pass = Pass::read(job)?.cut_with(CutWith::Anything);
+    let walls: Vec<Pass> = Pass::every(job)?.into_iter().map(|pass| pass.cut_with(CutWith::Anything)).collect();
     let file = Source::read(&options.probe)?;
-    let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
-    let misreadings = misread(&pass, false, &measurement.contacts);
+    let several = walls.len() > 1;
+    let measured = Measurement::of_every(walls, &file)?;
+    let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
+    let mut inspected = Vec::new();
+    for (pass, measurement) in measured.iter().filter(|(_, measurement)| !measurement.contacts.is_empty()) {
+        inspected.push(one(pass, measurement, &file, several)?);
+    }
+    if let Some(folder) = &folder {
+        for wall in &inspected {
+            let place = if several { contour_folder(wall.pass) } else { String::new() };
+            let points = match wall.summary.tolerance {
+                Some(_) => judged_points_csv(wall.measurement, &wall.judgement.points)?,
+                None => points_csv(wall.measurement, &[])?,
+            };
+            folder.write(&format!("{place}points.csv"), &points)?;
+            if several {
+                folder.write(&format!("{place}summary.json"), &json(&wall.summary)?)?;
+            }
+        }
+        folder.write("probe-raw.txt", file.bytes())?;
+    }
+    let mut pages = Vec::new();
+    for wall in &inspected {
+        let page = pages::inspected(wall.pass, wall.measurement, &wall.judgement, &wall.summary, &wall.told)?;
+        pages.push((contour_name(wall.pass), page));
+    }
+    let inspection = together(inspected, &measured, &file)?;
+    if let Some(folder) = folder {
+        folder.write("summary.json", &json(&inspection.summary)?)?;
+        folder.write(REPORT, &render_all(&pages)?)?;
+        folder.commit()?;
+    }
+    Ok(inspection)
+}
+
+/// A wall that was touched, and what is said of it.
+struct Inspected<'a> {
+    pass: &'a Pass,
+    measurement: &'a Measurement,
+    rule: Option<Rule>,
+    aside: SetAside,
+    judgement: Judgement,
+    summary: InspectSummary,
+    /// Warnings without one for every reading set aside.
+    told: Vec<String>,
+    contacts: Vec<Point>,
+}
+
+fn one<'a>(
+    pass: &'a Pass,
+    measurement: &'a Measurement,
+    file: &Source,
+    several: bool,
+) -> Result<Inspected<'a>, Failure> {
+    let misreadings = misread(pass, false, &measurement.contacts);
     let told: Vec<String> = pass.warnings.iter().chain(&misreadings).cloned().collect();
-    let warnings = [pass.warnings.clone(), measurement.remarks(&file), misreadings].concat();
+    let warnings = [pass.warnings.clone(), measurement.remarks(file), misreadings].concat();
     let (part, contour) = (&pass.job.part, pass.path_contour());
     let rule = part.tolerance.map(|tolerance| Rule { tolerance, uncertainty: part.uncertainty });
     let depth = pass.job.numbers.cut.axial_depth;
@@ -160,7 +224,9 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let deviations: Vec<Offset> = measurement.contacts.iter().map(|c| c.error).collect();
     let aside = SetAside::of(measurement.rejected.iter().map(|r| &r.reason), pass.job.numbers.tool.diameter);
     let judgement = judge(rule, &deviations, aside, &coverage);
+    let name = several.then(|| contour_name(pass));
     let contacts = measurement.contacts.iter().enumerate().map(|(at, c)| Point {
+        contour: name.clone(),
         line: c.line,
         s_mm: mm(c.s),
         x_mm: c.point.x.nm() as f64 / 1e6,
@@ -170,20 +236,49 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
         verdict: judgement.points.get(at).copied(),
     });
     let contacts = contacts.collect();
-    let summary = inspect_summary(&pass, &measurement, &judgement, coverage, warnings);
-    let inspection = Inspection { contacts, summary, decimals: judgement.decimals };
-    if let Some(out) = &options.output {
-        let folder = OutputFolder::create(out, options.force, FILES)?;
-        let points = match inspection.summary.tolerance {
-            Some(_) => judged_points_csv(&measurement, &judgement.points)?,
-            None => points_csv(&measurement, &[])?,
-        };
-        folder.write("points.csv", &points)?;
-        folder.write("summary.json", &json(&inspection.summary)?)?;
-        folder.write("probe-raw.txt", file.bytes())?;
-        let page = inspected(&pass, &measurement, &judgement, &inspection.summary, &told)?;
-        folder.write(REPORT, &render(&page)?)?;
-        folder.commit()?;
+    let summary = inspect_summary(pass, measurement, &judgement, coverage, warnings);
+    let summary = InspectSummary { contour: name, ..summary };
+    Ok(Inspected { pass, measurement, rule, aside, judgement, summary, told, contacts })
+}
+
+/// The report on all walls of a part.
+fn together(
+    inspected: Vec<Inspected<'_>>,
+    measured: &[(Pass, Measurement)],
+    file: &Source,
+) -> Result<Inspection, Failure> {
+    let nothing = || Failure::Internal("no wall was inspected".to_owned());
+    if let ([one], [_]) = (&inspected[..], measured) {
+        let (summary, contacts) = (one.summary.clone(), one.contacts.clone());
+        return Ok(Inspection { contacts, summary, decimals: one.judgement.decimals });
     }
-    Ok(inspection)
+    let rule = inspected.first().and_then(|wall| wall.rule);
+    let deviations: Vec<Offset> =
+        inspected.iter().flat_map(|wall| wall.measurement.contacts.iter().map(|c| c.error)).collect();
+    let mut aside = inspected.iter().fold(SetAside::default(), |so_far, wall| so_far.and(wall.aside));
+    let mut warnings = Vec::new();
+    let mut walls = Vec::new();
+    for (pass, measurement) in measured {
+        let name = contour_name(pass);
+        let own = inspected.iter().find(|wall| std::ptr::eq(wall.pass, pass));
+        if own.is_none() {
+            let reasons = measurement.rejected.iter().map(|r| &r.reason);
+            aside = aside.and(SetAside::of(reasons, pass.job.numbers.tool.diameter));
+            warnings.push(format!("{name} was not touched: nothing is said of it"));
+        }
+        let said = own.map_or_else(|| measurement.remarks(file), |wall| wall.summary.warnings.clone());
+        for said in said {
+            let text = if said.starts_with(pass.program.name()) { said } else { format!("{name}: {said}") };
+            if !warnings.contains(&text) {
+                warnings.push(text);
+            }
+        }
+        walls.push((name, own.and_then(|wall| wall.summary.coverage.as_ref())));
+    }
+    let walls: Vec<NamedWall<'_>> = walls.iter().map(|(name, coverage)| (name.as_str(), *coverage)).collect();
+    let judgement = judge_every(rule, &deviations, aside, &walls);
+    let contacts = inspected.iter().flat_map(|wall| wall.contacts.clone()).collect();
+    let contours = inspected.iter().map(|wall| wall.summary.clone()).collect();
+    let summary = InspectSummary::of_every(contours, &judgement, warnings).ok_or_else(nothing)?;
+    Ok(Inspection { contacts, summary, decimals: judgement.decimals })
 }

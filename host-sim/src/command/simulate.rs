@@ -25,11 +25,12 @@ use truepath_trial::replay::Placement;
 use truepath_trial::setpoints::Setpoints;
 use truepath_trial::{recorded, virtual_mill};
 
+use super::correction_files::{CONTOURS, contour_folder, contour_name};
 use super::placement::PlacementOptions;
 use crate::terminal::Terminal;
 
 /// Files this command may write.
-const FILES: &[&str] = &["trace.csv", "wall.csv", PROBED, TOUCHED, "summary.json", "trace.svg", REPORT];
+const FILES: &[&str] = &["trace.csv", "wall.csv", PROBED, TOUCHED, "summary.json", "trace.svg", REPORT, CONTOURS];
 /// The wall as cut, at several heights.
 const PROBED: &str = "probed-wall.csv";
 /// What the machine writes while it runs the probing program.
@@ -96,8 +97,16 @@ fn words(summary: &SimulateSummary, output: &FilePath) -> String {
     let judged = summary.judged.map_or_else(String::new, |score| {
         format!("away from the ends: largest wall error {:.4} mm (rms {:.4})\n", score.max_error_mm, score.rms_error_mm)
     });
+    let contours = summary.contours.iter().map(|one| {
+        let name = one.contour.as_deref().unwrap_or_default();
+        format!(
+            "{name}: {:.1} mm, largest wall error {:.4} mm (rms {:.4})\n",
+            one.length_mm, one.max_error_mm, one.rms_error_mm
+        )
+    });
+    let contours: String = contours.collect();
     format!(
-        "{}{:.1} mm of contour, {} milling, by the {}\n\
+        "{contours}{}{:.1} mm of contour, {} milling, by the {}\n\
          largest wall error {:.4} mm (rms {:.4}), largest engagement {:.2} degrees, largest mean force {:.0} N\n\
          {judged}{cut}written to {}; to look at: {}\n",
         summary.feature.as_ref().map(listing).unwrap_or_default(),
@@ -113,7 +122,7 @@ fn words(summary: &SimulateSummary, output: &FilePath) -> String {
     )
 }
 
-/// Simulates and writes trace and summary.
+/// Simulates and writes trace and summary, of every contour of the program.
 ///
 /// # Errors
 /// Whatever is wrong with job, program or plant, and outputs that cannot be written.
@@ -121,43 +130,58 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     let recording = options.setpoints.as_deref().map(|file| recording(file, &options.placement)).transpose()?;
     let mut job = JobFile::read(&options.job)?;
     job.which = options.which.clone();
-    let pass = Pass::read(job)?;
+    let walls = Pass::every(job)?;
     let source = |file: &FilePath| Source::read(file);
     let corrected = options.from.as_ref().map(|dir| source(&dir.join(CORRECTED))).transpose()?;
     let probing = options.touch.as_deref().map(source).transpose()?;
+    let machine = options.plant.as_deref().map(read_machine).transpose()?;
     let folder = OutputFolder::create(&options.output, options.force, FILES)?;
-    let mut warnings = pass.warnings.clone();
-    let done = match &options.plant {
-        None => {
-            let (trace, along) = predicted(&pass, &mut warnings)?;
-            Done { by: "core", trace, along, milled: None, facts: None }
+    let several = walls.len() > 1;
+    let (mut all, mut pages, mut milled) = (Vec::new(), Vec::new(), Vec::new());
+    for pass in &walls {
+        let mut warnings = pass.warnings.clone();
+        let done = match &machine {
+            None => {
+                let (trace, along) = predicted(pass, &mut warnings)?;
+                Done { by: "core", trace, along, milled: None, facts: None }
+            }
+            Some(machine) => {
+                let commanded = match (&recording, &corrected) {
+                    (Some((setpoints, placement)), _) => Commanded::Recorded(setpoints, placement),
+                    (None, Some(program)) => Commanded::Program(program),
+                    (None, None) => Commanded::Nominal,
+                };
+                self::milled(pass, machine, &commanded, &mut warnings)?
+            }
+        };
+        let summary = SimulateSummary {
+            judged: done.milled.as_ref().map(Milled::score),
+            recorded: done.facts,
+            contour: several.then(|| contour_name(pass)),
+            ..simulate_summary(pass, done.by, &done.trace, warnings)
+        };
+        let place = if several { contour_folder(pass) } else { String::new() };
+        let write = |name: &str, bytes: &[u8]| folder.write(&format!("{place}{name}"), bytes);
+        if let Some(milled) = done.milled.as_ref().filter(|_| options.probed_wall) {
+            write(PROBED, probed_wall(pass, milled).as_bytes())?;
         }
-        Some(file) => {
-            let commanded = match (&recording, &corrected) {
-                (Some((setpoints, placement)), _) => Commanded::Recorded(setpoints, placement),
-                (None, Some(program)) => Commanded::Program(program),
-                (None, None) => Commanded::Nominal,
-            };
-            milled(&pass, &read_machine(file)?, &commanded, &mut warnings)?
+        write("trace.csv", &trace_csv(&done.trace)?)?;
+        write("wall.csv", &wall_csv(&done.trace)?)?;
+        write("trace.svg", &plot::trace(&View::default(), &[("", &done.trace)], &Column::USUAL)?)?;
+        if several {
+            write("summary.json", &json(&summary)?)?;
         }
-    };
-    let Done { by, trace, along, milled, facts } = done;
-    let summary = SimulateSummary {
-        judged: milled.as_ref().map(Milled::score),
-        recorded: facts,
-        ..simulate_summary(&pass, by, &trace, warnings)
-    };
-    if let Some(milled) = milled.as_ref().filter(|_| options.probed_wall) {
-        folder.write(PROBED, probed_wall(&pass, milled).as_bytes())?;
+        pages.push((contour_name(pass), simulated(pass, done.along, &summary)));
+        milled.extend(done.milled.map(|milled| (pass, milled)));
+        all.push(summary);
     }
-    if let Some((milled, program)) = milled.as_ref().zip(probing.as_ref()) {
-        folder.write(TOUCHED, virtual_mill::touch(&pass, milled, program)?.as_bytes())?;
+    if let Some(program) = probing.as_ref().filter(|_| !milled.is_empty()) {
+        let milled: Vec<(&Pass, &Milled)> = milled.iter().map(|(pass, milled)| (*pass, milled)).collect();
+        folder.write(TOUCHED, virtual_mill::touch(&milled, program)?.as_bytes())?;
     }
-    folder.write("trace.csv", &trace_csv(&trace)?)?;
-    folder.write("wall.csv", &wall_csv(&trace)?)?;
+    let summary = SimulateSummary::of_every(all).ok_or_else(|| Failure::Internal("no contour".to_owned()))?;
     folder.write("summary.json", &json(&summary)?)?;
-    folder.write("trace.svg", &plot::trace(&View::default(), &[("", &trace)], &Column::USUAL)?)?;
-    folder.write(REPORT, &page::render(&simulated(&pass, along, &summary))?)?;
+    folder.write(REPORT, &page::render_all(&pages)?)?;
     folder.commit()?;
     Ok(summary)
 }

@@ -173,41 +173,55 @@ const fn row(point: Point, z_nm: i64) -> Row {
     Row { position_nm: [point.x.nm(), point.y.nm(), z_nm], spindle_rpm: None, flags, frame_crc: None, disarm: false }
 }
 
-/// Touches a milled pass by executing a probing program beside it, and gives the file that the machine would have
+/// Touches the walls of a part by executing a probing program beside them, and gives the file that the machine would have
 /// written.
 ///
 /// # Errors
-/// `L004` for a program that cannot be executed, or that drives the ball into the wall.
-pub fn touch(pass: &Pass, milled: &Milled, program: &Source) -> Result<String, Failure> {
-    let probe = pass.job.require_probe()?;
+/// `L004` for a program that cannot be executed, or that drives the ball into a wall.
+pub fn touch<'m>(walls: &[(&Pass, &'m Milled)], program: &Source) -> Result<String, Failure> {
+    let Some((any, _)) = walls.first() else { return Err(Failure::Internal("no wall to be touched".to_owned())) };
+    let probe = any.job.require_probe()?;
     let ball = 0.5 * mm(probe.ball_diameter);
     let centre_above = if probe.z_reference == ZReference::Tip { ball } else { 0.0 };
-    let tip_z = pass.core.contour.z.nm() as f64 / 1e6;
-    let mut wall = Beside { felt: plant::Felt::new(milled, tip_z), centre_above };
+    let felt = |(pass, milled): &(&Pass, &'m Milled)| plant::Felt::new(milled, pass.core.contour.z.nm() as f64 / 1e6);
+    let felt = walls.iter().map(felt).collect();
+    let mut beside = Beside { felt, centre_above };
     let text = String::from_utf8_lossy(program.bytes());
-    let printed = Control::new(&mut wall, ball).run(&text);
+    let printed = Control::new(&mut beside, ball).run(&text);
     printed.map(|p| p.file()).map_err(|why| L004.error(why, "").in_file(program.name().as_ref()).into())
 }
 
-/// A milled wall as the control of a probing program meets it.
+/// Milled walls as the control of a probing program meets them.
 struct Beside<'m> {
-    felt: plant::Felt<'m>,
+    felt: Vec<plant::Felt<'m>>,
     /// The ball's centre over what the program calls Z, mm.
     centre_above: f64,
 }
 
 impl Wall for Beside<'_> {
     fn top(&self) -> f64 {
-        self.felt.top_mm() - self.centre_above
+        self.felt.iter().map(plant::Felt::top_mm).fold(f64::NEG_INFINITY, f64::max) - self.centre_above
     }
     fn meets(&mut self, z: f64, from: Xy, to: Xy, radius: f64) -> Option<f64> {
-        self.felt.meets(z + self.centre_above, from, to, radius)
+        let z = z + self.centre_above;
+        if let [only] = &mut self.felt[..] {
+            return only.meets(z, from, to, radius);
+        }
+        // On which side of a wall a place lies is known beside it only: of several the nearest tells.
+        let away: Vec<f64> = self.felt.iter_mut().map(|felt| felt.distance_mm(z, from)).collect();
+        let nearest = away.iter().copied().fold(f64::INFINITY, f64::min);
+        let met = self.felt.iter_mut().zip(away).filter(|(felt, _)| z < felt.top_mm()).filter_map(|(felt, away)| {
+            let share = felt.meets(z, from, to, radius)?;
+            (share > 0.0 || away <= radius.max(nearest)).then_some(share)
+        });
+        met.min_by(f64::total_cmp)
     }
     fn distance(&mut self, z: f64, point: Xy) -> f64 {
-        self.felt.distance_mm(z + self.centre_above, point)
+        let z = z + self.centre_above;
+        self.felt.iter_mut().map(|felt| felt.distance_mm(z, point)).fold(f64::INFINITY, f64::min)
     }
     fn noise(&mut self) -> f64 {
-        self.felt.noise_mm()
+        self.felt.first_mut().map_or(0.0, plant::Felt::noise_mm)
     }
 }
 

@@ -46,16 +46,27 @@ impl Fit {
     }
 }
 
-/// Fits the parameters to the observations of one or several parts that one machine cut.
+/// The points of one contour of one part.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut<'a> {
+    /// The path along which it was cut; its setup names the wall law.
+    pub path: Path<'a>,
+    /// How many of the observations are of it; those of the cuts stand one behind the other.
+    pub points: usize,
+    /// The part, counted from 0; the cuts of a part stand together, in the order of the parts.
+    pub part: usize,
+}
+
+/// Fits the parameters to the observations of the cuts that one machine made with one cutter, on one or several parts.
 ///
-/// The observations are those of the `earlier` parts, one part behind the other, then those of the last.
-/// `commanded(part, sample)` is the displacement that the program of a part, counted from 0, commanded when it was cut.
-/// Every part has a datum of its own; that of [`Fit::parameters`] is the last one's, the others are left in `earlier`.
-/// The path's setup names the wall law. `observe` is told the share of the longest possible fit that is done, ‰, rising: a
+/// The observations are those of the cuts in their order: those of the `earlier` parts, one part behind the other, then
+/// those of the last. `commanded(cut, sample)` is the displacement that the program commanded at a sample of a cut, counted
+/// from 0. Every part has a datum of its own, which all its contours share; that of [`Fit::parameters`] is the last one's,
+/// the others are left in `earlier`. `observe` is told the share of the longest possible fit that is done, ‰, rising: a
 /// fit that settles early ends before 1000. On return the observations hold predictions, weights and sensitivities at
 /// the solution.
 pub fn identify(
-    path: &Path,
+    cuts: &[Cut],
     prior: &Prior,
     earlier: &mut [EarlierPart],
     observations: &mut [Observation],
@@ -63,7 +74,7 @@ pub fn identify(
     workspace: &mut PredictionWorkspace,
     observe: &mut dyn FnMut(u16),
 ) -> Fit {
-    Task { path, prior, commanded }.fit(earlier, observations, workspace, observe)
+    Task { cuts, prior, commanded }.fit(earlier, observations, workspace, observe)
 }
 
 /// Share of the longest possible fit that is done after some steps and parameters of the next linearisation, ‰.
@@ -73,9 +84,9 @@ fn permille(steps: u32, parameters: usize) -> u16 {
     u16::try_from(done.checked_div(whole).unwrap_or(0)).unwrap_or(1000)
 }
 
-/// What is fitted: a machine believed in, on a path, at displacements that were commanded.
+/// What is fitted: a machine believed in, on the paths of its cuts, at displacements that were commanded.
 struct Task<'t, C> {
-    path: &'t Path<'t>,
+    cuts: &'t [Cut<'t>],
     prior: &'t Prior,
     commanded: C,
 }
@@ -131,7 +142,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         let ln_determinant = (information.log2_determinant() + taken_out) * Real::ratio(693_147_181, 1_000_000_000);
         let evidence = -((cost + ln_determinant + spread::cost(points.observations, factor)) * Real::HALF);
         let covariance = information.covariance();
-        let outliers = points.observations.iter().filter(|o| o.weight < Real::ratio(3, 10)).count();
+        let outliers = points.observations.iter().filter(|o| o.is_outlying()).count();
         Fit { parameters: prior.at(&theta), theta, covariance, cost, steps, outliers, evidence }
     }
 
@@ -190,17 +201,14 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         (information, cost, steps)
     }
 
-    /// Predicts the points of every part with its own correction and datum.
+    /// Predicts the points of every cut with its own correction and the datum of its part.
     fn predict(&self, table: &ForceTable, parameters: &Parameters, points: &mut Points) {
         let mut rest = &mut *points.observations;
-        for k in 0..=points.earlier.len() {
-            let (count, datum) = match points.earlier.get(k) {
-                Some(part) => (part.points.min(rest.len()), part.trial_datum(self.prior)),
-                None => (rest.len(), parameters.datum),
-            };
-            let (own, others) = rest.split_at_mut(count);
+        for (k, cut) in self.cuts.iter().enumerate() {
+            let datum = points.earlier.get(cut.part).map_or(parameters.datum, |part| part.trial_datum(self.prior));
+            let (own, others) = rest.split_at_mut(cut.points.min(rest.len()));
             let parameters = Parameters { datum, ..*parameters };
-            predict(self.path, table, &parameters, |i| (self.commanded)(k, i), own, points.workspace);
+            predict(&cut.path, table, &parameters, |i| (self.commanded)(k, i), own, points.workspace);
             rest = others;
         }
     }

@@ -1,9 +1,8 @@
 //! Which wall law the points speak for.
 
-use super::fit::{Fit, identify};
+use super::fit::{Cut, Fit, identify};
 use super::observation::{Observation, PredictionWorkspace};
 use super::parameters::Prior;
-use super::part::EarlierPart;
 use crate::cut::{Path, WallLaw};
 use truepath_units::Real;
 use truepath_units::geometry::Vector;
@@ -11,7 +10,7 @@ use truepath_units::geometry::Vector;
 /// By how much the evidence for the mean law must exceed that for the helical one before it is believed (20 : 1).
 const DECISIVE: Real = Real::from_int(3);
 
-/// Identifies under both wall laws and takes the mean law only where the points speak decisively for it: on a
+/// Identifies from one contour of one part under both wall laws and takes the mean law only where the points speak decisively for it: on a
 /// helical cutter it is the wrong one, and a few points at one height cannot tell.
 ///
 /// `around` gives the prior for a law, the others are those of [`identify`]. Returns the law with its prior and fit; the
@@ -19,7 +18,6 @@ const DECISIVE: Real = Real::from_int(3);
 pub fn identify_law(
     path: &Path,
     around: impl Fn(WallLaw) -> Prior,
-    earlier: &mut [EarlierPart],
     observations: &mut [Observation],
     commanded: impl Fn(usize, usize) -> Vector + Copy,
     workspace: &mut PredictionWorkspace,
@@ -28,7 +26,8 @@ pub fn identify_law(
     let mut under = |law, observations: &mut [Observation], fits: u16| {
         let prior = around(law);
         let third = &mut |permille: u16| observe(fits.saturating_mul(1000).saturating_add(permille) / 3);
-        let fit = identify(&path.with_law(law), &prior, earlier, observations, commanded, workspace, third);
+        let cuts = [Cut { path: path.with_law(law), points: observations.len(), part: 0 }];
+        let fit = identify(&cuts, &prior, &mut [], observations, commanded, workspace, third);
         (law, prior, fit)
     };
     let mean = under(WallLaw::Mean, observations, 0);

@@ -28,7 +28,7 @@
 //! # let mut buffer = vec![Sample::BLANK; Path::samples_needed(&contour, &setup, step)];
 //! # let path = Path::sample(&contour, &setup, step, &mut buffer, |_| ()).unwrap();
 //! # use truepath_model::cut::{Coefficients, Compliance, ForceTable, State};
-//! use truepath_model::identify::{Observation, PredictionWorkspace, Prior, identify, predict};
+//! use truepath_model::identify::{Cut, Observation, PredictionWorkspace, Prior, identify, predict};
 //!
 //! // `path` is a straight wall of 40 mm; the machine is believed to have 3000 N/mm.
 //! let stated = Coefficients {
@@ -55,7 +55,8 @@
 //! for point in &mut points {
 //!     point.error = point.predicted.scaled(Real::ratio(1, 2));
 //! }
-//! identify(&path, &prior, &mut [], &mut points, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
+//! let cuts = [Cut { path, points: points.len(), part: 0 }];
+//! identify(&cuts, &prior, &mut [], &mut points, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
 //! assert!(points.iter().all(|point| point.residual().abs() < Real::ONE));
 //! ```
 
@@ -68,7 +69,7 @@ mod solve;
 mod spread;
 mod tails;
 
-pub use fit::{Fit, identify};
+pub use fit::{Cut, Fit, identify};
 pub use law::{identify_law, speaks_for_mean};
 pub use observation::{Observation, PredictionWorkspace, predict};
 pub use parameters::{COUNT, Parameter, Parameters, Prior};

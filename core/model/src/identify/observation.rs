@@ -73,6 +73,10 @@ impl Observation {
     pub fn deviation(&self) -> Offset {
         hypot_nm(self.noise, self.error.scaled(MODEL_SHARE)).scaled(self.spread).max(Offset::from_nm(1))
     }
+    /// Whether the robust loss has set the point aside: a weight below 0.3.
+    pub fn is_outlying(&self) -> bool {
+        self.weight < Real::ratio(3, 10)
+    }
     /// Measured − predicted, in standard deviations.
     pub fn residual(&self) -> Real {
         (self.error - self.predicted).over(self.deviation())

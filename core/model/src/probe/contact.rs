@@ -102,6 +102,11 @@ impl<'a> Contacts<'a> {
         Self { contour, setting }
     }
 
+    /// Z of the cutter's tip during the cut.
+    pub const fn tip_z(&self) -> Position {
+        self.setting.tip_z
+    }
+
     /// The contact of a reading.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use truepath_model::correct::{
     commanded, design, guarded_design, guarded_given, profile,
 };
 use truepath_model::cut::*;
-use truepath_model::identify::{self, Fit, Observation, Parameters, PredictionWorkspace, Prior};
+use truepath_model::identify::{self, Cut, Fit, Observation, Parameters, PredictionWorkspace, Prior};
 use truepath_units::geometry::Vector;
 use truepath_units::{Offset, Real};
 
@@ -48,8 +48,9 @@ fn probed(places: &[i32]) -> Case {
     let table = ForceTable::new(prior.mean.coefficients.size_exponent);
     identify::predict(&path, &table, &prior.mean, |_| Vector::ZERO, &mut observations, &mut workspace);
     observations.iter_mut().for_each(|o| o.error = o.predicted);
+    let cuts = [Cut { path, points: observations.len(), part: 0 }];
     let fit =
-        identify::identify(&path, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
+        identify::identify(&cuts, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
     Case { path, prior, fit }
 }
 

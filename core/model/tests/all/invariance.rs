@@ -7,7 +7,7 @@ use truepath_model::correct::{
     self, Band, Design, DesignWorkspace, InOrder, Node, Predicted, Profile, Scratch, Target, Update,
 };
 use truepath_model::cut::*;
-use truepath_model::identify::{Fit, Observation, PredictionWorkspace, Prior, identify};
+use truepath_model::identify::{Cut, Fit, Observation, PredictionWorkspace, Prior, identify};
 use truepath_units::geometry::{Block, Curve, Point, Shape, Side, Vector};
 use truepath_units::{Offset, Real};
 
@@ -91,7 +91,8 @@ fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, 
     let need = PredictionWorkspace::needed(&path);
     let (mut s, mut d) = (vec![State::REST; need], vec![Vector::ZERO; need]);
     let mut lent = PredictionWorkspace { states: &mut s, displacements: &mut d };
-    let fit = identify(&path, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut lent, &mut |_| ());
+    let cuts = [Cut { path, points: observations.len(), part: 0 }];
+    let fit = identify(&cuts, &prior, &mut [], &mut observations, |_, _| Vector::ZERO, &mut lent, &mut |_| ());
     let table = ForceTable::new(fit.parameters.coefficients.size_exponent);
     let machine = fit.parameters.machine(&path, &table);
     (fit, designed(&machine))

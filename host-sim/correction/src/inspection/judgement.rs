@@ -54,8 +54,37 @@ pub struct Judgement {
     pub statements: Vec<String>,
 }
 
-/// Judges a part. Readings `aside` were not judged; those that may be of its wall keep it from passing.
+/// Judges a part by one wall. Readings `aside` were not judged; those that may be of its wall keep it from passing.
 pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, coverage: &Coverage) -> Judgement {
+    let mut judgement = judge_points(rule, deviations, aside);
+    judgement.statements.push(coverage.words());
+    judgement.statements.push(coverage.face.words(coverage.length_mm));
+    judgement
+}
+
+/// One of several walls of a part: its name, and what no point speaks for; `None` where it was not touched.
+pub type NamedWall<'a> = (&'a str, Option<&'a Coverage>);
+
+/// Judges a part by several walls, of whose points `deviations` are all. It does not pass while one of them is not touched.
+pub fn judge_every(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, walls: &[NamedWall<'_>]) -> Judgement {
+    let mut judgement = judge_points(rule, deviations, aside);
+    for (name, coverage) in walls {
+        judgement.statements.push(match coverage {
+            Some(coverage) => format!("{name}: {} {}", coverage.words(), coverage.face.words(coverage.length_mm)),
+            None => format!("{name}: not touched, nothing is said of it."),
+        });
+    }
+    let untouched: Vec<&str> = walls.iter().filter(|(_, coverage)| coverage.is_none()).map(|(name, _)| *name).collect();
+    let verdict = &mut judgement.verdict;
+    if let Some(said) = verdict.text.strip_prefix("pass:").filter(|_| !untouched.is_empty()) {
+        verdict.text = format!("open, though{said}; not touched: {}", untouched.join(", "));
+        verdict.state = State::Open;
+    }
+    judgement
+}
+
+/// What the points say, and what they rest on.
+fn judge_points(rule: Option<Rule>, deviations: &[Offset], aside: SetAside) -> Judgement {
     let points: Vec<PointVerdict> = rule.iter().flat_map(|rule| deviations.iter().map(|d| rule.point(*d))).collect();
     let of = |verdict| points.iter().filter(|p| **p == verdict).count();
     let count = rule.map(|_| Count {
@@ -88,8 +117,6 @@ pub fn judge(rule: Option<Rule>, deviations: &[Offset], aside: SetAside, coverag
                 .to_owned(),
         );
     }
-    statements.push(coverage.words());
-    statements.push(coverage.face.words(coverage.length_mm));
     let decimals = rule.map_or(4, |rule| rule.decimals(deviations));
     Judgement { verdict, points, count, decimals, statements }
 }
@@ -206,6 +233,23 @@ mod tests {
         assert_eq!(judged(None, &[0, 20_000]).verdict.state, State::Pass);
         assert_eq!(judged(None, &[0, 20_001]).verdict.state, State::Fail);
         assert_eq!(judged(None, &[]).verdict.state, State::Open);
+    }
+
+    #[test]
+    fn a_part_with_a_wall_that_was_not_touched_does_not_pass() {
+        let tolerance = Tolerance { lower: Offset::ZERO, upper: Offset::from_nm(20_000), from_command_line: false };
+        let rule = Some(Rule { tolerance, uncertainty: None });
+        let all = |second: Option<&Coverage>, nm: i64| {
+            let walls = [("contour-1", Some(&untouched())), ("contour-2", second)].map(|(name, c)| (name, c.cloned()));
+            let walls: Vec<NamedWall<'_>> = walls.iter().map(|(name, c)| (*name, c.as_ref())).collect();
+            judge_every(rule, &[Offset::from_nm(nm)], SetAside::default(), &walls)
+        };
+        assert_eq!(all(Some(&untouched()), 1).verdict.state, State::Pass);
+        let open = all(None, 1);
+        assert_eq!(open.verdict.state, State::Open);
+        assert!(open.verdict.text.starts_with("open, though the point lies"), "{}", open.verdict.text);
+        assert!(open.verdict.text.ends_with("; not touched: contour-2"), "{}", open.verdict.text);
+        assert_eq!(all(None, 30_000).verdict.state, State::Fail, "one bad point is enough");
     }
 
     #[test]

@@ -15,6 +15,6 @@ mod rule;
 mod set_aside;
 
 pub use coverage::{Coverage, Extent, Face, Layer, Reach, Stretch, Touched, coverage};
-pub use judgement::{Count, Judgement, State, Verdict, judge};
+pub use judgement::{Count, Judgement, NamedWall, State, Verdict, judge, judge_every};
 pub use rule::{PointVerdict, Rule};
 pub use set_aside::SetAside;

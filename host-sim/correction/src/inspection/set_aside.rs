@@ -13,6 +13,11 @@ pub struct SetAside {
 }
 
 impl SetAside {
+    /// Those of two walls.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self { all: self.all + other.all, doubtful: self.doubtful + other.doubtful }
+    }
     /// Of the reasons of all readings set aside; a reading nearer than `near` to the wall may be of it.
     pub fn of<'a>(reasons: impl IntoIterator<Item = &'a Rejected>, near: Offset) -> Self {
         reasons.into_iter().fold(Self::default(), |so_far, reason| Self {

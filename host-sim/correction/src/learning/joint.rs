@@ -7,7 +7,7 @@
 use truepath_core::correct::{Node, commanded};
 use truepath_core::cut::{Path, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{EarlierPart, Observation};
+use truepath_core::identify::{Cut, EarlierPart, Observation};
 use truepath_core::job;
 use truepath_core::units::{Offset, Real, hypot_nm};
 use truepath_ground::units::{float, mm};
@@ -84,11 +84,13 @@ pub fn joint(
     let all: Vec<Observation> = parts.iter().flat_map(|p| p.observations.iter().copied()).collect();
     let (earlier, _) = parts.split_at(parts.len().saturating_sub(1));
     let earlier: Vec<EarlierPart> = earlier.iter().map(|p| EarlierPart::new(p.observations.len())).collect();
-    let points = Points { earlier: &earlier, observations: &all };
+    let cut = |(part, points): (usize, &PartPoints)| Cut { path: *path, points: points.observations.len(), part };
+    let cuts: Vec<Cut> = parts.iter().enumerate().map(cut).collect();
+    let points = Points { cuts: &cuts, earlier: &earlier, observations: &all };
     let law = law.or(asked(pass.core.job.force.model));
     let by_program =
         |part: usize, sample: usize| parts.get(part).map_or(Vector::ZERO, |p| commanded(path, &p.nodes, sample));
-    let Found { core, earlier, observations: all } = found(&pass.core, path, law, points, by_program, progress);
+    let Found { core, earlier, observations: all } = found(&pass.core, law, points, by_program, progress);
     let job::Identified { prior, fit, .. } = &core;
     let mut rest = all.into_iter();
     let observations = parts.iter().map(|p| rest.by_ref().take(p.observations.len()).collect()).collect();

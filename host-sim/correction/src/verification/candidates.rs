@@ -175,6 +175,14 @@ fn final_walls(path: &Path, samples: &[Sample], radius: f64) -> Vec<Option<Xy>> 
     samples.iter().map(wall).collect()
 }
 
+/// Whether another contour takes away the wall at a place.
+pub(super) fn cut_away_by(other: &Pass, wall: Xy) -> bool {
+    let mut nearest = f64::INFINITY;
+    let at = Point::from_nm((wall[0] * 1e6).round() as i64, (wall[1] * 1e6).round() as i64);
+    other.path_contour().feet(at, |foot| nearest = nearest.min(mm(foot.left.abs())));
+    nearest < mm(other.core.setup.radius) - CUT_AWAY
+}
+
 fn form(pass: &Pass, block: &truepath_core::geometry::Block, radius: f64) -> Form {
     let Shape::Arc { sweep, .. } = block.curve.shape() else { return Form::Straight };
     let turns_left = sweep > Real::ZERO;

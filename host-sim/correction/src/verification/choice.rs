@@ -36,29 +36,47 @@ pub(super) struct Chosen {
 /// Share of the contour that a place has to itself, as long as possible.
 const OWN_SHARE: f64 = 0.35;
 
-/// Chooses up to `count` sites at least `least` millimetres from each other, on a contour of a length in mm.
-pub(super) fn choose(sites: &[Site], sensitivities: &[Sensitivity], count: usize, least: f64, length: f64) -> Chosen {
+/// Chooses up to `count` sites at least `least` millimetres from each other, on contours of a length in mm together. Then
+/// every owner of sites (`owners` names that of each) has at least `each` of them, where it has as many.
+pub(super) fn choose(
+    sites: &[Site],
+    sensitivities: &[Sensitivity],
+    count: usize,
+    least: f64,
+    length: f64,
+    (owners, each): (&[usize], usize),
+) -> Chosen {
     let wall = products(sensitivities.iter().flat_map(|t| &t.wall));
     let things = sensitivities.iter().map(|t| t.wall.len()).sum::<usize>().max(1) as f64;
     let sigma = |known: &Covariance| (known.total(&wall).max(0.0) / things).sqrt();
     let mut known = Covariance::prior();
     let before = sigma(&known);
     let mut choices: Vec<Choice> = Vec::new();
-    let mut apart = (OWN_SHARE * length / count as f64).max(least);
-    while choices.len() < count {
-        let allowed = |k: &usize| choices.iter().all(|c| distance(sites[c.site].wall, sites[*k].wall) >= apart);
-        let ranked = (0..sites.len())
-            .filter(allowed)
-            .map(|k| (k, known.after_all(&sensitivities[k].rows)))
-            .min_by(|a, b| a.1.total(&wall).total_cmp(&b.1.total(&wall)));
-        let Some((site, after)) = ranked else {
-            if apart <= least {
-                break;
-            }
-            apart = (apart / 2.0).max(least);
-            continue;
-        };
-        choices.push(Choice { site, before: std::mem::replace(&mut known, after.clone()), after });
+    let usual = (OWN_SHARE * length / count as f64).max(least);
+    let mut grow = |of: Option<usize>, count: usize, mut apart: f64| {
+        let own = |choice: &&Choice| of.is_none_or(|owner| owners[choice.site] == owner);
+        while choices.iter().filter(own).count() < count {
+            let allowed = |k: &usize| {
+                of.is_none_or(|owner| owners[*k] == owner)
+                    && choices.iter().all(|c| distance(sites[c.site].wall, sites[*k].wall) >= apart)
+            };
+            let ranked = (0..sites.len())
+                .filter(allowed)
+                .map(|k| (k, known.after_all(&sensitivities[k].rows)))
+                .min_by(|a, b| a.1.total(&wall).total_cmp(&b.1.total(&wall)));
+            let Some((site, after)) = ranked else {
+                if apart <= least {
+                    break;
+                }
+                apart = (apart / 2.0).max(least);
+                continue;
+            };
+            choices.push(Choice { site, before: std::mem::replace(&mut known, after.clone()), after });
+        }
+    };
+    grow(None, count, usual);
+    for owner in 0..owners.last().map_or(0, |last| last + 1) {
+        grow(Some(owner), each, usual);
     }
     Chosen { choices, wall_sigma: [before, sigma(&known)], known }
 }

@@ -13,7 +13,7 @@ pub(super) fn open(page: &mut Page, plan: &Plan, n: Notation) {
     }
     page.line(format!("DPRNT[UNIT*{}]", n.unit_name().to_uppercase()));
     page.line(format!("DPRNT[BALL*{}]", n.number(plan.ball_mm)));
-    page.line(format!("DPRNT[POINTS*{}]", plan.places.len() * plan.heights.len()));
+    page.line(format!("DPRNT[POINTS*{}]", plan.count()));
 }
 
 /// Closes the output; a text without END was cut off.

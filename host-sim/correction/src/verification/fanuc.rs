@@ -48,7 +48,7 @@ impl Words for Fanuc<'_> {
 
 pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     let n = Notation::of(plan, 3);
-    let count = plan.places.len() * plan.heights.len();
+    let count = plan.count();
     let s = &plan.settings;
     let mut page = Page::default();
     page.line("%");

@@ -33,7 +33,7 @@ impl Words for Grbl {
 
 pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     let n = Notation::of(plan, 3);
-    let count = plan.places.len() * plan.heights.len();
+    let count = plan.count();
     let s = &plan.settings;
     if let Some(tool) = s.probe_tool {
         return Err(InputError::new(

@@ -17,7 +17,7 @@ const AXIAL: f64 = 0.999_999_9;
 
 pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     let n = Notation::of(plan, 3);
-    let count = plan.places.len() * plan.heights.len();
+    let count = plan.count();
     let s = &plan.settings;
     let go = n.feed(s.feed_move);
     let digits = digits(n);
@@ -48,9 +48,9 @@ pub(super) fn write(plan: &Plan) -> Result<String, InputError> {
     open(&mut page, plan, n);
     let mut id = 0;
     for place in &plan.places {
-        page.place(place, id + 1, id + plan.heights.len());
+        page.place(place, id + 1, id + place.heights.len());
         page.line(format!("G65 P9810 {} F{go}", n.xy(plan.stand_off(place))));
-        for height in &plan.heights {
+        for height in &place.heights {
             id += 1;
             page.comment(&format!("point {id}, {}", height.why));
             page.line(format!("G65 P9810 Z{} F{go}", n.number(height.z_mm)));

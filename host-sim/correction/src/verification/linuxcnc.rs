@@ -40,7 +40,7 @@ impl Words for LinuxCnc {
 
 pub(super) fn write(plan: &Plan, log: &str) -> Result<String, InputError> {
     let n = Notation::of(plan, 4);
-    let count = plan.places.len() * plan.heights.len();
+    let count = plan.count();
     let s = &plan.settings;
     let mut page = Page::default();
     page.header(plan, "LinuxCNC", "results go into a log file, format linuxcnc-log");

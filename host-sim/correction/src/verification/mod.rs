@@ -48,7 +48,7 @@ pub use dialect::{ProbeDialect, write};
 pub use heights::Height;
 pub use next::{Measured, plan_next};
 pub use part_program::PartProgram;
-pub use plan::{Gained, Place, Plan, Touch, plan};
+pub use plan::{Gained, Place, Plan, Touch, plan, plan_every};
 pub use reason::Unknown;
 pub use settings::Settings;
 pub use wall_sensitivity::WallSensitivity;

@@ -57,7 +57,7 @@ pub fn plan_next(
     let (path, identified) = (measured.path, measured.identified);
     let (prior, fit) = (identified.prior(), identified.fit());
     let estimate = Estimate { prior, theta: fit.theta, nodes: measured.nodes };
-    let (sites, kept_off) = setup.sites(pass, path, &estimate, true)?;
+    let (sites, kept_off) = setup.sites(pass, path, &estimate, (true, &[]))?;
     let sensitivities = sensitivities(path, &estimate, &sites, &setup.heights, setup.probe.noise, progress);
     let known = Covariance::of(&fit.covariance, measured.is_next);
     let noise = mm(setup.probe.noise);
@@ -73,7 +73,7 @@ pub fn plan_next(
             worst_s_mm: gain.worst_s,
             worth_it: gain.is_worth_it(noise),
         }),
-        ..Place::of(&sites[gain.choice.site], &gain.choice, rank, prior)
+        ..Place::of(&sites[gain.choice.site], &gain.choice, rank, prior, &setup.heights)
     };
     let places: Vec<Place> = gains.iter().enumerate().map(place).collect();
     let mut plan = Plan {

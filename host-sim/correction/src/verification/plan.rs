@@ -16,12 +16,14 @@ use super::heights::Height;
 use super::part_program::PartProgram;
 use super::probing_setup::ProbingSetup;
 use super::reason::{self, Unknown};
-use super::sensitivity::sensitivities;
+use super::sensitivity::{Sensitivity, sensitivities};
 use super::settings::Settings;
 
 /// A place of the wall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
+    /// The contour it is of, where the plan is of several.
+    pub contour: Option<String>,
     /// Place along the contour, mm.
     pub s_mm: f64,
     /// Line of the part's program.
@@ -38,6 +40,8 @@ pub struct Place {
     pub rank: usize,
     /// What its touches are expected to bring, where something was measured before.
     pub gain: Option<Gained>,
+    /// Its heights, from the highest down.
+    pub heights: Vec<Height>,
 }
 
 /// What the touches of a further place are expected to bring.
@@ -55,8 +59,9 @@ pub struct Gained {
 
 impl Place {
     /// A chosen site with its reasons.
-    pub(super) fn of(site: &Site, choice: &Choice, rank: usize, prior: &Prior) -> Self {
+    pub(super) fn of(site: &Site, choice: &Choice, rank: usize, prior: &Prior, heights: &[Height]) -> Self {
         Self {
+            contour: None,
             s_mm: mm(site.s),
             line: site.line,
             wall: site.wall,
@@ -65,6 +70,7 @@ impl Place {
             why: reason::tells([&choice.before, &choice.after], prior),
             rank,
             gain: None,
+            heights: heights.to_vec(),
         }
     }
 }
@@ -95,10 +101,8 @@ pub struct Plan {
     pub z_is_tip: bool,
     /// Height for moves between places, mm.
     pub safe_z_mm: f64,
-    /// Places in the order of the contour.
+    /// Places in the order of the contour, one contour after the other.
     pub places: Vec<Place>,
-    /// Heights, from the highest down.
-    pub heights: Vec<Height>,
     /// How many places were looked at and kept off, by reason.
     pub kept_off: BTreeMap<KeptOff, usize>,
     /// What the touches leave of every unknown.
@@ -111,7 +115,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// A plan of these places, which are put into the order of the contour; nothing is said yet of what they tell.
+    /// A plan of these places, which are put into the order of their contour; nothing is said yet of what they tell.
     pub(super) fn of(setup: ProbingSetup, pass: &Pass, settings: &Settings, mut places: Vec<Place>) -> Self {
         places.sort_by(|a, b| a.s_mm.total_cmp(&b.s_mm));
         Self {
@@ -122,7 +126,6 @@ impl Plan {
             z_is_tip: setup.probe.z_reference == truepath_core::job::ZReference::Tip,
             safe_z_mm: setup.safe_z_mm,
             places,
-            heights: setup.heights,
             kept_off: BTreeMap::new(),
             unknowns: Vec::new(),
             wall_sigma_mm: [0.0; 2],
@@ -139,8 +142,16 @@ impl Plan {
     }
     /// All touches, in the order of the program.
     pub fn touches(&self) -> impl Iterator<Item = Touch<'_>> {
-        let pairs = self.places.iter().flat_map(|place| self.heights.iter().map(move |height| (place, height)));
+        let pairs = self.places.iter().flat_map(|place| place.heights.iter().map(move |height| (place, height)));
         pairs.enumerate().map(|(k, (place, height))| Touch { id: k + 1, place, height })
+    }
+    /// How many touches there are.
+    pub fn count(&self) -> usize {
+        self.places.iter().map(|place| place.heights.len()).sum()
+    }
+    /// Most heights at a place.
+    pub fn most_heights(&self) -> usize {
+        self.places.iter().map(|place| place.heights.len()).max().unwrap_or_default()
     }
 }
 
@@ -150,26 +161,135 @@ impl Plan {
 /// A job without probe, settings out of range, a ball without room (`V002`, `V003`), no place that may be touched
 /// (`V004`), and whatever is wrong with the program.
 pub fn plan(pass: &Pass, settings: &Settings, progress: &mut dyn FnMut(f64)) -> Result<Plan, Failure> {
-    let setup = ProbingSetup::of(pass, settings)?;
-    let mut buffer = PathBuffer::default();
-    let path = pass.sample(&mut buffer)?;
-    let law = path.setup().law;
-    let prior = pass.core.prior(law);
-    let estimate = Estimate::stated(&prior);
-    let (sites, kept_off) = setup.sites(pass, &path, &estimate, false)?;
-    let sensitivities = sensitivities(&path, &estimate, &sites, &setup.heights, setup.probe.noise, progress);
-    let chosen = choose(&sites, &sensitivities, settings.places as usize, setup.apart(), mm(path.length()));
-    let reasoned = chosen.choices.iter().enumerate();
-    let places = reasoned.map(|(rank, choice)| Place::of(&sites[choice.site], choice, rank, &prior)).collect();
-    let mut plan = Plan {
-        kept_off,
-        unknowns: reason::unknowns(&chosen.known, &prior),
-        wall_sigma_mm: chosen.wall_sigma,
-        ..Plan::of(setup, pass, settings, places)
+    plan_every(std::slice::from_ref(pass), settings, progress)
+}
+
+/// A contour with the places that may be touched on it.
+struct Wall<'a> {
+    pass: &'a Pass,
+    setup: ProbingSetup,
+    sites: Vec<Site>,
+    sensitivities: Vec<Sensitivity>,
+    length_mm: f64,
+}
+
+/// Places on each contour of several, at least: one says nothing of the shape of its wall.
+const LEAST_EACH: usize = 2;
+
+/// Plans the verification of several contours of one part in one program. What a touch tells of machine and material holds
+/// for all of them: the places are chosen together, and each contour has two of them at least. A contour that cannot be
+/// touched is left out, with the reason among the warnings.
+///
+/// # Errors
+/// As [`plan`], when no contour can be touched.
+pub fn plan_every(passes: &[Pass], settings: &Settings, progress: &mut dyn FnMut(f64)) -> Result<Plan, Failure> {
+    let (mut walls, mut refused, mut warnings) = (Vec::<Wall>::new(), None, Vec::new());
+    let mut kept_off = BTreeMap::new();
+    let share = 1.0 / passes.len().max(1) as f64;
+    for (at, pass) in passes.iter().enumerate() {
+        let told = &mut |done: f64| progress((at as f64 + done) * share);
+        match Wall::of(pass, passes, settings, &mut kept_off, told) {
+            Ok(wall) => {
+                if let Some(first) =
+                    walls.first().filter(|first| first.setup.program.work_offset != wall.setup.program.work_offset)
+                {
+                    warnings.push(format!(
+                        "{} is not touched: it is cut in another work offset than {}, and a verification program changes none",
+                        name(pass),
+                        name(first.pass)
+                    ));
+                    continue;
+                }
+                walls.push(wall);
+            }
+            Err(failure) if passes.len() > 1 => {
+                warnings.push(format!("{} is not touched: {}", name(pass), in_short(&failure)));
+                refused = refused.or(Some(failure));
+            }
+            Err(failure) => return Err(failure),
+        }
+    }
+    let Some(first) = walls.first() else {
+        return Err(refused.unwrap_or_else(|| Failure::Internal("a plan of no contour".to_owned())));
     };
+    let law = first.pass.core.setup.law;
+    let prior = first.pass.core.prior(law);
+    let apart = first.setup.apart();
+    let owners: Vec<usize> =
+        walls.iter().enumerate().flat_map(|(owner, wall)| wall.sites.iter().map(move |_| owner)).collect();
+    let sites: Vec<Site> = walls.iter().flat_map(|wall| wall.sites.iter().copied()).collect();
+    let sensitivities: Vec<Sensitivity> =
+        walls.iter_mut().flat_map(|wall| std::mem::take(&mut wall.sensitivities)).collect();
+    let length_mm = walls.iter().map(|wall| wall.length_mm).sum();
+    let each = if walls.len() > 1 { LEAST_EACH } else { 0 };
+    let chosen = choose(&sites, &sensitivities, settings.places as usize, apart, length_mm, (&owners, each));
+    let mut places: Vec<(usize, Place)> = Vec::new();
+    for (rank, choice) in chosen.choices.iter().enumerate() {
+        let owner = owners[choice.site];
+        let heights = &walls[owner].setup.heights;
+        places.push((owner, Place::of(&sites[choice.site], choice, rank, &prior, heights)));
+    }
+    let several = passes.len() > 1;
+    let mut plans: Vec<Plan> = Vec::new();
+    for (owner, wall) in walls.into_iter().enumerate() {
+        let mine = places.iter().filter(|(of, _)| *of == owner);
+        let contour = several.then(|| name(wall.pass));
+        let own = mine.map(|(_, place)| Place { contour: contour.clone(), ..place.clone() }).collect();
+        plans.push(Plan::of(wall.setup, wall.pass, settings, own));
+    }
+    let mut joint = plans.remove(0);
+    for other in plans {
+        joint.safe_z_mm = joint.safe_z_mm.max(other.safe_z_mm);
+        joint.places.extend(other.places);
+        joint
+            .warnings
+            .extend(other.warnings.into_iter().filter(|said| !joint.warnings.contains(said)).collect::<Vec<_>>());
+    }
+    joint.warnings.extend(warnings);
+    let mut plan =
+        Plan { kept_off, unknowns: reason::unknowns(&chosen.known, &prior), wall_sigma_mm: chosen.wall_sigma, ..joint };
     plan.warnings.extend(plan_warnings(&plan, law));
     progress(1.0);
     Ok(plan)
+}
+
+impl<'a> Wall<'a> {
+    /// The places of one of several contours and what they would tell.
+    fn of(
+        pass: &'a Pass,
+        all: &[Pass],
+        settings: &Settings,
+        kept_off: &mut BTreeMap<KeptOff, usize>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Self, Failure> {
+        let setup = ProbingSetup::of(pass, settings)?;
+        let mut buffer = PathBuffer::default();
+        let path = pass.sample(&mut buffer)?;
+        let prior = pass.core.prior(path.setup().law);
+        let estimate = Estimate::stated(&prior);
+        let others: Vec<&Pass> = all.iter().filter(|other| !std::ptr::eq(*other, pass)).collect();
+        let (sites, kept) = setup.sites(pass, &path, &estimate, (false, &others))?;
+        for (reason, count) in kept {
+            *kept_off.entry(reason).or_insert(0) += count;
+        }
+        let sensitivities = sensitivities(&path, &estimate, &sites, &setup.heights, setup.probe.noise, progress);
+        let length_mm = mm(path.length());
+        Ok(Self { pass, setup, sites, sensitivities, length_mm })
+    }
+}
+
+/// What a contour is called in sentences.
+fn name(pass: &Pass) -> String {
+    let id = pass.plan.as_ref().and_then(|plan| plan.id.clone());
+    id.unwrap_or_else(|| "the contour".to_owned())
+}
+
+/// Code and finding of a failure.
+fn in_short(failure: &Failure) -> String {
+    match failure {
+        Failure::Input(error) => format!("{}: {}", error.code(), error.found()),
+        Failure::Usage(what) | Failure::Internal(what) => what.clone(),
+    }
 }
 
 /// A plan that leaves the wall less certain than this, mm, and than this share of what the job states, is doubted.
@@ -178,16 +298,17 @@ const TELLING: (f64, f64) = (0.005, 0.1);
 /// What the user should know of a plan.
 fn plan_warnings(plan: &Plan, law: WallLaw) -> Vec<String> {
     let mut out = Vec::new();
+    // Several contours have as many more as each of them needs.
     let (found, wanted) = (plan.places.len(), plan.settings.places as usize);
     if found < wanted {
         out.push(format!(
             "{found} places instead of {wanted}: no more of them may be touched without being too close together"
         ));
     }
-    if plan.heights.len() < plan.settings.heights as usize {
+    if plan.most_heights() < plan.settings.heights as usize {
         out.push(format!(
             "{} heights instead of {}: the ball has no room for more",
-            plan.heights.len(),
+            plan.most_heights(),
             plan.settings.heights
         ));
     }
@@ -199,9 +320,12 @@ fn plan_warnings(plan: &Plan, law: WallLaw) -> Vec<String> {
             hidden.join(", ")
         ));
     }
-    let spread =
-        plan.heights.first().map_or(0.0, |h| h.above_tip_mm) - plan.heights.last().map_or(0.0, |h| h.above_tip_mm);
-    if law == WallLaw::Helical && plan.heights.len() > 1 && spread < 1.0 {
+    let spread = |place: &Place| {
+        let heights = &place.heights;
+        heights.first().map_or(0.0, |h| h.above_tip_mm) - heights.last().map_or(0.0, |h| h.above_tip_mm)
+    };
+    let spread = plan.places.iter().map(spread).fold(0.0, f64::max);
+    if law == WallLaw::Helical && plan.most_heights() > 1 && spread < 1.0 {
         out.push(format!(
             "the heights lie within {spread:.2} mm: bending is hardly seen; a smaller ball reaches lower"
         ));

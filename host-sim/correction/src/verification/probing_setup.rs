@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use truepath_core::cut::Path;
 use truepath_core::job::Probe;
+use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
 use super::approach::Ball;
-use super::candidates::{KeptOff, Site, candidates};
+use super::candidates::{KeptOff, Site, candidates, cut_away_by};
 use super::estimate::Estimate;
 use super::heights::{Height, heights};
 use super::part_program::PartProgram;
@@ -50,7 +51,8 @@ impl ProbingSetup {
         Ok(Self { program, probe, heights, ball, safe_z_mm })
     }
 
-    /// The places that may be touched, `unsteady` ones too or not, and how many may not, by reason.
+    /// The places that may be touched, `unsteady` ones too or not, and how many may not, by reason; `others` are the other
+    /// contours of the part.
     ///
     /// # Errors
     /// `V004` without any.
@@ -59,9 +61,18 @@ impl ProbingSetup {
         pass: &Pass,
         path: &Path,
         estimate: &Estimate,
-        unsteady: bool,
+        (unsteady, others): (bool, &[&Pass]),
     ) -> Result<(Vec<Site>, BTreeMap<KeptOff, usize>), InputError> {
-        let (sites, kept_off) = candidates(pass, path, estimate, self.ball, (mm(self.probe.noise), unsteady));
+        let (mut sites, mut kept_off) = candidates(pass, path, estimate, self.ball, (mm(self.probe.noise), unsteady));
+        let lowest =
+            pass.core.contour.z + Offset::from_nm((self.heights.first().map_or(0.0, |h| h.above_tip_mm) * 1e6) as i64);
+        sites.retain(|site| {
+            let gone = others.iter().any(|other| deepest(other) < lowest && cut_away_by(other, site.wall));
+            if gone {
+                kept_off.push(KeptOff::NoWall);
+            }
+            !gone
+        });
         let mut counts = BTreeMap::new();
         for reason in kept_off {
             *counts.entry(reason).or_insert(0) += 1;
@@ -73,6 +84,12 @@ impl ProbingSetup {
     pub(super) fn apart(&self) -> f64 {
         self.ball.radius + APART
     }
+}
+
+/// How deep a contour is cut.
+fn deepest(pass: &Pass) -> Position {
+    let levels = pass.plan.iter().flat_map(|plan| &plan.passes).filter_map(|level| level.z);
+    levels.fold(pass.core.contour.z, Position::min)
 }
 
 /// Height of the moves between places: above the engaged depth, and no lower than the part's program ever moved.

@@ -76,7 +76,7 @@ impl Page {
     /// What every program says of itself before it moves.
     pub(super) fn header(&mut self, plan: &Plan, control: &str, results: &str) {
         let program = &plan.program;
-        let touches = plan.places.len() * plan.heights.len();
+        let touches = plan.count();
         let unit = Notation::of(plan, 3);
         self.comment(&format!("truepath verification program, {control}"));
         self.comment(&format!("part program {}, CRC32 {:08X}", program.name, program.crc));
@@ -86,7 +86,7 @@ impl Page {
         self.comment(&format!(
             "points {touches}, places {}, heights {}, ball {} {}",
             plan.places.len(),
-            plan.heights.len(),
+            plan.most_heights(),
             unit.number(plan.ball_mm),
             unit.unit_name()
         ));
@@ -107,7 +107,8 @@ impl Page {
     /// What a place is and why it is touched, before its touches.
     pub(super) fn place(&mut self, place: &Place, first: usize, last: usize) {
         let points = if first == last { format!("point {first}") } else { format!("points {first} to {last}") };
-        self.comment(&format!("{points}: {}, line {}", place.what, place.line));
+        let of = place.contour.as_ref().map_or_else(String::new, |contour| format!(" {contour},"));
+        self.comment(&format!("{points}:{of} {}, line {}", place.what, place.line));
         self.comment(&format!("why: {}", place.why));
     }
 }

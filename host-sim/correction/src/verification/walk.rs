@@ -30,7 +30,7 @@ pub(super) fn walk<W: Words>(page: &mut Page, plan: &Plan, n: Notation, words: &
     let s = &plan.settings;
     let (go, fast, slow) = (n.feed(s.feed_move), n.feed(s.feed_fast), n.feed(s.feed_slow));
     let touches: Vec<Touch<'_>> = plan.touches().collect();
-    for at_place in touches.chunks(plan.heights.len().max(1)) {
+    for at_place in touches.chunk_by(|a, b| std::ptr::eq(a.place, b.place)) {
         let (Some(first), Some(last)) = (at_place.first(), at_place.last()) else { continue };
         let place: &Place = first.place;
         let (stand_off, end) = (n.xy(plan.stand_off(place)), n.xy(plan.search_end(place)));

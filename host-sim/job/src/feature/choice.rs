@@ -1,5 +1,6 @@
 //! Which of several features a command is about.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use truepath_core::gcode::{Found, LineRange, Role};
@@ -7,6 +8,7 @@ use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::listing::{listed, rows};
+use super::plan::CONTOUR;
 use super::region::{Origin, Region};
 use super::survey::Survey;
 use crate::codes::{N001, N002, N010, N011};
@@ -18,6 +20,28 @@ pub(super) fn chosen<'r>(job: &JobFile, regions: &'r [Region], survey: &Survey) 
         Some(id) => named(regions, id)?,
         None => only(job, regions, survey)?,
     };
+    checked(job, region)
+}
+
+/// The features that the job's cutter can finish, when none is named.
+pub(super) fn candidates<'r>(
+    job: &JobFile,
+    regions: &'r [Region],
+    survey: &Survey,
+) -> Result<Vec<&'r Region>, Failure> {
+    let finishing = finishing(job, regions)?;
+    let cutters: BTreeSet<Option<u32>> = finishing.iter().map(|r| tool(r, survey)).collect();
+    let cutter = job.numbers.tool.number;
+    if cutter.is_none() && cutters.len() > 1 {
+        return only(job, regions, survey).map(|region| vec![region]);
+    }
+    let fits = |r: &&Region| cutters.len() == 1 || tool(r, survey).is_none_or(|t| Some(t) == cutter);
+    let fitting: Vec<_> = finishing.into_iter().filter(fits).collect();
+    fitting.into_iter().map(|region| checked(job, region)).collect()
+}
+
+/// A feature that can be corrected with the job's cutter.
+fn checked<'r>(job: &JobFile, region: &'r Region) -> Result<&'r Region, Failure> {
     if region.role != FeatureRole::Finish {
         let found = format!("{} is not a finishing cut", region.name());
         let help = "roughing, semi-finishing and spring passes stay as they are; name a feature with role = \"finish\"";
@@ -37,6 +61,12 @@ fn named<'r>(regions: &'r [Region], id: &str) -> Result<&'r Region, Failure> {
     if let Some(region) = regions.iter().find(|r| r.id.as_deref() == Some(id)) {
         return Ok(region);
     }
+    if let [whole] = regions
+        && whole.origin == Origin::Search
+        && id.starts_with(CONTOUR)
+    {
+        return Ok(whole);
+    }
     let known: Vec<&str> = regions.iter().filter_map(|r| r.id.as_deref()).collect();
     let (expected, help) = if known.is_empty() {
         ("a program with markers, or a job with [[feature]]".to_owned(), "leave --feature out: the program is searched")
@@ -50,18 +80,12 @@ fn only<'r>(job: &JobFile, regions: &'r [Region], survey: &Survey) -> Result<&'r
     if let [only] = regions {
         return Ok(only);
     }
-    let finishing: Vec<&Region> = regions.iter().filter(|r| r.role == FeatureRole::Finish).collect();
+    let finishing = finishing(job, regions)?;
     let cutter = job.numbers.tool.number;
     let fits = |r: &&Region| cutter.is_some() && tool(r, survey) == cutter;
     let fitting: Vec<_> = finishing.iter().copied().filter(fits).collect();
     match (&finishing[..], &fitting[..]) {
         ([only], _) | (_, [only]) => Ok(only),
-        ([], _) => {
-            let help = "give the cut to be corrected role = \"finish\"";
-            Err(InputError::new(N011, "no feature is a finishing cut", "a feature to be corrected", help)
-                .at(job.source(), job.span("feature"))
-                .into())
-        }
         _ => {
             let mut found = format!("{} features can be corrected, one at a time:", finishing.len());
             for region in &finishing {
@@ -83,6 +107,18 @@ fn only<'r>(job: &JobFile, regions: &'r [Region], survey: &Survey) -> Result<&'r
     }
 }
 
+/// The finishing features; at least one.
+fn finishing<'r>(job: &JobFile, regions: &'r [Region]) -> Result<Vec<&'r Region>, Failure> {
+    let finishing: Vec<&Region> = regions.iter().filter(|r| r.role == FeatureRole::Finish).collect();
+    if finishing.is_empty() {
+        let help = "give the cut to be corrected role = \"finish\"";
+        return Err(InputError::new(N011, "no feature is a finishing cut", "a feature to be corrected", help)
+            .at(job.source(), job.span("feature"))
+            .into());
+    }
+    Ok(finishing)
+}
+
 /// The tool of a feature, as named or as the program has it.
 fn tool(region: &Region, survey: &Survey) -> Option<u32> {
     region.tool.or_else(|| survey.within(region.lines?).first()?.run.tool)
@@ -98,7 +134,7 @@ pub(super) fn ambiguous(region: &Region, program: &Source, runs: &[Found], count
         n => format!("\nbesides {n} other runs:{}", listed(others)),
     };
     let found = format!("{count} finishing contours in {}, one is needed:{}{rest}", region.name(), listed(walls));
-    let help = "name one: [[feature]] with id and blocks (or lines) in the job, or (TRUEPATH BEGIN id) … (TRUEPATH END) around it in the program; a pocket and its island are two features";
+    let help = "name one: --feature contour-N, N counted from the top of this list; or [[feature]] with id and blocks (or lines) in the job, or (TRUEPATH BEGIN id) … (TRUEPATH END) around it in the program; a pocket and its island are two features";
     if region.origin != Origin::Search {
         return region.error(InputError::new(N010, found, "", help)).into();
     }

@@ -22,5 +22,5 @@ mod survey;
 
 pub use listing::{FeatureSummary, PassRow, Row, listing};
 pub use place::lines_named;
-pub use plan::{FeaturePass, Plan, plan};
+pub use plan::{FeaturePass, Plan, plan, plans};
 pub use survey::Survey;

@@ -1,5 +1,7 @@
 //! The one feature a command is about, with its passes.
 
+use std::collections::BTreeSet;
+
 use truepath_core::gcode::{Criteria, Found, LineRange, Role, is_marked_corrected};
 use truepath_core::geometry::{Block, Side};
 use truepath_core::job::Part;
@@ -7,7 +9,7 @@ use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
 
-use super::choice::{ambiguous, chosen};
+use super::choice::{ambiguous, candidates, chosen};
 use super::listing::{FeatureSummary, PassRow, Row, rows};
 use super::marker::marked;
 use super::region::{Origin, Region, regions};
@@ -65,78 +67,163 @@ pub struct Plan {
 /// # Errors
 /// What is wrong with the program, its markers or the features of the job, and what is ambiguous.
 pub fn plan(job: &JobFile, program: &Source) -> Result<Option<Plan>, Failure> {
-    if is_marked_corrected(program.bytes()) {
-        // The pass refuses it, whatever it holds.
-        return Ok(None);
+    let Some(search) = Search::of(job, program)? else { return Ok(None) };
+    let region = chosen(job, &search.regions, &search.survey)?;
+    let sorted = search.sorted(job, region)?;
+    let contour = match (sorted.contours, contour_named(job)) {
+        (count, Some(named)) if region.origin == Origin::Search && named <= count => named,
+        (1, _) => 1,
+        (count, _) => return Err(ambiguous(region, program, &sorted.runs, count, mm(sorted.allowance))),
+    };
+    search.plan(region, &sorted, contour).map(Some)
+}
+
+/// Finds every contour that can be corrected with the job's cutter, in the order of the program; none where [`plan`] gives
+/// none, and the one that is named where one is.
+///
+/// # Errors
+/// As [`plan`], but for what several of them make ambiguous there; contours of several tools where the job does not say which
+/// of them it describes.
+pub fn plans(job: &JobFile, program: &Source) -> Result<Vec<Plan>, Failure> {
+    if job.which.feature.is_some() {
+        return Ok(plan(job, program)?.into_iter().collect());
     }
-    let marked = marked(program)?;
-    let survey = Survey::read(job, program)?;
-    let regions = regions(job, program, &marked)?;
-    let simple = regions.iter().all(|r| r.origin == Origin::Search) && job.which == Which::default();
-    if simple && survey.runs.len() <= 1 {
-        let numbers = &job.numbers;
-        let criteria = Criteria { tool: None, wall: numbers.wall, diameter: numbers.tool.diameter, named: false };
-        let mut only = survey.runs.clone();
-        survey.sort(&mut only, &criteria);
-        if only.iter().zip(&survey.runs).all(|(kept, run)| kept.run.blocks == run.run.blocks) {
-            return Ok(None);
+    let Some(search) = Search::of(job, program)? else { return Ok(Vec::new()) };
+    let mut plans = Vec::new();
+    for region in candidates(job, &search.regions, &search.survey)? {
+        let sorted = search.sorted(job, region)?;
+        if sorted.contours > 1 && (region.origin != Origin::Search || sorted.tools() > 1) {
+            return Err(ambiguous(region, program, &sorted.runs, sorted.contours, mm(sorted.allowance)));
+        }
+        for contour in 1..=sorted.contours {
+            plans.push(search.plan(region, &sorted, contour)?);
         }
     }
-    let region = chosen(job, &regions, &survey)?;
-    let mut runs = region.lines.map_or_else(|| survey.runs.clone(), |lines| survey.within(lines));
-    if let Some(heights) = &region.heights {
-        runs.retain(|f| f.run.z.is_some_and(|z| heights.iter().any(|h| near(*h, z))));
+    Ok(plans)
+}
+
+/// The number of a contour that was found by search and is named `contour-N`.
+fn contour_named(job: &JobFile) -> Option<u32> {
+    job.which.feature.as_deref()?.strip_prefix(CONTOUR)?.parse().ok().filter(|n| *n > 0)
+}
+
+/// Contours that were found by search are called by their number.
+pub(super) const CONTOUR: &str = "contour-";
+
+/// The runs of a program and where features are in it.
+struct Search {
+    survey: Survey,
+    regions: Vec<Region>,
+}
+
+/// The runs of a region, each with its role.
+struct Sorted {
+    runs: Vec<Found>,
+    /// How many finishing contours they are.
+    contours: u32,
+    tool: Option<u32>,
+    allowance: Offset,
+}
+
+impl Sorted {
+    /// How many tools cut the finishing contours.
+    fn tools(&self) -> usize {
+        let finishing = self.runs.iter().filter(|f| matches!(f.role, Role::Finish { .. }));
+        finishing.map(|f| f.run.tool).collect::<BTreeSet<_>>().len()
     }
-    if runs.len() > LARGEST_SEARCH {
-        let found = format!("{} has {} runs of cutting moves", region.name(), runs.len());
-        let expected = format!("at most {LARGEST_SEARCH}, which are compared with each other");
-        return Err(region.error(N010.error(found, expected)).into());
+}
+
+impl Search {
+    /// Reads the program; `None` where there is nothing to choose.
+    fn of(job: &JobFile, program: &Source) -> Result<Option<Self>, Failure> {
+        if is_marked_corrected(program.bytes()) {
+            // The pass refuses it, whatever it holds.
+            return Ok(None);
+        }
+        let marked = marked(program)?;
+        let survey = Survey::read(job, program)?;
+        let regions = regions(job, program, &marked)?;
+        let simple = regions.iter().all(|r| r.origin == Origin::Search) && job.which == Which::default();
+        if simple && survey.runs.len() <= 1 {
+            let numbers = &job.numbers;
+            let criteria = Criteria { tool: None, wall: numbers.wall, diameter: numbers.tool.diameter, named: false };
+            let mut only = survey.runs.clone();
+            survey.sort(&mut only, &criteria);
+            if only.iter().zip(&survey.runs).all(|(kept, run)| kept.run.blocks == run.run.blocks) {
+                return Ok(None);
+            }
+        }
+        Ok(Some(Self { survey, regions }))
     }
-    let numbers = &job.numbers;
-    let tool = region.tool.or(numbers.tool.number);
-    let named = region.origin != Origin::Search;
-    let criteria = Criteria { tool, wall: region.wall.or(numbers.wall), diameter: numbers.tool.diameter, named };
-    let count = survey.sort(&mut runs, &criteria);
-    let allowance = region.allowance.unwrap_or(numbers.allowance);
-    match count {
-        1 => {}
-        0 => return Err(nothing(region, &runs, tool)),
-        _ => return Err(ambiguous(region, program, &runs, count, mm(allowance))),
+
+    /// Gives the runs of a region their roles; at least one makes a wall.
+    fn sorted(&self, job: &JobFile, region: &Region) -> Result<Sorted, Failure> {
+        let survey = &self.survey;
+        let mut runs = region.lines.map_or_else(|| survey.runs.clone(), |lines| survey.within(lines));
+        if let Some(heights) = &region.heights {
+            runs.retain(|f| f.run.z.is_some_and(|z| heights.iter().any(|h| near(*h, z))));
+        }
+        if runs.len() > LARGEST_SEARCH {
+            let found = format!("{} has {} runs of cutting moves", region.name(), runs.len());
+            let expected = format!("at most {LARGEST_SEARCH}, which are compared with each other");
+            return Err(region.error(N010.error(found, expected)).into());
+        }
+        let numbers = &job.numbers;
+        let tool = region.tool.or(numbers.tool.number);
+        let named = region.origin != Origin::Search;
+        let criteria = Criteria { tool, wall: region.wall.or(numbers.wall), diameter: numbers.tool.diameter, named };
+        let contours = survey.sort(&mut runs, &criteria);
+        if contours == 0 {
+            return Err(nothing(region, &runs, tool));
+        }
+        Ok(Sorted { runs, contours, tool, allowance: region.allowance.unwrap_or(numbers.allowance) })
     }
-    let passes = passes(region, &runs, &survey);
-    check_heights(region, &passes)?;
-    Ok(Some(Plan {
-        number: region.number,
-        id: region.id.clone(),
-        chosen_by: match region.origin {
-            Origin::Job => "job",
-            Origin::Markers => "markers",
-            Origin::Search => "search",
-        },
-        why: why(region, &runs, tool),
-        tool: region.tool,
-        wall: region.wall,
-        allowance: region.allowance,
-        passes,
-        others: regions.iter().filter(|r| r.number != region.number).filter_map(|r| r.id.clone()).collect(),
-        rows: rows(&runs, mm(allowance)),
-        warnings: plan_warnings(&runs, allowance),
-    }))
+
+    /// One of the contours of a region.
+    fn plan(&self, region: &Region, sorted: &Sorted, contour: u32) -> Result<Plan, Failure> {
+        let Sorted { runs, contours, tool, allowance } = sorted;
+        let found = *contours > 1;
+        let number = if found { contour } else { region.number };
+        let passes = passes(number, contour, runs, &self.survey);
+        check_heights(region, &passes)?;
+        let named = self.regions.iter().filter(|r| r.number != region.number).filter_map(|r| r.id.clone());
+        let name = |n: u32| format!("{CONTOUR}{n}");
+        let others =
+            if found { (1..=*contours).filter(|n| *n != contour).map(name).collect() } else { named.collect() };
+        Ok(Plan {
+            number,
+            id: if found { Some(name(contour)) } else { region.id.clone() },
+            chosen_by: match region.origin {
+                Origin::Job => "job",
+                Origin::Markers => "markers",
+                Origin::Search => "search",
+            },
+            why: why(region, runs, *tool, (contour, *contours)),
+            tool: region.tool,
+            wall: region.wall,
+            allowance: region.allowance,
+            passes,
+            others,
+            rows: rows(runs, mm(*allowance)),
+            warnings: plan_warnings(runs, contour, *allowance),
+        })
+    }
 }
 
 fn near(a: Position, b: Position) -> bool {
     (a - b).abs() <= Offset::from_um(1)
 }
 
-fn passes(region: &Region, runs: &[Found], survey: &Survey) -> Vec<FeaturePass> {
+/// The passes of a contour, which the device knows as a feature of some number.
+fn passes(feature: u32, of: u32, runs: &[Found], survey: &Survey) -> Vec<FeaturePass> {
     let pass = |found: &Found| {
         let (number, spring) = match found.role {
-            Role::Finish { level, .. } => (level, false),
-            Role::Spring { level, .. } => (level, true),
-            Role::OtherTool | Role::Rough { .. } => return None,
+            Role::Finish { level, contour } if contour == of => (level, false),
+            Role::Spring { level, contour } if contour == of => (level, true),
+            _ => return None,
         };
         let part = Part {
-            feature: region.number,
+            feature,
             pass: number,
             run: found.run.number,
             first_block: u32::try_from(found.skipped).ok()?,
@@ -174,24 +261,27 @@ fn nothing(region: &Region, runs: &[Found], tool: Option<u32>) -> Failure {
     region.error(InputError::new(N011, found, "a cut along the wall", help)).into()
 }
 
-fn why(region: &Region, runs: &[Found], tool: Option<u32>) -> String {
-    let count = |holds: fn(&Role) -> bool| runs.iter().filter(|f| holds(&f.role)).count();
-    let levels = count(|r| matches!(r, Role::Finish { .. }));
-    let rough = count(|r| matches!(r, Role::Rough { .. }));
-    let (spring, other) = (count(|r| matches!(r, Role::Spring { .. })), count(|r| matches!(r, Role::OtherTool)));
-    let of = tool.map_or_else(String::new, |t| format!(" of tool {t}"));
+fn why(region: &Region, runs: &[Found], tool: Option<u32>, (of, contours): (u32, u32)) -> String {
+    let count = |holds: &dyn Fn(&Role) -> bool| runs.iter().filter(|f| holds(&f.role)).count();
+    let levels = count(&|r| matches!(r, Role::Finish { contour, .. } if *contour == of));
+    let rough = count(&|r| matches!(r, Role::Rough { .. }));
+    let spring = count(&|r| matches!(r, Role::Spring { contour, .. } if *contour == of));
+    let other = count(&|r| matches!(r, Role::OtherTool));
+    let by = tool.map_or_else(String::new, |t| format!(" of tool {t}"));
     let place = match region.origin {
         Origin::Search => "in the program",
         Origin::Job | Origin::Markers => "on its lines",
     };
+    let one = if contours == 1 { "the only path".to_owned() } else { format!("one of {contours} paths") };
     format!(
-        "the only path{of} {place} whose wall no other run takes away ({levels} finishing, {rough} roughing, {spring} spring passes, {other} runs of other tools)"
+        "{one}{by} {place} whose wall no other run takes away ({levels} finishing, {rough} roughing, {spring} spring passes, {other} runs of other tools)"
     )
 }
 
 /// Roughing that leaves something else than the job says.
-fn plan_warnings(runs: &[Found], allowance: Offset) -> Vec<String> {
-    let finish = |index: usize| runs.get(index).is_some_and(|f| matches!(f.role, Role::Finish { .. }));
+fn plan_warnings(runs: &[Found], of: u32, allowance: Offset) -> Vec<String> {
+    let finish =
+        |index: usize| runs.get(index).is_some_and(|f| matches!(f.role, Role::Finish { contour, .. } if contour == of));
     let gaps = runs.iter().filter_map(|f| match f.role {
         Role::Rough { nearer, gap, parallel: true } if finish(nearer) => Some((gap, f.run.lines)),
         _ => None,

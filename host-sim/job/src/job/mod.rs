@@ -90,9 +90,10 @@ pub struct Which {
 }
 
 /// Where the correction is applied; a job is corrected in one place only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Route {
     /// In the program text.
+    #[default]
     Program,
     /// In the coprocessor.
     Coprocessor,

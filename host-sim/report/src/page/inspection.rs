@@ -16,7 +16,7 @@ pub struct Inspected {
     /// Decision rule and what the verdict does not cover.
     pub statements: Vec<String>,
     /// Which stretches no point speaks for.
-    pub coverage: Coverage,
+    pub coverage: Option<Coverage>,
 }
 
 /// A file that the report rests on.

@@ -24,7 +24,7 @@ pub use by_plant::{milled, milled_twice, trace_of};
 pub use column::Column;
 pub use contour::{Contour, Heights, Outlines, PassColumns, Polyline};
 pub use data::{Figure, Kind, Page, Parameter, State, Verdict};
-pub use embed::render;
+pub use embed::{render, render_all};
 pub use facts::{Cut, Fact, JobFacts, Stock, Tool};
 pub use inspection::{InputFile, Inspected, Limits};
 pub use job::subject;

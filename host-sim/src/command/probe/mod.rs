@@ -9,7 +9,7 @@ use std::io::Write;
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::{ArgGroup, Args};
-use truepath_correction::verification::{Gained, KeptOff, Plan, ProbeDialect, Settings, Unknown, plan, write};
+use truepath_correction::verification::{Gained, KeptOff, Plan, ProbeDialect, Settings, Unknown, plan_every, write};
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFile;
 use truepath_job::job::{JobFile, ProbeFlags, Which};
@@ -44,7 +44,8 @@ pub struct Options {
     /// Which cut of the program.
     #[command(flatten)]
     pub which: Which,
-    /// Places along the contour; each is touched at every height [default: 8; with --next at most 4].
+    /// Places along the contour, on several together, with two at least on each; each place is touched at every height
+    /// [default: 8; with --next at most 4].
     #[arg(long, value_name = "N")]
     pub points: Option<u32>,
     /// Choices about the program.
@@ -69,7 +70,12 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 fn words(report: &Report) -> String {
     let mut text = String::from(" point      s mm       X mm       Y mm       Z mm\n");
     let mut last = usize::MAX;
+    let mut contour = None;
     for p in &report.points {
+        if p.contour != contour {
+            contour.clone_from(&p.contour);
+            let _ = writeln!(text, " {}", contour.as_deref().unwrap_or_default());
+        }
         if p.rank != last {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "       {} (line {}): {}", p.what, p.line, p.why);
@@ -123,6 +129,9 @@ fn words(report: &Report) -> String {
 pub struct Point {
     /// Its number in program and results.
     pub id: usize,
+    /// The contour it is of; absent where the plan is of one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contour: Option<String>,
     /// Place along the contour, mm.
     pub s_mm: f64,
     /// Line of the part's program.
@@ -204,7 +213,7 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failu
         job.override_probe(&options.probe_flags)?;
         next::of_files(Pass::read(job)?, (options.probe.as_deref(), options.from.as_deref()), &settings, progress)?
     } else {
-        plan(&Pass::read(job)?, &settings, progress)?
+        plan_every(&Pass::every(job)?, &settings, progress)?
     };
     if let (Some(dialect), Some(out), Some(mut file)) = (options.dialect, &options.output, file) {
         let text = write(&plan, dialect, &log_name(out))?;
@@ -218,6 +227,7 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failu
 pub fn report(plan: &Plan, dialect: Option<ProbeDialect>) -> Report {
     let points = plan.touches().map(|touch| Point {
         id: touch.id,
+        contour: touch.place.contour.clone(),
         s_mm: touch.place.s_mm,
         line: touch.place.line,
         x_mm: touch.place.wall[0],

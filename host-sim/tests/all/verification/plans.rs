@@ -32,13 +32,14 @@ fn the_ball_stays_above_the_floor_and_inside_the_engaged_depth() {
     for (change, lift) in [("z_reference = \"centre\"", 0.0), ("z_reference = \"tip\"", 2.0)] {
         let pass = pass(POCKET, &[("z_reference = \"centre\"", change)]);
         let plan = planned(&pass, &Settings { heights: 5, ..Settings::default() });
-        assert_eq!(plan.heights.len(), 5);
-        for height in &plan.heights {
+        let heights = &plan.places[0].heights;
+        assert_eq!(heights.len(), 5);
+        for height in heights {
             let centre = height.z_mm + lift;
             assert!(centre - 2.0 >= -12.0 + 0.5 - 1e-9 && centre <= -1.2 + 1e-9, "{centre}");
             assert!((height.fraction * 12.0 - (centre + 12.0)).abs() < 1e-9);
         }
-        assert!(plan.heights.is_sorted_by(|a, b| a.z_mm > b.z_mm), "from the highest down");
+        assert!(heights.is_sorted_by(|a, b| a.z_mm > b.z_mm), "from the highest down");
     }
 }
 

@@ -1,5 +1,7 @@
 //! `correct`: from a probe file to the corrected program or the correction image.
 
+mod several;
+
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
@@ -69,6 +71,9 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
     let factor = s.max_error_before_mm / s.max_error_after_mm.max(1e-6);
     let mut text = s.feature.as_ref().map(listing).unwrap_or_default();
+    if !s.contours.is_empty() {
+        text += &several::table(&s.contours);
+    }
     text += &format!(
         "{} points used, {} set aside; wall follows the {} force, {} milling\n\
          \n\
@@ -111,13 +116,23 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
         let mut job = JobFile::read(job)?;
         job.override_probe(&options.probe_flags)?;
         job.which = options.which.clone();
-        Pass::read(job)
+        Ok::<JobFile, Failure>(job)
     };
-    let pass = read(&options.job)?;
+    let job = read(&options.job)?;
     // clap has seen to it that there is one.
     let probe = options.probe.as_deref().unwrap_or(FilePath::new(""));
     let file = Source::read(probe)?;
-    let first = options.first_pass.as_deref().map(read).transpose()?;
+    let first = options.first_pass.as_deref().map(|first| Pass::read(read(first)?)).transpose()?;
+    let pass = match first {
+        Some(_) => Pass::read(job)?,
+        None => {
+            let walls = Pass::every(job)?;
+            match <[Pass; 1]>::try_from(walls) {
+                Ok([only]) => only,
+                Err(walls) => return several::run(options, walls, (probe, &file), progress),
+            }
+        }
+    };
     let (pass, first, measurement) = match first {
         None => {
             let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
@@ -131,7 +146,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     };
     let folder = OutputFolder::create(&options.output, options.force, FILES)?;
     if first.is_none() {
-        refuse_replacing(&options.output, probe, &pass, &measurement)?;
+        refuse_replacing(&options.output.join(HISTORY), probe, &pass, &measurement)?;
     }
     let route = options.route.unwrap_or(pass.job.route);
     let mut remarks = measurement.remarks(&file);
@@ -174,13 +189,12 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
 ///
 /// # Errors
 /// `Q008` with both distances.
-fn refuse_replacing(out: &FilePath, probe: &FilePath, pass: &Pass, measurement: &Measurement) -> Result<(), Failure> {
-    let place = out.join(HISTORY);
+fn refuse_replacing(place: &FilePath, probe: &FilePath, pass: &Pass, measurement: &Measurement) -> Result<(), Failure> {
     if !place.exists() || pass.job.feed.is_some() {
         return Ok(());
     }
     // What cannot be read, or is of another cut, says nothing about this part.
-    let Ok(history) = Source::read(&place).map_err(Failure::from).and_then(|file| Ok(History::read(&file)?)) else {
+    let Ok(history) = Source::read(place).map_err(Failure::from).and_then(|file| Ok(History::read(&file)?)) else {
         return Ok(());
     };
     if history.facts.agree(pass).is_err() {

@@ -1,0 +1,112 @@
+//! `correct` for several contours of one program: one probe file, one machine, one corrected program, one report.
+
+use std::fmt::Write;
+use std::path::Path as FilePath;
+
+use truepath_correction::correct::{MeasuredWall, correct_every};
+use truepath_correction::learning::History;
+use truepath_correction::summary::{ContourSummary, CorrectSummary};
+use truepath_correction::warnings::misread;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::output::{OutputFolder, json};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_report::page::render_all;
+use truepath_report::pages::{self, Points, REPORT};
+
+use super::super::correction_files::{FILES, HISTORY, contour_folder, contour_name, write_contour, write_program};
+use super::{Options, refuse_replacing};
+
+/// Corrects the walls that were touched, and leaves the others as they are.
+pub(super) fn run(
+    options: &Options,
+    walls: Vec<Pass>,
+    (probe, file): (&FilePath, &Source),
+    progress: &mut dyn FnMut(f64),
+) -> Result<CorrectSummary, Failure> {
+    let measured = Measurement::of_every(walls, file)?;
+    let folder = OutputFolder::create(&options.output, options.force, FILES)?;
+    let (touched, untouched): (Vec<_>, Vec<_>) = measured.iter().partition(|(_, m)| !m.contacts.is_empty());
+    let mut remarks = Vec::new();
+    for (pass, measurement) in touched.iter().copied() {
+        let history = options.output.join(contour_folder(pass)).join(HISTORY);
+        refuse_replacing(&history, probe, pass, measurement)?;
+        let mut said = measurement.remarks(file);
+        said.extend(misread(pass, false, &measurement.contacts));
+        remarks.push(said);
+    }
+    let walls: Vec<MeasuredWall> = touched
+        .iter()
+        .zip(&remarks)
+        .map(|((pass, measurement), remarks)| MeasuredWall { pass, measurement, remarks })
+        .collect();
+    let routes = [options.route.or(touched.first().map(|(pass, _)| pass.job.route)).unwrap_or_default()];
+    let corrected = correct_every(&walls, &routes, progress)?;
+
+    let mut warnings = Vec::new();
+    let mut pages = Vec::new();
+    let mut contours = Vec::new();
+    for (pass, measurement) in &untouched {
+        let name = contour_name(pass);
+        let lines = pass.core.contour.lines;
+        warnings.push(format!(
+            "{name} (lines {}-{}) stays as it is: no point of the probe file is on its wall. Touch it with the program of truepath probe, or correct it alone with --feature",
+            lines.first, lines.last
+        ));
+        warnings.extend(measurement.remarks(file));
+        contours.push(ContourSummary {
+            contour: name,
+            corrected: false,
+            lines: [lines.first, lines.last],
+            summary: None,
+        });
+    }
+    for ((pass, measurement), done) in touched.iter().copied().zip(&corrected) {
+        let (name, place, lines) = (contour_name(pass), contour_folder(pass), pass.core.contour.lines);
+        for said in &done.summary.warnings {
+            // What is said of the program is said once.
+            let of_program = said.starts_with(pass.program.name());
+            let text = if of_program { said.clone() } else { format!("{name}: {said}") };
+            if !warnings.contains(&text) {
+                warnings.push(text);
+            }
+        }
+        write_contour(&folder, &place, measurement, done)?;
+        folder.write(&format!("{place}summary.json"), &json(&done.summary)?)?;
+        folder.write(&format!("{place}{HISTORY}"), &History::first(pass, measurement, done)?.text()?)?;
+        pages.push((name.clone(), pages::corrected(pass, measurement, done, Points::ThisPass)?));
+        let summary = Some(CorrectSummary { program: None, ..done.summary.clone() });
+        contours.push(ContourSummary { contour: name, corrected: true, lines: [lines.first, lines.last], summary });
+    }
+    contours.sort_by_key(|contour| contour.lines);
+    let summary = CorrectSummary::of_every(contours, warnings);
+    let summary = summary.ok_or_else(|| Failure::Internal("no contour was corrected".to_owned()))?;
+    if let (Some((pass, _)), Some(done)) = (touched.first(), corrected.first()) {
+        write_program(&folder, pass, done)?;
+    }
+    folder.write("probe-raw.txt", file.bytes())?;
+    folder.write("summary.json", &json(&summary)?)?;
+    folder.write(REPORT, &render_all(&pages)?)?;
+    folder.commit()?;
+    Ok(summary)
+}
+
+/// A line for each contour.
+pub(super) fn table(contours: &[ContourSummary]) -> String {
+    let mut text = format!(
+        "{:<24}{:<14}{:>8}{:>12}{:>12}{:>12}\n",
+        "contour", "lines", "points", "before mm", "after mm", "sigma mm"
+    );
+    for one in contours {
+        let lines = format!("{}-{}", one.lines[0], one.lines[1]);
+        let _ = match &one.summary {
+            Some(s) => writeln!(
+                text,
+                "{:<24}{lines:<14}{:>8}{:>12.4}{:>12.4}{:>12.4}",
+                one.contour, s.points_used, s.max_error_before_mm, s.max_error_after_mm, s.max_sigma_mm
+            ),
+            None => writeln!(text, "{:<24}{lines:<14}   not touched: stays as it is", one.contour),
+        };
+    }
+    text + "\n"
+}
