@@ -62,8 +62,7 @@ pub fn correct_pass(
     progress: &mut dyn FnMut(f64),
 ) -> Result<CorrectedPass, Failure> {
     let walls = [MeasuredWall { pass, measurement, remarks }];
-    let corrected = correct_every(&walls, routes, progress)?;
-    corrected.into_iter().next().ok_or_else(|| Failure::Internal("a pass without its correction".to_owned()))
+    only(correct_every(&walls, routes, progress)?)
 }
 
 /// A wall of a part, and what was measured on it.
@@ -87,52 +86,64 @@ pub fn correct_every(
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Vec<CorrectedPass>, Failure> {
-    let mut buffers: Vec<[PathBuffer; 2]> = walls.iter().map(|_| Default::default()).collect();
-    let (mut sampled, mut fed) = (Vec::new(), Vec::new());
-    for (wall, [buffer, other]) in walls.iter().zip(&mut buffers) {
+    let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
+    let mut sampled = Vec::new();
+    for (wall, buffer) in walls.iter().zip(&mut buffers) {
         sampled.push(wall.pass.sample(buffer)?);
-        fed.push(other);
     }
-    let cuts: Vec<MeasuredCut> = walls
-        .iter()
-        .zip(&sampled)
-        .map(|(wall, path)| MeasuredCut { pass: wall.pass, path, measurement: wall.measurement })
-        .collect();
+    let both = walls.iter().zip(&sampled);
+    let cuts = both.map(|(wall, path)| MeasuredCut { pass: wall.pass, path, measurement: wall.measurement });
+    let cuts: Vec<MeasuredCut> = cuts.collect();
     let identified = identify_together(&cuts, |share| progress(0.2 * share))?;
-    let count = walls.len() as f64;
-    let mut designed = Vec::new();
-    for (at, (((wall, path), identified), fed)) in walls.iter().zip(&sampled).zip(identified).zip(fed).enumerate() {
+    let identified = walls.iter().zip(&sampled).zip(identified).map(|((wall, path), identified)| {
         let remarks = Remarks::of(wall.measurement, wall.remarks, MeasuredPart::Uncorrected);
         let lawful = path.with_law(identified.law());
         let table = identified.table();
         let law = job::law(&wall.pass.core, &identified.machine(&lawful, &table), &wall.measurement.contacts);
+        IdentifiedWall { pass: wall.pass, path, identified, request: DesignRequest::of(law), remarks }
+    });
+    correct_identified(identified.collect(), routes, progress)
+}
+
+/// A wall and what is known of the machine that cuts it.
+#[derive(Clone, Debug)]
+pub struct IdentifiedWall<'a> {
+    /// The pass that cuts it.
+    pub pass: &'a Pass,
+    /// Its path.
+    pub path: &'a Path<'a>,
+    /// Machine, material, and its points.
+    pub identified: Identification,
+    /// What the correction is made from beside them.
+    pub request: DesignRequest<'a>,
+    /// What is said of its measurement.
+    pub remarks: Remarks<'a>,
+}
+
+/// Designs the corrections of walls for an identified machine and writes them for the routes, in one program.
+///
+/// # Errors
+/// A correction beyond the clamp, a contour that cannot be written.
+pub fn correct_identified(
+    walls: Vec<IdentifiedWall<'_>>,
+    routes: &[Route],
+    progress: &mut dyn FnMut(f64),
+) -> Result<Vec<CorrectedPass>, Failure> {
+    progress(0.2);
+    let count = walls.len() as f64;
+    let mut fed: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
+    let mut designed = Vec::new();
+    for (at, (wall, fed)) in walls.into_iter().zip(&mut fed).enumerate() {
         let later = &mut |share| progress(0.2 + (at as f64 + share) / count * 0.7);
-        designed.push(design(wall.pass, path, fed, identified, &DesignRequest::of(law), remarks, routes, later)?);
+        designed.push(design(wall, fed, routes, later)?);
     }
     let corrected = write_every(designed, routes)?;
     progress(1.0);
     Ok(corrected)
 }
 
-/// Designs the correction of a pass for an identified machine and writes it for the routes.
-///
-/// # Errors
-/// A correction beyond the clamp, a contour that cannot be written.
-pub fn correct_identified(
-    pass: &Pass,
-    sampled: &Path,
-    identified: Identification,
-    request: &DesignRequest<'_>,
-    remarks: Remarks<'_>,
-    routes: &[Route],
-    progress: &mut dyn FnMut(f64),
-) -> Result<CorrectedPass, Failure> {
-    progress(0.2);
-    let mut fed = PathBuffer::default();
-    let later = &mut |share| progress(0.2 + 0.7 * share);
-    let designed = design(pass, sampled, &mut fed, identified, request, remarks, routes, later)?;
-    let corrected = write_every(vec![designed], routes)?;
-    progress(1.0);
+/// The only one of some corrections.
+pub(crate) fn only(corrected: Vec<CorrectedPass>) -> Result<CorrectedPass, Failure> {
     corrected.into_iter().next().ok_or_else(|| Failure::Internal("a pass without its correction".to_owned()))
 }
 
@@ -152,29 +163,25 @@ struct Designed<'a> {
     warnings: Vec<String>,
 }
 
-/// Designs the correction of a pass; `fed` takes the samples of its path at scheduled feeds.
-#[expect(clippy::too_many_arguments, reason = "each is a part of what a correction follows from")]
+/// Designs the correction of a wall; `fed` takes the samples of its path at scheduled feeds.
 fn design<'a>(
-    pass: &'a Pass,
-    sampled: &Path<'a>,
+    wall: IdentifiedWall<'a>,
     fed: &'a mut PathBuffer,
-    identified: Identification,
-    request: &DesignRequest<'_>,
-    remarks: Remarks<'_>,
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Designed<'a>, Failure> {
+    let IdentifiedWall { pass, path: sampled, identified, request, remarks } = wall;
     let path = sampled.with_law(identified.law());
     let table = identified.table();
     let machine = identified.machine(&path, &table);
     let mut feeds = feeds::planned(pass, &machine, &identified, remarks.part != MeasuredPart::FirstPass, routes)?;
-    feeds.compare(pass, &machine, &identified, request);
+    feeds.compare(pass, &machine, &identified, &request);
     let path = match &feeds.schedule {
         Some(schedule) => pass.sample_fed(fed, Some(schedule))?.with_law(identified.law()),
         None => path,
     };
     let machine = identified.machine(&path, &table);
-    let correction = design_correction(pass, &machine, &identified, request, progress)?;
+    let correction = design_correction(pass, &machine, &identified, &request, progress)?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.texts.iter().cloned());
     warnings.extend(model_warnings(pass, &identified, &correction, &machine));

@@ -1,6 +1,7 @@
 //! `learn`: from the measurement of a part that was cut with a correction to the correction of the next part.
 
 use truepath_core::correct::Law;
+use truepath_core::cut::Path;
 use truepath_core::job::LawName;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_job::job::Route;
@@ -9,11 +10,11 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::as_milled::WholeContour;
 use crate::codes::{Q002, Q006};
-use crate::correct::{CorrectedPass, correct_identified};
+use crate::correct::{CorrectedPass, IdentifiedWall, correct_identified};
 use crate::correction::{DesignRequest, Identification};
-use crate::learning::{History, MOST_PARTS, Part, PartPoints, Update, Verdict, update};
+use crate::learning::{Companion, History, MOST_PARTS, Part, PartPoints, Verdict, update};
 use crate::remarks::{MeasuredPart, Remarks};
-use crate::summary::CorrectSummary;
+use crate::summary::{ContourSummary, CorrectSummary};
 
 /// The correction of the next part.
 #[derive(Clone, Debug)]
@@ -37,6 +38,49 @@ pub struct LearnSummary {
     pub verdict: Verdict,
     /// The part that was measured, along the whole contour, as the model of all parts has it.
     pub whole_contour_error_mm: WholeContour,
+    /// Each of several contours; the rest is the worst of them, or the sum. Absent for one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contours: Vec<ContourLearned>,
+}
+
+/// One of several contours that were learned from together.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct ContourLearned {
+    /// Its name.
+    pub contour: String,
+    /// Its figures, as those of a single contour.
+    #[serde(flatten)]
+    pub summary: LearnSummary,
+}
+
+impl LearnSummary {
+    /// Of several contours: the verdict is that of the one that came out worst, the figures of the next correction are those
+    /// of the worst. `None` without any.
+    pub fn of_every(contours: Vec<ContourLearned>, warnings: Vec<String>) -> Option<Self> {
+        let error = |one: &ContourLearned| one.summary.whole_contour_error_mm.max_mm;
+        let worst = contours.iter().max_by(|a, b| error(a).total_cmp(&error(b)))?.summary.clone();
+        let corrected = contours.iter().map(|one| ContourSummary {
+            contour: one.contour.clone(),
+            corrected: true,
+            lines: [0, 0],
+            summary: Some(one.summary.correct.clone()),
+        });
+        let correct = CorrectSummary::of_every(corrected.collect(), warnings)?;
+        Some(Self { correct: CorrectSummary { contours: Vec::new(), ..correct }, contours, ..worst })
+    }
+}
+
+/// A wall of a part that was cut with a correction.
+#[derive(Clone, Copy, Debug)]
+pub struct CorrectedWall<'a> {
+    /// The pass that cut it.
+    pub pass: &'a Pass,
+    /// What was learned before.
+    pub history: &'a History,
+    /// Its points.
+    pub measurement: &'a Measurement,
+    /// Sentences for its summary.
+    pub remarks: &'a [String],
 }
 
 /// Learns from the part that was cut with the history's correction, in memory, for one or both routes.
@@ -51,38 +95,81 @@ pub fn learn(
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Learned, Failure> {
-    history.facts.agree(pass)?;
-    refuse_other_laws(pass)?;
-    refuse_feeds(pass)?;
-    let mut part = Part::new(history.next_number(), measurement, Some(history.next.correction.clone()))?;
-    history.refuse_known(&part)?;
-    let mut buffer = PathBuffer::default();
-    let sampled = pass.sample(&mut buffer)?;
+    let learned = learn_every(&[CorrectedWall { pass, history, measurement, remarks }], routes, progress)?;
+    learned.into_iter().next().ok_or_else(|| Failure::Internal("a pass that taught nothing".to_owned()))
+}
+
+/// Learns from the walls of a part that was cut with the corrections of their histories: of each, what its own points show
+/// beside the machine that all of them tell of.
+///
+/// # Errors
+/// As [`learn`].
+pub fn learn_every(
+    walls: &[CorrectedWall<'_>],
+    routes: &[Route],
+    progress: &mut dyn FnMut(f64),
+) -> Result<Vec<Learned>, Failure> {
+    let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
+    let (mut sampled, mut parts) = (Vec::new(), Vec::new());
+    for (wall, buffer) in walls.iter().zip(&mut buffers) {
+        wall.history.facts.agree(wall.pass)?;
+        refuse_other_laws(wall.pass)?;
+        refuse_feeds(wall.pass)?;
+        let part = Part::new(wall.history.next_number(), wall.measurement, Some(wall.history.next.correction.clone()))?;
+        wall.history.refuse_known(&part)?;
+        parts.push(part);
+        sampled.push(wall.pass.sample(buffer)?);
+    }
+    let mut points: Vec<Vec<PartPoints>> = Vec::new();
+    for ((wall, path), part) in walls.iter().zip(&sampled).zip(&parts) {
+        points.push(part_points(wall.history, part, path)?);
+    }
+    let count = walls.len() as f64;
+    let mut taught = Vec::new();
+    for (at, ((wall, path), part)) in walls.iter().zip(&sampled).zip(&mut parts).enumerate() {
+        let others = sampled.iter().zip(&points).enumerate().filter(|(other, _)| *other != at);
+        let companions: Vec<Companion> = others.map(|(_, (path, parts))| Companion { path, parts }).collect();
+        let mut earlier = points.get(at).cloned().unwrap_or_default();
+        let Some(newest) = earlier.pop() else { continue };
+        let told = &mut |share| progress(0.5 * (at as f64 + share) / count);
+        let promised = wall.history.next.promised();
+        let update = update(wall.pass, path, earlier, newest, &companions, &promised, told)?;
+        part.set_aside = update.set_aside;
+        let mut texts = wall.remarks.to_vec();
+        texts.extend_from_slice(update.verdict.remarks());
+        if let Some(oldest) = wall.history.parts.first().filter(|_| wall.history.parts.len() >= MOST_PARTS) {
+            texts.push(format!("part {} is dropped from the history, which keeps {MOST_PARTS} parts", oldest.number));
+        }
+        taught.push((update, texts));
+    }
+    let mut identified = Vec::new();
+    for ((wall, path), (update, texts)) in walls.iter().zip(&sampled).zip(&taught) {
+        let observations = update.joint.observations.last().cloned().unwrap_or_default();
+        let (residual, residual_sigma) = (&update.residual[..], &update.residual_sigma[..]);
+        let request = DesignRequest { law: Law::Model, residual, residual_sigma, kept: update.kept.as_deref() };
+        let remarks = Remarks::of(wall.measurement, texts, MeasuredPart::Corrected);
+        let known = Identification { core: update.joint.core, observations };
+        identified.push(IdentifiedWall { pass: wall.pass, path, identified: known, request, remarks });
+    }
+    let later = &mut |share| progress(0.5 + 0.5 * share);
+    let corrected = correct_identified(identified, routes, later)?;
+    let done = walls.iter().zip(parts).zip(corrected).zip(taught);
+    let done = done.map(|(((wall, part), corrected), (update, _))| {
+        let history = wall.history.with(part, &corrected);
+        Learned { corrected, history, verdict: update.verdict }
+    });
+    Ok(done.collect())
+}
+
+/// The parts of a history that count, then the newest.
+fn part_points(history: &History, newest: &Part, path: &Path) -> Result<Vec<PartPoints>, InputError> {
     let of = |part: &Part| {
-        PartPoints::of(part, &sampled).ok_or_else(|| {
+        PartPoints::of(part, path).ok_or_else(|| {
             let found = format!("the correction of part {} does not lie along this contour", part.number);
-            Q002.error(found, format!("one entry for each of {} samples", sampled.count()))
+            Q002.error(found, format!("one entry for each of {} samples", path.count()))
         })
     };
-    let parts: Vec<PartPoints> = history.parts.iter().filter(|p| !p.set_aside).map(of).collect::<Result<_, _>>()?;
-    let newest = of(&part)?;
-    let Update { joint, residual, residual_sigma, kept, set_aside, verdict } =
-        update(pass, &sampled, parts, newest, &history.next.promised(), &mut |share| progress(0.5 * share))?;
-    part.set_aside = set_aside;
-    let observations = joint.observations.last().cloned().unwrap_or_default();
-    let identified = Identification { core: joint.core, observations };
-    let request =
-        DesignRequest { law: Law::Model, residual: &residual, residual_sigma: &residual_sigma, kept: kept.as_deref() };
-    let mut texts = remarks.to_vec();
-    texts.extend_from_slice(verdict.remarks());
-    if let Some(oldest) = history.parts.first().filter(|_| history.parts.len() >= MOST_PARTS) {
-        texts.push(format!("part {} is dropped from the history, which keeps {MOST_PARTS} parts", oldest.number));
-    }
-    let texts = Remarks::of(measurement, &texts, MeasuredPart::Corrected);
-    let later = &mut |share| progress(0.5 + 0.5 * share);
-    let corrected = correct_identified(pass, &sampled, identified, &request, texts, routes, later)?;
-    let history = history.with(part, &corrected);
-    Ok(Learned { corrected, history, verdict })
+    history.parts.iter().filter(|p| !p.set_aside).chain([newest]).map(of).collect()
 }
 
 /// The papers' laws are made from one measurement and know nothing of a second.

@@ -19,7 +19,7 @@ use truepath_job::surface::Surface;
 use truepath_program::first_pass_of;
 
 use crate::codes::K003;
-use crate::correct::{CorrectedPass, correct_identified};
+use crate::correct::{CorrectedPass, IdentifiedWall, correct_identified, only};
 use crate::correction::{DesignRequest, Identification, identify};
 use crate::remarks::{MeasuredPart, Remarks};
 
@@ -47,7 +47,9 @@ pub fn correct_second_pass(
     let path = sampled.with_law(known.law());
     let table = known.table();
     let law = job::law(&second.core, &known.machine(&path, &table), &[]);
-    let done = correct_identified(&second, &sampled, known, &DesignRequest::of(law), remarks, routes, progress)?;
+    let request = DesignRequest::of(law);
+    let wall = IdentifiedWall { pass: &second, path: &sampled, identified: known, request, remarks };
+    let done = only(correct_identified(vec![wall], routes, progress)?)?;
     Ok((done, surface))
 }
 

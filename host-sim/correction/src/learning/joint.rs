@@ -73,27 +73,57 @@ impl PartPoints {
     }
 }
 
-/// Fits machine and material to all parts; the wall law is the one given, or found. `progress` is told the share done.
+/// Another contour of the same parts: its points tell of the same machine.
+#[derive(Clone, Copy, Debug)]
+pub struct Companion<'a> {
+    /// Its path.
+    pub path: &'a Path<'a>,
+    /// Its points of the parts, in their order.
+    pub parts: &'a [PartPoints],
+}
+
+/// Fits machine and material to all parts, of which the companions' points are as well; the wall law is the one given, or
+/// found. `progress` is told the share done.
 pub fn joint(
     pass: &Pass,
     path: &Path,
     parts: &[PartPoints],
+    companions: &[Companion<'_>],
     law: Option<WallLaw>,
     progress: &mut dyn FnMut(f64),
 ) -> Joint {
-    let all: Vec<Observation> = parts.iter().flat_map(|p| p.observations.iter().copied()).collect();
-    let (earlier, _) = parts.split_at(parts.len().saturating_sub(1));
-    let earlier: Vec<EarlierPart> = earlier.iter().map(|p| EarlierPart::new(p.observations.len())).collect();
-    let cut = |(part, points): (usize, &PartPoints)| Cut { path: *path, points: points.observations.len(), part };
-    let cuts: Vec<Cut> = parts.iter().enumerate().map(cut).collect();
+    // The points of a part stand together: those of the contour itself, then those of its companions.
+    let mut of: Vec<(Path<'_>, &PartPoints)> = Vec::new();
+    let (mut cuts, mut earlier, mut all) = (Vec::new(), Vec::new(), Vec::new());
+    for (part, own) in parts.iter().enumerate() {
+        let others = companions.iter().filter_map(|companion| {
+            Some((*companion.path, companion.parts.iter().find(|other| other.number == own.number)?))
+        });
+        let mut count = 0;
+        for (path, points) in std::iter::once((*path, own)).chain(others) {
+            of.push((path, points));
+            cuts.push(Cut { path, points: points.observations.len(), part });
+            all.extend_from_slice(&points.observations);
+            count += points.observations.len();
+        }
+        earlier.push(EarlierPart::new(count));
+    }
+    earlier.pop();
     let points = Points { cuts: &cuts, earlier: &earlier, observations: &all };
     let law = law.or(asked(pass.core.job.force.model));
-    let by_program =
-        |part: usize, sample: usize| parts.get(part).map_or(Vector::ZERO, |p| commanded(path, &p.nodes, sample));
+    let by_program = |cut: usize, sample: usize| {
+        of.get(cut).map_or(Vector::ZERO, |(path, points)| commanded(path, &points.nodes, sample))
+    };
     let Found { core, earlier, observations: all } = found(&pass.core, law, points, by_program, progress);
     let job::Identified { prior, fit, .. } = &core;
     let mut rest = all.into_iter();
-    let observations = parts.iter().map(|p| rest.by_ref().take(p.observations.len()).collect()).collect();
+    let mut observations: Vec<Vec<Observation>> = Vec::new();
+    for cut in &cuts {
+        let own = rest.by_ref().take(cut.points).collect();
+        if observations.len() == cut.part {
+            observations.push(own);
+        }
+    }
     let [.., sigma_x, sigma_y] = prior.sigma.map(float);
     let shares = |d: Vector| [mm(d.x) / sigma_x.max(1e-9), mm(d.y) / sigma_y.max(1e-9)];
     let last = [fit.parameters.datum];

@@ -43,7 +43,7 @@ mod verdict;
 pub use facts::Facts;
 pub use history::{History, MOST_PARTS, Next, Part, WrittenFile};
 pub use holdout::Residuals;
-pub use joint::{Joint, PartPoints, joint};
+pub use joint::{Companion, Joint, PartPoints, joint};
 pub use monitor::PartError;
 pub use nodes::Nodes;
 pub use points::Point;

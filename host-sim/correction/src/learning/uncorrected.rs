@@ -76,7 +76,7 @@ pub fn refuse_corrected(pass: &Pass, path: &Path, history: &History, new: &Part)
     if known.is_empty() {
         return Ok(());
     }
-    let before = joint(pass, path, &known, None, &mut |_| ());
+    let before = joint(pass, path, &known, &[], None, &mut |_| ());
     let beside = Residual::of(path, &known, &before);
     let [with, without] = distances(path, &part, &before, beside.as_ref());
     if !is_clear(without, with, &part) {

@@ -8,7 +8,7 @@ use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
 use super::holdout::{Holdout, Residuals};
-use super::joint::{Joint, PartPoints, joint};
+use super::joint::{Companion, Joint, PartPoints, joint};
 use super::monitor::Monitor;
 use super::residual::Residual;
 use super::uncorrected::refuse_uncorrected;
@@ -34,7 +34,7 @@ pub struct Update {
 /// Weight of a point that fits.
 const FITTING: f64 = 0.3;
 
-/// Learns from the newest part, beside the earlier ones. `promised` is the predicted error of its correction with the
+/// Learns from the newest part, beside the earlier ones; `companions` are the other contours of all of them. `promised` is the predicted error of its correction with the
 /// standard deviation, beside every sample. `progress` is told the share done.
 ///
 /// # Errors
@@ -44,19 +44,21 @@ pub fn update(
     path: &Path,
     earlier: Vec<PartPoints>,
     newest: PartPoints,
+    companions: &[Companion<'_>],
     promised: &[(Offset, Offset)],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Update, Failure> {
-    let before = joint(pass, path, &earlier, None, &mut |share| progress(0.3 * share));
+    let before = joint(pass, path, &earlier, companions, None, &mut |share| progress(0.3 * share));
     let before_beside = Residual::of(path, &earlier, &before);
     refuse_uncorrected(path, &newest, &before, before_beside.as_ref())?;
     let mut parts = earlier;
     parts.push(newest);
-    let after = joint(pass, path, &parts, None, &mut |share| progress(0.3 + 0.3 * share));
+    let after = joint(pass, path, &parts, companions, None, &mut |share| progress(0.3 + 0.3 * share));
     let after_beside = Residual::of(path, &parts, &after);
     let holdout = Holdout::of(&parts).map(|held| {
         let less = held.without(&parts);
-        let updated = joint(pass, path, &less, Some(after.core.law), &mut |share| progress(0.6 + 0.3 * share));
+        let updated =
+            joint(pass, path, &less, companions, Some(after.core.law), &mut |share| progress(0.6 + 0.3 * share));
         let beside = after_beside.as_ref().and_then(|_| Residual::of(path, &less, &updated));
         Residuals {
             places: held.places.clone(),

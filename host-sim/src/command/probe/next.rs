@@ -47,7 +47,7 @@ pub(super) fn of_files(
         plan.warnings.extend(measurement.remarks(&file));
         return Ok(plan);
     };
-    let history = history_in(folder)?;
+    let history = history_in(folder, folder)?;
     let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
     let measurement = file.as_ref().map(|file| Measurement::read(&pass, file)).transpose()?;
@@ -121,10 +121,10 @@ pub fn next_part(
     let nodes = history.next.correction.nodes().filter(|nodes| nodes.len() == sampled.count());
     let (Some(points), Some(nodes)) = (points, nodes) else { return Err(other_contour(&sampled).into()) };
     if let (true, Some((newest, earlier @ [_, ..]))) = (measurement.is_some(), points.split_last()) {
-        let before = joint(pass, &sampled, earlier, None, &mut |share| progress(0.2 * share));
+        let before = joint(pass, &sampled, earlier, &[], None, &mut |share| progress(0.2 * share));
         refuse_uncorrected(&sampled, newest, &before, Residual::of(&sampled, earlier, &before).as_ref())?;
     }
-    let joint = joint(pass, &sampled, &points, None, &mut |share| progress(0.2 + 0.3 * share));
+    let joint = joint(pass, &sampled, &points, &[], None, &mut |share| progress(0.2 + 0.3 * share));
     let observations: Vec<_> = joint.observations.into_iter().flatten().collect();
     joint.core.check(&observations).map_err(|error| pass.refused(&error))?;
     let known = Identification { core: joint.core, observations };

@@ -1,5 +1,7 @@
 //! `learn`: from the probe file of a part that was cut with a correction to the correction of the next part.
 
+mod several;
+
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
@@ -58,6 +60,9 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 
 fn words(s: &LearnSummary) -> String {
     let (v, whole) = (&s.verdict, &s.whole_contour_error_mm);
+    if !s.contours.is_empty() {
+        return several::table(&s.contours);
+    }
     let mut text = format!(
         "part {} at {} places, error of the target      largest      rms\n\
          \x20 measured                           {:>12.4} {:>8.4} mm\n\
@@ -98,11 +103,14 @@ fn words(s: &LearnSummary) -> String {
 /// As [`learn`], a folder without a history or with another corrected program, and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSummary, Failure> {
     refuse_same_folder(options)?;
-    let history = history_in(&options.from)?;
     let mut job = JobFile::read(&options.job)?;
     job.override_probe(&options.probe_flags)?;
     job.which = options.which.clone();
-    let pass = Pass::read(job)?;
+    let pass = match <[Pass; 1]>::try_from(Pass::every(job)?) {
+        Ok([only]) => only,
+        Err(walls) => return several::run(options, walls, progress),
+    };
+    let history = history_in(&options.from, &options.from)?;
     let level = history.facts.level().filter(|_| options.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
     let file = Source::read(&options.probe)?;
@@ -122,6 +130,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
         correct: done.corrected.summary.clone(),
         verdict: done.verdict,
         whole_contour_error_mm: milled.whole_contour(),
+        contours: Vec::new(),
     };
     let page = learned(&pass, &measurement, &done.corrected, &milled, &summary)?;
     folder.write("probe-raw.txt", file.bytes())?;
@@ -134,8 +143,9 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
     Ok(summary)
 }
 
-/// Reads the history of a folder, and makes sure that the correction beside it is the one it tells of.
-pub(super) fn history_in(folder: &FilePath) -> Result<History, InputError> {
+/// Reads the history of a folder, and makes sure that the correction beside it, or in the folder `base` of all contours, is
+/// the one it tells of.
+pub(super) fn history_in(folder: &FilePath, base: &FilePath) -> Result<History, InputError> {
     let place = folder.join(HISTORY);
     if !place.exists() {
         let found = format!("{} holds no {HISTORY}", folder.display());
@@ -145,8 +155,11 @@ pub(super) fn history_in(folder: &FilePath) -> Result<History, InputError> {
     let history = History::read(&Source::read(&place)?)?;
     let mut held = 0;
     for file in &history.next.files {
-        let place = folder.join(&file.name);
-        let Ok(bytes) = std::fs::read(&place) else { continue };
+        let places = [folder.join(&file.name), base.join(&file.name)];
+        let Some((place, bytes)) = places.into_iter().find_map(|p| std::fs::read(&p).ok().map(|bytes| (p, bytes)))
+        else {
+            continue;
+        };
         held += 1;
         let crc = format!("{:08x}", crc32(&bytes));
         if crc != file.crc32 {

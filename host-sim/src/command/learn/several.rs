@@ -1,0 +1,119 @@
+//! `learn` for several contours of one program: a history of each, one machine, one corrected program.
+
+use std::fmt::Write;
+
+use truepath_correction::as_milled::AsMilled;
+use truepath_correction::codes::Q010;
+use truepath_correction::learn::{ContourLearned, CorrectedWall, LearnSummary, learn_every};
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::output::{OutputFolder, json};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
+use truepath_report::correction_csv;
+use truepath_report::page::render_all;
+use truepath_report::pages::{REPORT, learned};
+
+use super::super::correction_files::{
+    FILES, HISTORY, MILLED, contour_folder, contour_name, write_contour, write_program,
+};
+use super::{Options, history_in};
+
+/// Learns from every contour that has a history.
+pub(super) fn run(options: &Options, walls: Vec<Pass>, progress: &mut dyn FnMut(f64)) -> Result<LearnSummary, Failure> {
+    let (mut passes, mut histories, mut left) = (Vec::new(), Vec::new(), Vec::new());
+    for pass in walls {
+        let folder = options.from.join(contour_folder(&pass));
+        if !folder.join(HISTORY).exists() {
+            left.push(contour_name(&pass));
+            continue;
+        }
+        let history = history_in(&folder, &options.from)?;
+        let level = history.facts.level().filter(|_| options.which.pass.is_none() && pass.plan.is_some());
+        let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass);
+        passes.push(pass.cut_with(history.cut_with()));
+        histories.push(history);
+    }
+    if passes.is_empty() {
+        // Says which folder is expected.
+        history_in(&options.from, &options.from)?;
+    }
+    let file = Source::read(&options.probe)?;
+    let measured = Measurement::of_every(passes, &file)?;
+    if let Some((pass, _)) = measured.iter().find(|(_, measurement)| measurement.contacts.is_empty()) {
+        let found = format!("no point is on the wall of {}, which was cut with a correction", contour_name(pass));
+        return Err(Q010.error(found, "points on every corrected contour").in_file(&options.probe).into());
+    }
+    let folder = OutputFolder::create(&options.output, options.force, FILES)?;
+    let remarks: Vec<Vec<String>> = measured.iter().map(|(_, measurement)| measurement.remarks(&file)).collect();
+    let walls: Vec<CorrectedWall> = measured
+        .iter()
+        .zip(&histories)
+        .zip(&remarks)
+        .map(|(((pass, measurement), history), remarks)| CorrectedWall { pass, history, measurement, remarks })
+        .collect();
+    let route = options.route.or(measured.first().map(|(pass, _)| pass.job.route)).unwrap_or_default();
+    let done = learn_every(&walls, &[route], progress)?;
+
+    let mut warnings: Vec<String> = left
+        .iter()
+        .map(|name| format!("{name} stays as it is: {} has no history of it", options.from.display()))
+        .collect();
+    let (mut contours, mut pages) = (Vec::new(), Vec::new());
+    for (wall, done) in walls.iter().zip(&done) {
+        let (name, place) = (contour_name(wall.pass), contour_folder(wall.pass));
+        let milled = AsMilled::of(wall.pass, wall.history, &done.corrected)?;
+        let summary = LearnSummary {
+            correct: done.corrected.summary.clone(),
+            verdict: done.verdict.clone(),
+            whole_contour_error_mm: milled.whole_contour(),
+            contours: Vec::new(),
+        };
+        for said in &summary.correct.warnings {
+            let of_program = said.starts_with(wall.pass.program.name());
+            let text = if of_program { said.clone() } else { format!("{name}: {said}") };
+            if !warnings.contains(&text) {
+                warnings.push(text);
+            }
+        }
+        pages.push((name.clone(), learned(wall.pass, wall.measurement, &done.corrected, &milled, &summary)?));
+        write_contour(&folder, &place, wall.measurement, &done.corrected)?;
+        folder.write(&format!("{place}summary.json"), &json(&summary)?)?;
+        folder.write(&format!("{place}{HISTORY}"), &done.history.text()?)?;
+        folder.write(&format!("{place}{MILLED}"), &correction_csv(&milled.rows)?)?;
+        contours.push(ContourLearned { contour: name, summary });
+    }
+    if let (Some(wall), Some(done)) = (walls.first(), done.first()) {
+        write_program(&folder, wall.pass, &done.corrected)?;
+    }
+    let summary = LearnSummary::of_every(contours, warnings);
+    let summary = summary.ok_or_else(|| Failure::Internal("no contour was learned from".to_owned()))?;
+    folder.write("probe-raw.txt", file.bytes())?;
+    folder.write("summary.json", &json(&summary)?)?;
+    folder.write(REPORT, &render_all(&pages)?)?;
+    folder.commit()?;
+    Ok(summary)
+}
+
+/// A line for each contour.
+pub(super) fn table(contours: &[ContourLearned]) -> String {
+    let mut text = format!(
+        "{:<24}{:>6}{:>8}{:>14}{:>14}{:>14}\n",
+        "contour", "part", "places", "measured mm", "part before", "whole contour"
+    );
+    for one in contours {
+        let v = &one.summary.verdict;
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{:<24}{:>6}{:>8}{:>14.4}{:>14.4}{:>14.4}{}",
+            one.contour,
+            v.part,
+            v.measured_error_mm.places,
+            v.measured_error_mm.max_mm,
+            v.previous_error_mm.max_mm,
+            one.summary.whole_contour_error_mm.max_mm,
+            if v.rolled_back { "  rolled back" } else { "" }
+        );
+    }
+    text + "\ncorrection of the next part\n"
+}
