@@ -42,8 +42,8 @@ pub struct Program {
     /// Further keys of the job, `table.key = value`. One that begins with `!` is what Truepath has to find out: only the
     /// virtual machine is told it, and the job with the lines named.
     pub keys: Vec<String>,
-    /// First and last line of every time the wall is made, leads not included.
-    pub wall_lines: Vec<[u32; 2]>,
+    /// First and last line of every time a wall is made, leads not included; wall by wall, ` | ` between them.
+    pub walls: Vec<Vec<[u32; 2]>>,
     /// The end it came to when the table was renewed.
     pub expected: String,
 }
@@ -84,7 +84,7 @@ fn program(line: &str) -> Result<Program, String> {
         helix_deg: number(helix)?,
         depth_mm: number(depth)?,
         keys: keys.split(';').map(str::trim).filter(|k| !k.is_empty()).map(str::to_owned).collect(),
-        wall_lines: lines.split_whitespace().map(range).collect::<Result<_, _>>()?,
+        walls: lines.split('|').map(|wall| wall.split_whitespace().map(range).collect()).collect::<Result<_, _>>()?,
         expected: expected.to_owned(),
     })
 }
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn the_table_says_what_a_machinist_knows_and_where_the_wall_is() {
         let programs = read(TABLE).expect("a table");
-        assert_eq!(programs[0].wall_lines, [[13, 17], [20, 24]]);
+        assert_eq!(programs[0].walls, [[[13, 17], [20, 24]]]);
         assert_eq!((programs[0].wall.as_str(), programs[0].keys.len(), programs[1].keys.len()), ("", 1, 0));
         assert_eq!(read(&TABLE.replace("5-9", "5")).expect_err("no lines"), "line 4: 5 are no lines");
         assert_eq!(read(&TABLE.replace(",new", "")).expect_err("a field less"), "line 4: 11 fields instead of 12");

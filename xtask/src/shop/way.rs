@@ -124,8 +124,12 @@ fn walk(folder: &Path, shop: &Program, place: &Path, named: bool) -> Result<Run,
     let text = fs::read(folder.join(&shop.file)).map_err(failed)?;
     fs::write(place.join(&name), &text).map_err(failed)?;
     let truth = job(shop, &name, |_| true);
-    let first = shop.wall_lines.first().copied().unwrap_or_default();
-    let own = if named { with_lines(&truth, first) } else { job(shop, &name, |key| !key.starts_with('!')) };
+    let first = shop.walls.iter().map(|wall| wall.first().copied().unwrap_or_default());
+    let own = if named {
+        with_lines(&truth, &first.collect::<Vec<_>>())
+    } else {
+        job(shop, &name, |key| !key.starts_with('!'))
+    };
     fs::write(place.join("job.toml"), own).map_err(failed)?;
     let mut run = Run { end: End::Through, said: String::new(), line: None, errors_mm: None, seconds: 0.0 };
     if let Err((end, stopped)) = steps(folder, shop, (place, &name), &truth, &mut run) {
@@ -166,7 +170,8 @@ fn steps(
         plan["points"].as_array().into_iter().flatten().filter_map(|p| p["line"].as_u64()).collect();
     let within =
         |range: &&[u32; 2]| touched.iter().filter(|l| (range[0].into()..=range[1].into()).contains(*l)).count();
-    let wall = shop.wall_lines.iter().rev().max_by_key(within).copied().unwrap_or_default();
+    let milled = |wall: &Vec<[u32; 2]>| wall.iter().rev().max_by_key(within).copied().unwrap_or_default();
+    let walls: Vec<[u32; 2]> = shop.walls.iter().map(milled).collect();
     let plant = [folder.join("plant.toml"), root().join(PLANT)];
     let plant = plant.into_iter().find(|p| p.exists()).unwrap_or_default().display().to_string();
     let unjudged = |step| {
@@ -179,7 +184,7 @@ fn steps(
             (end, Some(stopped))
         }
     };
-    if let Err(e) = fs::write(place.join("wall.toml"), with_lines(truth, wall)) {
+    if let Err(e) = fs::write(place.join("wall.toml"), with_lines(truth, &walls)) {
         run.said = e.to_string();
         return Err((End::Unjudged { step: "write", code: String::new() }, None));
     }
@@ -188,19 +193,36 @@ fn steps(
     let first = first.map_err(unjudged("touch"))?;
     users("correct", &["correct", "job.toml", "--probe", "first/probe.txt", "-o", "out"])?;
     truepath(place, name, &[&mill[..], &["--from", "out", "-o", "second"]].concat()).map_err(unjudged("cut"))?;
-    let error = |part: &str| wall::largest_error_mm(&place.join(part), shop.diameter_mm).unwrap_or(f64::NAN);
-    let errors = [error("first"), error("second")];
-    run.errors_mm = Some(errors);
-    if errors[1].is_nan() || errors[1] > WORSE * errors[0] {
-        run.said = format!("{:.4} mm became {:.4} mm", errors[0], errors[1]);
-        return Err((End::Worse, None));
+    let mut worst = [0.0f64; 2];
+    for folder in contours(&place.join("first")) {
+        let of = |part: &str| {
+            let beside = folder.strip_prefix(place.join("first")).unwrap_or(&folder);
+            wall::largest_error_mm(&place.join(part).join(beside), shop.diameter_mm).unwrap_or(f64::NAN)
+        };
+        let errors = [of("first"), of("second")];
+        worst = [worst[0].max(errors[0]), worst[1].max(errors[1])];
+        run.errors_mm = Some(worst);
+        if errors[1].is_nan() || errors[1] > WORSE * errors[0] {
+            run.said = format!("{:.4} mm became {:.4} mm", errors[0], errors[1]);
+            return Err((End::Worse, None));
+        }
     }
-    let excess = corrected_mm(&place.join("out/correction.csv")) - first["length_mm"].as_f64().unwrap_or(f64::NAN);
-    if excess.is_nan() || excess.abs() > SAME_MM {
-        run.said = format!("the contour is {excess:+.2} mm longer than the wall of lines {}-{}", wall[0], wall[1]);
+    let corrected: f64 = contours(&place.join("out")).iter().map(|f| corrected_mm(&f.join("correction.csv"))).sum();
+    let excess = corrected - first["length_mm"].as_f64().unwrap_or(f64::NAN);
+    if excess.is_nan() || excess.abs() > SAME_MM * walls.len() as f64 {
+        let lines: Vec<String> = walls.iter().map(|[first, last]| format!("{first}-{last}")).collect();
+        run.said = format!("what is corrected is {excess:+.2} mm longer than the walls of lines {}", lines.join(", "));
         return Err((End::OtherContour(excess), None));
     }
     Ok(())
+}
+
+/// The folders of the contours in a folder of outputs: the folder itself where there is one contour.
+fn contours(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(folder.join("contours")) else { return vec![folder.to_owned()] };
+    let mut folders: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    folders.sort();
+    folders
 }
 
 /// Length of the contour that was corrected, mm.
@@ -270,7 +292,10 @@ fn job(shop: &Program, name: &str, told: impl Fn(&str) -> bool) -> String {
     )
 }
 
-/// The same job for the contour on some lines.
-fn with_lines(job: &str, [first, last]: [u32; 2]) -> String {
-    format!("{job}[[feature]]\nid = \"wall\"\nlines = [{first}, {last}]\n")
+/// The same job for the contours on some lines.
+fn with_lines(job: &str, walls: &[[u32; 2]]) -> String {
+    let feature = |(at, [first, last]): (usize, &[u32; 2])| {
+        format!("[[feature]]\nid = \"wall-{}\"\nlines = [{first}, {last}]\n", at + 1)
+    };
+    walls.iter().enumerate().map(feature).fold(job.to_owned(), |text, feature| text + &feature)
 }
