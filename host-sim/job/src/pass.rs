@@ -18,7 +18,7 @@ use crate::drawn::{Drawn, drawn};
 use crate::feature;
 use crate::feature::{FeaturePass, FeatureSummary, Plan};
 use crate::feed::Schedule;
-use crate::job::JobFile;
+use crate::job::{JobFile, Which};
 use crate::refusal::Inputs;
 use crate::surface::{Surface, stock_point};
 
@@ -92,6 +92,19 @@ impl Pass {
             Self::of_plan(job, program.clone(), Some(plan), drawn.as_ref())
         };
         plans.into_iter().map(pass).collect()
+    }
+
+    /// The other contours of the program that the job's cutter finishes; none where that is not certain.
+    pub fn siblings(&self) -> Vec<Self> {
+        let Some(plan) = self.plan.as_ref().filter(|plan| !plan.others.is_empty()) else { return Vec::new() };
+        let own = plan.number;
+        let mut job = self.job.clone();
+        job.which = Which::default();
+        let of_file = Self::every(job).unwrap_or_default().into_iter();
+        of_file
+            .filter(|other| other.plan.as_ref().is_some_and(|plan| plan.number != own))
+            .map(|other| other.cut_with(self.core.cut_with))
+            .collect()
     }
 
     /// The level of a feature that the job is about, or its first.

@@ -85,6 +85,27 @@ impl Measurement {
     }
 }
 
+impl Measurement {
+    /// Reads a probe file of one wall that may be of the other walls of its program as well: their readings are no sign that
+    /// something is wrong with the file.
+    ///
+    /// # Errors
+    /// As [`Self::of_any_depth`].
+    pub fn of_one(pass: Pass, file: &Source) -> Result<(Pass, Self), Failure> {
+        let others = pass.siblings();
+        if others.is_empty() {
+            return Self::of_any_depth(pass, file);
+        }
+        let own = pass.clone();
+        let walls = std::iter::once(pass).chain(others).collect();
+        let mut all = Self::of_every(walls, file)?;
+        if all.first().is_none_or(|(_, measurement)| measurement.contacts.is_empty()) {
+            return Self::of_any_depth(own, file);
+        }
+        Ok(all.swap_remove(0))
+    }
+}
+
 /// The depths of a wall that a file may be of: the one the user names, or all.
 fn depths(wall: &Pass) -> Result<Vec<Pass>, Failure> {
     let levels = wall.plan.as_ref().map(Plan::levels).unwrap_or_default();

@@ -21,6 +21,7 @@ mod recorded;
 mod rehearsal;
 mod replay;
 mod report_page;
+mod several;
 mod shop_corners;
 mod split_allowance;
 mod study;

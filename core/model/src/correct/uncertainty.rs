@@ -57,9 +57,12 @@ fn spread(
         if column.iter().all(|v| v.abs() < Real::ratio(1, 1000)) {
             continue;
         }
+        // Both ways along a column are as likely. One is taken that a part turned or mirrored takes as well, where difference
+        // and cross term of the compliance have the other sign: the one away from what was believed.
+        let away = column.iter().zip(&fit.theta).fold(Real::ZERO, |sum, (c, t)| sum + *c * *t);
         let mut moved = fit.theta;
         for (t, c) in moved.iter_mut().zip(&column) {
-            *t += *c;
+            *t += if away < Real::ZERO { -*c } else { *c };
         }
         let parameters = prior.at(&moved);
         // The last columns move nothing but the datum of the part that was probed: the wall stays where it is.

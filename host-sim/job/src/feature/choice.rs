@@ -7,8 +7,7 @@ use truepath_core::gcode::{Found, LineRange, Role};
 use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
-use super::listing::{listed, rows};
-use super::plan::CONTOUR;
+use super::listing::{CONTOUR, listed, rows};
 use super::region::{Origin, Region};
 use super::survey::Survey;
 use crate::codes::{N001, N002, N010, N011};
@@ -125,21 +124,21 @@ fn tool(region: &Region, survey: &Survey) -> Option<u32> {
 }
 
 /// The error of a region that holds several finishing contours.
-pub(super) fn ambiguous(region: &Region, program: &Source, runs: &[Found], count: u32, allowance_mm: f64) -> Failure {
+pub(super) fn ambiguous(
+    region: &Region,
+    program: &Source,
+    (runs, count, allowance_mm): (&[Found], u32, f64),
+    doubt: Option<&str>,
+) -> Failure {
     let table = rows(runs, allowance_mm);
     let walls = table.iter().filter(|r| r.role == "finish");
-    let tools: BTreeSet<_> = walls.clone().map(|row| row.tool).collect();
     let others = table.iter().filter(|r| r.role != "finish");
     let rest = match others.clone().count() {
         0 => String::new(),
         n => format!("\nbesides {n} other runs:{}", listed(others)),
     };
     let found = format!("{count} finishing contours in {}, one is needed:{}{rest}", region.name(), listed(walls));
-    let help = if tools.len() > 1 {
-        "number in [tool] says which of the cutters the job describes: the contours of that tool are taken"
-    } else {
-        "name one: --feature contour-N, N counted from the top of this list; or [[feature]] with id and blocks (or lines) in the job, or (TRUEPATH BEGIN id) … (TRUEPATH END) around it in the program; a pocket and its island are two features"
-    };
+    let help = doubt.unwrap_or("name one: --feature contour-N, as it stands at the end of its line; or [[feature]] with id and blocks (or lines) in the job, or (TRUEPATH BEGIN id) … (TRUEPATH END) around it in the program; a pocket and its island are two features");
     if region.origin != Origin::Search {
         return region.error(InputError::new(N010, found, "", help)).into();
     }

@@ -3,6 +3,9 @@
 use truepath_core::gcode::{Found, LineRange, Role};
 use truepath_ground::units::mm;
 
+/// Contours that were found by search are called by their number.
+pub(super) const CONTOUR: &str = "contour-";
+
 /// One run of cutting moves and what it is taken for.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Row {
@@ -126,7 +129,8 @@ const MOST_ROWS: usize = 20;
 
 /// A list inside an error.
 pub(super) fn listed<'r>(rows: impl Iterator<Item = &'r Row>) -> String {
-    let all: Vec<String> = rows.map(|row| format!("\n  {}", row.short())).collect();
+    let name = |row: &Row| row.contour.map_or_else(String::new, |n| format!("  {CONTOUR}{n}"));
+    let all: Vec<String> = rows.map(|row| format!("\n  {}{}", row.short(), name(row))).collect();
     let mut text = all.iter().take(MOST_ROWS).cloned().collect::<String>();
     if all.len() > MOST_ROWS {
         text += &format!("\n  and {} more", all.len() - MOST_ROWS);

@@ -6,13 +6,15 @@
 //! | N words or line numbers → lines | `place` |
 //! | the runs of cutting moves, whole or on some lines | `survey` |
 //! | regions of the program that are features | `region` |
-//! | the one feature and its passes | `plan` |
+//! | several contours of which one may be none | `doubt` |
+//! | the features and their passes | `plan` |
 //! | what was found, as a list | `listing` |
 //!
 //! A program with one run of cutting moves, no markers and a job without `[[feature]]` needs none of this: the run is
 //! the contour. Otherwise roughing, finishing and spring passes are told apart by [`truepath_core::gcode::search`].
 
 mod choice;
+mod doubt;
 mod listing;
 mod marker;
 mod place;

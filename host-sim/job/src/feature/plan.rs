@@ -1,7 +1,5 @@
 //! The one feature a command is about, with its passes.
 
-use std::collections::BTreeSet;
-
 use truepath_core::gcode::{Criteria, Found, LineRange, Role, is_marked_corrected};
 use truepath_core::geometry::{Block, Side};
 use truepath_core::job::Part;
@@ -10,7 +8,8 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
 
 use super::choice::{ambiguous, candidates, chosen};
-use super::listing::{FeatureSummary, PassRow, Row, rows};
+use super::doubt::doubt;
+use super::listing::{CONTOUR, FeatureSummary, PassRow, Row, rows};
 use super::marker::marked;
 use super::region::{Origin, Region, regions};
 use super::survey::{LARGEST_SEARCH, Survey};
@@ -73,7 +72,9 @@ pub fn plan(job: &JobFile, program: &Source) -> Result<Option<Plan>, Failure> {
     let contour = match (sorted.contours, contour_named(job)) {
         (count, Some(named)) if region.origin == Origin::Search && named <= count => named,
         (1, _) => 1,
-        (count, _) => return Err(ambiguous(region, program, &sorted.runs, count, mm(sorted.allowance))),
+        (count, _) => {
+            return Err(ambiguous(region, program, (&sorted.runs, count, mm(sorted.allowance)), None));
+        }
     };
     search.plan(region, &sorted, contour).map(Some)
 }
@@ -92,8 +93,12 @@ pub fn plans(job: &JobFile, program: &Source) -> Result<Vec<Plan>, Failure> {
     let mut plans = Vec::new();
     for region in candidates(job, &search.regions, &search.survey)? {
         let sorted = search.sorted(job, region)?;
-        if sorted.contours > 1 && (region.origin != Origin::Search || sorted.tools() > 1) {
-            return Err(ambiguous(region, program, &sorted.runs, sorted.contours, mm(sorted.allowance)));
+        if sorted.contours > 1 {
+            let doubt = doubt(&sorted.runs, sorted.contours, &search.survey, sorted.allowance);
+            if region.origin != Origin::Search || doubt.is_some() {
+                let listed = (&sorted.runs[..], sorted.contours, mm(sorted.allowance));
+                return Err(ambiguous(region, program, listed, doubt));
+            }
         }
         for contour in 1..=sorted.contours {
             plans.push(search.plan(region, &sorted, contour)?);
@@ -106,9 +111,6 @@ pub fn plans(job: &JobFile, program: &Source) -> Result<Vec<Plan>, Failure> {
 fn contour_named(job: &JobFile) -> Option<u32> {
     job.which.feature.as_deref()?.strip_prefix(CONTOUR)?.parse().ok().filter(|n| *n > 0)
 }
-
-/// Contours that were found by search are called by their number.
-pub(super) const CONTOUR: &str = "contour-";
 
 /// The runs of a program and where features are in it.
 struct Search {
@@ -123,14 +125,6 @@ struct Sorted {
     contours: u32,
     tool: Option<u32>,
     allowance: Offset,
-}
-
-impl Sorted {
-    /// How many tools cut the finishing contours.
-    fn tools(&self) -> usize {
-        let finishing = self.runs.iter().filter(|f| matches!(f.role, Role::Finish { .. }));
-        finishing.map(|f| f.run.tool).collect::<BTreeSet<_>>().len()
-    }
 }
 
 impl Search {

@@ -1,12 +1,13 @@
 //! `correct`: from a probe file to the corrected program or the correction image.
 
+mod replacing;
 mod several;
 
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
 use truepath_correction::correct::correct_pass;
-use truepath_correction::learning::{History, Part, refuse_corrected};
+use truepath_correction::learning::History;
 use truepath_correction::second_pass;
 use truepath_correction::summary::CorrectSummary;
 use truepath_correction::warnings::misread;
@@ -15,7 +16,7 @@ use truepath_ground::output::{OutputFolder, json};
 use truepath_job::feature::listing;
 use truepath_job::job::{JobFile, ProbeFlags, ROUTES, Route, Which, one_of};
 use truepath_job::measurement::Measurement;
-use truepath_job::pass::{Pass, PathBuffer};
+use truepath_job::pass::Pass;
 use truepath_program::first_pass_of;
 use truepath_report::page::render;
 use truepath_report::pages;
@@ -24,6 +25,7 @@ use truepath_report::pages::{Points, REPORT};
 use super::correction_files::{FILES, HISTORY, write};
 use super::pocket;
 use crate::terminal::Terminal;
+use replacing::refuse_replacing;
 
 /// What is corrected.
 #[derive(Clone, Debug, Default, Args)]
@@ -129,13 +131,16 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
             let walls = Pass::every(job)?;
             match <[Pass; 1]>::try_from(walls) {
                 Ok([only]) => only,
-                Err(walls) => return several::run(options, walls, (probe, &file), progress),
+                Err(walls) => {
+                    let to = (options.output.as_path(), options.force, options.route);
+                    return several::run(walls, (probe, &file), to, progress);
+                }
             }
         }
     };
     let (pass, first, measurement) = match first {
         None => {
-            let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
+            let (pass, measurement) = Measurement::of_one(pass, &file)?;
             (pass, None, measurement)
         }
         Some(first) => {
@@ -178,30 +183,4 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
     folder.write(REPORT, &render(&pages::corrected(&pass, &measurement, &done, points)?)?)?;
     folder.commit()?;
     Ok(done.summary)
-}
-
-/// Refuses points that lie where the correction in the output folder leaves the wall.
-///
-/// `correct` takes what the points show for what no correction leaves. Given the points of a part that was already cut
-/// with one, it would make a correction of what is left and put it in the place of the whole one: the next part would be
-/// nearly as wrong as the first. The probe file may say so itself (`M038`); else the correction in the output folder is
-/// what the points can be held against. Limit: in an empty folder, and with a file that says nothing, it cannot be known.
-///
-/// # Errors
-/// `Q008` with both distances.
-fn refuse_replacing(place: &FilePath, probe: &FilePath, pass: &Pass, measurement: &Measurement) -> Result<(), Failure> {
-    if !place.exists() || pass.job.feed.is_some() {
-        return Ok(());
-    }
-    // What cannot be read, or is of another cut, says nothing about this part.
-    let Ok(history) = Source::read(place).map_err(Failure::from).and_then(|file| Ok(History::read(&file)?)) else {
-        return Ok(());
-    };
-    if history.facts.agree(pass).is_err() {
-        return Ok(());
-    }
-    let mut buffer = PathBuffer::default();
-    let path = pass.sample(&mut buffer)?;
-    let part = Part::new(history.next_number(), measurement, None)?;
-    refuse_corrected(pass, &path, &history, &part).map_err(|error| error.in_file(probe).into())
 }

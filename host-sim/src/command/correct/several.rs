@@ -9,27 +9,28 @@ use truepath_correction::summary::{ContourSummary, CorrectSummary};
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
+use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::page::render_all;
 use truepath_report::pages::{self, Points, REPORT};
 
 use super::super::correction_files::{FILES, HISTORY, contour_folder, contour_name, write_contour, write_program};
-use super::{Options, refuse_replacing};
+use super::replacing::refuse_replacing;
 
 /// Corrects the walls that were touched, and leaves the others as they are.
 pub(super) fn run(
-    options: &Options,
     walls: Vec<Pass>,
     (probe, file): (&FilePath, &Source),
+    (output, force, route): (&FilePath, bool, Option<Route>),
     progress: &mut dyn FnMut(f64),
 ) -> Result<CorrectSummary, Failure> {
     let measured = Measurement::of_every(walls, file)?;
-    let folder = OutputFolder::create(&options.output, options.force, FILES)?;
+    let folder = OutputFolder::create(output, force, FILES)?;
     let (touched, untouched): (Vec<_>, Vec<_>) = measured.iter().partition(|(_, m)| !m.contacts.is_empty());
     let mut remarks = Vec::new();
     for (pass, measurement) in touched.iter().copied() {
-        let history = options.output.join(contour_folder(pass)).join(HISTORY);
+        let history = output.join(contour_folder(pass)).join(HISTORY);
         refuse_replacing(&history, probe, pass, measurement)?;
         let mut said = measurement.remarks(file);
         said.extend(misread(pass, false, &measurement.contacts));
@@ -40,7 +41,7 @@ pub(super) fn run(
         .zip(&remarks)
         .map(|((pass, measurement), remarks)| MeasuredWall { pass, measurement, remarks })
         .collect();
-    let routes = [options.route.or(touched.first().map(|(pass, _)| pass.job.route)).unwrap_or_default()];
+    let routes = [route.or(touched.first().map(|(pass, _)| pass.job.route)).unwrap_or_default()];
     let corrected = correct_every(&walls, &routes, progress)?;
 
     let mut warnings = Vec::new();

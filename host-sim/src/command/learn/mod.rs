@@ -1,15 +1,14 @@
 //! `learn`: from the probe file of a part that was cut with a correction to the correction of the next part.
 
+mod past;
 mod several;
 
-use std::path::{Path as FilePath, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use truepath_core::checksum::crc32;
 use truepath_correction::as_milled::AsMilled;
-use truepath_correction::codes::{Q001, Q002, Q003, Q004, Q005, Q007};
+use truepath_correction::codes::{Q002, Q003, Q005, Q007};
 use truepath_correction::learn::{LearnSummary, learn};
-use truepath_correction::learning::History;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::{JobFile, ProbeFlags, ROUTES, Route, Which, one_of};
@@ -18,6 +17,8 @@ use truepath_job::pass::Pass;
 use truepath_report::correction_csv;
 use truepath_report::page::render;
 use truepath_report::pages::{REPORT, learned};
+
+pub(super) use past::history_in;
 
 use super::correct::words as correction;
 use super::correction_files::{FILES, HISTORY, MILLED, write};
@@ -108,7 +109,14 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
     job.which = options.which.clone();
     let pass = match <[Pass; 1]>::try_from(Pass::every(job)?) {
         Ok([only]) => only,
-        Err(walls) => return several::run(options, walls, progress),
+        Err(walls) => {
+            return several::run(
+                walls,
+                (&options.probe, &options.from),
+                (&options.output, options.force, options.route),
+                progress,
+            );
+        }
     };
     let history = history_in(&options.from, &options.from)?;
     let level = history.facts.level().filter(|_| options.which.pass.is_none() && pass.plan.is_some());
@@ -141,40 +149,6 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
     folder.write(REPORT, &render(&page)?)?;
     folder.commit()?;
     Ok(summary)
-}
-
-/// Reads the history of a folder, and makes sure that the correction beside it, or in the folder `base` of all contours, is
-/// the one it tells of.
-pub(super) fn history_in(folder: &FilePath, base: &FilePath) -> Result<History, InputError> {
-    let place = folder.join(HISTORY);
-    if !place.exists() {
-        let found = format!("{} holds no {HISTORY}", folder.display());
-        let help = "name the folder that truepath correct or truepath learn wrote the correction of this part into; a second pass of truepath split has no next part";
-        return Err(InputError::new(Q001, found, "a folder with a correction and its history", help).in_file(folder));
-    }
-    let history = History::read(&Source::read(&place)?)?;
-    let mut held = 0;
-    for file in &history.next.files {
-        let places = [folder.join(&file.name), base.join(&file.name)];
-        let Some((place, bytes)) = places.into_iter().find_map(|p| std::fs::read(&p).ok().map(|bytes| (p, bytes)))
-        else {
-            continue;
-        };
-        held += 1;
-        let crc = format!("{:08x}", crc32(&bytes));
-        if crc != file.crc32 {
-            let found = format!("{} has the CRC-32 {crc}", place.display());
-            let expected = format!("{}, as {HISTORY} says of the correction it was cut with", file.crc32);
-            return Err(Q004.error(found, expected).in_file(&place));
-        }
-    }
-    if held == 0 {
-        let names: Vec<&str> = history.next.files.iter().map(|file| file.name.as_str()).collect();
-        let found = format!("{} does not hold the correction", folder.display());
-        let help = "name the folder as truepath correct or truepath learn left it";
-        return Err(InputError::new(Q004, found, names.join(" or "), help).in_file(folder));
-    }
-    Ok(history)
 }
 
 /// The old correction must outlive the new one: it is what the measured part was cut with.

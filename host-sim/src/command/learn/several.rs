@@ -1,12 +1,14 @@
 //! `learn` for several contours of one program: a history of each, one machine, one corrected program.
 
 use std::fmt::Write;
+use std::path::Path as FilePath;
 
 use truepath_correction::as_milled::AsMilled;
 use truepath_correction::codes::Q010;
 use truepath_correction::learn::{ContourLearned, CorrectedWall, LearnSummary, learn_every};
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
+use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::correction_csv;
@@ -16,34 +18,39 @@ use truepath_report::pages::{REPORT, learned};
 use super::super::correction_files::{
     FILES, HISTORY, MILLED, contour_folder, contour_name, write_contour, write_program,
 };
-use super::{Options, history_in};
+use super::past::history_in;
 
 /// Learns from every contour that has a history.
-pub(super) fn run(options: &Options, walls: Vec<Pass>, progress: &mut dyn FnMut(f64)) -> Result<LearnSummary, Failure> {
+pub(super) fn run(
+    walls: Vec<Pass>,
+    (probe, from): (&FilePath, &FilePath),
+    (output, force, route): (&FilePath, bool, Option<Route>),
+    progress: &mut dyn FnMut(f64),
+) -> Result<LearnSummary, Failure> {
     let (mut passes, mut histories, mut left) = (Vec::new(), Vec::new(), Vec::new());
     for pass in walls {
-        let folder = options.from.join(contour_folder(&pass));
+        let folder = from.join(contour_folder(&pass));
         if !folder.join(HISTORY).exists() {
             left.push(contour_name(&pass));
             continue;
         }
-        let history = history_in(&folder, &options.from)?;
-        let level = history.facts.level().filter(|_| options.which.pass.is_none() && pass.plan.is_some());
+        let history = history_in(&folder, from)?;
+        let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
         let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass);
         passes.push(pass.cut_with(history.cut_with()));
         histories.push(history);
     }
     if passes.is_empty() {
         // Says which folder is expected.
-        history_in(&options.from, &options.from)?;
+        history_in(from, from)?;
     }
-    let file = Source::read(&options.probe)?;
+    let file = Source::read(probe)?;
     let measured = Measurement::of_every(passes, &file)?;
     if let Some((pass, _)) = measured.iter().find(|(_, measurement)| measurement.contacts.is_empty()) {
         let found = format!("no point is on the wall of {}, which was cut with a correction", contour_name(pass));
-        return Err(Q010.error(found, "points on every corrected contour").in_file(&options.probe).into());
+        return Err(Q010.error(found, "points on every corrected contour").in_file(probe).into());
     }
-    let folder = OutputFolder::create(&options.output, options.force, FILES)?;
+    let folder = OutputFolder::create(output, force, FILES)?;
     let remarks: Vec<Vec<String>> = measured.iter().map(|(_, measurement)| measurement.remarks(&file)).collect();
     let walls: Vec<CorrectedWall> = measured
         .iter()
@@ -51,13 +58,11 @@ pub(super) fn run(options: &Options, walls: Vec<Pass>, progress: &mut dyn FnMut(
         .zip(&remarks)
         .map(|(((pass, measurement), history), remarks)| CorrectedWall { pass, history, measurement, remarks })
         .collect();
-    let route = options.route.or(measured.first().map(|(pass, _)| pass.job.route)).unwrap_or_default();
+    let route = route.or(measured.first().map(|(pass, _)| pass.job.route)).unwrap_or_default();
     let done = learn_every(&walls, &[route], progress)?;
 
-    let mut warnings: Vec<String> = left
-        .iter()
-        .map(|name| format!("{name} stays as it is: {} has no history of it", options.from.display()))
-        .collect();
+    let mut warnings: Vec<String> =
+        left.iter().map(|name| format!("{name} stays as it is: {} has no history of it", from.display())).collect();
     let (mut contours, mut pages) = (Vec::new(), Vec::new());
     for (wall, done) in walls.iter().zip(&done) {
         let (name, place) = (contour_name(wall.pass), contour_folder(wall.pass));
