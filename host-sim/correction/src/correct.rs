@@ -147,6 +147,9 @@ pub(crate) fn only(corrected: Vec<CorrectedPass>) -> Result<CorrectedPass, Failu
     corrected.into_iter().next().ok_or_else(|| Failure::Internal("a pass without its correction".to_owned()))
 }
 
+/// The image of the probed depth, and those of the others with their numbers.
+type Images = (Option<Vec<u8>>, Vec<(u32, Vec<u8>)>);
+
 /// A correction that was designed and not yet written.
 struct Designed<'a> {
     pass: &'a Pass,
@@ -216,7 +219,7 @@ impl Designed<'_> {
 /// Writes corrections for the routes: their images, and one program with all of them.
 fn write_every(mut designed: Vec<Designed<'_>>, routes: &[Route]) -> Result<Vec<CorrectedPass>, Failure> {
     let mut levels: Vec<Levels> = vec![Levels::default(); designed.len()];
-    let mut images = vec![(None, Vec::new()); designed.len()];
+    let mut images: Vec<Images> = vec![Images::default(); designed.len()];
     let mut written = None;
     for route in routes {
         match route {
@@ -260,7 +263,7 @@ impl Designed<'_> {
     fn done(
         self,
         levels: Levels,
-        (image, other_images): (Option<Vec<u8>>, Vec<(u32, Vec<u8>)>),
+        (image, other_images): Images,
         written: Option<&Rewritten>,
     ) -> CorrectedPass {
         let Self { pass, path, identified, correction, feeds, mut warnings, .. } = self;

@@ -37,7 +37,7 @@ fn a_part_probed_at_the_chosen_places_comes_out_ten_times_better() {
         let pass = Pass::new(job, Source::new("program.nc", demo(name, "program.nc"))).unwrap();
         let plan = plan(&pass, &Settings::default(), &mut |_| ()).unwrap();
         let places: Vec<f64> = plan.places.iter().map(|p| p.s_mm).collect();
-        let levels: Vec<f64> = plan.heights.iter().map(|h| h.fraction).collect();
+        let levels: Vec<f64> = plan.places[0].heights.iter().map(|h| h.fraction).collect();
         let (before, after) = corrected(name, &places, &levels);
         println!("{name}: {before:.4} -> {after:.4} mm, at {places:.1?}");
         assert!(after < before / 10.0, "{name}: {before} -> {after}");
