@@ -53,7 +53,11 @@ impl Part {
             within(self.feature, 1, LARGEST_NUMBER) && within(self.pass, 1, LARGEST_NUMBER),
             "the number of the feature or the pass is not 1 to 99,999",
         )?;
-        require(self.run > 0 && self.blocks > 0, "the part of the program names no run or no block")
+        require(self.run > 0 && self.blocks > 0, "the part of the program names no run or no block")?;
+        require(
+            self.alike.iter().all(|tip| within(*tip, um(-1_000_000), um(1_000_000))),
+            "another pass that cuts alike is more than 1 m above or below",
+        )
     }
 }
 

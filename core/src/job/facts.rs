@@ -10,7 +10,7 @@ use crate::correct::Target;
 use crate::cut::ToolMaterial;
 use crate::gcode::{ArcCentres, Dialect, PointlessLength};
 use crate::geometry::Side;
-use crate::probe::{Format, Layout};
+use crate::probe::{Format, Layout, MOST_ALIKE};
 use crate::units::{Offset, Real};
 
 /// The job.
@@ -59,6 +59,9 @@ pub struct Part {
     pub first_block: u32,
     /// How many blocks belong to it, at least 1.
     pub blocks: u32,
+    /// Tips of other passes that cut alike along the same path, above this one's (negative: below), up to 1 m; zero for none.
+    /// A point at their height is one of this pass as well, as high above their tip.
+    pub alike: [Offset; MOST_ALIKE],
 }
 
 /// The largest number of a tool, a tool offset or a setup: that of the tool tables of common controls.

@@ -58,6 +58,7 @@ pub fn on_wall<'a>(pass: &ContourPass, contour: Contour<'a>) -> Result<Contacts<
         cutter_radius: pass.setup.radius,
         wall: pass.setup.wall,
         tip_z: pass.contour.z,
+        alike: pass.job.part.map(|part| part.alike).unwrap_or_default(),
         axial_depth: pass.job.cut.axial_depth,
         z_is_tip: probe.z_reference == ZReference::Tip,
         reach: REACH,

@@ -260,12 +260,7 @@ fn write_every(mut designed: Vec<Designed<'_>>, routes: &[Route]) -> Result<Vec<
 
 impl Designed<'_> {
     /// The result, for what was written.
-    fn done(
-        self,
-        levels: Levels,
-        (image, other_images): Images,
-        written: Option<&Rewritten>,
-    ) -> CorrectedPass {
+    fn done(self, levels: Levels, (image, other_images): Images, written: Option<&Rewritten>) -> CorrectedPass {
         let Self { pass, path, identified, correction, feeds, mut warnings, .. } = self;
         warnings.extend(levels.left);
         if self.part == MeasuredPart::Uncorrected {

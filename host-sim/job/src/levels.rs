@@ -4,8 +4,12 @@
 //! roughing are never corrected.
 
 use truepath_core::cut::Path;
+use truepath_core::job::ContourPass;
+use truepath_core::probe::MOST_ALIKE;
+use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
 
+use crate::job::JobFile;
 use crate::pass::{Pass, PathBuffer};
 
 /// What became of the depths.
@@ -54,6 +58,52 @@ pub fn each(
         }
     }
     Ok(levels)
+}
+
+/// Tips of the other depths that are cut as `pass` is, above its own, the nearest first; at most as many as count.
+///
+/// # Errors
+/// As [`Pass::at_level`].
+pub fn alike(pass: &Pass) -> Result<Vec<Offset>, Failure> {
+    let own = pass.level();
+    let others = pass.plan.as_ref().map(|plan| plan.levels()).unwrap_or_default();
+    let mut tips = Vec::new();
+    for number in others.into_iter().filter(|number| *number != own) {
+        let other = pass.at_level(number)?;
+        let feeds = |pass: &Pass| pass.blocks.iter().map(|b| b.feed).collect::<Vec<_>>();
+        let above = other.core.contour.z - pass.core.contour.z;
+        if feeds(pass) == feeds(&other) && pass.core.setup == other.core.setup && above != Offset::ZERO {
+            tips.push(above);
+        }
+    }
+    tips.sort_by_key(|tip| tip.abs());
+    tips.truncate(MOST_ALIKE);
+    Ok(tips)
+}
+
+/// The compact form of a pass's job for a device that makes its own image: the device does not search, it is told which run
+/// of the program the pass is, and at which depths points count.
+///
+/// # Errors
+/// As [`alike`] and [`JobFile::compact`].
+pub fn compact(pass: &Pass) -> Result<Vec<u8>, Failure> {
+    let mut job: JobFile = pass.job.clone();
+    job.numbers = with_alike(pass)?.job;
+    job.compact()
+}
+
+/// What the core knows of a pass, with the depths that are cut alike: points on their walls are of this one as well.
+///
+/// # Errors
+/// As [`alike`].
+pub fn with_alike(pass: &Pass) -> Result<ContourPass, Failure> {
+    let mut core = pass.core.clone();
+    if let Some(part) = &mut core.job.part {
+        for (slot, tip) in part.alike.iter_mut().zip(alike(pass)?) {
+            *slot = tip;
+        }
+    }
+    Ok(core)
 }
 
 /// Why the correction of one depth does not hold at another.

@@ -3,13 +3,14 @@
 use truepath_core::checksum::crc32;
 use truepath_core::geometry::Direction;
 use truepath_core::identify::Observation;
-use truepath_core::job;
+use truepath_core::job::{self, ContourPass};
 use truepath_core::probe::{Contact, Reading, Rejected};
 use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, Source};
 
 use crate::codes::M040;
 use crate::feature::Plan;
+use crate::levels;
 use crate::pass::Pass;
 use crate::refusal::why;
 
@@ -46,11 +47,16 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    /// Reads a probe file.
+    /// Reads a probe file. Points at other depths of the same wall, cut alike, are points of this one.
     ///
     /// # Errors
     /// What is wrong with the file, and a wrong unit, frame or ball, named, when most readings are off the wall.
     pub fn read(pass: &Pass, file: &Source) -> Result<Self, Failure> {
+        Self::of(pass, &levels::with_alike(pass)?, file)
+    }
+
+    /// The same, with the points at the depths that `core` names.
+    fn of(pass: &Pass, core: &ContourPass, file: &Source) -> Result<Self, Failure> {
         let probe = pass.job.require_probe()?;
         let lines = file.bytes().iter().filter(|b| matches!(b, b'\n' | b'\r')).count() + 1;
         let most = lines.min(LARGEST_FILE);
@@ -61,7 +67,7 @@ impl Measurement {
         let set_aside = |reading: &Reading, reason| {
             rejected.push(Aside { line: reading.line, position: reading.position, reason });
         };
-        let used = job::contacts(&pass.core, contour, file.bytes(), &mut readings, &mut contacts, set_aside)
+        let used = job::contacts(core, contour, file.bytes(), &mut readings, &mut contacts, set_aside)
             .map_err(|error| pass.refused_of(file, &error))?;
         contacts.truncate(used);
         rejected.sort_by_key(|aside| aside.line);
@@ -70,7 +76,7 @@ impl Measurement {
     }
 
     /// Reads a probe file that may be of any depth of the pass's feature: the one with most readings on its wall is
-    /// given with them. A depth that the user names is kept.
+    /// given with them, and with those at the depths that are cut alike. A depth that the user names is kept.
     ///
     /// # Errors
     /// As [`Self::read`], when it cannot be used with any of them.
@@ -84,7 +90,7 @@ impl Measurement {
         let mut refused = None;
         for level in levels {
             let pass = pass.at_level(level)?;
-            match Self::read(&pass, file) {
+            match Self::of(&pass, &pass.core, file) {
                 Ok(found) if best.as_ref().is_none_or(|(_, b)| b.contacts.len() < found.contacts.len()) => {
                     best = Some((pass, found));
                 }
@@ -93,7 +99,9 @@ impl Measurement {
             }
         }
         let none = || Failure::Internal("a feature without a finishing pass".to_owned());
-        best.ok_or_else(|| refused.unwrap_or_else(none))
+        let (pass, _) = best.ok_or_else(|| refused.unwrap_or_else(none))?;
+        let measurement = Self::read(&pass, file)?;
+        Ok((pass, measurement))
     }
 
     /// The contacts as observations for the fit.

@@ -16,6 +16,7 @@ use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, Source};
 
 use crate::feature::Plan;
+use crate::levels;
 use crate::measurement::{Aside, LARGEST_FILE, Measurement};
 use crate::pass::Pass;
 
@@ -59,23 +60,24 @@ impl Measurement {
         let crc = crc32(file.bytes());
         let mut all = Vec::new();
         for (wall, own) in shares.iter().enumerate() {
-            let mut best: Option<(&Depth, Self)> = None;
-            for depth in places.iter().filter(|depth| depth.wall == wall) {
-                let mut contacts = vec![Contact::BLANK; own.len()];
-                let mut rejected = Vec::new();
-                let aside = |reading: &Reading, reason| {
-                    rejected.push(Aside { line: reading.line, position: reading.position, reason });
-                };
-                // None that can be used: then nothing is known of this wall.
-                let used = job::contacts_among(&depth.on_wall, own, &mut contacts, aside).unwrap_or(0);
-                contacts.truncate(used);
-                rejected.sort_by_key(|aside| aside.line);
-                if best.as_ref().is_none_or(|(_, b)| b.contacts.len() < used) {
-                    let file = file.name().to_owned();
-                    best = Some((depth, Self { contacts, rejected, noise: probe.noise, crc, file }));
-                }
-            }
-            all.extend(best.map(|(depth, measurement)| (depth.pass.clone(), measurement)));
+            let count = |depth: &&Depth| own.iter().filter(|r| depth.on_wall.contact(r).is_ok()).count();
+            let own_depths = || places.iter().filter(|depth| depth.wall == wall);
+            let Some(most) = own_depths().map(|depth| count(&depth)).max() else { continue };
+            let Some(depth) = own_depths().find(|depth| count(depth) == most) else { continue };
+            let pass = depth.pass;
+            let core = levels::with_alike(pass)?;
+            let on_wall = job::on_wall(&core, pass.path_contour()).map_err(|error| pass.refused_of(file, &error))?;
+            let mut contacts = vec![Contact::BLANK; own.len()];
+            let mut rejected = Vec::new();
+            let aside = |reading: &Reading, reason| {
+                rejected.push(Aside { line: reading.line, position: reading.position, reason });
+            };
+            // None that can be used: then nothing is known of this wall.
+            let used = job::contacts_among(&on_wall, own, &mut contacts, aside).unwrap_or(0);
+            contacts.truncate(used);
+            rejected.sort_by_key(|aside| aside.line);
+            let file = file.name().to_owned();
+            all.push((pass.clone(), Self { contacts, rejected, noise: probe.noise, crc, file }));
         }
         if all.iter().all(|(_, measurement)| measurement.contacts.is_empty()) {
             // Why, the first wall says.

@@ -51,11 +51,6 @@ impl<'m> Felt<'m> {
         Self { milled, tip_z_mm, layers: BTreeMap::new(), noise }
     }
 
-    /// Z at which the wall ends, mm.
-    pub fn top_mm(&self) -> f64 {
-        self.tip_z_mm + self.milled.cut.axial_depth_mm
-    }
-
     /// The share of the way at which a ball, its centre at the height `z_mm`, meets the wall first; 0 where it touches it
     /// from the beginning, `None` where it does not meet it. Radius in mm.
     pub fn meets(&mut self, z_mm: f64, from: Point, to: Point, radius_mm: f64) -> Option<f64> {

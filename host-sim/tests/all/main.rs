@@ -2,6 +2,7 @@
 
 mod bore_command;
 mod command_line;
+mod depths;
 mod features;
 mod inspection;
 mod learn_refused;

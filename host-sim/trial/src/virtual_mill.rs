@@ -8,6 +8,7 @@ use truepath_core::units::Real;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::units::{float, mm};
 use truepath_job::feature::Survey;
+use truepath_job::levels;
 use truepath_job::pass::Pass;
 use truepath_plant as plant;
 use truepath_plant::{Milled, PlantError};
@@ -185,40 +186,71 @@ pub fn touch<'m>(walls: &[(&Pass, &'m Milled)], program: &Source) -> Result<Stri
     let centre_above = if probe.z_reference == ZReference::Tip { ball } else { 0.0 };
     let felt = |(pass, milled): &(&Pass, &'m Milled)| plant::Felt::new(milled, pass.core.contour.z.nm() as f64 / 1e6);
     let felt = walls.iter().map(felt).collect();
-    let mut beside = Beside { felt, centre_above };
+    let mut levels = Vec::new();
+    for (pass, _) in walls {
+        let tip = pass.core.contour.z.nm() as f64 / 1e6;
+        let tips = std::iter::once(0.0).chain(levels::alike(pass)?.into_iter().map(mm));
+        levels
+            .push(Levels { tips: tips.map(|above| tip + above).collect(), depth: float(pass.core.setup.axial_depth) });
+    }
+    let mut beside = Beside { felt, levels, centre_above };
     let text = String::from_utf8_lossy(program.bytes());
     let printed = Control::new(&mut beside, ball).run(&text);
     printed.map(|p| p.file()).map_err(|why| L004.error(why, "").in_file(program.name().as_ref()).into())
 }
 
+/// Depths at which a wall was cut alike: each has the wall of the one that was milled, as high above its own tip.
+struct Levels {
+    /// Z of the tips; the first is that of the depth that was milled.
+    tips: Vec<f64>,
+    depth: f64,
+}
+
+impl Levels {
+    /// Z of the same place on the depth that was milled.
+    fn milled(&self, z: f64) -> f64 {
+        let of = self.tips.iter().find(|tip| (0.0..=self.depth).contains(&(z - *tip)));
+        let milled = self.tips.first().copied().unwrap_or_default();
+        of.map_or(z, |tip| z - tip + milled)
+    }
+    fn top(&self) -> f64 {
+        self.tips.iter().copied().fold(f64::NEG_INFINITY, f64::max) + self.depth
+    }
+}
+
 /// Milled walls as the control of a probing program meets them.
 struct Beside<'m> {
     felt: Vec<plant::Felt<'m>>,
+    /// The depths of each.
+    levels: Vec<Levels>,
     /// The ball's centre over what the program calls Z, mm.
     centre_above: f64,
 }
 
 impl Wall for Beside<'_> {
     fn top(&self) -> f64 {
-        self.felt.iter().map(plant::Felt::top_mm).fold(f64::NEG_INFINITY, f64::max) - self.centre_above
+        self.levels.iter().map(Levels::top).fold(f64::NEG_INFINITY, f64::max) - self.centre_above
     }
     fn meets(&mut self, z: f64, from: Xy, to: Xy, radius: f64) -> Option<f64> {
         let z = z + self.centre_above;
-        if let [only] = &mut self.felt[..] {
-            return only.meets(z, from, to, radius);
+        if let ([only], [levels]) = (&mut self.felt[..], &self.levels[..]) {
+            return only.meets(levels.milled(z), from, to, radius);
         }
         // On which side of a wall a place lies is known beside it only: of several the nearest tells.
-        let away: Vec<f64> = self.felt.iter_mut().map(|felt| felt.distance_mm(z, from)).collect();
+        let walls = self.felt.iter_mut().zip(&self.levels);
+        let away: Vec<f64> = walls.map(|(felt, levels)| felt.distance_mm(levels.milled(z), from)).collect();
         let nearest = away.iter().copied().fold(f64::INFINITY, f64::min);
-        let met = self.felt.iter_mut().zip(away).filter(|(felt, _)| z < felt.top_mm()).filter_map(|(felt, away)| {
-            let share = felt.meets(z, from, to, radius)?;
+        let walls = self.felt.iter_mut().zip(&self.levels).zip(away);
+        let met = walls.filter(|((_, levels), _)| z < levels.top()).filter_map(|((felt, levels), away)| {
+            let share = felt.meets(levels.milled(z), from, to, radius)?;
             (share > 0.0 || away <= radius.max(nearest)).then_some(share)
         });
         met.min_by(f64::total_cmp)
     }
     fn distance(&mut self, z: f64, point: Xy) -> f64 {
         let z = z + self.centre_above;
-        self.felt.iter_mut().map(|felt| felt.distance_mm(z, point)).fold(f64::INFINITY, f64::min)
+        let walls = self.felt.iter_mut().zip(&self.levels);
+        walls.map(|(felt, levels)| felt.distance_mm(levels.milled(z), point)).fold(f64::INFINITY, f64::min)
     }
     fn noise(&mut self) -> f64 {
         self.felt.first_mut().map_or(0.0, plant::Felt::noise_mm)

@@ -9,6 +9,9 @@ use super::reading::{Outcome, Reading};
 use truepath_units::geometry::{Contour, Direction, Nearest, Point, Side};
 use truepath_units::{Offset, Position, Real};
 
+/// Other passes that cut alike, whose points count, at most.
+pub const MOST_ALIKE: usize = 8;
+
 /// How the readings were taken and what they touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
@@ -20,6 +23,8 @@ pub struct Setting {
     pub wall: Side,
     /// Z of the cutter's tip during the cut.
     pub tip_z: Position,
+    /// Tips of other passes that cut alike along the same path, above this one's; zero for none.
+    pub alike: [Offset; MOST_ALIKE],
     /// Engaged depth.
     pub axial_depth: Offset,
     /// Whether Z of a reading is the lowest point of the ball instead of its centre.
@@ -127,9 +132,10 @@ impl<'a> Contacts<'a> {
         };
         let lift = if setting.z_is_tip { setting.ball_radius } else { Offset::ZERO };
         let above_tip = z - setting.tip_z + lift;
-        if above_tip < Offset::ZERO || above_tip > setting.axial_depth {
-            return Err(Rejected::OffHeight { height: above_tip });
-        }
+        let others = setting.alike.iter().filter(|tip| **tip != Offset::ZERO).map(|tip| above_tip - *tip);
+        let mut heights = core::iter::once(above_tip).chain(others);
+        let engaged = |height: &Offset| *height >= Offset::ZERO && *height <= setting.axial_depth;
+        let above_tip = heights.find(engaged).ok_or(Rejected::OffHeight { height: above_tip })?;
         let place = self.contour.at(nearest.s, nearest.block).ok_or(Rejected::OffTheWall { distance: error })?;
         let normal = setting.wall.normal(place.heading);
         if let Some(cosine) = reading.normal.map(|free| -free.dot(normal)).filter(|c| *c < NORMAL_LIMIT) {

@@ -45,7 +45,7 @@ mod row;
 mod suspect;
 mod words;
 
-pub use contact::{Contact, Contacts, Rejected, Setting};
+pub use contact::{Contact, Contacts, MOST_ALIKE, Rejected, Setting};
 pub use error::{ProbeError, ProbeErrorKind};
 pub use format::{Columns, CutWith, DecimalSign, Format, Frame, Given, Layout, LengthUnit, PointKind, Separator};
 pub use read::read;

@@ -3,10 +3,14 @@
 //! The ball touches with its equator, so its centre must stand inside the engaged depth, and its lowest point must
 //! stay clear of the floor, which may lie as high as the cutter's tip. The heights are spread evenly over what remains:
 //! the outermost tell bending and the helix, those between tell a bad touch.
+//!
+//! Passes of a millimetre or two leave no room for a ball, and make a wall all the same: then the heights are spread over the
+//! wall of several passes that are cut alike, each at another height above the tip that cut it there.
 
 use truepath_core::job::{Probe, ZReference};
-use truepath_ground::diagnostics::InputError;
+use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{float, mm};
+use truepath_job::levels;
 use truepath_job::pass::Pass;
 
 use super::settings::Settings;
@@ -32,29 +36,76 @@ const BELOW_TOP: (f64, f64) = (1.0, 0.1);
 /// Between two heights, at least, mm.
 const APART: f64 = 0.5;
 
-/// The heights of a pass, from the highest down.
+/// What heights over several passes are for.
+const OF_SEVERAL: [&str; 2] = [
+    "highest: with the others, each at another height above the tip of its pass, it tells bending and helix",
+    "on a pass below that is cut alike, at another height above its tip",
+];
+/// Share of the depth next to tip and upper end of a pass that is not touched: there the next pass begins.
+const EDGE: f64 = 0.2;
+
+/// Tips of the passes that make one wall with this one, above its own, mm: its own, and those that are cut alike.
+fn tips(pass: &Pass) -> Result<Vec<f64>, Failure> {
+    let others = levels::alike(pass)?;
+    Ok(std::iter::once(0.0).chain(others.into_iter().map(mm)).collect())
+}
+
+/// Heights on the wall of several passes of a depth, as the tip of their pass and the fraction of the depth above it, from
+/// the highest down; none where there is no room either. `lowest` above the deepest floor, `below_top` under the upper end.
+fn over_several(tips: &[f64], depth: f64, (lowest, below_top): (f64, f64), count: u32) -> Vec<(f64, f64)> {
+    let floor = tips.iter().copied().fold(f64::INFINITY, f64::min) + lowest;
+    let top = tips.iter().copied().fold(f64::NEG_INFINITY, f64::max) + depth - below_top;
+    let share = |k: u32| if count < 2 { 0.5 } else { f64::from(k) / f64::from(count - 1) };
+    let mut found: Vec<(f64, f64)> = Vec::new();
+    for k in 0..count {
+        let fraction = 1.0 - EDGE - (1.0 - 2.0 * EDGE) * share(k);
+        let wanted = top + (floor - top) * share(k);
+        let z = |tip: &f64| tip + fraction * depth;
+        let room = |tip: &&f64| {
+            let below_the_last = found.last().is_none_or(|(last, f)| z(tip) <= last + f * depth - APART + 1e-9);
+            z(tip) >= floor - 1e-9 && z(tip) <= top + 1e-9 && below_the_last
+        };
+        let nearest = tips.iter().filter(room).min_by(|a, b| (z(a) - wanted).abs().total_cmp(&(z(b) - wanted).abs()));
+        found.extend(nearest.map(|tip| (*tip, fraction)));
+    }
+    found
+}
+
+/// The heights of a pass, from the highest down; on other passes of the same wall as well where it has no room for the ball.
 ///
 /// # Errors
-/// `V002` when the ball has no room between floor and upper end.
-pub(super) fn heights(pass: &Pass, probe: &Probe, settings: &Settings) -> Result<Vec<Height>, InputError> {
+/// `V002` when the ball has no room between floor and upper end, and whatever is wrong with another pass.
+pub(super) fn heights(pass: &Pass, probe: &Probe, settings: &Settings) -> Result<Vec<Height>, Failure> {
     let depth = float(pass.core.setup.axial_depth);
     let radius = mm(probe.ball_diameter) / 2.0;
     let tip_z = pass.core.contour.z.nm() as f64 / 1e6;
     let below_top = BELOW_TOP.0.max(BELOW_TOP.1 * depth);
     let (lowest, highest) = (radius + settings.floor_clearance, depth - below_top);
-    if lowest > highest {
-        return Err(V002.error(
-            format!("a ball of {} mm has no room in an engaged depth of {depth} mm", 2.0 * radius),
-            format!(
-                "its radius + {} mm above the floor + {below_top} mm below the upper end within the depth",
-                settings.floor_clearance
-            ),
-        ));
-    }
     let lift = match probe.z_reference {
         ZReference::Centre => 0.0,
         ZReference::Tip => radius,
     };
+    if lowest > highest {
+        let over_several = over_several(&tips(pass)?, depth, (lowest, below_top), settings.heights);
+        if !over_several.is_empty() {
+            let height = |(k, (tip, fraction)): (usize, &(f64, f64))| Height {
+                fraction: *fraction,
+                above_tip_mm: fraction * depth,
+                z_mm: tip_z + tip + fraction * depth - lift,
+                why: if k == 0 { OF_SEVERAL[0] } else { OF_SEVERAL[1] },
+            };
+            return Ok(over_several.iter().enumerate().map(height).collect());
+        }
+        return Err(V002
+            .error(
+                format!("a ball of {} mm has no room in an engaged depth of {depth} mm", 2.0 * radius),
+                format!(
+                    "its radius + {} mm above the floor + {below_top} mm below the upper end within the depth",
+                    settings.floor_clearance
+                ),
+            )
+            .into());
+    }
     // Heights closer together than this tell the same.
     let count = settings.heights.min(1 + ((highest - lowest) / APART) as u32);
     let at = |k: u32| {

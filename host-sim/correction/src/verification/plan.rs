@@ -325,7 +325,9 @@ fn plan_warnings(plan: &Plan, law: WallLaw) -> Vec<String> {
         heights.first().map_or(0.0, |h| h.above_tip_mm) - heights.last().map_or(0.0, |h| h.above_tip_mm)
     };
     let spread = plan.places.iter().map(spread).fold(0.0, f64::max);
-    if law == WallLaw::Helical && plan.most_heights() > 1 && spread < 1.0 {
+    let depth = plan.places.iter().flat_map(|p| &p.heights).map(|h| h.above_tip_mm / h.fraction).fold(0.0, f64::max);
+    // Over less than that nothing bends that would matter.
+    if law == WallLaw::Helical && plan.most_heights() > 1 && spread < 1.0 && depth > 2.5 {
         out.push(format!(
             "the heights lie within {spread:.2} mm: bending is hardly seen; a smaller ball reaches lower"
         ));

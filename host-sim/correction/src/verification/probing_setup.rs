@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use truepath_core::cut::Path;
 use truepath_core::job::Probe;
-use truepath_core::units::{Offset, Position};
+use truepath_core::units::Position;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
@@ -64,10 +64,11 @@ impl ProbingSetup {
         (unsteady, others): (bool, &[&Pass]),
     ) -> Result<(Vec<Site>, BTreeMap<KeptOff, usize>), InputError> {
         let (mut sites, mut kept_off) = candidates(pass, path, estimate, self.ball, (mm(self.probe.noise), unsteady));
-        let lowest =
-            pass.core.contour.z + Offset::from_nm((self.heights.first().map_or(0.0, |h| h.above_tip_mm) * 1e6) as i64);
+        let highest = self.heights.first().map_or(f64::NEG_INFINITY, |h| h.z_mm);
         sites.retain(|site| {
-            let gone = others.iter().any(|other| deepest(other) < lowest && cut_away_by(other, site.wall));
+            let gone = others
+                .iter()
+                .any(|other| (deepest(other).nm() as f64) < highest * 1e6 && cut_away_by(other, site.wall));
             if gone {
                 kept_off.push(KeptOff::NoWall);
             }

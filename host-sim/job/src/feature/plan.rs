@@ -222,6 +222,7 @@ fn passes(feature: u32, of: u32, runs: &[Found], survey: &Survey) -> Vec<Feature
             run: found.run.number,
             first_block: u32::try_from(found.skipped).ok()?,
             blocks: u32::try_from(found.run.blocks).ok()?,
+            alike: Default::default(),
         };
         Some(FeaturePass { number, spring, z: found.run.z, lines: found.run.lines, part, leads: survey.leads(found) })
     };

@@ -14,6 +14,8 @@ use truepath_core::link::{Ask, Counters, DeviceStatus, Slot};
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::write_file;
 use truepath_job::job::JobFile;
+use truepath_job::levels;
+use truepath_job::pass::Pass;
 
 use super::hil::Counts;
 use super::image;
@@ -241,11 +243,10 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
         }
         Task::Restart { watchdog } => done(&mut client, Ask::Restart { watchdog: *watchdog }, terminal, "restarted"),
         Task::Compute { job, probe, activate: after, minutes } => {
-            let job = JobFile::read(job)?;
-            let program = job.read_program()?;
+            let pass = Pass::read(JobFile::read(job)?)?;
             let probe = Source::read(probe)?;
-            let compact = job.compact()?;
-            let ingredients = Ingredients { program: program.bytes(), job: &compact, probe: probe.bytes() };
+            let compact = levels::compact(&pass)?;
+            let ingredients = Ingredients { program: pass.program.bytes(), job: &compact, probe: probe.bytes() };
             let mut bar = terminal.progress("computing on the device", truepath_core::link::Stage::Ended as u64 * 1000);
             let patience = Duration::from_secs(60 * minutes);
             let (made, time) = compute(&mut client, &ingredients, patience, |now| {

@@ -11,6 +11,7 @@ use truepath_core::rewrite::SettingsError;
 use truepath_correction::correct::correct_pass;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_job::job::{JobFile, Route};
+use truepath_job::levels;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
@@ -89,9 +90,9 @@ pub fn on_board(
 ) -> Result<OnBoard, Failure> {
     let job = JobFile::read(job)?;
     let program = job.read_program()?;
-    let compact = job.compact()?;
     let probe = Source::read(probe)?;
     let pass = Pass::new(job, program.clone())?;
+    let compact = levels::compact(&pass)?;
     let measurement = Measurement::read(&pass, &probe)?;
     let here = correct_pass(&pass, &measurement, &[], &[Route::Coprocessor], &mut |_| ())?;
     let image = here.image.unwrap_or_default();

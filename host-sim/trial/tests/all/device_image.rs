@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use truepath_core::image::{DEVICE_NODES, Image, image_bytes};
-use truepath_core::job::{self, Buffers, COMPACT_BYTES, JobError};
+use truepath_core::job::{self, Buffers, JobError};
 use truepath_core::units::{Offset, Real};
 use truepath_correction::correct::correct_pass;
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{JobFile, Route};
+use truepath_job::levels;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
@@ -61,8 +62,7 @@ fn on_the_host(part: &Part) -> Result<Vec<u8>, Failure> {
 
 /// As the device does it: from the bytes of job, program and probe file, in memory of a fixed size.
 fn on_the_device(part: &Part) -> Result<Vec<u8>, JobError> {
-    let mut compact = [0; COMPACT_BYTES];
-    let job = job::Job::from_compact(part.pass.job.numbers.to_compact(&mut compact)?)?;
+    let job = job::Job::from_compact(&shown(levels::compact(&part.pass)))?;
     let mut memory: Box<Buffers<64, 4_096, 3_328, 3_072, 64>> = Box::default();
     let mut out = vec![0; image_bytes(DEVICE_NODES)];
     let (program, probe) = (part.pass.program.bytes(), part.probe.bytes());
@@ -110,6 +110,41 @@ fn host_and_device_refuse_the_same_parts_with_the_same_code() {
         assert_eq!(error.code(), code);
         assert_eq!(on_the_device(&part).unwrap_err().code(), code);
     }
+}
+
+#[test]
+fn points_at_other_depths_that_are_cut_alike_are_the_same_to_host_and_device() {
+    // Three depths of 1.5 mm; the last has another feed.
+    let mut program = "G21 G90 G17\nT1 M6\nS4000 M3\n".to_owned();
+    for (z, feed) in [(-15, 600), (-30, 600), (-45, 500)] {
+        let z = f64::from(z) / 10.0;
+        program += &format!("G0 X-20 Y-5 Z10\nG1 Z{z} F300\nG1 X45 F{feed}\nG3 X55 Y5 J10\nG1 Y60\nG0 Z10\n");
+    }
+    let job = "version = 1\nprogram = \"p.nc\"\nwall = \"right\"\n[stock]\nallowance_mm = 0.5\n[tool]\n\
+        diameter_mm = 8.0\nteeth = 4\nhelix_deg = 35.0\n[cut]\naxial_depth_mm = 1.5\n[force]\nktc_n_per_mm2 = 900\n\
+        krc_n_per_mm2 = 250\nkte_n_per_mm = 10\nkre_n_per_mm = 13\n[machine]\nstiffness_x_n_per_mm = 900\n\
+        stiffness_y_n_per_mm = 900\n[probe]\nball_diameter_mm = 2.0\nformat = \"linuxcnc\"\nz_reference = \"centre\"\n";
+    let job = JobFile::parse(Source::new("job.toml", job.as_bytes().to_vec()), Path::new("")).unwrap();
+    let pass = shown(Pass::new(job, Source::new("p.nc", (program + "M30\n").into_bytes())));
+    let machine: Machine = toml::from_str(str::from_utf8(source("pocket", "plant.toml").bytes()).unwrap()).unwrap();
+    let milled = shown(virtual_mill::mill(&pass, &machine, None));
+    let text = shown(virtual_mill::probe(&pass, &milled, &[20.0, 40.0, 68.0, 90.0], &[0.2, 0.8], 2.0));
+    // Every second reading was taken 1.5 mm deeper, every fourth on the last depth.
+    let deeper = |(at, line): (usize, &str)| {
+        let mut fields: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+        let down = [0.0, 1.5, 0.0, 3.0][at % 4];
+        fields[2] = format!("{:.6}", fields[2].parse::<f64>().unwrap() - down);
+        fields.join(" ") + "\n"
+    };
+    let probe = Source::new("probe.txt", text.lines().enumerate().map(deeper).collect::<String>().into_bytes());
+    let measurement = shown(Measurement::read(&pass, &probe));
+    assert_eq!(
+        (measurement.contacts.len(), measurement.rejected.len()),
+        (6, 2),
+        "the last depth is cut at another feed"
+    );
+    let part = Part { pass, probe };
+    assert!(shown(on_the_host(&part)) == on_the_device(&part).unwrap(), "images differ");
 }
 
 /// The program of the corner with another tool change.
