@@ -170,7 +170,16 @@ fn steps(
         plan["points"].as_array().into_iter().flatten().filter_map(|p| p["line"].as_u64()).collect();
     let within =
         |range: &&[u32; 2]| touched.iter().filter(|l| (range[0].into()..=range[1].into()).contains(*l)).count();
-    let milled = |wall: &Vec<[u32; 2]>| wall.iter().rev().max_by_key(within).copied().unwrap_or_default();
+    // Where several depths are touched, all of them are: they were cut alike.
+    let whole = |wall: &Vec<[u32; 2]>| Some([wall.first()?[0], wall.last()?[1]]);
+    let shallow = plan["points"].as_array().is_some_and(|points| {
+        let below = |p: &Value| p["why_height"].as_str().is_some_and(|why| why.contains("pass below"));
+        points.iter().any(below)
+    });
+    let milled = |wall: &Vec<[u32; 2]>| {
+        let touched = wall.iter().rev().max_by_key(within).copied();
+        if shallow { whole(wall) } else { touched }.unwrap_or_default()
+    };
     let walls: Vec<[u32; 2]> = shop.walls.iter().map(milled).collect();
     let plant = [folder.join("plant.toml"), root().join(PLANT)];
     let plant = plant.into_iter().find(|p| p.exists()).unwrap_or_default().display().to_string();
