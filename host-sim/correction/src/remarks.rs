@@ -32,3 +32,33 @@ impl<'a> Remarks<'a> {
         Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc, part }
     }
 }
+
+/// What is said of several contours, each with its name: what is said of the program, or of several of them in the same words,
+/// is said once and without a name.
+pub fn said_of_every<'a>(contours: impl IntoIterator<Item = (&'a str, &'a [String])>) -> Vec<String> {
+    let contours: Vec<(&str, &[String])> = contours.into_iter().collect();
+    let mut said: Vec<String> = Vec::new();
+    for (at, (name, own)) in contours.iter().enumerate() {
+        for text in *own {
+            let others = contours.iter().enumerate().filter(|(other, _)| *other != at);
+            let is_common = others.into_iter().any(|(_, (_, theirs))| theirs.contains(text));
+            let text = if is_common { text.clone() } else { format!("{name}: {text}") };
+            if !said.contains(&text) {
+                said.push(text);
+            }
+        }
+    }
+    said
+}
+
+#[cfg(test)]
+mod tests {
+    use super::said_of_every;
+
+    #[test]
+    fn what_several_contours_say_is_said_once() {
+        let [a, b] = [["no %", "a wild point"], ["no %", "a sharp corner"]].map(|said| said.map(str::to_owned));
+        let said = said_of_every([("contour-1", &a[..]), ("contour-2", &b[..])]);
+        assert_eq!(said, ["no %", "contour-1: a wild point", "contour-2: a sharp corner"]);
+    }
+}

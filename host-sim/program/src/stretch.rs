@@ -15,6 +15,10 @@ use super::survey::{Kind, Move};
 use super::writer::Writer;
 use crate::codes::{P006, P008};
 
+/// What was a line becomes lines, unless the correction bends it more than an arc of this radius would: arcs of a metre where
+/// nothing bends make a reader doubt the program.
+const LARGEST_IN_LINES: Offset = Offset::from_um(100_000);
+
 impl Writer<'_> {
     /// Writes consecutive lines of the contour, from the move `first`; `edits` are in reverse order, with their
     /// tolerances, and lose those that are written. Gives the index of the first move behind the stretch.
@@ -98,12 +102,15 @@ impl Writer<'_> {
         }
         let step_nm = pen.grid().step_nm();
         let within = (tolerance - step_nm).max(0.5 * tolerance);
+        let straight = curves.iter().all(|curve| curve.signed_radius().is_none());
+        let max_radius =
+            if straight { self.options.max_arc_radius.min(LARGEST_IN_LINES) } else { self.options.max_arc_radius };
         let block = self.original(step.line);
         let own_feed = block.word(b'F').is_some();
         let mut text: Vec<Vec<u8>> = Vec::new();
         for (k, &(from, to, percent)) in spans.iter().enumerate() {
             let samples = &edit.samples[from..=to];
-            let (pieces, points) = pieces(pen, samples, &curves, within, self.options.max_arc_radius);
+            let (pieces, points) = pieces(pen, samples, &curves, within, max_radius);
             for (index, (piece, target)) in pieces.iter().zip(&points).enumerate() {
                 let motion = match piece.shape {
                     Shape::Line => Motion::Feed,

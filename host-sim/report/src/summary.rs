@@ -1,5 +1,6 @@
 //! `summary.json` of `simulate`.
 
+use truepath_correction::remarks::said_of_every;
 use truepath_ground::units::mm;
 use truepath_job::feature::FeatureSummary;
 use truepath_job::pass::{Pass, milling_name};
@@ -60,11 +61,8 @@ impl SimulateSummary {
         let most = |of: fn(&Self) -> f64| contours.iter().map(of).fold(0.0, f64::max);
         let length_mm: f64 = contours.iter().map(|one| one.length_mm).sum();
         let squares: f64 = contours.iter().map(|one| one.rms_error_mm.powi(2) * one.length_mm).sum();
-        let mut warnings: Vec<String> = Vec::new();
-        for one in &contours {
-            let name = one.contour.as_deref().unwrap_or_default();
-            warnings.extend(one.warnings.iter().map(|said| format!("{name}: {said}")));
-        }
+        let said = contours.iter().map(|one| (one.contour.as_deref().unwrap_or_default(), &one.warnings[..]));
+        let warnings = said_of_every(said);
         Some(Self {
             length_mm,
             max_error_mm: most(|one| one.max_error_mm),

@@ -8,6 +8,7 @@ use truepath_core::units::Offset;
 use truepath_correction::inspection::{
     Extent, Judgement, NamedWall, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge, judge_every,
 };
+use truepath_correction::remarks::said_of_every;
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
@@ -257,7 +258,7 @@ fn together(
         inspected.iter().flat_map(|wall| wall.measurement.contacts.iter().map(|c| c.error)).collect();
     let mut aside = inspected.iter().fold(SetAside::default(), |so_far, wall| so_far.and(wall.aside));
     let mut warnings = Vec::new();
-    let mut walls = Vec::new();
+    let (mut walls, mut all_said) = (Vec::new(), Vec::new());
     for (pass, measurement) in measured {
         let name = contour_name(pass);
         let own = inspected.iter().find(|wall| std::ptr::eq(wall.pass, pass));
@@ -267,14 +268,10 @@ fn together(
             warnings.push(format!("{name} was not touched: nothing is said of it"));
         }
         let said = own.map_or_else(|| measurement.remarks(file), |wall| wall.summary.warnings.clone());
-        for said in said {
-            let text = if said.starts_with(pass.program.name()) { said } else { format!("{name}: {said}") };
-            if !warnings.contains(&text) {
-                warnings.push(text);
-            }
-        }
+        all_said.push((name.clone(), said));
         walls.push((name, own.and_then(|wall| wall.summary.coverage.as_ref())));
     }
+    warnings.extend(said_of_every(all_said.iter().map(|(name, said)| (name.as_str(), &said[..]))));
     let walls: Vec<NamedWall<'_>> = walls.iter().map(|(name, coverage)| (name.as_str(), *coverage)).collect();
     let judgement = judge_every(rule, &deviations, aside, &walls);
     let contacts = inspected.iter().flat_map(|wall| wall.contacts.clone()).collect();

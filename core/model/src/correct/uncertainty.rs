@@ -6,7 +6,7 @@ use super::profile::Profile;
 use super::reader::WallReader;
 use super::scratch::Deviation;
 use crate::cut::{ForceTable, Loop};
-use crate::identify::{Fit, Prior};
+use crate::identify::{Fit, Parameter, Prior};
 use truepath_units::{Offset, Real, hypot_nm};
 
 /// Standard deviations of the walls that a correction leaves, beside each sample, from the covariance of the fit: of the
@@ -53,16 +53,17 @@ fn spread(
     let path = machine.path;
     let mut table = ForceTable::BLANK;
     table.tabulate(machine.table.size_exponent());
-    for column in crate::identify::square_root(&fit.covariance) {
+    for (parameter, column) in Parameter::ALL.iter().zip(crate::identify::square_root(&fit.covariance)) {
         if column.iter().all(|v| v.abs() < Real::ratio(1, 1000)) {
             continue;
         }
-        // Both ways along a column are as likely. One is taken that a part turned or mirrored takes as well, where difference
-        // and cross term of the compliance have the other sign: the one away from what was believed.
-        let away = column.iter().zip(&fit.theta).fold(Real::ZERO, |sum, (c, t)| sum + *c * *t);
+        // Both ways along a column are as likely. Difference and cross term of the compliance have the other sign on a part that
+        // is turned or mirrored: theirs is the way from what was believed to what was found, which turns with the part.
+        let turns = matches!(parameter, Parameter::ComplianceDifference | Parameter::ComplianceCross);
+        let further = column.iter().zip(&fit.theta).fold(Real::ZERO, |sum, (c, t)| sum + *c * *t);
         let mut moved = fit.theta;
         for (t, c) in moved.iter_mut().zip(&column) {
-            *t += if away < Real::ZERO { -*c } else { *c };
+            *t += if turns && further < Real::ZERO { -*c } else { *c };
         }
         let parameters = prior.at(&moved);
         // The last columns move nothing but the datum of the part that was probed: the wall stays where it is.

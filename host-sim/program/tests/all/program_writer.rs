@@ -259,7 +259,7 @@ fn line_ends_spelling_and_code_pages_are_kept() {
 fn a_move_that_relied_on_the_code_of_the_last_line_gets_its_own() {
     let program = "G21 G90 M3 S1500\nG0 X34 Y80\nG1 Z-15 F400\nX34 Y35\nG3 X39 Y30 I5 J0\nG1 X90 Y30\nZ10\nX0 Y0\nM2\n";
     let round = |s: f64, left: [f64; 2]| {
-        let size = 0.1 + 0.0008 * (s - 50.0).powi(2);
+        let size = 0.1 + 0.3 * ((s - 50.0) * std::f64::consts::TAU / 20.0).cos();
         [left[0] * size, left[1] * size]
     };
     let contour = "G21 G90 M3 S1500\nG0 X34 Y80\nG1 Z-15 F400\nX34 Y35\nG3 X39 Y30 I5 J0\nG1 X90 Y30\nG0 Z10\nM2\n";

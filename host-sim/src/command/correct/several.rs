@@ -5,6 +5,7 @@ use std::path::Path as FilePath;
 
 use truepath_correction::correct::{MeasuredWall, correct_every};
 use truepath_correction::learning::History;
+use truepath_correction::remarks::said_of_every;
 use truepath_correction::summary::{ContourSummary, CorrectSummary};
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
@@ -64,14 +65,6 @@ pub(super) fn run(
     }
     for ((pass, measurement), done) in touched.iter().copied().zip(&corrected) {
         let (name, place, lines) = (contour_name(pass), contour_folder(pass), pass.core.contour.lines);
-        for said in &done.summary.warnings {
-            // What is said of the program is said once.
-            let of_program = said.starts_with(pass.program.name());
-            let text = if of_program { said.clone() } else { format!("{name}: {said}") };
-            if !warnings.contains(&text) {
-                warnings.push(text);
-            }
-        }
         write_contour(&folder, &place, measurement, done)?;
         folder.write(&format!("{place}summary.json"), &json(&done.summary)?)?;
         folder.write(&format!("{place}{HISTORY}"), &History::first(pass, measurement, done)?.text()?)?;
@@ -80,6 +73,8 @@ pub(super) fn run(
         contours.push(ContourSummary { contour: name, corrected: true, lines: [lines.first, lines.last], summary });
     }
     contours.sort_by_key(|contour| contour.lines);
+    let said = contours.iter().filter_map(|one| Some((one.contour.as_str(), &one.summary.as_ref()?.warnings[..])));
+    warnings.extend(said_of_every(said));
     let summary = CorrectSummary::of_every(contours, warnings);
     let summary = summary.ok_or_else(|| Failure::Internal("no contour was corrected".to_owned()))?;
     if let (Some((pass, _)), Some(done)) = (touched.first(), corrected.first()) {

@@ -6,6 +6,7 @@ use std::path::Path as FilePath;
 use truepath_correction::as_milled::AsMilled;
 use truepath_correction::codes::Q010;
 use truepath_correction::learn::{ContourLearned, CorrectedWall, LearnSummary, learn_every};
+use truepath_correction::remarks::said_of_every;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::Route;
@@ -73,13 +74,6 @@ pub(super) fn run(
             whole_contour_error_mm: milled.whole_contour(),
             contours: Vec::new(),
         };
-        for said in &summary.correct.warnings {
-            let of_program = said.starts_with(wall.pass.program.name());
-            let text = if of_program { said.clone() } else { format!("{name}: {said}") };
-            if !warnings.contains(&text) {
-                warnings.push(text);
-            }
-        }
         pages.push((name.clone(), learned(wall.pass, wall.measurement, &done.corrected, &milled, &summary)?));
         write_contour(&folder, &place, wall.measurement, &done.corrected)?;
         folder.write(&format!("{place}summary.json"), &json(&summary)?)?;
@@ -90,6 +84,8 @@ pub(super) fn run(
     if let (Some(wall), Some(done)) = (walls.first(), done.first()) {
         write_program(&folder, wall.pass, &done.corrected)?;
     }
+    let said = contours.iter().map(|one: &ContourLearned| (one.contour.as_str(), &one.summary.correct.warnings[..]));
+    warnings.extend(said_of_every(said));
     let summary = LearnSummary::of_every(contours, warnings);
     let summary = summary.ok_or_else(|| Failure::Internal("no contour was learned from".to_owned()))?;
     folder.write("probe-raw.txt", file.bytes())?;
