@@ -72,6 +72,7 @@ function layersOf(report: Report, model: Model | null): Layer[] {
 }
 
 export function contourView(report: Report, among?: Among): ContourView {
+  const brief = among?.paper ?? false;
   const model = report.contour && drawn(report) ? new Model(report, report.contour) : null;
   const passes = model?.passes ?? [];
   const compared = model?.compared ?? [];
@@ -96,7 +97,7 @@ export function contourView(report: Report, among?: Among): ContourView {
   const player = model && passes.length > 0 ? new Player(model, store) : null;
   const readout = player && model ? new Readout(model) : null;
   const tracesBox = el("section", { class: "traces", tabindex: "0", "aria-label": "Traces over arc length", "aria-describedby": "keys" });
-  const traces = model && player && !among?.paper ? new Traces(tracesBox, model, {
+  const traces = model && player && !brief ? new Traces(tracesBox, model, {
     range: (range) => {
       const [first, last] = [model.s.values[0], model.s.values[model.count - 1]];
       const part = range && (range[0] > first + 1e-6 || range[1] < last - 1e-6) ? range : null;
@@ -124,10 +125,9 @@ export function contourView(report: Report, among?: Among): ContourView {
     legend(store, layersOf(report, model)), player && model ? transport(model, store, player, (index) => stage.reveal(index)) : null);
   const chart = Chart.of(report);
   const rests = statements(report);
-  const facts = job(report);
+  const facts = brief ? null : job(report);
   const beside = traces ? tracesBox : rests || chart ? el("div", { class: "beside" }, rests, chart?.element, facts) : null;
   const work = el("div", { class: beside ? "work" : "work alone" }, picture, beside);
-  const brief = among?.paper ?? false;
   const wide = [report.parameters?.length && !brief ? parameters(report.parameters) : null,
     report.points?.length && !(brief && report.kind !== "inspect") ? points(report, (index) => {
       if (passes.length > 1 && store.state.shown !== "both") store.set({ shown: stage.touched });

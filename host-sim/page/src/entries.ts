@@ -14,8 +14,6 @@ export interface Entry {
   name: string;
   report: Report;
   outcome: Outcome;
-  /** What it is ranked by: the largest error of what it is about. */
-  worth: number | undefined;
   /** Its nominal wall, and the path of the cutter's centre. */
   wall: Line[];
   path: Line[];
@@ -51,7 +49,7 @@ export function figuresOf({ kind }: Several, entries: Entry[]): Figure[] {
   return [...FIGURES[kind], ...OTHERS].filter(({ key }) => entries.some(({ outcome }) => outcome[key] !== undefined));
 }
 
-/** The figure that contours are ranked by. */
+/** The figure that contours are ranked by until the reader chooses another: the error of what the page is about. */
 export function ranking(kind: Report["kind"]): Figure {
   return FIGURES[kind][FIGURES[kind].length - 1];
 }
@@ -64,13 +62,14 @@ export function entriesOf(several: Several): Entry[] {
     taken.add(name);
     const report = checked(page);
     const outcome = report.outcome ?? {};
-    return { index, name, report, outcome, worth: outcome[ranking(several.kind).key], ...lines(report) };
+    return { index, name, report, outcome, ...lines(report) };
   });
 }
 
 /** Worst first, those of which nothing is known last. */
-export function worstFirst(entries: Entry[]): Entry[] {
-  return [...entries].sort((a, b) => (b.worth ?? -1) - (a.worth ?? -1) || a.index - b.index);
+export function worstFirst(entries: Entry[], { key }: Figure): Entry[] {
+  const size = ({ outcome }: Entry) => outcome[key] ?? -1;
+  return [...entries].sort((a, b) => size(b) - size(a) || a.index - b.index);
 }
 
 /** Decimals that tell every deviation from the limits it is held against. */

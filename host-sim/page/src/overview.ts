@@ -2,7 +2,7 @@
 
 import { el, svg } from "./dom";
 import { fixed } from "./format";
-import type { Entry, Figure } from "./entries";
+import { worstFirst, type Entry, type Figure } from "./entries";
 import { widest } from "./letters";
 import { boxOf, type Line } from "./outline";
 import { lengthText } from "./rulers";
@@ -22,30 +22,43 @@ const LETTERS = 22;
 const LABEL = { high: 14, beside: 4 };
 
 interface Corner { x: number; y: number }
-interface Drawn { entry: Entry; link: SVGElement; walls: Corner[][]; box: [number, number, number, number] }
+/** Left, top, right, bottom. */
+type Box = [number, number, number, number];
+interface Drawn { entry: Entry; link: SVGElement; walls: Corner[][]; ways: Corner[][]; box: Box }
 
 export class Overview {
   readonly element: HTMLElement;
   private readonly box = el("div", { class: "map" });
   private readonly flag = el("div", { class: "flag", "aria-hidden": "true" });
-  private readonly worst: number;
+  private readonly key = el("p", { class: "map-key" });
   private readonly view: View;
+  private worst = 0;
+  private order: Entry[] = [];
   private drawn: Drawn[] = [];
   private chosen = -1;
   private readonly seen = new ResizeObserver(() => { if (!document.documentElement.dataset.printing) this.draw(); });
 
-  /** `order` is the order in which names find room; `choose` is called with a contour that was clicked or stepped to. */
-  constructor(private readonly entries: Entry[], private readonly order: Entry[], private readonly figure: Figure, private readonly decimals: number,
+  /** `choose` is called with a contour that was clicked or stepped to. */
+  constructor(private readonly entries: Entry[], private figure: Figure, private readonly decimals: number,
     private readonly href: (entry: Entry) => string, private readonly choose: (entry: Entry, stepped: boolean) => void,
     private readonly hovered: (entry: Entry | null) => void) {
-    this.worst = Math.max(0, ...entries.map(({ worth }) => worth ?? 0));
     this.view = new View(boxOf(entries.flatMap(({ wall, path }) => [...wall, ...path]), 0));
-    this.element = el("div", { class: "map-frame" }, this.box, this.flag, this.key());
+    this.element = el("div", { class: "map-frame" }, this.box, this.flag, this.key);
     this.box.addEventListener("click", (event) => this.click(event));
     this.box.addEventListener("pointermove", (event) => { if (event.pointerType !== "touch") this.hover(event); });
     this.box.addEventListener("pointerleave", () => this.near(null));
     this.box.addEventListener("keydown", (event) => this.press(event));
     this.seen.observe(this.box);
+    this.rank(figure);
+  }
+
+  /** Colours, weights and the room for names go by a figure. */
+  rank(figure: Figure): void {
+    this.figure = figure;
+    this.order = worstFirst(this.entries, figure);
+    this.worst = Math.max(0, this.order[0]?.outcome[figure.key] ?? 0);
+    this.explain();
+    this.draw();
   }
 
   /** Marks a contour as the one that is shown. */
@@ -87,52 +100,58 @@ export class Overview {
     const { view } = this;
     const place = (line: Line) => thinned(line, view);
     const walls = entry.wall.map(place);
-    const share = this.worst > 0 ? (entry.worth ?? 0) / this.worst : 0;
+    const size = entry.outcome[this.figure.key];
+    const share = this.worst > 0 ? Math.max(0, size ?? 0) / this.worst : 0;
     const wide = 1.25 + 2.75 * share;
-    const value = entry.worth === undefined ? "" : `, ${this.figure.name} ${fixed(entry.worth, this.decimals)} mm`;
+    const value = size === undefined ? "" : `, ${this.figure.name} ${fixed(size, this.decimals)} mm`;
     const link = svg("a", { href: this.href(entry), "aria-label": `${entry.name}${value}` });
-    const d = walls.map((line) => `M${line.map(({ x, y }) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}`).join("");
-    const path = entry.path.map((line) => `M${place(line).map(({ x, y }) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}`).join("");
+    const d = walls.map(outlined).join("");
+    const ways = entry.path.map(place);
     const all = walls.flat();
-    const box: Drawn["box"] = all.reduce<Drawn["box"]>(([l, t, r, b], { x, y }) => [Math.min(l, x), Math.min(t, y), Math.max(r, x), Math.max(b, y)],
+    const box = all.reduce<Box>(([l, t, r, b], { x, y }) => [Math.min(l, x), Math.min(t, y), Math.max(r, x), Math.max(b, y)],
       [Infinity, Infinity, -Infinity, -Infinity]);
     if (all.length) {
-      link.append(svg("path", { class: "halo", d, "stroke-width": wide + 7 }), svg("path", { class: "way", d: path }));
+      link.append(svg("path", { class: "halo", d, "stroke-width": wide + 7 }), svg("path", { class: "way", d: ways.map(outlined).join("") }));
       const wall = svg("path", { class: "wall", d, "stroke-width": wide });
       wall.style.stroke = `color-mix(in srgb, var(--left) ${Math.round(100 * share)}%, var(--quiet))`;
       link.append(wall);
-      const size = Math.max(box[2] - box[0], box[3] - box[1]);
-      if (size < SMALL) link.append(svg("circle", { class: "ring", cx: (box[0] + box[2]) / 2, cy: (box[1] + box[3]) / 2, r: SMALL }));
+      if (Math.max(box[2] - box[0], box[3] - box[1]) < SMALL) link.append(svg("circle", { class: "ring", cx: (box[0] + box[2]) / 2, cy: (box[1] + box[3]) / 2, r: SMALL }));
     }
     this.state(entry, link);
-    return { entry, link, walls, box };
+    return { entry, link, walls, ways, box };
   }
 
-  /** Names beside the contours, the worst first: in full, else the number of the table, else none. */
+  /** Names beside the contours, the worst first: in full, at worst over a path of the cutter; else the number of the table, else none. */
   private names(): void {
-    const { width, height } = this.view;
-    const taken: [number, number, number, number][] = [];
-    const corners = this.drawn.flatMap(({ walls }) => walls.map(dense)).flat();
+    const taken: Box[] = [];
+    const walls = this.drawn.flatMap((drawn) => drawn.walls.flatMap(dense));
+    const all = [...walls, ...this.drawn.flatMap((drawn) => drawn.ways.flatMap(dense))];
     for (const { index, name } of this.order) {
-      const { box: [l, t, r, b], link } = this.drawn[index];
-      if (!(r >= l)) continue;
-      for (const text of [name.length > LETTERS ? `${name.slice(0, LETTERS - 1)}…` : name, String(index + 1)]) {
+      const { box, link } = this.drawn[index];
+      if (!(box[2] >= box[0])) continue;
+      const short = name.length > LETTERS ? `${name.slice(0, LETTERS - 1)}…` : name;
+      for (const [text, corners] of [[short, all], [short, walls], [String(index + 1), all]] as const) {
         // Bold letters, as those of the chosen one, are a little wider.
-        const wide = 1.08 * widest([text]) + 2 * LABEL.beside;
-        const { high } = LABEL;
-        const [cx, cy] = [(l + r) / 2, (t + b) / 2];
-        const places = [[cx - wide / 2, t - high - 5], [cx - wide / 2, cy - high / 2], [r + 6, cy - high / 2], [cx - wide / 2, b + 5], [l - wide - 6, cy - high / 2],
-          [r + 4, t - high], [l - wide - 4, t - high], [r + 4, b], [l - wide - 4, b]];
-        const free = places.find(([x, y]) => x >= 2 && y >= 2 && x + wide <= width - 2 && y + high <= height - 26
-          && !taken.some(([tl, tt, tr, tb]) => x < tr && x + wide > tl && y < tb && y + high > tt)
-          && !corners.some((c) => c.x > x - 2 && c.x < x + wide + 2 && c.y > y - 1 && c.y < y + high + 1));
+        const free = this.room(box, 1.08 * widest([text]) + 2 * LABEL.beside, taken, corners);
         if (!free) continue;
-        const [x, y] = free;
-        taken.push([x, y, x + wide, y + high]);
-        link.append(svg("text", { x: x + wide / 2, y: y + high - 3, "text-anchor": "middle" }, text));
+        taken.push(free);
+        link.append(svg("text", { x: (free[0] + free[2]) / 2, y: free[3] - 3, "text-anchor": "middle" }, text));
         break;
       }
     }
+  }
+
+  /** A place for a label about a contour: within the picture, over no other label and no line. */
+  private room([l, t, r, b]: Box, wide: number, taken: Box[], corners: Corner[]): Box | undefined {
+    const { width, height } = this.view;
+    const { high } = LABEL;
+    const [cx, cy] = [(l + r) / 2, (t + b) / 2];
+    const places = [[cx - wide / 2, t - high - 5], [cx - wide / 2, cy - high / 2], [r + 6, cy - high / 2], [cx - wide / 2, b + 5], [l - wide - 6, cy - high / 2],
+      [r + 4, t - high], [l - wide - 4, t - high], [r + 4, b], [l - wide - 4, b], [cx - wide / 2, t + 6]];
+    const boxes = places.map(([x, y]): Box => [x, y, x + wide, y + high]);
+    return boxes.find(([x0, y0, x1, y1]) => x0 >= 2 && y0 >= 2 && x1 <= width - 2 && y1 <= height - 26
+      && !taken.some((other) => x0 < other[2] && x1 > other[0] && y0 < other[3] && y1 > other[1])
+      && !corners.some(({ x, y }) => x > x0 - 2 && x < x1 + 2 && y > y0 - 1 && y < y1 + 1));
   }
 
   /** A bar of a round length. */
@@ -140,11 +159,11 @@ export class Overview {
     const { scale, height } = this.view;
     const size = roundBelow(110 / scale);
     const [left, right, y] = [10, 10 + size * scale, height - 8];
-    return [svg("path", { class: "bar", d: `M${left} ${y - 4}v8m0 -4H${right}m0 -4v8` }), svg("text", { class: "bar-text", x: left, y: y - 8 }, lengthText(size))];
+    return [svg("path", { class: "scale", d: `M${left} ${y - 4}v8m0 -4H${right}m0 -4v8` }), svg("text", { class: "scale-text", x: left, y: y - 8 }, lengthText(size))];
   }
 
-  private key(): HTMLElement | null {
-    if (!(this.worst > 0)) return null;
+  private explain(): void {
+    this.key.hidden = !(this.worst > 0);
     const bar = svg("svg", { width: 72, height: 10, "aria-hidden": "true" });
     const shade = svg("linearGradient", { id: "shade" });
     for (const [offset, name] of [["0", "quiet"], ["1", "left"]]) {
@@ -153,7 +172,7 @@ export class Overview {
       shade.append(stop);
     }
     bar.append(shade, svg("path", { d: "M0 4.4V5.6L72 8V2Z", fill: "url(#shade)" }));
-    return el("p", { class: "map-key" }, el("span", {}, `colour and weight: ${this.figure.name},`), el("span", {}, "0", bar, `${fixed(this.worst, this.decimals)} mm`));
+    this.key.replaceChildren(el("span", {}, `colour and weight: ${this.figure.name},`), el("span", {}, "0", bar, `${fixed(this.worst, this.decimals)} mm`));
   }
 
   private place(event: MouseEvent): Corner {
@@ -195,8 +214,9 @@ export class Overview {
     this.near(entry);
     if (!entry) return;
     const { lines } = entry.outcome;
+    const size = entry.outcome[this.figure.key];
     const told: [string, string][] = [["contour", entry.name], ...(lines ? [["lines", `${lines[0]}–${lines[1]}`] as [string, string]] : []),
-      ...(entry.worth === undefined ? [] : [[this.figure.name, `${fixed(entry.worth, this.decimals)} mm`] as [string, string]])];
+      ...(size === undefined ? [] : [[this.figure.name, `${fixed(size, this.decimals)} mm`] as [string, string]])];
     this.flag.replaceChildren(...told.flatMap(([name, value]) => [el("span", {}, name), el("b", {}, value)]));
     this.flag.classList.add("shown");
     const { offsetWidth: wide, offsetHeight: high } = this.flag;
@@ -241,6 +261,10 @@ function thinned(line: Line, view: View): Corner[] {
     if (!before || i === last || Math.hypot(corner.x - before.x, corner.y - before.y) >= POINT) corners.push(corner);
   }
   return corners;
+}
+
+function outlined(line: Corner[]): string {
+  return line.length ? `M${line.map(({ x, y }) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}` : "";
 }
 
 /** Places along a line, close enough for a label not to lie between them. */

@@ -24,36 +24,36 @@ export function showSeveral(data: Several, top: HTMLElement, main: HTMLElement):
 
 class Contours {
   private readonly entries: Entry[];
-  private readonly ranked: Entry[];
   private readonly columns: Figure[];
-  private readonly rank: Figure;
   private readonly decimals: number;
   private readonly overview: Overview;
   private readonly list = el("div", { class: "list" });
   private readonly section = el("section", { class: "contour", id: "contour" });
-  private sorted: Entry[];
+  /** The figure that the contours are ranked by, and the order of the table: worst first, or that of the program. */
+  private rank: Figure;
+  private ranked: Entry[];
+  private inOrder = false;
   private chosen: Entry;
   private view: ContourView | null = null;
 
   constructor(private readonly data: Several, top: HTMLElement, main: HTMLElement) {
     this.entries = entriesOf(data);
-    this.ranked = worstFirst(this.entries);
-    this.sorted = this.ranked;
     this.columns = figuresOf(data, this.entries);
     this.rank = ranking(data.kind);
+    this.ranked = worstFirst(this.entries, this.rank);
     this.decimals = decimalsOf(this.entries);
-    this.overview = new Overview(this.entries, this.ranked, this.rank, this.decimals, hrefOf, (entry, step) => this.go(entry, step), (entry) => this.point(entry));
+    this.overview = new Overview(this.entries, this.rank, this.decimals, hrefOf, (entry, step) => this.go(entry, step), (entry) => this.point(entry));
     const shared = { ...this.entries[0].report, ...data } as Report;
     const [program, crc] = sourceOf(shared);
     top.append(...head(data, [program, crc, `${this.entries.length} contours`], warnings(this.warned()), tools(() => this.view?.recolour())));
     document.head.append(sheets(shared));
     const card = el("section", { class: "card overview", "aria-labelledby": "overview-title" },
-      el("div", { class: "overview-head" }, el("h2", { id: "overview-title" }, `Contours of the part: ${this.entries.length}`), this.orders()),
+      el("div", { class: "overview-head" }, el("h2", { id: "overview-title" }, `Contours of the part: ${this.entries.length}`), ...this.orders()),
       el("div", { class: "overview-body" }, this.overview.element, this.list));
     main.append(...[this.figures(), part(shared), card, this.section, signature(shared)].filter((node) => node !== null));
-    this.rows();
     this.overview.draw();
     this.chosen = this.named() ?? this.ranked[0];
+    this.rows();
     this.show();
     if (this.named()) this.section.scrollIntoView();
     window.addEventListener("hashchange", () => this.follow());
@@ -85,7 +85,8 @@ class Contours {
     if (entry === this.chosen) return;
     this.chosen = entry;
     this.show();
-    tell(() => [entry.name, entry.worth === undefined ? "" : `${this.rank.name} ${fixed(entry.worth, this.decimals)} mm`].filter(Boolean).join(", "));
+    const size = this.size(entry);
+    tell(() => [entry.name, size === undefined ? "" : `${this.rank.name} ${fixed(size, this.decimals)} mm`].filter(Boolean).join(", "));
   }
 
   /** Scrolls to the contour where it is not to be seen. */
@@ -112,11 +113,11 @@ class Contours {
     this.mark();
   }
 
-  /** Name and place of a contour; with buttons to its neighbours and its warnings. */
+  /** Name and place of a contour; on the screen with its warnings and with buttons to its neighbours. On paper the head has all warnings. */
   private title({ index, name, outcome, report }: Entry, buttons: boolean): HTMLElement {
     const { lines, z_mm: z } = outcome;
-    const said = [`${index + 1} of ${this.entries.length}`, report.program?.shown ?? (lines ? linesText(lines) : undefined),
-      z === undefined ? undefined : `Z ${fixed(z, 3)} mm`, report.title === this.data.title ? undefined : report.title].filter((v) => v !== undefined);
+    const place = [lines ? linesText(lines) : "", z === undefined ? "" : `Z ${fixed(z, 3)} mm`].filter(Boolean).join(" · ");
+    const said = [`${index + 1} of ${this.entries.length}`, report.program?.shown ?? (place || undefined), report.kind === "learn" ? report.title : undefined].filter((v) => v !== undefined);
     const to = (title: string, text: string, by: number) => {
       const button = el("button", { type: "button", "aria-label": title, title }, text);
       button.addEventListener("click", () => this.go(this.entries[(index + by + this.entries.length) % this.entries.length], true));
@@ -124,7 +125,7 @@ class Contours {
     };
     return el("div", { class: "contour-head" },
       el("div", { class: "title" }, el("h2", {}, name), el("p", { class: "source" }, said.join(" · "))),
-      report.warnings?.length ? warnings(report.warnings) : null,
+      buttons && report.warnings?.length ? warnings(report.warnings) : null,
       buttons ? el("div", { class: "buttons" }, to("The contour before", "‹", -1), to("The next contour", "›", 1)) : null);
   }
 
@@ -133,7 +134,7 @@ class Contours {
     const entries = this.columns.map(({ key, name }) => {
       const size = ({ outcome }: Entry) => outcome[key] ?? -1;
       const worst = this.entries.reduce((a, b) => (size(b) > size(a) ? b : a));
-      return figure(name, `${fixed(worst.outcome[key], this.decimals)} mm`, this.link(worst));
+      return figure(name, `${fixed(worst.outcome[key], this.decimals)} mm`, size(worst) > 0 ? this.link(worst) : undefined);
     });
     const lengths = this.entries.map(({ outcome }) => outcome.length_mm);
     const all = lengths.every((v) => v !== undefined) ? `${fixed(lengths.reduce((a, b) => a + b, 0), 1)} mm long together` : "";
@@ -146,12 +147,14 @@ class Contours {
 
   /** The worst verdict, and whose it is. */
   private verdict(): Report["verdict"] {
+    // Of a part that is not milled yet there are predictions only.
+    const foretold = this.data.kind === "inspect" ? "" : "predicted: ";
     for (const state of ["fail", "open", "pass"] as const) {
       const these = this.entries.filter(({ report }) => report.verdict?.state === state);
       if (these.length === 0) continue;
-      if (these.length === this.entries.length) return { state, text: `all ${these.length} contours` };
+      if (these.length === this.entries.length) return { state, text: `${foretold}all ${these.length} contours` };
       const names = these.slice(0, 3).map(({ name }) => name).join(", ");
-      return { state, text: `${these.length} of ${this.entries.length} contours: ${names}${these.length > 3 ? ", …" : ""}` };
+      return { state, text: `${foretold}${these.length} of ${this.entries.length} contours: ${names}${these.length > 3 ? ", …" : ""}` };
     }
     return undefined;
   }
@@ -175,16 +178,29 @@ class Contours {
     return link;
   }
 
-  /** In which order the table is. */
-  private orders(): HTMLElement {
+  private get sorted(): Entry[] {
+    return this.inOrder ? this.entries : this.ranked;
+  }
+
+  /** What the contours are ranked by, and in which order the table is. */
+  private orders(): HTMLElement[] {
+    const by = el("select", { id: "rank" }, ...this.columns.map(({ key, name }) => el("option", { value: key }, name)));
+    by.value = this.rank.key;
+    by.addEventListener("change", () => {
+      this.rank = this.columns.find(({ key }) => key === by.value) ?? this.rank;
+      this.ranked = worstFirst(this.entries, this.rank);
+      this.overview.rank(this.rank);
+      this.overview.mark(this.chosen.index);
+      this.rows();
+    });
     const group = el("div", { class: "segments", role: "radiogroup", "aria-label": "Order of the table" });
-    for (const [id, name, entries] of [["worst-first", "worst first", this.ranked], ["as-cut", "as cut", this.entries]] as const) {
+    for (const [id, name, inOrder] of [["worst-first", "worst first", false], ["as-cut", "as cut", true]] as const) {
       const input = el("input", { type: "radio", name: "order", id, value: id });
-      input.checked = entries === this.sorted;
-      input.addEventListener("change", () => { this.sorted = [...entries]; this.rows(); this.mark(); });
+      input.checked = inOrder === this.inOrder;
+      input.addEventListener("change", () => { this.inOrder = inOrder; this.rows(); });
       group.append(input, el("label", { for: id }, name));
     }
-    return group;
+    return [...(this.columns.length > 1 ? [el("label", { class: "field" }, "ranked by", by)] : []), group];
   }
 
   private rows(): void {
@@ -195,7 +211,7 @@ class Contours {
       const { outcome, report, index } = entry;
       const { state } = report.verdict ?? {};
       const name = el("span", { class: "name" }, el("span", { class: "count" }, String(index + 1)), this.link(entry),
-        entry === worst && (worst.worth ?? 0) > 0 ? el("strong", { class: "worst" }, "worst") : null);
+        entry === worst && (this.size(worst) ?? 0) > 0 ? el("strong", { class: "worst" }, "worst") : null);
       return [name, ...this.columns.map(({ key }) => fixed(outcome[key], this.decimals)),
         ...(judged ? [state ? el("span", { class: `state ${state}` }, WORDS[state]) : NO_VALUE] : []),
         outcome.lines ? `${outcome.lines[0]}–${outcome.lines[1]}` : NO_VALUE, fixed(outcome.z_mm, 3), fixed(outcome.length_mm, 1), String(report.warnings?.length ?? 0)];
@@ -216,6 +232,11 @@ class Contours {
       this.body(box)[to].querySelector("a")?.focus({ preventScroll: true });
     });
     this.list.replaceChildren(box);
+    this.mark();
+  }
+
+  private size({ outcome }: Entry): number | undefined {
+    return outcome[this.rank.key];
   }
 
   private body(of: HTMLElement = this.list): HTMLElement[] {
