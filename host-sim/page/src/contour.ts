@@ -138,8 +138,9 @@ export function contourView(report: Report, among?: Among): ContourView {
   const below = el("div", { class: side.length && wide.length ? "below" : "below alone" },
     side.length ? el("div", { class: "side" }, ...side) : null, wide.length ? el("div", { class: "wide" }, ...wide) : null);
   picture.hidden = !seen;
-  const keys = document.getElementById("keys-cutter");
-  if (keys && !brief) keys.hidden = !model;
+  // Nothing is said of keys for what is not there.
+  if (!brief && cutterKeys && !model) cutterKeys.remove();
+  else if (!brief && cutterKeys) document.getElementById("keys")?.append(cutterKeys);
   const figures = results(report);
   // Part and signature are those of the whole page.
   const [named, signed] = among ? [null, null] : [part(report), signature(report)];
@@ -201,6 +202,8 @@ export function contourView(report: Report, among?: Among): ContourView {
   const nodes = [figures, named, work, below, signed].filter((node) => node !== null);
   return { nodes, stage, store, traces, several: passes.length > 1, begin, recolour, close };
 }
+
+const cutterKeys = document.getElementById("keys-cutter");
 
 /** Panels that a model will have, before they are built. */
 function expected(model: Model | null): number {

@@ -86,7 +86,7 @@ export class Overview {
     const focused = this.drawn.find(({ link }) => link === document.activeElement)?.entry;
     this.view.resize(width, height);
     this.view.fit();
-    const picture = svg("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "group", "aria-label": "Contours of the part, to scale" });
+    const picture = svg("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "group", "aria-label": "Contours of the part, to scale", "aria-describedby": "keys" });
     this.drawn = this.entries.map((entry) => this.contour(entry));
     // The worst lies over the others.
     for (const entry of [...this.order].reverse()) picture.append(this.drawn[entry.index].link);

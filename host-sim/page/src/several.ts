@@ -50,6 +50,7 @@ class Contours {
     const card = el("section", { class: "card overview", "aria-labelledby": "overview-title" },
       el("div", { class: "overview-head" }, el("h2", { id: "overview-title" }, `Contours of the part: ${this.entries.length}`), ...this.orders()),
       el("div", { class: "overview-body" }, this.overview.element, this.list));
+    document.getElementById("keys")?.prepend("Overview: a click or the arrows choose a contour; its address in the browser leads back to it. ");
     main.append(...[this.figures(), part(shared), card, this.section, signature(shared)].filter((node) => node !== null));
     this.overview.draw();
     this.chosen = this.named() ?? this.ranked[0];
