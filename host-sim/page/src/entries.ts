@@ -60,10 +60,18 @@ export function entriesOf(several: Several): Entry[] {
     let name = given;
     for (let k = 2; taken.has(name); k++) name = `${given} (${k})`;
     taken.add(name);
-    const report = checked(page);
-    const outcome = report.outcome ?? {};
-    return { index, name, report, outcome, ...lines(report) };
+    return { index, name, outcome: page.outcome ?? {}, ...read(page) };
   });
+}
+
+/** A contour that cannot be read is not drawn here; where it is shown it is said why. */
+function read(page: Report): Pick<Entry, "report" | "wall" | "path" | "closed"> {
+  try {
+    const report = checked(page);
+    return { report, ...lines(report) };
+  } catch {
+    return { report: page, wall: [], path: [], closed: false };
+  }
 }
 
 /** Worst first, those of which nothing is known last. */

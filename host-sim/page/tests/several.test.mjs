@@ -89,7 +89,7 @@ for (const kind of KINDS) {
       const texts = (selector) => [...document.querySelectorAll(selector)].map((e) => e.textContent);
       const figures = document.querySelector(".contour > .results") ?? document.querySelector(".results");
       return [figures.textContent, ...["#readout", "#parameters", "#points", "#job", "#statements", ".trace-head", ".scene figcaption", ".legend"].map(texts),
-        document.querySelector("#deviations svg")?.querySelectorAll(".mark").length, document.querySelector(".stage:not([hidden])").dataset.view.split(" ").slice(0, 2)];
+        document.querySelector("#deviations svg")?.querySelectorAll(".mark").length, [...document.querySelectorAll(".stage")].find((stage) => stage.checkVisibility()).dataset.view];
     });
     const own = [];
     for (const name of PLATE) {
