@@ -100,6 +100,7 @@ class Contours {
     this.view?.close();
     this.view = null;
     const { chosen } = this;
+    const pressed = document.activeElement?.closest(".contour-head button")?.getAttribute("aria-label");
     document.title = `${chosen.name} – ${this.data.title} – Truepath`;
     this.section.setAttribute("aria-label", chosen.name);
     this.section.replaceChildren(this.title(chosen, true));
@@ -112,6 +113,8 @@ class Contours {
     }
     this.overview.mark(chosen.index);
     this.mark();
+    // A button that leads on can be pressed again.
+    if (pressed) this.section.querySelector<HTMLElement>(`.contour-head button[aria-label="${pressed}"]`)?.focus();
   }
 
   /** Name and place of a contour; on the screen with its warnings and with buttons to its neighbours. On paper the head has all warnings. */
@@ -281,7 +284,12 @@ class Contours {
       const note = el("p", { class: "paper-note" }, inspected ? "The unabridged page has each contour with its job and its cuts." : "Traces, probe points and what was identified are on the page itself, contour by contour.");
       this.section.before(note);
       this.overview.draw();
+      // What the lines of the pictures are is said once, by the contour that has most of them.
+      const legends = all.flatMap(({ host }) => [...host.querySelectorAll(".picture:not([hidden]) .legend")]);
+      const legend = legends.reduce<Element | undefined>((a, b) => (a && a.childElementCount >= b.childElementCount ? a : b), undefined);
+      if (legend) all[0].host.before(legend);
       back = () => {
+        legend?.remove();
         for (const { host, close } of all) {
           close();
           host.remove();
