@@ -121,7 +121,7 @@ export class Overview {
     return { entry, link, walls, ways, box };
   }
 
-  /** Names beside the contours, the worst first: in full, at worst over a path of the cutter; else the number of the table, else none. */
+  /** Names beside the contours, the worst first: in full, or else the number of the table, rather over a path of the cutter than not at all. */
   private names(): void {
     const taken: Box[] = [];
     const walls = this.drawn.flatMap((drawn) => drawn.walls.flatMap(dense));
@@ -130,7 +130,7 @@ export class Overview {
       const { box, link } = this.drawn[index];
       if (!(box[2] >= box[0])) continue;
       const short = name.length > LETTERS ? `${name.slice(0, LETTERS - 1)}…` : name;
-      for (const [text, corners] of [[short, all], [short, walls], [String(index + 1), all]] as const) {
+      for (const [text, corners] of [[short, all], [short, walls], [String(index + 1), all], [String(index + 1), walls]] as const) {
         // Bold letters, as those of the chosen one, are a little wider.
         const free = this.room(box, 1.08 * widest([text]) + 2 * LABEL.beside, taken, corners);
         if (!free) continue;
