@@ -147,7 +147,9 @@ export class Overview {
     const { high } = LABEL;
     const [cx, cy] = [(l + r) / 2, (t + b) / 2];
     const places = [[cx - wide / 2, t - high - 5], [cx - wide / 2, cy - high / 2], [r + 6, cy - high / 2], [cx - wide / 2, b + 5], [l - wide - 6, cy - high / 2],
-      [r + 4, t - high], [l - wide - 4, t - high], [r + 4, b], [l - wide - 4, b], [cx - wide / 2, t + 6]];
+      [cx - wide / 2, t + 6]];
+    // At a corner a long name would seem to belong to a neighbour.
+    if (r - l > wide) places.push([r + 4, t - high], [l - wide - 4, t - high], [r + 4, b], [l - wide - 4, b]);
     const boxes = places.map(([x, y]): Box => [x, y, x + wide, y + high]);
     return boxes.find(([x0, y0, x1, y1]) => x0 >= 2 && y0 >= 2 && x1 <= width - 2 && y1 <= height - 26
       && !taken.some((other) => x0 < other[2] && x1 > other[0] && y0 < other[3] && y1 > other[1])

@@ -214,8 +214,8 @@ class Contours {
     const rows = this.sorted.map((entry) => {
       const { outcome, report, index } = entry;
       const { state } = report.verdict ?? {};
-      const name = el("span", { class: "name" }, el("span", { class: "count" }, String(index + 1)), this.link(entry),
-        entry === worst && (this.size(worst) ?? 0) > 0 ? el("strong", { class: "worst" }, "worst") : null);
+      const name = el("span", { class: "name" }, el("span", { class: "count" }, String(index + 1)),
+        el("span", {}, this.link(entry), entry === worst && (this.size(worst) ?? 0) > 0 ? el("strong", { class: "worst" }, "worst") : null));
       return [name, ...this.columns.map(({ key }) => fixed(outcome[key], this.decimals)),
         ...(judged ? [state ? el("span", { class: `state ${state}` }, WORDS[state]) : NO_VALUE] : []),
         outcome.lines ? `${outcome.lines[0]}–${outcome.lines[1]}` : NO_VALUE, fixed(outcome.z_mm, 3), fixed(outcome.length_mm, 1), String(report.warnings?.length ?? 0)];
