@@ -76,6 +76,12 @@ for (const kind of KINDS) {
       const worst = data.contours.reduce((a, b) => (b.page.outcome[key] > a.page.outcome[key] ? b : a));
       return [`${worst.page.outcome[key].toFixed(4)} mm`, worst.page.outcome[key] > 0 ? worst.name : undefined];
     }));
+    const failed = data.contours.filter(({ page: { verdict } }) => verdict?.state === "fail").map(({ name }) => name);
+    if (kind !== "simulate") {
+      assert.ok(failed.length > 0 && failed.length < PLATE.length, `${failed}`);
+      assert.equal(await page.locator(".verdict.fail span").first().textContent(),
+        `${kind === "inspect" ? "" : "predicted: "}${failed.length} of 5 contours: ${failed.slice(0, 3).join(", ")}${failed.length > 3 ? ", …" : ""}`);
+    }
     await page.click("label[for=as-cut]");
     assert.deepEqual(await order(page), PLATE);
     assert.deepEqual(await violations(page), []);
