@@ -33,6 +33,7 @@ export function decode(column: Column, name: string, length?: number): Series {
 export function readReport(element: Element | null): Report | Several {
   const report = JSON.parse(element?.textContent ?? "null") as Report | Several | null;
   if (report === null) throw new Error("This page holds no data yet. Truepath writes them when it makes a report.");
+  if ("contours" in report && report.contours.length === 0) throw new Error("This page holds no contour.");
   for (const of of "contours" in report ? [report, ...report.contours.map(({ page }) => page)] : [report]) {
     if (of.version !== 1) throw new Error(`Data of version ${String(of.version)}; this page reads version 1.`);
   }

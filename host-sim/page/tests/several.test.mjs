@@ -459,6 +459,23 @@ test("little data, odd names: a page of contours with a title only, with one nam
   await close();
 });
 
+test("a list of one contour is a page, an empty one and one of another version are told in words", async () => {
+  const { contours } = await plate("simulate");
+  const { page, complaints, close } = await open(await write("several-one", several(contours.slice(0, 1))));
+  assert.equal(await page.locator(".map .wall").count(), 1);
+  await page.getByRole("button", { name: "The next contour" }).click();
+  assert.equal(await chosen(page), "pocket");
+  for (const [data, words] of [
+    [{ ...several(contours), contours: [] }, /holds no contour/],
+    [several([contours[0], { name: "new", page: { ...contours[1].page, version: 2 } }]), /version 2; this page reads version 1/],
+  ]) {
+    await show(page, await write("several-wrong", data));
+    assert.match(await page.locator("[role=alert]").textContent(), words);
+  }
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test("warnings of several contours stand once, with whose they are", async () => {
   const { contours } = await plate("correct");
   const data = several(contours.map(({ name, page }, k) => ({ name, page: { ...page, warnings: ["of all", ...(k < 2 ? ["of two"] : [])] } })));
