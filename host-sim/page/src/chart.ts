@@ -21,10 +21,15 @@ interface Scale { px(s: number): number; py(e: number): number }
 export class Chart {
   readonly element: HTMLElement;
   private readonly box = el("div", { class: "chart" });
+  private readonly seen = new ResizeObserver(() => { if (!document.documentElement.dataset.printing) this.draw(); });
 
   constructor(private readonly report: Report) {
     this.element = card("deviations", "Deviation along the contour", this.box);
-    new ResizeObserver(() => { if (!document.documentElement.dataset.printing) this.draw(); }).observe(this.box);
+    this.seen.observe(this.box);
+  }
+
+  close(): void {
+    this.seen.disconnect();
   }
 
   /** Whether there is anything to draw. */

@@ -179,6 +179,32 @@ export interface Program {
   cuts_left_out?: number;
 }
 
+/** The contour in a line, for a page of several. */
+export interface Outcome {
+  /** First and last line of the program. */
+  lines?: [number, number];
+  /** Height of the pass, in coordinates of the program. */
+  z_mm?: number;
+  length_mm?: number;
+  /** Largest magnitude of the wall error: without the correction or of the only pass, at the probe points, with the correction. */
+  before_mm?: number;
+  measured_mm?: number;
+  after_mm?: number;
+  /** Standard deviation where the error with the correction is largest. */
+  sigma_mm?: number;
+  /** Deepest cut below the wall, positive. */
+  gouge_mm?: number;
+}
+
+/** Several contours of one program: each with all that a page of its own would hold. */
+export interface Several {
+  version: 1;
+  kind: Report["kind"];
+  title: string;
+  by?: string;
+  contours: { name: string; page: Report }[];
+}
+
 export interface Report {
   version: 1;
   kind: "simulate" | "correct" | "learn" | "inspect";
@@ -201,6 +227,7 @@ export interface Report {
   outlines?: { wall?: Polyline[]; stock?: Polyline[] };
   heights?: Heights;
   points?: ProbePoint[];
+  outcome?: Outcome;
   parameters?: Parameter[];
   results?: Result[];
   tolerance_mm?: number;

@@ -1,6 +1,6 @@
 /** Columns from their compact form, and the data element of the page. */
 
-import type { Column, Report } from "./data";
+import type { Column, Report, Several } from "./data";
 
 /** Values with the number of decimals with which they were written. */
 export interface Series {
@@ -29,10 +29,13 @@ export function decode(column: Column, name: string, length?: number): Series {
   return { values, decimals };
 }
 
-/** The report in the page; an error in plain words when there is none. */
-export function readReport(element: Element | null): Report {
-  const report = JSON.parse(element?.textContent ?? "null") as Report | null;
+/** The report in the page, of one contour or of several; an error in plain words when there is none. */
+export function readReport(element: Element | null): Report | Several {
+  const report = JSON.parse(element?.textContent ?? "null") as Report | Several | null;
   if (report === null) throw new Error("This page holds no data yet. Truepath writes them when it makes a report.");
-  if (report.version !== 1) throw new Error(`Data of version ${String(report.version)}; this page reads version 1.`);
+  if ("contours" in report && report.contours.length === 0) throw new Error("This page holds no contour.");
+  for (const of of "contours" in report ? [report, ...report.contours.map(({ page }) => page)] : [report]) {
+    if (of.version !== 1) throw new Error(`Data of version ${String(of.version)}; this page reads version 1.`);
+  }
   return report;
 }

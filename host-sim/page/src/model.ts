@@ -54,27 +54,17 @@ function across(x: Series, y: Series, [nx, ny]: Normals): Float64Array {
   return x.values.map((v, i) => v * nx[i] + y.values[i] * ny[i]);
 }
 
-export class Model {
+/** The path alone: what walls beside it are drawn from. */
+export class Path {
   readonly count: number;
   readonly s: Series;
   readonly x: Series;
   readonly y: Series;
   readonly nx: Float64Array;
   readonly ny: Float64Array;
-  /** The correction that the report is about. */
-  readonly correction?: Correction;
-  /** The passes there are, in the order in which they are cut. */
-  readonly passes: Pass[] = [];
-  /** Those that stand side by side: the last two. */
-  readonly compared: Pass[];
-  /** Seconds from the start of the contour, at the feed of the pass, else of the job, else 20 s in all. */
-  readonly time: Float64Array;
   readonly radius: number;
   /** +1: the wall is right of the direction of travel; then the engaged arc lies counter-clockwise of the normal. */
   readonly turn: number;
-  /** Indices of samples, coarser from level to level; each keeps the largest error of its block of four. */
-  readonly levels: Uint32Array[];
-  private readonly heightErrors: Partial<Record<PassName, Float64Array[]>> = {};
 
   /** Of a contour of two samples or more. */
   constructor(readonly report: Report, columns: ContourColumns) {
@@ -91,54 +81,10 @@ export class Model {
     } else {
       [this.nx, this.ny] = this.normals();
     }
-    const normals: Normals = [this.nx, this.ny];
-    const correction = (of: ContourColumns | PassColumns): Correction | undefined => {
-      const { correction_x_mm: cx, correction_y_mm: cy } = of;
-      if (!cx || !cy) return undefined;
-      const [x, y] = [decode(cx, "correction_x_mm", count), decode(cy, "correction_y_mm", count)];
-      return { x, y, across: across(x, y, normals) };
-    };
-    this.correction = correction(columns);
-    for (const name of NAMES) {
-      const pass = columns[name];
-      if (pass) this.passes.push(new Pass(name, pass, normals, name === "after" ? this.correction : correction(pass)));
-    }
-    this.compared = this.passes.slice(-2);
-    this.time = this.times();
-    this.levels = this.coarser();
-    this.readHeights();
-  }
-
-  pass(name: PassName): Pass | undefined {
-    return this.passes.find((pass) => pass.name === name);
-  }
-
-  /** "what before", "what after", "what, part 2"; of a pass that stands alone "what". */
-  of(what: string, pass: Pass): string {
-    if (this.passes.length < 2) return what;
-    return pass.title === pass.name ? `${what} ${pass.title}` : `${what}, ${pass.title}`;
-  }
-
-  /** A pass in full: its name, where there are others, and what it is. */
-  called(pass: Pass): string {
-    return [this.passes.length > 1 ? pass.title : "", pass.label].filter(Boolean).join(": ");
-  }
-
-  /** Its colour: of three passes the one without any correction is in the background. */
-  colour(pass: Pass): "quiet" | "before" | "after" {
-    if (pass.name === "after") return "after";
-    return this.compared.length < 2 || this.compared.includes(pass) ? "before" : "quiet";
   }
 
   get length(): number {
     return this.s.values[this.count - 1] - this.s.values[0];
-  }
-
-  /** Error of a pass: the mean over the height, or at one height. */
-  error(name: PassName, height: number | null): Float64Array | undefined {
-    const pass = this.pass(name);
-    if (height === null) return pass?.series.error_mm?.values;
-    return this.heightErrors[name]?.[height];
   }
 
   /** The sample at or before an arc length. */
@@ -178,6 +124,70 @@ export class Model {
       ny[i] = (-this.turn * tx) / size;
     }
     return [nx, ny];
+  }
+}
+
+export class Model extends Path {
+  /** The correction that the report is about. */
+  readonly correction?: Correction;
+  /** The passes there are, in the order in which they are cut. */
+  readonly passes: Pass[] = [];
+  /** Those that stand side by side: the last two. */
+  readonly compared: Pass[];
+  /** Seconds from the start of the contour, at the feed of the pass, else of the job, else 20 s in all. */
+  readonly time: Float64Array;
+  /** Indices of samples, coarser from level to level; each keeps the largest error of its block of four. */
+  readonly levels: Uint32Array[];
+  private readonly heightErrors: Partial<Record<PassName, Float64Array[]>> = {};
+
+  /** Of a contour of two samples or more. */
+  constructor(report: Report, columns: ContourColumns) {
+    super(report, columns);
+    const { count } = this;
+    const normals: Normals = [this.nx, this.ny];
+    const correction = (of: ContourColumns | PassColumns): Correction | undefined => {
+      const { correction_x_mm: cx, correction_y_mm: cy } = of;
+      if (!cx || !cy) return undefined;
+      const [x, y] = [decode(cx, "correction_x_mm", count), decode(cy, "correction_y_mm", count)];
+      return { x, y, across: across(x, y, normals) };
+    };
+    this.correction = correction(columns);
+    for (const name of NAMES) {
+      const pass = columns[name];
+      if (pass) this.passes.push(new Pass(name, pass, normals, name === "after" ? this.correction : correction(pass)));
+    }
+    this.compared = this.passes.slice(-2);
+    this.time = this.times();
+    this.levels = this.coarser();
+    this.readHeights();
+  }
+
+  pass(name: PassName): Pass | undefined {
+    return this.passes.find((pass) => pass.name === name);
+  }
+
+  /** "what before", "what after", "what, part 2"; of a pass that stands alone "what". */
+  of(what: string, pass: Pass): string {
+    if (this.passes.length < 2) return what;
+    return pass.title === pass.name ? `${what} ${pass.title}` : `${what}, ${pass.title}`;
+  }
+
+  /** A pass in full: its name, where there are others, and what it is. */
+  called(pass: Pass): string {
+    return [this.passes.length > 1 ? pass.title : "", pass.label].filter(Boolean).join(": ");
+  }
+
+  /** Its colour: of three passes the one without any correction is in the background. */
+  colour(pass: Pass): "quiet" | "before" | "after" {
+    if (pass.name === "after") return "after";
+    return this.compared.length < 2 || this.compared.includes(pass) ? "before" : "quiet";
+  }
+
+  /** Error of a pass: the mean over the height, or at one height. */
+  error(name: PassName, height: number | null): Float64Array | undefined {
+    const pass = this.pass(name);
+    if (height === null) return pass?.series.error_mm?.values;
+    return this.heightErrors[name]?.[height];
   }
 
   private times(): Float64Array {

@@ -2,12 +2,12 @@
 
 import type { Polyline } from "./data";
 import { decode } from "./decode";
-import type { Model } from "./model";
+import type { Path } from "./model";
 import type { Box } from "./view";
 
 export interface Line { x: Float64Array; y: Float64Array }
 
-export function offsetOf(model: Model, distance: number): Line {
+export function offsetOf(model: Path, distance: number): Line {
   const { values: x } = model.x;
   const { values: y } = model.y;
   return { x: x.map((v, i) => v + distance * model.nx[i]), y: y.map((v, i) => v + distance * model.ny[i]) };

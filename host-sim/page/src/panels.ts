@@ -1,6 +1,6 @@
 /** The blocks in words and figures: head, results, job, parameters, probe points, warnings. */
 
-import type { Parameter, ProbePoint, Program, Report } from "./data";
+import type { Parameter, ProbePoint, Program, Report, Several } from "./data";
 import { card, el, table } from "./dom";
 import { decimalsFor, fixed, NO_VALUE, signed, withUnit } from "./format";
 import { decimalsTelling, limitDecimals, limitsOf, limitsText, standing, verdictWord, type Limits } from "./limits";
@@ -9,16 +9,18 @@ import { SIGNS } from "./marks";
 
 const KINDS = { simulate: "simulated pass", correct: "correction", learn: "correction of the next part", inspect: "inspection" };
 
-export function head(report: Report, tools: HTMLElement): Node[] {
-  const source = [
-    KINDS[report.kind], report.program?.name,
-    report.program?.crc32 ? `CRC-32 ${report.program.crc32}` : undefined, report.program?.shown, report.by,
-  ].filter((v) => v !== undefined).join(" · ");
-  return [el("div", { class: "title" }, el("h1", {}, report.title), el("p", { class: "source" }, source)), warnings(report), tools];
+/** Heading of the page, what it is of, warnings and buttons. */
+export function head(report: Report | Several, source: (string | undefined)[], warnings: HTMLElement, tools: HTMLElement): Node[] {
+  const said = [KINDS[report.kind], ...source, report.by].filter((v) => v !== undefined).join(" · ");
+  return [el("div", { class: "title" }, el("h1", {}, report.title), el("p", { class: "source" }, said)), warnings, tools];
 }
 
-function warnings(report: Report): HTMLElement {
-  const list = report.warnings ?? [];
+/** Program and the cut of it that is shown. */
+export function sourceOf({ program: of }: Report): (string | undefined)[] {
+  return [of?.name, of?.crc32 ? `CRC-32 ${of.crc32}` : undefined, of?.shown];
+}
+
+export function warnings(list: string[]): HTMLElement {
   if (list.length === 0) return el("p", { class: "warnings none" }, "no warnings");
   return el("details", { class: "warnings" },
     el("summary", {}, list.length === 1 ? "1 warning" : `${list.length} warnings`),
@@ -28,18 +30,26 @@ function warnings(report: Report): HTMLElement {
 export function results(report: Report): HTMLElement | null {
   const { verdict, results: list = [], limits: given } = report;
   const limits = limitsOf(report);
-  const entries = list.map((r) => el("div", { class: "result" },
-    el("dt", {}, r.name), el("dd", {}, withUnit(fixed(r.value, r.decimals), r.unit)), r.note ? el("dd", { class: "note" }, r.note) : null));
+  const entries = list.map((r) => figure(r.name, withUnit(fixed(r.value, r.decimals), r.unit), r.note));
   if (limits) {
     const notes = [limits.uncertainty === undefined ? "" : `uncertainty ±${fixed(limits.uncertainty, limitDecimals(limits))} mm, k = 2`, given?.from ?? ""].filter(Boolean);
-    entries.unshift(el("div", { class: "result" }, el("dt", {}, "tolerance"), el("dd", {}, limitsText(limits)),
-      notes.length ? el("dd", { class: "note" }, notes.join("; ")) : null));
+    entries.unshift(figure("tolerance", limitsText(limits), notes.join("; ")));
   }
+  return figures(entries, verdict);
+}
+
+/** A head figure with a word on it. */
+export function figure(name: string, value: string, note?: string | Node): HTMLElement {
+  return el("div", { class: "result" }, el("dt", {}, name), el("dd", {}, value), note ? el("dd", { class: "note" }, note) : null);
+}
+
+/** Head figures, after the verdict where there is one. */
+export function figures(entries: HTMLElement[], verdict: Report["verdict"], name = "Results"): HTMLElement | null {
   if (entries.length === 0 && !verdict) return null;
   const words = { pass: "within tolerance", fail: "out of tolerance", open: "not decided" };
   const stamp = verdict ? el("p", { class: `verdict ${verdict.state}` }, el("strong", {}, words[verdict.state]),
     el("span", {}, verdict.text)) : null;
-  return el("section", { class: "results", "aria-label": "Results" }, stamp, el("dl", {}, ...entries));
+  return el("section", { class: "results", "aria-label": name }, stamp, el("dl", {}, ...entries));
 }
 
 export function job(report: Report): HTMLElement | null {
@@ -61,11 +71,12 @@ export function job(report: Report): HTMLElement | null {
   return card("job", "Job", el("dl", { class: "facts" }, ...known.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)])));
 }
 
-/** Which of the cuts of a program the page shows, and what became of the others. */
-export function program(of: Program): HTMLElement | null {
-  const { cuts = [], other_features: features = [], cuts_left_out: left = 0 } = of;
+/** Which of the cuts of a program the page shows, and what became of the others; `here` are the contours of the page by name. */
+export function program(of: Program, here: string[] = []): HTMLElement | null {
+  const { cuts = [], other_features: others = [], cuts_left_out: left = 0 } = of;
+  const features = others.filter((name) => !here.includes(name));
   if (cuts.length === 0) return null;
-  const words = { shown: "this page", corrected: "same correction", unchanged: "stays as it is", elsewhere: NO_VALUE };
+  const words = { shown: here.length ? "this contour" : "this page", corrected: "same correction", unchanged: "stays as it is", elsewhere: NO_VALUE };
   const rows = cuts.map((cut) => {
     const lines = cut.first_line === cut.last_line ? String(cut.first_line) : `${cut.first_line}–${cut.last_line}`;
     const became = cut.became === "shown" ? el("strong", {}, words.shown) : words[cut.became];

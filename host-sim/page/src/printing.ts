@@ -1,10 +1,10 @@
 /** Paper: light colours, the whole part, both passes, the cutter where it stands, a head and a number on every sheet; and back. */
 
+import type { ContourView } from "./contour";
 import type { Report } from "./data";
 import { el } from "./dom";
 import type { Stage } from "./stage";
-import type { Shown, Store } from "./state";
-import type { Traces } from "./traces";
+import type { Shown } from "./state";
 
 /** A text as CSS writes it: whatever is no letter or digit as its number. */
 function quoted(text: string): string {
@@ -12,7 +12,7 @@ function quoted(text: string): string {
 }
 
 /** What stands on the margin of every sheet. */
-function sheets(report: Report): HTMLStyleElement {
+export function sheets(report: Report): HTMLStyleElement {
   const { name, serial, drawing } = report.part ?? {};
   const part = [name ?? (serial || drawing ? "" : report.title), drawing && `drawing ${drawing}`, serial && `serial ${serial}`].filter(Boolean).join(" · ");
   const program = report.program ? [report.program.name, report.program.crc32 && `CRC-32 ${report.program.crc32}`].filter(Boolean).join(" · ") : "";
@@ -39,18 +39,31 @@ function pictureHeight(stage: Stage): number {
   return Math.max(PICTURE.least, Math.min(PICTURE.most, Math.floor(room / all.length)));
 }
 
-export function printing(report: Report, stage: Stage, store: Store, traces: Traces | null, recolour: () => void, both: boolean): void {
+/** Paper is light and shows every warning; what is returned makes the page again what it was. */
+export function onPaper(): () => void {
+  const root = document.documentElement;
+  const { theme } = root.dataset;
+  const opened = [...document.querySelectorAll<HTMLDetailsElement>("details.warnings:not([open])")];
+  root.dataset.theme = "light";
+  root.dataset.printing = "yes";
+  for (const details of opened) details.open = true;
+  return () => {
+    delete root.dataset.printing;
+    if (theme) root.dataset.theme = theme;
+    else delete root.dataset.theme;
+    for (const details of opened) details.open = false;
+  };
+}
+
+/** The page of one contour. */
+export function printing(report: Report, { stage, store, traces, recolour, several }: ContourView): void {
   const root = document.documentElement;
   document.head.append(sheets(report));
-  let kept: { theme: string | undefined; opened: HTMLDetailsElement[]; shown: Shown; range: [number, number] | null; cx: number; cy: number; scale: number } | null = null;
+  let kept: { back: () => void; shown: Shown; range: [number, number] | null; cx: number; cy: number; scale: number } | null = null;
   window.addEventListener("beforeprint", () => {
     const { cx, cy, scale } = stage.view;
-    const opened = [...document.querySelectorAll<HTMLDetailsElement>("details.warnings:not([open])")];
-    kept = { theme: root.dataset.theme, opened, shown: store.state.shown, range: store.state.range, cx, cy, scale };
-    root.dataset.theme = "light";
-    root.dataset.printing = "yes";
-    store.set({ playing: false, range: null, ...(both ? { shown: "both" } : {}) });
-    for (const details of opened) details.open = true;
+    kept = { back: onPaper(), shown: store.state.shown, range: store.state.range, cx, cy, scale };
+    store.set({ playing: false, range: null, ...(several ? { shown: "both" } : {}) });
     stage.view.fit();
     root.style.setProperty("--paper-stage", `${pictureHeight(stage)}px`);
     stage.layout(3);
@@ -61,11 +74,8 @@ export function printing(report: Report, stage: Stage, store: Store, traces: Tra
   });
   window.addEventListener("afterprint", () => {
     if (!kept) return;
-    delete root.dataset.printing;
+    kept.back();
     root.style.removeProperty("--paper-stage");
-    if (kept.theme) root.dataset.theme = kept.theme;
-    else delete root.dataset.theme;
-    for (const details of kept.opened) details.open = false;
     store.set({ shown: kept.shown, range: kept.range });
     stage.layout();
     Object.assign(stage.view, { cx: kept.cx, cy: kept.cy, scale: kept.scale });

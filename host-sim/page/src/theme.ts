@@ -10,7 +10,7 @@ export function current(): Theme {
   return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 }
 
-export function themeButton(changed: () => void): HTMLElement {
+function themeButton(changed: () => void): HTMLElement {
   const button = el("button", { type: "button", id: "theme" });
   const show = () => { button.textContent = current() === "dark" ? "light" : "dark"; button.setAttribute("aria-label", `Switch to ${button.textContent} colours`); };
   button.addEventListener("click", () => {
@@ -21,4 +21,11 @@ export function themeButton(changed: () => void): HTMLElement {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { show(); changed(); });
   show();
   return button;
+}
+
+/** The buttons of the page: light or dark, print. */
+export function tools(changed: () => void): HTMLElement {
+  const print = el("button", { type: "button" }, "print");
+  print.addEventListener("click", () => window.print());
+  return el("div", { class: "buttons tools" }, themeButton(changed), print);
 }

@@ -77,6 +77,12 @@ export class Traces {
     this.quiet = false;
   }
 
+  /** Ends what the plots have begun outside of their elements. */
+  close(): void {
+    for (const { plot } of this.shown) plot.destroy();
+    this.shown = [];
+  }
+
   get count(): number {
     return this.shown.length;
   }

@@ -6,7 +6,7 @@
  * Limit: only crossings of the path with itself within two radii are looked for, and only at the first so many corners.
  */
 
-import type { Model } from "./model";
+import type { Path } from "./model";
 import type { Line } from "./outline";
 
 /** Comparisons at most: a fraction of a second. */
@@ -19,7 +19,7 @@ export interface Trimmed extends Line {
   gone: Uint8Array;
 }
 
-export function trimmed(model: Model, line: Line, distance: number): Trimmed {
+export function trimmed(model: Path, line: Line, distance: number): Trimmed {
   const result = { x: line.x.slice(), y: line.y.slice(), gone: new Uint8Array(model.count) };
   if (!(distance > 0)) return result;
   let work = 0;
@@ -35,7 +35,7 @@ export function trimmed(model: Model, line: Line, distance: number): Trimmed {
 }
 
 /** Whether the line runs against the path from the sample before to this one. */
-function backwards(model: Model, line: Line, i: number): boolean {
+function backwards(model: Path, line: Line, i: number): boolean {
   const dx = line.x[i] - line.x[i - 1];
   const dy = line.y[i] - line.y[i - 1];
   // Direction of travel, at a right angle to the mean of both normals: also where samples stand on one spot.
@@ -45,12 +45,12 @@ function backwards(model: Model, line: Line, i: number): boolean {
 }
 
 /** The samples within an arc length of one. */
-function reach(model: Model, i: number, length: number): [number, number] {
+function reach(model: Path, i: number, length: number): [number, number] {
   const s = model.s.values;
   return [model.indexAt(s[i] - length), model.indexAt(s[i] + length)];
 }
 
-function tooNear(model: Model, line: Line, k: number, first: number, last: number, distance: number): boolean {
+function tooNear(model: Path, line: Line, k: number, first: number, last: number, distance: number): boolean {
   const least = (distance - SLACK) ** 2;
   for (let j = first; j <= last; j++) {
     if ((model.x.values[j] - line.x[k]) ** 2 + (model.y.values[j] - line.y[k]) ** 2 < least) return true;

@@ -8,6 +8,7 @@ import "./layout.test.mjs";
 import "./letters.test.mjs";
 import "./cutter.test.mjs";
 import "./learn.test.mjs";
+import "./several.test.mjs";
 import "./page.test.mjs";
 import "./partial.test.mjs";
 import "./inspection.test.mjs";

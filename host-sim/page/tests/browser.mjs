@@ -68,6 +68,20 @@ export async function dataOf(name) {
   return JSON.parse(PLACE.exec(await readFile(`${pages}${name}/report.html`, "utf8"))[2]);
 }
 
+/** The contours of the plate, in the order of its program. */
+export const PLATE = ["pocket", "island", "window", "bore", "outside"];
+
+/** Pages of single contours, as the program wrote them, on one page; its data. */
+export function several(contours, title = "Cover plate") {
+  const [{ page: { kind, by } }] = contours;
+  return { version: 1, kind, title, by, contours };
+}
+
+/** The plate of the program with all of its contours, of one kind. */
+export async function plate(kind) {
+  return several(await Promise.all(PLATE.map(async (name) => ({ name, page: await dataOf(`plate/${name}/${kind}`) }))));
+}
+
 /** A table the program wrote beside a page. */
 export async function table(name) {
   return parse(await readFile(`${pages}${name}`, "utf8"));

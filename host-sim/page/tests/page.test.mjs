@@ -1,19 +1,12 @@
 // The page as a file: from disk, without network, in both themes, on a phone, on paper, for everybody.
 import assert from "node:assert/strict";
-import { readFile, stat } from "node:fs/promises";
-import { createRequire } from "node:module";
+import { stat } from "node:fs/promises";
 import { test } from "node:test";
 import { open, PHONE, pictures, report } from "./browser.mjs";
+import { violations } from "./checks.mjs";
 
-const axe = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 /** A page of every command, and the two parts everybody tries first. */
 const EVERY = ["demo/corner", "demo/pocket", "simulate-core", "simulate-plant", "island", "inspect", "correct", "learn"];
-
-async function violations(page) {
-  await page.evaluate(axe);
-  const result = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ["violations"] }));
-  return result.violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target.join(" ")).join(", ")}`);
-}
 
 for (const name of EVERY) {
   const picture = (kind) => `${pictures}${name.replaceAll("/", "-")}-${kind}.png`;

@@ -10,7 +10,7 @@ import assert from "node:assert/strict";
 import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { browser, launch, open, PHONE, pictures, report, show } from "./browser.mjs";
+import { browser, launch, open, PHONE, pictures, plate, report, show, write } from "./browser.mjs";
 
 const reference = fileURLToPath(new URL("reference/", import.meta.url));
 const readme = fileURLToPath(new URL("../../../docs/pictures/", import.meta.url));
@@ -33,7 +33,11 @@ const VIEWS = [
   ["demo/corner", "light", SIZE, "before", 480, true], ["demo/corner", "side-by-side", SIZE, "both", 430],
   ["demo/pocket", "light", SIZE, "before", 560], ["demo/pocket", "both", SIZE, "both", 560, true], ["demo/pocket", "dark", { ...SIZE, colorScheme: "dark" }, "both", 560],
   ["demo/pocket", "phone", PHONE, "after", 560], ["island", "light", SIZE, null, 1500], ["inspect", "light", SIZE, null, null],
+  ["several", "light", SIZE, null, null, true],
 ];
+
+/** A page of the program, or those of the plate in one. */
+const fileOf = async (name) => (name === "several" ? write("several", await plate("correct")) : report(name));
 
 let made;
 
@@ -111,7 +115,7 @@ async function shot(page, [, , , shown, place]) {
 for (const view of VIEWS) {
   const [name, kind, options, , , shownInReadme] = view;
   test(`${name} looks as before: ${kind}`, async (t) => {
-    const { page, close } = await open(await report(name), options);
+    const { page, close } = await open(await fileOf(name), options);
     const now = await shot(page, view);
     await close();
     const file = `${name.replaceAll("/", "-")}-${kind}.png`;

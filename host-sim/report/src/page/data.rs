@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use super::{Contour, Heights, Inspected, JobFacts, Limits, Outlines, Point, Program};
+use super::{Contour, Heights, Inspected, JobFacts, Limits, Outcome, Outlines, Point, Program};
 
 /// Which command made the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -54,6 +54,9 @@ pub struct Page {
     /// What was identified.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub parameters: Vec<Parameter>,
+    /// The contour in a line, for a page of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outcome: Option<Outcome>,
     /// Head figures.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub results: Vec<Figure>,
@@ -89,6 +92,7 @@ impl Page {
             heights: None,
             points: Vec::new(),
             parameters: Vec::new(),
+            outcome: None,
             results: Vec::new(),
             tolerance_mm: None,
             limits: None,

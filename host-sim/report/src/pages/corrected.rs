@@ -11,7 +11,9 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use super::expected::judge;
 use super::{of_pass, page_warnings};
-use crate::page::{Along, Fact, Figure, Kind, Page, Parameter, PredictedPasses, Program, Words, points, predicted};
+use crate::page::{
+    Along, Fact, Figure, Kind, Page, Parameter, PredictedPasses, Program, Words, known, points, predicted,
+};
 
 /// Which part the probe points are of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +66,12 @@ pub(super) fn of_correction(
     page.heights = along.heights;
     page.points = points;
     page.parameters = parameters(&done.summary);
+    if let Some(outcome) = &mut page.outcome {
+        outcome.before_mm = known(done.summary.max_error_before_mm);
+        outcome.after_mm = known(done.summary.max_error_after_mm);
+        outcome.sigma_mm = known(done.summary.sigma_at_max_error_mm);
+        outcome.gouge_mm = known(done.summary.worst_gouge_mm);
+    }
     page.results = figures(&done.summary, &["largest error without correction", "largest error with it"]);
     page.warnings = page_warnings(
         pass,

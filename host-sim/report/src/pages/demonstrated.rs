@@ -7,7 +7,7 @@ use truepath_job::pass::Pass;
 use truepath_plant::{Milled, Score, judged_trim_mm};
 
 use super::corrected::{Points, corrected};
-use crate::page::{Fact, Figure, Page, milled_twice};
+use crate::page::{Fact, Figure, Page, known, milled_twice};
 
 /// The page of a part that was cut without and with its correction.
 ///
@@ -27,6 +27,13 @@ pub fn demonstrated(
     let trim_mm = judged_trim_mm(first.cut.radius_mm);
     if let Some(contour) = &mut page.contour {
         page.heights = milled_twice(contour, [(first, labels[0]), (second, labels[1])], trim_mm);
+    }
+    if let Some(outcome) = &mut page.outcome {
+        outcome.before_mm = known(before.max_error_mm);
+        outcome.after_mm = known(after.max_error_mm);
+        outcome.gouge_mm = known(after.gouge_mm.max(0.0));
+        // That of the points is of what was foretold.
+        outcome.sigma_mm = None;
     }
     page.results = figures(before, after, done);
     // What was foretold of a part that has been cut is not its verdict.

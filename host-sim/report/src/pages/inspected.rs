@@ -9,7 +9,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use super::{of_pass, page_warnings};
 use crate::InspectSummary;
-use crate::page::{Figure, InputFile, Inspected, Kind, Limits, Page, State, Verdict, judged_points, nominal};
+use crate::page::{Figure, InputFile, Inspected, Kind, Limits, Page, State, Verdict, judged_points, known, nominal};
 
 /// The page of an inspection. `warnings` are those of the summary without one for every reading set aside: these stand in the
 /// table of points.
@@ -38,6 +38,10 @@ pub fn inspected(
     }
     let (points, left_out) = judged_points(pass, measurement, &judgement.points);
     page.points = points;
+    if let Some(outcome) = &mut page.outcome {
+        outcome.measured_mm = known(summary.max_error_mm.abs().max(summary.min_error_mm.abs()));
+        outcome.gouge_mm = known((-summary.min_error_mm).max(0.0));
+    }
     page.results = figures(summary, measurement, judgement.decimals);
     page.verdict = Some(Verdict {
         state: match summary.verdict.state {

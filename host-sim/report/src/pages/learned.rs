@@ -10,7 +10,7 @@ use truepath_job::pass::Pass;
 
 use super::corrected::{Points, figures, of_correction};
 use crate::page;
-use crate::page::{Fact, Figure, Kind, Page, PredictedPasses, Words, predicted, subject};
+use crate::page::{Fact, Figure, Kind, Page, PredictedPasses, Words, known, predicted, subject};
 
 /// The page of what was learned.
 ///
@@ -42,6 +42,9 @@ pub fn learned(
     page.title =
         format!("{}: part {} measured, correction of part {}", subject(pass), verdict.part, next_part(verdict));
     page.results = came_out(summary).into_iter().chain(figures(&done.summary, &names(verdict))).collect();
+    if let Some(outcome) = &mut page.outcome {
+        outcome.measured_mm = known(verdict.measured_error_mm.max_mm);
+    }
     if let Some(job) = &mut page.job {
         job.facts.extend(verdict.used_again.map(|again| Fact::new("next part", again.words())));
     }

@@ -11,7 +11,7 @@ mod simulated;
 
 use truepath_job::pass::Pass;
 
-use crate::page::{JobFacts, Kind, Outlines, Page, Program, subject};
+use crate::page::{JobFacts, Kind, Outcome, Outlines, Page, Program, subject};
 
 pub use corrected::{Points, corrected};
 pub use demonstrated::demonstrated;
@@ -28,6 +28,7 @@ fn of_pass(kind: Kind, title: String, pass: &Pass) -> Page {
     page.program = Some(Program::of(pass, None));
     page.job = Some(JobFacts::of(pass));
     page.outlines = Outlines::of(pass);
+    page.outcome = Some(Outcome::of(pass));
     page
 }
 

@@ -4,13 +4,16 @@ use truepath_job::pass::Pass;
 
 use super::{of_pass, page_warnings};
 use crate::SimulateSummary;
-use crate::page::{Along, Fact, Figure, Kind, Page};
+use crate::page::{Along, Fact, Figure, Kind, Page, known};
 
 /// The page of a simulated pass.
 pub fn simulated(pass: &Pass, along: Along, summary: &SimulateSummary) -> Page {
     let mut page = of_pass(Kind::Simulate, "Pass of".to_owned(), pass);
     page.contour = Some(along.contour);
     page.heights = along.heights;
+    if let Some(outcome) = &mut page.outcome {
+        outcome.before_mm = known(summary.max_error_mm);
+    }
     page.results = figures(summary);
     page.warnings = page_warnings(pass, None, summary.warnings.iter().cloned().chain(along.note));
     if let Some(job) = &mut page.job {

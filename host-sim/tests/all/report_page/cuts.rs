@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use truepath::command::{correct, inspect, simulate};
+use truepath_ground::units::rounded;
 use truepath_job::job::{JobFile, Which};
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
@@ -62,6 +63,14 @@ fn a_page_of_one_of_several_depths_names_it_and_lists_the_others() {
         for key in ["role", "first_line", "last_line", "z_mm", "length_mm", "why"] {
             assert_eq!(cut[key], told[key]);
         }
+    }
+    // In a line, as a page of several contours tells it.
+    let outcome = &page["outcome"];
+    assert_eq!((&outcome["lines"], &outcome["z_mm"]), (&serde_json::json!([86, 94]), &serde_json::json!(-12.0)));
+    assert_eq!(outcome["length_mm"], summary["length_mm"]);
+    assert_eq!(outcome["before_mm"].as_f64().unwrap(), rounded(summary["max_error_mm"].as_f64().unwrap(), 6));
+    for none in ["measured_mm", "after_mm", "sigma_mm", "gouge_mm"] {
+        assert!(outcome.get(none).is_none(), "{none}");
     }
 }
 

@@ -63,6 +63,19 @@ fn the_part_as_milled_stands_between_the_uncorrected_one_and_the_next() {
     let figures = page["results"].as_array().unwrap();
     assert_eq!(figures.iter().find(|f| f["name"] == "part 2, whole contour").unwrap()["value"], largest);
 
+    // In a line, as a page of several contours tells it.
+    let outcome = &page["outcome"];
+    for (name, told) in [
+        ("before_mm", &summary["max_error_before_mm"]),
+        ("measured_mm", &summary["measured_error_mm"]["max_mm"]),
+        ("after_mm", &summary["max_error_after_mm"]),
+        ("sigma_mm", &summary["sigma_at_max_error_mm"]),
+        ("gouge_mm", &summary["worst_gouge_mm"]),
+    ] {
+        assert!(told.as_f64().is_some_and(f64::is_finite), "{name}: {summary}");
+        assert!((outcome[name].as_f64().unwrap() - told.as_f64().unwrap()).abs() < 1e-6, "{name}");
+    }
+
     // What the page says of part 2 is what the virtual machine has cut, and far from the part without correction.
     let truth = milled.mean_errors();
     let length = milled.path.length_mm;

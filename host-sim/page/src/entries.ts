@@ -1,0 +1,99 @@
+/** The contours of a page of several: their names, where they lie, how they came out, and which is the worst. */
+
+import { checked, drawn } from "./contour";
+import type { Outcome, Report, Several } from "./data";
+import { decimalsTelling, limitsOf } from "./limits";
+import { Path } from "./model";
+import { offsetOf, outline, type Line } from "./outline";
+import { trimmed } from "./trim";
+
+/** A contour of the page. */
+export interface Entry {
+  /** Place in the order of the program, from 0. */
+  index: number;
+  name: string;
+  report: Report;
+  outcome: Outcome;
+  /** Its nominal wall, and the path of the cutter's centre. */
+  wall: Line[];
+  path: Line[];
+  /** Whether the wall ends where it starts. */
+  closed: boolean;
+}
+
+type Size = "before_mm" | "measured_mm" | "after_mm" | "sigma_mm" | "gouge_mm";
+
+/** A figure of every contour: head of its column, name among the head figures. */
+export interface Figure { key: Size; head: string; name: string }
+
+const FIGURES: Record<Report["kind"], Figure[]> = {
+  simulate: [{ key: "before_mm", head: "largest error mm", name: "largest wall error" }],
+  correct: [
+    { key: "before_mm", head: "before mm", name: "largest error without correction" },
+    { key: "after_mm", head: "after mm", name: "largest error with it" },
+  ],
+  learn: [
+    { key: "before_mm", head: "uncorrected mm", name: "uncorrected, largest error" },
+    { key: "measured_mm", head: "measured mm", name: "measured part, largest error" },
+    { key: "after_mm", head: "next mm", name: "next part, largest error" },
+  ],
+  inspect: [{ key: "measured_mm", head: "measured mm", name: "largest deviation" }],
+};
+const OTHERS: Figure[] = [
+  { key: "sigma_mm", head: "σ mm", name: "standard deviation there" },
+  { key: "gouge_mm", head: "deepest cut mm", name: "deepest cut" },
+];
+
+/** The figures that some contour has. */
+export function figuresOf({ kind }: Several, entries: Entry[]): Figure[] {
+  return [...FIGURES[kind], ...OTHERS].filter(({ key }) => entries.some(({ outcome }) => outcome[key] !== undefined));
+}
+
+/** The figure that contours are ranked by until the reader chooses another: the error of what the page is about. */
+export function ranking(kind: Report["kind"]): Figure {
+  return FIGURES[kind][FIGURES[kind].length - 1];
+}
+
+export function entriesOf(several: Several): Entry[] {
+  const taken = new Set<string>();
+  return several.contours.map(({ name: given, page }, index) => {
+    let name = given;
+    for (let k = 2; taken.has(name); k++) name = `${given} (${k})`;
+    taken.add(name);
+    return { index, name, outcome: page.outcome ?? {}, ...read(page) };
+  });
+}
+
+/** A contour that cannot be read is not drawn here; where it is shown it is said why. */
+function read(page: Report): Pick<Entry, "report" | "wall" | "path" | "closed"> {
+  try {
+    const report = checked(page);
+    return { report, ...lines(report) };
+  } catch {
+    return { report: page, wall: [], path: [], closed: false };
+  }
+}
+
+/** Worst first, those of which nothing is known last. */
+export function worstFirst(entries: Entry[], { key }: Figure): Entry[] {
+  const size = ({ outcome }: Entry) => outcome[key] ?? -1;
+  return [...entries].sort((a, b) => size(b) - size(a) || a.index - b.index);
+}
+
+/** Decimals that tell every deviation from the limits it is held against. */
+export function decimalsOf(entries: Entry[]): number {
+  return Math.max(4, ...entries.filter(({ report }) => report.kind === "inspect").map(({ report }) => decimalsTelling(report.points ?? [], limitsOf(report), 4)));
+}
+
+/** How near to its start a path ends that is closed: mm, or as a share of the radius of the cutter. */
+const CLOSED = 0.01;
+
+function lines(report: Report): Pick<Entry, "wall" | "path" | "closed"> {
+  const given = outline(report.outlines?.wall, "wall") ?? [];
+  if (!report.contour || !drawn(report)) return { wall: given, path: [], closed: false };
+  const path = new Path(report, report.contour);
+  const [x, y] = [path.x.values, path.y.values];
+  const last = path.count - 1;
+  const wall = trimmed(path, offsetOf(path, path.radius), path.radius);
+  return { wall: [wall], path: [{ x, y }], closed: Math.hypot(x[last] - x[0], y[last] - y[0]) < Math.max(CLOSED, path.radius * CLOSED) };
+}
