@@ -72,14 +72,6 @@ fn embedded(data: &impl Serialize) -> Result<Vec<u8>, Failure> {
     Ok([before, TAGS[0], &data, TAGS[1], after].concat().into_bytes())
 }
 
-/// The page of several contours.
-///
-/// # Errors
-/// As [`render`].
-pub fn render_all(contours: &[(String, Page)]) -> Result<Vec<u8>, Failure> {
-    contours.first().map_or_else(|| Err(Failure::Internal("a page of no contour".to_owned())), |(_, page)| render(page))
-}
-
 #[cfg(test)]
 mod tests {
     use super::{PAGE, PLACE, TAGS, render, render_all};
