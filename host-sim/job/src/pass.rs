@@ -84,14 +84,28 @@ impl Pass {
             return Ok(vec![Self::of_plan(job, program, None, drawn.as_ref())?]);
         }
         let several = plans.len() > 1;
-        let pass = |plan: Plan| {
+        let (mut passes, mut refused, mut left) = (Vec::new(), None, Vec::new());
+        for plan in plans {
             let mut job = job.clone();
             if several {
                 job.which.feature.clone_from(&plan.id);
             }
-            Self::of_plan(job, program.clone(), Some(plan), drawn.as_ref())
-        };
-        plans.into_iter().map(pass).collect()
+            let name = plan.id.clone().unwrap_or_default();
+            match Self::of_plan(job, program.clone(), Some(plan), drawn.as_ref()) {
+                Ok(pass) => passes.push(pass),
+                Err(Failure::Input(error)) if several => {
+                    left.push(format!("{name} is left as it is: {}: {}", error.code(), error.found()));
+                    refused = refused.or(Some(Failure::Input(error)));
+                }
+                Err(failure) => return Err(failure),
+            }
+        }
+        // What is wrong with all of them is wrong with job or program.
+        match passes.first_mut() {
+            Some(first) => first.warnings.extend(left),
+            None => return Err(refused.unwrap_or_else(|| Failure::Internal("a program of no contour".to_owned()))),
+        }
+        Ok(passes)
     }
 
     /// The other contours of the program that the job's cutter finishes; none where that is not certain.

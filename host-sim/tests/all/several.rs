@@ -270,3 +270,13 @@ fn cutters_and_roughing_the_other_way_are_asked_about() {
     assert!(said.contains("G071") && said.contains("roughing of the other"), "{said}");
     desk.call("probe job.toml --feature contour-2 --dialect linuxcnc -o verify.nc");
 }
+
+#[test]
+fn a_contour_that_cannot_be_read_does_not_keep_the_others_from_being_corrected() {
+    // The island is cut at a feed per revolution of a spindle that stands.
+    let island = POCKET_AND_ISLAND
+        .replace("X28 Y31\nG1 Z-7 F300\nG3 X30 Y29 I2 J0 F700", "M5\nX28 Y31\nG1 Z-7 F300\nG3 X30 Y29 I2 J0 F700\nS0");
+    let desk = Desk::new(&island);
+    let plan = desk.call("probe job.toml --dialect linuxcnc -o verify.nc");
+    assert!(plan["warnings"].to_string().contains("contour-2 is left as it is"), "{}", plan["warnings"]);
+}
