@@ -78,9 +78,7 @@ export function several(contours, title = "Cover plate") {
 }
 
 /** The plate of the program with all of its contours, of one kind. */
-export async function plate(kind) {
-  return several(await Promise.all(PLATE.map(async (name) => ({ name, page: await dataOf(`plate/${name}/${kind}`) }))));
-}
+export const plate = (kind) => dataOf(`plate/${kind}`);
 
 /** A table the program wrote beside a page. */
 export async function table(name) {

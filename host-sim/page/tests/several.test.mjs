@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { availableParallelism, loadavg } from "node:os";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { dataOf, open, PHONE, pictures, PLATE, plate, several, show, write } from "./browser.mjs";
+import { open, PHONE, pictures, PLATE, plate, several, show, write } from "./browser.mjs";
 import { faults, listen, named, settled, violations } from "./checks.mjs";
 import { numbers } from "./columns.mjs";
 
@@ -98,8 +98,10 @@ for (const kind of KINDS) {
         document.querySelector("#deviations svg")?.querySelectorAll(".mark").length, [...document.querySelectorAll(".stage")].find((stage) => stage.checkVisibility()).dataset.view];
     });
     const own = [];
-    for (const name of PLATE) {
-      const { page, close } = await open(await write("own", await dataOf(`plate/${name}/${kind}`)));
+    const { contours } = await plate(kind);
+    assert.deepEqual(contours.map(({ name }) => name), PLATE);
+    for (const contour of contours) {
+      const { page, close } = await open(await write("own", contour.page));
       own.push(await shown(page));
       await close();
     }

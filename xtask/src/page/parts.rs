@@ -2,7 +2,7 @@
 //!
 //! The demonstration; a pass predicted and one cut by the virtual machine; an island with its wall on the left, cut
 //! conventionally, corrected, learnt from and inspected; a plate with five contours, touched by the virtual machine, corrected,
-//! learnt from and inspected one by one; and a contour of ten metres with 100,000 samples.
+//! learnt from and inspected together; and a contour of ten metres with 100,000 samples.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -15,9 +15,8 @@ use crate::step::Failure;
 
 /// Job, program, machine and touches of the island, relative to the root.
 const ISLAND: &str = "host-sim/page/tests/parts/island";
-/// Job, program and machine of the plate, and the names of its contours.
+/// Job, program and machine of the plate.
 const PLATE: &str = "host-sim/page/tests/parts/plate";
-const PLATE_CONTOURS: [&str; 5] = ["pocket", "island", "window", "bore", "outside"];
 /// Radius, depth and number of the lobes of the long contour, mm: a star, ten metres long to a few percent.
 const STAR: (f64, f64, f64) = (1480.0, 60.0, 12.0);
 /// Length of its lines, mm.
@@ -69,24 +68,22 @@ pub fn write() -> Result<PathBuf, Failure> {
     truepath(&[word("inspect"), force, job, word("--probe"), first], "inspect")?;
     truepath(&[word("correct"), force, job, word("--probe"), first], "correct")?;
     truepath(&[word("learn"), force, job, word("--probe"), second, word("--from"), &pages.join("correct")], "learn")?;
-    for name in PLATE_CONTOURS {
-        plate(name, &pages.join("plate").join(name), &truepath)?;
-    }
+    plate(&pages.join("plate"), &truepath)?;
     let long = pages.join("long");
     long_job(&long).map_err(|e| Failure::found(format!("{}: {e}", long.display())))?;
     truepath(&[word("simulate"), force, &long.join("job.toml")], "long")?;
     Ok(pages)
 }
 
-/// A contour of the plate the whole way: predicted, cut and touched, inspected, corrected, cut and touched again, learnt from.
-fn plate(name: &str, folder: &Path, truepath: &impl Fn(&[&Path], &str) -> Result<(), Failure>) -> Result<(), Failure> {
+/// The plate the whole way: predicted, cut and touched, inspected, corrected, cut and touched again, learnt from.
+fn plate(folder: &Path, truepath: &impl Fn(&[&Path], &str) -> Result<(), Failure>) -> Result<(), Failure> {
     let word = Path::new;
     let file = |name: &str| root().join(PLATE).join(name);
     let (job, machine) = (file("job.toml"), file("plant.toml"));
-    let of = [word("--force"), word("--feature"), word(name), &job];
+    let of = [word("--force"), &job];
     let run = |command: &str, more: &[&Path], out: &str| {
         let arguments: Vec<&Path> = [word(command)].iter().chain(&of).chain(more).copied().collect();
-        truepath(&arguments, &format!("plate/{name}/{out}"))
+        truepath(&arguments, &format!("plate/{out}"))
     };
     let (verify, corrected) = (folder.join("verify.nc"), folder.join("correct"));
     let touched = |part: &str| folder.join(part).join("probe.txt");
