@@ -89,18 +89,26 @@ impl<'d> Section<'d> {
         list.iter().map(table).collect()
     }
 
+    /// A sub-table that the file does not have, with other contents: `table`.
+    pub fn section_of(&self, key: &'static str, table: &'d DeTable<'d>) -> Section<'d> {
+        let (source, spans) = (self.source, self.spans);
+        Section { source, name: key, span: self.end(), table, asked: RefCell::default(), spans }
+    }
+
+    /// The error of a sub-table that must be there; `needs` lists what belongs in it.
+    pub fn missing_section(&self, key: &'static str, needs: &str) -> InputError {
+        self.missing_or_misspelt(
+            key,
+            format!("[{key}] is missing"),
+            &format!("a table [{key}]"),
+            format!("add [{key}] with {needs}"),
+            self.end(),
+        )
+    }
+
     /// A sub-table that must be there; `needs` lists what belongs in it.
     pub fn required_section(&self, key: &'static str, needs: &str) -> Result<Section<'d>, InputError> {
-        match self.section(key)? {
-            Some(section) => Ok(section),
-            None => Err(self.missing_or_misspelt(
-                key,
-                format!("[{key}] is missing"),
-                &format!("a table [{key}]"),
-                format!("add [{key}] with {needs}"),
-                self.end(),
-            )),
-        }
+        self.section(key)?.ok_or_else(|| self.missing_section(key, needs))
     }
 
     /// A number within limits, if the key is there.

@@ -9,6 +9,10 @@ truepath_ground::codes! {
         / "write a first line x_mm,y_mm and then one point of the surface a line, decimal points, in the order of travel",
     J027 => "the path under G41 or G42 may be the part's outline or that of the cutter's centre"
         / "write compensation = \"radius\" in [tool] when D holds the cutter's radius (the outline), \"centre\" when it holds wear or nothing",
+    J040 => "the program does not show how deep the cutter is in the stock"
+        / "write axial_depth_mm in [cut]: from the top of the stock, or from the level cut before, down to the cutter's tip",
+    J041 => "several cutters of the program may make the contour"
+        / "write number in [tool], or diameter_mm: the cutter that makes the wall to be corrected",
     K002 => "the surface of the stock does not lie along the contour, or not between wall and cutter"
         / "check frame and unit of the surface, and that it belongs to this program",
     M040 => "more probe points than are taken at once"

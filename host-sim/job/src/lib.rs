@@ -3,7 +3,10 @@
 //!
 //! | step | where |
 //! |---|---|
-//! | the job file, checked | [`job`] |
+//! | what the text of a program says of control, cutters and material | [`post`] |
+//! | the job file, checked; what it leaves open | [`job`] |
+//! | the cutter, where the contour decides it | `cutter` |
+//! | the depth of the cut, where the job does not say it | `depth` |
 //! | what a path under G41 is, where the job does not say it | `drawn` |
 //! | the cuts of a program, and which of them the job means | [`feature`] |
 //! | the surface the stock really has | [`surface`] |
@@ -13,6 +16,8 @@
 //! | what refuses a job, a program or a point, as an error with its place | [`refusal`] |
 
 pub mod codes;
+mod cutter;
+mod depth;
 mod drawn;
 pub mod feature;
 pub mod feed;
@@ -20,6 +25,7 @@ pub mod job;
 pub mod levels;
 pub mod measurement;
 pub mod pass;
+pub mod post;
 pub mod refusal;
 mod sharing;
 pub mod surface;

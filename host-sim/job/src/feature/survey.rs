@@ -10,7 +10,7 @@ use truepath_ground::diagnostics::{InputError, Source};
 use crate::job::JobFile;
 
 /// Different runs that are compared with each other at most; the time grows with the square of their number.
-pub(super) const LARGEST_SEARCH: usize = 1_000;
+pub(crate) const LARGEST_SEARCH: usize = 1_000;
 
 /// The length along which a correction comes and goes.
 const LEAD: Offset = Offset::from_um(2_000);

@@ -10,11 +10,16 @@ use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::Section;
 use truepath_ground::limits::Limits;
 
+use super::open::Assumed;
+
 /// Standard deviation of a reading when the job does not say: 2 µm.
 const DEFAULT_NOISE: Offset = Offset::from_um(2);
 
+/// What a file is read as when neither job nor command line names a format and its contents show none.
+const DEFAULT_FORMAT: Format = Format::LinuxcncLog;
+
 /// Formats by name.
-const FORMATS: [(&str, Format); 6] = [
+pub const FORMATS: [(&str, Format); 6] = [
     ("linuxcnc", Format::Linuxcnc),
     ("linuxcnc-log", Format::LinuxcncLog),
     ("grbl", Format::Grbl),
@@ -165,13 +170,17 @@ pub fn columns(text: &str) -> Option<Columns> {
 }
 
 /// What the table says.
-pub(super) fn probe(source: &Source, section: &Section<'_>) -> Result<Probe, InputError> {
+pub(super) fn probe(source: &Source, section: &Section<'_>, assumed: &mut Vec<Assumed>) -> Result<Probe, InputError> {
     let ball_diameter = section.required_number("ball_diameter_mm", Limits::within("0.1", "50", "mm"))?.as_mm();
-    let names = FORMATS.map(|(name, _)| format!("\"{name}\"")).join(", ");
-    let format = section.choice("format", &FORMATS)?.ok_or_else(|| section.missing("format", &names))?;
-    let z_reference = section
-        .choice("z_reference", &REFERENCES)?
-        .ok_or_else(|| section.missing("z_reference", "\"centre\" or \"tip\""))?;
+    // Without a format the file itself shows it; keys of columns say that it is one of columns.
+    let of_columns = LAYOUT.into_iter().any(|key| section.value(key).is_some());
+    let format = section.choice("format", &FORMATS)?;
+    let format = format.unwrap_or(if of_columns { Format::Columns } else { DEFAULT_FORMAT });
+    let z_reference = section.choice("z_reference", &REFERENCES)?.unwrap_or_else(|| {
+        let why = "the probe's length is set to the middle of the ball, as most controls calibrate it".to_owned();
+        assumed.push(Assumed { key: "probe.z_reference", value: "\"centre\"".to_owned(), why, line: None });
+        ZReference::Centre
+    });
     let noise = section.number("noise_mm", Limits::above("0", "0.1", "mm"))?.map_or(DEFAULT_NOISE, Decimal::as_mm);
     let work_offset = work_offset(source, section, format)?;
     let layout = layout(source, section, format)?;
