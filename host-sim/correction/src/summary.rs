@@ -8,6 +8,7 @@ use truepath_core::units::{Offset, Real};
 use truepath_ground::units::{float, mm};
 use truepath_job::feature::FeatureSummary;
 use truepath_job::feed::{FeedSummary, Unscheduled};
+use truepath_job::job::Assumed;
 use truepath_job::pass::{Pass, milling_name};
 use truepath_program::Difference;
 
@@ -85,6 +86,9 @@ pub struct CorrectSummary {
     /// The feature it is about; absent in a program with one cut and no names.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feature: Option<FeatureSummary>,
+    /// What the job does not say and was taken from the program or a default.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub assumed: Vec<Assumed>,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Each of several contours that were corrected together, of which the rest is the worst or the sum; absent for one.
@@ -201,6 +205,7 @@ pub fn correct_summary(
         program: None,
         feed: None,
         feature: None,
+        assumed: pass.job.assumed.clone(),
         warnings,
         contours: Vec::new(),
     }

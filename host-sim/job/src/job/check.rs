@@ -85,10 +85,8 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     let path = folder.join(program.0);
     let open = Open::new(&path);
     let mut assumed = Vec::new();
-    let dialect = match root.choice("dialect", &DIALECTS)? {
-        Some(dialect) => dialect,
-        None => open.dialect(&mut assumed),
-    };
+    let stated_dialect = root.choice("dialect", &DIALECTS)?;
+    let dialect = stated_dialect.unwrap_or_else(|| open.dialect(&mut assumed));
     let decimal = root.choice("decimal", &DECIMALS)?.unwrap_or_default();
     let arc_centres = root.choice("arc_centres", &ARC_CENTRES)?.unwrap_or_default();
     let tool_section = match root.section("tool")? {
@@ -164,6 +162,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         assumed,
         cutters,
         open_depth: !deep,
+        probe_control: open.probe_control(stated_dialect),
         spans: spans.into_inner(),
         source: source.clone(),
     })

@@ -82,6 +82,8 @@ pub struct JobFile {
     /// Cutters that the program names, where the job says neither diameter nor number and the contour has to decide; else
     /// empty.
     pub cutters: Vec<ToolNote>,
+    /// The control as `--dialect` of `truepath probe` names it; `None` where it is not known or none is written for it.
+    pub probe_control: Option<&'static str>,
     /// Whether the depth of the cut is still to be found with the contour.
     pub open_depth: bool,
     source: Source,

@@ -34,7 +34,7 @@ impl Assumed {
     /// What is told of it.
     pub fn text(&self) -> String {
         let Self { key, value, why, .. } = self;
-        format!("assumed {key} = {value}: {why}; the job can say it or otherwise")
+        format!("assumed {key} = {value}: {why}")
     }
 }
 
@@ -81,6 +81,17 @@ impl Open {
         let (value, why) = (quoted(dialect_name(control.dialect)), sign(&control.why, control.line));
         assumed.push(Assumed { key: "dialect", value, why, line: Some(control.line).filter(|line| *line > 0) });
         control.dialect
+    }
+
+    /// `--dialect` of `truepath probe` for the control of the program.
+    pub(super) fn probe_control(&self, stated: Option<Dialect>) -> Option<&'static str> {
+        match stated {
+            Some(Dialect::Linuxcnc) => Some("linuxcnc"),
+            Some(Dialect::Fanuc) => Some("fanuc"),
+            Some(Dialect::Haas) => Some("haas"),
+            Some(_) => None,
+            None => self.post()?.control.as_ref()?.probe,
+        }
     }
 
     /// The cutter of a number, or the only one that is named.
@@ -138,9 +149,8 @@ impl ToolNote {
 pub(super) fn usual_machine(assumed: &mut Vec<Assumed>) -> Machine {
     let why =
         "between a router and a heavy machining centre, known to a factor of two and a half; the points correct it";
-    for key in ["machine.stiffness_x_n_per_mm", "machine.stiffness_y_n_per_mm"] {
-        assumed.push(Assumed { key, value: USUAL_STIFFNESS.to_string(), why: why.to_owned(), line: None });
-    }
+    let value = USUAL_STIFFNESS.to_string();
+    assumed.push(Assumed { key: "machine.stiffness_x_n_per_mm", value, why: format!("{why}; y the same"), line: None });
     let stiffness = Real::from_int(USUAL_STIFFNESS);
     Machine { stiffness_x: stiffness, stiffness_y: stiffness, stated: false }
 }
