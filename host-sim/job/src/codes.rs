@@ -13,6 +13,8 @@ truepath_ground::codes! {
         / "write axial_depth_mm in [cut]: from the top of the stock, or from the level cut before, down to the cutter's tip",
     J041 => "several cutters of the program may make the contour"
         / "write number in [tool], or diameter_mm: the cutter that makes the wall to be corrected",
+    J042 => "what the program does not say and no default can stand for"
+        / "say it with --set, or answer on a terminal; --yes takes the defaults of what has one",
     K002 => "the surface of the stock does not lie along the contour, or not between wall and cutter"
         / "check frame and unit of the surface, and that it belongs to this program",
     M040 => "more probe points than are taken at once"

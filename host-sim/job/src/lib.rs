@@ -7,6 +7,7 @@
 //! | the job file, checked; what it leaves open | [`job`] |
 //! | the cutter, where the contour decides it | `cutter` |
 //! | the depth of the cut, where the job does not say it | `depth` |
+//! | the job that a program asks for, for `truepath init` | [`draft`] |
 //! | what a path under G41 is, where the job does not say it | `drawn` |
 //! | the cuts of a program, and which of them the job means | [`feature`] |
 //! | the surface the stock really has | [`surface`] |
@@ -18,6 +19,7 @@
 pub mod codes;
 mod cutter;
 mod depth;
+pub mod draft;
 mod drawn;
 pub mod feature;
 pub mod feed;

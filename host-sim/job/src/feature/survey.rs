@@ -66,7 +66,7 @@ impl Survey {
     }
 
     /// The blocks of the same run before and behind a contour, in their order: at least 2 mm where there are as many.
-    pub(super) fn leads(&self, found: &Found) -> [Vec<Block>; 2] {
+    pub(crate) fn leads(&self, found: &Found) -> [Vec<Block>; 2] {
         let index = usize::try_from(found.run.number).unwrap_or_default().wrapping_sub(1);
         let Some(run) = self.runs.get(index) else { return [Vec::new(), Vec::new()] };
         let all = run.blocks(&self.blocks);

@@ -16,6 +16,7 @@ mod tokens;
 mod tool;
 
 pub use control::Control;
+pub(crate) use text::plain;
 pub use tool::{Shape, ToolNote};
 
 use truepath_ground::diagnostics::Source;
@@ -55,6 +56,8 @@ pub struct Post {
     pub called: Vec<u32>,
     /// The material.
     pub material: Option<MaterialNote>,
+    /// Every comment with its line.
+    pub remarks: Vec<(u32, String)>,
 }
 
 impl Post {
@@ -68,6 +71,7 @@ impl Post {
             tools: tool::tools(&lines, unit.inch),
             called: tool::called(&lines),
             material: material(&lines),
+            remarks: lines.iter().flat_map(|l| l.remarks.iter().map(|text| (l.number, text.clone()))).collect(),
         }
     }
 
@@ -104,7 +108,7 @@ fn unit(lines: &[TextLine]) -> ProgramUnit {
 fn material(lines: &[TextLine]) -> Option<MaterialNote> {
     for line in lines {
         for text in &line.remarks {
-            let upper = text::plain(text);
+            let upper = plain(text);
             let speaks = ["MATERIAL", "WERKSTOFF", "ALU", "AL-", "AL "].iter().any(|word| upper.contains(word));
             let named = [("6061", "al-6061-t6"), ("6082", "al-6082-t6"), ("7075", "al-7075-t6")];
             if let Some((_, name)) = named.into_iter().find(|(number, _)| speaks && upper.contains(number)) {

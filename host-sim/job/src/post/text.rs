@@ -49,7 +49,7 @@ fn decoded(bytes: &[u8]) -> String {
 }
 
 /// Upper case, umlauts written out.
-pub(super) fn plain(text: &str) -> String {
+pub(crate) fn plain(text: &str) -> String {
     text.to_uppercase().replace('Ä', "AE").replace('Ö', "OE").replace('Ü', "UE")
 }
 
