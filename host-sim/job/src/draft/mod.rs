@@ -31,7 +31,7 @@ use crate::feature::{LARGEST_SEARCH, Survey};
 use crate::job::{JobFile, MATERIALS, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, dialect_name};
 use crate::pass::Pass;
 use crate::post::{Post, Shape, ToolNote};
-use side::{Shown, side};
+use side::{Shown, likely, side};
 
 /// A finishing contour of the program.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -133,6 +133,7 @@ struct Drafting<'a> {
 struct Candidate {
     note: ContourNote,
     head: Found,
+    likely: (Side, &'static str),
     allowance: Option<(f64, u32)>,
 }
 
@@ -145,17 +146,16 @@ impl<'a> Drafting<'a> {
     fn draft(mut self) -> Result<Draft, Failure> {
         self.root();
         // The cutter decides what is a lead and what roughing; the contour decides the cutter.
-        let mut diameter =
-            self.number("tool.diameter_mm").or_else(|| self.guess().map(|t| t.diameter_mm)).unwrap_or(10.0);
-        let mut candidates = Vec::new();
-        let mut chosen = 0;
+        let said = self.number("tool.diameter_mm").or_else(|| self.guess().map(|tool| tool.diameter_mm));
+        let (mut diameter, mut known) = (said.unwrap_or(10.0), said.is_some());
+        let (mut candidates, mut several, mut chosen) = (Vec::new(), false, 0);
         for _ in 0..2 {
-            candidates = self.candidates(diameter)?;
+            (candidates, several) = self.candidates(diameter, known)?;
             chosen = self.choose(&candidates);
             let tool = candidates.get(chosen).and_then(|c| c.note.tool).or_else(|| self.whole("tool.number"));
-            let known = self.number("tool.diameter_mm").or_else(|| self.note(tool).map(|t| t.diameter_mm));
-            match known {
-                Some(known) if (known - diameter).abs() > 1e-9 => diameter = known,
+            let own = self.number("tool.diameter_mm").or_else(|| self.post.mill(tool).map(|tool| tool.diameter_mm));
+            match own {
+                Some(own) if (own - diameter).abs() > 1e-9 => (diameter, known) = (own, true),
                 _ => break,
             }
         }
@@ -164,15 +164,14 @@ impl<'a> Drafting<'a> {
             Pass::new(self.reader(diameter)?, self.program.clone())?;
             return Err(Failure::Internal("a contour without a candidate".to_owned()));
         };
-        let shown = self.side_of(candidate, diameter)?;
+        let shown = self.side_of(candidate, diameter, known)?;
         self.wall(candidate, shown.as_ref());
         self.stock(candidate, diameter);
-        let tool = self.tool(candidate);
+        self.tool(candidate);
         self.compensation(candidate)?;
         self.force_and_machine();
         self.fallbacks();
-        let several = candidates.len() > 1;
-        self.depth(several.then_some(&candidate.note), tool.as_ref())?;
+        self.depth(several.then_some(&candidate.note))?;
         self.probe(diameter);
         self.others();
         let contours: Vec<ContourNote> = candidates.iter().map(|c| c.note.clone()).collect();
@@ -228,10 +227,6 @@ impl<'a> Drafting<'a> {
             .or_else(|| self.post.mills().into_iter().max_by(|a, b| a.diameter_mm.total_cmp(&b.diameter_mm)))
     }
 
-    fn note(&self, number: Option<u32>) -> Option<&ToolNote> {
-        self.post.mill(number)
-    }
-
     /// A job with what is known so far.
     fn job(&self, entries: &[Entry]) -> Result<JobFile, Failure> {
         let text = text::bare(entries);
@@ -257,8 +252,9 @@ impl<'a> Drafting<'a> {
         Ok(JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new(""))?)
     }
 
-    /// The finishing contours, as the search finds them when the sides that show are known.
-    fn candidates(&self, diameter: f64) -> Result<Vec<Candidate>, Failure> {
+    /// The finishing contours, as the search finds them when the sides that show are known, and whether it finds several. `known`
+    /// is whether the diameter is that of the cutter.
+    fn candidates(&self, diameter: f64, known: bool) -> Result<(Vec<Candidate>, bool), Failure> {
         let job = self.reader(diameter)?;
         let survey = Survey::read(&job, self.program)?;
         let tool = self.whole("tool.number").or_else(|| self.note_of_diameter());
@@ -281,10 +277,13 @@ impl<'a> Drafting<'a> {
         if stated.is_none() {
             // Most contours of a program have their wall on one side: that of the longest whose side shows.
             let finishing = runs.iter().filter(|f| matches!(f.role, Role::Finish { level: 1, .. }));
-            let mut shown: Vec<(Offset, Side)> = finishing
-                .filter_map(|f| side(f, &survey, &self.post, &criteria).map(|shown| (f.run.length, shown.side)))
+            let mut shown: Vec<((bool, Offset), Side)> = finishing
+                .filter_map(|f| {
+                    side(f, &survey, &self.post, (&criteria, known))
+                        .map(|shown| ((f.run.closed, f.run.length), shown.side))
+                })
                 .collect();
-            shown.sort_by_key(|(length, _)| *length);
+            shown.sort_by_key(|(order, _)| *order);
             criteria.wall = shown.last().map(|(_, side)| *side);
             runs = sorted(&criteria);
         }
@@ -320,8 +319,10 @@ impl<'a> Drafting<'a> {
                 }
                 _ => None,
             });
-            list.push(Candidate { note, head: *found, allowance });
+            let likely = likely(found.blocks(&survey.blocks), criteria.diameter);
+            list.push(Candidate { note, head: *found, likely, allowance });
         }
+        let several = list.len() > 1;
         // A move of less than the cutter's width is no wall to correct, unless nothing else is there.
         if list.iter().any(|c| c.note.length_mm > diameter) {
             list.retain(|c| c.note.length_mm > diameter);
@@ -329,7 +330,7 @@ impl<'a> Drafting<'a> {
         for (number, candidate) in (1..).zip(&mut list) {
             candidate.note.number = number;
         }
-        Ok(list)
+        Ok((list, several))
     }
 
     /// The tool whose comment has the diameter that the user gives.
@@ -353,12 +354,12 @@ impl<'a> Drafting<'a> {
         all.iter().max_by_key(order).map_or(0, |(index, _)| *index)
     }
 
-    fn side_of(&self, candidate: &Candidate, diameter: f64) -> Result<Option<Shown>, Failure> {
+    fn side_of(&self, candidate: &Candidate, diameter: f64, known: bool) -> Result<Option<Shown>, Failure> {
         let job = self.reader(diameter)?;
         let survey = Survey::read(&job, self.program)?;
         let criteria =
             Criteria { tool: candidate.note.tool, wall: None, diameter: job.numbers.tool.diameter, named: false };
-        Ok(side(&candidate.head, &survey, &self.post, &criteria))
+        Ok(side(&candidate.head, &survey, &self.post, (&criteria, known)))
     }
 
     fn wall(&mut self, candidate: &Candidate, shown: Option<&Shown>) {
@@ -370,8 +371,8 @@ impl<'a> Drafting<'a> {
                 Some(Entry::read("wall", side_text(shown.side), &shown.why, line).to_check())
             }
             None => {
-                let why = "which side of travel the wall lies on: a climbing cutter with M3 has it on the right";
-                Some(Entry::open("wall", "\"right\"", why))
+                let (side, sign) = candidate.likely;
+                Some(Entry::open("wall", side_text(side), &format!("the side of travel the wall lies on; {sign}")))
             }
         };
         self.put("wall", entry);
@@ -394,10 +395,10 @@ impl<'a> Drafting<'a> {
         }
     }
 
-    /// The cutter's keys; returns its comment.
-    fn tool(&mut self, candidate: &Candidate) -> Option<ToolNote> {
+    /// The cutter's keys.
+    fn tool(&mut self, candidate: &Candidate) {
         let number = self.whole("tool.number").or(candidate.note.tool).filter(|n| *n > 0);
-        let note = self.note(number).cloned();
+        let note = self.post.mill(number).cloned();
         let said = |key: &str, value: &str, note: &ToolNote| {
             Entry::read(key, value, &format!("the comment \"{}\"", note.text), note.line)
         };
@@ -441,7 +442,6 @@ impl<'a> Drafting<'a> {
                 ));
             }
         }
-        own
     }
 
     /// Outline or path of the centre, where the contour is under G41 or G42.
@@ -531,7 +531,7 @@ impl<'a> Drafting<'a> {
     }
 
     /// The depth, and the facts of the contour.
-    fn depth(&mut self, feature: Option<&ContourNote>, note: Option<&ToolNote>) -> Result<(), Failure> {
+    fn depth(&mut self, feature: Option<&ContourNote>) -> Result<(), Failure> {
         let mut text = text::bare(&stand_ins(&self.entries));
         if let Some(depth) = self.given.get("cut.axial_depth_mm") {
             text = text::with_key(&text, "cut", &format!("axial_depth_mm = {depth}"));
@@ -565,7 +565,7 @@ impl<'a> Drafting<'a> {
             Err(failure) => return Err(failure),
         };
         let assumed = pass.job.assumed.iter().find(|a| a.key == "cut.axial_depth_mm");
-        let entry = assumed.map(|a| Entry::read(a.key, &a.value, &a.why, 0).at_line(a.line).to_check());
+        let entry = assumed.map(|a| Entry::read(a.key, &a.value, &a.why, 0).at_line(None).to_check());
         self.put("cut.axial_depth_mm", entry);
         let contour = &pass.core.contour;
         let feeds = match (float(contour.lowest_feed), float(contour.highest_feed)) {
@@ -584,7 +584,6 @@ impl<'a> Drafting<'a> {
             leads[0],
             leads[1],
         ));
-        let _ = note;
         Ok(())
     }
 

@@ -2,8 +2,9 @@
 //!
 //! | sign | then the wall is |
 //! |---|---|
+//! | an arc tighter than the cutter, round which no wall could be left | on the side without it |
 //! | leads: the path comes from a place beside the contour, and leaves to one | on the other side of it |
-//! | an arc of the same radius at either end, which turns to one side | on the other side |
+//! | an arc of the same radius at either end of an open path, which turns to one side | on the other side |
 //! | an earlier pass all along beside the contour | on the other side of it |
 //! | a comment that speaks of the outside or of a pocket, and a closed path | where the turning of the path puts it |
 //!
@@ -12,6 +13,7 @@
 use truepath_core::gcode::{Criteria, Found, Role};
 use truepath_core::geometry::{Block, Contour, FACET_TURN_LIMIT, Point, Side};
 use truepath_core::units::Offset;
+use truepath_ground::units::mm;
 
 use crate::drawn::turns_left;
 use crate::feature::{LARGEST_SEARCH, Survey};
@@ -50,20 +52,65 @@ const INSIDE: [&str; 14] = [
     "HOLES",
 ];
 
-/// The side of a contour's wall; `None` when nothing shows it.
-pub(super) fn side(found: &Found, survey: &Survey, post: &Post, criteria: &Criteria) -> Option<Shown> {
+/// The side of a contour's wall; `None` when nothing shows it. `known` is whether the diameter is that of the cutter, and no
+/// stand-in.
+pub(super) fn side(found: &Found, survey: &Survey, post: &Post, (criteria, known): (&Criteria, bool)) -> Option<Shown> {
     let lines = found.run.lines;
     if let Some(side) = found.run.wall {
         let word = if side == Side::Right { "G41" } else { "G42" };
         return Some(Shown { side, why: format!("{word} says it"), line: Some(lines.first) });
     }
     let contour = found.blocks(&survey.blocks);
-    let leads = by_leads(found, survey, contour).or_else(|| by_arcs(contour, criteria.diameter));
+    let arcs = if found.run.closed { None } else { by_arcs(contour, criteria.diameter) };
+    let leads = by_leads(found, survey, contour).or(arcs);
     let leads = leads.map(|(side, why)| Shown { side, why: why.to_owned(), line: Some(lines.first) });
     let rough = by_rough(found, survey, criteria);
-    match (&leads, &rough) {
-        (Some(a), Some(b)) if a.side != b.side => None,
-        _ => leads.or(rough).or_else(|| by_comment(found, contour, post)),
+    let radius = Offset::from_nm(criteria.diameter.nm() / 2);
+    let tight = if known { by_tight(contour, radius) } else { None };
+    let signs = [tight.clone(), leads, rough];
+    let mut seen = signs.iter().flatten();
+    let first = seen.next();
+    // What no cutter can follow is no sign among others, but a proof.
+    if tight.is_some() || first.is_some_and(|first| seen.all(|other| other.side == first.side)) {
+        return first.cloned();
+    }
+    if first.is_some() { None } else { by_comment(found, contour, post) }
+}
+
+/// The arcs of a path, with the side they turn round.
+fn arcs(contour: &[Block]) -> impl Iterator<Item = (&Block, Offset, Side)> {
+    contour.iter().filter_map(|block| {
+        let radius = block.curve.signed_radius()?;
+        Some((block, radius.abs(), if radius > Offset::ZERO { Side::Left } else { Side::Right }))
+    })
+}
+
+/// An arc that turns round one side more tightly than the cutter: there can be no wall on it.
+fn by_tight(contour: &[Block], radius: Offset) -> Option<Shown> {
+    let tight = |side: Side| {
+        let least = radius - Offset::from_nm(radius.nm() / 100);
+        arcs(contour).find(|(_, r, within)| *within == side && *r < least)
+    };
+    let (side, (block, r, _)) = match (tight(Side::Left), tight(Side::Right)) {
+        (Some(arc), None) => (Side::Right, arc),
+        (None, Some(arc)) => (Side::Left, arc),
+        _ => return None,
+    };
+    let why = format!("round an arc of radius {} mm the cutter can leave no wall on the other side", mm(r));
+    Some(Shown { side, why, line: Some(block.line) })
+}
+
+/// The side that is likely where nothing shows it: within arcs of the cutter's own radius, as CAM systems roll round sharp
+/// corners, else on the right, where a climbing cutter with M3 has it.
+pub(super) fn likely(contour: &[Block], diameter: Offset) -> (Side, &'static str) {
+    let radius = Offset::from_nm(diameter.nm() / 2);
+    let near = |r: Offset| (r - radius).abs().nm() <= radius.nm() / 100;
+    let mut rolled = arcs(contour).filter(|(_, r, _)| near(*r)).map(|(_, _, side)| side);
+    match rolled.next() {
+        Some(side) if rolled.all(|other| other == side) => {
+            (side, "the path rolls round arcs of the cutter's own radius, as it does round sharp outside corners")
+        }
+        _ => (Side::Right, "a climbing cutter with M3 has it on the right"),
     }
 }
 
@@ -98,12 +145,15 @@ fn by_arcs(contour: &[Block], diameter: Offset) -> Option<(Side, &'static str)> 
         let tangent = from.curve.end_heading().dot(to.curve.start_heading()) >= FACET_TURN_LIMIT;
         (tangent && radius.abs() <= diameter + diameter).then_some(radius)
     };
+    let short = |k: Option<&Block>| k.is_some_and(|b| b.curve.length().nm() <= diameter.nm() / 2);
     let from_end = |k: usize| contour.len().checked_sub(k + 1).and_then(|i| contour.get(i));
     if contour.len() < 5 {
         return None;
     }
-    let first = arc(contour.first(), contour.get(1), true).or_else(|| arc(contour.get(1), contour.get(2), true))?;
-    let last = arc(from_end(0), from_end(1), false).or_else(|| arc(from_end(1), from_end(2), false))?;
+    let first = arc(contour.first(), contour.get(1), true)
+        .or_else(|| arc(contour.get(1), contour.get(2), true).filter(|_| short(contour.first())))?;
+    let last = arc(from_end(0), from_end(1), false)
+        .or_else(|| arc(from_end(1), from_end(2), false).filter(|_| short(from_end(0))))?;
     let alike = (first - last).abs() <= Offset::from_um(10);
     alike.then(|| (opposite(first > Offset::ZERO), "the arcs of the leads turn to the other side"))
 }
