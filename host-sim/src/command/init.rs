@@ -66,7 +66,7 @@ struct Report {
     keys: Vec<Entry>,
     /// Finishing contours of the program.
     contours: Vec<ContourNote>,
-    /// The one the job is about; null when there is one only.
+    /// The one the job is about; null when it is about all.
     contour: Option<u32>,
     /// The contour in words.
     facts: Vec<String>,
@@ -116,7 +116,7 @@ fn run(options: &Options, terminal: &Terminal) -> Result<Report, Failure> {
     // What was written has to be a job, and one that its program goes with.
     let folder = options.output.parent().unwrap_or(FilePath::new(""));
     let source = Source::new(options.output.display().to_string(), text.clone().into_bytes());
-    let pass = Pass::new(JobFile::parse(source, folder)?, program)?;
+    let passes = Pass::every(JobFile::parse(source, folder)?)?;
     file.write_all(text.as_bytes()).map_err(|e| InputError::unwritable(&options.output, &e))?;
     file.commit()?;
     let dialect = match draft.probe_control {
@@ -125,7 +125,11 @@ fn run(options: &Options, terminal: &Terminal) -> Result<Report, Failure> {
     };
     let next = format!("truepath probe {}{dialect} -o verify.nc", options.output.display());
     let Draft { entries, contours, chosen, facts, mut warnings, .. } = draft;
-    warnings.extend(pass.warnings.into_iter().filter(|w| !w.starts_with("assumed ")));
+    for said in passes.into_iter().flat_map(|pass| pass.warnings) {
+        if !said.starts_with("assumed ") && !warnings.contains(&said) {
+            warnings.push(said);
+        }
+    }
     Ok(Report { job: options.output.clone(), keys: entries, contours, contour: chosen, facts, next, warnings })
 }
 
@@ -169,7 +173,7 @@ fn questions(draft: &Draft, given: &BTreeMap<String, String>) -> Vec<Question> {
         let one = |c: &ContourNote| format!("\n  {}: lines {}-{}, {}", c.number, c.first_line, c.last_line, c.words());
         let rows: String = draft.contours.iter().map(one).collect();
         let text = format!("The program makes {} walls. Which one is this job about?{rows}", draft.contours.len());
-        let proposal = draft.chosen.map(|number| number.to_string());
+        let proposal = Some(draft.chosen.map_or_else(|| "all".to_owned(), |number| number.to_string()));
         list.push(Question { name: "contour".to_owned(), keys: vec!["contour".to_owned()], text, proposal });
     }
     for entry in &draft.entries {

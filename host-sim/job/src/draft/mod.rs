@@ -68,7 +68,7 @@ pub struct Draft {
     pub entries: Vec<Entry>,
     /// Finishing contours.
     pub contours: Vec<ContourNote>,
-    /// The one the job is about, when there are several.
+    /// The one the job is about, when there are several and not all are taken.
     pub chosen: Option<u32>,
     /// What the program says of the cut, for a comment.
     pub facts: Vec<String>,
@@ -171,7 +171,7 @@ impl<'a> Drafting<'a> {
         self.compensation(candidate)?;
         self.force_and_machine();
         self.fallbacks();
-        self.depth(several.then_some(&candidate.note))?;
+        let alone = self.depth(candidate, several)?;
         self.probe(diameter);
         self.others();
         let contours: Vec<ContourNote> = candidates.iter().map(|c| c.note.clone()).collect();
@@ -179,7 +179,7 @@ impl<'a> Drafting<'a> {
             self.job_as_said().and_then(|job| job.probe_control).or_else(|| self.post.control.as_ref()?.probe);
         Ok(Draft {
             entries: self.entries,
-            chosen: several.then_some(candidate.note.number),
+            chosen: alone.then_some(candidate.note.number),
             contours,
             facts: self.facts,
             warnings: self.warnings,
@@ -530,29 +530,28 @@ impl<'a> Drafting<'a> {
         }
     }
 
-    /// The depth, and the facts of the contour.
-    fn depth(&mut self, feature: Option<&ContourNote>) -> Result<(), Failure> {
-        let mut text = text::bare(&stand_ins(&self.entries));
-        if let Some(depth) = self.given.get("cut.axial_depth_mm") {
-            text = text::with_key(&text, "cut", &format!("axial_depth_mm = {depth}"));
-        }
-        if let Some(contour) = feature {
-            text += &format!("[[feature]]\nid = \"wall\"\nlines = [{}, {}]\n", contour.first_line, contour.last_line);
-        }
-        let source = Source::new("job.toml", text.into_bytes());
-        let mut job = JobFile::parse(source, Path::new(""))?;
-        job.drawn = job.drawn || self.entries.iter().any(|e| e.key == "tool.compensation" && e.origin == Origin::Open);
-        if !self.given.contains_key("cut.axial_depth_mm") {
-            job.open_depth = true;
-        }
+    /// The depth, and the facts of the contour, or of all where they are taken together; whether only the one is.
+    fn depth(&mut self, candidate: &Candidate, several: bool) -> Result<bool, Failure> {
+        let all = several && self.text_of("contour").is_none_or(|number| number == "all");
+        let (passes, alone) = match all.then(|| self.passes(None)) {
+            Some(Ok(passes)) => (Ok(passes), false),
+            Some(Err(failure)) => {
+                if let Failure::Input(error) = &failure {
+                    let first = error.found().lines().next().unwrap_or_default().to_owned();
+                    self.warnings.push(format!("not all walls of the program can be taken together: {first}"));
+                }
+                (self.passes(Some(&candidate.note)), true)
+            }
+            None => (self.passes(several.then_some(&candidate.note)), several),
+        };
         let missing = |code: &str| match code {
             "J040" => Some(("cut.axial_depth_mm", "10", "depth of the cutter in the stock, mm")),
             "J016" => Some(("cut.spindle_rpm", "5000", "spindle speed, rev/min, which the program does not say")),
             "J012" => Some(("cut.feed_mm_per_min", "500", "feed, mm/min, which the program does not say")),
             _ => None,
         };
-        let pass = match Pass::new(job, self.program.clone()) {
-            Ok(pass) => pass,
+        let passes = match passes {
+            Ok(passes) => passes,
             Err(Failure::Input(error)) if missing(error.code()).is_some() => {
                 if let Some((key, usual, why)) = missing(error.code()) {
                     self.put("cut.axial_depth_mm", None);
@@ -560,31 +559,33 @@ impl<'a> Drafting<'a> {
                         self.entries.push(Entry::open(key, usual, &format!("{why}: {}", error.found())));
                     }
                 }
-                return Ok(());
+                return Ok(alone);
             }
             Err(failure) => return Err(failure),
         };
-        let assumed = pass.job.assumed.iter().find(|a| a.key == "cut.axial_depth_mm");
-        let entry = assumed.map(|a| Entry::read(a.key, &a.value, &a.why, 0).at_line(None).to_check());
+        let depths = || passes.iter().filter_map(|p| p.job.assumed.iter().find(|a| a.key == "cut.axial_depth_mm"));
+        let first = depths().next();
+        let entry = first.map(|first| match depths().all(|other| other.value == first.value) {
+            true => Entry::read(first.key, &first.value, &first.why, 0).to_check(),
+            false => Entry::left(first.key, "each contour has its own, from Z 0 or the level before down to its own"),
+        });
         self.put("cut.axial_depth_mm", entry);
-        let contour = &pass.core.contour;
-        let feeds = match (float(contour.lowest_feed), float(contour.highest_feed)) {
-            (low, high) if low == high => format!("F{low}"),
-            (low, high) => format!("F{low} to F{high}"),
-        };
-        let speed = contour.speed.map_or_else(String::new, |s| format!("S{}, ", float(s)));
-        let leads = pass.leads().map(<[_]>::len);
-        self.facts.push(format!(
-            "the contour: lines {}-{}, Z {}, {:.3} mm, {}, {speed}{feeds} mm/min, leads of {} and {} moves",
-            contour.lines.first,
-            contour.lines.last,
-            height(contour.z),
-            mm(contour.length),
-            if contour.closed { "closed" } else { "open" },
-            leads[0],
-            leads[1],
-        ));
-        Ok(())
+        self.facts.extend(passes.iter().map(facts));
+        Ok(alone)
+    }
+
+    /// The contours that the job so far is about.
+    fn passes(&self, only: Option<&ContourNote>) -> Result<Vec<Pass>, Failure> {
+        let mut text = text::bare(&stand_ins(&self.entries));
+        if let Some(depth) = self.given.get("cut.axial_depth_mm") {
+            text = text::with_key(&text, "cut", &format!("axial_depth_mm = {depth}"));
+        }
+        if let Some(contour) = only {
+            text += &format!("[[feature]]\nid = \"wall\"\nlines = [{}, {}]\n", contour.first_line, contour.last_line);
+        }
+        let mut job = JobFile::parse(Source::new("job.toml", text.into_bytes()), Path::new(""))?;
+        job.drawn = job.drawn || self.entries.iter().any(|e| e.key == "tool.compensation" && e.origin == Origin::Open);
+        Pass::every(job)
     }
 
     fn probe(&mut self, diameter: f64) {
@@ -620,6 +621,27 @@ impl Drafting<'_> {
         }
         entries
     }
+}
+
+/// A contour in words.
+fn facts(pass: &Pass) -> String {
+    let contour = &pass.core.contour;
+    let feeds = match (float(contour.lowest_feed), float(contour.highest_feed)) {
+        (low, high) if low == high => format!("F{low}"),
+        (low, high) => format!("F{low} to F{high}"),
+    };
+    let speed = contour.speed.map_or_else(String::new, |s| format!("S{}, ", float(s)));
+    let leads = pass.leads().map(<[_]>::len);
+    format!(
+        "contour: lines {}-{}, Z {}, {:.3} mm, {}, {speed}{feeds} mm/min, leads of {} and {} moves",
+        contour.lines.first,
+        contour.lines.last,
+        height(contour.z),
+        mm(contour.length),
+        if contour.closed { "closed" } else { "open" },
+        leads[0],
+        leads[1],
+    )
 }
 
 /// The entries with defaults in the place of what is open.
