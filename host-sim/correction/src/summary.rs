@@ -86,6 +86,9 @@ pub struct CorrectSummary {
     /// The feature it is about; absent in a program with one cut and no names.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feature: Option<FeatureSummary>,
+    /// The file of the corrected program that carries the name of the original; absent where none was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corrected_program: Option<String>,
     /// What the job does not say and was taken from the program or a default.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assumed: Vec<Assumed>,
@@ -148,6 +151,15 @@ impl CorrectSummary {
     }
 }
 
+/// The name of the corrected program beside `corrected.nc`: that of the original with its extension, `part.corrected.nc`.
+pub fn corrected_name(program: &str) -> String {
+    let name = program.rsplit(['/', '\\']).next().unwrap_or(program);
+    match name.rsplit_once('.') {
+        Some((stem, extension)) if !stem.is_empty() => format!("{stem}.corrected.{extension}"),
+        _ => format!("{name}.corrected"),
+    }
+}
+
 fn largest(values: impl Iterator<Item = Offset>) -> f64 {
     mm(values.max().unwrap_or_default())
 }
@@ -205,6 +217,7 @@ pub fn correct_summary(
         program: None,
         feed: None,
         feature: None,
+        corrected_program: None,
         assumed: pass.job.assumed.clone(),
         warnings,
         contours: Vec::new(),

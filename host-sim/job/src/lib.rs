@@ -13,6 +13,7 @@
 //! | the surface the stock really has | [`surface`] |
 //! | feeds in place of the programmed ones | [`feed`] |
 //! | contour, cut and machine as the core takes them | [`pass`], at every depth [`levels`] |
+//! | the format of a probe file, by its contents | `probe_format` |
 //! | the points of a probe file on that contour | [`measurement`], on several of them `sharing` |
 //! | what refuses a job, a program or a point, as an error with its place | [`refusal`] |
 
@@ -28,6 +29,7 @@ pub mod levels;
 pub mod measurement;
 pub mod pass;
 pub mod post;
+mod probe_format;
 pub mod refusal;
 mod sharing;
 pub mod surface;

@@ -21,6 +21,7 @@ use crate::feature;
 use crate::feature::{FeaturePass, FeatureSummary, Plan};
 use crate::feed::Schedule;
 use crate::job::{Assumed, JobFile, Which};
+use crate::probe_format::settled;
 use crate::refusal::Inputs;
 use crate::surface::{Surface, stock_point};
 
@@ -218,6 +219,17 @@ impl Pass {
             Some(path) => error.in_file(path).into(),
             None => error.into(),
         }
+    }
+
+    /// The same pass with the format of a probe file, where the job leaves that to the file.
+    ///
+    /// # Errors
+    /// What is wrong with the file at first sight.
+    pub fn of_file(mut self, file: &Source) -> Result<Self, Failure> {
+        let (probe, _) = settled(&self.job, file)?;
+        self.job.numbers.probe = Some(probe);
+        self.core.job.probe = Some(probe);
+        Ok(self)
     }
 
     /// The level of the feature, from 1.

@@ -165,13 +165,23 @@ impl<'a> Drafting<'a> {
             return Err(Failure::Internal("a contour without a candidate".to_owned()));
         };
         let shown = self.side_of(candidate, diameter, known)?;
+        // One side stands for all walls of a job: others on the other side are a job of their own.
+        let mut alike = true;
+        for other in &candidates {
+            let side = self.side_of(other, diameter, known)?.map(|shown| shown.side);
+            alike &= side.is_none() || shown.as_ref().is_some_and(|shown| Some(shown.side) == side);
+        }
+        if several && !alike {
+            self.warnings
+                .push("the walls of the program do not all show the same side: one of them is taken".to_owned());
+        }
         self.wall(candidate, shown.as_ref());
         self.stock(candidate, diameter);
         self.tool(candidate);
         self.compensation(candidate)?;
         self.force_and_machine();
         self.fallbacks();
-        let alone = self.depth(candidate, several)?;
+        let alone = self.depth(candidate, several && alike, several)?;
         self.probe(diameter);
         self.others();
         let contours: Vec<ContourNote> = candidates.iter().map(|c| c.note.clone()).collect();
@@ -531,8 +541,8 @@ impl<'a> Drafting<'a> {
     }
 
     /// The depth, and the facts of the contour, or of all where they are taken together; whether only the one is.
-    fn depth(&mut self, candidate: &Candidate, several: bool) -> Result<bool, Failure> {
-        let all = several && self.text_of("contour").is_none_or(|number| number == "all");
+    fn depth(&mut self, candidate: &Candidate, together: bool, several: bool) -> Result<bool, Failure> {
+        let all = together && self.text_of("contour").is_none_or(|number| number == "all");
         let (passes, alone) = match all.then(|| self.passes(None)) {
             Some(Ok(passes)) => (Ok(passes), false),
             Some(Err(failure)) => {

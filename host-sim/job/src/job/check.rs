@@ -114,7 +114,8 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         Some(section) => force(&source, &section, &open, &mut assumed)?,
         None => open.force(None, &mut assumed),
     };
-    let probe = root.section("probe")?.map(|section| probe(&source, &section, &mut assumed)).transpose()?;
+    let read = root.section("probe")?.map(|section| probe(&source, &section, &mut assumed)).transpose()?;
+    let (probe, format_stated) = read.map_or((None, false), |(probe, stated)| (Some(probe), stated));
     let (machine, backlash) = match root.section("machine")? {
         // Without a probe a pocket may be compensated for the cutter alone.
         None if pocket.is_some() && probe.is_none() => (RIGID, [Offset::ZERO; 2]),
@@ -162,6 +163,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         assumed,
         cutters,
         open_depth: !deep,
+        format_stated,
         probe_control: open.probe_control(stated_dialect),
         spans: spans.into_inner(),
         source: source.clone(),

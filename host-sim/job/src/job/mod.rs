@@ -37,7 +37,7 @@ pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
 pub use check_feed::{FeedTable, ForceLimit};
 pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
 pub use check_pocket::{Mode, PerSection, PocketTable};
-pub use check_probe::{ProbeFlags, columns, one_of};
+pub use check_probe::{FORMATS, ProbeFlags, columns, one_of};
 pub use check_tool::Shank;
 pub use material::{MATERIALS, Material};
 pub use open::{Assumed, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, dialect_name};
@@ -82,6 +82,8 @@ pub struct JobFile {
     /// Cutters that the program names, where the job says neither diameter nor number and the contour has to decide; else
     /// empty.
     pub cutters: Vec<ToolNote>,
+    /// Whether file or command line say the format of the probe file; else the file shows it.
+    pub format_stated: bool,
     /// The control as `--dialect` of `truepath probe` names it; `None` where it is not known or none is written for it.
     pub probe_control: Option<&'static str>,
     /// Whether the depth of the cut is still to be found with the contour.
@@ -176,6 +178,7 @@ impl JobFile {
     pub fn override_probe(&mut self, flags: &ProbeFlags) -> Result<(), InputError> {
         if *flags != ProbeFlags::default() {
             self.numbers.probe = Some(flags.over(self.require_probe()?)?);
+            self.format_stated = true;
         }
         Ok(())
     }
