@@ -159,7 +159,7 @@ mod tests {
             ("%\nSTART\nG800 N   1 X   24.0000 Y   60.0 Z-  10.0\nEND    1\n%\n", Some("dprnt")),
             ("X   24.080 Y   60.000 Z-  10.000\n", Some("dprnt")),
             ("x_mm,y_mm,z_mm\n1.0,2.0,-3.0\n1.0,2.5,-3.0\n", Some("columns")),
-            ("1,0;2,0;-3,0\n1,0;2,5;-3,0\n", None),
+            ("1,0;2,0;-3,0\n1,0;2,5;-3,0\n", Some("columns")),
             ("Punkt;X;Y;Z\n", None),
             ("# only talk\n", None),
         ] {
