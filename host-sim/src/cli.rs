@@ -12,8 +12,8 @@ use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::interruption;
 
 use crate::command::{
-    bore, canon, compare, correct, demo, device, hil, image, inspect, learn, multiaxis, plot, pocket, probe, replay,
-    simulate, split, study,
+    bore, canon, compare, correct, demo, device, hil, image, init, inspect, learn, multiaxis, plot, pocket, probe,
+    replay, simulate, split, study,
 };
 use crate::terminal::Terminal;
 
@@ -40,6 +40,8 @@ struct Arguments {
 enum Command {
     /// The whole story: parts are milled, probed, corrected and milled again on a virtual machine.
     Demo(demo::Options),
+    /// The job of a program: reads what the program says, asks the rest, and writes a commented job file.
+    Init(init::Options),
     /// One pass as the model predicts it, or as a virtual machine cuts it.
     Simulate(simulate::Options),
     /// The program with which a control touches a milled wall where that tells most.
@@ -101,6 +103,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
     match command {
         Command::Demo(options) => demo::main(&options, terminal),
+        Command::Init(options) => init::main(&options, terminal),
         Command::Simulate(options) => simulate::main(&options, terminal),
         Command::Probe(options) => probe::main(&options, terminal),
         Command::Inspect(options) => inspect::main(&options, terminal),

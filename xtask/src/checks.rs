@@ -64,3 +64,14 @@ pub fn errors(write: bool) -> Outcome {
     run(&mut command)?;
     Ok(Passed::Done)
 }
+
+/// docs/job.md against what the readers of a job ask for; a test knows them all.
+pub fn job_keys(write: bool) -> Outcome {
+    let mut command = cargo();
+    command.args(["test", "--quiet", "-p", "truepath-job", "--test", "all", "keys::"]);
+    if write {
+        command.env("BLESS", "1");
+    }
+    run(&mut command)?;
+    Ok(Passed::Done)
+}

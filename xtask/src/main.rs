@@ -82,6 +82,12 @@ enum Task {
         #[arg(long)]
         write: bool,
     },
+    /// docs/job.md, the page of all keys of a job, as the readers ask for them.
+    Job {
+        /// Write docs/job.md instead of comparing it.
+        #[arg(long)]
+        write: bool,
+    },
     /// Builds the core for the microcontroller and checks what is in it.
     Device,
     /// Builds the firmware of one board or of all, and compares its sizes with docs/firmware.md.
@@ -203,6 +209,7 @@ fn main() -> ExitCode {
         Task::Doc => report.run(Step::new("doc", checks::doc)),
         Task::TestOnly { all, arguments } => report.run(Step::new("test-only", || checks::tests(all, &arguments))),
         Task::Rooms { all, part } => report.run(Step::new("rooms", || rooms::check(all, part.as_deref()))),
+        Task::Job { write } => report.run(Step::new("job", || checks::job_keys(write))),
         Task::Errors { write } => report.run(Step::new("errors", || checks::errors(write))),
         Task::Device => report.run(Step::new("device", device::check)),
         Task::Firmware { board, write } => {

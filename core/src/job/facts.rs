@@ -140,6 +140,8 @@ pub struct Force {
     pub kre: Real,
     /// Which force makes the wall.
     pub model: ForceModel,
+    /// Whether the four are the user's, or a table's for the user's material; else they are between the metals.
+    pub stated: bool,
 }
 
 /// Which force makes the wall at a height.
@@ -162,6 +164,8 @@ pub struct Machine {
     /// Stiffness along y, 10…1,000,000 N/mm.
     #[serde(with = "super::wire")]
     pub stiffness_y: Real,
+    /// Whether the two are the user's; else they are between the machines.
+    pub stated: bool,
 }
 
 /// How the part was probed.

@@ -108,9 +108,13 @@ impl ContourPass {
         })
     }
 
-    /// The prior of machine and material for a wall law.
+    /// The prior of machine and material for a wall law; a wide one of what the user did not state.
     pub fn prior(&self, law: WallLaw) -> Prior {
-        Prior::around(self.coefficients(), self.compliance(), law)
+        let mut prior = Prior::around(self.coefficients(), self.compliance(), law);
+        if !self.job.force.stated {
+            prior = prior.without_material();
+        }
+        if self.job.machine.stated { prior } else { prior.without_machine() }
     }
 
     /// The stated force coefficients.

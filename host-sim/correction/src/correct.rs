@@ -22,7 +22,7 @@ use crate::edits::block_edits;
 use crate::feeds;
 use crate::remarks::{MeasuredPart, Remarks};
 use crate::rows::{CorrectionRow, correction_rows};
-use crate::summary::{CorrectSummary, correct_summary};
+use crate::summary::{CorrectSummary, correct_summary, corrected_name};
 use crate::warnings::{cut_corrected, kinked, model_warnings};
 
 /// A correction in memory: everything the command writes follows from it.
@@ -267,6 +267,7 @@ impl Designed<'_> {
             warnings.extend(cut_corrected(&identified, &correction));
         }
         let summary = CorrectSummary {
+            corrected_program: written.map(|_| corrected_name(pass.program.name())),
             program: written.map(|rewritten| rewritten.difference.clone()),
             feed: feeds.summary,
             feature: pass.feature(&levels.written),

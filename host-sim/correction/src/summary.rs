@@ -8,6 +8,7 @@ use truepath_core::units::{Offset, Real};
 use truepath_ground::units::{float, mm};
 use truepath_job::feature::FeatureSummary;
 use truepath_job::feed::{FeedSummary, Unscheduled};
+use truepath_job::job::Assumed;
 use truepath_job::pass::{Pass, milling_name};
 use truepath_program::Difference;
 
@@ -85,6 +86,12 @@ pub struct CorrectSummary {
     /// The feature it is about; absent in a program with one cut and no names.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feature: Option<FeatureSummary>,
+    /// The file of the corrected program that carries the name of the original; absent where none was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corrected_program: Option<String>,
+    /// What the job does not say and was taken from the program or a default.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub assumed: Vec<Assumed>,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Each of several contours that were corrected together, of which the rest is the worst or the sum; absent for one.
@@ -141,6 +148,15 @@ impl CorrectSummary {
         let program = self.program.as_ref().map(|difference| difference.text(original));
         let feed = self.feed.as_ref().map(FeedSummary::text);
         program.map_or_else(String::new, |text| text + &feed.unwrap_or_default())
+    }
+}
+
+/// The name of the corrected program beside `corrected.nc`: that of the original with its extension, `part.corrected.nc`.
+pub fn corrected_name(program: &str) -> String {
+    let name = program.rsplit(['/', '\\']).next().unwrap_or(program);
+    match name.rsplit_once('.') {
+        Some((stem, extension)) if !stem.is_empty() => format!("{stem}.corrected.{extension}"),
+        _ => format!("{name}.corrected"),
     }
 }
 
@@ -201,6 +217,8 @@ pub fn correct_summary(
         program: None,
         feed: None,
         feature: None,
+        corrected_program: None,
+        assumed: pass.job.assumed.clone(),
         warnings,
         contours: Vec::new(),
     }

@@ -19,6 +19,55 @@ use crate::diagnostics::{InputError, Source};
 /// Where the value of a key stands; keys are written with their table, `tool.diameter_mm`.
 pub type Spans = BTreeMap<String, Range<usize>>;
 
+/// What a reader takes for a key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Whatever the key is made of; the reader looks itself.
+    Any,
+    /// A table.
+    Table,
+    /// A list of tables.
+    Tables,
+    /// A text.
+    Text,
+    /// A number in a range.
+    Number(String),
+    /// A whole number in a range.
+    Whole(String),
+    /// One of some names.
+    Choice(Vec<String>),
+}
+
+/// A key that a reader asked for, whether the file has it or not.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Asked {
+    /// With its table, `tool.diameter_mm`.
+    pub path: String,
+    /// What it takes.
+    pub kind: Kind,
+}
+
+thread_local! {
+    /// Where the keys asked for on this thread are noted, while somebody listens.
+    static LISTENED: RefCell<Option<Vec<Asked>>> = const { RefCell::new(None) };
+}
+
+/// Every key that is asked for while some work is done, in the order of asking: what the page of all keys is made from, so
+/// that it says what the readers do.
+pub fn asked_during<T>(work: impl FnOnce() -> T) -> (T, Vec<Asked>) {
+    LISTENED.set(Some(Vec::new()));
+    let done = work();
+    (done, LISTENED.take().unwrap_or_default())
+}
+
+fn note(path: impl FnOnce() -> String, kind: impl FnOnce() -> Kind) {
+    LISTENED.with_borrow_mut(|listened| {
+        if let Some(list) = listened {
+            list.push(Asked { path: path(), kind: kind() });
+        }
+    });
+}
+
 /// One table of the file.
 pub struct Section<'d> {
     source: &'d Source,
@@ -52,6 +101,7 @@ impl<'d> Section<'d> {
     /// The value of a key, if it is there.
     pub fn value(&self, key: &'static str) -> Option<Value<'d>> {
         self.asked.borrow_mut().push(key);
+        note(|| self.path(key), || Kind::Any);
         let value = self.table.get(key)?;
         let path = self.path(key);
         self.spans.borrow_mut().insert(path.clone(), value.span());
@@ -60,6 +110,7 @@ impl<'d> Section<'d> {
 
     /// A sub-table, if it is there.
     pub fn section(&self, key: &'static str) -> Result<Option<Section<'d>>, InputError> {
+        note(|| self.path(key), || Kind::Table);
         let Some(value) = self.value(key) else { return Ok(None) };
         let Some(table) = value.raw.as_table() else {
             return Err(self.wrong_type(&value, "a table", &format!("write it as [{key}] with one key a line")));
@@ -76,6 +127,7 @@ impl<'d> Section<'d> {
 
     /// The tables of a list written as `[[key]]`, in order.
     pub fn sections(&self, key: &'static str) -> Result<Vec<Section<'d>>, InputError> {
+        note(|| self.path(key), || Kind::Tables);
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
         let help = format!("write every one of them as [[{key}]] with one key a line");
         let Some(list) = value.raw.as_array() else { return Err(self.wrong_type(&value, "a list of tables", &help)) };
@@ -89,22 +141,31 @@ impl<'d> Section<'d> {
         list.iter().map(table).collect()
     }
 
+    /// A sub-table that the file does not have, with other contents: `table`.
+    pub fn section_of(&self, key: &'static str, table: &'d DeTable<'d>) -> Section<'d> {
+        let (source, spans) = (self.source, self.spans);
+        Section { source, name: key, span: self.end(), table, asked: RefCell::default(), spans }
+    }
+
+    /// The error of a sub-table that must be there; `needs` lists what belongs in it.
+    pub fn missing_section(&self, key: &'static str, needs: &str) -> InputError {
+        self.missing_or_misspelt(
+            key,
+            format!("[{key}] is missing"),
+            &format!("a table [{key}]"),
+            format!("add [{key}] with {needs}"),
+            self.end(),
+        )
+    }
+
     /// A sub-table that must be there; `needs` lists what belongs in it.
     pub fn required_section(&self, key: &'static str, needs: &str) -> Result<Section<'d>, InputError> {
-        match self.section(key)? {
-            Some(section) => Ok(section),
-            None => Err(self.missing_or_misspelt(
-                key,
-                format!("[{key}] is missing"),
-                &format!("a table [{key}]"),
-                format!("add [{key}] with {needs}"),
-                self.end(),
-            )),
-        }
+        self.section(key)?.ok_or_else(|| self.missing_section(key, needs))
     }
 
     /// A number within limits, if the key is there.
     pub fn number(&self, key: &'static str, limits: Limits) -> Result<Option<Decimal>, InputError> {
+        note(|| self.path(key), || Kind::Number(limits.phrase()));
         self.value(key).map(|value| self.number_in(&value, limits)).transpose()
     }
 
@@ -115,6 +176,7 @@ impl<'d> Section<'d> {
 
     /// The number a value holds.
     pub fn number_in(&self, value: &Value<'_>, limits: Limits) -> Result<Decimal, InputError> {
+        note(|| value.path.clone(), || Kind::Number(limits.phrase()));
         let text = match value.raw {
             DeValue::Integer(i) if i.radix() == 10 => i.as_str().to_owned(),
             DeValue::Float(f) => f.as_str().to_owned(),
@@ -145,6 +207,7 @@ impl<'d> Section<'d> {
         limits: Limits,
         help: &str,
     ) -> Result<Option<T>, InputError> {
+        note(|| self.path(key), || Kind::Whole(limits.phrase()));
         let Some(value) = self.value(key) else { return Ok(None) };
         let whole = self.number_in(&value, limits)?.as_whole().and_then(|n| T::try_from(n).ok());
         let expected = || format!("a whole number, {}", limits.phrase());
@@ -153,6 +216,7 @@ impl<'d> Section<'d> {
 
     /// A text, if the key is there.
     pub fn text(&self, key: &'static str) -> Result<Option<(&'d str, Value<'d>)>, InputError> {
+        note(|| self.path(key), || Kind::Text);
         let Some(value) = self.value(key) else { return Ok(None) };
         match value.raw.as_str() {
             Some(text) => Ok(Some((text, value))),
@@ -162,6 +226,7 @@ impl<'d> Section<'d> {
 
     /// One of a list of names, if the key is there.
     pub fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Result<Option<T>, InputError> {
+        note(|| self.path(key), || Kind::Choice(choices.iter().map(|(name, _)| (*name).to_owned()).collect()));
         let Some((text, value)) = self.text(key)? else { return Ok(None) };
         match choices.iter().find(|(name, _)| *name == text) {
             Some((_, choice)) => Ok(Some(*choice)),

@@ -137,7 +137,7 @@ impl Drop for Parents {
 
 impl OutputFolder {
     /// Opens a folder beside `target`. `owned` are the names this command may write, `#` in them stands for a number
-    /// from 1, and one that ends in `/` is a folder with whatever is in it: with `force` every one of them that lies in the target is replaced or, when this run does not write it,
+    /// from 1, `*` before and behind a part of a name for any text, and one that ends in `/` is a folder with whatever is in it: with `force` every one of them that lies in the target is replaced or, when this run does not write it,
     /// removed, so that no file of an earlier run stays behind beside newer ones. Other files in the target are left
     /// alone.
     ///
@@ -199,6 +199,7 @@ impl OutputFolder {
             return self.owns_folder(folder) && !name.split('/').any(|part| matches!(part, "" | "." | ".."));
         }
         self.owned.iter().any(|owned| match owned.split_once('#') {
+            None if owned.starts_with('*') => name.contains(owned.trim_matches('*')),
             None => *owned == name,
             Some((before, after)) => {
                 let number = name.strip_prefix(before).and_then(|rest| rest.strip_suffix(after)).unwrap_or_default();

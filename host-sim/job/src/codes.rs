@@ -9,6 +9,16 @@ truepath_ground::codes! {
         / "write a first line x_mm,y_mm and then one point of the surface a line, decimal points, in the order of travel",
     J027 => "the path under G41 or G42 may be the part's outline or that of the cutter's centre"
         / "write compensation = \"radius\" in [tool] when D holds the cutter's radius (the outline), \"centre\" when it holds wear or nothing",
+    J040 => "the program does not show how deep the cutter is in the stock"
+        / "write axial_depth_mm in [cut]: from the top of the stock, or from the level cut before, down to the cutter's tip",
+    J041 => "several cutters of the program may make the contour"
+        / "write number in [tool], or diameter_mm: the cutter that makes the wall to be corrected",
+    J042 => "what the program does not say and no default can stand for"
+        / "say it with --set, or answer on a terminal; --yes takes the defaults of what has one",
+    J043 => "a probe file of no known format, and a job that names none"
+        / "write format in [probe], or --format: docs/probe-formats.md shows each of them",
+    J044 => "a probe file in UTF-16"
+        / "save it as UTF-8 or as plain text (in Windows: save as, encoding UTF-8), and give it again",
     K002 => "the surface of the stock does not lie along the contour, or not between wall and cutter"
         / "check frame and unit of the surface, and that it belongs to this program",
     M040 => "more probe points than are taken at once"

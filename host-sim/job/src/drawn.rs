@@ -146,12 +146,17 @@ fn sharp_corners(contour: &[Block], wall: Side) -> bool {
 
 /// Whether the path, all turns together, goes round the wall.
 fn encloses_wall(contour: &[Block], wall: Side) -> bool {
+    turns_left(contour) == (wall == Side::Left)
+}
+
+/// Whether the path, all turns together, turns left.
+pub(crate) fn turns_left(contour: &[Block]) -> bool {
     let corners: Real = joints(contour).fold(Real::ZERO, |sum, (from, to)| sum + from.angle_to(to));
     let arcs = contour.iter().fold(Real::ZERO, |sum, block| match block.curve.shape() {
         truepath_core::geometry::Shape::Arc { sweep, .. } => sum + sweep,
         truepath_core::geometry::Shape::Line => sum,
     });
-    (corners + arcs > Real::ZERO) == (wall == Side::Left)
+    corners + arcs > Real::ZERO
 }
 
 /// Width and depth of a path, mm.

@@ -3,16 +3,24 @@
 //!
 //! | step | where |
 //! |---|---|
-//! | the job file, checked | [`job`] |
+//! | what the text of a program says of control, cutters and material | [`post`] |
+//! | the job file, checked; what it leaves open | [`job`] |
+//! | the cutter, where the contour decides it | `cutter` |
+//! | the depth of the cut, where the job does not say it | `depth` |
+//! | the job that a program asks for, for `truepath init` | [`draft`] |
 //! | what a path under G41 is, where the job does not say it | `drawn` |
 //! | the cuts of a program, and which of them the job means | [`feature`] |
 //! | the surface the stock really has | [`surface`] |
 //! | feeds in place of the programmed ones | [`feed`] |
 //! | contour, cut and machine as the core takes them | [`pass`], at every depth [`levels`] |
+//! | the format of a probe file, by its contents | `probe_format` |
 //! | the points of a probe file on that contour | [`measurement`], on several of them `sharing` |
 //! | what refuses a job, a program or a point, as an error with its place | [`refusal`] |
 
 pub mod codes;
+mod cutter;
+mod depth;
+pub mod draft;
 mod drawn;
 pub mod feature;
 pub mod feed;
@@ -20,6 +28,8 @@ pub mod job;
 pub mod levels;
 pub mod measurement;
 pub mod pass;
+pub mod post;
+mod probe_format;
 pub mod refusal;
 mod sharing;
 pub mod surface;

@@ -12,6 +12,7 @@ use crate::codes::M040;
 use crate::feature::Plan;
 use crate::levels;
 use crate::pass::Pass;
+use crate::probe_format::settled;
 use crate::refusal::why;
 
 /// Readings kept at most.
@@ -44,6 +45,8 @@ pub struct Measurement {
     pub crc: u32,
     /// Its name.
     pub file: String,
+    /// What is said of its format, where it is not that of the job.
+    pub read_as: Option<String>,
 }
 
 impl Measurement {
@@ -57,7 +60,9 @@ impl Measurement {
 
     /// The same, with the points at the depths that `core` names.
     fn of(pass: &Pass, core: &ContourPass, file: &Source) -> Result<Self, Failure> {
-        let probe = pass.job.require_probe()?;
+        let (probe, read_as) = settled(&pass.job, file)?;
+        let mut core = core.clone();
+        core.job.probe = Some(probe);
         let lines = file.bytes().iter().filter(|b| matches!(b, b'\n' | b'\r')).count() + 1;
         let most = lines.min(LARGEST_FILE);
         let mut readings = vec![Reading::default(); most];
@@ -67,12 +72,12 @@ impl Measurement {
         let set_aside = |reading: &Reading, reason| {
             rejected.push(Aside { line: reading.line, position: reading.position, reason });
         };
-        let used = job::contacts(core, contour, file.bytes(), &mut readings, &mut contacts, set_aside)
+        let used = job::contacts(&core, contour, file.bytes(), &mut readings, &mut contacts, set_aside)
             .map_err(|error| pass.refused_of(file, &error))?;
         contacts.truncate(used);
         rejected.sort_by_key(|aside| aside.line);
         let (crc, file) = (crc32(file.bytes()), file.name().to_owned());
-        Ok(Self { contacts, rejected, noise: probe.noise, crc, file })
+        Ok(Self { contacts, rejected, noise: probe.noise, crc, file, read_as })
     }
 
     /// Reads a probe file that may be of any depth of the pass's feature: the one with most readings on its wall is
@@ -123,9 +128,10 @@ impl Measurement {
 
     /// One sentence for every reading set aside.
     pub fn remarks(&self, file: &Source) -> Vec<String> {
-        self.rejected
+        let aside = self
+            .rejected
             .iter()
-            .map(|aside| format!("{}:{}: set aside: {}", file.name(), aside.line, why(&aside.reason)))
-            .collect()
+            .map(|aside| format!("{}:{}: set aside: {}", file.name(), aside.line, why(&aside.reason)));
+        self.read_as.iter().cloned().chain(aside).collect()
     }
 }

@@ -14,11 +14,14 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
 
 use crate::codes::K002;
+use crate::cutter;
+use crate::depth;
 use crate::drawn::{Drawn, drawn};
 use crate::feature;
 use crate::feature::{FeaturePass, FeatureSummary, Plan};
 use crate::feed::Schedule;
-use crate::job::{JobFile, Which};
+use crate::job::{Assumed, JobFile, Which};
+use crate::probe_format::settled;
 use crate::refusal::Inputs;
 use crate::surface::{Surface, stock_point};
 
@@ -66,6 +69,7 @@ impl Pass {
     /// # Errors
     /// As [`Pass::read`].
     pub fn new(mut job: JobFile, program: Source) -> Result<Self, Failure> {
+        cutter::settle(&mut job, &program)?;
         let drawn = find_out_drawn(&mut job, &program)?;
         let plan = feature::plan(&job, &program)?;
         Self::of_plan(job, program, plan, drawn.as_ref())
@@ -78,6 +82,7 @@ impl Pass {
     /// As [`Pass::read`].
     pub fn every(mut job: JobFile) -> Result<Vec<Self>, Failure> {
         let program = job.read_program()?;
+        cutter::settle(&mut job, &program)?;
         let drawn = find_out_drawn(&mut job, &program)?;
         let plans = feature::plans(&job, &program)?;
         if plans.is_empty() {
@@ -124,6 +129,7 @@ impl Pass {
     /// The level of a feature that the job is about, or its first.
     fn of_plan(mut job: JobFile, program: Source, plan: Option<Plan>, drawn: Option<&Drawn>) -> Result<Self, Failure> {
         let level = job.which.pass.unwrap_or(1);
+        depth::settle(&mut job, &program, plan.as_ref(), level)?;
         job.numbers.part = plan.as_ref().map(|plan| plan.level(level).map(|pass| pass.part)).transpose()?;
         let mut pass = Self::of_part(job, program, plan)?;
         pass.warnings.extend(drawn.map(|drawn| {
@@ -155,6 +161,7 @@ impl Pass {
         blocks.truncate(core.contour.blocks);
         let warnings = core.contour.summary.warnings.as_slice().iter();
         let mut warnings: Vec<String> = warnings.map(|w| format!("{}: {w}", program.name())).collect();
+        warnings.extend(job.assumed.iter().map(Assumed::text));
         if core.contour.spindle == Spindle::Stopped {
             warnings.push(format!(
                 "{}: neither M3 nor M4 before the contour: a clockwise spindle is assumed, on which climb or conventional depends",
@@ -212,6 +219,17 @@ impl Pass {
             Some(path) => error.in_file(path).into(),
             None => error.into(),
         }
+    }
+
+    /// The same pass with the format of a probe file, where the job leaves that to the file.
+    ///
+    /// # Errors
+    /// What is wrong with the file at first sight.
+    pub fn of_file(mut self, file: &Source) -> Result<Self, Failure> {
+        let (probe, _) = settled(&self.job, file)?;
+        self.job.numbers.probe = Some(probe);
+        self.core.job.probe = Some(probe);
+        Ok(self)
     }
 
     /// The level of the feature, from 1.

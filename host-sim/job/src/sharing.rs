@@ -19,6 +19,7 @@ use crate::feature::Plan;
 use crate::levels;
 use crate::measurement::{Aside, LARGEST_FILE, Measurement};
 use crate::pass::Pass;
+use crate::probe_format::settled;
 
 /// A depth of one of the walls.
 struct Depth<'a> {
@@ -39,10 +40,12 @@ impl Measurement {
             Err(walls) => walls,
         };
         let Some(any) = first.first() else { return Ok(Vec::new()) };
-        let probe = any.job.require_probe()?;
+        let (probe, read_as) = settled(&any.job, file)?;
+        let mut core = any.core.clone();
+        core.job.probe = Some(probe);
         let lines = file.bytes().iter().filter(|b| matches!(b, b'\n' | b'\r')).count() + 1;
         let mut readings = vec![Reading::default(); lines.min(LARGEST_FILE)];
-        let count = job::readings(&any.core, file.bytes(), &mut readings).map_err(|e| any.refused_of(file, &e))?;
+        let count = job::readings(&core, file.bytes(), &mut readings).map_err(|e| any.refused_of(file, &e))?;
         readings.truncate(count);
 
         let mut passes: Vec<Vec<Pass>> = Vec::new();
@@ -77,7 +80,9 @@ impl Measurement {
             contacts.truncate(used);
             rejected.sort_by_key(|aside| aside.line);
             let file = file.name().to_owned();
-            all.push((pass.clone(), Self { contacts, rejected, noise: probe.noise, crc, file }));
+            // Said once, of the first wall.
+            let read_as = read_as.clone().filter(|_| wall == 0);
+            all.push((pass.clone(), Self { contacts, rejected, noise: probe.noise, crc, file, read_as }));
         }
         if all.iter().all(|(_, measurement)| measurement.contacts.is_empty()) {
             // Why, the first wall says.

@@ -5,6 +5,7 @@ use truepath_core::probe::Contact;
 use truepath_correction::inspection::{Count, Coverage, Judgement, Verdict};
 use truepath_ground::units::mm;
 use truepath_job::feature::FeatureSummary;
+use truepath_job::job::Assumed;
 use truepath_job::job::{PartNames, Tolerance};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -55,6 +56,9 @@ pub struct InspectSummary {
     /// The feature it is about; absent in a program with one cut and no names.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub feature: Option<FeatureSummary>,
+    /// What the job does not say and was taken from the program or a default.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub assumed: Vec<Assumed>,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Each of several contours that was touched, of all of which the rest is said; absent for one.
@@ -145,6 +149,7 @@ pub fn inspect_summary(
         coverage: Some(coverage),
         contour: None,
         feature,
+        assumed: pass.job.assumed.clone(),
         warnings,
         contours: Vec::new(),
     }

@@ -3,6 +3,7 @@
 use truepath_correction::remarks::said_of_every;
 use truepath_ground::units::mm;
 use truepath_job::feature::FeatureSummary;
+use truepath_job::job::Assumed;
 use truepath_job::pass::{Pass, milling_name};
 use truepath_plant::Score;
 use truepath_trial::recorded;
@@ -44,6 +45,9 @@ pub struct SimulateSummary {
     /// Its name, where it is one of several contours.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contour: Option<String>,
+    /// What the job does not say and was taken from the program or a default.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub assumed: Vec<Assumed>,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Each of several contours, of which the rest is the worst or the sum; absent for one.
@@ -101,6 +105,7 @@ pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warni
         recorded: None,
         feature: pass.feature(&[]),
         contour: None,
+        assumed: pass.job.assumed.clone(),
         warnings,
         contours: Vec::new(),
     }

@@ -2,6 +2,7 @@
 
 use truepath_chart::view::View;
 use truepath_correction::correct::CorrectedPass;
+use truepath_correction::summary::corrected_name;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::OutputFolder;
 use truepath_job::measurement::Measurement;
@@ -18,6 +19,7 @@ pub(super) const MILLED: &str = "milled.csv";
 pub(super) const FILES: &[&str] = &[
     HISTORY,
     "corrected.nc",
+    "*.corrected*",
     "difference.txt",
     "correction.tpi",
     "correction.csv",
@@ -51,6 +53,8 @@ pub(super) fn write(
 pub(super) fn write_program(folder: &OutputFolder, pass: &Pass, done: &CorrectedPass) -> Result<(), Failure> {
     if let Some(text) = &done.program {
         folder.write("corrected.nc", text)?;
+        // The same under a name that tells it from other parts at the machine.
+        folder.write(&corrected_name(pass.program.name()), text)?;
         folder.write("difference.txt", done.summary.difference(pass.program.name()).as_bytes())?;
     }
     Ok(())

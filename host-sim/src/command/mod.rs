@@ -12,6 +12,7 @@ pub mod demo;
 pub mod device;
 pub mod hil;
 pub mod image;
+pub mod init;
 pub mod inspect;
 pub mod learn;
 pub mod multiaxis;

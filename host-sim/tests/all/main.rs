@@ -4,6 +4,7 @@ mod bore_command;
 mod command_line;
 mod depths;
 mod features;
+mod init;
 mod inspection;
 mod learn_refused;
 mod multiaxis_contact;

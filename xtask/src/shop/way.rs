@@ -123,13 +123,9 @@ fn walk(folder: &Path, shop: &Program, place: &Path, named: bool) -> Result<Run,
     let name = Path::new(&shop.file).file_name().unwrap_or_default().to_string_lossy().into_owned();
     let text = fs::read(folder.join(&shop.file)).map_err(failed)?;
     fs::write(place.join(&name), &text).map_err(failed)?;
-    let truth = job(shop, &name, |_| true);
+    let truth = job(shop, &name, true);
     let first = shop.walls.iter().map(|wall| wall.first().copied().unwrap_or_default());
-    let own = if named {
-        with_lines(&truth, &first.collect::<Vec<_>>())
-    } else {
-        job(shop, &name, |key| !key.starts_with('!'))
-    };
+    let own = if named { with_lines(&truth, &first.collect::<Vec<_>>()) } else { job(shop, &name, false) };
     fs::write(place.join("job.toml"), own).map_err(failed)?;
     let mut run = Run { end: End::Through, said: String::new(), line: None, errors_mm: None, seconds: 0.0 };
     if let Err((end, stopped)) = steps(folder, shop, (place, &name), &truth, &mut run) {
@@ -267,12 +263,13 @@ fn truepath(place: &Path, name: &str, arguments: &[&str]) -> Result<Value, Stopp
     })
 }
 
-/// The job of a machinist who knows cutter, wall side and allowance, with the least that the format asks for besides: the
-/// depth, a material of the table, a guess at the machine, the ball; with those of the further keys that are `told`.
-fn job(shop: &Program, name: &str, told: impl Fn(&str) -> bool) -> String {
+/// The job of a machinist who knows cutter, wall side, allowance and the ball of his probe. The `whole` one also says control,
+/// depth, a material of the table and a guess at the machine, and the keys that Truepath has to find out.
+fn job(shop: &Program, name: &str, whole: bool) -> String {
     let Program { dialect, allowance_mm, diameter_mm, teeth, helix_deg, depth_mm, .. } = shop;
     let keys = |table: &str| -> String {
-        let told = shop.keys.iter().filter(|key| told(key)).map(|key| key.trim_start_matches('!').trim());
+        let told =
+            shop.keys.iter().filter(|key| whole || !key.starts_with('!')).map(|key| key.trim_start_matches('!').trim());
         let own = told
             .filter_map(|key| if table.is_empty() { Some(key) } else { key.strip_prefix(table)?.strip_prefix('.') });
         let plain = own.filter(|key| key.split_once('=').is_some_and(|(name, _)| !name.contains('.')));
@@ -286,14 +283,20 @@ fn job(shop: &Program, name: &str, told: impl Fn(&str) -> bool) -> String {
         _ if *depth_mm < 6.0 => 2.0,
         _ => 4.0,
     };
+    let only = |text: String| if whole { text } else { String::new() };
+    let control = only(format!("dialect = \"{dialect}\"\n"));
+    let depth = only(format!("axial_depth_mm = {depth_mm}\n"));
+    let prior = only(
+        "[force]\nmaterial = \"al-6082-t6\"\n[machine]\nstiffness_x_n_per_mm = 2300\nstiffness_y_n_per_mm = 2300\n"
+            .to_owned(),
+    );
+    let file = only("format = \"linuxcnc-log\"\nz_reference = \"centre\"\n".to_owned());
     format!(
-        "version = 1\nprogram = \"{name}\"\ndialect = \"{dialect}\"\n{wall}{}\
+        "version = 1\nprogram = \"{name}\"\n{control}{wall}{}\
          [stock]\nallowance_mm = {allowance_mm}\n{}\
          [tool]\ndiameter_mm = {diameter_mm}\nteeth = {teeth}\nhelix_deg = {helix_deg}\n{}\
-         [cut]\naxial_depth_mm = {depth_mm}\n{}\
-         [force]\nmaterial = \"al-6082-t6\"\n\
-         [machine]\nstiffness_x_n_per_mm = 2300\nstiffness_y_n_per_mm = 2300\n\
-         [probe]\nball_diameter_mm = {ball}\nformat = \"linuxcnc-log\"\nz_reference = \"centre\"\n",
+         [cut]\n{depth}{}{prior}\
+         [probe]\nball_diameter_mm = {ball}\n{file}",
         keys(""),
         keys("stock"),
         keys("tool"),

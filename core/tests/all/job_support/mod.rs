@@ -47,8 +47,9 @@ pub fn corner() -> Part {
             kte: Real::ZERO,
             kre: Real::ZERO,
             model: ForceModel::Mean,
+            stated: true,
         },
-        machine: Machine { stiffness_x: Real::from_int(880), stiffness_y: Real::from_int(1500) },
+        machine: Machine { stiffness_x: Real::from_int(880), stiffness_y: Real::from_int(1500), stated: true },
         probe: Some(Probe {
             ball_diameter: um(6_000),
             format: Format::Linuxcnc,
@@ -87,8 +88,9 @@ pub fn pocket() -> Part {
             kte: Real::from_int(12),
             kre: Real::from_int(12),
             model: ForceModel::Auto,
+            stated: true,
         },
-        machine: Machine { stiffness_x: Real::from_int(1900), stiffness_y: Real::from_int(1900) },
+        machine: Machine { stiffness_x: Real::from_int(1900), stiffness_y: Real::from_int(1900), stated: true },
         probe: corner.probe.map(|p| Probe { ball_diameter: um(4_000), ..p }),
         correct: Correct { band: [Offset::ZERO, um(12_000)], ..corner.correct },
         ..corner

@@ -6,6 +6,7 @@ use truepath_core::cut::WallLaw;
 use truepath_core::identify::Prior;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::mm;
+use truepath_job::job::Assumed;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use super::approach::along;
@@ -110,6 +111,8 @@ pub struct Plan {
     /// Standard deviation of the wall, mm, before the touches and after them: of the predicted wall, root mean square, or,
     /// of a plan of further places, the largest of the corrected wall.
     pub wall_sigma_mm: [f64; 2],
+    /// What the job does not say and was taken from the program or a default.
+    pub assumed: Vec<Assumed>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -129,6 +132,7 @@ impl Plan {
             kept_off: BTreeMap::new(),
             unknowns: Vec::new(),
             wall_sigma_mm: [0.0; 2],
+            assumed: pass.job.assumed.clone(),
             warnings: pass.warnings.clone(),
         }
     }

@@ -25,4 +25,5 @@ mod survey;
 pub use listing::{FeatureSummary, PassRow, Row, listing};
 pub use place::lines_named;
 pub use plan::{FeaturePass, Plan, plan, plans};
+pub(crate) use survey::LARGEST_SEARCH;
 pub use survey::Survey;

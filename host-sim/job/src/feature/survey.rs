@@ -10,7 +10,7 @@ use truepath_ground::diagnostics::{InputError, Source};
 use crate::job::JobFile;
 
 /// Different runs that are compared with each other at most; the time grows with the square of their number.
-pub(super) const LARGEST_SEARCH: usize = 1_000;
+pub(crate) const LARGEST_SEARCH: usize = 1_000;
 
 /// The length along which a correction comes and goes.
 const LEAD: Offset = Offset::from_um(2_000);
@@ -66,7 +66,7 @@ impl Survey {
     }
 
     /// The blocks of the same run before and behind a contour, in their order: at least 2 mm where there are as many.
-    pub(super) fn leads(&self, found: &Found) -> [Vec<Block>; 2] {
+    pub(crate) fn leads(&self, found: &Found) -> [Vec<Block>; 2] {
         let index = usize::try_from(found.run.number).unwrap_or_default().wrapping_sub(1);
         let Some(run) = self.runs.get(index) else { return [Vec::new(), Vec::new()] };
         let all = run.blocks(&self.blocks);

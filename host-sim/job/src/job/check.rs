@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::path::Path;
 
+use toml::de::DeTable;
 use truepath_core::gcode::{ArcCentres, Dialect, PointlessLength};
 use truepath_core::geometry::Side;
 use truepath_core::job::{Cut, Force, ForceModel, Machine};
@@ -23,10 +24,12 @@ use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
 use super::check_tool::{reach, tool};
 use super::material::MATERIALS;
+use super::open::{Assumed, Open, usual_machine};
 use super::{JobFile, Which};
 
 /// The stiffest machine a job can state; where none is stated only the cutter bends.
-const RIGID: Machine = Machine { stiffness_x: Real::from_int(1_000_000), stiffness_y: Real::from_int(1_000_000) };
+const RIGID: Machine =
+    Machine { stiffness_x: Real::from_int(1_000_000), stiffness_y: Real::from_int(1_000_000), stated: true };
 
 /// Names of the controls a program may be written for.
 pub const DIALECTS: [(&str, Dialect); 5] = [
@@ -64,10 +67,10 @@ impl JobFile {
     }
 }
 
-/// Reads the whole job.
+/// Reads the whole job. What it does not say and the program does, is read there; the rest has a stated default.
 fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     let table = notation::parse(&source, "the job file")?;
-    let spans = RefCell::new(Spans::new());
+    let (spans, nothing) = (RefCell::new(Spans::new()), DeTable::new());
     let root = Section::root(&source, &table, &spans);
     notation::version(&source, &root)?;
     let program = root.text("program")?.ok_or_else(|| root.missing("program", "the file name of a G-code program"))?;
@@ -79,11 +82,19 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         ));
     }
     let wall = root.choice("wall", &[("left", Side::Left), ("right", Side::Right)])?;
-    let dialect = root.choice("dialect", &DIALECTS)?.unwrap_or_default();
+    let path = folder.join(program.0);
+    let open = Open::new(&path);
+    let mut assumed = Vec::new();
+    let stated_dialect = root.choice("dialect", &DIALECTS)?;
+    let dialect = stated_dialect.unwrap_or_else(|| open.dialect(&mut assumed));
     let decimal = root.choice("decimal", &DECIMALS)?.unwrap_or_default();
     let arc_centres = root.choice("arc_centres", &ARC_CENTRES)?.unwrap_or_default();
-    let tool_section = root.required_section("tool", "diameter_mm, teeth and helix_deg")?;
-    let (tool, shank) = tool(&source, &tool_section)?;
+    let tool_section = match root.section("tool")? {
+        Some(section) => section,
+        None if open.names_mill() => root.section_of("tool", &nothing),
+        None => return Err(root.missing_section("tool", "diameter_mm and teeth")),
+    };
+    let (tool, shank, cutters) = tool(&source, &tool_section, &open, &mut assumed)?;
     let features = features(&source, &root, tool.diameter)?;
     let pocket = root.section("pocket")?.map(|section| pocket(&section)).transpose()?;
     let stock = match root.section("stock")? {
@@ -91,20 +102,32 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         None if pocket.is_some_and(|p| p.mode == Mode::Slot) => Stock::of_a_slot(tool.diameter),
         _ => stock(&root.required_section("stock", "allowance_mm")?, tool.diameter)?,
     };
-    let cut = cut(&root.required_section("cut", "axial_depth_mm")?)?;
-    reach(&source, &tool_section, (&tool, &shank), &cut)?;
-    let force = force(&source, &root.required_section("force", "the four coefficients, or material = \"steel-40\"")?)?;
-    let probe = root.section("probe")?.map(|section| probe(&source, &section)).transpose()?;
+    let (cut, deep) = match root.section("cut")? {
+        Some(section) => cut(&section, &open)?,
+        None if open.is_readable() => (UNKNOWN_CUT, false),
+        None => return Err(root.missing_section("cut", "axial_depth_mm")),
+    };
+    if deep {
+        reach(&source, &tool_section, (&tool, &shank), &cut)?;
+    }
+    let force = match root.section("force")? {
+        Some(section) => force(&source, &section, &open, &mut assumed)?,
+        None => open.force(None, &mut assumed),
+    };
+    let read = root.section("probe")?.map(|section| probe(&source, &section, &mut assumed)).transpose()?;
+    let (probe, format_stated) = read.map_or((None, false), |(probe, stated)| (Some(probe), stated));
     let (machine, backlash) = match root.section("machine")? {
         // Without a probe a pocket may be compensated for the cutter alone.
         None if pocket.is_some() && probe.is_none() => (RIGID, [Offset::ZERO; 2]),
-        _ => machine(&root.required_section("machine", "stiffness_x_n_per_mm and stiffness_y_n_per_mm")?)?,
+        Some(section) => machine(&section, &mut assumed)?,
+        None => (usual_machine(&mut assumed), [Offset::ZERO; 2]),
     };
-    let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), cut.axial_depth)?;
+    let depth = deep.then_some(cut.axial_depth);
+    let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), depth)?;
     let feed = feed(root.section("feed")?.as_ref())?;
     let part = part(&source, root.section("part")?.as_ref())?;
     root.close()?;
-    let program = folder.join(program.0);
+    let program = path;
     let Stock { allowance, surface } = stock;
     let surface = surface.map(|name| folder.join(name));
     drop(root);
@@ -137,34 +160,54 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         features,
         which: Which::default(),
         drawn: false,
+        assumed,
+        cutters,
+        open_depth: !deep,
+        format_stated,
+        probe_control: open.probe_control(stated_dialect),
         spans: spans.into_inner(),
         source: source.clone(),
     })
 }
 
-fn cut(section: &Section<'_>) -> Result<Cut, InputError> {
-    let axial_depth = section.required_number("axial_depth_mm", Limits::above("0", "200", "mm"))?.as_mm();
+/// A cut of which nothing is said; the depth is found with the contour.
+const UNKNOWN_CUT: Cut = Cut { axial_depth: Offset::from_um(1_000), spindle_rpm: None, feed_mm_per_min: None };
+
+/// Depth and speeds, and whether the depth is among them.
+fn cut(section: &Section<'_>, open: &Open) -> Result<(Cut, bool), InputError> {
+    const DEPTH: Limits = Limits::above("0", "200", "mm");
+    let depth = match section.number("axial_depth_mm", DEPTH)? {
+        None if open.is_readable() => None,
+        None => Some(section.required_number("axial_depth_mm", DEPTH)?.as_mm()),
+        Some(depth) => Some(depth.as_mm()),
+    };
     let spindle_rpm = section.number("spindle_rpm", Limits::within("1", "200000", "rev/min"))?.map(Decimal::as_real);
     let feed_mm_per_min =
         section.number("feed_mm_per_min", Limits::within("0.1", "100000", "mm/min"))?.map(Decimal::as_real);
     section.close()?;
-    Ok(Cut { axial_depth, spindle_rpm, feed_mm_per_min })
+    let axial_depth = depth.unwrap_or(UNKNOWN_CUT.axial_depth);
+    Ok((Cut { axial_depth, spindle_rpm, feed_mm_per_min }, depth.is_some()))
 }
 
-fn force(source: &Source, section: &Section<'_>) -> Result<Force, InputError> {
+fn force(source: &Source, section: &Section<'_>, open: &Open, assumed: &mut Vec<Assumed>) -> Result<Force, InputError> {
     const MODELS: [(&str, ForceModel); 3] =
         [("auto", ForceModel::Auto), ("helical", ForceModel::Helical), ("mean", ForceModel::Mean)];
     const KEYS: [&str; 4] = ["ktc_n_per_mm2", "krc_n_per_mm2", "kte_n_per_mm", "kre_n_per_mm"];
-    let model = section.choice("model", &MODELS)?.unwrap_or(ForceModel::Auto);
+    let stated_model = section.choice("model", &MODELS)?;
+    let model = stated_model.unwrap_or(ForceModel::Auto);
     let materials: Vec<(&str, usize)> = MATERIALS.iter().enumerate().map(|(i, m)| (m.name, i)).collect();
     let Some(index) = section.choice("material", &materials)? else {
+        if KEYS.iter().all(|key| section.value(key).is_none()) {
+            section.close()?;
+            return Ok(open.force(stated_model, assumed));
+        }
         let ktc = section.required_number(KEYS[0], Limits::above("0", "20000", "N/mm²"))?.as_real();
         let krc = section.required_number(KEYS[1], Limits::within("0", "20000", "N/mm²"))?.as_real();
         let edge = Limits::within("0", "500", "N/mm");
         let kte = section.required_number(KEYS[2], edge)?.as_real();
         let kre = section.required_number(KEYS[3], edge)?.as_real();
         section.close()?;
-        return Ok(Force { ktc, krc, kte, kre, model });
+        return Ok(Force { ktc, krc, kte, kre, model, stated: true });
     };
     if let Some(value) = KEYS.into_iter().find_map(|key| section.value(key)) {
         let found = format!("{} is given as well as force.material", value.path);
@@ -176,15 +219,21 @@ fn force(source: &Source, section: &Section<'_>) -> Result<Force, InputError> {
     section.close()?;
     let [ktc, krc, kte, kre] =
         MATERIALS[index].coefficients.map(|text| Decimal::parse(text).map_or(Real::ZERO, Decimal::as_real));
-    Ok(Force { ktc, krc, kte, kre, model })
+    Ok(Force { ktc, krc, kte, kre, model, stated: true })
 }
 
 /// Stiffness, and the backlash of both axes.
-fn machine(section: &Section<'_>) -> Result<(Machine, [Offset; 2]), InputError> {
+fn machine(section: &Section<'_>, assumed: &mut Vec<Assumed>) -> Result<(Machine, [Offset; 2]), InputError> {
+    const KEYS: [&str; 2] = ["stiffness_x_n_per_mm", "stiffness_y_n_per_mm"];
     let stiffness = Limits::within("10", "1000000", "N/mm");
-    let machine = Machine {
-        stiffness_x: section.required_number("stiffness_x_n_per_mm", stiffness)?.as_real(),
-        stiffness_y: section.required_number("stiffness_y_n_per_mm", stiffness)?.as_real(),
+    let machine = if KEYS.iter().all(|key| section.value(key).is_none()) {
+        usual_machine(assumed)
+    } else {
+        Machine {
+            stiffness_x: section.required_number(KEYS[0], stiffness)?.as_real(),
+            stiffness_y: section.required_number(KEYS[1], stiffness)?.as_real(),
+            stated: true,
+        }
     };
     let backlash = |key| {
         let number = section.number(key, Limits::within("0", "1", "mm"))?;

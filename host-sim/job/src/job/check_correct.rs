@@ -35,7 +35,7 @@ pub const ROUTES: [(&str, Route); 2] = [("program", Route::Program), ("coprocess
 pub(super) fn correct(
     source: &Source,
     section: Option<&Section<'_>>,
-    depth: Offset,
+    depth: Option<Offset>,
 ) -> Result<(Correct, Writing), InputError> {
     const LAWS: [(&str, LawName); 3] =
         [("model", LawName::Model), ("mirror", LawName::Mirror), ("paper", LawName::Paper)];
@@ -44,7 +44,7 @@ pub(super) fn correct(
         law: LawName::Model,
         clamp: DEFAULT_CLAMP,
         target: Target::Mean,
-        band: [Offset::ZERO, depth],
+        band: [Offset::ZERO, depth.unwrap_or_default()],
         max_gouge: None,
         setup: 1,
     };
@@ -74,8 +74,12 @@ pub(super) fn correct(
     Ok((correct, writing))
 }
 
-fn band(source: &Source, section: &Section<'_>, depth: Offset) -> Result<Option<[Offset; 2]>, InputError> {
+fn band(source: &Source, section: &Section<'_>, depth: Option<Offset>) -> Result<Option<[Offset; 2]>, InputError> {
     let Some(value) = section.value("band_mm") else { return Ok(None) };
+    let Some(depth) = depth else {
+        let found = "correct.band_mm is given without cut.axial_depth_mm";
+        return Err(section.contradiction(&value, found, "both, or neither", "add axial_depth_mm to [cut]"));
+    };
     let expected = format!("two heights above the cutter's tip, rising, within 0 to {} mm", mm(depth));
     let help = "write band_mm = [low, high]; cut.axial_depth_mm bounds it";
     let Some([low, high]) =

@@ -10,11 +10,16 @@ use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::Section;
 use truepath_ground::limits::Limits;
 
+use super::open::Assumed;
+
 /// Standard deviation of a reading when the job does not say: 2 µm.
 const DEFAULT_NOISE: Offset = Offset::from_um(2);
 
+/// What a file is read as when neither job nor command line names a format and its contents show none.
+const DEFAULT_FORMAT: Format = Format::LinuxcncLog;
+
 /// Formats by name.
-const FORMATS: [(&str, Format); 6] = [
+pub const FORMATS: [(&str, Format); 6] = [
     ("linuxcnc", Format::Linuxcnc),
     ("linuxcnc-log", Format::LinuxcncLog),
     ("grbl", Format::Grbl),
@@ -164,16 +169,25 @@ pub fn columns(text: &str) -> Option<Columns> {
     Some(Columns { axes, normal, hit: place("hit")? })
 }
 
-/// What the table says.
-pub(super) fn probe(source: &Source, section: &Section<'_>) -> Result<Probe, InputError> {
+/// What the table says, and whether it says the format.
+pub(super) fn probe(
+    source: &Source,
+    section: &Section<'_>,
+    assumed: &mut Vec<Assumed>,
+) -> Result<(Probe, bool), InputError> {
     let ball_diameter = section.required_number("ball_diameter_mm", Limits::within("0.1", "50", "mm"))?.as_mm();
-    let names = FORMATS.map(|(name, _)| format!("\"{name}\"")).join(", ");
-    let format = section.choice("format", &FORMATS)?.ok_or_else(|| section.missing("format", &names))?;
-    let z_reference = section
-        .choice("z_reference", &REFERENCES)?
-        .ok_or_else(|| section.missing("z_reference", "\"centre\" or \"tip\""))?;
+    // Without a format the file itself shows it; keys of columns say that it is one of columns.
+    let of_columns = LAYOUT.into_iter().any(|key| section.value(key).is_some());
+    let named = section.choice("format", &FORMATS)?;
+    let stated = named.is_some() || of_columns;
+    let format = named.unwrap_or(if of_columns { Format::Columns } else { DEFAULT_FORMAT });
+    let z_reference = section.choice("z_reference", &REFERENCES)?.unwrap_or_else(|| {
+        let why = "the probe's length is set to the middle of the ball, as most controls calibrate it".to_owned();
+        assumed.push(Assumed { key: "probe.z_reference", value: "\"centre\"".to_owned(), why, line: None });
+        ZReference::Centre
+    });
     let noise = section.number("noise_mm", Limits::above("0", "0.1", "mm"))?.map_or(DEFAULT_NOISE, Decimal::as_mm);
-    let work_offset = work_offset(source, section, format)?;
+    let work_offset = work_offset(source, section, stated.then_some(format))?;
     let layout = layout(source, section, format)?;
     let probe = Probe { ball_diameter, format, layout, work_offset, z_reference, noise };
     if let Some((found, expected, help)) = contradiction(&probe) {
@@ -186,7 +200,7 @@ pub(super) fn probe(source: &Source, section: &Section<'_>) -> Result<Probe, Inp
         return Err(InputError::new(J008, found, expected, help).at(source, span));
     }
     section.close()?;
-    Ok(probe)
+    Ok((probe, stated))
 }
 
 fn layout(source: &Source, section: &Section<'_>, format: Format) -> Result<Option<Layout>, InputError> {
@@ -217,9 +231,13 @@ fn layout(source: &Source, section: &Section<'_>, format: Format) -> Result<Opti
 }
 
 /// Machine coordinates of the work zero.
-fn work_offset(source: &Source, section: &Section<'_>, format: Format) -> Result<Option<[Offset; 3]>, InputError> {
+fn work_offset(
+    source: &Source,
+    section: &Section<'_>,
+    format: Option<Format>,
+) -> Result<Option<[Offset; 3]>, InputError> {
     let Some(value) = section.value("work_offset_mm") else { return Ok(None) };
-    if !matches!(format, Format::Columns | Format::Grbl) {
+    if !matches!(format, None | Some(Format::Columns | Format::Grbl)) {
         let found = "probe.work_offset_mm is given for a format in work coordinates";
         let help = "remove it; only \"grbl\" and columns in machine coordinates need it";
         return Err(InputError::new(J008, found, "a format in machine coordinates", help).at(source, value.span));

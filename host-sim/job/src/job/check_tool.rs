@@ -10,6 +10,9 @@ use truepath_ground::document::Section;
 use truepath_ground::limits::Limits;
 use truepath_ground::units::mm;
 
+use super::open::{Assumed, Open, USUAL_HELIX};
+use crate::post::ToolNote;
+
 /// Where numbers of tools and their offsets come from.
 const TABLE: &str = "take the number from the tool table of the control";
 
@@ -26,9 +29,45 @@ pub struct Shank {
     pub modulus_kn_per_mm2: Option<f64>,
 }
 
-/// What the table says of the cutter, and of its shape as a beam.
-pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<(Tool, Shank), InputError> {
-    let diameter = section.required_number("diameter_mm", Limits::within("0.1", "100", "mm"))?.as_mm();
+/// What the table says of the cutter, and of its shape as a beam. What it leaves open comes from a comment of the program;
+/// where several cutters may be meant they are given too, and the contour decides.
+pub(super) fn tool(
+    source: &Source,
+    section: &Section<'_>,
+    open: &Open,
+    assumed: &mut Vec<Assumed>,
+) -> Result<(Tool, Shank, Vec<ToolNote>), InputError> {
+    let limits = Limits::within("0.1", "100", "mm");
+    let stated = section.number("diameter_mm", limits)?.map(Decimal::as_mm);
+    let mut number = section.whole("number", Limits::within("1", "99999", ""), TABLE)?;
+    let mut cutters = Vec::new();
+    let mut note = None;
+    let diameter = match stated {
+        Some(diameter) => {
+            if let Some((found, noted)) = open.of_diameter(number, diameter) {
+                note = Some(noted);
+                if number.is_none() && found.is_some() {
+                    assumed.extend(found.map(|n| noted.assumed("tool.number", n.to_string())));
+                    number = found;
+                }
+            }
+            diameter
+        }
+        None => match (open.mill(number), open.post()) {
+            (Some(noted), _) => {
+                note = Some(noted);
+                let diameter = noted.diameter();
+                assumed.push(noted.assumed("tool.diameter_mm", mm(diameter).to_string()));
+                diameter
+            }
+            (None, Some(post)) if number.is_none() && post.mills().len() > 1 => {
+                cutters = post.mills().into_iter().cloned().collect();
+                // Replaced as soon as the contour is known.
+                cutters.iter().map(ToolNote::diameter).max().unwrap_or_default()
+            }
+            _ => section.required_number("diameter_mm", limits)?.as_mm(),
+        },
+    };
     let measured = section.value("measured_diameter_mm");
     let measured_diameter = match &measured {
         None => None,
@@ -42,12 +81,22 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<(Tool, Shan
         }
     };
     let limits = Limits::within("1", "12", "");
-    let Some(teeth) = section.whole("teeth", limits, "count the cutter's teeth")? else {
-        return Err(section.missing("teeth", "a whole number, 1 to 12"));
+    let teeth = match (section.whole("teeth", limits, "count the cutter's teeth")?, note) {
+        (Some(teeth), _) => teeth,
+        (None, Some(ToolNote { teeth: Some(teeth), .. })) => {
+            assumed.extend(note.map(|note| note.assumed("tool.teeth", teeth.to_string())));
+            u8::try_from(*teeth).unwrap_or(1)
+        }
+        (None, _) if cutters.iter().any(|cutter| cutter.teeth.is_some()) => 1,
+        (None, _) => return Err(section.missing("teeth", "a whole number, 1 to 12")),
     };
-    let number = section.whole("number", Limits::within("1", "99999", ""), TABLE)?;
     let offset_number = section.whole("offset_number", Limits::within("0", "99999", ""), TABLE)?.unwrap_or(0);
-    let helix_deg = section.required_number("helix_deg", Limits::within("0", "60", "degrees"))?.as_real();
+    let helix_deg = section.number("helix_deg", Limits::within("0", "60", "degrees"))?.map(Decimal::as_real);
+    let helix_deg = helix_deg.unwrap_or_else(|| {
+        let why = "30 to 45 degrees is what is sold; it decides how the error varies over the height".to_owned();
+        assumed.push(Assumed { key: "tool.helix_deg", value: USUAL_HELIX.to_owned(), why, line: None });
+        Decimal::parse(USUAL_HELIX).map(Decimal::as_real).unwrap_or_default()
+    });
     let stickout = section.number("stickout_mm", Limits::above("0", "500", "mm"))?.map(Decimal::as_mm);
     let materials = [("HSS", ToolMaterial::HighSpeedSteel), ("carbide", ToolMaterial::Carbide)];
     let material = section.choice("material", &materials)?;
@@ -70,7 +119,7 @@ pub(super) fn tool(source: &Source, section: &Section<'_>) -> Result<(Tool, Shan
     section.close()?;
     let tool = Tool { diameter, measured_diameter, teeth, helix_deg, cantilever, number, offset_number, compensation };
     within_stickout(section, &tool, &shank)?;
-    Ok((tool, shank))
+    Ok((tool, shank, cutters))
 }
 
 /// The cutter must stick out, and have flutes, at least as far as it cuts deep.

@@ -17,6 +17,7 @@ mod check_probe;
 mod check_stock;
 mod check_tool;
 mod material;
+mod open;
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -27,6 +28,7 @@ use truepath_ground::codes::J004;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use crate::codes::{J001, J009};
+use crate::post::ToolNote;
 use crate::surface::Surface;
 
 pub use check::{DECIMALS, DIALECTS};
@@ -35,9 +37,10 @@ pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
 pub use check_feed::{FeedTable, ForceLimit};
 pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
 pub use check_pocket::{Mode, PerSection, PocketTable};
-pub use check_probe::{ProbeFlags, columns, one_of};
+pub use check_probe::{FORMATS, ProbeFlags, columns, one_of};
 pub use check_tool::Shank;
 pub use material::{MATERIALS, Material};
+pub use open::{Assumed, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, dialect_name};
 
 pub(crate) use check_feature::is_id;
 
@@ -74,6 +77,17 @@ pub struct JobFile {
     pub which: Which,
     /// Whether it has been found out what a path under G41 or G42 is, where the file does not say it.
     pub drawn: bool,
+    /// What the file does not say and was taken from the program or a default.
+    pub assumed: Vec<Assumed>,
+    /// Cutters that the program names, where the job says neither diameter nor number and the contour has to decide; else
+    /// empty.
+    pub cutters: Vec<ToolNote>,
+    /// Whether file or command line say the format of the probe file; else the file shows it.
+    pub format_stated: bool,
+    /// The control as `--dialect` of `truepath probe` names it; `None` where it is not known or none is written for it.
+    pub probe_control: Option<&'static str>,
+    /// Whether the depth of the cut is still to be found with the contour.
+    pub open_depth: bool,
     source: Source,
     spans: truepath_ground::document::Spans,
 }
@@ -151,7 +165,7 @@ impl JobFile {
                 J004,
                 "[probe] is missing",
                 "a table [probe]",
-                "add [probe] with ball_diameter_mm, format and z_reference",
+                "add [probe] with ball_diameter_mm = the diameter of the probe's ball: every point is shifted by half of it",
             )
             .at(&self.source, end..end)
         })
@@ -164,6 +178,7 @@ impl JobFile {
     pub fn override_probe(&mut self, flags: &ProbeFlags) -> Result<(), InputError> {
         if *flags != ProbeFlags::default() {
             self.numbers.probe = Some(flags.over(self.require_probe()?)?);
+            self.format_stated = true;
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 mod cut_with;
 mod job_errors;
+mod keys;
 mod measurement;
 mod probe_files;
 mod probe_formats;

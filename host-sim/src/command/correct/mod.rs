@@ -106,6 +106,10 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
             &format!("  {name:<24} {:>10.4} {:>10.4} {:>8.4} {:<5}{seen}\n", p.value + 0.0, p.sigma, p.prior, p.unit);
     }
     text += &format!("\nwritten to {}; to look at: {}\n", output.display(), output.join(REPORT).display());
+    if let Some(name) = &s.corrected_program {
+        let load = output.join(name);
+        text += &format!("to load at the machine: {} (corrected.nc holds the same)\n", load.display());
+    }
     text
 }
 

@@ -243,8 +243,8 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
         }
         Task::Restart { watchdog } => done(&mut client, Ask::Restart { watchdog: *watchdog }, terminal, "restarted"),
         Task::Compute { job, probe, activate: after, minutes } => {
-            let pass = Pass::read(JobFile::read(job)?)?;
             let probe = Source::read(probe)?;
+            let pass = Pass::read(JobFile::read(job)?)?.of_file(&probe)?;
             let compact = levels::compact(&pass)?;
             let ingredients = Ingredients { program: pass.program.bytes(), job: &compact, probe: probe.bytes() };
             let mut bar = terminal.progress("computing on the device", truepath_core::link::Stage::Ended as u64 * 1000);

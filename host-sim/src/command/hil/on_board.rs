@@ -88,10 +88,9 @@ pub fn on_board(
     probe: &Path,
     progress: &mut dyn FnMut(&str),
 ) -> Result<OnBoard, Failure> {
-    let job = JobFile::read(job)?;
-    let program = job.read_program()?;
     let probe = Source::read(probe)?;
-    let pass = Pass::new(job, program.clone())?;
+    let pass = Pass::read(JobFile::read(job)?)?.of_file(&probe)?;
+    let program = pass.program.clone();
     let compact = levels::compact(&pass)?;
     let measurement = Measurement::read(&pass, &probe)?;
     let here = correct_pass(&pass, &measurement, &[], &[Route::Coprocessor], &mut |_| ())?;

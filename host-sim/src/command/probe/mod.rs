@@ -8,11 +8,12 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::{Path as FilePath, PathBuf};
 
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueEnum};
 use truepath_correction::verification::{Gained, KeptOff, Plan, ProbeDialect, Settings, Unknown, plan_every, write};
+use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFile;
-use truepath_job::job::{JobFile, ProbeFlags, Which};
+use truepath_job::job::{Assumed, JobFile, ProbeFlags, Which};
 use truepath_job::pass::Pass;
 
 use crate::terminal::Terminal;
@@ -23,11 +24,11 @@ use crate::terminal::Terminal;
 pub struct Options {
     /// The job.
     pub job: PathBuf,
-    /// The control the program is for.
-    #[arg(long, value_enum, required_unless_present = "next", requires = "output")]
+    /// The control the program is for; without it that of the part's program, where job or program show it.
+    #[arg(long, value_enum, requires = "output")]
     pub dialect: Option<ProbeDialect>,
     /// The program to write.
-    #[arg(short, long, value_name = "FILE", required_unless_present = "next", requires = "dialect")]
+    #[arg(short, long, value_name = "FILE", required_unless_present = "next")]
     pub output: Option<PathBuf>,
     /// Further places, given what was measured: those after which the worst place of the corrected wall is most certain.
     #[arg(long, requires = "measured")]
@@ -194,6 +195,9 @@ pub struct Report {
     pub wall_sigma_after_mm: f64,
     /// Where the plan keeps off.
     pub kept_off: Vec<Kept>,
+    /// What the job does not say and was taken from the program or a default.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub assumed: Vec<Assumed>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -209,18 +213,33 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failu
     let settings = Settings { places: options.points.unwrap_or(usual), ..options.settings.clone() };
     let mut job = JobFile::read(&options.job)?;
     job.which = options.which.clone();
+    let dialect = match options.dialect {
+        None if options.output.is_some() => Some(control(&job)?),
+        given => given,
+    };
     let plan = if options.next {
         job.override_probe(&options.probe_flags)?;
         next::of_files(Pass::read(job)?, (options.probe.as_deref(), options.from.as_deref()), &settings, progress)?
     } else {
         plan_every(&Pass::every(job)?, &settings, progress)?
     };
-    if let (Some(dialect), Some(out), Some(mut file)) = (options.dialect, &options.output, file) {
+    if let (Some(dialect), Some(out), Some(mut file)) = (dialect, &options.output, file) {
         let text = write(&plan, dialect, &log_name(out))?;
         file.write_all(text.as_bytes()).map_err(|e| InputError::unwritable(out, &e))?;
         file.commit()?;
     }
-    Ok(report(&plan, options.dialect))
+    Ok(report(&plan, dialect))
+}
+
+/// The control of the part's program.
+fn control(job: &JobFile) -> Result<ProbeDialect, InputError> {
+    let known = job.probe_control.and_then(|name| ProbeDialect::from_str(name, true).ok());
+    known.ok_or_else(|| {
+        let found =
+            "--dialect is not given, and job and program name no control that a verification program is written for";
+        let help = "add --dialect of the control that the probe is on; grbl for grbl and grblHAL";
+        InputError::new(C001, found, "one of haas, fanuc, linuxcnc, grbl", help)
+    })
 }
 
 /// The report of a plan.
@@ -255,6 +274,7 @@ pub fn report(plan: &Plan, dialect: Option<ProbeDialect>) -> Report {
             .iter()
             .map(|(reason, places)| Kept { reason: *reason, words: reason.words(), places: *places })
             .collect(),
+        assumed: plan.assumed.clone(),
         warnings: plan.warnings.clone(),
     }
 }

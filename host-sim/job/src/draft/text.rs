@@ -1,0 +1,120 @@
+//! A draft as a job file.
+
+use std::fmt::Write as _;
+
+use super::entry::{Entry, Origin};
+use super::{ContourNote, Draft};
+
+/// Tables in the order of the file.
+const TABLES: [&str; 11] =
+    ["", "stock", "tool", "cut", "force", "machine", "probe", "correct", "feed", "part", "pocket"];
+/// Where comments begin.
+const COMMENT: usize = 36;
+
+/// What a table is about.
+fn about(table: &str) -> &'static str {
+    match table {
+        "stock" => "what lies on the wall before this pass",
+        "tool" => "the cutter",
+        "cut" => "depth; speed and feed are those of the program",
+        "force" => "of the material, where the fit to the points begins",
+        "machine" => "where the fit to the points begins",
+        "probe" => "the format of the file shows itself",
+        _ => "",
+    }
+}
+
+/// The whole file, with comments.
+pub(super) fn text(draft: &Draft, program: &str) -> String {
+    let mut out = format!(
+        "# Job of {}, written by `truepath init`. Every key with its range and default: docs/job.md.\n\
+         # Behind every value stands where it comes from; what says \"please check\" nobody has said.\n",
+        program.replace(|c: char| c.is_control(), " ")
+    );
+    for table in TABLES {
+        let entries: Vec<&Entry> = draft.entries.iter().filter(|entry| entry.place().0 == table).collect();
+        if entries.is_empty() && table != "cut" {
+            continue;
+        }
+        out.push('\n');
+        if !table.is_empty() {
+            line(&mut out, &format!("[{table}]"), about(table));
+        }
+        if table == "cut" {
+            for fact in &draft.facts {
+                let _ = writeln!(out, "# {fact}");
+            }
+        }
+        for entry in entries {
+            let (_, key) = entry.place();
+            match entry.origin {
+                Origin::Fixed if key == "program" => {
+                    let name = toml::Value::String(program.to_owned()).to_string();
+                    line(&mut out, &format!("{key} = {name}"), "relative to this file");
+                }
+                Origin::Left | Origin::Open => line(&mut out, &format!("# {key} = {}", entry.value), &entry.reason()),
+                _ => line(&mut out, &format!("{key} = {}", entry.value), &entry.reason()),
+            }
+        }
+    }
+    features(&mut out, draft);
+    out
+}
+
+/// The contours, where there are several: the chosen one in force, the others in comments.
+fn features(out: &mut String, draft: &Draft) {
+    let Some(chosen) = draft.chosen else { return };
+    let _ = writeln!(out, "\n# The program makes {} walls; this job is about the one below.", draft.contours.len());
+    for contour in &draft.contours {
+        let sign = if contour.number == chosen { "" } else { "# " };
+        let id = format!("wall-{}", contour.number);
+        let _ = write!(out, "{sign}[[feature]]");
+        let _ = writeln!(out, "{}# {}", " ".repeat(COMMENT.saturating_sub(11 + sign.len())), words(contour));
+        let _ = writeln!(out, "{sign}id = \"{id}\"\n{sign}lines = [{}, {}]", contour.first_line, contour.last_line);
+    }
+}
+
+/// A contour in words.
+pub(super) fn words(contour: &ContourNote) -> String {
+    let ContourNote { tool, z_mm, length_mm, closed, .. } = contour;
+    let tool = tool.map_or_else(String::new, |t| format!("tool {t}, "));
+    let heights: Vec<String> = z_mm.iter().map(f64::to_string).collect();
+    let closed = if *closed { "closed" } else { "open" };
+    format!("{tool}Z {}, {length_mm:.3} mm, {closed}", heights.join(" "))
+}
+
+fn line(out: &mut String, text: &str, comment: &str) {
+    // A comment of TOML ends with its line and holds no control characters.
+    let comment: String = comment.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let _ = if comment.is_empty() {
+        writeln!(out, "{}", text.trim_end())
+    } else {
+        writeln!(out, "{text:<width$}# {comment}", width = COMMENT.max(text.len() + 1))
+    };
+}
+
+/// The keys of a list alone.
+pub(super) fn bare(entries: &[Entry]) -> String {
+    let mut out = String::new();
+    for table in TABLES {
+        let inside: Vec<&Entry> = entries.iter().filter(|entry| entry.place().0 == table).collect();
+        if !table.is_empty() && !inside.is_empty() {
+            let _ = writeln!(out, "[{table}]");
+        }
+        for entry in inside {
+            if !matches!(entry.origin, Origin::Left | Origin::Open) {
+                let _ = writeln!(out, "{} = {}", entry.place().1, entry.value);
+            }
+        }
+    }
+    out
+}
+
+/// A text with one more key in a table, which is made where it is missing.
+pub(super) fn with_key(text: &str, table: &str, key: &str) -> String {
+    let head = format!("[{table}]\n");
+    match text.find(&head) {
+        Some(at) => format!("{}{key}\n{}", &text[..at + head.len()], &text[at + head.len()..]),
+        None => format!("{text}{head}{key}\n"),
+    }
+}

@@ -1,0 +1,306 @@
+//! `init`: the job of a program, with everything in it that the program says, and the answers to what only the user knows.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{BufRead, IsTerminal, Write};
+use std::path::{Component, Path as FilePath, PathBuf};
+
+use clap::Args;
+use truepath_ground::codes::C001;
+use truepath_ground::diagnostics::{Failure, InputError, Source, visible};
+use truepath_ground::output::OutputFile;
+use truepath_job::codes::J042;
+use truepath_job::draft::{ContourNote, Draft, Entry, Origin};
+use truepath_job::job::JobFile;
+use truepath_job::pass::Pass;
+
+use crate::terminal::Terminal;
+
+/// What is asked for.
+#[derive(Clone, Debug, Args)]
+pub struct Options {
+    /// The program of the part, as the machine runs it.
+    pub program: PathBuf,
+    /// The job file to write.
+    #[arg(short, long, value_name = "FILE", default_value = "job.toml")]
+    pub output: PathBuf,
+    /// Ask nothing: take the default of everything that has one.
+    #[arg(short, long)]
+    pub yes: bool,
+    /// Say a key: wall, allowance, diameter, teeth, helix, depth, material, stiffness, ball, contour, or any table.key of a
+    /// job.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Replace the file if it exists.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Short names of keys.
+const SHORT: [(&str, &[&str]); 16] = [
+    ("allowance", &["stock.allowance_mm"]),
+    ("diameter", &["tool.diameter_mm"]),
+    ("teeth", &["tool.teeth"]),
+    ("helix", &["tool.helix_deg"]),
+    ("compensation", &["tool.compensation"]),
+    ("tool", &["tool.number"]),
+    ("depth", &["cut.axial_depth_mm"]),
+    ("rpm", &["cut.spindle_rpm"]),
+    ("feed", &["cut.feed_mm_per_min"]),
+    ("material", &["force.material"]),
+    ("stiffness", &["machine.stiffness_x_n_per_mm", "machine.stiffness_y_n_per_mm"]),
+    ("ball", &["probe.ball_diameter_mm"]),
+    ("format", &["probe.format"]),
+    ("z_reference", &["probe.z_reference"]),
+    ("name", &["part.name"]),
+    ("tolerance", &["part.tolerance_mm"]),
+];
+/// Keys at the top of a job, and the number of the contour.
+const TOP: [&str; 5] = ["dialect", "decimal", "arc_centres", "wall", "contour"];
+
+/// What was written.
+#[derive(Clone, Debug, serde::Serialize)]
+struct Report {
+    /// The job file.
+    job: PathBuf,
+    /// Every key in it, and what was left out, with where it comes from.
+    keys: Vec<Entry>,
+    /// Finishing contours of the program.
+    contours: Vec<ContourNote>,
+    /// The one the job is about; null when it is about all.
+    contour: Option<u32>,
+    /// The contour in words.
+    facts: Vec<String>,
+    /// The command to go on with.
+    next: String,
+    /// What the user should know.
+    warnings: Vec<String>,
+}
+
+/// A question.
+struct Question {
+    /// Its short name, for `--set`.
+    name: String,
+    /// The keys that its answer fills.
+    keys: Vec<String>,
+    /// What is asked.
+    text: String,
+    /// What an empty answer takes; `None` where nothing can be taken.
+    proposal: Option<String>,
+}
+
+/// Asks and writes.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let report = run(options, terminal)?;
+    terminal.warn_all(&report.warnings);
+    terminal.tell(&report, || words(&report))
+}
+
+fn run(options: &Options, terminal: &Terminal) -> Result<Report, Failure> {
+    // A target that may not be written is refused before anything is asked.
+    let mut file = OutputFile::create(&options.output, options.force)?;
+    let program = Source::read(&options.program)?;
+    let mut given = given(&options.set)?;
+    let asks = !options.yes && !terminal.json() && std::io::stdin().is_terminal() && std::io::stderr().is_terminal();
+    let draft = if asks {
+        answered(&program, &mut given)?
+    } else {
+        let draft = Draft::of(&program, &given)?;
+        let open: Vec<Question> =
+            questions(&draft, &given).into_iter().filter(|q| !options.yes || q.proposal.is_none()).collect();
+        if !open.is_empty() {
+            return Err(unanswered(&open, options.yes).into());
+        }
+        draft
+    };
+    let text = draft.text(&relative(&options.output, &options.program)?);
+    // What was written has to be a job, and one that its program goes with.
+    let folder = options.output.parent().unwrap_or(FilePath::new(""));
+    let source = Source::new(options.output.display().to_string(), text.clone().into_bytes());
+    let passes = Pass::every(JobFile::parse(source, folder)?)?;
+    file.write_all(text.as_bytes()).map_err(|e| InputError::unwritable(&options.output, &e))?;
+    file.commit()?;
+    let dialect = match draft.probe_control {
+        Some(_) => "",
+        None => " --dialect haas|fanuc|linuxcnc|grbl",
+    };
+    let next = format!("truepath probe {}{dialect} -o verify.nc", options.output.display());
+    let Draft { entries, contours, chosen, facts, mut warnings, .. } = draft;
+    for said in passes.into_iter().flat_map(|pass| pass.warnings) {
+        if !said.starts_with("assumed ") && !warnings.contains(&said) {
+            warnings.push(said);
+        }
+    }
+    Ok(Report { job: options.output.clone(), keys: entries, contours, contour: chosen, facts, next, warnings })
+}
+
+/// What `--set` says, by the keys of the job.
+fn given(set: &[String]) -> Result<BTreeMap<String, String>, InputError> {
+    let mut given = BTreeMap::new();
+    for text in set {
+        let wrong = |found: String, help: String| InputError::new(C001, found, "--set KEY=VALUE", help);
+        let Some((key, value)) = text.split_once('=') else {
+            let help = "write --set allowance=0.5".to_owned();
+            return Err(wrong(format!("--set {text} has no `=`"), help));
+        };
+        let (key, value) = (key.trim(), value.trim().to_owned());
+        if value.is_empty() {
+            return Err(wrong(format!("--set {text} says no value"), format!("write --set {key}=VALUE")));
+        }
+        let keys: Vec<String> = match SHORT.iter().find(|(short, _)| *short == key) {
+            Some((_, keys)) => keys.iter().map(|key| (*key).to_owned()).collect(),
+            None if key.contains('.') || TOP.contains(&key) => vec![key.to_owned()],
+            None => {
+                let names: Vec<&str> = SHORT.iter().map(|(short, _)| *short).chain(TOP).collect();
+                let help = format!("write one of {}, or a key of a job with its table, tool.teeth", names.join(", "));
+                return Err(wrong(format!("--set {text} names no key"), help));
+            }
+        };
+        given.extend(keys.into_iter().map(|key| (key, value.clone())));
+    }
+    Ok(given)
+}
+
+/// The short name of a key.
+fn short(key: &str) -> String {
+    let named = SHORT.iter().find(|(_, keys)| keys.contains(&key));
+    named.map_or(key, |(short, _)| *short).to_owned()
+}
+
+/// What is still to be asked, in the order of the file.
+fn questions(draft: &Draft, given: &BTreeMap<String, String>) -> Vec<Question> {
+    let mut list: Vec<Question> = Vec::new();
+    if draft.contours.len() > 1 && !given.contains_key("contour") {
+        let one = |c: &ContourNote| format!("\n  {}: lines {}-{}, {}", c.number, c.first_line, c.last_line, c.words());
+        let rows: String = draft.contours.iter().map(one).collect();
+        let text = format!("The program makes {} walls. Which one is this job about?{rows}", draft.contours.len());
+        let proposal = Some(draft.chosen.map_or_else(|| "all".to_owned(), |number| number.to_string()));
+        list.push(Question { name: "contour".to_owned(), keys: vec!["contour".to_owned()], text, proposal });
+    }
+    for entry in &draft.entries {
+        let asked = entry.origin == Origin::Open || (entry.origin == Origin::Default && entry.check);
+        let left = entry.origin == Origin::Left;
+        let name = short(&entry.key);
+        if !(asked || left) || list.iter().any(|q| q.name == name) || entry.key == "probe.z_reference" {
+            continue;
+        }
+        let keys = SHORT.iter().find(|(short, _)| *short == name).map(|(_, keys)| *keys);
+        let keys = keys.map_or_else(|| vec![entry.key.clone()], |keys| keys.iter().map(|k| (*k).to_owned()).collect());
+        let (_, key) = entry.place();
+        let proposal = match entry.origin {
+            Origin::Open => None,
+            Origin::Left => Some("unknown".to_owned()),
+            _ => Some(entry.value.clone()),
+        };
+        let text = match entry.origin {
+            Origin::Open => format!("{key}: {} (usual: {})", entry.why, entry.value.trim_matches('"')),
+            _ => format!("{key}: {}", entry.why),
+        };
+        list.push(Question { name, keys, text, proposal });
+    }
+    list
+}
+
+/// The error of questions that nobody is there to answer.
+fn unanswered(open: &[Question], defaults: bool) -> InputError {
+    let one = |q: &Question| {
+        let usual = q.proposal.as_ref().map_or_else(String::new, |p| format!(" [{}]", p.trim_matches('"')));
+        format!("\n  --set {}=…{usual}   {}", q.name, q.text.replace('\n', "\n    "))
+    };
+    let list: String = open.iter().map(one).collect();
+    let found = match defaults {
+        true => format!("the program does not show:{list}"),
+        false => format!("nobody is at a terminal to answer, and the program does not show:{list}"),
+    };
+    J042.error(found, "")
+}
+
+/// Asks on the terminal until nothing is open.
+fn answered(program: &Source, given: &mut BTreeMap<String, String>) -> Result<Draft, Failure> {
+    let mut asked: BTreeSet<String> = BTreeSet::new();
+    let mut draft = Draft::of(program, given)?;
+    loop {
+        let next = questions(&draft, given).into_iter().find(|q| !asked.contains(&q.name));
+        let Some(question) = next else { return Ok(draft) };
+        let Some(answer) = ask(&question)? else {
+            asked.insert(question.name);
+            continue;
+        };
+        let mut tried = given.clone();
+        tried.extend(question.keys.iter().map(|key| (key.clone(), answer.clone())));
+        // A wrong answer is asked again, with what is wrong about it.
+        match Draft::of(program, &tried).and_then(|draft| draft.check().map(|()| draft)) {
+            Ok(made) => {
+                draft = made;
+                *given = tried;
+                asked.insert(question.name);
+            }
+            Err(Failure::Input(error)) => say(&format!("{}\n", visible(&error.to_string())))?,
+            Err(failure) => return Err(failure),
+        }
+    }
+}
+
+/// Asks once; `None` takes the proposal.
+fn ask(question: &Question) -> Result<Option<String>, Failure> {
+    loop {
+        let proposal = question.proposal.as_ref().map_or_else(String::new, |p| format!(" [{}]", p.trim_matches('"')));
+        say(&format!("{}{proposal}: ", visible_text(&question.text)))?;
+        let mut answer = String::new();
+        let read = std::io::stdin().lock().read_line(&mut answer);
+        let length = read.map_err(|e| InputError::unreadable(FilePath::new("the terminal"), &e))?;
+        let answer = answer.trim();
+        match (answer.is_empty(), &question.proposal) {
+            (false, _) => return Ok(Some(answer.to_owned())),
+            (true, Some(_)) if length > 0 => return Ok(None),
+            // The end of the input answers nothing.
+            (true, _) if length == 0 => return Err(unanswered(std::slice::from_ref(question), false).into()),
+            (true, _) => say("this has no default\n")?,
+        }
+    }
+}
+
+fn visible_text(text: &str) -> String {
+    text.lines().map(|line| visible(line).into_owned()).collect::<Vec<_>>().join("\n")
+}
+
+fn say(text: &str) -> Result<(), Failure> {
+    let mut err = std::io::stderr().lock();
+    err.write_all(text.as_bytes()).and_then(|()| err.flush()).map_err(|e| Failure::Internal(e.to_string()))
+}
+
+/// How a file in the folder of `job` names `program`.
+fn relative(job: &FilePath, program: &FilePath) -> Result<String, InputError> {
+    let whole = |path: &FilePath| path.canonicalize().map_err(|e| InputError::unreadable(path, &e));
+    let folder = match job.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => whole(folder)?,
+        _ => whole(FilePath::new("."))?,
+    };
+    let program = whole(program)?;
+    let (from, to): (Vec<Component>, Vec<Component>) = (folder.components().collect(), program.components().collect());
+    let same = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    if same == 0 {
+        return Ok(program.display().to_string());
+    }
+    let up = from.iter().skip(same).map(|_| "..".to_owned());
+    let down = to.iter().skip(same).map(|c| c.as_os_str().to_string_lossy().into_owned());
+    Ok(up.chain(down).collect::<Vec<_>>().join("/"))
+}
+
+fn words(report: &Report) -> String {
+    let mut text: String = report.facts.iter().map(|fact| format!("{fact}\n")).collect();
+    text.push('\n');
+    for entry in &report.keys {
+        let value = match entry.origin {
+            Origin::Fixed => continue,
+            Origin::Left => "-",
+            _ => &entry.value,
+        };
+        text += &format!("{:<28} {value:<12} {}\n", entry.key, entry.reason());
+    }
+    let check: Vec<&str> =
+        report.keys.iter().filter(|e| e.check && e.origin != Origin::Given).map(|e| e.key.as_str()).collect();
+    if !check.is_empty() {
+        text += &format!("\nplease check before metal is cut: {}\n", check.join(", "));
+    }
+    text + &format!("\nwritten to {}; go on with: {}\n", report.job.display(), report.next)
+}
