@@ -14,6 +14,7 @@ mod entry;
 mod side;
 mod text;
 
+use entry::toml_value;
 pub use entry::{Entry, Origin};
 
 use std::collections::BTreeMap;
@@ -676,11 +677,4 @@ const fn side_text(side: Side) -> &'static str {
         Side::Left => "\"left\"",
         Side::Right => "\"right\"",
     }
-}
-
-/// A value as TOML has it: what is no number, list or word of TOML is a text.
-pub(crate) fn toml_value(value: &str) -> String {
-    let plain = value.trim();
-    let is_toml = !plain.contains(['\n', '\r']) && format!("x = {plain}").parse::<toml::Table>().is_ok();
-    if is_toml { plain.to_owned() } else { toml::Value::String(plain.to_owned()).to_string() }
 }
