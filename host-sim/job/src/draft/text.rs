@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::contents::{ContourNote, Draft};
 use super::entry::{Entry, Origin};
-use super::{ContourNote, Draft};
 
 /// Tables in the order of the file.
 const TABLES: [&str; 11] =
