@@ -12,6 +12,23 @@ pub const REACH: Offset = Offset::from_um(1_000);
 /// of the wall only.
 const ONE_PLACE: Offset = Offset::from_um(5);
 
+/// How the readings of a pass are taken and what they touch.
+///
+/// # Errors
+/// A job without probe.
+pub fn setting(pass: &ContourPass) -> Result<Setting, JobError> {
+    let probe = pass.job.probe.ok_or(JobError::NoProbe)?;
+    Ok(Setting {
+        ball_radius: Offset::from_nm(probe.ball_diameter.nm() / 2),
+        cutter_radius: pass.setup.radius,
+        wall: pass.setup.wall,
+        tip_z: pass.contour.z,
+        axial_depth: pass.job.cut.axial_depth,
+        z_is_tip: probe.z_reference == ZReference::Tip,
+        reach: REACH,
+    })
+}
+
 /// Reads a probe file into `readings` and its contacts into `contacts`, in the order of the contour, then of height;
 /// returns how many there are. `set_aside` is given each reading that is not used and the reason.
 ///
@@ -29,18 +46,7 @@ pub fn contacts(
     let probe = pass.job.probe.ok_or(JobError::NoProbe)?;
     let count = read(file, &pass.probe_given(&probe), readings).map_err(JobError::Measurement)?;
     let readings = readings.get(..count).unwrap_or_default();
-    let on_wall = Contacts::new(
-        contour,
-        Setting {
-            ball_radius: Offset::from_nm(probe.ball_diameter.nm() / 2),
-            cutter_radius: pass.setup.radius,
-            wall: pass.setup.wall,
-            tip_z: pass.contour.z,
-            axial_depth: pass.job.cut.axial_depth,
-            z_is_tip: probe.z_reference == ZReference::Tip,
-            reach: REACH,
-        },
-    );
+    let on_wall = Contacts::new(contour, setting(pass)?);
     if let Some(suspicion) = suspect(&on_wall, readings) {
         let off = readings
             .iter()

@@ -36,7 +36,7 @@ pub use facts::{
     ZReference,
 };
 pub use identification::{Identified, identified};
-pub use measure::{REACH, contacts, observations, same_place};
+pub use measure::{REACH, contacts, observations, same_place, setting};
 pub use pass::ContourPass;
 pub use stage::Stage;
 pub use whole::{Made, image};

@@ -4,7 +4,7 @@ use truepath_core::checksum::crc32;
 use truepath_core::geometry::Direction;
 use truepath_core::identify::Observation;
 use truepath_core::job;
-use truepath_core::probe::{Contact, Reading, Rejected};
+use truepath_core::probe::{Contact, Outcome, Reading, Rejected};
 use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, Source};
 
@@ -37,8 +37,14 @@ pub struct Measurement {
     pub contacts: Vec<Contact>,
     /// Readings set aside, in the order of the file.
     pub rejected: Vec<Aside>,
+    /// All that the file holds, in its order.
+    pub readings: Vec<Reading>,
     /// Standard deviation of one reading.
     pub noise: Offset,
+    /// Whether the points are taken although they may not fit the job.
+    pub taken_as_is: bool,
+    /// The file.
+    pub source: Source,
     /// CRC-32 of the file.
     pub crc: u32,
     /// Its name.
@@ -65,8 +71,29 @@ impl Measurement {
             .map_err(|error| pass.refused_of(file, &error))?;
         contacts.truncate(used);
         rejected.sort_by_key(|aside| aside.line);
-        let (crc, file) = (crc32(file.bytes()), file.name().to_owned());
-        Ok(Self { contacts, rejected, noise: probe.noise, crc, file })
+        // Every reading has a line, which is never 0.
+        readings.truncate(readings.iter().take_while(|reading| reading.line > 0).count());
+        let (crc, source, file) = (crc32(file.bytes()), file.clone(), file.name().to_owned());
+        Ok(Self { contacts, rejected, readings, noise: probe.noise, taken_as_is: false, source, crc, file })
+    }
+
+    /// The same, to be taken whether the points fit the job or not.
+    #[must_use]
+    pub const fn taken_as_is(mut self, taken: bool) -> Self {
+        self.taken_as_is = taken;
+        self
+    }
+
+    /// The number that a point has in the probing program, from 1: every place that it goes to has one, touched or not,
+    /// and of two touches of one place the second counts.
+    pub fn number(&self, line: u32) -> usize {
+        let counts = |r: &&Reading| r.line < line && r.outcome != Outcome::Superseded;
+        self.readings.iter().filter(counts).count() + 1
+    }
+
+    /// A point as messages name it: its line in the file and its number in the probing program.
+    pub fn name_of(&self, line: u32) -> String {
+        format!("line {line} (point {})", self.number(line))
     }
 
     /// Reads a probe file that may be of any depth of the pass's feature: the one with most readings on its wall is
@@ -117,7 +144,10 @@ impl Measurement {
     pub fn remarks(&self, file: &Source) -> Vec<String> {
         self.rejected
             .iter()
-            .map(|aside| format!("{}:{}: set aside: {}", file.name(), aside.line, why(&aside.reason)))
+            .map(|aside| {
+                let number = self.number(aside.line);
+                format!("{}:{}: point {number} set aside: {}", file.name(), aside.line, why(&aside.reason))
+            })
             .collect()
     }
 }
