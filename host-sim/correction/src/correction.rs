@@ -15,6 +15,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
 use crate::identification::{Found, Points, asked, found};
+use crate::misfit::refuse_misfit;
 use crate::parallel_walls::ParallelWalls;
 
 /// What the probe points say about machine and material.
@@ -50,7 +51,7 @@ pub struct Correction {
 /// Fits machine and material to the measurement of an uncorrected part. `progress` is told the share done, 0…1.
 ///
 /// # Errors
-/// Points most of which do not fit.
+/// Points that do not fit the job.
 pub fn identify(
     pass: &Pass,
     path: &Path,
@@ -62,7 +63,7 @@ pub fn identify(
     let law = asked(pass.core.job.force.model);
     let uncorrected = |_, _| Vector::ZERO;
     let Found { core, observations, .. } = found(&pass.core, path, law, points, uncorrected, &mut progress);
-    core.check(&observations).map_err(|error| pass.refused(&error))?;
+    refuse_misfit(pass, measurement, &core, &observations)?;
     Ok(Identification { core, observations })
 }
 

@@ -5,7 +5,7 @@
 
 use truepath_core::cut::{Path, State, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{EarlierPart, Observation, PredictionWorkspace, Prior, identify, speaks_for_mean};
+use truepath_core::identify::{EarlierPart, Observation, PredictionWorkspace, identify, speaks_for_mean};
 use truepath_core::job::{self, ForceModel};
 
 /// What a fit has found, with the points as it left them.
@@ -47,24 +47,12 @@ pub fn found(
     commanded: impl Fn(usize, usize) -> Vector + Copy + Sync,
     progress: &mut dyn FnMut(f64),
 ) -> Found {
-    found_around(|law| pass.prior(law), path, law, points, commanded, progress)
-}
-
-/// The same with what is believed beforehand under either law.
-pub fn found_around(
-    around: impl Fn(WallLaw) -> Prior + Sync,
-    path: &Path,
-    law: Option<WallLaw>,
-    points: Points<'_>,
-    commanded: impl Fn(usize, usize) -> Vector + Copy + Sync,
-    progress: &mut dyn FnMut(f64),
-) -> Found {
     let under = |law, progress: &mut dyn FnMut(f64)| {
         let (mut earlier, mut observations) = (points.earlier.to_vec(), points.observations.to_vec());
         let needed = path.working().len() + 1;
         let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
         let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
-        let prior = around(law);
+        let prior = pass.prior(law);
         let mut observe = |permille| progress(f64::from(permille) / 1000.0);
         let path = path.with_law(law);
         let fit = identify(&path, &prior, &mut earlier, &mut observations, commanded, &mut workspace, &mut observe);

@@ -1,7 +1,6 @@
 //! What may be wrong with points or job, each as a change of what the fit is given.
 
 use truepath_core::cut::Milling;
-use truepath_core::geometry::Side;
 use truepath_core::identify::{Parameter, Prior};
 use truepath_core::job::{self, ZReference};
 use truepath_core::probe::{Reading, Setting};
@@ -132,7 +131,7 @@ impl Cause {
     }
 
     /// Those that are tried beside a free datum and a free level.
-    pub(super) fn others(pass: &Pass, heights: bool) -> Vec<Self> {
+    pub fn others(pass: &Pass, heights: bool) -> Vec<Self> {
         let setup = &pass.core.setup;
         let mut all = vec![Self::Sign, Self::Spindle, Self::MirroredX, Self::MirroredY, Self::Swapped];
         let allowance = mm(setup.allowance);
@@ -155,7 +154,7 @@ impl Cause {
     }
 
     /// Values near that of a cause that was tried in steps.
-    pub(super) fn nearby(self) -> Vec<Self> {
+    pub fn nearby(self) -> Vec<Self> {
         match self {
             Self::Allowance(mm) => [0.75, 0.85, 0.93, 1.08, 1.18, 1.33].map(|t| Self::Allowance(t * mm)).to_vec(),
             Self::Height(mm) => [0.6, 0.8, 1.25, 1.5].map(|t| Self::Height(t * mm)).to_vec(),
@@ -178,10 +177,5 @@ impl Altered {
         for reading in &mut self.readings {
             reading.position = change(reading.position);
         }
-    }
-
-    /// The side of the wall.
-    pub(super) const fn wall(&self) -> Side {
-        self.setting.wall
     }
 }

@@ -3,8 +3,8 @@
 //! The fit finds the spread of the points from themselves and grows up to fourfold with them: points of another job look
 //! like noisy ones. Here the stated noise counts, with what an honest wall adds to it.
 
-use truepath_core::identify::{COUNT, Fit, Observation, Parameter};
-use truepath_ground::units::{float, mm};
+use truepath_core::identify::{COUNT, Observation, Parameter};
+use truepath_ground::units::mm;
 
 /// What a wall is off beside the model: blanks that vary, runout, wear, the ball on a rough wall.
 const ROUGH_MM: f64 = 0.004;
@@ -14,6 +14,9 @@ const MODEL_SHARE: f64 = 0.03;
 const HUBER: f64 = 2.5;
 /// Residual, in deviations, from which it costs no more: whatever the point is of, it is not this wall.
 const FAR: f64 = 25.0;
+
+/// What a reading near the wall costs that is no point of it: as much as one that is far off.
+pub const LOST: f64 = HUBER * (2.0 * FAR - HUBER);
 
 /// Standard deviation that is expected of measured − predicted, mm.
 pub fn expected_mm(o: &Observation) -> f64 {
@@ -60,8 +63,8 @@ pub struct Score {
 }
 
 impl Score {
-    /// Of a fit and its points.
-    pub fn of(fit: &Fit, observations: &[Observation], lost: usize) -> Self {
+    /// Of points with predictions at parameters so many prior standard deviations from what the job says.
+    pub fn of(theta: &[f64; COUNT], observations: &[Observation], lost: usize) -> Self {
         let mut residuals: Vec<f64> = observations.iter().map(|o| residual_mm(o).abs() / expected_mm(o)).collect();
         residuals.sort_by(f64::total_cmp);
         let points = residuals.len();
@@ -70,7 +73,7 @@ impl Score {
         Self {
             points,
             lost,
-            cost: cost + lost as f64 * loss(FAR) + prior_cost(&fit.theta.map(float)),
+            cost: cost + lost as f64 * LOST + prior_cost(theta),
             rms_mm: (square / points.max(1) as f64).sqrt(),
             median: residuals.get(points / 2).copied().unwrap_or_default(),
         }

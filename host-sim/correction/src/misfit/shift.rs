@@ -7,7 +7,9 @@
 use truepath_core::identify::{COUNT, Fit, Observation, Parameter, Prior};
 use truepath_ground::units::{float, mm};
 
+use super::fit::pull;
 use super::score::{expected_mm, loss, prior_cost, residual_mm, weight};
+use super::solve::solved;
 
 /// What is let go.
 const FREE_MM: f64 = 0.5;
@@ -48,8 +50,7 @@ impl Shift {
             let at: [f64; COUNT] = std::array::from_fn(|k| theta[k] + step[k]);
             let mut right = [0.0; COUNT];
             for k in 0..COUNT {
-                let long = matches!(Parameter::ALL[k], Parameter::ComplianceCross | Parameter::Undersize);
-                let pull = if long { 3.0 / (2.0 + at[k] * at[k]) } else { held[k] };
+                let pull = held[k] * pull(k, at[k]);
                 matrix[k] = [0.0; COUNT];
                 matrix[k][k] = pull;
                 right[k] = -pull * theta[k];
@@ -91,25 +92,4 @@ impl Shift {
 
 fn left(row: &[f64; COUNT], step: &[f64; COUNT], residual: f64) -> f64 {
     residual - row.iter().zip(step).map(|(s, t)| s * t).sum::<f64>()
-}
-
-/// Solves a symmetric positive system by elimination.
-fn solved(matrix: &[[f64; COUNT]; COUNT], right: &[f64; COUNT]) -> [f64; COUNT] {
-    let (mut m, mut x) = (*matrix, *right);
-    for k in 0..COUNT {
-        let pivot = m[k][k].max(1e-12);
-        for i in k + 1..COUNT {
-            let share = m[i][k] / pivot;
-            let row = m[k];
-            for (to, from) in m[i].iter_mut().zip(row).skip(k) {
-                *to -= share * from;
-            }
-            x[i] -= share * x[k];
-        }
-    }
-    for k in (0..COUNT).rev() {
-        let known: f64 = (k + 1..COUNT).map(|j| m[k][j] * x[j]).sum();
-        x[k] = (x[k] - known) / m[k][k].max(1e-12);
-    }
-    x
 }

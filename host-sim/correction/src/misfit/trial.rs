@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use truepath_core::cut::WallLaw;
-use truepath_core::geometry::{Direction, Vector};
+use truepath_core::geometry::Direction;
 use truepath_core::identify::Observation;
 use truepath_core::job;
 use truepath_core::probe::{Contact, Contacts, Outcome, Rejected};
@@ -13,13 +13,15 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use super::cause::{Altered, Cause};
+use super::fit::{Fitting, real};
+use super::look::NEAR_MM;
 use super::score::Score;
-use crate::identification::{Found, Points, found_around};
 
 /// Points that a trial takes at most.
 const MOST: usize = 48;
-/// A reading nearer to the wall than this may be of it, mm.
-const NEAR_MM: f64 = 3.0;
+
+/// Rounds in which a free datum is found.
+const DATUM_ROUNDS: usize = 5;
 
 /// What a cause does to the fit.
 #[derive(Clone, Debug)]
@@ -32,32 +34,38 @@ pub struct Trial {
     pub observations: Vec<Observation>,
     /// Their lines in the file.
     pub lines: Vec<u32>,
-    /// Machine and material.
-    pub core: job::Identified,
 }
 
 impl Trial {
-    /// Fits under a cause; `None` where nothing can be fitted.
+    /// Fits under a cause; `None` where nothing can be fitted. A free datum is found in several rounds: points beyond the
+    /// reach of the wall, and places along it, come right once most of the shift is known.
     pub fn of(cause: Cause, pass: &Pass, measurement: &Measurement, law: WallLaw) -> Option<Self> {
+        let mut best = Self::once(cause, pass, measurement, law)?;
+        let mut last = best.cause;
+        for _ in 1..DATUM_ROUNDS {
+            let far = matches!(last, Cause::Datum([x, y]) if (0.02..NEAR_MM).contains(&x.hypot(y)));
+            let Some(again) = Self::once(last, pass, measurement, law).filter(|_| far) else { break };
+            last = again.cause;
+            let gain = best.score.cost - again.score.cost;
+            if gain > 0.0 {
+                best = again;
+            }
+            if gain.abs() < 1.0 {
+                break;
+            }
+        }
+        Some(best)
+    }
+
+    fn once(cause: Cause, pass: &Pass, measurement: &Measurement, law: WallLaw) -> Option<Self> {
         let altered = cause.altered(pass, measurement).ok()?;
         let (contacts, lost) = altered.contacts();
-        let trial = altered.fitted(cause, &contacts, lost, measurement, law).ok()??;
-        match cause {
-            // Points beyond the reach of the wall come into it once most of the shift is known.
-            Cause::Datum([0.0, 0.0]) if trial.is_moved() => {
-                Self::of(trial.cause, pass, measurement, law).filter(|t| t.score.cost <= trial.score.cost).or(Some(trial))
-            }
-            _ => Some(trial),
-        }
+        altered.fitted(cause, &contacts, lost, measurement, law).ok()?
     }
 
     /// Fits under many causes.
     pub fn each(causes: Vec<Cause>, pass: &Pass, measurement: &Measurement, law: WallLaw) -> Vec<Self> {
         causes.into_par_iter().filter_map(|cause| Self::of(cause, pass, measurement, law)).collect()
-    }
-
-    fn is_moved(&self) -> bool {
-        matches!(self.cause, Cause::Datum([x, y]) if x.hypot(y) > 0.02)
     }
 
     /// The cost with what the freedom of the cause costs.
@@ -78,7 +86,7 @@ impl Altered {
             match on_wall.contact(reading) {
                 Ok(contact) => contacts.push(contact),
                 Err(Rejected::OffTheWall { distance }) if mm(distance).abs() > NEAR_MM => {}
-                Err(Rejected::OffTheWall { .. } | Rejected::Normal { .. }) => lost += 1,
+                Err(Rejected::OffTheWall { .. } | Rejected::OffHeight { .. } | Rejected::Normal { .. }) => lost += 1,
                 Err(_) => {}
             }
         }
@@ -107,20 +115,18 @@ impl Altered {
             }
         }
         let mut buffer = PathBuffer::default();
-        let path = self.pass.sample(&mut buffer)?;
-        let points = Points { earlier: &[], observations: &observations };
-        let around = |law| self.free.of(self.pass.core.prior(law));
-        let as_programmed = |_, _| Vector::ZERO;
-        let Found { core, observations, .. } =
-            found_around(around, &path, Some(law), points, as_programmed, &mut |_| ());
-        let p = &core.fit.parameters;
+        let path = self.pass.sample(&mut buffer)?.with_law(law);
+        let prior = self.free.of(self.pass.core.prior(law));
+        let mut fitting = Fitting { path: &path, prior, observations };
+        let bottom = fitting.settle();
+        let p = &prior.at(&bottom.theta.map(real));
         let cause = match cause {
             Cause::Datum([x, y]) => Cause::Datum([x + mm(p.datum.x), y + mm(p.datum.y)]),
             Cause::Level(_) => Cause::Level(mm(p.undersize)),
             cause => cause,
         };
-        let score = Score::of(&core.fit, &observations, lost);
+        let score = Score::of(&bottom.theta, &fitting.observations, lost);
         let lines = contacts.iter().map(|c| c.line).collect();
-        Ok(Some(Trial { cause, score, observations, lines, core }))
+        Ok(Some(Trial { cause, score, observations: fitting.observations, lines }))
     }
 }
