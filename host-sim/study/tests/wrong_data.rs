@@ -72,7 +72,7 @@ fn figures() {
                 let found = identify(&pass, &path, &m, |_| ()).unwrap();
                 let t = std::time::Instant::now();
                 let misfit = judged(&pass, &m, &found.core, &found.observations);
-                let look = Look::of(&m, &found.core, &found.observations);
+                let look = Look::of(&pass, &m, &found.core, &found.observations);
                 let (unfit, all) = look.count();
                 println!("{} {seed} {kind}: {} | {:.1} s, {} cost {:.0} un {unfit}/{all} lv {:.3}±{:.3} far {:.1} med {:.1} d {:.3} gain {:.0} left {:.0} {}", family.name,
                     match &misfit { None => "passed".to_owned(), Some(m) => format!("STOP {:?} {:?}", m.reason, m.causes.iter().map(|t| (t.cause, t.score.cost.round())).collect::<Vec<_>>()) },

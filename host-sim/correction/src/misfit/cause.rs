@@ -10,6 +10,8 @@ use truepath_ground::units::mm;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
+use super::look::NEAR_MM;
+
 /// A cause, with what it would have to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
@@ -85,6 +87,8 @@ impl Cause {
     /// What the fit is given under it.
     pub(super) fn altered(self, pass: &Pass, measurement: &Measurement) -> Result<Altered, Failure> {
         let setting = job::setting(&pass.core).map_err(|error| pass.refused(&error))?;
+        // Under every assumption the same readings are looked at: those that would be off the wall as well.
+        let setting = Setting { reach: nm(NEAR_MM), ..setting };
         let mut to = Altered {
             pass: pass.clone(),
             readings: measurement.readings.clone(),

@@ -28,20 +28,14 @@ pub(super) struct Fitting<'a> {
     pub(super) observations: Vec<Observation>,
 }
 
-/// Where the parameters came out, in prior standard deviations, and what it costs.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bottom {
-    pub(super) theta: [f64; COUNT],
-    pub(super) cost: f64,
-}
-
 pub(super) fn real(value: f64) -> Real {
     Real::from_bits((value * 4_294_967_296.0).round() as i64)
 }
 
 impl Fitting<'_> {
-    /// Goes downhill; the observations then hold the predictions there.
-    pub(super) fn settle(&mut self) -> Bottom {
+    /// Goes downhill; the observations then hold the predictions there. Returns the parameters in prior standard
+    /// deviations.
+    pub(super) fn settle(&mut self) -> [f64; COUNT] {
         let needed = self.path.working().len() + 1;
         let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
         let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
@@ -80,8 +74,8 @@ impl Fitting<'_> {
                 break;
             }
         }
-        let cost = self.cost(&theta, &table, &mut workspace);
-        Bottom { theta, cost }
+        self.predict(&theta, &table, &mut workspace);
+        theta
     }
 
     fn predict(&mut self, theta: &[f64; COUNT], table: &ForceTable, workspace: &mut PredictionWorkspace) {

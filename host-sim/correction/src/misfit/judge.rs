@@ -10,6 +10,7 @@ use super::cause::Cause;
 use super::look::{CLAMPED_MM, Look, Reason};
 use super::score::LOST;
 use super::trial::Trial;
+use crate::identification::asked;
 
 /// By how much a cause must lower the cost, its own freedom paid, to be believed.
 const DECISIVE: f64 = 30.0;
@@ -40,7 +41,7 @@ pub fn judged(
     core: &job::Identified,
     observations: &[Observation],
 ) -> Option<Misfit> {
-    let look = Look::of(measurement, core, observations);
+    let look = Look::of(pass, measurement, core, observations);
     if !look.is_doubtful() {
         return None;
     }
@@ -49,13 +50,16 @@ pub fn judged(
     if stated.score.points + stated.score.lost < LEAST_POINTS {
         return reason.map(|_| Misfit { look, reason, stated, causes: Vec::new() });
     }
-    let mut tried = Trial::each(vec![Cause::Datum([0.0; 2]), Cause::Datum(look.shift.datum_mm), Cause::Level(0.0)], pass, measurement, core.law);
+    // The law that the points speak for may be the wrong one where they are of something else.
+    let auto = asked(pass.core.job.force.model).is_none() && core.law == WallLaw::Mean;
+    let laws: &[WallLaw] = if auto { &[WallLaw::Mean, WallLaw::Helical] } else { &[core.law] };
+    let each = |causes: &[Cause]| Trial::each(causes, pass, measurement, laws);
+    let mut tried = each(&[Cause::Datum([0.0; 2]), Cause::Datum(look.shift.datum_mm), Cause::Level(0.0)]);
     // A shift that explains all leaves nothing to try.
     if !tried.iter().any(|trial| trial.is_flawless()) {
-        tried.extend(Trial::each(Cause::others(pass, core.law == WallLaw::Helical), pass, measurement, core.law));
+        tried.extend(each(&Cause::others(pass, laws.contains(&WallLaw::Helical))));
         let best = tried.iter().min_by(|a, b| a.cost().total_cmp(&b.cost())).map(|t| t.cause);
-        let nearby = best.map(Cause::nearby).unwrap_or_default();
-        tried.extend(Trial::each(nearby, pass, measurement, core.law));
+        tried.extend(each(&best.map(Cause::nearby).unwrap_or_default()));
     }
     tried.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     let best = tried.first()?;
@@ -82,9 +86,11 @@ pub fn judged(
 }
 
 impl Trial {
-    /// Whether what is left is noise.
+    /// Whether a shift leaves nothing but noise.
     fn is_flawless(&self) -> bool {
-        self.is_large() && self.score.lost == 0 && self.score.cost < 2.0 * self.score.points as f64
+        matches!(self.cause, Cause::Datum(_))
+            && self.is_large()
+            && self.score.lost == 0 && self.score.cost < 2.0 * self.score.points as f64
     }
 
     /// Whether the cause is more than what happens to every part.

@@ -5,9 +5,11 @@ use truepath_core::job;
 use truepath_core::probe::Rejected;
 use truepath_ground::units::{float, mm};
 use truepath_job::measurement::Measurement;
+use truepath_job::pass::Pass;
 
-use super::score::{Score, expected_mm, residual_mm};
+use super::score::{LOST, Score, expected_mm, residual_mm};
 use super::shift::Shift;
+use super::trial::is_of_one_depth;
 
 /// Residual in expected deviations from which a point does not fit.
 const UNFIT: f64 = 8.0;
@@ -19,6 +21,8 @@ pub(super) const NEAR_MM: f64 = 3.0;
 const WORN_MM: f64 = 0.05;
 /// A parameter farther from what the job says than so many prior standard deviations cannot be.
 const FARTHEST: f64 = 10.0;
+/// Points that fit cost less than this each, with what the parameters cost.
+const WELL: f64 = 4.0;
 /// A datum moves by less than this when the part stays in its vice, mm.
 pub(super) const CLAMPED_MM: f64 = 0.03;
 
@@ -29,6 +33,8 @@ pub struct Look {
     pub score: Score,
     /// Points that do not, as places in the list of observations, the worst first.
     pub unfit: Vec<usize>,
+    /// Readings beside the wall above or below the cut, where no other pass can have made what they touched.
+    pub off_height: usize,
     /// A free datum.
     pub shift: Shift,
     /// What all points are off, mm, and its standard deviation.
@@ -50,13 +56,14 @@ pub enum Reason {
 
 impl Look {
     /// At a fit of the job as stated.
-    pub fn of(measurement: &Measurement, core: &job::Identified, observations: &[Observation]) -> Self {
-        let near = |r: &&truepath_job::measurement::Aside| match r.reason {
-            Rejected::OffTheWall { distance } => mm(distance).abs() < NEAR_MM,
+    pub fn of(pass: &Pass, measurement: &Measurement, core: &job::Identified, observations: &[Observation]) -> Self {
+        let aside = |near: &dyn Fn(&Rejected) -> bool| measurement.rejected.iter().filter(|r| near(&r.reason)).count();
+        let lost = aside(&|reason| match reason {
+            Rejected::OffTheWall { distance } => mm(*distance).abs() < NEAR_MM,
             Rejected::Normal { .. } => true,
             _ => false,
-        };
-        let lost = measurement.rejected.iter().filter(near).count();
+        });
+        let off_height = aside(&|reason| is_of_one_depth(pass) && matches!(reason, Rejected::OffHeight { .. }));
         let off = |k: &usize| residual_mm(&observations[*k]).abs();
         let mut unfit: Vec<usize> = (0..observations.len())
             .filter(|k| off(k) > FITS_MM && off(k) > UNFIT * expected_mm(&observations[*k]))
@@ -71,6 +78,7 @@ impl Look {
         Self {
             score: Score::of(&core.fit.theta.map(float), observations, lost),
             unfit,
+            off_height,
             shift: Shift::of(&core.prior, &core.fit, observations),
             level_mm: [mm(core.fit.parameters.undersize), sigma],
             farthest,
@@ -85,7 +93,9 @@ impl Look {
     /// Whether other assumptions are worth a try.
     pub fn is_doubtful(&self) -> bool {
         let (unfit, all) = self.count();
-        4 * unfit >= all.max(4)
+        let fitting = self.score.cost - (self.unfit.len() + self.score.lost) as f64 * LOST;
+        4 * (unfit + self.off_height) >= (all + self.off_height).max(4)
+            || fitting > WELL * self.score.points as f64
             || self.score.median > 3.0
             || (self.shift.gain > 25.0 && self.shift.length_mm() > 0.5 * CLAMPED_MM)
             || self.level_mm[0].abs() > WORN_MM

@@ -21,7 +21,7 @@ use super::score::Score;
 const MOST: usize = 48;
 
 /// Rounds in which a free datum is found.
-const DATUM_ROUNDS: usize = 5;
+const DATUM_ROUNDS: usize = 8;
 
 /// What a cause does to the fit.
 #[derive(Clone, Debug)]
@@ -43,14 +43,14 @@ impl Trial {
         let mut best = Self::once(cause, pass, measurement, law)?;
         let mut last = best.cause;
         for _ in 1..DATUM_ROUNDS {
-            let far = matches!(last, Cause::Datum([x, y]) if (0.02..NEAR_MM).contains(&x.hypot(y)));
-            let Some(again) = Self::once(last, pass, measurement, law).filter(|_| far) else { break };
+            let Cause::Datum([x, y]) = last else { break };
+            let Some(again) = Self::once(last, pass, measurement, law).filter(|_| x.hypot(y) < NEAR_MM) else { break };
+            let moved = matches!(again.cause, Cause::Datum([u, v]) if (u - x).hypot(v - y) > 0.01);
             last = again.cause;
-            let gain = best.score.cost - again.score.cost;
-            if gain > 0.0 {
+            if again.score.cost < best.score.cost {
                 best = again;
             }
-            if gain.abs() < 1.0 {
+            if !moved {
                 break;
             }
         }
@@ -64,8 +64,9 @@ impl Trial {
     }
 
     /// Fits under many causes.
-    pub fn each(causes: Vec<Cause>, pass: &Pass, measurement: &Measurement, law: WallLaw) -> Vec<Self> {
-        causes.into_par_iter().filter_map(|cause| Self::of(cause, pass, measurement, law)).collect()
+    pub fn each(causes: &[Cause], pass: &Pass, measurement: &Measurement, laws: &[WallLaw]) -> Vec<Self> {
+        let all: Vec<(Cause, WallLaw)> = laws.iter().flat_map(|law| causes.iter().map(|cause| (*cause, *law))).collect();
+        all.into_par_iter().filter_map(|(cause, law)| Self::of(cause, pass, measurement, law)).collect()
     }
 
     /// The cost with what the freedom of the cause costs.
@@ -79,6 +80,7 @@ impl Altered {
     /// The contacts, thinned, and how many readings near the wall are none.
     fn contacts(&self) -> (Vec<Contact>, usize) {
         let on_wall = Contacts::new(self.pass.path_contour(), self.setting);
+        let one_depth = is_of_one_depth(&self.pass);
         let (mut contacts, mut lost) = (Vec::new(), 0);
         let touched = self.readings.iter().filter(|r| r.outcome == Outcome::Touched);
         let every = touched.clone().count().div_ceil(MOST).max(1);
@@ -86,6 +88,7 @@ impl Altered {
             match on_wall.contact(reading) {
                 Ok(contact) => contacts.push(contact),
                 Err(Rejected::OffTheWall { distance }) if mm(distance).abs() > NEAR_MM => {}
+                Err(Rejected::OffHeight { .. }) if !one_depth => {}
                 Err(Rejected::OffTheWall { .. } | Rejected::OffHeight { .. } | Rejected::Normal { .. }) => lost += 1,
                 Err(_) => {}
             }
@@ -118,15 +121,20 @@ impl Altered {
         let path = self.pass.sample(&mut buffer)?.with_law(law);
         let prior = self.free.of(self.pass.core.prior(law));
         let mut fitting = Fitting { path: &path, prior, observations };
-        let bottom = fitting.settle();
-        let p = &prior.at(&bottom.theta.map(real));
+        let theta = fitting.settle();
+        let p = &prior.at(&theta.map(real));
         let cause = match cause {
             Cause::Datum([x, y]) => Cause::Datum([x + mm(p.datum.x), y + mm(p.datum.y)]),
             Cause::Level(_) => Cause::Level(mm(p.undersize)),
             cause => cause,
         };
-        let score = Score::of(&bottom.theta, &fitting.observations, lost);
+        let score = Score::of(&theta, &fitting.observations, lost);
         let lines = contacts.iter().map(|c| c.line).collect();
         Ok(Some(Trial { cause, score, observations: fitting.observations, lines }))
     }
+}
+
+/// Whether readings above or below the pass cannot be of another pass along the same wall.
+pub(super) fn is_of_one_depth(pass: &Pass) -> bool {
+    pass.plan.as_ref().is_none_or(|plan| plan.levels().len() < 2)
 }
