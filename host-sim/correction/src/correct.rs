@@ -99,7 +99,7 @@ pub fn correct_identified(
     let correction = design_correction(pass, &machine, &identified, request, |share| progress(0.2 + 0.7 * share))?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.texts.iter().cloned());
-    warnings.extend(model_warnings(pass, &identified, &correction, &machine));
+    warnings.extend(model_warnings(pass, remarks.measurement, &identified, &correction, &machine));
     warnings.extend(feeds.warnings(mm(correction.sigma.iter().copied().max().unwrap_or_default())));
     let (mut written, mut image, mut other_images) = (None, None, Vec::new());
     let mut levels = Levels::default();

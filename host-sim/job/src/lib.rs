@@ -19,6 +19,7 @@ pub mod feed;
 pub mod job;
 pub mod levels;
 pub mod measurement;
+mod otherwise;
 pub mod pass;
 pub mod refusal;
 pub mod surface;

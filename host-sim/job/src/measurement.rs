@@ -10,6 +10,7 @@ use truepath_ground::diagnostics::{Failure, Source};
 
 use crate::codes::M040;
 use crate::feature::Plan;
+use crate::otherwise::otherwise;
 use crate::pass::Pass;
 use crate::refusal::why;
 
@@ -67,14 +68,24 @@ impl Measurement {
         let set_aside = |reading: &Reading, reason| {
             rejected.push(Aside { line: reading.line, position: reading.position, reason });
         };
-        let used = job::contacts(&pass.core, contour, file.bytes(), &mut readings, &mut contacts, set_aside)
-            .map_err(|error| pass.refused_of(file, &error))?;
+        let used = job::contacts(&pass.core, contour, file.bytes(), &mut readings, &mut contacts, set_aside).map_err(
+            |error| otherwise(pass, file, &error).map_or_else(|| pass.refused_of(file, &error), Failure::from),
+        )?;
         contacts.truncate(used);
         rejected.sort_by_key(|aside| aside.line);
         // Every reading has a line, which is never 0.
         readings.truncate(readings.iter().take_while(|reading| reading.line > 0).count());
         let (crc, source, file) = (crc32(file.bytes()), file.clone(), file.name().to_owned());
-        Ok(Self { contacts, rejected, readings, noise: probe.noise, taken_as_is: false, source, crc, file })
+        Ok(Self {
+            contacts,
+            rejected,
+            readings,
+            noise: probe.noise,
+            taken_as_is: pass.job.force_data,
+            source,
+            crc,
+            file,
+        })
     }
 
     /// The same, to be taken whether the points fit the job or not.

@@ -6,6 +6,7 @@ use clap::Args;
 use truepath_core::probe::{Contact, CutWith};
 use truepath_core::units::Offset;
 use truepath_correction::inspection::{Extent, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge};
+use truepath_correction::misfit::noticed;
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
@@ -142,7 +143,8 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     let pass = Pass::read(job)?.cut_with(CutWith::Anything);
     let file = Source::read(&options.probe)?;
     let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
-    let misreadings = misread(&pass, false, &measurement.contacts);
+    let mut misreadings = misread(&pass, false, &measurement.contacts);
+    misreadings.extend(noticed(&pass, &measurement).filter(|_| !measurement.taken_as_is));
     let told: Vec<String> = pass.warnings.iter().chain(&misreadings).cloned().collect();
     let warnings = [pass.warnings.clone(), measurement.remarks(&file), misreadings].concat();
     let (part, contour) = (&pass.job.part, pass.path_contour());

@@ -5,7 +5,7 @@ use std::path::{Path as FilePath, PathBuf};
 use clap::Args;
 use truepath_core::checksum::crc32;
 use truepath_correction::as_milled::AsMilled;
-use truepath_correction::codes::{Q001, Q002, Q003, Q004, Q005, Q007};
+use truepath_correction::codes::{Q001, Q002, Q003, Q004, Q005, Q007, Q009};
 use truepath_correction::learn::{LearnSummary, learn};
 use truepath_correction::learning::History;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
@@ -111,7 +111,9 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
     let remarks = measurement.remarks(&file);
     let routes = [options.route.unwrap_or(pass.job.route)];
     let done = learn(&pass, &history, &measurement, &remarks, &routes, progress).map_err(|failure| match failure {
-        Failure::Input(error) if [Q003.code, Q007.code].contains(&error.code()) => error.in_file(&options.probe).into(),
+        Failure::Input(error) if [Q003.code, Q007.code, Q009.code].contains(&error.code()) => {
+            error.in_file(&options.probe).into()
+        }
         Failure::Input(error) if error.code() == Q002.code && error.line_column().is_none() => {
             error.in_file(&options.from.join(HISTORY)).into()
         }

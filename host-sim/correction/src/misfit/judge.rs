@@ -90,7 +90,8 @@ impl Trial {
     fn is_flawless(&self) -> bool {
         matches!(self.cause, Cause::Datum(_))
             && self.is_large()
-            && self.score.lost == 0 && self.score.cost < 2.0 * self.score.points as f64
+            && self.score.lost == 0
+            && self.score.cost < 2.0 * self.score.points as f64
     }
 
     /// Whether the cause is more than what happens to every part.

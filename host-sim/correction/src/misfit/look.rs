@@ -18,7 +18,7 @@ const FITS_MM: f64 = 0.02;
 /// A reading nearer to the wall than this may be of it, mm.
 pub(super) const NEAR_MM: f64 = 3.0;
 /// What a worn cutter is smaller than stated, or one that runs out larger, mm.
-const WORN_MM: f64 = 0.05;
+pub(super) const WORN_MM: f64 = 0.05;
 /// A parameter farther from what the job says than so many prior standard deviations cannot be.
 const FARTHEST: f64 = 10.0;
 /// Points that fit cost less than this each, with what the parameters cost.

@@ -51,10 +51,9 @@ impl Misfit {
                 "all points are off by {:+.3} mm, more than a worn cutter leaves or one that runs out takes",
                 self.look.level_mm[0]
             ),
-            Some(Reason::Parameter(parameter, far)) => format!(
-                "{} would have to be {far:.0} standard deviations from what the job says",
-                said(parameter)
-            ),
+            Some(Reason::Parameter(parameter, far)) => {
+                format!("{} would have to be {far:.0} standard deviations from what the job says", said(parameter))
+            }
             None => format!(
                 "the points fit the job to {:.4} mm (rms), and other assumptions far better",
                 self.stated.score.rms_mm

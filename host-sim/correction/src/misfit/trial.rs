@@ -65,7 +65,8 @@ impl Trial {
 
     /// Fits under many causes.
     pub fn each(causes: &[Cause], pass: &Pass, measurement: &Measurement, laws: &[WallLaw]) -> Vec<Self> {
-        let all: Vec<(Cause, WallLaw)> = laws.iter().flat_map(|law| causes.iter().map(|cause| (*cause, *law))).collect();
+        let all: Vec<(Cause, WallLaw)> =
+            laws.iter().flat_map(|law| causes.iter().map(|cause| (*cause, *law))).collect();
         all.into_par_iter().filter_map(|(cause, law)| Self::of(cause, pass, measurement, law)).collect()
     }
 

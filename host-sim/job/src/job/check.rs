@@ -137,6 +137,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         features,
         which: Which::default(),
         drawn: false,
+        force_data: false,
         spans: spans.into_inner(),
         source: source.clone(),
     })

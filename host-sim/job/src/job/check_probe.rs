@@ -14,7 +14,7 @@ use truepath_ground::limits::Limits;
 const DEFAULT_NOISE: Offset = Offset::from_um(2);
 
 /// Formats by name.
-const FORMATS: [(&str, Format); 6] = [
+pub(crate) const FORMATS: [(&str, Format); 6] = [
     ("linuxcnc", Format::Linuxcnc),
     ("linuxcnc-log", Format::LinuxcncLog),
     ("grbl", Format::Grbl),
@@ -66,6 +66,9 @@ pub struct ProbeFlags {
     /// Ball centre (tip) or touched point (surface).
     #[arg(long, value_name = "NAME", value_parser = one_of(&POINTS))]
     pub point: Option<PointKind>,
+    /// Go on although the points do not fit the job (Q009).
+    #[arg(long)]
+    pub force_data: bool,
 }
 
 impl ProbeFlags {

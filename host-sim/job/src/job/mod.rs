@@ -40,6 +40,7 @@ pub use check_tool::Shank;
 pub use material::{MATERIALS, Material};
 
 pub(crate) use check_feature::is_id;
+pub(crate) use check_probe::FORMATS;
 
 /// A checked job.
 #[derive(Clone, Debug)]
@@ -74,6 +75,8 @@ pub struct JobFile {
     pub which: Which,
     /// Whether it has been found out what a path under G41 or G42 is, where the file does not say it.
     pub drawn: bool,
+    /// Whether points are taken although they do not fit the job; only the command line says it.
+    pub force_data: bool,
     source: Source,
     spans: truepath_ground::document::Spans,
 }
@@ -161,7 +164,9 @@ impl JobFile {
     /// # Errors
     /// `J004` when the job has no `[probe]`, `C001` for flags that contradict each other or the job.
     pub fn override_probe(&mut self, flags: &ProbeFlags) -> Result<(), InputError> {
-        if *flags != ProbeFlags::default() {
+        self.force_data = flags.force_data;
+        let said = ProbeFlags { force_data: false, ..*flags };
+        if said != ProbeFlags::default() {
             self.numbers.probe = Some(flags.over(self.require_probe()?)?);
         }
         Ok(())

@@ -1,0 +1,99 @@
+//! A probe file that cannot be read as the job says: as what else it could be.
+//!
+//! Every other format is tried, and text in two bytes a character. What brings most of the readings to the wall is named.
+
+use truepath_core::job::{self, JobError, Probe};
+use truepath_core::probe::{Contact, Format, Outcome, ProbeErrorKind, Reading};
+use truepath_ground::diagnostics::{InputError, Source};
+
+use crate::codes::{M041, M042};
+use crate::job::FORMATS;
+use crate::pass::Pass;
+
+/// Files longer than this are not tried, bytes.
+const LONGEST: usize = 1 << 20;
+/// Fewer readings on the wall may be chance.
+const LEAST: usize = 3;
+
+/// What the file is instead, after it was refused with an error; `None` where nothing fits better.
+pub(crate) fn otherwise(pass: &Pass, file: &Source, error: &JobError) -> Option<InputError> {
+    let bytes = file.bytes();
+    let unread = match error {
+        JobError::Measurement(error) => !is_of_another_part(&error.kind),
+        JobError::OffTheWall { .. } | JobError::NoContact { .. } => true,
+        _ => false,
+    };
+    if !unread || bytes.len() > LONGEST {
+        return None;
+    }
+    let stated = pass.job.numbers.probe?;
+    if let Some(text) = from_utf16(bytes) {
+        let format = format_of(pass, &stated, text.as_bytes());
+        let as_what = format.map_or(String::new(), |(name, _)| format!(", and would be read as format = \"{name}\""));
+        let found = format!("the file is UTF-16 text, two bytes a character{as_what}");
+        return Some(M041.error(found, "plain text: ASCII or UTF-8").at(file, 0..bytes.len().min(2)));
+    }
+    let (name, _) = format_of(pass, &stated, bytes).filter(|(_, format)| *format != stated.format)?;
+    let said = FORMATS.iter().find(|(_, format)| *format == stated.format).map_or("", |(name, _)| name);
+    let found =
+        format!("the file cannot be used as format = \"{said}\", and read as \"{name}\" its points lie on the wall");
+    let help = format!("write format = \"{name}\" in [probe] of the job, or give --format {name}");
+    Some(InputError::new(M042, found, format!("a file of format \"{said}\""), help).at(file, 0..0))
+}
+
+/// Errors of files that are read and belong to something else.
+const fn is_of_another_part(kind: &ProbeErrorKind) -> bool {
+    matches!(kind.code().as_bytes(), b"M009" | b"M010" | b"M038" | b"M039")
+}
+
+/// The format, first the stated one, in which most readings of a text lie on the wall.
+fn format_of(pass: &Pass, stated: &Probe, bytes: &[u8]) -> Option<(&'static str, Format)> {
+    let fits = |format: Format| {
+        let layout = stated.layout.filter(|_| format == Format::Columns);
+        let mut core = pass.core.clone();
+        core.job.probe = Some(Probe { format, layout, ..*stated });
+        let most = bytes.iter().filter(|b| matches!(b, b'\n' | b'\r')).count() + 1;
+        let (mut readings, mut contacts) = (vec![Reading::default(); most], vec![Contact::BLANK; most]);
+        let used = job::contacts(&core, pass.path_contour(), bytes, &mut readings, &mut contacts, |_, _| ()).ok()?;
+        let touched = readings.iter().filter(|r| r.line > 0 && r.outcome == Outcome::Touched).count();
+        (used >= LEAST && 2 * used > touched).then_some(())
+    };
+    let mut order: Vec<_> = FORMATS.to_vec();
+    order.sort_by_key(|(_, format)| *format != stated.format);
+    order.into_iter().find(|(_, format)| fits(*format).is_some())
+}
+
+/// The text of a file in UTF-16, told by its mark or by its zeros; `None` for any other.
+fn from_utf16(bytes: &[u8]) -> Option<String> {
+    let zeros = |at: usize| bytes.iter().skip(at).step_by(2).take(64).filter(|b| **b == 0).count();
+    let half = bytes.len().min(128) / 2;
+    let (skip, little) = match bytes {
+        [0xff, 0xfe, ..] => (2, true),
+        [0xfe, 0xff, ..] => (2, false),
+        _ if half >= 8 && zeros(1) * 4 >= half * 3 => (0, true),
+        _ if half >= 8 && zeros(0) * 4 >= half * 3 => (0, false),
+        _ => return None,
+    };
+    let unit = |pair: &[u8]| match *pair {
+        [a, b] if little => u16::from_le_bytes([a, b]),
+        [a, b] => u16::from_be_bytes([a, b]),
+        _ => 0,
+    };
+    Some(char::decode_utf16(bytes[skip..].chunks_exact(2).map(unit)).map(|c| c.unwrap_or('\u{fffd}')).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn utf16_is_told_with_a_mark_and_without() {
+        let text = "31.0 60.0 -5.0 0 0 0\r\n";
+        let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        assert_eq!(from_utf16(&little).as_deref(), Some(text));
+        assert_eq!(from_utf16(&big).as_deref(), Some(text));
+        assert_eq!(from_utf16(&[&[0xff, 0xfe], little.as_slice()].concat()).as_deref(), Some(text));
+        assert_eq!(from_utf16(text.as_bytes()), None);
+    }
+}
