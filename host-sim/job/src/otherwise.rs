@@ -33,12 +33,18 @@ pub(crate) fn otherwise(pass: &Pass, file: &Source, error: &JobError) -> Option<
         let found = format!("the file is UTF-16 text, two bytes a character{as_what}");
         return Some(M041.error(found, "plain text: ASCII or UTF-8").at(file, 0..bytes.len().min(2)));
     }
-    let (name, _) = format_of(pass, &stated, bytes).filter(|(_, format)| *format != stated.format)?;
+    let (name, _) = format_of(pass, &stated, bytes).filter(|(_, format)| !is_alike(*format, stated.format))?;
     let said = FORMATS.iter().find(|(_, format)| *format == stated.format).map_or("", |(name, _)| name);
     let found =
         format!("the file cannot be used as format = \"{said}\", and read as \"{name}\" its points lie on the wall");
     let help = format!("write format = \"{name}\" in [probe] of the job, or give --format {name}");
     Some(InputError::new(M042, found, format!("a file of format \"{said}\""), help).at(file, 0..0))
+}
+
+/// Whether one reader takes the lines of the other: what it makes of a damaged file says nothing.
+fn is_alike(a: Format, b: Format) -> bool {
+    let of_dprnt = |format| matches!(format, Format::Inspection | Format::Dprnt);
+    a == b || (of_dprnt(a) && of_dprnt(b))
 }
 
 /// Errors of files that are read and belong to something else.

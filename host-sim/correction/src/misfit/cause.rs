@@ -39,6 +39,8 @@ pub enum Cause {
     MirroredY,
     /// X and Y are exchanged.
     Swapped,
+    /// One or two touches are of something else: their lines in the file, 0 for none.
+    Stray([u32; 2]),
 }
 
 /// A fit's input under a cause.
@@ -120,6 +122,7 @@ impl Cause {
             Self::Height(mm) => to.move_readings(|[x, y, z]| [x, y, z + nm(mm)]),
             Self::MirroredX => to.move_readings(|[x, y, z]| [turned(x), y, z]),
             Self::MirroredY => to.move_readings(|[x, y, z]| [x, turned(y), z]),
+            Self::Stray(lines) => to.readings.retain(|r| !lines.contains(&r.line)),
             Self::Swapped => to.move_readings(|[x, y, z]| [y, x, z]),
         }
         Ok(to)
@@ -128,7 +131,7 @@ impl Cause {
     /// How many numbers it may choose.
     pub(super) const fn freedom(self) -> f64 {
         match self {
-            Self::Nothing => 0.0,
+            Self::Nothing | Self::Stray(_) => 0.0,
             Self::Datum(_) => 2.0,
             _ => 1.0,
         }

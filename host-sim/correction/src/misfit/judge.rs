@@ -18,6 +18,10 @@ const DECISIVE: f64 = 30.0;
 const BY_FAR: f64 = 1.0 / 3.0;
 /// Causes whose costs differ by less explain the points alike.
 const ALIKE: f64 = 6.0;
+/// Points that fit cost less than this each.
+const FLAWLESS: f64 = 2.5;
+/// Of fewer points none is a stray one.
+const LEAST_WITH_STRAYS: usize = 6;
 /// Fewer points cannot tell one cause from another.
 const LEAST_POINTS: usize = 5;
 
@@ -63,6 +67,18 @@ pub fn judged(
     }
     tried.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     let best = tried.first()?;
+    // Few wild touches may bend the fit as well: they are named where the others fit without them. Where the fit has put
+    // just them aside, it has done what is to be done.
+    let flawless = |trial: &Trial| trial.rest() < FLAWLESS * trial.score.points as f64;
+    if !(flawless(best) && best.score.lost <= stated.score.lost) && stated.score.points >= LEAST_WITH_STRAYS {
+        let strays = stated.without_strays(pass, measurement, laws).filter(|trial| flawless(trial));
+        if let Some(strays) = strays {
+            let Cause::Stray(lines) = strays.cause else { return None };
+            let line = |k: &usize| measurement.contacts.get(*k).map_or(0, |contact| contact.line);
+            let known = reason.is_none() && look.unfit.iter().all(|k| lines.contains(&line(k)));
+            return (!known).then(|| Misfit { look, reason, stated, causes: vec![strays] });
+        }
+    }
     // Readings that are none of this wall under either assumption say nothing.
     let neither = stated.score.lost.min(best.score.lost) as f64 * LOST;
     let cost = stated.score.cost - neither;

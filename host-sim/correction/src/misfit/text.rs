@@ -10,7 +10,6 @@ use truepath_job::pass::Pass;
 use super::cause::Cause;
 use super::judge::Misfit;
 use super::look::Reason;
-use super::score::residual_mm;
 use super::trial::Trial;
 use crate::codes::Q009;
 
@@ -20,12 +19,12 @@ const LISTED: usize = 5;
 impl Misfit {
     /// The error, at the worst point.
     pub fn error(&self, pass: &Pass, measurement: &Measurement) -> InputError {
-        let found = format!("{}; {}{}", self.what(), self.why(pass), self.worst(measurement));
+        let found = format!("{}; {}{}", self.what(), self.why(pass, measurement), self.worst(measurement));
         let help = self.causes.first().map_or_else(
             || {
                 "touch the points named once more; look whether program, part and probe file belong together and what the job says of tool, stock and probe".to_owned()
             },
-            |trial| trial.cause.help(pass),
+            |trial| trial.cause.help(pass, measurement),
         );
         let help = format!("{help}; --force-data goes on with the points as they are");
         let error = InputError::new(Q009, found, "points of a part that this job has cut", help);
@@ -38,7 +37,12 @@ impl Misfit {
 
     /// One sentence, for a warning.
     pub fn sentence(&self, pass: &Pass, measurement: &Measurement) -> String {
-        format!("the points do not fit the job: {}; {}{}", self.what(), self.why(pass), self.worst(measurement))
+        format!(
+            "the points do not fit the job: {}; {}{}",
+            self.what(),
+            self.why(pass, measurement),
+            self.worst(measurement)
+        )
     }
 
     fn what(&self) -> String {
@@ -62,18 +66,22 @@ impl Misfit {
     }
 
     /// The causes with their figures.
-    fn why(&self, pass: &Pass) -> String {
+    fn why(&self, pass: &Pass, measurement: &Measurement) -> String {
         let stated = figures(&self.stated);
         if self.causes.is_empty() {
             return format!("none of the causes that were tried explains it (as stated: {stated})");
         }
-        let each = self.causes.iter().map(|trial| format!("{} ({})", trial.cause.words(pass), figures(trial)));
+        let each =
+            self.causes.iter().map(|trial| format!("{} ({})", trial.cause.words(pass, measurement), figures(trial)));
         let each: Vec<String> = each.collect();
         format!("they fit {}; as stated: {stated}", each.join(", or alike "))
     }
 
-    /// The worst points.
+    /// The worst points, where no cause tells more.
     fn worst(&self, measurement: &Measurement) -> String {
+        if !self.causes.is_empty() {
+            return String::new();
+        }
         let trial = &self.stated;
         let each = trial.worst().into_iter().take(LISTED).map(|k| {
             let o = &trial.observations[k];
@@ -81,17 +89,7 @@ impl Misfit {
             format!("{name}: {:.3} mm measured, {:.3} mm expected", mm(o.error), mm(o.predicted))
         });
         let each: Vec<String> = each.collect();
-        if each.is_empty() { String::new() } else { format!("; worst: {}", each.join(", ")) }
-    }
-}
-
-impl Trial {
-    /// Points as places in the list, the worst first.
-    fn worst(&self) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..self.observations.len()).collect();
-        let off = |k: usize| residual_mm(&self.observations[k]).abs();
-        order.sort_by(|a, b| off(*b).total_cmp(&off(*a)));
-        order
+        format!("; worst: {}", each.join(", "))
     }
 }
 
@@ -116,7 +114,7 @@ const fn said(parameter: Parameter) -> &'static str {
 
 impl Cause {
     /// As a condition: "they fit …".
-    pub fn words(self, pass: &Pass) -> String {
+    pub fn words(self, pass: &Pass, measurement: &Measurement) -> String {
         match self {
             Self::Nothing => "as stated".to_owned(),
             Self::Datum([x, y]) => {
@@ -132,6 +130,7 @@ impl Cause {
             Self::Teeth(teeth) => format!("with {teeth} teeth"),
             Self::Helix(deg) => format!("with a helix of about {deg} degrees"),
             Self::Height(mm) => format!("when Z of all of them is raised by about {mm:.1} mm"),
+            Self::Stray(lines) => format!("without {}", listed(lines, measurement)),
             Self::MirroredX => "with the sign of X turned".to_owned(),
             Self::MirroredY => "with the sign of Y turned".to_owned(),
             Self::Swapped => "with X and Y exchanged".to_owned(),
@@ -139,7 +138,7 @@ impl Cause {
     }
 
     /// The line to change, or what to measure again.
-    pub fn help(self, pass: &Pass) -> String {
+    pub fn help(self, pass: &Pass, measurement: &Measurement) -> String {
         let allowance = mm(pass.core.setup.allowance);
         match self {
             Self::Nothing => String::new(),
@@ -171,6 +170,7 @@ impl Cause {
                     "measure the length of the probe again, and look at Z of the origin and at axial_depth_mm".to_owned()
                 }
             }
+            Self::Stray(lines) => format!("touch {} once more, or take it out of the file: there the probe met a chip or another wall", listed(lines, measurement)),
             Self::MirroredX | Self::MirroredY => "turn the sign of that column, or look how the part lay when it was touched".to_owned(),
             Self::Swapped => "exchange the columns of X and Y, or look how the part lay when it was touched".to_owned(),
         }
@@ -196,6 +196,12 @@ impl Cause {
     pub fn is_kind_of(self, other: Self) -> bool {
         std::mem::discriminant(&self) == std::mem::discriminant(&other)
     }
+}
+
+/// One or two points by name.
+fn listed(lines: [u32; 2], measurement: &Measurement) -> String {
+    let each = lines.into_iter().filter(|line| *line > 0).map(|line| measurement.name_of(line));
+    each.collect::<Vec<_>>().join(" and ")
 }
 
 fn near_ratio(a: f64, b: f64, ratio: f64) -> bool {

@@ -15,11 +15,13 @@ use truepath_job::pass::{Pass, PathBuffer};
 use super::cause::{Altered, Cause};
 use super::fit::{Fitting, real};
 use super::look::NEAR_MM;
-use super::score::Score;
+use super::score::{LOST, Score, residual_mm};
 
 /// Points that a trial takes at most.
 const MOST: usize = 48;
 
+/// Points that are taken out in turn.
+const MOST_STRAYS: usize = 12;
 /// Rounds in which a free datum is found.
 const DATUM_ROUNDS: usize = 8;
 
@@ -59,8 +61,46 @@ impl Trial {
 
     fn once(cause: Cause, pass: &Pass, measurement: &Measurement, law: WallLaw) -> Option<Self> {
         let altered = cause.altered(pass, measurement).ok()?;
-        let (contacts, lost) = altered.contacts();
+        let (contacts, mut lost) = altered.contacts();
+        if let Cause::Stray(lines) = cause {
+            lost += lines.iter().filter(|line| **line > 0).count();
+        }
         altered.fitted(cause, &contacts, lost, measurement, law).ok()?
+    }
+
+    /// The best fit without one or two of the points that are farthest off, one after the other.
+    pub fn without_strays(&self, pass: &Pass, measurement: &Measurement, laws: &[WallLaw]) -> Option<Self> {
+        let mut best: Option<Self> = None;
+        for _ in 0..2 {
+            let out = best.as_ref().map_or(0, |trial| match trial.cause {
+                Cause::Stray([one, _]) => one,
+                _ => 0,
+            });
+            let causes: Vec<Cause> =
+                self.worst().iter().take(MOST_STRAYS).map(|k| Cause::Stray([self.lines[*k], out])).collect();
+            let each = Self::each(&causes, pass, measurement, laws);
+            // What is left counts: the points taken out cost the same whichever they are.
+            let next = each.into_iter().min_by(|a, b| a.rest().total_cmp(&b.rest()))?;
+            let enough = next.rest() < 2.0 * next.score.points as f64;
+            best = Some(next);
+            if enough {
+                break;
+            }
+        }
+        best
+    }
+
+    /// What the points cost that are some.
+    pub fn rest(&self) -> f64 {
+        self.score.cost - self.score.lost as f64 * LOST
+    }
+
+    /// Points as places in the list, the worst first.
+    pub(super) fn worst(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.observations.len()).collect();
+        let off = |k: usize| residual_mm(&self.observations[k]).abs();
+        order.sort_by(|a, b| off(*b).total_cmp(&off(*a)));
+        order
     }
 
     /// Fits under many causes.
