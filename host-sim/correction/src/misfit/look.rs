@@ -9,7 +9,6 @@ use truepath_job::pass::Pass;
 
 use super::score::{LOST, Score, expected_mm, residual_mm};
 use super::shift::Shift;
-use super::trial::is_of_one_depth;
 
 /// Residual in expected deviations from which a point does not fit.
 const UNFIT: f64 = 8.0;
@@ -115,4 +114,9 @@ impl Look {
         let (parameter, far) = self.farthest;
         (far > FARTHEST).then_some(Reason::Parameter(parameter, far))
     }
+}
+
+/// Whether readings above or below the pass cannot be of another pass along the same wall.
+pub(super) fn is_of_one_depth(pass: &Pass) -> bool {
+    pass.plan.as_ref().is_none_or(|plan| plan.levels().len() < 2)
 }

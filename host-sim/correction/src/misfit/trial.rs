@@ -14,7 +14,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use super::cause::{Altered, Cause};
 use super::fit::{Fitting, real};
-use super::look::NEAR_MM;
+use super::look::{NEAR_MM, is_of_one_depth};
 use super::score::{LOST, Score, residual_mm};
 
 /// Points that a trial takes at most.
@@ -173,9 +173,4 @@ impl Altered {
         let lines = contacts.iter().map(|c| c.line).collect();
         Ok(Some(Trial { cause, score, observations: fitting.observations, lines }))
     }
-}
-
-/// Whether readings above or below the pass cannot be of another pass along the same wall.
-pub(super) fn is_of_one_depth(pass: &Pass) -> bool {
-    pass.plan.as_ref().is_none_or(|plan| plan.levels().len() < 2)
 }
