@@ -12,6 +12,24 @@ pub const REACH: Offset = Offset::from_um(1_000);
 /// of the wall only.
 const ONE_PLACE: Offset = Offset::from_um(5);
 
+/// How the readings of a pass are taken and what they touch.
+///
+/// # Errors
+/// A job without probe.
+pub fn setting(pass: &ContourPass) -> Result<Setting, JobError> {
+    let probe = pass.job.probe.ok_or(JobError::NoProbe)?;
+    Ok(Setting {
+        ball_radius: Offset::from_nm(probe.ball_diameter.nm() / 2),
+        cutter_radius: pass.setup.radius,
+        wall: pass.setup.wall,
+        tip_z: pass.contour.z,
+        alike: pass.job.part.map(|part| part.alike).unwrap_or_default(),
+        axial_depth: pass.job.cut.axial_depth,
+        z_is_tip: probe.z_reference == ZReference::Tip,
+        reach: REACH,
+    })
+}
+
 /// Reads a probe file into `readings` and its contacts into `contacts`, in the order of the contour, then of height;
 /// returns how many there are. `set_aside` is given each reading that is not used and the reason.
 ///
@@ -52,18 +70,7 @@ pub fn readings(pass: &ContourPass, file: &[u8], readings: &mut [Reading]) -> Re
 /// # Errors
 /// A job without probe.
 pub fn on_wall<'a>(pass: &ContourPass, contour: Contour<'a>) -> Result<Contacts<'a>, JobError> {
-    let probe = pass.job.probe.ok_or(JobError::NoProbe)?;
-    let setting = Setting {
-        ball_radius: Offset::from_nm(probe.ball_diameter.nm() / 2),
-        cutter_radius: pass.setup.radius,
-        wall: pass.setup.wall,
-        tip_z: pass.contour.z,
-        alike: pass.job.part.map(|part| part.alike).unwrap_or_default(),
-        axial_depth: pass.job.cut.axial_depth,
-        z_is_tip: probe.z_reference == ZReference::Tip,
-        reach: REACH,
-    };
-    Ok(Contacts::new(contour, setting))
+    Ok(Contacts::new(contour, setting(pass)?))
 }
 
 /// The contacts of readings that are of one wall, as [`contacts`] gives them; the readings are in the order of the file.

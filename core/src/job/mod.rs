@@ -36,7 +36,7 @@ pub use facts::{
     ZReference,
 };
 pub use identification::{Identified, identified};
-pub use measure::{REACH, contacts, contacts_among, observations, on_wall, readings, same_place};
+pub use measure::{REACH, contacts, contacts_among, observations, on_wall, readings, same_place, setting};
 pub use pass::ContourPass;
 pub use stage::Stage;
 pub use whole::{Made, image};

@@ -23,6 +23,8 @@ truepath_ground::codes! {
         / "touch the part that the corrected program has cut; if this is that part, the control ran the original program, or the coprocessor was not armed",
     Q008 => "the part was cut with a correction already"
         / "learn from it with truepath learn and name the folder of its correction with --from; if the program itself has cut this part, give another folder with -o",
+    Q009 => "the points do not fit the job"
+        / "the error names what was tried and what explains them; correct that line of the job, or touch again",
     Q010 => "the probe file says nothing of a contour that was cut with a correction"
         / "touch every contour that is corrected; truepath probe writes one program for all of them",
     V001 => "an option of the verification program is out of range"

@@ -187,7 +187,7 @@ fn design<'a>(
     let correction = design_correction(pass, &machine, &identified, &request, progress)?;
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.texts.iter().cloned());
-    warnings.extend(model_warnings(pass, &identified, &correction, &machine));
+    warnings.extend(model_warnings(pass, remarks.measurement, &identified, &correction, &machine));
     warnings.extend(feeds.warnings(mm(correction.sigma.iter().copied().max().unwrap_or_default())));
     Ok(Designed {
         pass,

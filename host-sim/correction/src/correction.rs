@@ -15,6 +15,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
 use crate::identification::{Found, Points, asked, found};
+use crate::misfit::refuse_misfit;
 use crate::parallel_walls::ParallelWalls;
 
 /// What the probe points say about machine and material.
@@ -50,7 +51,7 @@ pub struct Correction {
 /// Fits machine and material to the measurement of an uncorrected part. `progress` is told the share done, 0…1.
 ///
 /// # Errors
-/// Points most of which do not fit.
+/// Points that do not fit the job.
 pub fn identify(
     pass: &Pass,
     path: &Path,
@@ -93,10 +94,13 @@ pub fn identify_together(
     let points = Points { cuts: &points, earlier: &[], observations: &observations };
     let uncorrected = |_, _| Vector::ZERO;
     let Found { core, observations, .. } = found(&first.pass.core, law, points, uncorrected, &mut progress);
-    core.check(&observations).map_err(|error| first.pass.refused(&error))?;
     let mut rest = observations.into_iter();
     let own = |cut: &Cut| Identification { core, observations: rest.by_ref().take(cut.points).collect() };
-    Ok(points.cuts.iter().map(own).collect())
+    let identified: Vec<Identification> = points.cuts.iter().map(own).collect();
+    for (cut, identified) in cuts.iter().zip(&identified) {
+        refuse_misfit(cut.pass, cut.measurement, &core, &identified.observations)?;
+    }
+    Ok(identified)
 }
 
 impl Identification {

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | machine and material from the points | [`identification`] |
 //! | the correction of an identified machine | [`correction`] |
+//! | points that are not of this job | [`misfit`] |
 //! | a whole correction with its programs, images and figures | [`correct`], [`summary`] |
 //! | the second of two passes | [`first_pass`], [`second_pass`] |
 //! | the next part | [`learning`], [`learn`], [`as_milled`] |
@@ -23,6 +24,7 @@ pub mod identification;
 pub mod inspection;
 pub mod learn;
 pub mod learning;
+pub mod misfit;
 mod parallel_walls;
 pub mod remarks;
 pub mod rows;

@@ -22,14 +22,16 @@ pub struct Remarks<'a> {
     pub texts: &'a [String],
     /// CRC-32 of the probe file.
     pub probe: u32,
+    /// The measurement.
+    pub measurement: &'a Measurement,
     /// What it is of.
     pub part: MeasuredPart,
 }
 
 impl<'a> Remarks<'a> {
     /// Of the measurement of a part, with sentences about it.
-    pub const fn of(measurement: &Measurement, texts: &'a [String], part: MeasuredPart) -> Self {
-        Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc, part }
+    pub const fn of(measurement: &'a Measurement, texts: &'a [String], part: MeasuredPart) -> Self {
+        Self { set_aside: measurement.rejected.len(), texts, probe: measurement.crc, measurement, part }
     }
 }
 

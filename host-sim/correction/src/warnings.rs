@@ -5,6 +5,7 @@ use truepath_core::identify::Parameter;
 use truepath_core::probe::Contact;
 use truepath_core::units::Offset;
 use truepath_ground::units::mm;
+use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_program::Difference;
 
@@ -15,6 +16,7 @@ use crate::guard::guard_summary;
 /// What the user should doubt.
 pub fn model_warnings(
     pass: &Pass,
+    measurement: &Measurement,
     identified: &Identification,
     correction: &Correction,
     machine: &Loop,
@@ -24,8 +26,17 @@ pub fn model_warnings(
         let lines: Vec<String> = identified
             .observations
             .iter()
-            .filter(|o| o.is_outlying())
-            .map(|o| format!("s = {:.2} mm (measured {:.4}, model {:.4} mm)", mm(o.s), mm(o.error), mm(o.predicted)))
+            .zip(&measurement.contacts)
+            .filter(|(o, _)| o.is_outlying())
+            .map(|(o, contact)| {
+                let name = measurement.name_of(contact.line);
+                format!(
+                    "{name} at s = {:.2} mm (measured {:.4}, model {:.4} mm)",
+                    mm(o.s),
+                    mm(o.error),
+                    mm(o.predicted)
+                )
+            })
             .collect();
         out.push(format!("{} points do not fit and were given little weight: {}", lines.len(), lines.join("; ")));
     }

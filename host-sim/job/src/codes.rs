@@ -23,6 +23,8 @@ truepath_ground::codes! {
         / "check frame and unit of the surface, and that it belongs to this program",
     M040 => "more probe points than are taken at once"
         / "keep every n-th reading of a scan: some places on each wall and in every corner, each at several heights, tell all there is; truepath inspect takes the whole file",
+    M042 => "the probe file is of another format than the job says"
+        / "write the format that the error names into [probe] of the job, or give it with --format",
     N001 => "several features can be corrected, and none is named"
         / "add --feature and one of these names; each of them is a correction of its own",
     N002 => "no feature of that name"

@@ -27,6 +27,7 @@ pub mod feed;
 pub mod job;
 pub mod levels;
 pub mod measurement;
+mod otherwise;
 pub mod pass;
 pub mod post;
 mod probe_format;

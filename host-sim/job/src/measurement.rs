@@ -4,13 +4,14 @@ use truepath_core::checksum::crc32;
 use truepath_core::geometry::Direction;
 use truepath_core::identify::Observation;
 use truepath_core::job::{self, ContourPass};
-use truepath_core::probe::{Contact, Reading, Rejected};
+use truepath_core::probe::{Contact, Outcome, Reading, Rejected};
 use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, Source};
 
 use crate::codes::M040;
 use crate::feature::Plan;
 use crate::levels;
+use crate::otherwise::otherwise;
 use crate::pass::Pass;
 use crate::probe_format::settled;
 use crate::refusal::why;
@@ -39,14 +40,28 @@ pub struct Measurement {
     pub contacts: Vec<Contact>,
     /// Readings set aside, in the order of the file.
     pub rejected: Vec<Aside>,
+    /// Its readings, in the order of the file: all of them, or those of its own wall where there are several.
+    pub readings: Vec<Reading>,
+    /// Lines of the file's readings that have a number in the probing program.
+    pub numbered: Vec<u32>,
     /// Standard deviation of one reading.
     pub noise: Offset,
+    /// Whether the points are taken although they may not fit the job.
+    pub taken_as_is: bool,
+    /// The file.
+    pub source: Source,
     /// CRC-32 of the file.
     pub crc: u32,
     /// Its name.
     pub file: String,
     /// What is said of its format, where it is not that of the job.
     pub read_as: Option<String>,
+}
+
+/// Lines of readings that have a number in the probing program: every place that it goes to has one, touched or not, and of
+/// two touches of one place the second counts.
+pub(crate) fn numbered(readings: &[Reading]) -> Vec<u32> {
+    readings.iter().filter(|r| r.outcome != Outcome::Superseded).map(|r| r.line).collect()
 }
 
 impl Measurement {
@@ -72,12 +87,44 @@ impl Measurement {
         let set_aside = |reading: &Reading, reason| {
             rejected.push(Aside { line: reading.line, position: reading.position, reason });
         };
-        let used = job::contacts(&core, contour, file.bytes(), &mut readings, &mut contacts, set_aside)
-            .map_err(|error| pass.refused_of(file, &error))?;
+        let used =
+            job::contacts(&core, contour, file.bytes(), &mut readings, &mut contacts, set_aside).map_err(|error| {
+                otherwise(pass, file, &error).map_or_else(|| pass.refused_of(file, &error), Failure::from)
+            })?;
         contacts.truncate(used);
         rejected.sort_by_key(|aside| aside.line);
-        let (crc, file) = (crc32(file.bytes()), file.name().to_owned());
-        Ok(Self { contacts, rejected, noise: probe.noise, crc, file, read_as })
+        // Every reading has a line, which is never 0.
+        readings.truncate(readings.iter().take_while(|reading| reading.line > 0).count());
+        let (crc, source, file) = (crc32(file.bytes()), file.clone(), file.name().to_owned());
+        Ok(Self {
+            contacts,
+            rejected,
+            numbered: numbered(&readings),
+            readings,
+            noise: probe.noise,
+            taken_as_is: pass.job.force_data,
+            source,
+            crc,
+            file,
+            read_as,
+        })
+    }
+
+    /// The same, to be taken whether the points fit the job or not.
+    #[must_use]
+    pub const fn taken_as_is(mut self, taken: bool) -> Self {
+        self.taken_as_is = taken;
+        self
+    }
+
+    /// The number that a point has in the probing program, from 1.
+    pub fn number(&self, line: u32) -> usize {
+        self.numbered.partition_point(|numbered| *numbered < line) + 1
+    }
+
+    /// A point as messages name it: its line in the file and its number in the probing program.
+    pub fn name_of(&self, line: u32) -> String {
+        format!("line {line} (point {})", self.number(line))
     }
 
     /// Reads a probe file that may be of any depth of the pass's feature: the one with most readings on its wall is
@@ -128,10 +175,10 @@ impl Measurement {
 
     /// One sentence for every reading set aside.
     pub fn remarks(&self, file: &Source) -> Vec<String> {
-        let aside = self
-            .rejected
-            .iter()
-            .map(|aside| format!("{}:{}: set aside: {}", file.name(), aside.line, why(&aside.reason)));
+        let aside = self.rejected.iter().map(|aside| {
+            let number = self.number(aside.line);
+            format!("{}:{}: point {number} set aside: {}", file.name(), aside.line, why(&aside.reason))
+        });
         self.read_as.iter().cloned().chain(aside).collect()
     }
 }

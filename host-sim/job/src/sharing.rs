@@ -17,7 +17,7 @@ use truepath_ground::diagnostics::{Failure, Source};
 
 use crate::feature::Plan;
 use crate::levels;
-use crate::measurement::{Aside, LARGEST_FILE, Measurement};
+use crate::measurement::{Aside, LARGEST_FILE, Measurement, numbered};
 use crate::pass::Pass;
 use crate::probe_format::settled;
 
@@ -79,10 +79,20 @@ impl Measurement {
             let used = job::contacts_among(&on_wall, own, &mut contacts, aside).unwrap_or(0);
             contacts.truncate(used);
             rejected.sort_by_key(|aside| aside.line);
-            let file = file.name().to_owned();
-            // Said once, of the first wall.
-            let read_as = read_as.clone().filter(|_| wall == 0);
-            all.push((pass.clone(), Self { contacts, rejected, noise: probe.noise, crc, file, read_as }));
+            let measurement = Self {
+                contacts,
+                rejected,
+                readings: own.clone(),
+                numbered: numbered(&readings),
+                noise: probe.noise,
+                taken_as_is: pass.job.force_data,
+                source: file.clone(),
+                crc,
+                file: file.name().to_owned(),
+                // Said once, of the first wall.
+                read_as: read_as.clone().filter(|_| wall == 0),
+            };
+            all.push((pass.clone(), measurement));
         }
         if all.iter().all(|(_, measurement)| measurement.contacts.is_empty()) {
             // Why, the first wall says.

@@ -8,6 +8,7 @@ use truepath_core::units::Offset;
 use truepath_correction::inspection::{
     Extent, Judgement, NamedWall, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge, judge_every,
 };
+use truepath_correction::misfit::noticed;
 use truepath_correction::remarks::said_of_every;
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
@@ -207,7 +208,8 @@ fn one<'a>(
     file: &Source,
     several: bool,
 ) -> Result<Inspected<'a>, Failure> {
-    let misreadings = misread(pass, false, &measurement.contacts);
+    let mut misreadings = misread(pass, false, &measurement.contacts);
+    misreadings.extend(noticed(pass, measurement).filter(|_| !measurement.taken_as_is));
     let told: Vec<String> = pass.warnings.iter().chain(&misreadings).cloned().collect();
     let warnings = [pass.warnings.clone(), measurement.remarks(file), misreadings].concat();
     let (part, contour) = (&pass.job.part, pass.path_contour());

@@ -89,7 +89,7 @@ pub(super) fn missed(
 
 /// Predicts points of a part by a model, without a datum shift: that of another clamping is not known. Returns the
 /// cutter's states along the path.
-fn predicted(path: &Path, part: &PartPoints, model: &Joint, points: &mut [Observation]) -> Vec<State> {
+pub(super) fn predicted(path: &Path, part: &PartPoints, model: &Joint, points: &mut [Observation]) -> Vec<State> {
     let path = path.with_law(model.core.law);
     let (working, table) = (path.working(), model.core.table());
     let (mut states, mut displacements) = (vec![State::REST; working.len() + 1], vec![Vector::ZERO; working.len() + 1]);

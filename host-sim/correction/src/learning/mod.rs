@@ -32,6 +32,7 @@ mod holdout;
 mod joint;
 mod kernel;
 mod monitor;
+mod moved;
 mod nodes;
 mod places;
 mod points;

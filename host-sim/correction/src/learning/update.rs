@@ -10,6 +10,7 @@ use truepath_job::pass::Pass;
 use super::holdout::{Holdout, Residuals};
 use super::joint::{Companion, Joint, PartPoints, joint};
 use super::monitor::Monitor;
+use super::moved::refuse_moved;
 use super::residual::Residual;
 use super::uncorrected::refuse_uncorrected;
 use super::verdict::{Promise, UnmodelledError, Verdict};
@@ -51,6 +52,9 @@ pub fn update(
     let before = joint(pass, path, &earlier, companions, None, &mut |share| progress(0.3 * share));
     let before_beside = Residual::of(path, &earlier, &before);
     refuse_uncorrected(path, &newest, &before, before_beside.as_ref())?;
+    if !pass.job.force_data {
+        refuse_moved(path, &newest, &before)?;
+    }
     let mut parts = earlier;
     parts.push(newest);
     let after = joint(pass, path, &parts, companions, None, &mut |share| progress(0.3 + 0.3 * share));

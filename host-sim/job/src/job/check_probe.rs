@@ -71,6 +71,9 @@ pub struct ProbeFlags {
     /// Ball centre (tip) or touched point (surface).
     #[arg(long, value_name = "NAME", value_parser = one_of(&POINTS))]
     pub point: Option<PointKind>,
+    /// Go on although the points do not fit the job (Q009).
+    #[arg(long)]
+    pub force_data: bool,
 }
 
 impl ProbeFlags {

@@ -88,6 +88,8 @@ pub struct JobFile {
     pub probe_control: Option<&'static str>,
     /// Whether the depth of the cut is still to be found with the contour.
     pub open_depth: bool,
+    /// Whether points are taken although they do not fit the job; only the command line says it.
+    pub force_data: bool,
     source: Source,
     spans: truepath_ground::document::Spans,
 }
@@ -176,7 +178,9 @@ impl JobFile {
     /// # Errors
     /// `J004` when the job has no `[probe]`, `C001` for flags that contradict each other or the job.
     pub fn override_probe(&mut self, flags: &ProbeFlags) -> Result<(), InputError> {
-        if *flags != ProbeFlags::default() {
+        self.force_data = flags.force_data;
+        let said = ProbeFlags { force_data: false, ..*flags };
+        if said != ProbeFlags::default() {
             self.numbers.probe = Some(flags.over(self.require_probe()?)?);
             self.format_stated = true;
         }
