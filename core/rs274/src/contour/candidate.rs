@@ -31,6 +31,19 @@ pub struct Candidate {
     pub exit: usize,
     /// S, revolutions per minute; `None` when the program has none.
     pub speed: Option<Real>,
+    /// How the cutter came to it and left it.
+    pub between: Between,
+}
+
+/// What lies before and behind a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Between {
+    /// Whether the last change of its height before it was upward, from somewhere this tool had cut.
+    pub came_up: bool,
+    /// Whether the move that ends it goes down.
+    pub goes_down: bool,
+    /// The greatest height at which a rapid with the same tool and origin has ended, until behind it.
+    pub rapid: Option<Position>,
 }
 
 /// Gives every run of cutting moves of a program to `visit`, in order, for a list from which to choose.
@@ -90,6 +103,7 @@ impl Run {
             entry: self.entry,
             exit: self.exit,
             speed: self.setup.speed,
+            between: self.between,
         }
     }
 }

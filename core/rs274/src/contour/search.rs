@@ -6,17 +6,19 @@
 //!    G42 and G40 show its leads.
 //! 3. The same path at another height is another level of the same contour; the same path at the same height again is a
 //!    spring pass, in whichever direction and from wherever it goes round.
-//! 4. A path that lies wholly on the free side of another one, no farther from it than a cutter's diameter, and that
+//! 4. Moves between cuts and facing make no wall ([`Idle`]), as long as a run is left that does.
+//! 5. A path that lies wholly on the free side of another one, no farther from it than a cutter's diameter, and that
 //!    does not reach deeper, is roughing: the other one takes its wall away. Two paths with each other on the free side
 //!    are two walls (a pocket and its island).
-//! 5. What remains are finishing contours, numbered in the order of execution.
+//! 6. What remains are finishing contours, numbered in the order of execution.
 //!
 //! Exactly one is needed; the caller decides what to do about none or several. Cost: every pair of different paths is
-//! looked at from up to 320 places. Without a known side of the wall rule 4 does not apply.
+//! looked at from up to 320 places. Without a known side of the wall rule 5 does not apply.
 
 use core::ops::Range;
 
 use super::Candidate;
+use super::idle::{Idle, mark};
 use super::relation::{coincide, farther, same};
 use super::split::{closed, length, without_leads};
 use crate::LineRange;
@@ -28,6 +30,8 @@ use truepath_units::{Offset, Position};
 pub enum Role {
     /// Cut with another tool.
     OtherTool,
+    /// It makes no wall.
+    Idle(Idle),
     /// Another run takes its wall away.
     Rough {
         /// Its index in the list.
@@ -65,13 +69,15 @@ pub struct Found {
     /// What it is for.
     pub role: Role,
     /// Index of the first run along the same path.
-    like: usize,
+    pub(super) like: usize,
+    /// Why it makes no wall.
+    pub(super) idle: Option<Idle>,
 }
 
 impl Found {
     /// A run that was read, whose first block is at `first` among the blocks of all runs.
     pub const fn new(run: Candidate, first: usize) -> Self {
-        Self { run, first, skipped: 0, role: Role::OtherTool, like: 0 }
+        Self { run, first, skipped: 0, role: Role::OtherTool, like: 0, idle: None }
     }
     /// The same run with only some of its blocks, counted within it; `None` when there is none of them.
     pub fn narrowed(&self, kept: Range<usize>, blocks: &[Block]) -> Option<Self> {
@@ -125,11 +131,18 @@ pub fn search(runs: &mut [Found], blocks: &[Block], criteria: &Criteria) -> u32 
             found.like = like;
         }
     }
+    runs.iter_mut().for_each(|found| found.idle = None);
+    mark(runs, blocks, criteria);
+    if !runs.iter().any(|found| counts(found, criteria) && found.idle.is_none()) {
+        runs.iter_mut().for_each(|found| found.idle = None);
+    }
     let mut contours = 0u32;
     for index in 0..runs.len() {
         let Some(found) = runs.get(index) else { continue };
         let role = if !counts(found, criteria) {
             Role::OtherTool
+        } else if let Some(idle) = found.idle {
+            Role::Idle(idle)
         } else if found.like == index {
             match rough(runs, blocks, criteria, index) {
                 Some(role) => role,
@@ -192,7 +205,7 @@ fn rough(runs: &[Found], blocks: &[Block], criteria: &Criteria, index: usize) ->
     let own = runs.get(index)?;
     let depth = deepest(runs, index);
     for (nearer, other) in runs.iter().enumerate().rev() {
-        if nearer == index || other.like != nearer || !counts(other, criteria) {
+        if nearer == index || other.like != nearer || !counts(other, criteria) || other.idle.is_some() {
             continue;
         }
         let deep_enough = match (deepest(runs, nearer), depth) {

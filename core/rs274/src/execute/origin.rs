@@ -120,7 +120,8 @@ where
         self.emit(Canon::Shift(ShiftKind::Local), span)
     }
 
-    /// G52: the origin lies where the words say.
+    /// G52: the origin lies where the words say. TRANS of Siemens sets the axes that it does not name to 0, and ATRANS
+    /// adds.
     pub(super) fn local_origin(
         &mut self,
         block: &mut BlockWords<'_>,
@@ -128,12 +129,17 @@ where
         span: Span,
     ) -> Result<(), GcodeError> {
         let words = self.all_axes(block)?;
-        if words == [None; 9] {
+        let written = span.of(self.text).first().map(u8::to_ascii_uppercase);
+        if words == [None; 9] && written == Some(b'G') {
             return Err(self.error(SettingError::AxesMissing(code).into(), span));
         }
         let mut local = self.modal.shifts.local;
         for (local, word) in local.iter_mut().zip(words) {
-            *local = word.unwrap_or(*local);
+            *local = match written {
+                Some(b'T') => word.unwrap_or(0),
+                Some(b'A') => local.saturating_add(word.unwrap_or(0)),
+                _ => word.unwrap_or(*local),
+            };
         }
         self.local(local, true, span)?;
         self.emit(Canon::Shift(ShiftKind::Local), span)

@@ -141,11 +141,13 @@ where
         }
     }
 
-    /// G61, G61.1, G64 P Q; G187 P E is Haas' word for the same and sets nothing that is known here.
+    /// G61, G61.1, G64 P Q; G187 P E, G5 P, G5.1 Q R, G8 P, G103 P are words of other controls for the like and set nothing
+    /// that is known here.
     pub(super) fn path_control(&mut self, block: &mut BlockWords<'_>) -> Result<(), GcodeError> {
         if block.code(Group::Smoothness).is_some() {
-            block.use_word(b'P');
-            block.use_word(b'E');
+            for letter in [b'P', b'E', b'Q', b'R'] {
+                block.use_word(letter);
+            }
         }
         let Some((code, span)) = block.code(Group::PathControl) else {
             return Ok(());

@@ -30,6 +30,10 @@ where
             self.modal.selected = Some(tool);
             self.emit(Canon::SelectTool(tool), word.span)?;
         }
+        // A tool by name has no number.
+        if block.use_word(b't').is_some() {
+            self.modal.selected = None;
+        }
         let Some(code) = m.tool else { return Ok(()) };
         if code.number == 61 {
             let Some(word) = block.use_word(b'Q') else {

@@ -3,7 +3,7 @@
 //! The verification program runs in the same work offset and unit, and between places at least as high as the part's
 //! program ever was, so that clamps which the part's program passes over are passed over as well.
 
-use truepath_core::gcode::{Canon, HostMemory, Interpreter, Options, Units};
+use truepath_core::gcode::{Canon, HostMemory, Interpreter, Units};
 use truepath_ground::diagnostics::InputError;
 use truepath_job::pass::Pass;
 
@@ -34,7 +34,7 @@ impl PartProgram {
         let first = pass.core.contour.lines.first;
         let (mut work_offset, mut highest_nm, mut local) = (1, None, [0; 3]);
         let mut memory = Box::new(HostMemory::new());
-        Interpreter::new(Options::default())
+        Interpreter::new(pass.job.numbers.program_options())
             .run(pass.program.bytes(), &mut memory.lend(), &mut |event| {
                 if event.source.line == first {
                     work_offset = event.modal.work_offset;

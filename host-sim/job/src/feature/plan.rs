@@ -133,7 +133,7 @@ fn passes(region: &Region, runs: &[Found], survey: &Survey) -> Vec<FeaturePass> 
         let (number, spring) = match found.role {
             Role::Finish { level, .. } => (level, false),
             Role::Spring { level, .. } => (level, true),
-            Role::OtherTool | Role::Rough { .. } => return None,
+            Role::OtherTool | Role::Idle(_) | Role::Rough { .. } => return None,
         };
         let part = Part {
             feature: region.number,
@@ -178,6 +178,10 @@ fn why(region: &Region, runs: &[Found], tool: Option<u32>) -> String {
     let count = |holds: fn(&Role) -> bool| runs.iter().filter(|f| holds(&f.role)).count();
     let levels = count(|r| matches!(r, Role::Finish { .. }));
     let rough = count(|r| matches!(r, Role::Rough { .. }));
+    let idle = match count(|r| matches!(r, Role::Idle(_))) {
+        0 => String::new(),
+        n => format!(", {n} that make no wall"),
+    };
     let (spring, other) = (count(|r| matches!(r, Role::Spring { .. })), count(|r| matches!(r, Role::OtherTool)));
     let of = tool.map_or_else(String::new, |t| format!(" of tool {t}"));
     let place = match region.origin {
@@ -185,7 +189,7 @@ fn why(region: &Region, runs: &[Found], tool: Option<u32>) -> String {
         Origin::Job | Origin::Markers => "on its lines",
     };
     format!(
-        "the only path{of} {place} whose wall no other run takes away ({levels} finishing, {rough} roughing, {spring} spring passes, {other} runs of other tools)"
+        "the only path{of} {place} whose wall no other run takes away ({levels} finishing, {rough} roughing, {spring} spring passes, {other} runs of other tools{idle})"
     )
 }
 

@@ -1,0 +1,123 @@
+//! Runs that make no wall: moves between cuts, written as cutting moves, and facing.
+//!
+//! A real contour must never be taken for one, so that every sign has to be there. Either is above everything else that is
+//! cut.
+//!
+//! A **move between cuts** is open, has at most four blocks, all straight, without G41 or G42, and no other run follows its
+//! path; and
+//! * the tool came up to it from where it had cut, and goes down behind it (a link between two cuts); or
+//! * the tool came up to it, and no rapid of the program ended higher (the way home); or
+//! * it lies at Z 0 or above while others are below 0, the tool goes down behind it, and it is no longer than two diameters
+//!   (the step to a helix).
+//!
+//! **Facing** is open and goes to and fro: at least half of its length are straight moves with another straight move of it
+//! beside them on either hand, nearer than the cutter is wide. No wall is left between them.
+
+use super::Candidate;
+use super::search::{Criteria, Found};
+use super::split::{closed, length};
+use truepath_units::geometry::{Block, Shape};
+use truepath_units::{Offset, Position, Real};
+
+/// Why a run makes no wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Idle {
+    /// A move between cuts.
+    Travel,
+    /// It takes a face off.
+    Facing,
+}
+
+/// The most blocks of a move between cuts.
+const TRAVEL_BLOCKS: usize = 4;
+/// The most blocks of a run that is looked at for facing: every straight one is compared with every other.
+const FACING_BLOCKS: usize = 1_000;
+/// Cosine of one degree.
+const PARALLEL: Real = Real::from_bits(4_294_313_152);
+
+/// Marks the runs that make no wall, from the highest down to the first that does.
+pub(super) fn mark(runs: &mut [Found], blocks: &[Block], criteria: &Criteria) {
+    let heights = || runs.iter().filter_map(|f| f.run.z);
+    let Some(lowest) = heights().min() else { return };
+    let rapid = runs.iter().filter_map(|f| f.run.between.rapid).max();
+    let mut below: Option<Position> = None;
+    // Each turn looks at one height; the first that holds a cut ends it.
+    for _ in 0..runs.len() {
+        let Some(z) = runs.iter().filter_map(|f| f.run.z).filter(|z| below.is_none_or(|b| *z < b)).max() else {
+            return;
+        };
+        let heights = Heights { z, lowest, rapid };
+        let here = || runs.iter().enumerate().filter(|(_, f)| f.run.z == Some(z));
+        if z == lowest || here().any(|(_, found)| why(found, runs, blocks, criteria, &heights).is_none()) {
+            return;
+        }
+        for index in 0..runs.len() {
+            let Some(found) = runs.get(index).filter(|f| f.run.z == Some(z)) else { continue };
+            let idle = why(found, runs, blocks, criteria, &heights);
+            if let Some(found) = runs.get_mut(index) {
+                found.idle = idle;
+            }
+        }
+        below = Some(z);
+    }
+}
+
+/// Heights that tell.
+struct Heights {
+    /// Of the run.
+    z: Position,
+    /// Of the lowest run.
+    lowest: Position,
+    /// To which rapids go up.
+    rapid: Option<Position>,
+}
+
+fn why(found: &Found, runs: &[Found], blocks: &[Block], criteria: &Criteria, heights: &Heights) -> Option<Idle> {
+    let own = found.blocks(blocks);
+    if found.run.wall.is_some() || closed(own) {
+        return None;
+    }
+    let again = |other: &Found| other.first != found.first && other.like == found.like;
+    if is_travel(&found.run, own, criteria.diameter, heights) && !runs.iter().any(again) {
+        return Some(Idle::Travel);
+    }
+    is_facing(own, criteria.diameter).then_some(Idle::Facing)
+}
+
+fn is_travel(run: &Candidate, own: &[Block], diameter: Offset, heights: &Heights) -> bool {
+    if own.len() > TRAVEL_BLOCKS || own.iter().any(|block| block.curve.shape() != Shape::Line) {
+        return false;
+    }
+    let between = run.between;
+    let above_rapids = heights.rapid.is_some_and(|rapid| heights.z >= rapid);
+    let above_part = heights.z >= Position::ZERO && heights.lowest < Position::ZERO;
+    let short = length(own) <= diameter + diameter;
+    (between.came_up && between.goes_down)
+        || (between.came_up && above_rapids)
+        || (above_part && between.goes_down && short)
+}
+
+fn is_facing(own: &[Block], diameter: Offset) -> bool {
+    if own.len() > FACING_BLOCKS {
+        return false;
+    }
+    let lines = || own.iter().filter(|block| block.curve.shape() == Shape::Line);
+    let swept = lines().filter(|block| {
+        let beside = |left: bool| lines().any(|other| lies_beside(block, other, left, diameter));
+        beside(true) && beside(false)
+    });
+    let swept = swept.fold(Offset::ZERO, |sum, block| sum + block.curve.length());
+    swept.nm().saturating_mul(2) >= length(own).nm()
+}
+
+/// Whether another straight move runs along one, nearer than the cutter is wide, to its left or to its right.
+fn lies_beside(block: &Block, other: &Block, left: bool, diameter: Offset) -> bool {
+    let (start, heading) = (block.curve.start(), block.curve.start_heading());
+    if heading.dot(other.curve.start_heading()).abs() < PARALLEL {
+        return false;
+    }
+    let middle = other.curve.point(Real::HALF);
+    let place = middle.from(start);
+    let (along, aside) = (place.along(heading), place.along(if left { heading.left() } else { heading.right() }));
+    aside > Offset::ZERO && aside < diameter && along > Offset::ZERO && along < block.curve.length()
+}
