@@ -10,8 +10,9 @@
 //! * it lies at Z 0 or above while others are below 0, the tool goes down behind it, and it is no longer than two diameters
 //!   (the step to a helix).
 //!
-//! **Facing** is open and goes to and fro: at least half of its length are straight moves with another straight move of it
-//! beside them on either hand, nearer than the cutter is wide. No wall is left between them.
+//! **Facing** is open and goes to and fro along straight moves, at least three of them, and all but the two outermost have
+//! another one beside them on either hand: nearer than the cutter is wide, so that no wall is left between them; or, with a
+//! cutter that the job does not describe, equally far, at Z 0 or above while others are below 0.
 
 use super::Candidate;
 use super::search::{Criteria, Found};
@@ -32,6 +33,8 @@ pub enum Idle {
 const TRAVEL_BLOCKS: usize = 4;
 /// The most blocks of a run that is looked at for facing: every straight one is compared with every other.
 const FACING_BLOCKS: usize = 1_000;
+/// Gaps that differ by less are the same.
+const SAME: Offset = Offset::from_um(2);
 /// Cosine of one degree.
 const PARALLEL: Real = Real::from_bits(4_294_313_152);
 
@@ -72,6 +75,13 @@ struct Heights {
     rapid: Option<Position>,
 }
 
+impl Heights {
+    /// Whether Z 0 is the top of the part, as far as that can be seen, and the run not below it.
+    fn above_part(&self) -> bool {
+        self.z >= Position::ZERO && self.lowest < Position::ZERO
+    }
+}
+
 fn why(found: &Found, runs: &[Found], blocks: &[Block], criteria: &Criteria, heights: &Heights) -> Option<Idle> {
     let own = found.blocks(blocks);
     if found.run.wall.is_some() || closed(own) {
@@ -81,7 +91,7 @@ fn why(found: &Found, runs: &[Found], blocks: &[Block], criteria: &Criteria, hei
     if is_travel(&found.run, own, criteria.diameter, heights) && !runs.iter().any(again) {
         return Some(Idle::Travel);
     }
-    is_facing(own, criteria.diameter).then_some(Idle::Facing)
+    is_facing(own, criteria.diameter, heights.above_part()).then_some(Idle::Facing)
 }
 
 fn is_travel(run: &Candidate, own: &[Block], diameter: Offset, heights: &Heights) -> bool {
@@ -90,34 +100,40 @@ fn is_travel(run: &Candidate, own: &[Block], diameter: Offset, heights: &Heights
     }
     let between = run.between;
     let above_rapids = heights.rapid.is_some_and(|rapid| heights.z >= rapid);
-    let above_part = heights.z >= Position::ZERO && heights.lowest < Position::ZERO;
     let short = length(own) <= diameter + diameter;
     (between.came_up && between.goes_down)
         || (between.came_up && above_rapids)
-        || (above_part && between.goes_down && short)
+        || (heights.above_part() && between.goes_down && short)
 }
 
-fn is_facing(own: &[Block], diameter: Offset) -> bool {
-    if own.len() > FACING_BLOCKS {
+fn is_facing(own: &[Block], diameter: Offset, above_part: bool) -> bool {
+    if own.len() > FACING_BLOCKS || own.iter().any(|block| block.curve.shape() != Shape::Line) {
         return false;
     }
-    let lines = || own.iter().filter(|block| block.curve.shape() == Shape::Line);
-    let swept = lines().filter(|block| {
-        let beside = |left: bool| lines().any(|other| lies_beside(block, other, left, diameter));
-        beside(true) && beside(false)
-    });
-    let swept = swept.fold(Offset::ZERO, |sum, block| sum + block.curve.length());
-    swept.nm().saturating_mul(2) >= length(own).nm()
+    let longest = own.iter().map(|block| block.curve.length()).max().unwrap_or_default();
+    let long = || own.iter().filter(|block| block.curve.length() + block.curve.length() >= longest);
+    let swept = |block: &&Block| {
+        let gap = |left: bool| long().filter_map(|other| gap(block, other, left)).min();
+        match (gap(true), gap(false)) {
+            (Some(a), Some(b)) => (a < diameter && b < diameter) || (above_part && (a - b).abs() <= SAME),
+            _ => false,
+        }
+    };
+    let along = long().fold(Offset::ZERO, |sum, block| sum + block.curve.length());
+    let count = long().count();
+    count >= 3
+        && long().filter(swept).count().saturating_add(2) >= count
+        && along.nm().saturating_mul(3) >= length(own).nm().saturating_mul(2)
 }
 
-/// Whether another straight move runs along one, nearer than the cutter is wide, to its left or to its right.
-fn lies_beside(block: &Block, other: &Block, left: bool, diameter: Offset) -> bool {
+/// How far another straight move runs to the left or to the right of one, where it runs along it.
+fn gap(block: &Block, other: &Block, left: bool) -> Option<Offset> {
     let (start, heading) = (block.curve.start(), block.curve.start_heading());
     if heading.dot(other.curve.start_heading()).abs() < PARALLEL {
-        return false;
+        return None;
     }
-    let middle = other.curve.point(Real::HALF);
-    let place = middle.from(start);
+    let place = other.curve.point(Real::HALF).from(start);
     let (along, aside) = (place.along(heading), place.along(if left { heading.left() } else { heading.right() }));
-    aside > Offset::ZERO && aside < diameter && along > Offset::ZERO && along < block.curve.length()
+    let beside = aside > Offset::ZERO && along > Offset::ZERO && along < block.curve.length();
+    beside.then_some(aside)
 }

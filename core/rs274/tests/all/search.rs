@@ -175,6 +175,11 @@ fn facing_to_and_fro_above_all_else_makes_no_wall() {
     let apart = zigzag.replace("Y-32", "Y-132").replace("Y-24", "Y-110").replace("Y-16", "Y-90").replace("Y-8", "Y-70");
     let apart = apart.replace("Y8", "Y70").replace("Y16", "Y90").replace("Y24", "Y110").replace("Y32", "Y132");
     assert_eq!(kinds(&format!("{head}G1 Z0\n{apart}{contour}")), "FF");
+    // A wider cutter than the job's, which is known by equal steps where the part's top is Z 0.
+    let wide = format!("{head}G1 Z0\nG1 X50\nY-8\nX-50\nY24\nX50\nY56\nX-50\n{contour}");
+    assert_eq!(kinds(&wide), "fF");
+    assert_eq!(kinds(&wide.replace("Z0\n", "Z9\n").replace("Z-8", "Z1")), "FF");
+    assert_eq!(kinds(&wide.replace("Y24", "Y22")), "FF");
 }
 
 #[test]
