@@ -44,8 +44,10 @@ impl<'s> BlockWords<'s> {
             let again = block.take(word, dialect).map_err(|kind| refused(kind, word.span))?;
             twice = twice.or(again.then_some(word));
         }
-        // The arguments of a macro may come in several sets of I J K.
-        if let Some(word) = twice.filter(|_| block.code(Group::OneShot).is_none_or(|(code, _)| code.tenths() != 650)) {
+        // The arguments of a macro may come in several sets of I J K; Mazak names the next tool beside the one that M6 takes.
+        let of_macro = block.code(Group::OneShot).is_some_and(|(code, _)| code.tenths() == 650);
+        let changes = dialect == Dialect::Fanuc && block.m.iter().any(|m| m.number == 6);
+        if let Some(word) = twice.filter(|word| !of_macro && !(changes && word.letter == b'T')) {
             return Err(refused(GcodeErrorKind::DuplicateWord { letter: word.letter.to_ascii_uppercase() }, word.span));
         }
         Ok(block)
@@ -121,6 +123,11 @@ impl<'s> BlockWords<'s> {
             return None;
         }
         self.words.iter().find(|w| w.letter == letter).copied()
+    }
+
+    /// The last word of a letter.
+    pub(super) fn last_word(&self, letter: u8) -> Option<Word> {
+        self.words.iter().rev().find(|w| w.letter == letter).copied()
     }
 
     /// A word not used yet; it counts as used from now on.

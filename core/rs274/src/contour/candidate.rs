@@ -42,8 +42,8 @@ pub struct Between {
     pub came_up: bool,
     /// Whether the move that ends it goes down.
     pub goes_down: bool,
-    /// The greatest height at which a rapid with the same tool and origin has ended, until behind it.
-    pub rapid: Option<Position>,
+    /// The greatest height at which a move with the same tool and origin has ended, until behind it.
+    pub top: Option<Position>,
 }
 
 /// Gives every run of cutting moves of a program to `visit`, in order, for a list from which to choose.

@@ -6,7 +6,7 @@
 //! A **move between cuts** is open, has at most four blocks, all straight, without G41 or G42, and no other run follows its
 //! path; and
 //! * the tool came up to it from where it had cut, and goes down behind it (a link between two cuts); or
-//! * the tool came up to it, and no rapid of the program ended higher (the way home); or
+//! * the tool came up to it, and no move of the program ended higher (the way home); or
 //! * it lies at Z 0 or above while others are below 0, the tool goes down behind it, and it is no longer than two diameters
 //!   (the step to a helix).
 //!
@@ -42,14 +42,14 @@ const PARALLEL: Real = Real::from_bits(4_294_313_152);
 pub(super) fn mark(runs: &mut [Found], blocks: &[Block], criteria: &Criteria) {
     let heights = || runs.iter().filter_map(|f| f.run.z);
     let Some(lowest) = heights().min() else { return };
-    let rapid = runs.iter().filter_map(|f| f.run.between.rapid).max();
+    let top = runs.iter().filter_map(|f| f.run.between.top).max();
     let mut below: Option<Position> = None;
     // Each turn looks at one height; the first that holds a cut ends it.
     for _ in 0..runs.len() {
         let Some(z) = runs.iter().filter_map(|f| f.run.z).filter(|z| below.is_none_or(|b| *z < b)).max() else {
             return;
         };
-        let heights = Heights { z, lowest, rapid };
+        let heights = Heights { z, lowest, top };
         let here = || runs.iter().enumerate().filter(|(_, f)| f.run.z == Some(z));
         if z == lowest || here().any(|(_, found)| why(found, runs, blocks, criteria, &heights).is_none()) {
             return;
@@ -71,8 +71,8 @@ struct Heights {
     z: Position,
     /// Of the lowest run.
     lowest: Position,
-    /// To which rapids go up.
-    rapid: Option<Position>,
+    /// To which any move goes up.
+    top: Option<Position>,
 }
 
 impl Heights {
@@ -99,10 +99,10 @@ fn is_travel(run: &Candidate, own: &[Block], diameter: Offset, heights: &Heights
         return false;
     }
     let between = run.between;
-    let above_rapids = heights.rapid.is_some_and(|rapid| heights.z >= rapid);
+    let at_the_top = heights.top.is_some_and(|top| heights.z >= top);
     let short = length(own) <= diameter + diameter;
     (between.came_up && between.goes_down)
-        || (between.came_up && above_rapids)
+        || (between.came_up && at_the_top)
         || (heights.above_part() && between.goes_down && short)
 }
 

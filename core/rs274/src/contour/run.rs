@@ -94,7 +94,7 @@ impl RunReader {
             count: 0,
             offset: None,
             auxiliary: [0; 6],
-            between: Between { came_up: false, goes_down: false, rapid: None },
+            between: Between { came_up: false, goes_down: false, top: None },
             cut_with: None,
             unknown: None,
         }
@@ -140,7 +140,7 @@ impl RunReader {
             Step::Pass => Ok(Progress::default()),
             Step::Break => {
                 let ended = self.run.take().map(|run| Run {
-                    between: Between { goes_down: down, rapid: self.between.rapid, ..run.between },
+                    between: Between { goes_down: down, top: self.between.top, ..run.between },
                     ..run
                 });
                 Ok(Progress { ended, block: None })
@@ -156,21 +156,19 @@ impl RunReader {
 
     /// Notes what a step does to the height of the tool; whether it goes down.
     fn heights(&mut self, event: &Event<'_>) -> bool {
-        let (from, to, rapid) = match event.canon {
-            Canon::Traverse { from, to } => (from, to, true),
-            Canon::Feed { from, to } | Canon::Arc { from, to, .. } | Canon::PlaneArc { from, to, .. } => {
-                (from, to, false)
-            }
+        let (from, to) = match event.canon {
+            Canon::Traverse { from, to }
+            | Canon::Feed { from, to }
+            | Canon::Arc { from, to, .. }
+            | Canon::PlaneArc { from, to, .. } => (from, to),
             // Another tool, offset or origin: heights mean something else, or nothing.
             Canon::ChangeTool(_) | Canon::WorkOffset(_) | Canon::Shift(_) => {
-                self.between = Between { came_up: false, rapid: None, ..self.between };
+                self.between = Between { came_up: false, top: None, ..self.between };
                 return false;
             }
             _ => return false,
         };
-        if rapid {
-            self.between.rapid = self.between.rapid.max(to.z);
-        }
+        self.between.top = self.between.top.max(to.z);
         match (from.z, to.z) {
             (Some(from), Some(to)) if to != from => {
                 self.between.came_up = to > from && self.cut_with == Some(event.modal.tool);

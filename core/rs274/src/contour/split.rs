@@ -8,7 +8,7 @@
 //!   diameters: what CAM systems write. With a straight move outside it only where both ends are alike;
 //! * an open run begins or ends with a straight move no longer than the cutter's radius, at 20 degrees or more to the
 //!   wall: the wall of such a leg would lie in its own corner. No longer than two diameters where it is neither along
-//!   nor across.
+//!   nor across, or goes straight back.
 //!
 //! A line and a tangent quarter circle at one end look exactly like a contour that begins with a corner: there the caller
 //! names the lines.
@@ -107,7 +107,8 @@ fn look(at: &dyn Fn(usize) -> Option<Curve>, from_end: bool, wall: Side, diamete
     let turns_away = from.cross(to) * away > Real::ZERO;
     let slanted = from.dot(to).abs() > ACROSS;
     let short = outer.length().nm() <= diameter.nm() / 2;
-    let leads = turns_away && from.dot(to) < CORNER && (short || slanted);
+    let back = from.dot(to) <= -TANGENT;
+    let leads = back || (turns_away && from.dot(to) < CORNER && (short || slanted));
     End { blocks: usize::from(leads), if_alike: None }
 }
 

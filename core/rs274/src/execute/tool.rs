@@ -46,6 +46,9 @@ where
             return Ok(());
         }
         self.modal.tool = self.modal.selected;
+        // A second T names the next tool.
+        let next = block.last_word(b'T').map(|word| self.whole(word)).transpose()?;
+        self.modal.selected = next.or(self.modal.selected);
         if self.options.machine.is_none() {
             // Many machines lift to change the tool, and the new one has another length.
             self.at.z = None;

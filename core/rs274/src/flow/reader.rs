@@ -214,7 +214,7 @@ impl<'p> Reader<'p> {
                 (Some(b'C'), b'R') | (Some(b'S' | b'T' | b'A'), b'G') | (_, b't') => true,
                 _ => false,
             },
-            Token::Comment { .. } => first.is_some_and(|byte| byte.is_ascii_alphabetic()),
+            Token::Comment { .. } | Token::Corner(_) => first.is_some_and(|byte| byte.is_ascii_alphabetic()),
             _ => false,
         };
         if self.dialect == Dialect::Siemens {

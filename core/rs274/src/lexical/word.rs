@@ -119,7 +119,7 @@ impl<'a> Words<'a> {
     }
 
     /// A word of Siemens' own language that has a meaning here: `CR=5` is R, `SUPA` is G53, `TRANS` and `ATRANS` are G52,
-    /// `T="MILL"` is `t`, a tool without a number. What `MSG("…")` shows, how `CYCLE832(…)` smooths, the blank that
+    /// `T="MILL"` is `t`, a tool without a number, `RND=` and `CHR=` are `,R` and `,C`. What `MSG("…")` shows, how `CYCLE832(…)` smooths, the blank that
     /// `WORKPIECE(…)` draws and how the drives follow (`FFWON`, `SOFT` …) are comments. Its first letter tells it from the
     /// word that it stands for, so that a reader of another dialect can refuse it.
     fn siemens(&mut self, from: &'a [u8]) -> Option<Result<Token, GcodeError>> {
@@ -128,6 +128,13 @@ impl<'a> Words<'a> {
             self.rest = value;
             self.begun = true;
             return Some(self.word(from, b'R'));
+        }
+        for (word, letter) in [(&b"RND"[..], b'R'), (b"CHR", b'C')] {
+            if let Some(value) = behind(word).and_then(|rest| rest.strip_prefix(b"=")).filter(|v| number(v).1.is_ok()) {
+                self.rest = value;
+                self.begun = true;
+                return Some(self.value(from, letter).map(Token::Corner));
+            }
         }
         let codes: [(&[u8], i64); 3] = [(b"SUPA", 53), (b"TRANS", 52), (b"ATRANS", 52)];
         if let Some((rest, code)) = codes.iter().find_map(|(word, code)| behind(word).map(|rest| (rest, *code))) {

@@ -302,7 +302,7 @@ const TABLE: &[(&[u8], &str)] = &[
     ),
     (
         b"S\nG70",
-        "line 2, column 1: G067: G70 belongs to a lathe, whose moves are not computed; post the program for a mill",
+        "line 2, column 1: G067: G70 is a cycle in this dialect, and cycles of a lathe and rows of holes are not computed; where it stands for inches or millimetres, name the dialect (fanuc, siemens or mach), or write G20 or G21",
     ),
     (b"S\nG33.1 Z-5", "line 2, column 1: G090: G33.1 has no K; add it to this block"),
     (b"S\nG38.2", "line 2, column 1: G061: G38.2 has no axis word; add the axes it is meant for"),

@@ -128,6 +128,9 @@ fn moves_between_cuts_make_no_wall() {
     let links =
         format!("{head}G0 X-20 Y-20\nG1 Z-5\n{SQUARE}G1 Z5\nX60 Y60\nX90\nZ-5\nX90 Y99\nX0\nY80\nG1 Z15\nX0 Y0\nM2\n");
     assert_eq!(kinds(&links), "FtFt");
+    // The way home in a program without any rapid.
+    let home = format!("G21 G90 F500\nG1 Z2.54\nG1 X-20 Y-20\nG1 Z-5\n{SQUARE}G1 Z2.54\nX0 Y0\nM2\n");
+    assert_eq!(kinds(&home), "Ft");
     // The step to a helix, at Z 1.
     let helix = format!("{head}G0 X0 Y0\nG1 Z1\nX3\nG3 X-3 Z-2 I-3\nX3 Z-5 I3\nG1 X-20 Y-20\n{SQUARE}G0 Z15\nM2\n");
     assert_eq!(kinds(&helix), "tF");
@@ -153,6 +156,13 @@ fn what_may_be_a_wall_is_never_taken_for_a_move_between_cuts() {
     assert_eq!(kinds(&format!("{head}G0 Z5\nG1 Z1\nX0\nG1 Z-3\nM2\n")), "F");
     let high = format!("{head}G0 Z15\nG1 Z2\n{SQUARE}G1 Z5\nX0\nG1 Z-5\nX20\nG0 Z50\nM2\n");
     assert_eq!(kinds(&high.replace("Z5\n", "Z2\n")).matches('t').count(), 0);
+}
+
+#[test]
+fn a_move_straight_back_over_the_contour_is_a_lead() {
+    let program = "G21 G90 F500\nG0 X-30 Y-25\nG0 Z-5\nG1 X-20\nY20\nX20\nY-20\nX-15\nX-5\nG0 Z50\nM2\n";
+    let (count, runs, _) = searched(program, &criteria(None));
+    assert_eq!((count, runs[0].run.lines), (1, LineRange { first: 4, last: 8 }));
 }
 
 #[test]

@@ -250,6 +250,10 @@ fn the_tools_origins_and_dynamics_of_siemens_own_language_are_read() {
     for word in ["TRANS X10", "ATRANS Z1", "T=\"MILL_10\" M6", "G0 FFWON"] {
         is_refused(&others, word, "G009");
     }
+    let corner = "G21 G17 G1 X10. F100. RND=2.\nY10. CHR=1\nX0.\nM30";
+    let rounded = "F80,0,0 A100,20,0 about 80,20 F100,90,0 F90,100,0 F0,100,0";
+    is_read(&siemens, corner, rounded, &[]);
+    is_refused(&others, corner, "G009");
     is_refused(&others, "G21 G0 X=1.", "G006");
     is_refused(&others, "G601", "G032");
     // The tool that has no number is not the one before it.
@@ -265,6 +269,24 @@ fn the_tools_origins_and_dynamics_of_siemens_own_language_are_read() {
         },
     );
     assert_eq!((run.is_ok(), tools), (true, vec![(Some(3), Some(3)), (None, None)]));
+}
+
+#[test]
+fn the_second_tool_beside_m6_is_the_next_one() {
+    let mut tools = Vec::new();
+    let run = Interpreter::new(options(Dialect::Fanuc)).run(
+        b"T07 T11 M06\nM6\nM30",
+        &mut DeviceMemory::new().lend(),
+        &mut |event| {
+            if let Canon::ChangeTool(tool) = event.canon {
+                tools.push(tool);
+            }
+            Ok(())
+        },
+    );
+    assert_eq!((run.is_ok(), tools), (true, vec![Some(7), Some(11)]));
+    is_refused(&ALL, "T7 T11", "G022");
+    is_refused(&[Dialect::Linuxcnc, Dialect::Haas], "T7 T11 M6", "G022");
 }
 
 #[test]
