@@ -47,7 +47,7 @@ impl<'s> BlockWords<'s> {
         // The arguments of a macro may come in several sets of I J K; Mazak names the next tool beside the one that M6 takes.
         let of_macro = block.code(Group::OneShot).is_some_and(|(code, _)| code.tenths() == 650);
         let changes = dialect == Dialect::Fanuc && block.m.iter().any(|m| m.number == 6);
-        if let Some(word) = twice.filter(|word| !of_macro && !(changes && word.letter == b'T')) {
+        if let Some(word) = twice.filter(|word| !(of_macro || changes && word.letter == b'T')) {
             return Err(refused(GcodeErrorKind::DuplicateWord { letter: word.letter.to_ascii_uppercase() }, word.span));
         }
         Ok(block)

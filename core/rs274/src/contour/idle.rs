@@ -101,9 +101,7 @@ fn is_travel(run: &Candidate, own: &[Block], diameter: Offset, heights: &Heights
     let between = run.between;
     let at_the_top = heights.top.is_some_and(|top| heights.z >= top);
     let short = length(own) <= diameter + diameter;
-    (between.came_up && between.goes_down)
-        || (between.came_up && at_the_top)
-        || (heights.above_part() && between.goes_down && short)
+    (between.came_up && (between.goes_down || at_the_top)) || (heights.above_part() && between.goes_down && short)
 }
 
 fn is_facing(own: &[Block], diameter: Offset, above_part: bool) -> bool {

@@ -8,7 +8,8 @@
 //!   diameters: what CAM systems write. With a straight move outside it only where both ends are alike;
 //! * an open run begins or ends with a straight move no longer than the cutter's radius, at 20 degrees or more to the
 //!   wall: the wall of such a leg would lie in its own corner. No longer than two diameters where it is neither along
-//!   nor across, or goes straight back.
+//!   nor across;
+//! * a run ends with a straight move straight back, no longer than two diameters.
 //!
 //! A line and a tangent quarter circle at one end look exactly like a contour that begins with a corner: there the caller
 //! names the lines.
@@ -29,6 +30,7 @@ pub(super) fn without_leads(blocks: &[Block], run: &Candidate, wall: Option<Side
     let end = blocks.len().saturating_sub(run.exit);
     let told = run.entry > 0 || run.exit > 0;
     let offset = if run.entry < end { run.entry..end } else { 0..blocks.len() };
+    let offset = without_way_back(blocks, offset, diameter);
     let within = blocks.get(offset.clone()).unwrap_or_default();
     let found = match (inner_loop(within, closed).or_else(|| inner_loop(within, laps)), wall) {
         (Some(found), _) => found,
@@ -36,6 +38,21 @@ pub(super) fn without_leads(blocks: &[Block], run: &Candidate, wall: Option<Side
         _ => return offset,
     };
     offset.start.saturating_add(found.start)..offset.start.saturating_add(found.end)
+}
+
+/// The same blocks without a straight move at their end that goes straight back over them: to where a subprogram begins
+/// again. Such a run may end where it starts, and is no loop.
+fn without_way_back(blocks: &[Block], range: Range<usize>, diameter: Offset) -> Range<usize> {
+    match blocks.get(range.clone()) {
+        Some([_, .., before, last])
+            if last.curve.shape() == Shape::Line
+                && last.curve.length() <= diameter + diameter
+                && before.curve.end_heading().dot(last.curve.start_heading()) <= -TANGENT =>
+        {
+            range.start..range.end.saturating_sub(1)
+        }
+        _ => range,
+    }
 }
 
 /// Cosine of one degree, and of twenty: tangent is what turns by less than the one, a corner by more than the other.
@@ -107,8 +124,7 @@ fn look(at: &dyn Fn(usize) -> Option<Curve>, from_end: bool, wall: Side, diamete
     let turns_away = from.cross(to) * away > Real::ZERO;
     let slanted = from.dot(to).abs() > ACROSS;
     let short = outer.length().nm() <= diameter.nm() / 2;
-    let back = from.dot(to) <= -TANGENT;
-    let leads = back || (turns_away && from.dot(to) < CORNER && (short || slanted));
+    let leads = turns_away && from.dot(to) < CORNER && (short || slanted);
     End { blocks: usize::from(leads), if_alike: None }
 }
 

@@ -154,7 +154,15 @@ where
         };
         let path = match code.tenths() {
             610 => PathControl::Exact,
-            611 => PathControl::ExactStop,
+            611 => {
+                // Mazak names the shape of the corners.
+                if self.options.dialect == Dialect::Fanuc
+                    && let Some(word) = block.use_word(b'P')
+                {
+                    self.warn(WarningKind::IdleWord { letter: b'P' }, word.span);
+                }
+                PathControl::ExactStop
+            }
             _ => {
                 let tolerance = self.tolerance(block, b'P')?;
                 PathControl::Blend { tolerance, merge: self.tolerance(block, b'Q')? }

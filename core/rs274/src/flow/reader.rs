@@ -210,10 +210,9 @@ impl<'p> Reader<'p> {
     fn check_siemens(&self, token: &Token) -> Result<(), GcodeError> {
         let first = self.rest(token.span().start).first().map(u8::to_ascii_uppercase);
         let foreign = match token {
-            Token::Word(word) => match (first, word.letter) {
-                (Some(b'C'), b'R') | (Some(b'S' | b'T' | b'A'), b'G') | (_, b't') => true,
-                _ => false,
-            },
+            Token::Word(word) => {
+                matches!((first, word.letter), (Some(b'C'), b'R') | (Some(b'S' | b'T' | b'A'), b'G') | (_, b't'))
+            }
             Token::Comment { .. } | Token::Corner(_) => first.is_some_and(|byte| byte.is_ascii_alphabetic()),
             _ => false,
         };

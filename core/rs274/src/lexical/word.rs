@@ -123,6 +123,9 @@ impl<'a> Words<'a> {
     /// `WORKPIECE(…)` draws and how the drives follow (`FFWON`, `SOFT` …) are comments. Its first letter tells it from the
     /// word that it stands for, so that a reader of another dialect can refuse it.
     fn siemens(&mut self, from: &'a [u8]) -> Option<Result<Token, GcodeError>> {
+        if !trimmed(self.rest).first().is_some_and(|&byte| byte.is_ascii_alphabetic() || byte == b'=') {
+            return None;
+        }
         let behind = |word: &[u8]| spelled(from, word).and_then(|len| from.get(len..)).map(trimmed);
         if let Some(value) = behind(b"CR").and_then(|rest| rest.strip_prefix(b"=")) {
             self.rest = value;

@@ -163,6 +163,13 @@ fn a_move_straight_back_over_the_contour_is_a_lead() {
     let program = "G21 G90 F500\nG0 X-30 Y-25\nG0 Z-5\nG1 X-20\nY20\nX20\nY-20\nX-15\nX-5\nG0 Z50\nM2\n";
     let (count, runs, _) = searched(program, &criteria(None));
     assert_eq!((count, runs[0].run.lines), (1, LineRange { first: 4, last: 8 }));
+    // An outline in a subprogram that goes back to where it begins again.
+    let program = "G21 G90 F500\nG0 X-20 Y-30\nG0 Z-5\nG1 Y20\nX20\nY-20\nX-20\nY-30\nG0 Z50\nM2\n";
+    let (count, runs, _) = searched(program, &criteria(None));
+    assert_eq!((count, runs[0].run.lines), (1, LineRange { first: 4, last: 7 }));
+    let program = program.replace("X-20\nY-30\nG0", "X-12\nG2 X-20 Y-12 J8\nG1 Y-30\nG0");
+    let (count, runs, _) = searched(&program, &criteria(None));
+    assert_eq!((count, runs[0].run.lines, runs[0].run.closed), (1, LineRange { first: 4, last: 8 }, false));
 }
 
 #[test]
