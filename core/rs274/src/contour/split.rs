@@ -37,22 +37,23 @@ pub(super) fn without_leads(blocks: &[Block], run: &Candidate, wall: Option<Side
         (None, Some(wall)) if !told && !closed(within) => open(within, wall, diameter),
         _ => return offset,
     };
-    offset.start.saturating_add(found.start)..offset.start.saturating_add(found.end)
+    // A loop may be closed by the way back alone.
+    let found = offset.start.saturating_add(found.start)..offset.start.saturating_add(found.end);
+    without_way_back(blocks, found, diameter)
 }
 
-/// The same blocks without a straight move at their end that goes straight back over them: to where a subprogram begins
-/// again. Such a run may end where it starts, and is no loop.
+/// The same blocks without a straight move at their end that goes straight back, over the block before it or over the
+/// first one: to where a subprogram begins again. Such a run may end where it starts, and is no loop.
 fn without_way_back(blocks: &[Block], range: Range<usize>, diameter: Offset) -> Range<usize> {
-    match blocks.get(range.clone()) {
-        Some([_, .., before, last])
-            if last.curve.shape() == Shape::Line
-                && last.curve.length() <= diameter + diameter
-                && before.curve.end_heading().dot(last.curve.start_heading()) <= -TANGENT =>
-        {
-            range.start..range.end.saturating_sub(1)
-        }
-        _ => range,
+    let [first, .., before, last] = blocks.get(range.clone()).unwrap_or_default() else { return range };
+    let heading = last.curve.start_heading();
+    let over_first = last.curve.end() == first.curve.start() && first.curve.shape() == Shape::Line;
+    let back = before.curve.end_heading().dot(heading) <= -TANGENT
+        || (over_first && first.curve.start_heading().dot(heading) <= -TANGENT);
+    if back && last.curve.shape() == Shape::Line && last.curve.length() <= diameter + diameter {
+        return range.start..range.end.saturating_sub(1);
     }
+    range
 }
 
 /// Cosine of one degree, and of twenty: tangent is what turns by less than the one, a corner by more than the other.

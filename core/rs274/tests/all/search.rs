@@ -170,6 +170,11 @@ fn a_move_straight_back_over_the_contour_is_a_lead() {
     let program = program.replace("X-20\nY-30\nG0", "X-12\nG2 X-20 Y-12 J8\nG1 Y-30\nG0");
     let (count, runs, _) = searched(&program, &criteria(None));
     assert_eq!((count, runs[0].run.lines, runs[0].run.closed), (1, LineRange { first: 4, last: 8 }, false));
+    // The same with a straight move to it and away from it.
+    let program = program.replace("Y-30\nG0 Z50", "Y-30\nX-30\nG0 Z50");
+    let program = program.replace("X-20 Y-30\nG0 Z-5\n", "X-30 Y-30\nG0 Z-5\nG1 X-20\n");
+    let (count, runs, _) = searched(&program, &criteria(None));
+    assert_eq!((count, runs[0].run.lines), (1, LineRange { first: 5, last: 9 }));
 }
 
 #[test]
