@@ -81,7 +81,7 @@ impl<'s> BlockWords<'s> {
     }
 
     fn take_g(&mut self, word: &Word, dialect: Dialect) -> Result<(), GcodeErrorKind> {
-        let second = GCode::new(word.value).ok_or(GcodeErrorKind::NotAGCode)?;
+        let second = GCode::new(word.value).ok_or(GcodeErrorKind::NotAGCode)?.in_dialect(dialect);
         let group = second.group_in(dialect)?;
         if self.groups & group.bit() == 0 {
             self.groups |= group.bit();

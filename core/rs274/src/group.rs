@@ -39,7 +39,7 @@ pub(super) enum Group {
     Smoothness,
     /// G8: radius programming, which is what a mill does.
     Diameter,
-    /// G15 G40.1 G50 G50.1 G67 G69: cancel polar coordinates, the turning of a tool with its path, scaling, mirroring, a modal
+    /// G13.1 G15 G40.1 G50 G50.1 G67 G69: cancel polar coordinates, the turning of a tool with its path, scaling, mirroring, a modal
     /// macro, rotation, which are all refused. They do not exclude each other.
     Cancel,
 }
@@ -63,15 +63,29 @@ impl GCode {
         }
     }
 
+    /// The code that stands for one of a dialect: G153 of Siemens is G53, G700 and G710 are G70 and G71, for feeds as well.
+    pub(super) const fn in_dialect(self, dialect: Dialect) -> Self {
+        match (dialect, self.tenths()) {
+            (Dialect::Siemens, 1_530) => Self::from_tenths(530),
+            (Dialect::Siemens, 7_000) => Self::from_tenths(700),
+            (Dialect::Siemens, 7_100) => Self::from_tenths(710),
+            _ => self,
+        }
+    }
+
     /// The group it belongs to in a dialect. Some codes only say how closely and how fast a path is followed: look-ahead
-    /// and high speed (G5, G5.1, G8) of Fanuc and Haas, exact stop (G9), the look-ahead limit of Haas (G103), and those
-    /// of Siemens (G60, G601 … G603, G641 … G645, G450, G451).
+    /// and high speed (G5, G5.1, G8) of Fanuc and Haas, exact stop (G9), slower corners and the watch over the spindle of
+    /// Fanuc (G62, G25, G26), the look-ahead limit of Haas (G103), and those of Siemens (G60, G601 … G603, G641 … G645, G450,
+    /// G451). G110 … G129 of Haas are its further work offsets.
     ///
     /// # Errors
     /// As [`Self::group`].
     pub(super) const fn group_in(self, dialect: Dialect) -> Result<Group, GcodeErrorKind> {
         match (dialect, self.tenths()) {
+            (Dialect::Haas, tenths) if tenths >= 1_100 && tenths <= 1_290 && tenths % 10 == 0 => Ok(Group::WorkOffset),
+            (Dialect::Fanuc, 131) => Ok(Group::Cancel),
             (Dialect::Fanuc | Dialect::Haas, 50 | 51 | 80 | 90)
+            | (Dialect::Fanuc, 250 | 260 | 620)
             | (Dialect::Haas, 1030)
             | (Dialect::Siemens, 90 | 600 | 6_010 | 6_020 | 6_030 | 4_500 | 4_510)
             | (Dialect::Siemens, 6_410 | 6_420 | 6_430 | 6_440 | 6_450) => Ok(Group::Smoothness),

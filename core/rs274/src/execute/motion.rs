@@ -110,6 +110,13 @@ where
             2 => self.set_work_offset(block, false),
             20 => self.set_work_offset(block, true),
             way @ (1 | 10 | 11) => self.set_tool(block, way),
+            // Radius and its wear at Fanuc and Haas: no path depends on D.
+            12 | 13 if self.options.dialect.has_macro_b() => {
+                for letter in [b'P', b'R'] {
+                    block.use_word(letter);
+                }
+                Ok(())
+            }
             // Reloads the tool table.
             0 => Ok(()),
             _ => {

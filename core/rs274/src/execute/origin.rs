@@ -35,6 +35,8 @@ where
                 let number = self.between(word, 1, most)?;
                 number.saturating_add(first)
             }
+            // G110 … G129 are G154 P1 … P20.
+            tenths @ 1_100..=1_290 => u32::from(tenths / 10),
             tenths @ 540..=590 => u32::from(tenths / 10).saturating_sub(53),
             tenths => u32::from(tenths.saturating_sub(584)),
         };

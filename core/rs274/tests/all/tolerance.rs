@@ -183,10 +183,33 @@ fn an_arc_may_miss_by_what_its_last_digit_explains() {
 #[test]
 fn a_program_may_begin_with_the_name_of_its_file() {
     is_read(&ALL, "%O1200(PART)\nG21 G0 X1.\nM30\n%", "O1200 T10,0,0", &[]);
+    is_read(&[Dialect::Fanuc, Dialect::Haas], "%\nO<PART_1> (A)\nG21 G0 X1.\nM30\n%", "T10,0,0", &[]);
+    is_refused(&[Dialect::Fanuc], "O<PART> call", "G154");
     is_read(&ALL, "$PART-1.MIN%\nO12\nG21 G0 X1.\nM30\n%", "O12 T10,0,0", &[]);
     is_read(&ALL, "%_N_PART_1_MPF\n;$PATH=/_N_WKS_DIR\nG21 G0 X1.\nM30\n", "T10,0,0", &[]);
     is_refused(&ALL, "%G21 G0 X1.", "G010");
     is_refused(&ALL, "G0 X1.\n$A", "G001");
+}
+
+#[test]
+fn further_work_offsets_of_a_haas_are_those_of_g154() {
+    let offset = |code: &str| {
+        let mut offset = 0;
+        let program = format!("G21 {code}\nG0 X1. Y1.\nM30");
+        let run = Interpreter::new(options(Dialect::Haas)).run(
+            program.as_bytes(),
+            &mut DeviceMemory::new().lend(),
+            &mut |event| {
+                offset = event.modal.work_offset;
+                Ok(())
+            },
+        );
+        run.map(|_| offset).map_err(|e| e.kind.code())
+    };
+    assert_eq!(offset("G110"), offset("G154 P1"));
+    assert_eq!(offset("G129"), offset("G154 P20"));
+    assert_eq!(offset("G130"), Err("G032"));
+    is_refused(&[Dialect::Fanuc, Dialect::Linuxcnc], "G110", "G032");
 }
 
 #[test]
@@ -256,6 +279,9 @@ fn the_tools_origins_and_dynamics_of_siemens_own_language_are_read() {
     is_refused(&others, corner, "G009");
     is_refused(&others, "G21 G0 X=1.", "G006");
     is_refused(&others, "G601", "G032");
+    // G700 and G710 are units for feeds as well, G153 is G53.
+    is_read(&siemens, "G710 G90 G0 X1.\nG0 G153 Z0 D0\nG700\nX1.\nM30", "T10,0,0 T254,0,?", &[]);
+    is_refused(&others, "G21 G0 G153 Z0", "G032");
     // The tool that has no number is not the one before it.
     let mut tools = Vec::new();
     let run = Interpreter::new(options(Dialect::Siemens)).run(
@@ -310,6 +336,7 @@ fn codes_that_cancel_or_only_say_how_the_path_is_followed_change_nothing() {
     is_refused(&ALL, "G69 G50 X1.", "G067");
     let fast = "G21 G05.1 Q1 R3\nG08 P1\nG05 P10000\nG09 G0 X1.\nG05.1 Q0\nM30";
     is_read(&[Dialect::Fanuc, Dialect::Haas], fast, "T10,0,0", &[]);
+    is_read(&[Dialect::Fanuc], "G21 G13.1 G15 G69\nG25\nG62\nG10 L12 P1 R5.\nG0 X1.\nM30", "T10,0,0", &[]);
     is_read(&[Dialect::Haas], "G103 P1\nG21 G0 X1.\nG103\nM30", "T10,0,0", &[]);
     is_refused(&[Dialect::Linuxcnc], "G21 G09 G0 X1.", "G032");
 }
