@@ -1,7 +1,7 @@
 //! What is told of a run that may be a finishing contour, and the list of all of them.
 
 use super::ContourOptions;
-use super::run::{Run, RunReader};
+use super::run::{Between, Run, RunReader};
 use crate::{GcodeError, Interpreter, LineRange, Memory, Program, ProgramSummary};
 use truepath_units::geometry::{Block, Side};
 use truepath_units::{Offset, Position, Real};
@@ -33,17 +33,6 @@ pub struct Candidate {
     pub speed: Option<Real>,
     /// How the cutter came to it and left it.
     pub between: Between,
-}
-
-/// What lies before and behind a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Between {
-    /// Whether the last change of its height before it was upward, from somewhere this tool had cut.
-    pub came_up: bool,
-    /// Whether the move that ends it goes down.
-    pub goes_down: bool,
-    /// The greatest height at which a move with the same tool and origin has ended, until behind it.
-    pub top: Option<Position>,
 }
 
 /// Gives every run of cutting moves of a program to `visit`, in order, for a list from which to choose.

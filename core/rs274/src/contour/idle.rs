@@ -15,19 +15,10 @@
 //! cutter that the job does not describe, equally far, at Z 0 or above while others are below 0.
 
 use super::Candidate;
-use super::search::{Criteria, Found};
+use super::found::{Criteria, Found, Idle};
 use super::split::{closed, length};
 use truepath_units::geometry::{Block, Shape};
 use truepath_units::{Offset, Position, Real};
-
-/// Why a run makes no wall.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Idle {
-    /// A move between cuts.
-    Travel,
-    /// It takes a face off.
-    Facing,
-}
 
 /// The most blocks of a move between cuts.
 const TRAVEL_BLOCKS: usize = 4;

@@ -5,7 +5,6 @@
 //! place to a known one brings the cutter to the part, as rapids do in programs that write none; a wall that it may cut on
 //! the way is unknown, so it is no part of any run.
 
-use super::Between;
 use crate::{
     Axes, Canon, Event, FeedMode, GcodeError, GcodeErrorKind, LineRange, Modal, PathControl, Span, Spindle, Units,
 };
@@ -36,6 +35,17 @@ pub(super) struct Run {
     pub(super) units: Units,
     pub(super) path: Option<PathControl>,
     pub(super) between: Between,
+}
+
+/// What lies before and behind a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Between {
+    /// Whether the last change of its height before it was upward, from somewhere this tool had cut.
+    pub came_up: bool,
+    /// Whether the move that ends it goes down.
+    pub goes_down: bool,
+    /// The greatest height at which a move with the same tool and origin has ended, until behind it.
+    pub top: Option<Position>,
 }
 
 /// What stays the same along a run.
