@@ -6,7 +6,7 @@
 use super::flow::Sentence;
 use super::group::Group;
 use super::mcode::{M_LIMIT, MCode};
-use super::{GCode, GcodeError, GcodeErrorKind, Span, Word};
+use super::{Dialect, GCode, GcodeError, GcodeErrorKind, Span, Word};
 
 /// G codes kept per block: one of each group.
 const G_LIMIT: usize = Group::COUNT;
@@ -27,8 +27,8 @@ pub(super) struct BlockWords<'s> {
 }
 
 impl<'s> BlockWords<'s> {
-    /// Takes the words of a block.
-    pub(super) fn gather(sentence: &'s Sentence<'_>) -> Result<Self, GcodeError> {
+    /// Takes the words of a block, whose codes mean what they do in a dialect.
+    pub(super) fn gather(sentence: &'s Sentence<'_>, dialect: Dialect) -> Result<Self, GcodeError> {
         let mut block = Self {
             words: &sentence.words,
             present: 0,
@@ -41,11 +41,13 @@ impl<'s> BlockWords<'s> {
         let refused = |kind, span| GcodeError::new(kind, &sentence.line, span).in_file(sentence.source.file);
         let mut twice = None;
         for word in &sentence.words {
-            let again = block.take(word).map_err(|kind| refused(kind, word.span))?;
+            let again = block.take(word, dialect).map_err(|kind| refused(kind, word.span))?;
             twice = twice.or(again.then_some(word));
         }
-        // The arguments of a macro may come in several sets of I J K.
-        if let Some(word) = twice.filter(|_| block.code(Group::OneShot).is_none_or(|(code, _)| code.tenths() != 650)) {
+        // The arguments of a macro may come in several sets of I J K; Mazak names the next tool beside the one that M6 takes.
+        let of_macro = block.code(Group::OneShot).is_some_and(|(code, _)| code.tenths() == 650);
+        let changes = dialect == Dialect::Fanuc && block.m.iter().any(|m| m.number == 6);
+        if let Some(word) = twice.filter(|word| !(of_macro || changes && word.letter == b'T')) {
             return Err(refused(GcodeErrorKind::DuplicateWord { letter: word.letter.to_ascii_uppercase() }, word.span));
         }
         Ok(block)
@@ -56,13 +58,13 @@ impl<'s> BlockWords<'s> {
     }
 
     /// Takes one; `true` when its letter has stood here before.
-    fn take(&mut self, word: &Word) -> Result<bool, GcodeErrorKind> {
+    fn take(&mut self, word: &Word, dialect: Dialect) -> Result<bool, GcodeErrorKind> {
         let letter = word.letter;
         if self.program.is_some() {
             return Err(GcodeErrorKind::OutOfPlace { letter: b'O' });
         }
         match letter {
-            b'G' => self.take_g(word)?,
+            b'G' => self.take_g(word, dialect)?,
             b'M' => {
                 let code = MCode { number: whole(*word)?, span: word.span };
                 self.m.push(code).map_err(|_| GcodeErrorKind::TooManyM { limit: M_LIMIT as u8 })?;
@@ -78,9 +80,9 @@ impl<'s> BlockWords<'s> {
         Ok(false)
     }
 
-    fn take_g(&mut self, word: &Word) -> Result<(), GcodeErrorKind> {
-        let second = GCode::new(word.value).ok_or(GcodeErrorKind::NotAGCode)?;
-        let group = second.group()?;
+    fn take_g(&mut self, word: &Word, dialect: Dialect) -> Result<(), GcodeErrorKind> {
+        let second = GCode::new(word.value).ok_or(GcodeErrorKind::NotAGCode)?.in_dialect(dialect);
+        let group = second.group_in(dialect)?;
         if self.groups & group.bit() == 0 {
             self.groups |= group.bit();
             // There is room for one code of each group.
@@ -94,6 +96,9 @@ impl<'s> BlockWords<'s> {
             // G80 beside another motion only ends the one before.
             (Group::Motion, a, 800) if a != 800 => {}
             (Group::Motion, 800, b) if b != 800 => (known.1, known.2) = (second, word.span),
+            // G50 is asked for its words.
+            (Group::Cancel, a, 500) if a != 500 => (known.1, known.2) = (second, word.span),
+            (Group::Cancel | Group::Smoothness, a, b) if a != b => {}
             _ => return Err(GcodeErrorKind::Conflict { first, second }),
         }
         Ok(())
@@ -118,6 +123,11 @@ impl<'s> BlockWords<'s> {
             return None;
         }
         self.words.iter().find(|w| w.letter == letter).copied()
+    }
+
+    /// The last word of a letter.
+    pub(super) fn last_word(&self, letter: u8) -> Option<Word> {
+        self.words.iter().rev().find(|w| w.letter == letter).copied()
     }
 
     /// A word not used yet; it counts as used from now on.

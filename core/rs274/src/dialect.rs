@@ -30,9 +30,8 @@ impl Dialect {
     pub const fn has_metric_g71(self) -> bool {
         matches!(self, Self::Siemens | Self::Mach)
     }
-    /// Whether the last G0 or G1 is in force again behind G80, which ends a cycle in a group of its own, and whether R, the
-    /// depth and Q go on to a cycle of another code until then: Fanuc, and those that follow it.
-    pub const fn keeps_motion_behind_cycle(self) -> bool {
+    /// Whether R, the depth and Q go on to a cycle of another code until G80: Fanuc, and those that follow it.
+    pub const fn keeps_words_of_cycles(self) -> bool {
         matches!(self, Self::Fanuc | Self::Haas | Self::Siemens)
     }
     /// The largest number of a parameter.

@@ -4,7 +4,7 @@
 //! where the cutter goes in a way not computed here are refused by name; of those only the codes that cancel such a
 //! thing, which is then never on, are accepted without effect.
 
-use super::{GCode, GcodeErrorKind, Number, SettingError};
+use super::{Dialect, GCode, GcodeErrorKind, Number, SettingError};
 
 /// Codes of one group exclude each other in a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,11 +35,12 @@ pub(super) enum Group {
     PathControl,
     /// G96 G97.
     SpindleMode,
-    /// G187.
+    /// How closely and how fast the path is followed, beside [`Self::PathControl`]: G187, and what [`GCode::group_in`] adds.
     Smoothness,
     /// G8: radius programming, which is what a mill does.
     Diameter,
-    /// G15 G50 G50.1 G67 G69: cancel polar coordinates, scaling, mirroring, a modal macro, rotation, which are all refused.
+    /// G13.1 G15 G40.1 G50 G50.1 G67 G69: cancel polar coordinates, the turning of a tool with its path, scaling, mirroring, a modal
+    /// macro, rotation, which are all refused. They do not exclude each other.
     Cancel,
 }
 
@@ -59,6 +60,36 @@ impl GCode {
         match value.exactly_times(10) {
             Some(tenths) if (0..10_000).contains(&tenths) => Some(Self::from_tenths(tenths as u16)),
             _ => None,
+        }
+    }
+
+    /// The code that stands for one of a dialect: G153 of Siemens is G53, G700 and G710 are G70 and G71, for feeds as well.
+    pub(super) const fn in_dialect(self, dialect: Dialect) -> Self {
+        match (dialect, self.tenths()) {
+            (Dialect::Siemens, 1_530) => Self::from_tenths(530),
+            (Dialect::Siemens, 7_000) => Self::from_tenths(700),
+            (Dialect::Siemens, 7_100) => Self::from_tenths(710),
+            _ => self,
+        }
+    }
+
+    /// The group it belongs to in a dialect. Some codes only say how closely and how fast a path is followed: look-ahead
+    /// and high speed (G5, G5.1, G8) of Fanuc and Haas, exact stop (G9), slower corners and the watch over the spindle of
+    /// Fanuc (G62, G25, G26), the look-ahead limit of Haas (G103), and those of Siemens (G60, G601 … G603, G641 … G645, G450,
+    /// G451). G110 … G129 of Haas are its further work offsets.
+    ///
+    /// # Errors
+    /// As [`Self::group`].
+    pub(super) const fn group_in(self, dialect: Dialect) -> Result<Group, GcodeErrorKind> {
+        match (dialect, self.tenths()) {
+            (Dialect::Haas, tenths) if tenths >= 1_100 && tenths <= 1_290 && tenths % 10 == 0 => Ok(Group::WorkOffset),
+            (Dialect::Fanuc, 131) => Ok(Group::Cancel),
+            (Dialect::Fanuc | Dialect::Haas, 50 | 51 | 80 | 90)
+            | (Dialect::Fanuc, 250 | 260 | 620)
+            | (Dialect::Haas, 1030)
+            | (Dialect::Siemens, 90 | 600 | 6_010 | 6_020 | 6_030 | 4_500 | 4_510)
+            | (Dialect::Siemens, 6_410 | 6_420 | 6_430 | 6_440 | 6_450) => Ok(Group::Smoothness),
+            _ => self.group(),
         }
     }
 
@@ -84,7 +115,7 @@ impl GCode {
             960 | 970 => Group::SpindleMode,
             1870 => Group::Smoothness,
             80 => Group::Diameter,
-            150 | 500 | 501 | 670 | 690 => Group::Cancel,
+            150 | 401 | 500 | 501 | 670 | 690 => Group::Cancel,
             171 | 181 | 191 => return Err(GcodeErrorKind::WrongPlane(self)),
             70 | 330 | 720 => return Err(GcodeErrorKind::Setting(SettingError::Lathe(self))),
             651 | 652 | 660 => return Err(GcodeErrorKind::Macro(self)),
@@ -119,6 +150,6 @@ mod tests {
     fn every_accepted_code_has_a_group_inside_the_table() {
         let accepted = (0..10_000).filter_map(|t| GCode::from_tenths(t).group().ok());
         assert!(accepted.clone().all(|g| (g as usize) < Group::COUNT));
-        assert_eq!(accepted.count(), 88);
+        assert_eq!(accepted.count(), 89);
     }
 }

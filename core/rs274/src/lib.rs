@@ -76,8 +76,8 @@ pub use canon::{Canon, Event, ShiftKind, Source};
 pub use code::GCode;
 pub use comment::{Comment, CommentKind};
 pub use contour::{
-    Candidate, ContourOptions, ContourProgram, Criteria, Found, Role, RunPart, find_contours, read_contour, search,
-    visit_runs,
+    Between, Candidate, ContourOptions, ContourProgram, Criteria, Found, Idle, Role, RunPart, find_contours,
+    read_contour, search, visit_runs,
 };
 pub use dialect::Dialect;
 pub use error::{

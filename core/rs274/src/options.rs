@@ -93,6 +93,9 @@ pub struct Options<'t> {
     pub skip_block_delete: bool,
     /// The control the program is written for.
     pub dialect: Dialect,
+    /// Whether whatever LinuxCNC stops at is refused in its dialect, for a comparison with it. Otherwise a program that says
+    /// plainly what it means is read, with a warning: the control it runs on is seldom LinuxCNC because no dialect is named.
+    pub as_linuxcnc: bool,
     /// What a length without a point is.
     pub decimal: PointlessLength,
     /// How I, J and K of arcs count until the program says it.
@@ -111,6 +114,13 @@ pub struct Options<'t> {
     pub whole_splines: bool,
 }
 
+impl Options<'_> {
+    /// Whether the program is read as LinuxCNC itself reads it.
+    pub(super) fn is_linuxcnc_itself(&self) -> bool {
+        self.as_linuxcnc && self.dialect == Dialect::Linuxcnc
+    }
+}
+
 impl Default for Options<'_> {
     /// Millimetres, positions unknown, `/` blocks executed, LinuxCNC, lengths without a point as a calculator
     /// reads them, a million blocks more than lines, no
@@ -121,6 +131,7 @@ impl Default for Options<'_> {
             start: Axes::UNKNOWN,
             skip_block_delete: false,
             dialect: Dialect::Linuxcnc,
+            as_linuxcnc: false,
             decimal: PointlessLength::Calculator,
             arc_centres: ArcCentres::Detect,
             block_limit: 1_000_000,

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::text::Letter;
-use super::{Line, Span};
+use super::{GCode, Line, Span};
 use truepath_units::errors;
 
 errors! {
@@ -51,7 +51,7 @@ errors! {
         Repeats = "W015", "M99 in the main program repeats it without end; it is read once";
         /// A comment inside another one.
         CommentInComment = "W016",
-            "a comment inside another one is read as part of it; some controls stop here";
+            "a comment inside another one is read as part of it; LinuxCNC and some other controls stop here";
         /// A CR inside a line of a file whose lines end with LF.
         ReturnInLine = "W017",
             "a CR without LF inside this line counts as a blank; make sure that it is one line";
@@ -67,7 +67,7 @@ errors! {
         DwellByS = "W020", "S beside G4 is read as its time in seconds, not as a speed";
         /// Axis words behind G80.
         MotionBehindCycle = "W021",
-            "axis words behind G80 go on with G0 or G1 as before the cycle; write it, some controls stop here";
+            "axis words behind G80 go on with G0 or G1 as before the cycle; write it, LinuxCNC and some other controls stop here";
         /// The centres of arcs turn out to be absolute.
         CentresFoundAbsolute = "W022",
             "I and J are read as absolute places, as this arc closes only so; write G90.1 before it if that is right, else G91.1";
@@ -79,6 +79,20 @@ errors! {
             /// The letter.
             letter: u8,
         } = "W024", "{letter} goes on from the cycle before this one; give it, some controls want it again", letter = Letter(letter);
+        /// G70 or G71 as units at a control that has others for them.
+        UnitsByLatheCode(code: GCode) = "W025",
+            if code.tenths() == 700 => "G70 alone in its block is read as inches; write G20 if the control takes it for a cycle";
+            "G71 alone in its block is read as millimetres; write G21 if the control takes it for a cycle";
+        /// A cutting move from a place that is not known to one that is.
+        StartUnknown {
+            /// The axis.
+            axis: u8,
+        } = "W026",
+            "this cutting move starts at an unknown {axis}: it is taken for a move to the part, and no wall it may cut is corrected; give the place with G0 before if it cuts one",
+                axis = Letter(axis);
+        /// A call that is made no times.
+        CallOfNoTimes = "W027",
+            "L0 is read as no call; some controls call once: remove the block, or write L1";
     }
 }
 

@@ -5,7 +5,7 @@
 
 use truepath_core::cut::{Milling, Path, Sample};
 use truepath_core::gcode::{
-    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, HostMemory, Program, Spindle, read_contour,
+    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, HostMemory, Options, Program, Spindle, read_contour,
 };
 use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::job::{self, Compensation, JobError};
@@ -361,10 +361,11 @@ fn find_out_drawn(job: &mut JobFile, program: &Source) -> Result<Option<Drawn>, 
 ///
 /// # Errors
 /// Whatever is wrong with the program.
-pub fn read_blocks(program: &Source) -> Result<(Vec<Block>, ContourProgram), Failure> {
+pub fn read_blocks(program: &Source, options: Options<'static>) -> Result<(Vec<Block>, ContourProgram), Failure> {
+    let options = ContourOptions { program: options, ..ContourOptions::default() };
     let read = |blocks: &mut [Block]| {
         let mut memory = Box::new(HostMemory::new());
-        read_contour(&Program::new(program.bytes()), &mut memory.lend(), blocks, &ContourOptions::default())
+        read_contour(&Program::new(program.bytes()), &mut memory.lend(), blocks, &options)
     };
     let (mut blocks, contour) =
         with_enough_blocks(read, is_too_long).map_err(|error| InputError::of_program(program, &error))?;

@@ -143,7 +143,8 @@ fn run(
     }
     if table.mode == Mode::Slot && job.numbers.wall.is_none() {
         // A slot has a wall on either side: the right one is called near, unless the program names one.
-        let named = read_blocks(&job.read_program()?).ok().and_then(|(_, contour)| contour.wall);
+        let named =
+            read_blocks(&job.read_program()?, job.numbers.program_options()).ok().and_then(|(_, contour)| contour.wall);
         job.numbers.wall = named.or(Some(Side::Right));
     }
     let machine = Machine::of(&job).map_err(|e| e.failure(&job))?;

@@ -327,7 +327,7 @@ pub fn commanded(pass: &Pass, text: &[u8]) -> Result<Vec<plant::Point>, Failure>
 /// The contour of a corrected program.
 fn contour(pass: &Pass, text: &[u8]) -> Result<Vec<Block>, Failure> {
     let source = Source::new(format!("{} (corrected)", pass.program.name()), text.to_vec());
-    Ok(truepath_job::pass::read_blocks(&source)?.0)
+    Ok(truepath_job::pass::read_blocks(&source, pass.job.numbers.program_options())?.0)
 }
 
 fn centres(blocks: &[Block]) -> Vec<plant::Point> {

@@ -1,7 +1,7 @@
 //! What is told of a run that may be a finishing contour, and the list of all of them.
 
 use super::ContourOptions;
-use super::run::{Run, RunReader};
+use super::run::{Between, Run, RunReader};
 use crate::{GcodeError, Interpreter, LineRange, Memory, Program, ProgramSummary};
 use truepath_units::geometry::{Block, Side};
 use truepath_units::{Offset, Position, Real};
@@ -31,6 +31,8 @@ pub struct Candidate {
     pub exit: usize,
     /// S, revolutions per minute; `None` when the program has none.
     pub speed: Option<Real>,
+    /// How the cutter came to it and left it.
+    pub between: Between,
 }
 
 /// Gives every run of cutting moves of a program to `visit`, in order, for a list from which to choose.
@@ -90,6 +92,7 @@ impl Run {
             entry: self.entry,
             exit: self.exit,
             speed: self.setup.speed,
+            between: self.between,
         }
     }
 }

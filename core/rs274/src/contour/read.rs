@@ -100,10 +100,14 @@ pub fn read_contour(
         }
         Ok(())
     })?;
+    let without_start = reader.without_start();
     if let Some(run) = reader.finish() {
         kept.ended(run);
     }
-    kept.contour(summary)
+    match without_start.filter(|_| kept.found.is_none() && options.part.is_none()) {
+        Some(error) => Err(error),
+        None => kept.contour(summary),
+    }
 }
 
 /// What is kept of a program while it is read.

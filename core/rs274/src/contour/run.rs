@@ -1,7 +1,9 @@
 //! Runs of cutting moves: the stretches of a program that may be a finishing contour.
 //!
 //! A run is consecutive cutting moves (G1, G2, G3) in X and Y at constant Z. A rapid, a move in Z, G28, G53, a tool
-//! change, and a change of spindle or offset end it. Moves without length are dropped.
+//! change, and a change of spindle or offset end it. Moves without length are dropped. A cutting move from an unknown
+//! place to a known one brings the cutter to the part, as rapids do in programs that write none; a wall that it may cut on
+//! the way is unknown, so it is no part of any run.
 
 use crate::{
     Axes, Canon, Event, FeedMode, GcodeError, GcodeErrorKind, LineRange, Modal, PathControl, Span, Spindle, Units,
@@ -32,6 +34,18 @@ pub(super) struct Run {
     pub(super) setup: Setup,
     pub(super) units: Units,
     pub(super) path: Option<PathControl>,
+    pub(super) between: Between,
+}
+
+/// What lies before and behind a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Between {
+    /// Whether the last change of its height before it was upward, from somewhere this tool had cut.
+    pub came_up: bool,
+    /// Whether the move that ends it goes down.
+    pub goes_down: bool,
+    /// The greatest height at which a move with the same tool and origin has ended, until behind it.
+    pub top: Option<Position>,
 }
 
 /// What stays the same along a run.
@@ -73,17 +87,40 @@ pub(super) struct RunReader {
     offset: Option<bool>,
     /// Where A, B, C, U, V and W stand.
     auxiliary: [i64; 6],
+    /// What is known of the next run.
+    between: Between,
+    /// The tool that has cut.
+    cut_with: Option<Option<u32>>,
+    /// The first cutting move from an unknown place.
+    unknown: Option<(GcodeErrorKind, LineRange, Span)>,
 }
 
 impl RunReader {
     /// Of the lines named, or of all.
     pub(super) const fn new(within: Option<LineRange>) -> Self {
-        Self { within, run: None, count: 0, offset: None, auxiliary: [0; 6] }
+        Self {
+            within,
+            run: None,
+            count: 0,
+            offset: None,
+            auxiliary: [0; 6],
+            between: Between { came_up: false, goes_down: false, top: None },
+            cut_with: None,
+            unknown: None,
+        }
     }
 
     /// Number of the run in progress, or of the last one.
     pub(super) const fn number(&self) -> u32 {
         self.count
+    }
+
+    /// What is wrong with a program without any run because its moves begin at an unknown place.
+    pub(super) const fn without_start(&self) -> Option<GcodeError> {
+        match self.unknown {
+            Some((kind, lines, block)) => Some(error_at(kind, lines, block)),
+            None => None,
+        }
     }
 
     /// Takes the next step.
@@ -100,9 +137,24 @@ impl RunReader {
         if core::mem::replace(&mut self.auxiliary, event.modal.auxiliary) != event.modal.auxiliary {
             return Ok(Progress { ended: self.run.take(), block: None });
         }
+        if let Canon::Feed { from, to } = event.canon
+            && from.z == to.z
+            && from.point().is_none()
+            && self.unknown.is_none()
+        {
+            let line = event.source.line;
+            self.unknown = Some((start_unknown(from), LineRange { first: line, last: line }, event.source.block));
+        }
+        let down = self.heights(event);
         match step(event.canon)? {
             Step::Pass => Ok(Progress::default()),
-            Step::Break => Ok(Progress { ended: self.run.take(), block: None }),
+            Step::Break => {
+                let ended = self.run.take().map(|run| Run {
+                    between: Between { goes_down: down, top: self.between.top, ..run.between },
+                    ..run
+                });
+                Ok(Progress { ended, block: None })
+            }
             Step::Cut(curve) => Ok(self.cut(event, curve)),
         }
     }
@@ -110,6 +162,30 @@ impl RunReader {
     /// The run in progress at the end of the program.
     pub(super) const fn finish(self) -> Option<Run> {
         self.run
+    }
+
+    /// Notes what a step does to the height of the tool; whether it goes down.
+    fn heights(&mut self, event: &Event<'_>) -> bool {
+        let (from, to) = match event.canon {
+            Canon::Traverse { from, to }
+            | Canon::Feed { from, to }
+            | Canon::Arc { from, to, .. }
+            | Canon::PlaneArc { from, to, .. } => (from, to),
+            // Another tool, offset or origin: heights mean something else, or nothing.
+            Canon::ChangeTool(_) | Canon::WorkOffset(_) | Canon::Shift(_) => {
+                self.between = Between { came_up: false, top: None, ..self.between };
+                return false;
+            }
+            _ => return false,
+        };
+        self.between.top = self.between.top.max(to.z);
+        match (from.z, to.z) {
+            (Some(from), Some(to)) if to != from => {
+                self.between.came_up = to > from && self.cut_with == Some(event.modal.tool);
+                to < from
+            }
+            _ => false,
+        }
     }
 
     fn cut(&mut self, event: &Event<'_>, curve: Curve) -> Progress {
@@ -133,6 +209,7 @@ impl RunReader {
             self.count = self.count.saturating_add(1);
         }
         let offset = self.offset.take();
+        self.cut_with = Some(modal.tool);
         let run = self.run.get_or_insert(Run {
             number: self.count,
             lines: LineRange { first: line, last: line },
@@ -149,6 +226,7 @@ impl RunReader {
             setup,
             units: modal.units,
             path: modal.path,
+            between: self.between,
         });
         let block = Block { curve, s: run.length, feed, line };
         run.lines.first = run.lines.first.min(line);
@@ -171,8 +249,16 @@ impl RunReader {
 impl Run {
     /// An error about the run, at its first block.
     pub(super) const fn error(&self, kind: GcodeErrorKind) -> GcodeError {
-        GcodeError { kind, file: 0, line: self.lines.first, column: 1, start: self.first.start, len: self.first.len }
+        error_at(kind, self.lines, self.first)
     }
+}
+
+const fn error_at(kind: GcodeErrorKind, lines: LineRange, block: Span) -> GcodeError {
+    GcodeError { kind, file: 0, line: lines.first, column: 1, start: block.start, len: block.len }
+}
+
+const fn start_unknown(from: Axes) -> GcodeErrorKind {
+    GcodeErrorKind::StartUnknown { axis: if from.x.is_none() { b'X' } else { b'Y' } }
 }
 
 impl Setup {
@@ -224,9 +310,9 @@ fn line(from: Axes, to: Axes) -> Result<Step, GcodeErrorKind> {
     if from.x == to.x && from.y == to.y {
         return Ok(Step::Pass);
     }
-    let axis = if from.x.is_none() { b'X' } else { b'Y' };
-    let (Some(start), Some(end)) = (from.point(), to.point()) else {
-        return Err(GcodeErrorKind::StartUnknown { axis });
+    let Some(end) = to.point() else {
+        return Err(start_unknown(to));
     };
+    let Some(start) = from.point() else { return Ok(Step::Break) };
     Ok(Curve::line(start, end).map_or(Step::Pass, Step::Cut))
 }

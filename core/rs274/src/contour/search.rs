@@ -6,109 +6,21 @@
 //!    G42 and G40 show its leads.
 //! 3. The same path at another height is another level of the same contour; the same path at the same height again is a
 //!    spring pass, in whichever direction and from wherever it goes round.
-//! 4. A path that lies wholly on the free side of another one, no farther from it than a cutter's diameter, and that
+//! 4. Moves between cuts and facing make no wall ([`Idle`](super::Idle)), as long as a run is left that does.
+//! 5. A path that lies wholly on the free side of another one, no farther from it than a cutter's diameter, and that
 //!    does not reach deeper, is roughing: the other one takes its wall away. Two paths with each other on the free side
 //!    are two walls (a pocket and its island).
-//! 5. What remains are finishing contours, numbered in the order of execution.
+//! 6. What remains are finishing contours, numbered in the order of execution.
 //!
 //! Exactly one is needed; the caller decides what to do about none or several. Cost: every pair of different paths is
-//! looked at from up to 320 places. Without a known side of the wall rule 4 does not apply.
+//! looked at from up to 320 places. Without a known side of the wall rule 5 does not apply.
 
-use core::ops::Range;
-
-use super::Candidate;
+use super::found::{Criteria, Found, Role};
+use super::idle::mark;
 use super::relation::{coincide, farther, same};
-use super::split::{closed, length, without_leads};
-use crate::LineRange;
-use truepath_units::geometry::{Block, Side};
+use super::split::without_leads;
+use truepath_units::geometry::Block;
 use truepath_units::{Offset, Position};
-
-/// What a run is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// Cut with another tool.
-    OtherTool,
-    /// Another run takes its wall away.
-    Rough {
-        /// Its index in the list.
-        nearer: usize,
-        /// The smallest distance between the two.
-        gap: Offset,
-        /// Whether the distance is the same nearly everywhere.
-        parallel: bool,
-    },
-    /// It makes a wall.
-    Finish {
-        /// Number of the contour, from 1.
-        contour: u32,
-        /// Number of the level, from 1 in the order of execution.
-        level: u32,
-    },
-    /// It goes over a finished wall again.
-    Spring {
-        /// Number of the contour, from 1.
-        contour: u32,
-        /// Number of the level.
-        level: u32,
-    },
-}
-
-/// A run with its place among all blocks and what it is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Found {
-    /// What is told of it; after the search without its leads.
-    pub run: Candidate,
-    /// Index of its first block among the blocks of all runs.
-    pub first: usize,
-    /// Blocks of the run before the first one that is left: leads, or what the caller did not name.
-    pub skipped: usize,
-    /// What it is for.
-    pub role: Role,
-    /// Index of the first run along the same path.
-    like: usize,
-}
-
-impl Found {
-    /// A run that was read, whose first block is at `first` among the blocks of all runs.
-    pub const fn new(run: Candidate, first: usize) -> Self {
-        Self { run, first, skipped: 0, role: Role::OtherTool, like: 0 }
-    }
-    /// The same run with only some of its blocks, counted within it; `None` when there is none of them.
-    pub fn narrowed(&self, kept: Range<usize>, blocks: &[Block]) -> Option<Self> {
-        let contour = self.blocks(blocks).get(kept.clone())?;
-        let lines = || contour.iter().map(|b| b.line);
-        let (first, last) = (lines().min()?, lines().max()?);
-        let behind = self.run.blocks.saturating_sub(kept.end);
-        let run = Candidate {
-            blocks: contour.len(),
-            length: length(contour),
-            lines: LineRange { first, last },
-            closed: closed(contour),
-            entry: self.run.entry.saturating_sub(kept.start),
-            exit: self.run.exit.saturating_sub(behind),
-            ..self.run
-        };
-        let skipped = self.skipped.saturating_add(kept.start);
-        Some(Self { run, first: self.first.saturating_add(kept.start), skipped, ..*self })
-    }
-    /// Its blocks.
-    pub fn blocks<'b>(&self, all: &'b [Block]) -> &'b [Block] {
-        all.get(self.first..self.first.saturating_add(self.run.blocks)).unwrap_or_default()
-    }
-}
-
-/// What is looked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Criteria {
-    /// The tool; `None` for any.
-    pub tool: Option<u32>,
-    /// Side of travel of the finished wall; `None` leaves it to G41 and G42.
-    pub wall: Option<Side>,
-    /// The cutter's diameter.
-    pub diameter: Offset,
-    /// Whether the caller named the lines: the only run on them is taken as it is, but for what G41, G42 and G40 show.
-    pub named: bool,
-}
 
 /// Gives every run its role and returns the number of finishing contours. `runs` are in the order of execution,
 /// `blocks` those of all of them.
@@ -125,11 +37,18 @@ pub fn search(runs: &mut [Found], blocks: &[Block], criteria: &Criteria) -> u32 
             found.like = like;
         }
     }
+    runs.iter_mut().for_each(|found| found.idle = None);
+    mark(runs, blocks, criteria);
+    if !runs.iter().any(|found| counts(found, criteria) && found.idle.is_none()) {
+        runs.iter_mut().for_each(|found| found.idle = None);
+    }
     let mut contours = 0u32;
     for index in 0..runs.len() {
         let Some(found) = runs.get(index) else { continue };
         let role = if !counts(found, criteria) {
             Role::OtherTool
+        } else if let Some(idle) = found.idle {
+            Role::Idle(idle)
         } else if found.like == index {
             match rough(runs, blocks, criteria, index) {
                 Some(role) => role,
@@ -192,7 +111,7 @@ fn rough(runs: &[Found], blocks: &[Block], criteria: &Criteria, index: usize) ->
     let own = runs.get(index)?;
     let depth = deepest(runs, index);
     for (nearer, other) in runs.iter().enumerate().rev() {
-        if nearer == index || other.like != nearer || !counts(other, criteria) {
+        if nearer == index || other.like != nearer || !counts(other, criteria) || other.idle.is_some() {
             continue;
         }
         let deep_enough = match (deepest(runs, nearer), depth) {

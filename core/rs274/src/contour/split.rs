@@ -8,7 +8,8 @@
 //!   diameters: what CAM systems write. With a straight move outside it only where both ends are alike;
 //! * an open run begins or ends with a straight move no longer than the cutter's radius, at 20 degrees or more to the
 //!   wall: the wall of such a leg would lie in its own corner. No longer than two diameters where it is neither along
-//!   nor across.
+//!   nor across;
+//! * a run ends with a straight move straight back, no longer than two diameters.
 //!
 //! A line and a tangent quarter circle at one end look exactly like a contour that begins with a corner: there the caller
 //! names the lines.
@@ -29,13 +30,30 @@ pub(super) fn without_leads(blocks: &[Block], run: &Candidate, wall: Option<Side
     let end = blocks.len().saturating_sub(run.exit);
     let told = run.entry > 0 || run.exit > 0;
     let offset = if run.entry < end { run.entry..end } else { 0..blocks.len() };
+    let offset = without_way_back(blocks, offset, diameter);
     let within = blocks.get(offset.clone()).unwrap_or_default();
     let found = match (inner_loop(within, closed).or_else(|| inner_loop(within, laps)), wall) {
         (Some(found), _) => found,
         (None, Some(wall)) if !told && !closed(within) => open(within, wall, diameter),
         _ => return offset,
     };
-    offset.start.saturating_add(found.start)..offset.start.saturating_add(found.end)
+    // A loop may be closed by the way back alone.
+    let found = offset.start.saturating_add(found.start)..offset.start.saturating_add(found.end);
+    without_way_back(blocks, found, diameter)
+}
+
+/// The same blocks without a straight move at their end that goes straight back, over the block before it or over the
+/// first one: to where a subprogram begins again. Such a run may end where it starts, and is no loop.
+fn without_way_back(blocks: &[Block], range: Range<usize>, diameter: Offset) -> Range<usize> {
+    let [first, .., before, last] = blocks.get(range.clone()).unwrap_or_default() else { return range };
+    let heading = last.curve.start_heading();
+    let over_first = last.curve.end() == first.curve.start() && first.curve.shape() == Shape::Line;
+    let back = before.curve.end_heading().dot(heading) <= -TANGENT
+        || (over_first && first.curve.start_heading().dot(heading) <= -TANGENT);
+    if back && last.curve.shape() == Shape::Line && last.curve.length() <= diameter + diameter {
+        return range.start..range.end.saturating_sub(1);
+    }
+    range
 }
 
 /// Cosine of one degree, and of twenty: tangent is what turns by less than the one, a corner by more than the other.

@@ -39,7 +39,7 @@ errors! {
         UnclosedComment = "G004", "the comment opened by `(` is not closed in this line; add `)`";
         /// `)` without `(`.
         StrayParenthesis = "G005",
-            "`)` without `(`: in this dialect comments do not stand inside each other; remove the inner parentheses, or name the dialect of the control";
+            "`)` without `(`; remove it, or the inner parentheses of a comment: LinuxCNC ends a comment at the first `)`";
         /// `#`, `[`, `]`, `=` or `*` where none belongs.
         Stray(byte: u8) = "G006",
             "{byte} does not belong here; a parameter is set with `#1=…`, and an expression stands in [ ] behind a letter",
@@ -51,7 +51,7 @@ errors! {
             if matches!(language, Foreign::Heidenhain) =>
                 "this is a Heidenhain conversational program (BEGIN PGM), not G-code; post it for an ISO control";
             if matches!(language, Foreign::Siemens) =>
-                "this word of Siemens' own language is not computed; write tools by number, origins by G54 to G59 and cycles as moves, or post the program for ISO mode";
+                "this is a word of Siemens' own language, of which some are read in dialect siemens; name that dialect, or write origins by G54 to G59 and cycles as moves, or post the program for ISO mode";
             "an E word: this is a 3D printer's program, or a number with an exponent; post it for a milling machine, with plain numbers";
         /// Something else than a comment after `%`.
         TextAfterPercent = "G010", "text after `%`; only a comment may follow it on its line";

@@ -48,6 +48,8 @@ errors! {
         WaitWithoutTime = "G066", "M66 waits for an input without a time; add Q";
         /// A code of a lathe.
         Lathe(code: GCode) = "G067",
+            if matches!(code.tenths(), 700 | 710) =>
+                "{code} is a cycle in this dialect, and cycles of a lathe and rows of holes are not computed; where it stands for inches or millimetres, name the dialect (fanuc, siemens or mach), or write G20 or G21";
             "{code} belongs to a lathe, whose moves are not computed; post the program for a mill";
         /// A feed per revolution with S0 or without S.
         FeedPerRevolution = "G068", "feed per revolution (G95) without a spindle speed; give S before it";

@@ -54,9 +54,13 @@ where
         let Some(word) = p else {
             return Err(self.error(SettingError::MWordMissing { m: code.number, letter: b'P' }.into(), code.span));
         };
-        // LinuxCNC passes over a call with L0; what others do of it is not known.
-        let least = u32::from(!self.options.dialect.has_o_words());
-        let times = l.map(|word| self.between(word, least, REPETITIONS)).transpose()?;
+        let times = l.map(|word| self.between(word, 0, REPETITIONS)).transpose()?;
+        // LinuxCNC passes over it; the manuals of others do not say.
+        if let (Some(word), Some(0)) = (l, times)
+            && !self.options.dialect.has_o_words()
+        {
+            self.warn(WarningKind::CallOfNoTimes, word.span);
+        }
         let number = self.whole(word)?;
         let (number, packed) = self.unpacked(word, number);
         let target = if code.number == 97 { Target::Block(number) } else { Target::Program(number) };

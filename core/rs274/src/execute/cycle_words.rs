@@ -22,7 +22,7 @@ where
         code: GCode,
         span: Span,
     ) -> Result<CycleMemory, GcodeError> {
-        let keeps = self.options.dialect.keeps_motion_behind_cycle();
+        let keeps = self.options.dialect.keeps_words_of_cycles();
         let before = self.cycle.filter(|memory| memory.code == code || keeps);
         if let Some(memory) = self.cycle.filter(|memory| memory.code != code) {
             let kept = [b'R', self.letter(self.modal.plane.axes()[2])].into_iter().find(|&l| block.word(l).is_none());

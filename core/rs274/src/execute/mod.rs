@@ -160,7 +160,7 @@ where
             self.warn(WarningKind::ReturnInLine, sentence.line.span());
         }
         self.restore_returning()?;
-        let mut block = BlockWords::gather(sentence)?;
+        let mut block = BlockWords::gather(sentence, self.options.dialect)?;
         if sentence.has_comments {
             self.comments()?;
         }

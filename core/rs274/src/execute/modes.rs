@@ -8,8 +8,8 @@ use super::super::flow::Next;
 use super::super::group::Group;
 use super::super::mcode::MCodes;
 use super::super::{
-    ArcCentres, Canon, CornerError, Event, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel, SettingError,
-    WarningKind, Word,
+    ArcCentres, Canon, CornerError, Dialect, Event, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel,
+    SettingError, WarningKind, Word,
 };
 use super::Execution;
 
@@ -60,9 +60,12 @@ where
             self.distances(block);
         }
         self.moves(block)?;
+        let dialect = self.options.dialect;
         let next = self.subprogram(block, &m)?;
         for letter in [b'H', b'D'] {
-            if let Some(word) = block.use_word(letter) {
+            // Siemens: the edge of the tool, with its length and its radius.
+            let edge = letter == b'D' && dialect == Dialect::Siemens;
+            if let Some(word) = block.use_word(letter).filter(|_| !edge) {
                 self.warn(WarningKind::UnusedOffsetNumber { letter }, word.span);
             }
         }
@@ -90,7 +93,11 @@ where
             && matches!(code.tenths(), 700 | 710)
             && !dialect.has_metric_g71()
         {
-            return Err(self.error(SettingError::Lathe(code).into(), span));
+            // Posts for mills write it in the head of a program; a cycle of a lathe, or a row of holes, has words.
+            if dialect != Dialect::Fanuc || block.has_unused(b"XYZABCUVWIJKPQRDL") {
+                return Err(self.error(SettingError::Lathe(code).into(), span));
+            }
+            self.warn(WarningKind::UnitsByLatheCode(code), span);
         }
         if let Some((code, span)) = block.code(Group::Motion)
             && code.tenths() == 760

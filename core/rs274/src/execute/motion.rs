@@ -110,6 +110,13 @@ where
             2 => self.set_work_offset(block, false),
             20 => self.set_work_offset(block, true),
             way @ (1 | 10 | 11) => self.set_tool(block, way),
+            // Radius and its wear at Fanuc and Haas: no path depends on D.
+            12 | 13 if self.options.dialect.has_macro_b() => {
+                for letter in [b'P', b'R'] {
+                    block.use_word(letter);
+                }
+                Ok(())
+            }
             // Reloads the tool table.
             0 => Ok(()),
             _ => {
@@ -147,14 +154,14 @@ where
             }
             self.splines.interrupted();
             let series = matches!((before, motion), (Some(Motion::Cycle(_)), Some(Motion::Cycle(_))));
-            if !series || !self.options.dialect.keeps_motion_behind_cycle() {
+            if !series || !self.options.dialect.keeps_words_of_cycles() {
                 self.cycle = None;
             }
         }
         if !matches!(motion, Some(Motion::Cycle(_))) {
             self.initial_level = None;
         }
-        if matches!(motion, Some(Motion::Traverse | Motion::Feed)) && self.options.dialect.keeps_motion_behind_cycle() {
+        if matches!(motion, Some(Motion::Traverse | Motion::Feed)) && !self.options.is_linuxcnc_itself() {
             self.before_cycle = motion;
         }
         self.modal.motion = motion;
@@ -169,6 +176,10 @@ where
 
     /// Moves there in a line, cutting.
     pub(super) fn feed_to(&mut self, to: Axes, span: Span) -> Result<(), GcodeError> {
+        if self.at.point().is_none() && to.point().is_some() {
+            let axis = if self.at.x.is_none() { b'X' } else { b'Y' };
+            self.warn(WarningKind::StartUnknown { axis }, span);
+        }
         let from = core::mem::replace(&mut self.at, to);
         self.emit(Canon::Feed { from, to }, span)
     }

@@ -35,6 +35,8 @@ where
                 let number = self.between(word, 1, most)?;
                 number.saturating_add(first)
             }
+            // G110 … G129 are G154 P1 … P20.
+            tenths @ 1_100..=1_290 => u32::from(tenths / 10),
             tenths @ 540..=590 => u32::from(tenths / 10).saturating_sub(53),
             tenths => u32::from(tenths.saturating_sub(584)),
         };
@@ -120,7 +122,8 @@ where
         self.emit(Canon::Shift(ShiftKind::Local), span)
     }
 
-    /// G52: the origin lies where the words say.
+    /// G52: the origin lies where the words say. TRANS of Siemens sets the axes that it does not name to 0, and ATRANS
+    /// adds.
     pub(super) fn local_origin(
         &mut self,
         block: &mut BlockWords<'_>,
@@ -128,12 +131,17 @@ where
         span: Span,
     ) -> Result<(), GcodeError> {
         let words = self.all_axes(block)?;
-        if words == [None; 9] {
+        let written = span.of(self.text).first().map(u8::to_ascii_uppercase);
+        if words == [None; 9] && written == Some(b'G') {
             return Err(self.error(SettingError::AxesMissing(code).into(), span));
         }
         let mut local = self.modal.shifts.local;
         for (local, word) in local.iter_mut().zip(words) {
-            *local = word.unwrap_or(*local);
+            *local = match written {
+                Some(b'T') => word.unwrap_or(0),
+                Some(b'A') => local.saturating_add(word.unwrap_or(0)),
+                _ => word.unwrap_or(*local),
+            };
         }
         self.local(local, true, span)?;
         self.emit(Canon::Shift(ShiftKind::Local), span)

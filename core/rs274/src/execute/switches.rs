@@ -141,18 +141,28 @@ where
         }
     }
 
-    /// G61, G61.1, G64 P Q; G187 P E is Haas' word for the same and sets nothing that is known here.
+    /// G61, G61.1, G64 P Q; G187 P E, G5 P, G5.1 Q R, G8 P, G103 P are words of other controls for the like and set nothing
+    /// that is known here.
     pub(super) fn path_control(&mut self, block: &mut BlockWords<'_>) -> Result<(), GcodeError> {
         if block.code(Group::Smoothness).is_some() {
-            block.use_word(b'P');
-            block.use_word(b'E');
+            for letter in [b'P', b'E', b'Q', b'R'] {
+                block.use_word(letter);
+            }
         }
         let Some((code, span)) = block.code(Group::PathControl) else {
             return Ok(());
         };
         let path = match code.tenths() {
             610 => PathControl::Exact,
-            611 => PathControl::ExactStop,
+            611 => {
+                // Mazak names the shape of the corners.
+                if self.options.dialect == Dialect::Fanuc
+                    && let Some(word) = block.use_word(b'P')
+                {
+                    self.warn(WarningKind::IdleWord { letter: b'P' }, word.span);
+                }
+                PathControl::ExactStop
+            }
             _ => {
                 let tolerance = self.tolerance(block, b'P')?;
                 PathControl::Blend { tolerance, merge: self.tolerance(block, b'Q')? }

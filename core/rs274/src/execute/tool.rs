@@ -30,6 +30,10 @@ where
             self.modal.selected = Some(tool);
             self.emit(Canon::SelectTool(tool), word.span)?;
         }
+        // A tool by name has no number.
+        if block.use_word(b't').is_some() {
+            self.modal.selected = None;
+        }
         let Some(code) = m.tool else { return Ok(()) };
         if code.number == 61 {
             let Some(word) = block.use_word(b'Q') else {
@@ -42,6 +46,9 @@ where
             return Ok(());
         }
         self.modal.tool = self.modal.selected;
+        // A second T names the next tool.
+        let next = block.last_word(b'T').map(|word| self.whole(word)).transpose()?;
+        self.modal.selected = next.or(self.modal.selected);
         if self.options.machine.is_none() {
             // Many machines lift to change the tool, and the new one has another length.
             self.at.z = None;

@@ -27,6 +27,11 @@ impl<'p> Reader<'p> {
         let Some((b'O' | b'o', behind)) = text.split_first() else {
             return self.statement(span, machine);
         };
+        // The name of a program at newer Fanucs: `O<PART>`.
+        let name = text.get(..span.len).unwrap_or(text).trim_ascii_end();
+        if self.dialect.has_macro_b() && trimmed(behind).starts_with(b"<") && name.ends_with(b">") {
+            return Ok(());
+        }
         if !self.dialect.has_o_words() {
             return Err(self.error(FlowError::OtherDialect, span));
         }

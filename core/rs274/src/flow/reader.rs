@@ -3,7 +3,7 @@
 use super::super::expression::{Evaluator, Fault};
 use super::super::lexical::{Token, Words, spelled, trimmed};
 use super::super::parameter::Surroundings;
-use super::super::{Dialect, FlowError, GcodeError, GcodeErrorKind, Line, Number, Options, Source, Span};
+use super::super::{Dialect, FlowError, Foreign, GcodeError, GcodeErrorKind, Line, Number, Options, Source, Span};
 use super::Program;
 use super::frame::Frame;
 use super::open::{CALLS, Call, CallKind, OpenList};
@@ -15,6 +15,7 @@ use super::sentence::{ASSIGNMENTS, Assignments, Sentence, Word};
 pub(in super::super) struct Reader<'p> {
     pub(super) program: Program<'p>,
     pub(super) dialect: Dialect,
+    as_linuxcnc: bool,
     pub(super) place: Place<'p>,
     pub(super) calls: heapless::Vec<Call<'p>, CALLS>,
     pub(super) open: OpenList<'p>,
@@ -42,6 +43,7 @@ impl<'p> Reader<'p> {
         Self {
             program,
             dialect: options.dialect,
+            as_linuxcnc: options.is_linuxcnc_itself(),
             place: Place::start_of(program.text, 0),
             calls: heapless::Vec::new(),
             open: OpenList::default(),
@@ -153,7 +155,7 @@ impl<'p> Reader<'p> {
                 }
                 Token::Comment { span, body } => {
                     let nested = body.end() < span.end() && body.of(self.place.text).contains(&b')');
-                    if nested && self.dialect == Dialect::Linuxcnc {
+                    if nested && self.as_linuxcnc {
                         return Err(self.error(GcodeErrorKind::StrayParenthesis, span));
                     }
                     sentence.has_comments = true;
@@ -208,12 +210,21 @@ impl<'p> Reader<'p> {
     fn check_siemens(&self, token: &Token) -> Result<(), GcodeError> {
         let first = self.rest(token.span().start).first().map(u8::to_ascii_uppercase);
         let foreign = match token {
-            Token::Word(word) => matches!((first, word.letter), (Some(b'C'), b'R') | (Some(b'S'), b'G')),
-            Token::Comment { .. } => matches!(first, Some(b'M' | b'C')),
+            Token::Word(word) => {
+                matches!((first, word.letter), (Some(b'C'), b'R') | (Some(b'S' | b'T' | b'A'), b'G') | (_, b't'))
+            }
+            Token::Comment { .. } | Token::Corner(_) => first.is_some_and(|byte| byte.is_ascii_alphabetic()),
             _ => false,
         };
-        if foreign && self.dialect != Dialect::Siemens {
-            return Err(self.error(GcodeErrorKind::Text, token.span()));
+        if self.dialect == Dialect::Siemens {
+            return Ok(());
+        }
+        if foreign {
+            return Err(self.error(GcodeErrorKind::ForeignDialect(Foreign::Siemens), token.span()));
+        }
+        let behind = self.rest(token.span().start).get(1..).map(trimmed);
+        if matches!(token, Token::Word(_)) && behind.is_some_and(|rest| rest.first() == Some(&b'=')) {
+            return Err(self.error(GcodeErrorKind::Stray(b'='), token.span()));
         }
         Ok(())
     }

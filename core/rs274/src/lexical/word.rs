@@ -118,33 +118,62 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// A word of Siemens' own language that has a meaning here: `CR=5` is R, `SUPA` is G53; what `MSG("…")` shows and how
-    /// `CYCLE832(…)` smooths is a comment. Its first letter tells it from the word that it stands for, so that a reader of
-    /// another dialect can refuse it.
+    /// A word of Siemens' own language that has a meaning here: `CR=5` is R, `SUPA` is G53, `TRANS` and `ATRANS` are G52,
+    /// `T="MILL"` is `t`, a tool without a number, `RND=` and `CHR=` are `,R` and `,C`. What `MSG("…")` shows, how `CYCLE832(…)` smooths, the blank that
+    /// `WORKPIECE(…)` draws and how the drives follow (`FFWON`, `SOFT` …) are comments. Its first letter tells it from the
+    /// word that it stands for, so that a reader of another dialect can refuse it.
     fn siemens(&mut self, from: &'a [u8]) -> Option<Result<Token, GcodeError>> {
+        if !trimmed(self.rest).first().is_some_and(|&byte| byte.is_ascii_alphabetic() || byte == b'=') {
+            return None;
+        }
         let behind = |word: &[u8]| spelled(from, word).and_then(|len| from.get(len..)).map(trimmed);
         if let Some(value) = behind(b"CR").and_then(|rest| rest.strip_prefix(b"=")) {
             self.rest = value;
             self.begun = true;
             return Some(self.word(from, b'R'));
         }
-        if let Some(rest) = behind(b"SUPA") {
-            self.rest = rest;
-            self.begun = true;
-            let value = Decimal::new(53, 0);
-            let end = from.len().saturating_sub(rest.len());
-            let len = from.get(..end).unwrap_or(from).trim_ascii_end().len();
-            return Some(Ok(Token::Word(WrittenWord {
-                letter: b'G',
-                value,
-                span: Span { start: self.offset(from), len },
-            })));
+        for (word, letter) in [(&b"RND"[..], b'R'), (b"CHR", b'C')] {
+            if let Some(value) = behind(word).and_then(|rest| rest.strip_prefix(b"=")).filter(|v| number(v).1.is_ok()) {
+                self.rest = value;
+                self.begun = true;
+                return Some(self.value(from, letter).map(Token::Corner));
+            }
         }
-        let rest = behind(b"MSG").or_else(|| behind(b"CYCLE832")).filter(|rest| rest.first() == Some(&b'('))?;
+        let codes: [(&[u8], i64); 3] = [(b"SUPA", 53), (b"TRANS", 52), (b"ATRANS", 52)];
+        if let Some((rest, code)) = codes.iter().find_map(|(word, code)| behind(word).map(|rest| (rest, *code))) {
+            return Some(Ok(self.stands_for(from, rest, b'G', code)));
+        }
+        if let Some(name) = behind(b"T").and_then(|rest| rest.strip_prefix(b"=")).map(trimmed)
+            && let Some(open) = name.strip_prefix(b"\"")
+            && let Some(close) = open.iter().position(|&b| b == b'"')
+        {
+            let rest = open.get(close.saturating_add(1)..).unwrap_or(&[]);
+            return Some(Ok(self.stands_for(from, rest, b't', 0)));
+        }
+        if let Some(rest) = DYNAMICS.iter().find_map(|word| behind(word))
+            && !rest.first().is_some_and(|&b| b.is_ascii_alphanumeric() || matches!(b, b'=' | b'(' | b'['))
+        {
+            self.rest = rest;
+            let span = self.span_from(from);
+            return Some(Ok(Token::Comment { span, body: Span { len: 0, ..span } }));
+        }
+        let called = |word: &[u8]| behind(word).filter(|rest| rest.first() == Some(&b'('));
+        // A swivel that is taken back.
+        let rest = [&b"MSG"[..], b"CYCLE832", b"WORKPIECE"].into_iter().find_map(called);
+        let rest = rest.or_else(|| called(b"CYCLE800").filter(|rest| rest.starts_with(b"()")))?;
         let len = extent::comment(rest)?;
         let body = Span { start: self.offset(rest).saturating_add(1), len: len.saturating_sub(2) };
         self.rest = rest.get(len..).unwrap_or(&[]);
         Some(Ok(Token::Comment { span: self.span_from(from), body }))
+    }
+
+    /// A word that is written otherwise: from `from` to before `rest`.
+    fn stands_for(&mut self, from: &'a [u8], rest: &'a [u8], letter: u8, value: i64) -> Token {
+        self.rest = rest;
+        self.begun = true;
+        let end = from.len().saturating_sub(rest.len());
+        let len = from.get(..end).unwrap_or(from).trim_ascii_end().len();
+        Token::Word(WrittenWord { letter, value: Decimal::new(value, 0), span: Span { start: self.offset(from), len } })
     }
 
     fn comment(&mut self, from: &'a [u8]) -> Result<Token, GcodeError> {
@@ -185,7 +214,9 @@ impl<'a> Words<'a> {
 
     /// The number or expression of a letter that has just been read.
     fn value(&mut self, from: &'a [u8], letter: u8) -> Result<WrittenWord, GcodeError> {
-        let (rest, value) = number(self.rest);
+        // Siemens may write `X=10`.
+        let assigned = trimmed(self.rest).strip_prefix(b"=").filter(|rest| number(rest).1.is_ok());
+        let (rest, value) = number(assigned.unwrap_or(self.rest));
         match value {
             Ok(value) => {
                 self.rest = rest;
@@ -210,7 +241,9 @@ impl<'a> Words<'a> {
         let next = trimmed(self.rest).first().copied();
         let run = letters(from);
         let kind = match next {
-            Some(b'=') if letter == b'T' => GcodeErrorKind::ForeignDialect(Foreign::Siemens),
+            Some(b'=') if letter == b'T' || is_call(trimmed(self.rest)) => {
+                GcodeErrorKind::ForeignDialect(Foreign::Siemens)
+            }
             _ if SIEMENS.iter().any(|word| spelled(from, word).is_some()) => {
                 self.advance(run.saturating_sub(1));
                 GcodeErrorKind::ForeignDialect(Foreign::Siemens)
@@ -253,22 +286,17 @@ fn is_header(line: &[u8]) -> bool {
 }
 
 /// Words of Siemens' own language that change where the cutter goes, or the order of the blocks.
-const SIEMENS: [&[u8]; 14] = [
-    b"TRANS",
-    b"ATRANS",
-    b"ROT",
-    b"AROT",
-    b"MIRROR",
-    b"AMIRROR",
-    b"SCALE",
-    b"ASCALE",
-    b"CYCLE",
-    b"POCKET",
-    b"TURN=",
-    b"REPEAT",
-    b"MCALL",
-    b"WORKPIECE",
-];
+const SIEMENS: [&[u8]; 11] =
+    [b"ROT", b"AROT", b"MIRROR", b"AMIRROR", b"SCALE", b"ASCALE", b"CYCLE", b"POCKET", b"TURN=", b"REPEAT", b"MCALL"];
+
+/// Words of Siemens' own language that say how axes follow the path, and change nothing of it.
+const DYNAMICS: [&[u8]; 10] =
+    [b"FFWON", b"FFWOF", b"SOFT", b"BRISK", b"COMPOF", b"COMPON", b"COMPCAD", b"STOPRE", b"CFTCP", b"TRAFOOF"];
+
+/// Whether an assigned value is a function: `=IC(5)`.
+fn is_call(text: &[u8]) -> bool {
+    text.strip_prefix(b"=").map(trimmed).and_then(|rest| rest.first()).is_some_and(u8::is_ascii_alphabetic)
+}
 
 /// How many letters stand here without a blank between them.
 fn letters(text: &[u8]) -> usize {

@@ -122,8 +122,15 @@ fn ours(program: &[u8], dialect: Dialect) -> (String, Option<GcodeError>) {
     let mut buffers = Box::new(HostMemory::new());
     let machine = truepath_rs274::Machine { units: truepath_rs274::Units::Inches, probe_before_end: Offset::ZERO };
     let machine = (dialect == Dialect::Linuxcnc).then_some(machine);
-    let options =
-        Options { start: Axes::ORIGIN, dialect, tools: &TOOLS, machine, whole_splines: true, ..Options::default() };
+    let options = Options {
+        start: Axes::ORIGIN,
+        dialect,
+        as_linuxcnc: true,
+        tools: &TOOLS,
+        machine,
+        whole_splines: true,
+        ..Options::default()
+    };
     let mut said = String::new();
     let mm = |p: Option<Position>| p.map_or(f64::NAN, |p| p.nm() as f64 / 1e6);
     let run = Interpreter::new(options).run(program, &mut buffers.lend(), &mut |event| {

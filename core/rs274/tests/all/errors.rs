@@ -36,8 +36,8 @@ const TABLE: &[(&[u8], &str)] = &[
     ),
     (b"S\nG1 X1 (to the wall", "line 2, column 7: G004: the comment opened by `(` is not closed in this line; add `)`"),
     (
-        b"S\nG1 X1 (a (b) )",
-        "line 2, column 7: G005: `)` without `(`: in this dialect comments do not stand inside each other; remove the inner parentheses, or name the dialect of the control",
+        b"S\nG1 X1 (a) )",
+        "line 2, column 11: G005: `)` without `(`; remove it, or the inner parentheses of a comment: LinuxCNC ends a comment at the first `)`",
     ),
     (
         b"S\n#1",
@@ -87,7 +87,7 @@ const TABLE: &[(&[u8], &str)] = &[
     ),
     (
         b"CYCLE800()",
-        "line 1, column 1: G009: this word of Siemens' own language is not computed; write tools by number, origins by G54 to G59 and cycles as moves, or post the program for ISO mode",
+        "line 1, column 1: G009: this is a word of Siemens' own language, of which some are read in dialect siemens; name that dialect, or write origins by G54 to G59 and cycles as moves, or post the program for ISO mode",
     ),
     (
         b"0 BEGIN PGM CORNER MM\n1 L X+0",
@@ -176,7 +176,7 @@ const TABLE: &[(&[u8], &str)] = &[
         "line 1, column 5: G042: axis words, but no motion is active; write G0, G1, G2 or G3 in this block or before it",
     ),
     (
-        b"S\nG80 X10",
+        b"G21 G90\nG80 X10",
         "line 2, column 5: G042: axis words, but no motion is active; write G0, G1, G2 or G3 in this block or before it",
     ),
     (
@@ -302,7 +302,7 @@ const TABLE: &[(&[u8], &str)] = &[
     ),
     (
         b"S\nG70",
-        "line 2, column 1: G067: G70 belongs to a lathe, whose moves are not computed; post the program for a mill",
+        "line 2, column 1: G067: G70 is a cycle in this dialect, and cycles of a lathe and rows of holes are not computed; where it stands for inches or millimetres, name the dialect (fanuc, siemens or mach), or write G20 or G21",
     ),
     (b"S\nG33.1 Z-5", "line 2, column 1: G090: G33.1 has no K; add it to this block"),
     (b"S\nG38.2", "line 2, column 1: G061: G38.2 has no axis word; add the axes it is meant for"),

@@ -1,7 +1,8 @@
 //! Which runs of a program make a wall: roughing, levels, spring passes, islands, other tools, leads.
 
 use truepath_rs274::{
-    ContourOptions, Criteria, DeviceMemory, Found, LineRange, Program, Role, RunPart, read_contour, search, visit_runs,
+    ContourOptions, Criteria, DeviceMemory, Found, Idle, LineRange, Program, Role, RunPart, read_contour, search,
+    visit_runs,
 };
 use truepath_units::Offset;
 use truepath_units::geometry::{Block, Side};
@@ -103,6 +104,104 @@ fn runs_of_another_tool_do_not_count() {
         assert_eq!((count, other, roles[finish]), (1, 2, Role::Finish { contour: 1, level: 1 }), "tool {tool}");
     }
     assert_eq!(roles(TWO_TOOLS, &criteria(None)).0, 2);
+}
+
+/// Kinds of the runs: `t`ravel, `f`acing, `F`inish, `r`ough, `s`pring, `o`ther tool.
+fn kinds(program: &str) -> String {
+    let kind = |role: &Role| match role {
+        Role::Idle(Idle::Travel) => 't',
+        Role::Idle(Idle::Facing) => 'f',
+        Role::Finish { .. } => 'F',
+        Role::Rough { .. } => 'r',
+        Role::Spring { .. } => 's',
+        Role::OtherTool => 'o',
+    };
+    roles(program, &criteria(None)).1.iter().map(kind).collect()
+}
+
+const SQUARE: &str = "X20 Y-20\nX20 Y20\nX-20 Y20\nX-20 Y-20\n";
+
+#[test]
+fn moves_between_cuts_make_no_wall() {
+    let head = "G21 G90 F500\nG0 X-60 Y-60\nG0 Z15\n";
+    // Feed-rate rapids: between two cuts, and home.
+    let links =
+        format!("{head}G0 X-20 Y-20\nG1 Z-5\n{SQUARE}G1 Z5\nX60 Y60\nX90\nZ-5\nX90 Y99\nX0\nY80\nG1 Z15\nX0 Y0\nM2\n");
+    assert_eq!(kinds(&links), "FtFt");
+    // The way home in a program without any rapid.
+    let home = format!("G21 G90 F500\nG1 Z2.54\nG1 X-20 Y-20\nG1 Z-5\n{SQUARE}G1 Z2.54\nX0 Y0\nM2\n");
+    assert_eq!(kinds(&home), "Ft");
+    // The step to a helix, at Z 1.
+    let helix = format!("{head}G0 X0 Y0\nG1 Z1\nX3\nG3 X-3 Z-2 I-3\nX3 Z-5 I3\nG1 X-20 Y-20\n{SQUARE}G0 Z15\nM2\n");
+    assert_eq!(kinds(&helix), "tF");
+    // The same where the part stands on Z 0, so that Z 1 may be a wall.
+    assert_eq!(kinds(&helix.replace("Z-2", "Z0.9").replace("Z-5", "Z0.8")), "FF");
+}
+
+#[test]
+fn what_may_be_a_wall_is_never_taken_for_a_move_between_cuts() {
+    let head = "G21 G90 F500\nG0 X-60 Y-60\n";
+    // Two shoulders, the lower one reached from the end of the other, beside the part.
+    let shoulders = "G0 Z-5\nG1 X60\nG1 Z-10\nG1 X60 Y60\nG0 Z50\nM2\n";
+    assert_eq!(kinds(&format!("{head}{shoulders}")), "FF");
+    // The part stands on Z 0.
+    assert_eq!(kinds(&format!("{head}{}", shoulders.replace("Z-5", "Z25").replace("Z-10", "Z-0.2"))), "FF");
+    // A ledge reached from below, the last cut.
+    let ledge = format!("{head}G0 Z15\nG1 Z-10\nG1 X-20 Y-20\n{SQUARE}G1 Z-5\nX-20 Y-99\nX99\nG0 Z50\nM2\n");
+    assert_eq!(kinds(&ledge), "FF");
+    // An edge at two depths, to and fro, plunging in place.
+    let edge = "G0 Z15\nG1 Z1\nX60\nG1 Z-5\nX-60\nG1 Z-10\nX60\nG0 Z50\nM2\n";
+    assert_eq!(kinds(&format!("{head}{edge}")), "FFF");
+    // Above another contour that is as high, and the only run of all.
+    assert_eq!(kinds(&format!("{head}G0 Z5\nG1 Z1\nX0\nG1 Z-3\nM2\n")), "F");
+    let high = format!("{head}G0 Z15\nG1 Z2\n{SQUARE}G1 Z5\nX0\nG1 Z-5\nX20\nG0 Z50\nM2\n");
+    assert_eq!(kinds(&high.replace("Z5\n", "Z2\n")).matches('t').count(), 0);
+}
+
+#[test]
+fn a_move_straight_back_over_the_contour_is_a_lead() {
+    let program = "G21 G90 F500\nG0 X-30 Y-25\nG0 Z-5\nG1 X-20\nY20\nX20\nY-20\nX-15\nX-5\nG0 Z50\nM2\n";
+    let (count, runs, _) = searched(program, &criteria(None));
+    assert_eq!((count, runs[0].run.lines), (1, LineRange { first: 4, last: 8 }));
+    // An outline in a subprogram that goes back to where it begins again.
+    let program = "G21 G90 F500\nG0 X-20 Y-30\nG0 Z-5\nG1 Y20\nX20\nY-20\nX-20\nY-30\nG0 Z50\nM2\n";
+    let (count, runs, _) = searched(program, &criteria(None));
+    assert_eq!((count, runs[0].run.lines), (1, LineRange { first: 4, last: 7 }));
+    let program = program.replace("X-20\nY-30\nG0", "X-12\nG2 X-20 Y-12 J8\nG1 Y-30\nG0");
+    let (count, runs, _) = searched(&program, &criteria(None));
+    assert_eq!((count, runs[0].run.lines, runs[0].run.closed), (1, LineRange { first: 4, last: 8 }, false));
+    // The same with a straight move to it and away from it.
+    let program = program.replace("Y-30\nG0 Z50", "Y-30\nX-30\nG0 Z50");
+    let program = program.replace("X-20 Y-30\nG0 Z-5\n", "X-30 Y-30\nG0 Z-5\nG1 X-20\n");
+    let (count, runs, _) = searched(&program, &criteria(None));
+    assert_eq!((count, runs[0].run.lines), (1, LineRange { first: 5, last: 9 }));
+}
+
+#[test]
+fn facing_to_and_fro_above_all_else_makes_no_wall() {
+    let head = "G21 G90 F500\nG0 X-60 Y-40\nG0 Z15\n";
+    let zigzag: String = (0..9)
+        .map(|k| {
+            format!(
+                "G1 X{} Y{}\nG1 X{}\n",
+                if k % 2 == 0 { -50 } else { 50 },
+                8 * k - 32,
+                if k % 2 == 0 { 50 } else { -50 }
+            )
+        })
+        .collect();
+    let contour = format!("G0 Z15\nG0 X-20 Y-20\nG1 Z-8\n{SQUARE}G0 Z15\nM2\n");
+    assert_eq!(kinds(&format!("{head}G1 Z0\n{zigzag}{contour}")), "fF");
+    // Deeper than the contour it may be the floor of a pocket with a wall, and farther apart each line has its own.
+    assert_eq!(kinds(&format!("{head}G1 Z-9\n{zigzag}{contour}")), "FF");
+    let apart = zigzag.replace("Y-32", "Y-132").replace("Y-24", "Y-110").replace("Y-16", "Y-90").replace("Y-8", "Y-70");
+    let apart = apart.replace("Y8", "Y70").replace("Y16", "Y90").replace("Y24", "Y110").replace("Y32", "Y132");
+    assert_eq!(kinds(&format!("{head}G1 Z0\n{apart}{contour}")), "FF");
+    // A wider cutter than the job's, which is known by equal steps where the part's top is Z 0.
+    let wide = format!("{head}G1 Z0\nG1 X50\nY-8\nX-50\nY24\nX50\nY56\nX-50\n{contour}");
+    assert_eq!(kinds(&wide), "fF");
+    assert_eq!(kinds(&wide.replace("Z0\n", "Z9\n").replace("Z-8", "Z1")), "FF");
+    assert_eq!(kinds(&wide.replace("Y24", "Y22")), "FF");
 }
 
 #[test]

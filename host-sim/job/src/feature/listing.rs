@@ -1,6 +1,6 @@
 //! What was found in a program, for people and for machines.
 
-use truepath_core::gcode::{Found, LineRange, Role};
+use truepath_core::gcode::{Found, Idle, LineRange, Role};
 use truepath_ground::units::mm;
 
 /// Contours that were found by search are called by their number.
@@ -9,7 +9,7 @@ pub(super) const CONTOUR: &str = "contour-";
 /// One run of cutting moves and what it is taken for.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Row {
-    /// `finish`, `spring`, `semi`, `rough` or `other tool`.
+    /// `finish`, `spring`, `semi`, `rough`, `travel`, `facing` or `other tool`.
     pub role: &'static str,
     /// Number of the finishing contour among those found; `None` for what makes no wall.
     pub contour: Option<u32>,
@@ -74,6 +74,10 @@ pub struct FeatureSummary {
 pub(super) fn rows(runs: &[Found], allowance_mm: f64) -> Vec<Row> {
     let row = |found: &Found| {
         let (role, contour, level, why) = match found.role {
+            Role::Idle(Idle::Travel) => ("travel", None, None, "a move between cuts, above all that is cut".to_owned()),
+            Role::Idle(Idle::Facing) => {
+                ("facing", None, None, "to and fro nearer than the cutter is wide, above all else".to_owned())
+            }
             Role::OtherTool => ("other tool", None, None, "cut with another tool".to_owned()),
             Role::Rough { nearer, gap, parallel } => {
                 let role = if parallel && mm(gap) <= 1.2 * allowance_mm { "semi" } else { "rough" };

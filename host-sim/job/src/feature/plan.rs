@@ -262,6 +262,10 @@ fn why(region: &Region, runs: &[Found], tool: Option<u32>, (of, contours): (u32,
     let rough = count(&|r| matches!(r, Role::Rough { .. }));
     let spring = count(&|r| matches!(r, Role::Spring { contour, .. } if *contour == of));
     let other = count(&|r| matches!(r, Role::OtherTool));
+    let idle = match count(&|r| matches!(r, Role::Idle(_))) {
+        0 => String::new(),
+        n => format!(", {n} that make no wall"),
+    };
     let by = tool.map_or_else(String::new, |t| format!(" of tool {t}"));
     let place = match region.origin {
         Origin::Search => "in the program",
@@ -269,7 +273,7 @@ fn why(region: &Region, runs: &[Found], tool: Option<u32>, (of, contours): (u32,
     };
     let one = if contours == 1 { "the only path".to_owned() } else { format!("one of {contours} paths") };
     format!(
-        "{one}{by} {place} whose wall no other run takes away ({levels} finishing, {rough} roughing, {spring} spring passes, {other} runs of other tools)"
+        "{one}{by} {place} whose wall no other run takes away ({levels} finishing, {rough} roughing, {spring} spring passes, {other} runs of other tools{idle})"
     )
 }
 

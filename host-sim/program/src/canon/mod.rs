@@ -55,6 +55,7 @@ pub fn write_canon(
         start: Axes::ORIGIN,
         skip_block_delete: options.skip_block_delete,
         dialect: options.dialect,
+        as_linuxcnc: true,
         decimal: options.decimal,
         tools: options.tools.tools(),
         machine: Some(Machine { units: options.machine_units, probe_before_end: PROBE_BEFORE_END }),

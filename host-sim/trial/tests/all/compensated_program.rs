@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use truepath_core::gcode::Options;
 use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::{JobFile, Route};
@@ -59,7 +60,7 @@ fn a_compensated_program_is_corrected_as_the_path_of_the_centre() {
     assert!(difference.text("part.nc").contains("taken out of the contour"));
     let text = String::from_utf8(drawn.program.unwrap()).unwrap();
     assert!(!text.contains("G41") && text.contains("\nG40 ") && text.contains("OF THE CUTTER CENTRE"), "{text}");
-    let read = |text: &[u8]| shown(read_blocks(&Source::new("corrected.nc", text.to_vec()))).0;
+    let read = |text: &[u8]| shown(read_blocks(&Source::new("corrected.nc", text.to_vec()), Options::default())).0;
     let (a, b) = (read(text.as_bytes()), read(&centre.program.unwrap()));
     assert_eq!(a.len(), b.len(), "{text}");
     for (a, b) in a.iter().zip(&b) {

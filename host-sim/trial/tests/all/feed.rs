@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use truepath_core::gcode::Options;
 use truepath_core::gcode::Units;
 use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Form, Source};
@@ -89,7 +90,7 @@ fn without_the_table_or_with_a_limit_that_is_kept_not_a_byte_changes() {
 fn behind_the_contour_the_feed_of_the_program_is_in_force_again() {
     let (pass, done) = scheduled(PROGRAM, "[feed]\nmin_percent = 50\n");
     let text = program(&done);
-    let blocks = shown(read_blocks(&Source::new("corrected.nc", text.clone().into_bytes()))).0;
+    let blocks = shown(read_blocks(&Source::new("corrected.nc", text.clone().into_bytes()), Options::default())).0;
     let feeds: Vec<f64> = blocks.iter().map(|b| b.feed.bits() as f64 / 4_294_967_296.0).collect();
     assert!(feeds.iter().all(|f| (149.9..=600.0).contains(f)), "{feeds:?}");
     assert!(feeds.iter().filter(|f| **f < 300.0).count() > 3 && feeds.last() == Some(&300.0));
@@ -136,7 +137,7 @@ fn the_feed_rises_only_where_the_job_says_so_and_a_closed_contour_has_no_jump_at
         let probe = shown(virtual_mill::probe(&pass, &milled, &[45.0, 92.0, 145.0], &[0.3, 0.8], 4.0));
         let measurement = shown(Measurement::read(&pass, &Source::new("probe.txt", probe.into_bytes())));
         let done = shown(correct_pass(&pass, &measurement, &[], &[Route::Program], &mut |_| ()));
-        let blocks = shown(read_blocks(&Source::new("corrected.nc", done.program.unwrap()))).0;
+        let blocks = shown(read_blocks(&Source::new("corrected.nc", done.program.unwrap()), Options::default())).0;
         let feeds = [blocks.first(), blocks.last()].map(|b| b.map_or(0, |b| b.feed.round_to_int()));
         (done.summary.feed.unwrap(), feeds)
     };

@@ -12,6 +12,7 @@ const DEFAULT: Options<'static> = Options {
     start: truepath_core::gcode::Axes::UNKNOWN,
     skip_block_delete: false,
     dialect: truepath_core::gcode::Dialect::Linuxcnc,
+    as_linuxcnc: false,
     decimal: truepath_core::gcode::PointlessLength::Calculator,
     arc_centres: truepath_core::gcode::ArcCentres::Detect,
     block_limit: 1_000_000,
