@@ -1,7 +1,5 @@
 //! One key of a job in the making.
 
-use super::toml_value;
-
 /// Where a value comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -83,4 +81,11 @@ impl Entry {
             _ => format!("{line}{}", self.why),
         }
     }
+}
+
+/// A value as TOML has it: what is no number, list or word of TOML is a text.
+pub(super) fn toml_value(value: &str) -> String {
+    let plain = value.trim();
+    let is_toml = !plain.contains(['\n', '\r']) && format!("x = {plain}").parse::<toml::Table>().is_ok();
+    if is_toml { plain.to_owned() } else { toml::Value::String(plain.to_owned()).to_string() }
 }

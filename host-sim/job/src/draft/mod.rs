@@ -6,14 +6,18 @@
 //!
 //! | of | where |
 //! |---|---|
+//! | what a draft holds | `contents` |
 //! | one key of the job with its origin | `entry` |
 //! | the side of the wall, where no G41 says it | `side` |
 //! | the text of the file | `text` |
 
+mod contents;
 mod entry;
 mod side;
 mod text;
 
+pub use contents::{ContourNote, Draft};
+use entry::toml_value;
 pub use entry::{Entry, Origin};
 
 use std::collections::BTreeMap;
@@ -32,51 +36,6 @@ use crate::job::{JobFile, MATERIALS, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, 
 use crate::pass::Pass;
 use crate::post::{Post, Shape, ToolNote};
 use side::{Shown, likely, side};
-
-/// A finishing contour of the program.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct ContourNote {
-    /// Its number, from 1.
-    pub number: u32,
-    /// First line of its first level.
-    pub first_line: u32,
-    /// Last line of its last level.
-    pub last_line: u32,
-    /// The tool in the spindle.
-    pub tool: Option<u32>,
-    /// Heights of its levels, mm.
-    pub z_mm: Vec<f64>,
-    /// Length of one level, mm.
-    pub length_mm: f64,
-    /// Whether it ends where it starts.
-    pub closed: bool,
-    /// Lines and arcs that lead to it, and away from it, in its first level.
-    pub leads: [usize; 2],
-}
-
-impl ContourNote {
-    /// Its tool, heights and length.
-    pub fn words(&self) -> String {
-        text::words(self)
-    }
-}
-
-/// What a program asks for.
-#[derive(Clone, Debug)]
-pub struct Draft {
-    /// Keys of the job, in the order of the file.
-    pub entries: Vec<Entry>,
-    /// Finishing contours.
-    pub contours: Vec<ContourNote>,
-    /// The one the job is about, when there are several and not all are taken.
-    pub chosen: Option<u32>,
-    /// What the program says of the cut, for a comment.
-    pub facts: Vec<String>,
-    /// What the user should know.
-    pub warnings: Vec<String>,
-    /// `--dialect` of `truepath probe`.
-    pub probe_control: Option<&'static str>,
-}
 
 /// The allowance that most CAM systems leave: a twentieth of the diameter, half a millimetre at most.
 fn usual_allowance(diameter: f64) -> f64 {
@@ -676,11 +635,4 @@ const fn side_text(side: Side) -> &'static str {
         Side::Left => "\"left\"",
         Side::Right => "\"right\"",
     }
-}
-
-/// A value as TOML has it: what is no number, list or word of TOML is a text.
-pub(crate) fn toml_value(value: &str) -> String {
-    let plain = value.trim();
-    let is_toml = !plain.contains(['\n', '\r']) && format!("x = {plain}").parse::<toml::Table>().is_ok();
-    if is_toml { plain.to_owned() } else { toml::Value::String(plain.to_owned()).to_string() }
 }
