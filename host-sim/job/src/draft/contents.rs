@@ -23,6 +23,17 @@ pub struct ContourNote {
     pub leads: [usize; 2],
 }
 
+impl ContourNote {
+    /// Its tool, heights and length.
+    pub fn words(&self) -> String {
+        let ContourNote { tool, z_mm, length_mm, closed, .. } = self;
+        let tool = tool.map_or_else(String::new, |t| format!("tool {t}, "));
+        let heights: Vec<String> = z_mm.iter().map(f64::to_string).collect();
+        let closed = if *closed { "closed" } else { "open" };
+        format!("{tool}Z {}, {length_mm:.3} mm, {closed}", heights.join(" "))
+    }
+}
+
 /// What a program asks for.
 #[derive(Clone, Debug)]
 pub struct Draft {

@@ -37,13 +37,6 @@ use crate::pass::Pass;
 use crate::post::{Post, Shape, ToolNote};
 use side::{Shown, likely, side};
 
-impl ContourNote {
-    /// Its tool, heights and length.
-    pub fn words(&self) -> String {
-        text::words(self)
-    }
-}
-
 /// The allowance that most CAM systems leave: a twentieth of the diameter, half a millimetre at most.
 fn usual_allowance(diameter: f64) -> f64 {
     ((diameter / 20.0).min(0.5) * 100.0).round() / 100.0

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::contents::{ContourNote, Draft};
+use super::contents::Draft;
 use super::entry::{Entry, Origin};
 
 /// Tables in the order of the file.
@@ -69,18 +69,9 @@ fn features(out: &mut String, draft: &Draft) {
         let sign = if contour.number == chosen { "" } else { "# " };
         let id = format!("wall-{}", contour.number);
         let _ = write!(out, "{sign}[[feature]]");
-        let _ = writeln!(out, "{}# {}", " ".repeat(COMMENT.saturating_sub(11 + sign.len())), words(contour));
+        let _ = writeln!(out, "{}# {}", " ".repeat(COMMENT.saturating_sub(11 + sign.len())), contour.words());
         let _ = writeln!(out, "{sign}id = \"{id}\"\n{sign}lines = [{}, {}]", contour.first_line, contour.last_line);
     }
-}
-
-/// A contour in words.
-pub(super) fn words(contour: &ContourNote) -> String {
-    let ContourNote { tool, z_mm, length_mm, closed, .. } = contour;
-    let tool = tool.map_or_else(String::new, |t| format!("tool {t}, "));
-    let heights: Vec<String> = z_mm.iter().map(f64::to_string).collect();
-    let closed = if *closed { "closed" } else { "open" };
-    format!("{tool}Z {}, {length_mm:.3} mm, {closed}", heights.join(" "))
 }
 
 fn line(out: &mut String, text: &str, comment: &str) {

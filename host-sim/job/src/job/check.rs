@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::Path;
 
 use toml::de::DeTable;
-use truepath_core::gcode::{ArcCentres, Dialect, PointlessLength};
+use truepath_core::gcode::{ArcCentres, PointlessLength};
 use truepath_core::geometry::Side;
 use truepath_core::job::{Cut, Force, ForceModel, Machine};
 use truepath_core::units::{Offset, Real};
@@ -24,21 +24,12 @@ use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
 use super::check_tool::{reach, tool};
 use super::material::MATERIALS;
-use super::open::{Assumed, Open, usual_machine};
+use super::open::{Assumed, DIALECTS, Open, usual_machine};
 use super::{JobFile, Which};
 
 /// The stiffest machine a job can state; where none is stated only the cutter bends.
 const RIGID: Machine =
     Machine { stiffness_x: Real::from_int(1_000_000), stiffness_y: Real::from_int(1_000_000), stated: true };
-
-/// Names of the controls a program may be written for.
-pub const DIALECTS: [(&str, Dialect); 5] = [
-    ("linuxcnc", Dialect::Linuxcnc),
-    ("fanuc", Dialect::Fanuc),
-    ("haas", Dialect::Haas),
-    ("siemens", Dialect::Siemens),
-    ("mach", Dialect::Mach),
-];
 
 /// What a length without a point may be.
 pub const DECIMALS: [(&str, PointlessLength); 2] =

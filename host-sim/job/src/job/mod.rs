@@ -31,7 +31,7 @@ use crate::codes::{J001, J009};
 use crate::post::ToolNote;
 use crate::surface::Surface;
 
-pub use check::{DECIMALS, DIALECTS};
+pub use check::DECIMALS;
 pub use check_correct::ROUTES;
 pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
 pub use check_feed::{FeedTable, ForceLimit};
@@ -40,7 +40,7 @@ pub use check_pocket::{Mode, PerSection, PocketTable};
 pub use check_probe::{FORMATS, ProbeFlags, columns, one_of};
 pub use check_tool::Shank;
 pub use material::{MATERIALS, Material};
-pub use open::{Assumed, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, dialect_name};
+pub use open::{Assumed, DIALECTS, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, dialect_name};
 
 pub(crate) use check_feature::is_id;
 

@@ -12,7 +12,6 @@ use truepath_core::units::{Offset, Real};
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::Source;
 
-use super::check::DIALECTS;
 use super::material::MATERIALS;
 use crate::post::{Post, ToolNote};
 
@@ -37,6 +36,15 @@ impl Assumed {
         format!("assumed {key} = {value}: {why}")
     }
 }
+
+/// Names of the controls a program may be written for.
+pub const DIALECTS: [(&str, Dialect); 5] = [
+    ("linuxcnc", Dialect::Linuxcnc),
+    ("fanuc", Dialect::Fanuc),
+    ("haas", Dialect::Haas),
+    ("siemens", Dialect::Siemens),
+    ("mach", Dialect::Mach),
+];
 
 /// Stiffness at the cutter when nothing is said, N/mm: between a router (1,000) and a heavy machining centre (20,000).
 pub const USUAL_STIFFNESS: i32 = 4_000;

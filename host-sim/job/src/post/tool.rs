@@ -100,17 +100,27 @@ const NEAR: usize = 8;
 /// All of them; of a number that several comments name, the one that says most.
 pub(super) fn tools(lines: &[TextLine], inch: bool) -> Vec<ToolNote> {
     let mut found: Vec<ToolNote> = Vec::new();
+    // Numbers that stand in the comments themselves.
+    let mut names: Vec<u32> = Vec::new();
     let only = only_tool(lines);
     for (at, line) in lines.iter().enumerate() {
         for text in &line.remarks {
             let Some(mut note) = note(text, inch) else { continue };
             note.line = line.number;
+            let named = note.number.is_some();
             note.number = note.number.or_else(|| beside(lines, at)).or(only);
+            let numbered = names.iter().copied().find(|number| Some(*number) == note.number);
+            if named {
+                names.extend(note.number);
+            }
             match found.iter_mut().find(|f| f.number == note.number) {
                 None => found.push(note),
                 Some(before) => {
                     let same = (before.diameter_mm - note.diameter_mm).abs() < 1e-6;
-                    if same {
+                    if !same && !named && numbered.is_none_or(|number| Some(number) != note.number) {
+                        // Of comments without a number the nearest to the tool change speaks of it.
+                        *before = note;
+                    } else if same {
                         before.teeth = before.teeth.or(note.teeth);
                         before.corner_mm = before.corner_mm.or(note.corner_mm);
                     }
@@ -332,6 +342,14 @@ mod tests {
         ] {
             assert_eq!(of(text), expected, "{text}");
         }
+    }
+
+    #[test]
+    fn of_comments_without_a_number_the_last_before_the_tool_change_counts() {
+        let text = "(TOOL/MILL,0.25,0.0,10,0)\nG21\n(TOOL/MILL,6,0,20,0)\nM6T201\n";
+        let all = tools(&lines(text.as_bytes()), false);
+        assert_eq!(all.len(), 1);
+        assert_eq!((all[0].number, all[0].diameter_mm, all[0].line), (Some(201), 6.0, 3));
     }
 
     #[test]
