@@ -63,7 +63,7 @@ impl Entry {
     pub(super) fn at_line(self, line: Option<u32>) -> Self {
         Self { line, ..self }
     }
-    pub(super) fn to_check(self) -> Self {
+    pub(super) fn doubtful(self) -> Self {
         Self { check: true, ..self }
     }
 

@@ -259,7 +259,7 @@ impl<'a> Drafting<'a> {
         let mut list: Vec<Candidate> = Vec::new();
         for found in &runs {
             let Role::Finish { contour, level } = found.role else { continue };
-            let z = found.run.z.map(|z| height(z));
+            let z = found.run.z.map(height);
             let lines = found.run.lines;
             if level > 1 {
                 let last = list.iter_mut().find(|c| c.head.role == Role::Finish { contour, level: 1 });
@@ -337,7 +337,7 @@ impl<'a> Drafting<'a> {
             Some(_) if candidate.head.run.wall.is_some() => None,
             Some(shown) => {
                 let line = shown.line.unwrap_or(0);
-                Some(Entry::read("wall", side_text(shown.side), &shown.why, line).to_check())
+                Some(Entry::read("wall", side_text(shown.side), &shown.why, line).doubtful())
             }
             None => {
                 let (side, sign) = candidate.likely;
@@ -426,7 +426,7 @@ impl<'a> Drafting<'a> {
                         Compensation::Centre => "\"centre\"",
                         Compensation::Radius => "\"radius\"",
                     };
-                    Some(Entry::read("tool.compensation", value, drawn.why, line).to_check())
+                    Some(Entry::read("tool.compensation", value, drawn.why, line).doubtful())
                 }
                 Ok(None) => None,
                 Err(error) if error.code() == "J027" => {
@@ -535,7 +535,7 @@ impl<'a> Drafting<'a> {
         let depths = || passes.iter().filter_map(|p| p.job.assumed.iter().find(|a| a.key == "cut.axial_depth_mm"));
         let first = depths().next();
         let entry = first.map(|first| match depths().all(|other| other.value == first.value) {
-            true => Entry::read(first.key, &first.value, &first.why, 0).to_check(),
+            true => Entry::read(first.key, &first.value, &first.why, 0).doubtful(),
             false => Entry::left(first.key, "each contour has its own, from Z 0 or the level before down to its own"),
         });
         self.put("cut.axial_depth_mm", entry);
