@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// Bytes at most: it is copied into every report.
-const LARGEST: usize = 200_000;
+const LARGEST: usize = 215_000;
 /// Addresses that are names, never opened: the namespace of a drawing in the page.
 const NAMES: [&str; 1] = ["http://www.w3.org/2000/svg"];
 /// What a page loads or sends with.
@@ -28,7 +28,7 @@ fn addresses(text: &str) -> Vec<&str> {
     found
 }
 
-/// What is given to attributes and functions that load something.
+/// What is given to attributes and functions that load something. A name behind `#` is a thing of the page itself.
 fn loaded(text: &str) -> Vec<&str> {
     let openings = [" src=", " href=", "url("];
     let behind = |opening: &'static str| text.match_indices(opening).map(move |(at, _)| &text[at + opening.len()..]);
@@ -54,8 +54,10 @@ fn the_page_loads_nothing_and_sends_nothing() {
     for means in MEANS {
         assert!(!page.contains(means), "{means}");
     }
-    let elsewhere: Vec<&str> =
-        loaded(&page).into_iter().filter(|given| !given.trim_start_matches('"').starts_with("data:")).collect();
+    let elsewhere: Vec<&str> = loaded(&page)
+        .into_iter()
+        .filter(|given| !["data:", "#"].iter().any(|own| given.trim_start_matches('"').starts_with(own)))
+        .collect();
     assert!(elsewhere.is_empty(), "{elsewhere:?}");
     // Whatever slips in, the browser refuses it.
     assert!(page.contains(

@@ -182,12 +182,15 @@ fn init_makes_a_job_of_every_program_of_the_shop_with_which_it_is_probed() {
         let allowance = format!("allowance={}", program["allowance_mm"]);
         let mut set = vec!["--json", "init", name, "--yes", "-o", &job, "--set", &allowance];
         let (diameter, wall) = (format!("diameter={}", program["diameter_mm"]), format!("wall={}", program["wall"]));
+        let spindle = program["keys"].split("cut.spindle_rpm = ").nth(1).map(|rpm| format!("rpm={rpm}"));
+        let spindle = spindle.unwrap_or_default();
         let first = truepath(&set, desk.path());
         if first.status.success() {
             by_itself += 1;
         } else {
             let found = refused(&first)["found"].to_string();
-            for (asked, told) in [("--set wall=", &wall), ("--set diameter=", &diameter)] {
+            let answers = [("--set wall=", &wall), ("--set diameter=", &diameter), ("--set rpm=", &spindle)];
+            for (asked, told) in answers {
                 if found.contains(asked) {
                     set.extend(["--set", told]);
                 }

@@ -9,6 +9,9 @@ use crate::cut::{ForceTable, Loop};
 use crate::identify::{Fit, Parameter, Prior};
 use truepath_units::{Offset, Real, hypot_nm};
 
+/// 1/√2: of two squares each counts half.
+const HALF_OF_SQUARES: Real = Real::ratio(707_106_781, 1_000_000_000);
+
 /// Standard deviations of the walls that a correction leaves, beside each sample, from the covariance of the fit: of the
 /// error the target aims at and of the deepest height.
 ///
@@ -27,11 +30,12 @@ pub(super) fn deviations(
         let (aimed, deepest) = (wall.aim(wanted.target, None), wall.deepest());
         *slot = Deviation { aimed, sigma_of_aimed: Offset::ZERO, deepest, sigma_of_deepest: Offset::ZERO }.into();
     }
-    spread(machine, belief, wanted, nodes, workspace, &mut |index, wall| {
+    spread(machine, belief, wanted, nodes, workspace, &mut |index, wall, share| {
         if let Some(slot) = slots.get_mut(index) {
             let mut known = slot.deviation();
-            known.sigma_of_aimed = hypot_nm(known.sigma_of_aimed, wall.aim(wanted.target, None) - known.aimed);
-            known.sigma_of_deepest = hypot_nm(known.sigma_of_deepest, wall.deepest() - known.deepest);
+            known.sigma_of_aimed =
+                hypot_nm(known.sigma_of_aimed, (wall.aim(wanted.target, None) - known.aimed).scaled(share));
+            known.sigma_of_deepest = hypot_nm(known.sigma_of_deepest, (wall.deepest() - known.deepest).scaled(share));
             *slot = known.into();
         }
     });
@@ -39,7 +43,7 @@ pub(super) fn deviations(
 }
 
 /// Cuts the corrected contour once on every machine that lies a column of the covariance's square root away, and hands
-/// each wall, with its index on the contour, to `take`. The square root of the sum of the squared changes of a quantity is
+/// each wall, with its index on the contour and its share, to `take`. The square root of the sum of the squared changes of a quantity, each times its share, is
 /// its standard deviation. The walls of the workspace are overwritten.
 #[inline(never)]
 fn spread(
@@ -48,7 +52,7 @@ fn spread(
     wanted: &Design,
     nodes: &[Node],
     workspace: &mut DesignWorkspace<'_, impl WallReader>,
-    take: &mut dyn FnMut(usize, &Profile),
+    take: &mut dyn FnMut(usize, &Profile, Real),
 ) {
     let path = machine.path;
     let mut table = ForceTable::BLANK;
@@ -57,25 +61,35 @@ fn spread(
         if column.iter().all(|v| v.abs() < Real::ratio(1, 1000)) {
             continue;
         }
-        // Both ways along a column are as likely. Difference and cross term of the compliance have the other sign on a part that
-        // is turned or mirrored: theirs is the way from what was believed to what was found, which turns with the part.
+        // Difference and cross term of the compliance have the other sign on a part that is turned or mirrored: both ways are
+        // gone, each counts half, so that the turned part has the same deviation; to the last bit, because the first is that
+        // from what was believed to what was found, which turns as well. The others have one way.
         let turns = matches!(parameter, Parameter::ComplianceDifference | Parameter::ComplianceCross);
-        let further = column.iter().zip(&fit.theta).fold(Real::ZERO, |sum, (c, t)| sum + *c * *t);
-        let mut moved = fit.theta;
-        for (t, c) in moved.iter_mut().zip(&column) {
-            *t += if turns && further < Real::ZERO { -*c } else { *c };
+        let found = column.iter().zip(&fit.theta).fold(Real::ZERO, |sum, (c, t)| sum + *c * *t);
+        let (on, back) = (Real::ONE, Real::from_int(-1));
+        let ways: &[Real] = match (turns, found < Real::ZERO) {
+            (false, _) => &[on],
+            (true, false) => &[on, back],
+            (true, true) => &[back, on],
+        };
+        let share = if turns { HALF_OF_SQUARES } else { Real::ONE };
+        for way in ways {
+            let mut moved = fit.theta;
+            for (t, c) in moved.iter_mut().zip(&column) {
+                *t += *c * *way;
+            }
+            let parameters = prior.at(&moved);
+            // The last columns move nothing but the datum of the part that was probed: the wall stays where it is.
+            if parameters.machine(path, &table).cuts_as(machine) {
+                continue;
+            }
+            if parameters.coefficients.size_exponent != table.size_exponent() {
+                table.tabulate(parameters.coefficients.size_exponent);
+            }
+            let displaced = parameters.machine(path, &table);
+            displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
+            walls(&displaced, wanted, workspace);
+            workspace.profiles.iter().enumerate().for_each(|(index, wall)| take(index, wall, share));
         }
-        let parameters = prior.at(&moved);
-        // The last columns move nothing but the datum of the part that was probed: the wall stays where it is.
-        if parameters.machine(path, &table).cuts_as(machine) {
-            continue;
-        }
-        if parameters.coefficients.size_exponent != table.size_exponent() {
-            table.tabulate(parameters.coefficients.size_exponent);
-        }
-        let displaced = parameters.machine(path, &table);
-        displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
-        walls(&displaced, wanted, workspace);
-        workspace.profiles.iter().enumerate().for_each(|(index, wall)| take(index, wall));
     }
 }

@@ -20,6 +20,8 @@ const BY_FAR: f64 = 1.0 / 3.0;
 const ALIKE: f64 = 6.0;
 /// Points that fit cost less than this each.
 const FLAWLESS: f64 = 2.5;
+/// A probe's length is right to this, mm: a smaller change of height is what bending and helix are taken for.
+const SAME_HEIGHT_MM: f64 = 1.0;
 /// Of fewer points none is a stray one.
 const LEAST_WITH_STRAYS: usize = 6;
 /// Fewer points cannot tell one cause from another.
@@ -116,6 +118,7 @@ impl Trial {
             Cause::Nothing => false,
             Cause::Datum([x, y]) => x.hypot(y) > CLAMPED_MM,
             Cause::Level(mm) => mm.abs() > CLAMPED_MM,
+            Cause::Height(mm) => mm.abs() > SAME_HEIGHT_MM,
             _ => true,
         }
     }

@@ -20,6 +20,8 @@ pub(super) const NEAR_MM: f64 = 3.0;
 pub(super) const WORN_MM: f64 = 0.05;
 /// A parameter farther from what the job says than so many prior standard deviations cannot be.
 const FARTHEST: f64 = 10.0;
+/// From so many points on a third is more than bad touches.
+const MOST_BAD_TOUCHES: usize = 4;
 /// Points that fit cost less than this each, with what the parameters cost.
 const WELL: f64 = 4.0;
 /// A datum moves by less than this when the part stays in its vice, mm.
@@ -104,7 +106,8 @@ impl Look {
     /// What forbids to go on whatever the cause is.
     pub fn reason(&self) -> Option<Reason> {
         let (unfit, all) = self.count();
-        if all > 2 && 3 * unfit >= all {
+        // Of a few points two or three may be bad touches: they are set aside, and named.
+        if all > 2 && 3 * unfit >= all && (unfit >= MOST_BAD_TOUCHES || 2 * unfit >= all) {
             return Some(Reason::Points);
         }
         let [level, sigma] = self.level_mm;

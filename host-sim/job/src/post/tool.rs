@@ -166,6 +166,8 @@ fn note(text: &str, inch: bool) -> Option<ToolNote> {
     let tokens = tokens(&upper);
     let number = tool_number(&tokens);
     let is_mill = |token: &Token| match token {
+        // What is done is no cutter: `5: KONTURFRAESEN`, `POCKET MILLING`.
+        Token::Word(word) if ["FRAESEN", "FRÄSEN", "MILLING"].iter().any(|done| word.ends_with(done)) => false,
         Token::Word(word) => MILLS.iter().any(|mill| word.contains(mill)) || MILL_WORDS.contains(&word.as_str()),
         _ => false,
     };
@@ -322,6 +324,8 @@ mod tests {
             ("( T6 |  16. FLAT ENDMILL |   H6   |   D6   | TOOL DIA. - 16. )", flat(Some(6), 16.0, None)),
             ("( T6 |  16. FLAT ENDMILL |   H6   |   D6   | XY STOCK TO LEAVE - 0. )", flat(Some(6), 16.0, None)),
             ("(TC: 8mm Endmill)\nM6 T3", flat(Some(3), 8.0, None)),
+            ("N13 MSG(\"5: KONTURFRAESEN (SCHLICHTEN)\")", None),
+            ("(2: POCKET MILLING)\nM6 T3", None),
             ("(Required tools:)\n(Fraeser 6mm (2 Schneiden))\nG90", flat(None, 6.0, Some(2))),
             ("(8mm Schaftfräser)", flat(None, 8.0, None)),
             ("(1 = End Mill {6 mm})", flat(Some(1), 6.0, None)),
