@@ -124,12 +124,16 @@ impl Case {
     fn deviations(&self, nodes: &[Node]) -> Vec<f64> {
         let base = self.walls(&self.fit.parameters, nodes);
         let mut squares = vec![0.0; base.len()];
-        for column in identify::square_root(&self.fit.covariance) {
-            let mut theta = self.fit.theta;
-            theta.iter_mut().zip(&column).for_each(|(t, c)| *t += *c);
-            let moved = self.walls(&self.prior.at(&theta), nodes);
-            for ((square, moved), base) in squares.iter_mut().zip(&moved).zip(&base) {
-                *square += ((moved.mean - base.mean).nm() as f64).powi(2);
+        for (k, column) in identify::square_root(&self.fit.covariance).iter().enumerate() {
+            // Difference and cross term of the compliance: both ways, each counts half.
+            let ways: &[i32] = if matches!(k, 1 | 2) { &[1, -1] } else { &[1] };
+            for way in ways {
+                let mut theta = self.fit.theta;
+                theta.iter_mut().zip(column).for_each(|(t, c)| *t += *c * Real::from_int(*way));
+                let moved = self.walls(&self.prior.at(&theta), nodes);
+                for ((square, moved), base) in squares.iter_mut().zip(&moved).zip(&base) {
+                    *square += ((moved.mean - base.mean).nm() as f64).powi(2) / ways.len() as f64;
+                }
             }
         }
         squares.into_iter().map(f64::sqrt).collect()
