@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use truepath::command::{correct, learn};
 use truepath_correction::learn::LearnSummary;
-use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::JobFile;
 use truepath_job::pass::Pass;
 use truepath_plant::Machine;
@@ -263,8 +263,10 @@ fn a_correction_is_not_replaced_by_one_made_from_the_part_that_was_cut_with_it()
     assert!(text.contains("mm (rms) from the wall of the correction"), "{text}");
     assert_eq!(fs::read(folder.join("first/corrected.nc")).unwrap(), before);
     // In a folder of its own nothing is known of it; it is only likely.
-    let doubted = |probe: &str, out: &str| again(probe, out).unwrap().warnings.iter().any(|w| w.starts_with("Q008"));
-    assert!(doubted("part-2.txt", "other") && !doubted("uncorrected.txt", "plain"));
+    let Err(Failure::Input(error)) = again("part-2.txt", "other") else { panic!("not refused") };
+    let text = Failure::Input(error.clone()).render(Form::Plain).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(error.code() == "Q009" && text.contains("truepath learn --from"), "{text}");
+    assert!(again("uncorrected.txt", "plain").unwrap().warnings.iter().all(|w| !w.starts_with("Q008")));
     // Known by name, once it was learned from.
     run(&folder, "part-2.txt", "first", "second").unwrap();
     let text = refused("part-2.txt", "second");

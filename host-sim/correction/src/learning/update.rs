@@ -10,7 +10,7 @@ use truepath_job::pass::Pass;
 use super::holdout::{Holdout, Residuals};
 use super::joint::{Companion, Joint, PartPoints, joint};
 use super::monitor::Monitor;
-use super::moved::refuse_moved;
+use super::moved::moved;
 use super::residual::Residual;
 use super::uncorrected::refuse_uncorrected;
 use super::verdict::{Promise, UnmodelledError, Verdict};
@@ -52,9 +52,7 @@ pub fn update(
     let before = joint(pass, path, &earlier, companions, None, &mut |share| progress(0.3 * share));
     let before_beside = Residual::of(path, &earlier, &before);
     refuse_uncorrected(path, &newest, &before, before_beside.as_ref())?;
-    if !pass.job.force_data {
-        refuse_moved(path, &newest, &before)?;
-    }
+    let moved = moved(path, &newest, &before);
     let mut parts = earlier;
     parts.push(newest);
     let after = joint(pass, path, &parts, companions, None, &mut |share| progress(0.3 + 0.3 * share));
@@ -98,5 +96,6 @@ pub fn update(
     let along = beside.map(|residual| (residual.amplitudes(), residual.along(path, &chosen)));
     verdict.residual = along.as_ref().map(|(amplitudes, (mean, _))| UnmodelledError::of(*amplitudes, mean));
     let (residual, residual_sigma) = along.map(|(_, along)| along).unwrap_or_default();
+    verdict.say(moved);
     Ok(Update { joint: chosen, residual, residual_sigma, kept, set_aside, verdict })
 }

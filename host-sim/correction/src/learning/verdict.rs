@@ -162,6 +162,11 @@ impl Verdict {
         }
     }
 
+    /// Adds a remark.
+    pub(super) fn say(&mut self, remark: Option<String>) {
+        self.remarks.extend(remark);
+    }
+
     /// What the user should know of the part, a sentence each.
     pub fn remarks(&self) -> &[String] {
         &self.remarks

@@ -26,7 +26,14 @@ impl Misfit {
             },
             |trial| trial.cause.help(pass, measurement),
         );
-        let help = format!("{help}; --force-data goes on with the points as they are");
+        // A correction takes off nearly the same everywhere.
+        let corrected = self.reason == Some(Reason::Level) && self.look.level_mm[0] < 0.0;
+        let corrected = if corrected {
+            "; a part that was cut with a correction looks like that: learn from it with truepath learn --from its folder"
+        } else {
+            ""
+        };
+        let help = format!("{help}{corrected}; --force-data goes on with the points as they are");
         let error = InputError::new(Q009, found, "points of a part that this job has cut", help);
         let file = &measurement.source;
         match self.stated.worst().first() {

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use truepath_correction::as_milled::AsMilled;
-use truepath_correction::codes::{Q002, Q003, Q005, Q007, Q009};
+use truepath_correction::codes::{Q002, Q003, Q005, Q007};
 use truepath_correction::learn::{LearnSummary, learn};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
@@ -127,9 +127,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
     let remarks = measurement.remarks(&file);
     let routes = [options.route.unwrap_or(pass.job.route)];
     let done = learn(&pass, &history, &measurement, &remarks, &routes, progress).map_err(|failure| match failure {
-        Failure::Input(error) if [Q003.code, Q007.code, Q009.code].contains(&error.code()) => {
-            error.in_file(&options.probe).into()
-        }
+        Failure::Input(error) if [Q003.code, Q007.code].contains(&error.code()) => error.in_file(&options.probe).into(),
         Failure::Input(error) if error.code() == Q002.code && error.line_column().is_none() => {
             error.in_file(&options.from.join(HISTORY)).into()
         }
