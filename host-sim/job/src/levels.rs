@@ -70,9 +70,8 @@ pub fn alike(pass: &Pass) -> Result<Vec<Offset>, Failure> {
     let mut tips = Vec::new();
     for number in others.into_iter().filter(|number| *number != own) {
         let other = pass.at_level(number)?;
-        let feeds = |pass: &Pass| pass.blocks.iter().map(|b| b.feed).collect::<Vec<_>>();
         let above = other.core.contour.z - pass.core.contour.z;
-        if feeds(pass) == feeds(&other) && pass.core.setup == other.core.setup && above != Offset::ZERO {
+        if other_cut(pass, &other).is_none() && above != Offset::ZERO {
             tips.push(above);
         }
     }
@@ -108,13 +107,17 @@ pub fn with_alike(pass: &Pass) -> Result<ContourPass, Failure> {
 
 /// Why the correction of one depth does not hold at another.
 fn difference(pass: &Pass, path: &Path, other: &Pass, sampled: &Path) -> Option<&'static str> {
+    let rounded = (path.count() != sampled.count()).then_some("its path is rounded differently");
+    other_cut(pass, other).or(rounded)
+}
+
+/// What is another at another depth along the same path; `None` where both are cut alike.
+fn other_cut(pass: &Pass, other: &Pass) -> Option<&'static str> {
     let feeds = |pass: &Pass| pass.blocks.iter().map(|b| b.feed).collect::<Vec<_>>();
     if feeds(pass) != feeds(other) {
         Some("its feeds are others")
     } else if pass.core.setup != other.core.setup {
         Some("its spindle speed or direction is another")
-    } else if path.count() != sampled.count() {
-        Some("its path is rounded differently")
     } else {
         None
     }
