@@ -18,6 +18,7 @@
 //! | | [`cut`] | stock → engagement → force → elastic loop → wall |
 //! | | [`identify`] | probe errors and the cut model → compliance, coefficients, covariance |
 //! | | [`correct`] | the cut model → correction array |
+//! | | [`process`] | several passes, the stock as a field over contour and height |
 //! | `truepath-wire` | [`image`] | correction array ↔ bytes |
 //! | | [`rewrite`] | setpoint → corrected setpoint, the only code in the servo cycle |
 //! | | [`link`] | frames and messages of both links, and what becomes of a frame |
@@ -43,7 +44,7 @@ extern crate std;
 pub mod errors;
 pub mod job;
 
-pub use truepath_model::{correct, cut, identify, probe};
+pub use truepath_model::{correct, cut, identify, probe, process};
 pub use truepath_rs274 as gcode;
 pub use truepath_units::{self as units, checksum, geometry};
 pub use truepath_wire::{image, link, rewrite};

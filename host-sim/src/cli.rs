@@ -12,8 +12,8 @@ use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::interruption;
 
 use crate::command::{
-    bore, canon, compare, correct, demo, device, hil, image, init, inspect, learn, multiaxis, plot, pocket, probe,
-    replay, simulate, split, study,
+    bore, canon, compare, correct, demo, device, hil, image, init, inspect, learn, multiaxis, plan, plot, pocket,
+    probe, replay, simulate, split, study,
 };
 use crate::terminal::Terminal;
 
@@ -52,6 +52,8 @@ enum Command {
     Compare(compare::Options),
     /// From a probe file to the corrected program or the image for the coprocessor.
     Correct(correct::Options),
+    /// Which passes hold a tolerance at every height of the wall, in least time.
+    Plan(plan::Options),
     /// From the probe file of a corrected part to the correction of the next one.
     Learn(learn::Options),
     /// For a single part: a program that cuts half of the allowance, to be probed before the second half.
@@ -109,6 +111,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Inspect(options) => inspect::main(&options, terminal),
         Command::Compare(options) => compare::main(&options, terminal),
         Command::Correct(options) => correct::main(&options, terminal),
+        Command::Plan(options) => plan::main(&options, terminal),
         Command::Learn(options) => learn::main(&options, terminal),
         Command::Split(options) => split::main(&options, terminal),
         Command::Pocket(options) => pocket::main(&options, terminal),

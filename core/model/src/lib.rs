@@ -9,6 +9,7 @@
 //! | [`cut`] | stock → engagement → force → elastic loop → wall |
 //! | [`identify`] | probe errors and the cut model → compliance, coefficients, covariance |
 //! | [`correct`] | the cut model → correction array |
+//! | [`process`] | several passes, the stock as a field over contour and height |
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
@@ -28,3 +29,4 @@ pub mod correct;
 pub mod cut;
 pub mod identify;
 pub mod probe;
+pub mod process;

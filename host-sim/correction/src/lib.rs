@@ -7,6 +7,7 @@
 //! | points that are not of this job | [`misfit`] |
 //! | a whole correction with its programs, images and figures | [`correct`], [`summary`] |
 //! | the second of two passes | [`first_pass`], [`second_pass`] |
+//! | passes that hold the wall at every height | [`plan`] |
 //! | the next part | [`learning`], [`learn`], [`as_milled`] |
 //! | where to touch, and the program that does | [`verification`] |
 //! | accuracy from the measurement alone | [`inspection`] |
@@ -26,6 +27,7 @@ pub mod learn;
 pub mod learning;
 pub mod misfit;
 mod parallel_walls;
+pub mod plan;
 pub mod remarks;
 pub mod rows;
 pub mod second_pass;

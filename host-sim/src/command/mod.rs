@@ -17,6 +17,7 @@ pub mod inspect;
 pub mod learn;
 pub mod multiaxis;
 pub mod placement;
+pub mod plan;
 pub mod plot;
 pub mod pocket;
 pub mod probe;

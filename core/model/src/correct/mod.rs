@@ -81,5 +81,6 @@ pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, HEIGHTS, Profile, Target, add_residual, begin, finish, profile, read_slices};
 pub use reader::{InOrder, WallReader};
 pub use refine::Update;
+pub(crate) use refine::settle_ends;
 pub use scratch::Scratch;
 pub use shrinkage::Damped;

@@ -86,7 +86,7 @@ fn fill_gaps(updates: &mut [Update]) {
 
 /// Closes a closed correction, turns it round outside corners from that of one leg to that of the other, and holds it
 /// around sharp inside corners: up to the corner that of the wall before, from it on that of the wall behind.
-pub(super) fn settle_ends(path: &Path, nodes: &mut [Node]) {
+pub(crate) fn settle_ends(path: &Path, nodes: &mut [Node]) {
     round_corners(path, nodes);
     if path.is_closed()
         && let Some(&first) = nodes.first()

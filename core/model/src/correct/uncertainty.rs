@@ -6,11 +6,8 @@ use super::profile::Profile;
 use super::reader::WallReader;
 use super::scratch::Deviation;
 use crate::cut::{ForceTable, Loop};
-use crate::identify::{Fit, Parameter, Prior};
+use crate::identify::{Fit, Prior, neighbours};
 use truepath_units::{Offset, Real, hypot_nm};
-
-/// 1/√2: of two squares each counts half.
-const HALF_OF_SQUARES: Real = Real::ratio(707_106_781, 1_000_000_000);
 
 /// Standard deviations of the walls that a correction leaves, beside each sample, from the covariance of the fit: of the
 /// error the target aims at and of the deepest height.
@@ -57,39 +54,17 @@ fn spread(
     let path = machine.path;
     let mut table = ForceTable::BLANK;
     table.tabulate(machine.table.size_exponent());
-    for (parameter, column) in Parameter::ALL.iter().zip(crate::identify::square_root(&fit.covariance)) {
-        if column.iter().all(|v| v.abs() < Real::ratio(1, 1000)) {
+    for (parameters, share) in neighbours(prior, fit) {
+        // The last columns move nothing but the datum of the part that was probed: the wall stays where it is.
+        if parameters.machine(path, &table).cuts_as(machine) {
             continue;
         }
-        // Difference and cross term of the compliance have the other sign on a part that is turned or mirrored: both ways are
-        // gone, each counts half, so that the turned part has the same deviation; to the last bit, because the first is that
-        // from what was believed to what was found, which turns as well. The others have one way.
-        let turns = matches!(parameter, Parameter::ComplianceDifference | Parameter::ComplianceCross);
-        let found = column.iter().zip(&fit.theta).fold(Real::ZERO, |sum, (c, t)| sum + *c * *t);
-        let (on, back) = (Real::ONE, Real::from_int(-1));
-        let ways: &[Real] = match (turns, found < Real::ZERO) {
-            (false, _) => &[on],
-            (true, false) => &[on, back],
-            (true, true) => &[back, on],
-        };
-        let share = if turns { HALF_OF_SQUARES } else { Real::ONE };
-        for way in ways {
-            let mut moved = fit.theta;
-            for (t, c) in moved.iter_mut().zip(&column) {
-                *t += *c * *way;
-            }
-            let parameters = prior.at(&moved);
-            // The last columns move nothing but the datum of the part that was probed: the wall stays where it is.
-            if parameters.machine(path, &table).cuts_as(machine) {
-                continue;
-            }
-            if parameters.coefficients.size_exponent != table.size_exponent() {
-                table.tabulate(parameters.coefficients.size_exponent);
-            }
-            let displaced = parameters.machine(path, &table);
-            displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
-            walls(&displaced, wanted, workspace);
-            workspace.profiles.iter().enumerate().for_each(|(index, wall)| take(index, wall, share));
+        if parameters.coefficients.size_exponent != table.size_exponent() {
+            table.tabulate(parameters.coefficients.size_exponent);
         }
+        let displaced = parameters.machine(path, &table);
+        displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
+        walls(&displaced, wanted, workspace);
+        workspace.profiles.iter().enumerate().for_each(|(index, wall)| take(index, wall, share));
     }
 }

@@ -193,7 +193,7 @@ impl Loop<'_> {
 }
 
 /// Anderson mixing of depth one: the residual less its share along the last change.
-fn mixed(residual: Vector, change: Vector, last_step: Vector) -> Vector {
+pub(crate) fn mixed(residual: Vector, change: Vector, last_step: Vector) -> Vector {
     let norm = change.dot(change);
     let gamma = Real::narrow(div_rounded(residual.dot(change) << Real::FRACTION_BITS, norm));
     let limit = Real::from_int(4);

@@ -147,6 +147,11 @@ impl ForceTable {
         a.scaled(wa).plus(b.scaled(wb)).plus(da.scaled(wda)).plus(db.scaled(wdb))
     }
 
+    /// ∫₀^φ of the force of one tooth over the immersion angle, for a unit of depth, N/mm·rad.
+    pub(crate) fn one_tooth(&self, milling: Milling, coefficients: &Coefficients, angle: Real) -> SplitForce {
+        self.antiderivative(angle).force(milling, coefficients)
+    }
+
     /// Mean force over a revolution with the arc 0…φ₁ engaged, `N·b/2π · ∫₀^φ₁`, N.
     pub fn mean(&self, setup: &CutSetup, coefficients: &Coefficients, engaged: Real) -> SplitForce {
         let share = Real::from_int(setup.teeth.into()) * setup.axial_depth / Real::TAU;

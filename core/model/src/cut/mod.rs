@@ -43,6 +43,7 @@ mod wall;
 
 pub use cantilever::{Cantilever, ToolMaterial};
 pub use compliance::Compliance;
+pub(crate) use elastic::mixed;
 pub use elastic::{Loop, Passage, State};
 pub use engagement::Frame;
 pub use force::{ForceTable, SplitForce, chip_area};

@@ -62,6 +62,7 @@
 
 mod fit;
 mod law;
+mod neighbours;
 mod observation;
 mod parameters;
 mod part;
@@ -71,6 +72,7 @@ mod tails;
 
 pub use fit::{Cut, Fit, identify};
 pub use law::{identify_law, speaks_for_mean};
+pub use neighbours::neighbours;
 pub use observation::{Observation, PredictionWorkspace, predict};
 pub use parameters::{COUNT, Parameter, Parameters, Prior};
 pub use part::{EarlierPart, Eliminated};

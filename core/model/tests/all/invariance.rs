@@ -1,6 +1,7 @@
 //! When program, stock, machine and probe points are shifted, turned by 90° or mirrored together, so is the
 //! correction, to the last bit. Any other angle: within 2 nm of the turned correction (same machine, isotropic).
 use crate::corner;
+use crate::process::Bench;
 use corner::*;
 use proptest::prelude::*;
 use truepath_model::correct::{
@@ -8,6 +9,7 @@ use truepath_model::correct::{
 };
 use truepath_model::cut::*;
 use truepath_model::identify::{Cut, Fit, Observation, PredictionWorkspace, Prior, identify};
+use truepath_model::process::{Aim, ImmersionGrid, Order, Slices};
 use truepath_units::geometry::{Block, Curve, Point, Shape, Side, Vector};
 use truepath_units::{Offset, Real};
 
@@ -199,5 +201,33 @@ fn a_turn_by_any_other_angle_turns_the_correction_within_two_nanometres_of_its_r
         let worst = straight.iter().zip(&turned).map(|(a, b)| (a.0 - b.0).hypot(a.1 - b.1)).fold(0.0, f64::max);
         println!("{angle}: {worst:.2} nm");
         assert!(worst <= 2.0, "{angle}: {worst} nm");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(8))]
+
+    #[test]
+    fn two_planned_passes_move_with_the_part_to_the_last_bit(motion in motions(), (blocks, wall) in contours()) {
+        let planned = |motion: Motion| -> Vec<Vector> {
+            let blocks = motion.blocks(&blocks);
+            let setup = CutSetup { wall: motion.wall(wall), milling: Milling::of(wall, true), ..setup(WallLaw::Helical) };
+            let path = path(&blocks, &setup, 1000);
+            let table = ForceTable::new(Real::ZERO);
+            let compliance = Compliance { cross: real(0.05), bend: real(0.2), ..Compliance::from_stiffness(real(1500.0), real(2100.0)) };
+            let compliance = motion.compliance(compliance);
+            let coefficients = Coefficients { kte: real(12.0), kre: real(16.0), ..coefficients() };
+            let machine = Loop { path: &path, table: &table, coefficients, compliance, undersize: Offset::ZERO };
+            let grid = ImmersionGrid::new();
+            let mut bench = Bench::new(machine, &grid, Slices::new(8));
+            let order = Order { first: 0, reversed: false, feed: Real::ONE };
+            let (first, _) = bench.aimed(&order, Aim::Least(Offset::from_um(10)));
+            let (last, _) = bench.aimed(&Order { reversed: true, ..order }, Aim::Middle);
+            first.iter().chain(&last).map(Node::total).collect()
+        };
+        let (there, here) = (planned(motion), planned(Motion::REST));
+        for (there, here) in there.iter().zip(&here) {
+            prop_assert_eq!(*there, motion.vector(*here));
+        }
     }
 }

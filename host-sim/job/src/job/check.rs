@@ -19,6 +19,7 @@ use super::check_correct::correct;
 use super::check_feature::features;
 use super::check_feed::feed;
 use super::check_part::part;
+use super::check_plan::plan;
 use super::check_pocket::{Mode, pocket};
 use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
@@ -116,6 +117,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     let depth = deep.then_some(cut.axial_depth);
     let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), depth)?;
     let feed = feed(root.section("feed")?.as_ref())?;
+    let plan = plan(root.section("plan")?.as_ref())?;
     let part = part(&source, root.section("part")?.as_ref())?;
     root.close()?;
     let program = path;
@@ -144,6 +146,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         max_kink_deg: writing.max_kink_deg,
         route: writing.route,
         feed,
+        plan,
         part,
         pocket,
         shank,

@@ -12,6 +12,7 @@ mod check_correct;
 mod check_feature;
 mod check_feed;
 mod check_part;
+mod check_plan;
 mod check_pocket;
 mod check_probe;
 mod check_stock;
@@ -36,6 +37,7 @@ pub use check_correct::ROUTES;
 pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
 pub use check_feed::{FeedTable, ForceLimit};
 pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
+pub use check_plan::PlanTable;
 pub use check_pocket::{Mode, PerSection, PocketTable};
 pub use check_probe::{FORMATS, ProbeFlags, columns, one_of};
 pub use check_tool::Shank;
@@ -63,6 +65,8 @@ pub struct JobFile {
     pub route: Route,
     /// How far the feeds along the contour may be changed; `None` leaves every F word.
     pub feed: Option<FeedTable>,
+    /// What `truepath plan` has to keep.
+    pub plan: PlanTable,
     /// What the customer of the part is told; empty without `[part]`.
     pub part: PartTable,
     /// What `truepath pocket` cuts; `None` without `[pocket]`.

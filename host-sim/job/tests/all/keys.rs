@@ -14,7 +14,7 @@ use truepath_job::job::JobFile;
 const JOBS: [&str; 3] = [
     "version = 1\nprogram = \"p.nc\"\n[stock]\nallowance_mm = 0.5\n[tool]\ndiameter_mm = 10\nmeasured_diameter_mm = 10\nteeth = 4\n\
      [cut]\naxial_depth_mm = 5\n[force]\nmaterial = \"steel-40\"\n[machine]\n[probe]\nball_diameter_mm = 6\nformat = \"columns\"\n\
-     [correct]\n[feed]\nmin_percent = 50\n[part]\nlower_mm = -0.1\nupper_mm = 0.1\n[pocket]\n\
+     [correct]\n[feed]\nmin_percent = 50\n[plan]\n[part]\nlower_mm = -0.1\nupper_mm = 0.1\n[pocket]\n\
      [[feature]]\nid = \"a\"\nallowance_mm = 0.4\n",
     "version = 1\nprogram = \"p.nc\"\n[stock]\nsurface = \"s.csv\"\n[tool]\ndiameter_mm = 10\nteeth = 4\n\
      [cut]\naxial_depth_mm = 5\n[force]\nktc_n_per_mm2 = 1\nkrc_n_per_mm2 = 1\nkte_n_per_mm = 1\nkre_n_per_mm = 1\n\
@@ -123,6 +123,22 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("feed.max_percent", "100", "highest feed"),
     ("feed.keep", "probed", "hold the force below the largest at the probed places"),
     ("feed.max_force_n", "that of keep", "hold the mean force below this"),
+    ("plan", "", "what a process of several passes has to keep: [plans](plan.md)"),
+    ("plan.max_time_ratio", "3.5", "longest machining time, as a multiple of that of the program's own pass"),
+    ("plan.max_cuts", "3", "cuts along the wall"),
+    ("plan.max_levels", "4", "levels of a cut"),
+    ("plan.min_level_mm", "1", "least depth of a level"),
+    ("plan.reverse", "yes", "whether a cut may run against the direction of the program"),
+    ("plan.min_percent", "30", "lowest feed, percent of the programmed one"),
+    ("plan.max_percent", "200", "highest feed"),
+    ("plan.max_feed_mm_per_min", "none", "highest feed of the machine"),
+    ("plan.max_force_n", "none", "largest mean force over a revolution"),
+    ("plan.max_engagement_deg", "none", "largest engagement angle"),
+    (
+        "plan.min_chip_mm",
+        "none",
+        "thinnest chip that still cuts, as the mean along the contour of the thickest of a tooth",
+    ),
     ("part", "", "what the customer is told: [inspection](inspection.md)"),
     ("part.name", "none", "1 to 100 characters on one line, as the five below"),
     ("part.drawing", "none", "drawing"),

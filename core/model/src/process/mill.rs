@@ -1,0 +1,411 @@
+//! A machine that runs one pass after another along a wall.
+
+use super::depths::{Depths, part_of};
+use super::grid::{ANGLES, Cumulative, Force, ImmersionGrid};
+use super::part::Part;
+use super::slices::{MAX_SLICES, Slices};
+use crate::cut::{Compliance, Envelope, Loop, Milling, Passage, WallLaw, mixed};
+use truepath_units::geometry::{Direction, Vector};
+use truepath_units::{Offset, Real, sin_cos};
+
+/// How a pass is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Order {
+    /// The slice at whose lower border the tip lies: 0 for the depth of the path itself, more for a raised tip.
+    pub first: usize,
+    /// Against the direction of the path: climb becomes conventional.
+    pub reversed: bool,
+    /// Feed over the programmed feed.
+    pub feed: Real,
+}
+
+/// What a pass asks of machine and cutter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Load {
+    /// How the elastic loop fared.
+    pub passage: Passage,
+    /// The largest mean force over a revolution, N.
+    pub force: Real,
+    /// The largest engagement angle, rad.
+    pub engaged: Real,
+    /// The thickest chip of a tooth, mm, as the mean along the contour of what it is at every place.
+    pub chip: Real,
+}
+
+/// The wall that the cutter of a pass would leave, were there stock everywhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wall {
+    /// Material left (positive); `None` where no wall stands or the pass does not reach down.
+    pub error: Option<Offset>,
+    /// Sample of the contour whose cutter made it, counted from the first of the contour; limited to the contour.
+    pub made_by: u32,
+}
+
+/// A machine at work on a wall: what [`Loop`] is for one pass over an even stock.
+#[derive(Clone, Debug)]
+pub struct Mill<'a> {
+    machine: Loop<'a>,
+    grid: &'a ImmersionGrid,
+    slices: Slices,
+    /// The angle over which a tooth passes a slice, rad.
+    lag: Real,
+    pitch: Real,
+}
+
+/// Residual at which a loop counts as solved.
+const TOLERANCE: Offset = Offset::from_nm(20);
+/// Residual above which a sample is reported as unsettled.
+const UNSETTLED: Offset = Offset::from_nm(500);
+/// Iterations of a loop; from the second number on it is damped.
+const ITERATIONS: [u32; 2] = [40, 16];
+/// Depths are looked at anew when the loop has moved the cutter farther than this from where they were looked at.
+const LOOKED: Offset = Offset::from_um(40);
+/// How often at most.
+const LOOKS: usize = 3;
+
+/// A pass under way.
+struct March<'m> {
+    mill: &'m Mill<'m>,
+    part: &'m Part<'m>,
+    order: Order,
+    climb: bool,
+    /// How far the cutter is displaced in every slice, as a factor, and the same less one.
+    factor: [Real; MAX_SLICES],
+    beyond: [Real; MAX_SLICES],
+    /// Feed, feed per tooth (mm) and the force at it.
+    force: Option<(Real, Real, Cumulative)>,
+    /// Displacement by the mean force, and at the instant of every slice, at the last place.
+    mean: Vector,
+    instants: [Vector; MAX_SLICES],
+}
+
+/// What a place asked of the cutter.
+struct Settled {
+    residual: Offset,
+    iterations: u32,
+    force: (Real, Real),
+    leaves: Real,
+    feed_per_tooth: Real,
+}
+
+/// One place of the cutter, with what is around it.
+struct Place<'p> {
+    depths: &'p Depths,
+    /// Displacement at which the depths were looked at.
+    looked: Vector,
+    normal: Direction,
+    heading: Direction,
+    force: &'p Cumulative,
+    factor: &'p [Real; MAX_SLICES],
+    first: usize,
+    /// Angles that matter in each slice.
+    rows: [u8; MAX_SLICES],
+    climb: bool,
+}
+
+impl<'a> Mill<'a> {
+    /// A machine on its path, with a part in so many slices.
+    pub fn new(machine: Loop<'a>, grid: &'a ImmersionGrid, slices: Slices) -> Self {
+        let setup = machine.path.setup();
+        let helix = machine.path.helix();
+        let lag = helix.lag_per_mm * slices.thickness(setup.axial_depth);
+        Self { machine, grid, slices, lag, pitch: helix.pitch }
+    }
+
+    /// The machine.
+    pub const fn machine(&self) -> &Loop<'a> {
+        &self.machine
+    }
+    /// Displacements that [`Mill::run`] fills.
+    pub fn displacements_needed(&self) -> usize {
+        self.machine.path.working().len().saturating_mul(self.slices.count())
+    }
+    /// Walls that [`Mill::walls`] fills.
+    pub fn walls_needed(&self) -> usize {
+        self.machine.path.count().saturating_mul(self.slices.count())
+    }
+
+    /// Runs a pass over a part, which stays as it is. `moved` gets the displacement of the cutter from its nominal place at the instant
+    /// at which it makes the wall: for one slice after the other the working samples of the path.
+    pub fn run(
+        &self,
+        part: &Part,
+        order: &Order,
+        commanded: impl Fn(usize) -> Vector,
+        depths: &mut Depths,
+        moved: &mut [Vector],
+    ) -> Load {
+        let path = self.machine.path;
+        let working = path.working();
+        let length = working.len();
+        let contour = path.first()..path.first().saturating_add(path.count());
+        let mut march = March::new(self, part, *order);
+        let (mut load, mut places) = (Load::default(), 0i32);
+        for step in 0..length {
+            let ahead = if order.reversed { length.saturating_sub(1).saturating_sub(step) } else { step };
+            let index = working.start.saturating_add(ahead);
+            let command = commanded(index);
+            let Some(at) = march.settle(index, command, depths) else { break };
+            load.passage.iterations = load.passage.iterations.saturating_add(at.iterations);
+            load.passage.unsettled = load.passage.unsettled.saturating_add(u32::from(at.residual > UNSETTLED));
+            load.passage.worst_residual = load.passage.worst_residual.max(at.residual);
+            if contour.contains(&index) {
+                load.force = load.force.max((at.force.0 * at.force.0 + at.force.1 * at.force.1).sqrt());
+                load.engaged = load.engaged.max(at.leaves);
+                let thickest = if at.leaves > Real::FRAC_PI_2 { Real::ONE } else { sin_cos(at.leaves).0 };
+                load.chip += thickest * at.feed_per_tooth;
+                places = places.saturating_add(1);
+            }
+            for (k, (instant, factor)) in march.instants.iter().zip(march.factor).enumerate().take(self.slices.count())
+            {
+                if let Some(slot) = moved.get_mut(k.saturating_mul(length).saturating_add(ahead)) {
+                    *slot = if k < order.first { command } else { command + instant.scaled(factor) };
+                }
+            }
+        }
+        load.chip = load.chip / Real::from_int(places.max(1));
+        load
+    }
+
+    /// Reads the walls of a pass off `moved`: for one sample of the contour after the other all slices.
+    pub fn walls(&self, order: &Order, moved: &[Vector], walls: &mut [Wall]) {
+        let path = self.machine.path;
+        let (working, count) = (path.working(), self.slices.count());
+        let length = working.len();
+        walls.fill(Wall::default());
+        for k in order.first..count {
+            let from = k.saturating_mul(length);
+            let moved = moved.get(from..from.saturating_add(length)).unwrap_or_default();
+            let envelope = Envelope::new(path, working.start, moved);
+            let mut guess = path.first();
+            for index in 0..path.count() {
+                let at = path.first().saturating_add(index);
+                if !path.samples().get(at).is_some_and(|s| s.on_wall) {
+                    continue;
+                }
+                let Some(wall) = envelope.error(at, guess) else { continue };
+                guess = wall.made_by.saturating_add(1);
+                let own = wall.made_by.saturating_sub(path.first()).min(path.count().saturating_sub(1));
+                if let Some(slot) = walls.get_mut(index.saturating_mul(count).saturating_add(k)) {
+                    *slot = Wall { error: Some(wall.error + self.machine.undersize), made_by: own as u32 };
+                }
+            }
+        }
+    }
+
+    /// The displacement by a force (normal, in travel), N.
+    fn pushed(&self, place: &Place, force: (Real, Real)) -> Vector {
+        let compliance: &Compliance = &self.machine.compliance;
+        compliance.displacement(place.normal, place.heading, force)
+    }
+
+    /// The mean force over a revolution with the cutter displaced by `at`, (normal, in travel), N.
+    fn mean_force(&self, place: &Place, at: Vector) -> (Real, Real) {
+        let beside = place.beside(at - place.looked);
+        let mut sum = Force::default();
+        for k in place.first..self.slices.count() {
+            let rows = usize::from(place.rows.get(k).copied().unwrap_or(0));
+            let (Some(depth), Some(factor)) = (place.depths.depth.get(k), place.factor.get(k)) else { break };
+            let depths = depth.iter().zip(&beside).take(rows).map(|(d, b)| d.saturating_add(part_of(*b, *factor)));
+            let mut before: Option<i64> = None;
+            for (row, depth) in depths.enumerate() {
+                // A stretch adds the force up to where it ends and takes away that up to where it begins.
+                let edge = match before {
+                    None if depth > 0 => Some(place.force.at(row)),
+                    Some(d) if (d > 0) != (depth > 0) => {
+                        Some(place.force.within(row.saturating_sub(1), crossing(d, depth)))
+                    }
+                    _ => None,
+                };
+                if let Some(edge) = edge {
+                    sum = if depth > 0 { sum.minus(edge) } else { sum.plus(edge) };
+                }
+                before = Some(depth);
+            }
+            if before.is_some_and(|d| d > 0) {
+                sum = sum.plus(place.force.at(rows.saturating_sub(1)));
+            }
+        }
+        let setup = self.machine.path.setup();
+        let share = Real::from_int(setup.teeth.into()) / Real::TAU * self.slices.thickness(setup.axial_depth);
+        sum.scaled(share)
+    }
+
+    /// The force at the instant at which a tooth passes slice `of` at the wall, with the cutter displaced by `at`, N.
+    fn instant_force(&self, place: &Place, of: usize, at: Vector) -> (Real, Real) {
+        let beside = place.beside(at - place.looked);
+        let mut sum = Force::default();
+        let half = self.lag * Real::HALF;
+        for k in place.first..self.slices.count() {
+            let rows = usize::from(place.rows.get(k).copied().unwrap_or(0));
+            if rows == 0 {
+                continue;
+            }
+            // In climb milling the tooth at the wall has its upper part still in the stock.
+            let above =
+                if place.climb { (k as i64).saturating_sub(of as i64) } else { (of as i64).saturating_sub(k as i64) };
+            let mut from = self.lag * Real::from_int(above as i32) - half;
+            let turns = ((-(from + self.lag)) / self.pitch).floor().saturating_add(1);
+            from += self.pitch * Real::from_int(turns as i32);
+            let end = self.grid.angle.get(rows.saturating_sub(1)).copied().unwrap_or(Real::ZERO);
+            while from < end {
+                sum = sum.plus(self.stretch(place, k, (from.max(Real::ZERO), (from + self.lag).min(end)), &beside));
+                from += self.pitch;
+            }
+        }
+        sum.scaled(self.machine.path.helix().mm_per_lag)
+    }
+
+    /// ∫ of the force density over the engaged part of a stretch of angles in a slice.
+    fn stretch(&self, place: &Place, k: usize, (from, to): (Real, Real), beside: &[i64; ANGLES]) -> Force {
+        let (Some(depth), Some(factor)) = (place.depths.depth.get(k), place.factor.get(k)) else {
+            return Force::default();
+        };
+        let row = |row: usize| {
+            let (d, b) = (depth.get(row).copied().unwrap_or(-1), beside.get(row).copied().unwrap_or(0));
+            d.saturating_add(part_of(b, *factor))
+        };
+        let within = |cell: usize, share: Real| {
+            let (a, b) = (row(cell), row(cell.saturating_add(1)));
+            a.saturating_add(part_of(b.saturating_sub(a), share))
+        };
+        let (mut cell, share) = self.grid.locate(from);
+        let (last, last_share) = self.grid.locate(to);
+        let (mut d, mut begins) = (within(cell, share), place.force.within(cell, share));
+        let mut sum = Force::default();
+        loop {
+            let ends = cell >= last;
+            let (next, up_to) = if ends {
+                (within(cell, last_share), place.force.within(cell, last_share))
+            } else {
+                (row(cell.saturating_add(1)), place.force.at(cell.saturating_add(1)))
+            };
+            let piece = up_to.minus(begins);
+            sum = match (d > 0, next > 0) {
+                (true, true) => sum.plus(piece),
+                (true, false) => sum.plus(piece.part(crossing(d, next))),
+                (false, true) => sum.plus(piece.part(Real::ONE - crossing(d, next))),
+                (false, false) => sum,
+            };
+            if ends {
+                return sum;
+            }
+            (d, begins, cell) = (next, up_to, cell.saturating_add(1));
+        }
+    }
+}
+
+impl<'m> March<'m> {
+    fn new(mill: &'m Mill<'m>, part: &'m Part<'m>, order: Order) -> Self {
+        let compliance = mill.machine.compliance;
+        let (mut factor, mut beyond) = ([Real::ONE; MAX_SLICES], [Real::ZERO; MAX_SLICES]);
+        for (k, (factor, beyond)) in factor.iter_mut().zip(beyond.iter_mut()).enumerate() {
+            *factor = compliance.height_factor(mill.slices.fraction(k, order.first));
+            *beyond = *factor - Real::ONE;
+        }
+        let climb = (mill.machine.path.setup().milling == Milling::Climb) != order.reversed;
+        let (mean, instants) = (Vector::ZERO, [Vector::ZERO; MAX_SLICES]);
+        Self { mill, part, order, climb, factor, beyond, force: None, mean, instants }
+    }
+
+    /// Goes on to a sample: the equilibrium under the mean force, and that of the instant of every slice.
+    fn settle(&mut self, index: usize, command: Vector, depths: &mut Depths) -> Option<Settled> {
+        let (path, setup) = (self.mill.machine.path, self.mill.machine.path.setup());
+        let sample = path.samples().get(index)?;
+        let feed = sample.feed * self.order.feed;
+        if self.force.as_ref().is_none_or(|(of, ..)| *of != feed) {
+            let (machine, per_tooth) = (&self.mill.machine, setup.feed_per_tooth(feed));
+            let milling = if self.climb { Milling::Climb } else { Milling::Conventional };
+            let scale = machine.coefficients.chip_scale(per_tooth);
+            let of = (&machine.coefficients, milling);
+            self.force = Some((feed, per_tooth, Cumulative::new(self.mill.grid, machine.table, of, scale)));
+        }
+        let (_, feed_per_tooth, force) = self.force.as_ref()?;
+        let mut iterations = 0u32;
+        let mut look = 1;
+        let (place, mut residual) = loop {
+            let frame = path.frame(index, command + self.mean)?;
+            let toward = (sample.point + command + self.mean, &frame, !self.order.reversed);
+            depths.look((path, self.part), self.mill.grid, toward, (self.mean, &self.beyond));
+            let place = Place {
+                rows: depths.rows_of_slices(self.order.first, self.mill.slices.count()),
+                depths,
+                looked: self.mean,
+                normal: frame.normal,
+                heading: if self.order.reversed { frame.heading.reversed() } else { frame.heading },
+                force,
+                factor: &self.factor,
+                first: self.order.first,
+                climb: self.climb,
+            };
+            let push = |at| self.mill.pushed(&place, self.mill.mean_force(&place, at));
+            let (settled, left, turns) = equilibrium(self.mean, push);
+            iterations = iterations.saturating_add(turns);
+            let far = (settled - self.mean).length() > LOOKED;
+            self.mean = settled;
+            if !far || look >= LOOKS {
+                break (place, left);
+            }
+            look = look.saturating_add(1);
+        };
+        for (k, instant) in self.instants.iter_mut().enumerate().take(self.mill.slices.count()).skip(self.order.first) {
+            if setup.law == WallLaw::Mean {
+                *instant = self.mean;
+                continue;
+            }
+            let from = if *instant == Vector::ZERO { self.mean } else { *instant };
+            let push = |at| self.mill.pushed(&place, self.mill.instant_force(&place, k, at));
+            let (settled, left, turns) = equilibrium(from, push);
+            iterations = iterations.saturating_add(turns);
+            (*instant, residual) = (settled, residual.max(left));
+        }
+        let force = self.mill.mean_force(&place, self.mean);
+        let leaves = place.depths.leaves(self.mill.grid, (self.order.first, self.mill.slices.count()));
+        Some(Settled { residual, iterations, force, leaves, feed_per_tooth: *feed_per_tooth })
+    }
+}
+
+impl Place<'_> {
+    /// How much deeper every angle lies when the cutter moves by `by`, nm.
+    fn beside(&self, by: Vector) -> [i64; ANGLES] {
+        let mut beside = [0; ANGLES];
+        if by != Vector::ZERO {
+            for (slot, normal) in beside.iter_mut().zip(self.depths.normal).take(self.depths.rows) {
+                *slot = by.along(normal).nm();
+            }
+        }
+        beside
+    }
+}
+
+/// Where between two depths of opposite signs the surface lies, 0…1.
+fn crossing(a: i64, b: i64) -> Real {
+    Real::from_bits((a << 32).checked_div(a.saturating_sub(b)).unwrap_or(0))
+}
+
+/// The fixed point of a push: secant steps (Anderson, depth one) from a first guess, then damped ones. Gives it, what is left
+/// unsolved, and the iterations.
+fn equilibrium(guess: Vector, mut push: impl FnMut(Vector) -> Vector) -> (Vector, Offset, u32) {
+    let [most, damped] = ITERATIONS;
+    let mut at = guess;
+    let mut before: Option<(Vector, Vector)> = None;
+    let mut best = (guess, Offset::MAX);
+    for turn in 1..=most {
+        let residual = push(at) - at;
+        let left = residual.length();
+        if left < best.1 {
+            best = (at + residual, left);
+        }
+        if left <= TOLERANCE {
+            return (best.0, left, turn);
+        }
+        let step = match before {
+            Some((x0, r0)) if turn < damped => mixed(residual, residual - r0, at - x0),
+            None => residual,
+            Some(_) => residual.scaled(Real::ratio(3, 10)),
+        };
+        before = Some((at, residual));
+        at = at + step;
+    }
+    (best.0, best.1, most)
+}

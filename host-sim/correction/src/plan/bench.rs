@@ -1,0 +1,165 @@
+//! The identified machine, ready to cut processes.
+
+use truepath_core::correct::{Node, commanded};
+use truepath_core::cut::Path;
+use truepath_core::geometry::Vector;
+use truepath_core::process::{Aim, AimWorkspace, Depths, Load, Mill, Part, Slices, Wall, aim};
+use truepath_core::units::Offset;
+use truepath_ground::units::{float, mm};
+
+use super::process::{Cut, PassOrder};
+use super::wall::WallFigures;
+
+/// A machine at work on one wall, at one resolution.
+#[derive(Clone, Debug)]
+pub struct Bench<'a> {
+    mill: Mill<'a>,
+    slices: Slices,
+    /// Minutes that one pass takes at the programmed feed, leads included.
+    minutes: f64,
+    /// Of them those of the leads.
+    lead_minutes: f64,
+}
+
+/// A pass as it was designed and cut.
+#[derive(Clone, Debug)]
+pub struct CutPass {
+    /// What was asked.
+    pub order: PassOrder,
+    /// The commanded displacements, one per sample of the contour.
+    pub nodes: Vec<Node>,
+    /// What it asks of machine and cutter.
+    pub load: Load,
+}
+
+/// A part after some cuts.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    /// What is left, sample by sample of the path, all slices side by side.
+    pub left: Vec<Offset>,
+    /// The passes so far.
+    pub passes: Vec<CutPass>,
+    /// Minutes so far.
+    pub minutes: f64,
+}
+
+/// Buffers of a run, for one thread.
+struct Buffers {
+    moved: Vec<Vector>,
+    walls: Vec<Wall>,
+    shifts: Vec<(Offset, u32)>,
+    best: Vec<Node>,
+    depths: Box<Depths>,
+}
+
+impl<'a> Bench<'a> {
+    /// `lead_mm`: length of the leads of a pass.
+    pub fn new(mill: Mill<'a>, slices: Slices, lead_mm: f64) -> Self {
+        let path = mill.machine().path;
+        let samples = &path.samples()[path.first()..path.first() + path.count()];
+        let feed = |at: usize| float(samples[at].feed).max(1e-3);
+        let contour: f64 = (1..samples.len()).map(|k| mm(samples[k].s - samples[k - 1].s) / feed(k)).sum();
+        let lead_minutes = lead_mm / feed(0);
+        Self { mill, slices, minutes: contour + lead_minutes, lead_minutes }
+    }
+
+    /// The path.
+    pub const fn path(&self) -> &'a Path<'a> {
+        self.mill.machine().path
+    }
+    /// The machine.
+    pub const fn machine(&self) -> &truepath_core::cut::Loop<'a> {
+        self.mill.machine()
+    }
+    /// Another machine on the same wall, with the same times.
+    #[must_use]
+    pub const fn of<'b>(&self, mill: Mill<'b>) -> Bench<'b> {
+        Bench { mill, slices: self.slices, minutes: self.minutes, lead_minutes: self.lead_minutes }
+    }
+    /// The slices of the wall.
+    pub const fn slices(&self) -> Slices {
+        self.slices
+    }
+    /// Minutes of one pass as programmed.
+    pub const fn minutes(&self) -> f64 {
+        self.minutes
+    }
+
+    /// The raw part.
+    pub fn raw(&self) -> Stage {
+        let path = self.path();
+        let mut left = vec![Offset::ZERO; Part::needed(path, self.slices)];
+        let raw = Part::raw(path, self.slices, &mut left).is_some();
+        debug_assert!(raw, "the buffer is as long as is needed");
+        Stage { left, passes: Vec::new(), minutes: 0.0 }
+    }
+
+    /// The part after one pass of the program as it is, which shows what planning is for.
+    pub fn as_programmed(&self) -> Stage {
+        let whole = Cut::whole(Aim::Middle);
+        self.run(self.raw(), &whole, |_, _, nodes, _| nodes.fill(Node::default()))
+    }
+
+    /// The part after one more cut, designed in at most `turns` steps a pass.
+    pub fn cut(&self, stage: Stage, cut: &Cut, turns: u32) -> Stage {
+        self.run(stage, cut, |part, order, nodes, buffers| {
+            let mut workspace = AimWorkspace {
+                moved: &mut buffers.moved,
+                walls: &mut buffers.walls,
+                shifts: &mut buffers.shifts,
+                best: &mut buffers.best,
+                depths: &mut buffers.depths,
+            };
+            aim(&self.mill, (part, &order.order), (order.aim, turns), nodes, &mut workspace);
+        })
+    }
+
+    /// What is left when the passes of a process are run by this machine as they were designed, perhaps for another.
+    pub fn follow(&self, passes: &[CutPass]) -> Vec<Offset> {
+        let path = self.path();
+        let mut left = self.raw().left;
+        let mut buffers = self.buffers();
+        for pass in passes {
+            let mut part = Part::of(self.slices, &mut left);
+            let command = |index| commanded(path, &pass.nodes, index);
+            self.mill.run(&part, &pass.order.order, command, &mut buffers.depths, &mut buffers.moved);
+            self.mill.walls(&pass.order.order, &buffers.moved, &mut buffers.walls);
+            part.take(path, &buffers.walls);
+        }
+        left
+    }
+
+    /// The figures of what is left.
+    pub fn figures(&self, left: &[Offset]) -> WallFigures {
+        WallFigures::of(self.path(), self.slices, left)
+    }
+
+    fn buffers(&self) -> Buffers {
+        let count = self.path().count();
+        Buffers {
+            moved: vec![Vector::ZERO; self.mill.displacements_needed()],
+            walls: vec![Wall::default(); self.mill.walls_needed()],
+            shifts: vec![(Offset::ZERO, 0); count],
+            best: vec![Node::default(); count],
+            depths: Box::new(Depths::NONE),
+        }
+    }
+
+    fn run(&self, mut stage: Stage, cut: &Cut, design: impl Fn(&Part, &PassOrder, &mut [Node], &mut Buffers)) -> Stage {
+        let path = self.path();
+        let mut buffers = self.buffers();
+        let mut nodes = vec![Node::default(); path.count()];
+        for order in cut.orders(self.slices) {
+            let mut part = Part::of(self.slices, &mut stage.left);
+            design(&part, &order, &mut nodes, &mut buffers);
+            let command = |index| commanded(path, &nodes, index);
+            let load = self.mill.run(&part, &order.order, command, &mut buffers.depths, &mut buffers.moved);
+            self.mill.walls(&order.order, &buffers.moved, &mut buffers.walls);
+            part.take(path, &buffers.walls);
+            stage.passes.push(CutPass { order, nodes: nodes.clone(), load });
+            let feed = f64::from(cut.feed_percent) / 100.0;
+            stage.minutes += self.lead_minutes + (self.minutes - self.lead_minutes) / feed;
+        }
+        stage
+    }
+}

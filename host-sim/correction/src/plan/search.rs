@@ -1,0 +1,162 @@
+//! The search: candidates of one, two and three cuts on a coarse bench, and the front of machining time against profile error.
+//!
+//! What the candidates follow from:
+//! * the last cut brings the middle over the height to size; every cut before leaves no height below what it is to leave, because
+//!   nothing puts material back, and as little more as it can;
+//! * the less a cut before leaves, the less the last one is pushed; against the direction of the program the helix leans the other
+//!   way, so that what the cut before left too high is taken by another part of the tooth's way;
+//! * levels as deep as an axial contact ratio of one keep the force as the cutter turns; even levels shorten the tooth's way;
+//! * a thin last cut stands more feed.
+//!
+//! Which of them helps on a part is found by cutting it. Work grows with the contour's length and no further.
+
+use rayon::prelude::*;
+use truepath_core::process::Aim;
+use truepath_ground::units::{float, mm};
+use truepath_job::job::PlanTable;
+
+use super::bench::{Bench, Stage};
+use super::limits::keeps;
+use super::process::{Cut, Levels, leaving};
+
+/// Design steps of a pass in the search.
+const TURNS: u32 = 8;
+/// What a first of several cuts may leave, um.
+const LEFT_FIRST: [i64; 4] = [5, 20, 60, 150];
+/// What a second of three cuts may leave, um.
+const LEFT_SECOND: [i64; 3] = [2, 8, 25];
+/// Feeds of a last cut, percent.
+const LAST_FEEDS: [u16; 4] = [100, 150, 200, 60];
+/// Feeds of a single cut, percent.
+const SINGLE_FEEDS: [u16; 3] = [100, 60, 30];
+/// How many of the unfinished parts are gone on with.
+const KEPT: usize = 3;
+/// A candidate that takes longer has to be better by this share.
+const WORTH: f64 = 0.96;
+
+/// A process that was cut.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// Its cuts.
+    pub cuts: Vec<Cut>,
+    /// Minutes it takes.
+    pub minutes: f64,
+    /// Its profile error on the bench it was cut on, mm.
+    pub profile_mm: f64,
+}
+
+/// An unfinished part and how it came to be.
+struct Branch {
+    cuts: Vec<Cut>,
+    stage: Stage,
+    /// How much more than it is meant to it leaves anywhere, mm.
+    uneven_mm: f64,
+}
+
+/// Searches; `progress` is told the share done, 0…1. Candidates come in the order of their time, each better than all before.
+pub fn search(bench: &Bench, limits: &PlanTable, progress: &(dyn Fn(f64) + Sync)) -> Vec<Candidate> {
+    let setup = bench.path().setup();
+    let (wall, allowance_um) = (float(setup.axial_depth), (mm(setup.allowance) * 1e3) as i64);
+    let helix = bench.path().helix();
+    let contact = float(helix.pitch) / float(helix.lag_per_mm);
+    let deep =
+        |levels: &Levels| wall / levels.count() as f64 >= limits.min_level_mm && levels.count() <= limits.max_levels;
+    let contact = Levels::of_contact_ratio(contact, wall).filter(deep);
+    let even: Vec<Levels> = (1..=limits.max_levels.max(1)).map(Levels::Even).filter(deep).collect();
+    let every: Vec<Levels> = even.iter().copied().chain(contact).collect();
+    let few: Vec<Levels> = even.iter().copied().take(2).chain(contact).collect();
+    let shallow: Vec<Levels> = even.iter().copied().take(1).chain(contact).collect();
+    let ways: &[bool] = if limits.reverse { &[false, true] } else { &[false] };
+    let [slowest, fastest] = limits.percent;
+    let allowed =
+        |feeds: &[u16]| -> Vec<u16> { feeds.iter().copied().filter(|f| (slowest..=fastest).contains(f)).collect() };
+
+    let mut found: Vec<Candidate> = Vec::new();
+    let fits = |minutes: f64, cut: &Cut| {
+        let more = bench.minutes() * cut.levels.count() as f64 * 100.0 / f64::from(cut.feed_percent);
+        minutes + more <= limits.max_time_ratio * bench.minutes() * 1.02
+    };
+    let finish = |from: &[Branch], cuts: &[Cut], found: &mut Vec<Candidate>| {
+        let tasks: Vec<(&Branch, &Cut)> = from.iter().flat_map(|b| cuts.iter().map(move |c| (b, c))).collect();
+        let tasks: Vec<_> = tasks.into_iter().filter(|(b, cut)| fits(b.stage.minutes, cut)).collect();
+        let cut = |(branch, cut): &(&Branch, &Cut)| {
+            let stage = bench.cut(branch.stage.clone(), cut, TURNS);
+            let profile_mm = bench.figures(&stage.left).profile_mm;
+            let cuts: Vec<Cut> = branch.cuts.iter().copied().chain([**cut]).collect();
+            keeps(limits, bench, &stage).then_some(Candidate { cuts, minutes: stage.minutes, profile_mm })
+        };
+        found.extend(tasks.par_iter().filter_map(cut).collect::<Vec<_>>());
+    };
+    let go_on = |from: &[Branch], cuts: &[Cut]| -> Vec<Branch> {
+        let tasks: Vec<(&Branch, &Cut)> = from.iter().flat_map(|b| cuts.iter().map(move |c| (b, c))).collect();
+        let tasks: Vec<_> = tasks.into_iter().filter(|(b, cut)| fits(b.stage.minutes, cut)).collect();
+        let cut = |(branch, cut): &(&Branch, &Cut)| {
+            let stage = bench.cut(branch.stage.clone(), cut, TURNS);
+            let least = if let Aim::Least(least) = cut.aim { mm(least) } else { 0.0 };
+            let uneven_mm = bench.figures(&stage.left).left_mm - least;
+            let cuts: Vec<Cut> = branch.cuts.iter().copied().chain([**cut]).collect();
+            keeps(limits, bench, &stage).then_some(Branch { cuts, stage, uneven_mm })
+        };
+        tasks.par_iter().filter_map(cut).collect()
+    };
+    let last = |levels: &[Levels], ways: &[bool], feeds: &[u16]| -> Vec<Cut> {
+        let cut = |levels: Levels, reversed: bool, feed_percent: u16| Cut {
+            levels,
+            reversed,
+            feed_percent,
+            ..Cut::whole(Aim::Middle)
+        };
+        let each = |l: &Levels| {
+            let l = *l;
+            ways.iter().flat_map(move |w| feeds.iter().map(move |f| cut(l, *w, *f)))
+        };
+        levels.iter().flat_map(each).collect()
+    };
+
+    // One cut.
+    let raw = [Branch { cuts: Vec::new(), stage: bench.raw(), uneven_mm: 0.0 }];
+    finish(&raw, &last(&every, &[false], &allowed(&SINGLE_FEEDS)), &mut found);
+    progress(0.15);
+    if limits.max_cuts >= 2 {
+        // Two cuts.
+        let lefts = LEFT_FIRST.iter().filter(|um| **um * 10 < allowance_um * 6);
+        let before = |um: i64, levels: Levels| Cut { levels, ..Cut::whole(leaving(um)) };
+        let before: Vec<Cut> = lefts.flat_map(|um| shallow.iter().map(move |l| before(*um, *l))).collect();
+        let mut first = go_on(&raw, &before);
+        progress(0.25);
+        finish(&first, &last(&even[..1], ways, &allowed(&LAST_FEEDS)), &mut found);
+        progress(0.5);
+        first.sort_by(|a, b| a.uneven_mm.total_cmp(&b.uneven_mm));
+        first.truncate(KEPT);
+        let more: Vec<Levels> = few.iter().copied().filter(|l| l.count() > 1).collect();
+        finish(&first, &last(&more, ways, &allowed(&LAST_FEEDS[..2])), &mut found);
+        progress(0.7);
+        if limits.max_cuts >= 3 {
+            // Three cuts.
+            let second = |um: i64, reversed: bool| Cut { reversed, ..Cut::whole(leaving(um)) };
+            let second: Vec<Cut> =
+                LEFT_SECOND.iter().flat_map(|um| ways.iter().map(move |w| second(*um, *w))).collect();
+            let mut second = go_on(&first, &second);
+            progress(0.8);
+            second.sort_by(|a, b| a.uneven_mm.total_cmp(&b.uneven_mm));
+            second.truncate(KEPT + 1);
+            finish(&second, &last(&even[..1], ways, &allowed(&LAST_FEEDS)), &mut found);
+        }
+    }
+    progress(1.0);
+    front(found)
+}
+
+/// Those of which none faster is as good.
+fn front(mut found: Vec<Candidate>) -> Vec<Candidate> {
+    found.sort_by(|a, b| a.minutes.total_cmp(&b.minutes).then(a.profile_mm.total_cmp(&b.profile_mm)));
+    let mut best = f64::INFINITY;
+    found.retain(|candidate| {
+        let better = candidate.profile_mm < best * WORTH;
+        if better {
+            best = candidate.profile_mm;
+        }
+        better
+    });
+    found
+}

@@ -1,0 +1,177 @@
+//! `plan`: which passes hold a tolerance at every height of the wall, in least time.
+
+use std::path::PathBuf;
+use std::sync::mpsc::channel;
+
+use clap::Args;
+use truepath_correction::correction::identify;
+use truepath_correction::plan::choice::{Plan, Planner, Wanted};
+use truepath_ground::codes::{C001, J004};
+use truepath_ground::decimal::Decimal;
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::limits::Limits;
+use truepath_ground::output::{OutputFolder, json};
+use truepath_job::job::{JobFile, ProbeFlags, Which};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::{Pass, PathBuffer};
+
+use crate::terminal::Terminal;
+
+/// Files this command may write.
+const FILES: &[&str] = &["summary.json", "choices.csv"];
+/// Half the width of a tolerance.
+const TOLERANCE: Limits = Limits::within("0.0001", "10", "mm");
+/// Share of parts that have to be within it.
+const CONFIDENCE: Limits = Limits::within("50", "99.9", "%");
+
+/// What is planned.
+#[derive(Clone, Debug, Default, Args)]
+pub struct Options {
+    /// The job.
+    pub job: PathBuf,
+    /// What the probe measured on the part cut by the job's program.
+    #[arg(long, value_name = "FILE")]
+    pub probe: PathBuf,
+    /// Half the width of the tolerance of the wall at every height, mm; without it that of `[part]`.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub tolerance: Option<String>,
+    /// Percent of the machines that the points allow whose wall has to be within the tolerance.
+    #[arg(long, value_name = "PERCENT", default_value = "95")]
+    pub confidence: String,
+    /// Folder for the summary and the table of choices.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Replace the files of an earlier run.
+    #[arg(long, requires = "output")]
+    pub force: bool,
+    /// What is said of the probe file in place of the job.
+    #[command(flatten)]
+    pub probe_flags: ProbeFlags,
+    /// Which cut of the program.
+    #[command(flatten)]
+    pub which: Which,
+}
+
+/// A plan, and what the user should know.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct PlanSummary {
+    /// Version of this file.
+    pub version: u32,
+    /// The plan.
+    #[serde(flatten)]
+    pub plan: Plan,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Plans and prints the choices.
+pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    let summary = terminal.watch("planning", |progress| run(options, progress))?;
+    terminal.warn_all(&summary.warnings);
+    terminal.tell(&summary, || words(&summary.plan))
+}
+
+fn words(plan: &Plan) -> String {
+    let um = |mm: f64| mm * 1e3;
+    let mut text = format!(
+        "as programmed: {:.1} um at the worst place of the wall (mean over the height {:.1} um), {:.2} min\n\
+         wanted: {:.1} um at every height, with {:.0} %\n\n\
+         \x20      time     profile error   within   passes\n\
+         \x20      ratio    um, 2 sigma\n",
+        um(plan.as_programmed.profile_mm),
+        um(plan.as_programmed.mean_mm),
+        plan.minutes,
+        um(plan.tolerance_mm),
+        plan.confidence * 100.0
+    );
+    for (k, choice) in plan.choices.iter().enumerate() {
+        let mark = if plan.recommended == Some(k + 1) { '*' } else { ' ' };
+        text += &format!(
+            "{mark} {}  {:>6.2}  {:>7.1} ± {:<6.1} {:>5.0} %   {}; most of it {}\n",
+            k + 1,
+            choice.time_ratio,
+            um(choice.predicted.profile_mm),
+            um(2.0 * choice.predicted.sigma_mm),
+            choice.within_tolerance * 100.0,
+            choice.process,
+            choice.limited_by,
+        );
+    }
+    text += &match (plan.recommended, plan.choices.last()) {
+        (Some(k), _) => format!("\n* choice {k} is the fastest that holds the tolerance\n"),
+        (None, Some(best)) => {
+            let needed = best.predicted.profile_mm + 2.0 * best.predicted.sigma_mm;
+            format!(
+                "\nnone holds it: the best is expected within {:.1} um with 2 sigma, {:.1} um beyond the tolerance\n",
+                um(needed),
+                um((needed - plan.tolerance_mm).max(0.0))
+            )
+        }
+        (None, None) => "\nno process keeps the limits of [plan]\n".to_owned(),
+    };
+    text
+}
+
+/// Plans, and writes summary and table where a folder is named. `progress` is told the share done, 0…1.
+///
+/// # Errors
+/// Whatever is wrong with job, program, probe file or options, and outputs that cannot be written.
+pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSummary, Failure> {
+    let mut job = JobFile::read(&options.job)?;
+    job.override_probe(&options.probe_flags)?;
+    job.which = options.which.clone();
+    let wanted = wanted(options, &job)?;
+    let pass = Pass::read(job)?;
+    let file = Source::read(&options.probe)?;
+    let (pass, measurement) = Measurement::of_one(pass, &file)?;
+    let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
+    let mut buffer = PathBuffer::default();
+    let sampled = pass.sample(&mut buffer)?;
+    let known = identify(&pass, &sampled, &measurement, |share| progress(0.1 * share))?;
+    let planner = Planner { pass: &pass, known: &known };
+    // The search uses all cores; the bar belongs to this thread.
+    let (tell, told) = channel();
+    let plan = std::thread::scope(|scope| {
+        let work = scope.spawn(move || {
+            planner.plan(&wanted, &move |share| {
+                let _ = tell.send(share);
+            })
+        });
+        told.iter().for_each(|share| progress(0.1 + 0.9 * share));
+        work.join().unwrap_or_else(|_| Err(Failure::Internal("the search for a plan broke off".to_owned())))
+    })?;
+    let mut warnings = pass.warnings.clone();
+    warnings.extend(measurement.remarks(&file));
+    let summary = PlanSummary { version: 1, plan, warnings };
+    if let Some(folder) = folder {
+        folder.write("summary.json", &json(&summary)?)?;
+        folder.commit()?;
+    }
+    Ok(summary)
+}
+
+fn wanted(options: &Options, job: &JobFile) -> Result<Wanted, Failure> {
+    let flag = |name: &str, text: &str, limits: Limits, help: &str| {
+        let number = Decimal::parse(text).filter(|n| limits.admits(*n)).map(Decimal::as_f64);
+        number.ok_or_else(|| {
+            let found = format!("{name} on the command line is {text:?}");
+            Failure::from(InputError::new(C001, found, limits.phrase(), help))
+        })
+    };
+    let tolerance_mm = match &options.tolerance {
+        Some(text) => flag("--tolerance", text, TOLERANCE, "write --tolerance 0.02 for ±0.02 mm at every height")?,
+        None => match job.part.tolerance {
+            Some(tolerance) => {
+                truepath_ground::units::mm(tolerance.upper).min(-truepath_ground::units::mm(tolerance.lower))
+            }
+            None => {
+                let help = "write --tolerance 0.02 for ±0.02 mm, or tolerance_mm under [part] of the job";
+                let error = InputError::new(J004, "no tolerance to plan for", "half the width of one", help);
+                return Err(error.in_file(&options.job).into());
+            }
+        },
+    };
+    let confidence =
+        flag("--confidence", &options.confidence, CONFIDENCE, "write --confidence 95 for 95 of 100 parts")? / 100.0;
+    Ok(Wanted { tolerance_mm, confidence, limits: job.plan })
+}
