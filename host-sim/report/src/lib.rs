@@ -6,6 +6,7 @@ pub mod codes;
 mod inspection;
 pub mod page;
 pub mod pages;
+mod planned;
 pub mod plot;
 mod points;
 mod reading;
@@ -14,6 +15,7 @@ mod tables;
 mod wall;
 
 pub use inspection::{InspectSummary, ToleranceSummary, inspect_summary};
+pub use planned::planned_page;
 pub use points::{judged_points_csv, points_csv};
 pub use reading::{LawPlaces, PointRow, read_correction, read_points, read_trace, read_wall, read_walls};
 pub use summary::{SimulateSummary, simulate_summary};

@@ -1,10 +1,9 @@
 //! `plan`: which passes hold a tolerance at every height of the wall, in least time.
 
-use std::path::PathBuf;
+use std::path::{Path as FilePath, PathBuf};
 use std::sync::mpsc::channel;
 
 use clap::Args;
-use truepath_correction::correction::identify;
 use truepath_correction::plan::choice::{Plan, Planner, Wanted};
 use truepath_ground::codes::{C001, J004};
 use truepath_ground::decimal::Decimal;
@@ -13,12 +12,15 @@ use truepath_ground::limits::Limits;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::{JobFile, ProbeFlags, Which};
 use truepath_job::measurement::Measurement;
-use truepath_job::pass::{Pass, PathBuffer};
+use truepath_job::pass::Pass;
+use truepath_report::planned_page;
 
 use crate::terminal::Terminal;
 
 /// Files this command may write.
-const FILES: &[&str] = &["summary.json", "choices.csv"];
+const FILES: &[&str] = &["summary.json", REPORT];
+/// The page.
+const REPORT: &str = "report.html";
 /// Half the width of a tolerance.
 const TOLERANCE: Limits = Limits::within("0.0001", "10", "mm");
 /// Share of parts that have to be within it.
@@ -38,7 +40,7 @@ pub struct Options {
     /// Percent of the machines that the points allow whose wall has to be within the tolerance.
     #[arg(long, value_name = "PERCENT", default_value = "95")]
     pub confidence: String,
-    /// Folder for the summary and the table of choices.
+    /// Folder for the summary and the page.
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Replace the files of an earlier run.
@@ -125,10 +127,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
     let file = Source::read(&options.probe)?;
     let (pass, measurement) = Measurement::of_one(pass, &file)?;
     let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
-    let mut buffer = PathBuffer::default();
-    let sampled = pass.sample(&mut buffer)?;
-    let known = identify(&pass, &sampled, &measurement, |share| progress(0.1 * share))?;
-    let planner = Planner { pass: &pass, known: &known };
+    let planner = Planner::new(&pass, &measurement, |share| progress(0.1 * share))?;
     // The search uses all cores; the bar belongs to this thread.
     let (tell, told) = channel();
     let plan = std::thread::scope(|scope| {
@@ -145,9 +144,15 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
     let summary = PlanSummary { version: 1, plan, warnings };
     if let Some(folder) = folder {
         folder.write("summary.json", &json(&summary)?)?;
+        folder.write(REPORT, planned_page(&summary.plan, &program_name(&pass)).as_bytes())?;
         folder.commit()?;
     }
     Ok(summary)
+}
+
+fn program_name(pass: &Pass) -> String {
+    let name = FilePath::new(pass.program.name()).file_name();
+    name.map_or_else(|| pass.program.name().to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
 fn wanted(options: &Options, job: &JobFile) -> Result<Wanted, Failure> {

@@ -72,6 +72,9 @@ struct March<'m> {
     /// How far the cutter is displaced in every slice, as a factor, and the same less one.
     factor: [Real; MAX_SLICES],
     beyond: [Real; MAX_SLICES],
+    /// How much a force in every slice displaces, over what it would spread over the height: what is pushed farther by a force
+    /// pushes farther by the same (reciprocity, Maxwell and Betti).
+    lever: [Real; MAX_SLICES],
     /// Feed, feed per tooth (mm) and the force at it.
     force: Option<(Real, Real, Cumulative)>,
     /// Displacement by the mean force, and at the instant of every slice, at the last place.
@@ -97,6 +100,7 @@ struct Place<'p> {
     heading: Direction,
     force: &'p Cumulative,
     factor: &'p [Real; MAX_SLICES],
+    lever: &'p [Real; MAX_SLICES],
     first: usize,
     /// Angles that matter in each slice.
     rows: [u8; MAX_SLICES],
@@ -202,8 +206,9 @@ impl<'a> Mill<'a> {
     /// The mean force over a revolution with the cutter displaced by `at`, (normal, in travel), N.
     fn mean_force(&self, place: &Place, at: Vector) -> (Real, Real) {
         let beside = place.beside(at - place.looked);
-        let mut sum = Force::default();
+        let mut all = Force::default();
         for k in place.first..self.slices.count() {
+            let mut sum = Force::default();
             let rows = usize::from(place.rows.get(k).copied().unwrap_or(0));
             let (Some(depth), Some(factor)) = (place.depths.depth.get(k), place.factor.get(k)) else { break };
             let depths = depth.iter().zip(&beside).take(rows).map(|(d, b)| d.saturating_add(part_of(*b, *factor)));
@@ -225,10 +230,11 @@ impl<'a> Mill<'a> {
             if before.is_some_and(|d| d > 0) {
                 sum = sum.plus(place.force.at(rows.saturating_sub(1)));
             }
+            all = all.plus(sum.part(place.lever_at(k)));
         }
         let setup = self.machine.path.setup();
         let share = Real::from_int(setup.teeth.into()) / Real::TAU * self.slices.thickness(setup.axial_depth);
-        sum.scaled(share)
+        all.scaled(share)
     }
 
     /// The force at the instant at which a tooth passes slice `of` at the wall, with the cutter displaced by `at`, N.
@@ -248,10 +254,12 @@ impl<'a> Mill<'a> {
             let turns = ((-(from + self.lag)) / self.pitch).floor().saturating_add(1);
             from += self.pitch * Real::from_int(turns as i32);
             let end = self.grid.angle.get(rows.saturating_sub(1)).copied().unwrap_or(Real::ZERO);
+            let mut own = Force::default();
             while from < end {
-                sum = sum.plus(self.stretch(place, k, (from.max(Real::ZERO), (from + self.lag).min(end)), &beside));
+                own = own.plus(self.stretch(place, k, (from.max(Real::ZERO), (from + self.lag).min(end)), &beside));
                 from += self.pitch;
             }
+            sum = sum.plus(own.part(place.lever_at(k)));
         }
         sum.scaled(self.machine.path.helix().mm_per_lag)
     }
@@ -303,9 +311,10 @@ impl<'m> March<'m> {
             *factor = compliance.height_factor(mill.slices.fraction(k, order.first));
             *beyond = *factor - Real::ONE;
         }
+        let lever = factor.map(|factor| factor / compliance.mean_factor());
         let climb = (mill.machine.path.setup().milling == Milling::Climb) != order.reversed;
         let (mean, instants) = (Vector::ZERO, [Vector::ZERO; MAX_SLICES]);
-        Self { mill, part, order, climb, factor, beyond, force: None, mean, instants }
+        Self { mill, part, order, climb, factor, beyond, lever, force: None, mean, instants }
     }
 
     /// Goes on to a sample: the equilibrium under the mean force, and that of the instant of every slice.
@@ -335,6 +344,7 @@ impl<'m> March<'m> {
                 heading: if self.order.reversed { frame.heading.reversed() } else { frame.heading },
                 force,
                 factor: &self.factor,
+                lever: &self.lever,
                 first: self.order.first,
                 climb: self.climb,
             };
@@ -366,6 +376,10 @@ impl<'m> March<'m> {
 }
 
 impl Place<'_> {
+    fn lever_at(&self, slice: usize) -> Real {
+        self.lever.get(slice).copied().unwrap_or(Real::ONE)
+    }
+
     /// How much deeper every angle lies when the cutter moves by `by`, nm.
     fn beside(&self, by: Vector) -> [i64; ANGLES] {
         let mut beside = [0; ANGLES];

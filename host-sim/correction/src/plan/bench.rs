@@ -8,7 +8,7 @@ use truepath_core::units::Offset;
 use truepath_ground::units::{float, mm};
 
 use super::process::{Cut, PassOrder};
-use super::wall::WallFigures;
+use super::wall::{WallFigures, WallMap};
 
 /// A machine at work on one wall, at one resolution.
 #[derive(Clone, Debug)]
@@ -132,6 +132,11 @@ impl<'a> Bench<'a> {
     /// The figures of what is left.
     pub fn figures(&self, left: &[Offset]) -> WallFigures {
         WallFigures::of(self.path(), self.slices, left)
+    }
+
+    /// What is left, unrolled.
+    pub fn map(&self, left: &[Offset]) -> WallMap {
+        WallMap::of(self.path(), self.slices, left)
     }
 
     fn buffers(&self) -> Buffers {

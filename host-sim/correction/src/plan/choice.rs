@@ -10,14 +10,16 @@ use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{float, mm};
 use truepath_job::job::PlanTable;
-use truepath_job::pass::Pass;
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::{Pass, PathBuffer};
 
 use super::bench::{Bench, Stage};
 use super::confidence::{Draws, Predicted};
 use super::process::{Cut, words};
+use super::refit::refit;
 use super::search::{Candidate, search};
-use super::wall::WallFigures;
-use crate::correction::Identification;
+use super::wall::{WallFigures, WallMap};
+use crate::correction::{Identification, identify};
 
 /// The most processes to choose from.
 const MOST: usize = 6;
@@ -53,6 +55,9 @@ pub struct Choice {
     pub predicted: Predicted,
     /// The wall as the identified machine cuts it.
     pub wall: WallFigures,
+    /// The wall unrolled, as that machine cuts it.
+    #[serde(skip)]
+    pub map: WallMap,
     /// The share of machines that the points allow whose wall is within the tolerance.
     pub within_tolerance: f64,
     /// What makes most of its error.
@@ -68,6 +73,9 @@ pub struct Choice {
 pub struct Plan {
     /// The wall that the program leaves in one uncorrected pass.
     pub as_programmed: WallFigures,
+    /// That wall unrolled.
+    #[serde(skip)]
+    pub map: WallMap,
     /// Minutes of that pass, leads included.
     pub minutes: f64,
     /// The choices, the fastest first.
@@ -105,15 +113,33 @@ const FINE: Resolution = Resolution { step_um: 250, slices: 48 };
 const DIVISIONS: usize = 12;
 
 /// What a process is planned for: the finishing pass and the machine that was identified on it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Planner<'a> {
-    /// The finishing pass of the program.
-    pub pass: &'a Pass,
-    /// Machine and material.
-    pub known: &'a Identification,
+    pass: &'a Pass,
+    known: Identification,
 }
 
-impl Planner<'_> {
+impl<'a> Planner<'a> {
+    /// Of a pass and the points of its wall.
+    ///
+    /// # Errors
+    /// Points that do not fit the job, and a contour that cannot be sampled.
+    pub fn new(pass: &'a Pass, measurement: &Measurement, progress: impl FnMut(f64)) -> Result<Self, Failure> {
+        let mut buffer = PathBuffer::default();
+        let sampled = pass.sample(&mut buffer)?;
+        let known = identify(pass, &sampled, measurement, progress)?;
+        let mut planner = Self { pass, known };
+        let mut samples = Vec::new();
+        let coarse = planner.path(MIDDLE, &mut samples)?;
+        planner.known = refit(pass, (&sampled, &coarse), measurement, &planner.known)?;
+        Ok(planner)
+    }
+
+    /// Machine and material.
+    pub const fn known(&self) -> &Identification {
+        &self.known
+    }
+
     /// Searches, and looks closely at the best; `progress` is told the share done, 0…1.
     ///
     /// # Errors
@@ -139,8 +165,10 @@ impl Planner<'_> {
         choices.sort_by(|a, b| a.minutes.total_cmp(&b.minutes));
         keep_worthwhile(&mut choices, wanted);
         let holds = |choice: &Choice| choice.within_tolerance >= wanted.confidence;
+        let programmed = bench.as_programmed().left;
         Ok(Plan {
-            as_programmed: bench.figures(&bench.as_programmed().left),
+            as_programmed: bench.figures(&programmed),
+            map: bench.map(&programmed),
             minutes: bench.minutes(),
             recommended: choices.iter().position(holds).map(|at| at + 1),
             choices,
@@ -233,6 +261,7 @@ impl Planner<'_> {
             predicted,
             within_tolerance: draws.within(wanted.tolerance_mm),
             limited_by: limited_by(&wall, &predicted),
+            map: bench.map(&stage.left),
             wall,
             force_n: stage.passes.iter().map(|p| float(p.load.force)).fold(0.0, f64::max),
             chip_mm: stage.passes.last().map_or(0.0, |p| float(p.load.chip)),

@@ -6,6 +6,7 @@
 //!
 //! | piece | what it holds |
 //! |---|---|
+//! | [`refit`] | machine and material under the physics of several passes |
 //! | [`process`] | what a process is: cuts with aim, levels, direction and feed |
 //! | [`bench`] | the identified machine, ready to cut processes at a resolution |
 //! | [`limits`] | what a process has to keep |
@@ -19,5 +20,6 @@ pub mod choice;
 pub mod confidence;
 pub mod limits;
 pub mod process;
+pub mod refit;
 pub mod search;
 pub mod wall;

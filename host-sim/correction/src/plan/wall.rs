@@ -3,7 +3,7 @@
 use truepath_core::cut::Path;
 use truepath_core::process::Slices;
 use truepath_core::units::Offset;
-use truepath_ground::units::mm;
+use truepath_ground::units::{float, mm};
 
 /// What is judged of a wall, mm. Errors are positive where material is left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -82,5 +82,30 @@ impl WallFigures {
         let rest = column.iter().enumerate().map(|(k, e)| (e - mean - tilt * place(k)).abs());
         (self.worst_mean_mm, self.worst_tilt_mm) = (mean, tilt);
         self.worst_height_mm = rest.fold(0.0, f64::max);
+    }
+}
+
+/// What is left of a wall, unrolled, mm.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WallMap {
+    /// Arc length of every place.
+    pub s_mm: Vec<f64>,
+    /// Middle of every slice above the tip of the program's pass.
+    pub height_mm: Vec<f64>,
+    /// Errors of every place, slice by slice.
+    pub error_mm: Vec<Vec<f64>>,
+}
+
+impl WallMap {
+    /// Of what is left, all slices of a sample side by side.
+    pub fn of(path: &Path, slices: Slices, left: &[Offset]) -> Self {
+        let count = slices.count();
+        let thick = float(slices.thickness(path.setup().axial_depth));
+        let mut map = Self { height_mm: (0..count).map(|k| (k as f64 + 0.5) * thick).collect(), ..Self::default() };
+        for (index, s) in judged(path) {
+            map.s_mm.push(s);
+            map.error_mm.push(left[index * count..(index + 1) * count].iter().map(|e| mm(*e)).collect());
+        }
+        map
     }
 }

@@ -1,0 +1,224 @@
+//! The page of a plan: choices of time against error, and the unrolled wall of each beside that of the program.
+//!
+//! One file without scripts, which opens from disk; the wall that is shown follows the row that is picked.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use truepath_correction::plan::choice::{Choice, Plan};
+use truepath_correction::plan::wall::WallMap;
+
+const STYLE: &str = include_str!("planned.css");
+/// Columns of an unrolled wall at most.
+const COLUMNS: usize = 260;
+/// Bounds of the classes of colour, as multiples of the tolerance.
+const BOUNDS: [f64; 6] = [-2.0, -1.0, -0.5, 0.5, 1.0, 2.0];
+const CLASSES: [&str; 7] = [
+    "cut deeper than twice the tolerance",
+    "cut deeper than the tolerance",
+    "cut deep, within the tolerance",
+    "within half of the tolerance",
+    "material left, within the tolerance",
+    "more left than the tolerance",
+    "more left than twice the tolerance",
+];
+
+/// The page of a plan for a program.
+pub fn planned_page(plan: &Plan, program: &str) -> String {
+    let picked = plan.recommended.unwrap_or(plan.choices.len()).max(1);
+    let shown: String = (1..=plan.choices.len())
+        .map(|k| format!("#c{k}:checked ~ main .w{k} {{ display: block; }} #c{k}:checked ~ main .r{k} {{ font-weight: 600; }} #c{k}:focus-visible ~ main .r{k} {{ outline: 2px solid var(--c1); }} "))
+        .collect();
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "Plan: " (program) }
+                style { (PreEscaped(STYLE)) (PreEscaped(shown)) }
+            }
+            body {
+                @for k in 1..=plan.choices.len() {
+                    input type="radio" name="choice" id={ "c" (k) } checked[k == picked] aria-label={ "Choice " (k) };
+                }
+                main {
+                    h1 { "Finishing plan: " (program) }
+                    p.verdict { (verdict(plan)) }
+                    p.soft {
+                        "As programmed, one uncorrected pass: " (um(plan.as_programmed.profile_mm)) " µm at the worst place of the wall, mean over the height "
+                        (um(plan.as_programmed.mean_mm)) " µm, " (format!("{:.2}", plan.minutes)) " min along the contour."
+                    }
+                    h2 { "Time against error" }
+                    (front(plan))
+                    div.scroll tabindex="0" role="region" aria-label="Choices" { (table(plan)) }
+                    h2 { "The wall, unrolled" }
+                    (legend(plan))
+                    figure { (wall(&plan.map, plan.tolerance_mm)) figcaption { "as programmed" } }
+                    @for (k, choice) in plan.choices.iter().enumerate() {
+                        figure class={ "choice w" (k + 1) } {
+                            (wall(&choice.map, plan.tolerance_mm))
+                            figcaption { "choice " (k + 1) ": " (choice.process) }
+                        }
+                    }
+                    p.soft {
+                        "Predicted by the machine that was identified from the points; the deviations in the table hold what they leave open and a few percent that a model lacks. "
+                        "Noise of the surface, wear, and what the machine does not repeat come on top."
+                    }
+                }
+            }
+        }
+    }
+    .into_string()
+}
+
+fn um(mm: f64) -> String {
+    let um = mm * 1e3;
+    if um < 99.95 { format!("{um:.1}") } else { format!("{um:.0}") }
+}
+
+fn verdict(plan: &Plan) -> String {
+    let percent = format!("{:.0} %", plan.confidence * 100.0);
+    let tolerance = um(plan.tolerance_mm);
+    match (plan.recommended.and_then(|k| Some((k, plan.choices.get(k - 1)?))), plan.choices.last()) {
+        (Some((k, choice)), _) => format!(
+            "Choice {k} holds ±{tolerance} µm at every height with {percent}, in {:.2} times the time: {}.",
+            choice.time_ratio, choice.process
+        ),
+        (None, Some(best)) => {
+            let reach = best.predicted.profile_mm + 2.0 * best.predicted.sigma_mm;
+            format!(
+                "No process holds ±{tolerance} µm at every height with {percent}. The best reaches {} µm.",
+                um(reach)
+            )
+        }
+        (None, None) => "No process keeps the limits of the job's [plan].".to_owned(),
+    }
+}
+
+fn table(plan: &Plan) -> Markup {
+    html! {
+        table {
+            thead { tr {
+                th { "" } th { "time" } th { "worst error, µm" } th { "± 2 sigma" } th { "within" } th { "force, N" } th { "passes" }
+            } }
+            tbody {
+                @for (k, choice) in plan.choices.iter().enumerate() {
+                    @let holds = choice.within_tolerance >= plan.confidence;
+                    tr class={ "r" (k + 1) } {
+                        td { label for={ "c" (k + 1) } { (k + 1) @if plan.recommended == Some(k + 1) { " ★" } } }
+                        td { (format!("{:.2} ×", choice.time_ratio)) }
+                        td { (um(choice.predicted.profile_mm)) }
+                        td { (um(2.0 * choice.predicted.sigma_mm)) }
+                        td class=(if holds { "yes" } else { "no" }) { (format!("{:.0} %", 100.0 * choice.within_tolerance)) }
+                        td { (format!("{:.0}", choice.force_n)) }
+                        td { label for={ "c" (k + 1) } { (choice.process) } span.soft { " most of it: " (choice.limited_by) } }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Time against error, with two standard deviations to either side.
+fn front(plan: &Plan) -> Markup {
+    const WIDTH: f64 = 720.0;
+    const HEIGHT: f64 = 260.0;
+    const LEFT: f64 = 56.0;
+    const BELOW: f64 = 40.0;
+    let top = |c: &Choice| c.predicted.profile_mm + 2.0 * c.predicted.sigma_mm;
+    let most = plan.choices.iter().map(top).fold(1.3 * plan.tolerance_mm, f64::max) * 1.05;
+    let last = plan.choices.iter().map(|c| c.time_ratio).fold(1.0, f64::max).ceil();
+    let x = |ratio: f64| LEFT + (ratio - 0.5) / (last - 0.25) * (WIDTH - LEFT - 10.0);
+    let y = |error: f64| (HEIGHT - BELOW) - error / most * (HEIGHT - BELOW - 12.0);
+    let at = |v: f64| format!("{v:.1}");
+    let step = round_step(most * 1e3 / 5.0);
+    let ticks = (0..).map(|k| f64::from(k) * step).take_while(|t| *t <= most * 1e3);
+    html! {
+        svg viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } role="img" aria-label="Machining time of the choices against their profile error" {
+            @for tick in ticks {
+                line.axis x1=(LEFT) x2=(WIDTH - 10.0) y1=(at(y(tick / 1e3))) y2=(at(y(tick / 1e3))) {}
+                text x=(LEFT - 8.0) y=(at(y(tick / 1e3) + 4.0)) text-anchor="end" { (tick) }
+            }
+            @for whole in 1..=(last as u32) {
+                text x=(at(x(f64::from(whole)))) y=(HEIGHT - BELOW + 18.0) text-anchor="middle" { (whole) " ×" }
+            }
+            text x=(WIDTH / 2.0) y=(HEIGHT - 4.0) text-anchor="middle" { "time over that of one pass" }
+            text x="12" y=(at(HEIGHT / 2.0 - 20.0)) text-anchor="middle" transform={ "rotate(-90 12 " (HEIGHT / 2.0 - 20.0) ")" } { "worst error, µm" }
+            line.limit x1=(LEFT) x2=(WIDTH - 10.0) y1=(at(y(plan.tolerance_mm))) y2=(at(y(plan.tolerance_mm))) {}
+            @for (k, choice) in plan.choices.iter().enumerate() {
+                @let (mean, two) = (choice.predicted.profile_mm, 2.0 * choice.predicted.sigma_mm);
+                line.bar x1=(at(x(choice.time_ratio))) x2=(at(x(choice.time_ratio))) y1=(at(y(mean + two))) y2=(at(y((mean - two).max(0.0)))) {}
+                circle class=(if plan.recommended == Some(k + 1) { "mark best" } else { "mark" }) cx=(at(x(choice.time_ratio))) cy=(at(y(mean))) r="5" {}
+                text x=(at(x(choice.time_ratio) + 9.0)) y=(at(y(mean) - 6.0)) { (k + 1) }
+            }
+        }
+    }
+}
+
+/// 1, 2 or 5 times a power of ten, no less than asked for.
+fn round_step(least: f64) -> f64 {
+    let power = 10f64.powf(least.max(1e-9).log10().floor());
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= least * 0.999).unwrap_or(power)
+}
+
+fn legend(plan: &Plan) -> Markup {
+    let edge = |at: usize| um(plan.tolerance_mm * BOUNDS[at]);
+    let range = |class: usize| match class {
+        0 => format!("below {}", edge(0)),
+        6 => format!("above {}", edge(5)),
+        k => format!("{} to {}", edge(k - 1), edge(k)),
+    };
+    html! {
+        div.legend {
+            @for (class, meaning) in CLASSES.iter().enumerate() {
+                span title=(meaning) { svg viewBox="0 0 10 8" aria-hidden="true" { rect class={ "k" (class) } width="10" height="8" {} } " " (range(class)) " µm" }
+            }
+        }
+    }
+}
+
+fn class_of(error: f64, tolerance: f64) -> usize {
+    BOUNDS.iter().filter(|bound| error > **bound * tolerance).count()
+}
+
+/// Arc length × height; neighbours of one class are one rectangle.
+fn wall(map: &WallMap, tolerance: f64) -> Markup {
+    const WIDTH: f64 = 720.0;
+    const LEFT: f64 = 46.0;
+    const TALL: f64 = 110.0;
+    let (Some(first), Some(last)) = (map.s_mm.first(), map.s_mm.last()) else { return html! {} };
+    let rows = map.height_mm.len();
+    let columns = map.s_mm.len().min(COLUMNS);
+    let width = (WIDTH - LEFT - 4.0) / columns as f64;
+    let tall = TALL / rows as f64;
+    // Of the places that share a column the worst is shown.
+    let worst = |column: usize, row: usize| {
+        let range = column * map.s_mm.len() / columns..((column + 1) * map.s_mm.len() / columns);
+        map.error_mm[range].iter().map(|c| c[row]).fold(0.0f64, |w, e| if e.abs() > w.abs() { e } else { w })
+    };
+    let mut cells: Vec<(usize, usize, usize, usize)> = Vec::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let class = class_of(worst(column, row), tolerance);
+            match cells.last_mut() {
+                Some((r, _, to, c)) if *r == row && *c == class && *to == column => *to += 1,
+                _ => cells.push((row, column, column + 1, class)),
+            }
+        }
+    }
+    let height = rows as f64 / (rows as f64 - 0.5) * map.height_mm.last().copied().unwrap_or(0.0);
+    html! {
+        svg viewBox={ "0 0 " (WIDTH) " " (TALL + 26.0) } role="img" aria-label="Error of the wall over arc length and height" {
+            @for (row, from, to, class) in cells {
+                rect class={ "k" (class) } x=(format!("{:.1}", LEFT + from as f64 * width)) width=(format!("{:.2}", (to - from) as f64 * width + 0.05))
+                    y=(format!("{:.2}", 2.0 + (rows - 1 - row) as f64 * tall)) height=(format!("{:.2}", tall + 0.05)) {}
+            }
+            rect.frame x=(LEFT) y="2" width=(WIDTH - LEFT - 4.0) height=(TALL) {}
+            text x=(LEFT - 6.0) y="13" text-anchor="end" { (format!("{height:.0}")) }
+            text x=(LEFT - 6.0) y=(TALL) text-anchor="end" { "0" }
+            text x="12" y=(TALL / 2.0) text-anchor="middle" transform={ "rotate(-90 12 " (TALL / 2.0) ")" } { "height, mm" }
+            text x=(LEFT) y=(TALL + 18.0) { (format!("{first:.0}")) }
+            text x=(WIDTH - 4.0) y=(TALL + 18.0) text-anchor="end" { (format!("{last:.0}")) " mm" }
+            text x=((WIDTH + LEFT) / 2.0) y=(TALL + 18.0) text-anchor="middle" { "along the contour" }
+        }
+    }
+}
