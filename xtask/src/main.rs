@@ -222,11 +222,11 @@ fn main() -> ExitCode {
         Task::Budget { write } => report.run(Step::new("budget", || firmware::budget::check(write))),
         Task::Bench { count: true, write, .. } => report.run(Step::new("bench --count", || bench::count(write))),
         Task::Bench { reading: true, write, .. } => {
-            report.run(Step::new("bench --reading", || bench::reading::measure(write)))
+            report.run(Step::new("bench --reading", || bench::rates::reading(write)))
         }
         Task::Bench { long: true, write, .. } => report.run(Step::new("bench --long", || bench::long::measure(write))),
         Task::Bench { multiaxis: true, write, .. } => {
-            report.run(Step::new("bench --multiaxis", || bench::multiaxis::measure(write)))
+            report.run(Step::new("bench --multiaxis", || bench::rates::multiaxis(write)))
         }
         Task::Bench { no_run, write, arguments, .. } => {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))

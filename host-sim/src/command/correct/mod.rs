@@ -1,6 +1,5 @@
 //! `correct`: from a probe file to the corrected program or the correction image.
 
-mod replacing;
 mod several;
 
 use std::path::{Path as FilePath, PathBuf};
@@ -23,9 +22,9 @@ use truepath_report::pages;
 use truepath_report::pages::{Points, REPORT};
 
 use super::correction_files::{FILES, HISTORY, commit, write_contour, write_program};
+use super::history::refuse_replacing;
 use super::pocket;
 use crate::terminal::Terminal;
-use replacing::refuse_replacing;
 
 /// What is corrected.
 #[derive(Clone, Debug, Default, Args)]

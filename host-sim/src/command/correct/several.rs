@@ -19,7 +19,7 @@ use truepath_report::pages::{self, Points};
 use super::super::correction_files::{
     FILES, HISTORY, commit, contour_folder, contour_name, write_contour, write_program,
 };
-use super::replacing::refuse_replacing;
+use super::super::history::refuse_replacing;
 
 /// Corrects the walls that were touched, and leaves the others as they are.
 pub(super) fn run(

@@ -1,6 +1,5 @@
 //! `learn`: from the probe file of a part that was cut with a correction to the correction of the next part.
 
-mod past;
 mod several;
 
 use std::path::PathBuf;
@@ -18,10 +17,9 @@ use truepath_report::correction_csv;
 use truepath_report::page::render;
 use truepath_report::pages::learned;
 
-pub(super) use past::history_in;
-
 use super::correct::words as correction;
 use super::correction_files::{FILES, HISTORY, MILLED, commit, write_contour, write_program};
+use super::history::history_in;
 use crate::terminal::Terminal;
 
 /// What is learned from.

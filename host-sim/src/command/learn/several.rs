@@ -19,7 +19,7 @@ use truepath_report::pages::learned;
 use super::super::correction_files::{
     FILES, HISTORY, MILLED, commit, contour_folder, contour_name, write_contour, write_program,
 };
-use super::past::history_in;
+use super::super::history::history_in;
 
 /// Learns from every contour that has a history.
 pub(super) fn run(
