@@ -9,6 +9,7 @@ mod checks;
 mod conformance;
 mod cost;
 mod device;
+mod features;
 mod firmware;
 mod fuzz;
 mod hil;
@@ -41,7 +42,7 @@ struct Arguments {
 enum Task {
     /// What a change has to pass; with --all everything there is.
     ///
-    /// fmt, rooms, test-only, firmware, budget and hil, the same on every repeat. With --all also the slow tests, other
+    /// fmt, rooms, test-only, features, firmware, budget and hil, the same on every repeat. With --all also the slow tests, other
     /// random cases each time, the image of the real board, all setpoints of hil and its release build, lint, doc,
     /// device, elf, page, conformance, shop, judge, bench, fuzz and linuxcnc.
     Test {
@@ -76,6 +77,8 @@ enum Task {
         /// Only what holds this text, for instance `truepath::job` or `src/plot`.
         part: Option<String>,
     },
+    /// Features of crates: the same for the program and for its tests, so that nothing is built twice.
+    Features,
     /// The error codes: unique, and docs/errors.md as they are.
     Errors {
         /// Write docs/errors.md instead of comparing it.
@@ -209,6 +212,7 @@ fn main() -> ExitCode {
         Task::Doc => report.run(Step::new("doc", checks::doc)),
         Task::TestOnly { all, arguments } => report.run(Step::new("test-only", || checks::tests(all, &arguments))),
         Task::Rooms { all, part } => report.run(Step::new("rooms", || rooms::check(all, part.as_deref()))),
+        Task::Features => report.run(Step::new("features", features::check)),
         Task::Job { write } => report.run(Step::new("job", || checks::job_keys(write))),
         Task::Errors { write } => report.run(Step::new("errors", || checks::errors(write))),
         Task::Device => report.run(Step::new("device", device::check)),
@@ -222,11 +226,11 @@ fn main() -> ExitCode {
         Task::Budget { write } => report.run(Step::new("budget", || firmware::budget::check(write))),
         Task::Bench { count: true, write, .. } => report.run(Step::new("bench --count", || bench::count(write))),
         Task::Bench { reading: true, write, .. } => {
-            report.run(Step::new("bench --reading", || bench::reading::measure(write)))
+            report.run(Step::new("bench --reading", || bench::rates::reading(write)))
         }
         Task::Bench { long: true, write, .. } => report.run(Step::new("bench --long", || bench::long::measure(write))),
         Task::Bench { multiaxis: true, write, .. } => {
-            report.run(Step::new("bench --multiaxis", || bench::multiaxis::measure(write)))
+            report.run(Step::new("bench --multiaxis", || bench::rates::multiaxis(write)))
         }
         Task::Bench { no_run, write, arguments, .. } => {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))
@@ -254,6 +258,7 @@ fn test(report: &mut Report, all: bool) {
     report.run(Step::new("fmt", || checks::format(false)));
     report.run(Step::new("rooms", || rooms::check(false, None)));
     report.run(Step::new("test-only", || checks::tests(all, &[])));
+    report.run(Step::new("features", features::check));
     report.run(Step::new("firmware", || firmware::build(boards, false)));
     report.run(Step::new("budget", || firmware::budget::check(false)));
     report.run(Step::new("hil", || hil::check(all)));

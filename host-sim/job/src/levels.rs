@@ -60,49 +60,56 @@ pub fn each(
     Ok(levels)
 }
 
-/// Tips of the other depths that are cut as `pass` is, above its own, the nearest first; at most as many as count.
+/// The finishing passes at all depths of the feature of a pass, in the order of the program.
 ///
 /// # Errors
 /// As [`Pass::at_level`].
-pub fn alike(pass: &Pass) -> Result<Vec<Offset>, Failure> {
-    let own = pass.level();
-    let others = pass.plan.as_ref().map(|plan| plan.levels()).unwrap_or_default();
-    let mut tips = Vec::new();
-    for number in others.into_iter().filter(|number| *number != own) {
-        let other = pass.at_level(number)?;
-        let above = other.core.contour.z - pass.core.contour.z;
-        if other_cut(pass, &other).is_none() && above != Offset::ZERO {
-            tips.push(above);
-        }
+pub fn depths(pass: &Pass) -> Result<Vec<Pass>, Failure> {
+    let levels = pass.plan.as_ref().map(|plan| plan.levels()).unwrap_or_default();
+    if levels.len() < 2 {
+        return Ok(vec![pass.clone()]);
     }
+    levels.into_iter().map(|level| pass.at_level(level)).collect()
+}
+
+/// Tips of the other depths that are cut as `pass` is, above its own, the nearest first; at most as many as count.
+///
+/// # Errors
+/// As [`depths`].
+pub fn alike(pass: &Pass) -> Result<Vec<Offset>, Failure> {
+    Ok(among(pass, &depths(pass)?))
+}
+
+/// The same, of `depths`.
+fn among(pass: &Pass, depths: &[Pass]) -> Vec<Offset> {
+    let others = depths.iter().filter(|other| other.level() != pass.level() && other_cut(pass, other).is_none());
+    let above = others.map(|other| other.core.contour.z - pass.core.contour.z);
+    let mut tips: Vec<Offset> = above.filter(|above| *above != Offset::ZERO).collect();
     tips.sort_by_key(|tip| tip.abs());
     tips.truncate(MOST_ALIKE);
-    Ok(tips)
+    tips
 }
 
 /// The compact form of a pass's job for a device that makes its own image: the device does not search, it is told which run
 /// of the program the pass is, and at which depths points count.
 ///
 /// # Errors
-/// As [`alike`] and [`JobFile::compact`].
+/// As [`depths`] and [`JobFile::compact`].
 pub fn compact(pass: &Pass) -> Result<Vec<u8>, Failure> {
     let mut job: JobFile = pass.job.clone();
-    job.numbers = with_alike(pass)?.job;
+    job.numbers = with_alike(pass, &depths(pass)?).job;
     job.compact()
 }
 
-/// What the core knows of a pass, with the depths that are cut alike: points on their walls are of this one as well.
-///
-/// # Errors
-/// As [`alike`].
-pub fn with_alike(pass: &Pass) -> Result<ContourPass, Failure> {
+/// What the core knows of a pass, with those of `depths` that are cut alike: points on their walls are of this one as well.
+pub fn with_alike(pass: &Pass, depths: &[Pass]) -> ContourPass {
     let mut core = pass.core.clone();
     if let Some(part) = &mut core.job.part {
-        for (slot, tip) in part.alike.iter_mut().zip(alike(pass)?) {
+        for (slot, tip) in part.alike.iter_mut().zip(among(pass, depths)) {
             *slot = tip;
         }
     }
-    Ok(core)
+    core
 }
 
 /// Why the correction of one depth does not hold at another.

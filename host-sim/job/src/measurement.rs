@@ -9,7 +9,6 @@ use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, Source};
 
 use crate::codes::M040;
-use crate::feature::Plan;
 use crate::levels;
 use crate::otherwise::otherwise;
 use crate::pass::Pass;
@@ -70,7 +69,7 @@ impl Measurement {
     /// # Errors
     /// What is wrong with the file, and a wrong unit, frame or ball, named, when most readings are off the wall.
     pub fn read(pass: &Pass, file: &Source) -> Result<Self, Failure> {
-        Self::of(pass, &levels::with_alike(pass)?, file)
+        Self::of(pass, &levels::with_alike(pass, &levels::depths(pass)?), file)
     }
 
     /// The same, with the points at the depths that `core` names.
@@ -133,27 +132,27 @@ impl Measurement {
     /// # Errors
     /// As [`Self::read`], when it cannot be used with any of them.
     pub fn of_any_depth(pass: Pass, file: &Source) -> Result<(Pass, Self), Failure> {
-        let levels = pass.plan.as_ref().map(Plan::levels).unwrap_or_default();
-        if pass.job.which.pass.is_some() || levels.len() < 2 {
+        let named = pass.job.which.pass.is_some();
+        let depths = if named { Vec::new() } else { levels::depths(&pass)? };
+        if depths.len() < 2 {
             let measurement = Self::read(&pass, file)?;
             return Ok((pass, measurement));
         }
-        let mut best: Option<(Pass, Self)> = None;
+        let mut best: Option<(&Pass, usize)> = None;
         let mut refused = None;
-        for level in levels {
-            let pass = pass.at_level(level)?;
-            match Self::of(&pass, &pass.core, file) {
-                Ok(found) if best.as_ref().is_none_or(|(_, b)| b.contacts.len() < found.contacts.len()) => {
-                    best = Some((pass, found));
+        for depth in &depths {
+            match Self::of(depth, &depth.core, file) {
+                Ok(found) if best.is_none_or(|(_, most)| most < found.contacts.len()) => {
+                    best = Some((depth, found.contacts.len()));
                 }
                 Ok(_) => {}
                 Err(failure) => refused = refused.or(Some(failure)),
             }
         }
         let none = || Failure::Internal("a feature without a finishing pass".to_owned());
-        let (pass, _) = best.ok_or_else(|| refused.unwrap_or_else(none))?;
-        let measurement = Self::read(&pass, file)?;
-        Ok((pass, measurement))
+        let (depth, _) = best.ok_or_else(|| refused.unwrap_or_else(none))?;
+        let measurement = Self::of(depth, &levels::with_alike(depth, &depths), file)?;
+        Ok((depth.clone(), measurement))
     }
 
     /// The contacts as observations for the fit.

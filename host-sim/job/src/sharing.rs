@@ -15,7 +15,6 @@ use truepath_core::probe::{Contact, Contacts, Outcome, Reading, Rejected, Suspic
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, Source};
 
-use crate::feature::Plan;
 use crate::levels;
 use crate::measurement::{Aside, LARGEST_FILE, Measurement, numbered};
 use crate::pass::Pass;
@@ -48,27 +47,28 @@ impl Measurement {
         let count = job::readings(&core, file.bytes(), &mut readings).map_err(|e| any.refused_of(file, &e))?;
         readings.truncate(count);
 
-        let mut passes: Vec<Vec<Pass>> = Vec::new();
-        for wall in &first {
-            passes.push(depths(wall)?);
-        }
+        let depths = first.iter().map(levels::depths).collect::<Result<Vec<_>, _>>()?;
         let mut places = Vec::new();
-        for (wall, pass) in passes.iter().enumerate().flat_map(|(wall, passes)| passes.iter().map(move |p| (wall, p))) {
-            let on_wall =
-                job::on_wall(&pass.core, pass.path_contour()).map_err(|error| pass.refused_of(file, &error))?;
-            places.push(Depth { wall, pass, on_wall });
+        for (wall, (pass, depths)) in first.iter().zip(&depths).enumerate() {
+            // The depth that the user names, or all of them.
+            let asked = if pass.job.which.pass.is_some() { std::slice::from_ref(pass) } else { depths };
+            for pass in asked {
+                let on_wall =
+                    job::on_wall(&pass.core, pass.path_contour()).map_err(|error| pass.refused_of(file, &error))?;
+                places.push(Depth { wall, pass, on_wall });
+            }
         }
-        let shares = shared(&places, &readings, passes.len());
+        let shares = shared(&places, &readings, first.len());
         refuse_strange(&places, &readings, &shares, file)?;
         let crc = crc32(file.bytes());
         let mut all = Vec::new();
-        for (wall, own) in shares.iter().enumerate() {
+        for (wall, (own, depths)) in shares.iter().zip(&depths).enumerate() {
             let count = |depth: &&Depth| own.iter().filter(|r| depth.on_wall.contact(r).is_ok()).count();
             let own_depths = || places.iter().filter(|depth| depth.wall == wall);
             let Some(most) = own_depths().map(|depth| count(&depth)).max() else { continue };
             let Some(depth) = own_depths().find(|depth| count(depth) == most) else { continue };
             let pass = depth.pass;
-            let core = levels::with_alike(pass)?;
+            let core = levels::with_alike(pass, depths);
             let on_wall = job::on_wall(&core, pass.path_contour()).map_err(|error| pass.refused_of(file, &error))?;
             let mut contacts = vec![Contact::BLANK; own.len()];
             let mut rejected = Vec::new();
@@ -121,15 +121,6 @@ impl Measurement {
         }
         Ok(all.swap_remove(0))
     }
-}
-
-/// The depths of a wall that a file may be of: the one the user names, or all.
-fn depths(wall: &Pass) -> Result<Vec<Pass>, Failure> {
-    let levels = wall.plan.as_ref().map(Plan::levels).unwrap_or_default();
-    if wall.job.which.pass.is_some() || levels.len() < 2 {
-        return Ok(vec![wall.clone()]);
-    }
-    levels.into_iter().map(|level| wall.at_level(level)).collect()
 }
 
 /// How far a reading is from a wall, and whether it is a contact of it. A reading beside the wall above or below the depth

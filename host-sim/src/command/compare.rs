@@ -8,7 +8,7 @@ use truepath_correction::correction::identify;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm};
-use truepath_job::job::{JobFile, ProbeFlags, Which};
+use truepath_job::job::Said;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_report::plot::{Compared, LawWall};
@@ -38,12 +38,9 @@ pub struct Options {
     /// Replace the files of an earlier run.
     #[arg(long, requires = "output")]
     pub force: bool,
-    /// What is said of the probe file in place of the job.
+    /// What is said in place of the job.
     #[command(flatten)]
-    pub probe_flags: ProbeFlags,
-    /// Which cut of the program.
-    #[command(flatten)]
-    pub which: Which,
+    pub said: Said,
 }
 
 /// Compares and prints the table.
@@ -108,10 +105,7 @@ pub struct CompareSummary {
 /// # Errors
 /// Whatever is wrong with job, program, probe file or plant, and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CompareSummary, Failure> {
-    let mut job = JobFile::read(&options.job)?;
-    job.override_probe(&options.probe_flags)?;
-    job.which = options.which.clone();
-    let pass = Pass::read(job)?;
+    let pass = Pass::read(options.said.read(&options.job)?)?;
     let file = Source::read(&options.probe)?;
     let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
     let plant = options.plant.as_deref().map(read_machine).transpose()?;

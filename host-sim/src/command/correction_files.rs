@@ -1,10 +1,12 @@
 //! The files of a correction: what `correct` and `learn` may write, and what a correction in memory holds beside its summary.
 
+use serde::Serialize;
 use truepath_chart::view::View;
 use truepath_correction::correct::CorrectedPass;
+use truepath_correction::learning::History;
 use truepath_correction::summary::corrected_name;
-use truepath_ground::diagnostics::Failure;
-use truepath_ground::output::OutputFolder;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::output::{OutputFolder, json};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::pages::REPORT;
@@ -38,17 +40,6 @@ pub(super) const FILES: &[&str] = &[
 /// The folder of what belongs to one of several contours.
 pub(super) const CONTOURS: &str = "contours/";
 
-/// Writes what a correction in memory holds beside its summary.
-pub(super) fn write(
-    folder: &OutputFolder,
-    pass: &Pass,
-    measurement: &Measurement,
-    done: &CorrectedPass,
-) -> Result<(), Failure> {
-    write_program(folder, pass, done)?;
-    write_contour(folder, "", measurement, done)
-}
-
 /// Writes the corrected program, where there is one.
 pub(super) fn write_program(folder: &OutputFolder, pass: &Pass, done: &CorrectedPass) -> Result<(), Failure> {
     if let Some(text) = &done.program {
@@ -60,12 +51,14 @@ pub(super) fn write_program(folder: &OutputFolder, pass: &Pass, done: &Corrected
     Ok(())
 }
 
-/// Writes what a correction in memory holds beside its summary and its program, in the folder `place` of the outputs.
+/// Writes what a correction in memory holds beside its summary and its program, and the history of the part, in the folder
+/// `place` of the outputs.
 pub(super) fn write_contour(
     folder: &OutputFolder,
     place: &str,
     measurement: &Measurement,
     done: &CorrectedPass,
+    history: Option<&History>,
 ) -> Result<(), Failure> {
     let write = |name: &str, bytes: &[u8]| folder.write(&format!("{place}{name}"), bytes);
     if let Some(bytes) = &done.image {
@@ -78,6 +71,23 @@ pub(super) fn write_contour(
     write("wall.csv", &wall_csv(&done.rows)?)?;
     write("points.csv", &points_csv(measurement, &done.identified.observations)?)?;
     write("correction.svg", &predicted_error(&View::default(), &done.rows, &[])?)?;
+    if let Some(history) = history {
+        write(HISTORY, &history.text()?)?;
+    }
+    Ok(())
+}
+
+/// Writes what the outputs hold once, whatever the number of contours, and puts all of them in their place.
+pub(super) fn commit(
+    folder: OutputFolder,
+    probe: &Source,
+    summary: &impl Serialize,
+    report: &[u8],
+) -> Result<(), Failure> {
+    folder.write("probe-raw.txt", probe.bytes())?;
+    folder.write("summary.json", &json(summary)?)?;
+    folder.write(REPORT, report)?;
+    folder.commit()?;
     Ok(())
 }
 

@@ -15,7 +15,7 @@ use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::mm;
 use truepath_job::feature::listing;
-use truepath_job::job::{JobFile, PartFlags, ProbeFlags, Which};
+use truepath_job::job::{PartFlags, Said};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::page::render_all;
@@ -80,12 +80,9 @@ pub struct Options {
     /// What is said of the part in place of the job.
     #[command(flatten)]
     pub part: PartFlags,
-    /// What is said of the probe file in place of the job.
+    /// What is said in place of the job.
     #[command(flatten)]
-    pub probe_flags: ProbeFlags,
-    /// Which cut of the program.
-    #[command(flatten)]
-    pub which: Which,
+    pub said: Said,
 }
 
 /// Inspects and prints the report.
@@ -147,10 +144,8 @@ const fn word(verdict: PointVerdict) -> &'static str {
 /// # Errors
 /// Whatever is wrong with job, program or probe file, and outputs that cannot be written.
 pub fn run(options: &Options) -> Result<Inspection, Failure> {
-    let mut job = JobFile::read(&options.job)?;
-    job.override_probe(&options.probe_flags)?;
+    let mut job = options.said.read(&options.job)?;
     job.override_part(&options.part)?;
-    job.which = options.which.clone();
     // What a part was cut with does not matter for how far its wall is off.
     let walls: Vec<Pass> = Pass::every(job)?.into_iter().map(|pass| pass.cut_with(CutWith::Anything)).collect();
     let file = Source::read(&options.probe)?;

@@ -1,7 +1,7 @@
 //! The command: what it prints and writes, its errors, and the example that goes with it.
 
+use crate::workplace::truepath;
 use std::path::Path;
-use std::process::{Command, Output};
 
 const PAPER: [&str; 11] = [
     "bore",
@@ -17,10 +17,6 @@ const PAPER: [&str; 11] = [
     "95.4929658551372",
 ];
 
-fn truepath(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_truepath")).args(arguments).current_dir(folder).output().expect("the program runs")
-}
-
 fn json(bytes: &[u8]) -> serde_json::Value {
     serde_json::from_slice(bytes).expect("JSON")
 }
@@ -29,13 +25,13 @@ fn json(bytes: &[u8]) -> serde_json::Value {
 fn the_paper_s_case_comes_out_of_the_command_line_with_all_digits() {
     let folder = tempfile::tempdir().expect("a folder");
     let asked = [&PAPER[..], &["--roots", "--phi", "57.2958", "--json"]].concat();
-    let done = truepath(&asked, folder.path());
+    let done = truepath(folder.path(), &asked);
     assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
     let summary = json(&done.stdout);
     let number = |path: &str| summary.pointer(path).and_then(serde_json::Value::as_f64).expect("a number");
     assert_eq!(format!("{:.6}", number("/parameters/Pt_mm")), "0.307885");
     assert_eq!(format!("{:.6}", number("/waviness_mm")), "0.307885");
-    let words = truepath(&PAPER, folder.path());
+    let words = truepath(folder.path(), &PAPER);
     let words = String::from_utf8_lossy(&words.stdout).into_owned();
     assert!(words.contains("waviness     0.307885 mm"), "{words}");
     assert_eq!(format!("{:.4}", number("/roots/radius_mm")), "89.9275");
@@ -59,7 +55,7 @@ fn the_paper_s_case_comes_out_of_the_command_line_with_all_digits() {
         if other[0] == "--rpm" {
             asked.truncate(9);
         }
-        let done = truepath(&[&asked[..], other, &["--json"]].concat(), folder.path());
+        let done = truepath(folder.path(), &[&asked[..], other, &["--json"]].concat());
         let height = json(&done.stdout)["parameters"]["Pt_mm"].as_f64().expect("a height");
         assert_eq!(format!("{height:.6}"), "0.427825", "{other:?}");
     }
@@ -69,7 +65,7 @@ fn the_paper_s_case_comes_out_of_the_command_line_with_all_digits() {
 fn a_wanted_waviness_gives_a_feed_and_a_speed_that_leave_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let asked = [&PAPER[..], &["--wanted-waviness", "0.005", "--json"]].concat();
-    let wanted = json(&truepath(&asked, folder.path()).stdout)["wanted"].clone();
+    let wanted = json(&truepath(folder.path(), &asked).stdout)["wanted"].clone();
     let text = |name: &str| wanted[name].as_f64().expect("a number").to_string();
     for (flag, value, feed) in
         [("--feed", text("feed_mm_per_min"), None), ("--rpm", text("rpm_at_given_feed"), Some("480"))]
@@ -78,7 +74,7 @@ fn a_wanted_waviness_gives_a_feed_and_a_speed_that_leave_it() {
         asked.truncate(7);
         asked.extend(["--json", flag, &value]);
         asked.extend(if feed.is_some() { ["--feed", "480"] } else { ["--rpm", "95.4929658551372"] });
-        let height = json(&truepath(&asked, folder.path()).stdout)["parameters"]["Pt_mm"].as_f64().expect("a height");
+        let height = json(&truepath(folder.path(), &asked).stdout)["parameters"]["Pt_mm"].as_f64().expect("a height");
         assert!((height - 0.005).abs() < 1e-10, "{flag} {value}: {height}");
     }
 }
@@ -89,7 +85,7 @@ fn the_example_runs_and_writes_every_file() {
     let folder = tempfile::tempdir().expect("a folder");
     for line in example.lines().filter(|l| !l.trim().is_empty() && !l.starts_with('#')) {
         let words: Vec<&str> = line.split_whitespace().collect();
-        let done = truepath(&words, folder.path());
+        let done = truepath(folder.path(), &words);
         assert_eq!(done.status.code(), Some(0), "{line}: {}", String::from_utf8_lossy(&done.stderr));
         let Some(out) = words.iter().position(|w| *w == "-o").map(|n| folder.path().join(words[n + 1])) else {
             continue;
@@ -139,7 +135,7 @@ fn wrong_numbers_are_errors_with_a_code_and_nothing_is_written() {
             asked[at + 1] = pair[1];
         }
         asked.extend(["-o", "out", "--json"]);
-        let done = truepath(&asked, folder.path());
+        let done = truepath(folder.path(), &asked);
         assert_eq!(done.status.code(), Some(1), "{change:?}");
         assert_eq!(json(&done.stderr)["error"]["code"], code, "{change:?}");
         assert!(!folder.path().join("out").exists(), "{change:?}");
@@ -156,7 +152,7 @@ fn wrong_numbers_are_errors_with_a_code_and_nothing_is_written() {
         (&["--phi", "3"], "C001"),
     ];
     for (extra, code) in more {
-        let done = truepath(&[&PAPER[..], extra, &["--json"]].concat(), folder.path());
+        let done = truepath(folder.path(), &[&PAPER[..], extra, &["--json"]].concat());
         assert_eq!(done.status.code(), Some(1), "{extra:?}");
         assert_eq!(json(&done.stderr)["error"]["code"], code, "{extra:?}");
     }

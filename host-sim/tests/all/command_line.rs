@@ -1,15 +1,7 @@
 //! The command line from outside: exit codes, streams, errors for people and for machines.
 
-use std::path::Path;
-use std::process::{Command, Output};
-
-fn truepath(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_truepath")).args(arguments).current_dir(folder).output().expect("the program runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
+use crate::workplace::{text, truepath};
+use std::process::Command;
 
 /// A folder with a small program and one that is wrong.
 fn desk() -> tempfile::TempDir {
@@ -23,7 +15,7 @@ fn desk() -> tempfile::TempDir {
 #[test]
 fn data_goes_to_standard_output_and_the_exit_code_is_0() {
     let desk = desk();
-    let done = truepath(&["canon", "part.nc"], desk.path());
+    let done = truepath(desk.path(), &["canon", "part.nc"]);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     assert!(text(&done.stdout).contains("STRAIGHT_FEED(10.0000, 0.0000, 0.0000"));
     assert_eq!(text(&done.stderr), "");
@@ -32,7 +24,7 @@ fn data_goes_to_standard_output_and_the_exit_code_is_0() {
 #[test]
 fn wrong_input_is_exit_code_1_with_its_place() {
     let desk = desk();
-    let failed = truepath(&["canon", "wrong.nc"], desk.path());
+    let failed = truepath(desk.path(), &["canon", "wrong.nc"]);
     assert_eq!((failed.status.code(), text(&failed.stdout)), (Some(1), String::new()));
     let shown = text(&failed.stderr);
     assert!(shown.contains("wrong.nc:4:8") && shown.contains("G1 X10 ? F100") && shown.contains("help:"), "{shown}");
@@ -47,7 +39,7 @@ fn errors_are_one_json_object_when_asked_for() {
         (["canon", "missing.nc", "--json"], "F001", None),
         (["canon", "--nonsense", "--json"], "C001", None),
     ] {
-        let failed = truepath(&arguments, desk.path());
+        let failed = truepath(desk.path(), &arguments);
         assert_eq!(failed.status.code(), Some(1), "{arguments:?}");
         let json: serde_json::Value = serde_json::from_slice(&failed.stderr).expect("one JSON object");
         let error = &json["error"];
@@ -61,12 +53,12 @@ fn errors_are_one_json_object_when_asked_for() {
 fn a_wrong_command_line_is_wrong_input() {
     let desk = desk();
     for arguments in [&["no-such-command"][..], &["canon"], &[], &["canon", "part.nc", "--force"]] {
-        let failed = truepath(arguments, desk.path());
+        let failed = truepath(desk.path(), arguments);
         assert_eq!((failed.status.code(), text(&failed.stdout)), (Some(1), String::new()), "{arguments:?}");
         assert!(text(&failed.stderr).contains("Usage:"), "{arguments:?}");
     }
     for arguments in [["--help"], ["--version"]] {
-        let asked = truepath(&arguments, desk.path());
+        let asked = truepath(desk.path(), &arguments);
         assert_eq!((asked.status.code(), text(&asked.stderr)), (Some(0), String::new()), "{arguments:?}");
         assert!(!asked.stdout.is_empty());
     }
@@ -75,7 +67,7 @@ fn a_wrong_command_line_is_wrong_input() {
 #[test]
 fn nothing_is_overwritten_without_force() {
     let desk = desk();
-    let run = |arguments: &[&str]| truepath(arguments, desk.path()).status.code();
+    let run = |arguments: &[&str]| truepath(desk.path(), arguments).status.code();
     let written = || std::fs::read_to_string(desk.path().join("out.txt")).expect("a file");
     assert_eq!(run(&["canon", "part.nc", "-o", "out.txt"]), Some(0));
     let first = written();
@@ -156,18 +148,18 @@ fn control_characters_of_a_file_are_shown_and_never_sent_to_the_terminal() {
     ] {
         for json in [false, true] {
             let arguments: Vec<&str> = arguments.iter().copied().chain(json.then_some("--json")).collect();
-            let done = truepath(&arguments, desk.path());
+            let done = truepath(desk.path(), &arguments);
             let what = format!("{arguments:?}");
             assert_eq!(done.status.code(), Some(1), "{what}: {}", text(&done.stderr));
             assert_steers_nothing(&done.stderr, &what);
             assert_steers_nothing(&done.stdout, &what);
         }
     }
-    let shown = text(&truepath(&["canon", "wrong.nc"], desk.path()).stderr);
+    let shown = text(&truepath(desk.path(), &["canon", "wrong.nc"]).stderr);
     assert!(shown.contains("␛[2J␛]0;mine␇") && shown.contains("wrong.nc:4:"), "{shown}");
     // Data stay as they are where nobody looks on.
     write("data.nc", format!("%\nG21 G90\n({STEERING})\nG1 X10 F100\nM30\n"));
-    let done = truepath(&["canon", "data.nc"], desk.path());
+    let done = truepath(desk.path(), &["canon", "data.nc"]);
     assert!(text(&done.stdout).contains('\x1b'), "{}", text(&done.stdout));
 }
 

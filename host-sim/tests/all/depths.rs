@@ -1,10 +1,8 @@
 //! A wall made by passes too shallow for the ball of a probe.
 
-use std::fs;
-use std::path::Path;
-use std::process::Command;
-
 use serde_json::Value;
+
+use crate::workplace::{Workplace, plant, pocket_job};
 
 /// A rounded pocket, cut at depths of 1.5 mm.
 fn pocket(depths: u32) -> String {
@@ -15,36 +13,15 @@ fn pocket(depths: u32) -> String {
     format!("G21 G90 G17\nT2 M6\nS9000 M3\nG0 X28 Y6 Z10\n{passes}G0 Z10\nM30\n")
 }
 
-const JOB: &str = "version = 1\nprogram = \"part.nc\"\nwall = \"right\"\n[stock]\nallowance_mm = 0.4\n[tool]\n\
-    diameter_mm = 8.0\nteeth = 3\nhelix_deg = 35.0\n[cut]\naxial_depth_mm = 1.5\n[force]\nmaterial = \"al-6082-t6\"\n\
-    [machine]\nstiffness_x_n_per_mm = 600\nstiffness_y_n_per_mm = 600\n[probe]\nball_diameter_mm = 2.0\n\
-    format = \"linuxcnc-log\"\nz_reference = \"centre\"\n";
-
-const PLANT: &str = "ktc_n_per_mm2 = 900\nkrc_n_per_mm2 = 250\nkte_n_per_mm = 10\nkre_n_per_mm = 13\n\
-    size_exponent = 0.15\ncompliance_mm_per_n = [[0.0016, 0.00002], [0.00002, 0.0014]]\nbend = 0.1\n\
-    probe_noise_mm = 0.001\nseed = 3\n";
-
-fn desk(depths: u32) -> tempfile::TempDir {
-    let desk = tempfile::tempdir().expect("a folder");
-    for (name, text) in [("part.nc", pocket(depths).as_str()), ("job.toml", JOB), ("plant.toml", PLANT)] {
-        fs::write(desk.path().join(name), text).expect("written");
-    }
-    desk
-}
-
-fn run(folder: &Path, arguments: &str) -> Result<Value, String> {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_truepath"));
-    let done = command.arg("--json").args(arguments.split(' ')).current_dir(folder).output().expect("it runs");
-    match done.status.code() {
-        Some(0) => Ok(serde_json::from_slice(&done.stdout).expect("JSON")),
-        _ => Err(String::from_utf8_lossy(&done.stderr).into_owned()),
-    }
+fn workplace(depths: u32) -> Workplace {
+    let plant = plant("[[0.0016, 0.00002], [0.00002, 0.0014]]");
+    Workplace::with(&[("part.nc", &pocket(depths)), ("job.toml", &pocket_job(1.5, 600)), ("plant.toml", &plant)])
 }
 
 #[test]
 fn shallow_passes_are_touched_over_the_wall_they_make_together() {
-    let desk = desk(8);
-    let call = |arguments: &str| run(desk.path(), arguments).unwrap_or_else(|said| panic!("{arguments}: {said}"));
+    let desk = workplace(8);
+    let call = |arguments: &str| desk.call(arguments);
     let plan = call("probe job.toml --dialect linuxcnc -o verify.nc");
     let points = plan["points"].as_array().expect("points");
     for point in points {
@@ -66,7 +43,7 @@ fn shallow_passes_are_touched_over_the_wall_they_make_together() {
 
 #[test]
 fn one_shallow_pass_alone_has_no_room_for_the_ball() {
-    let desk = desk(1);
-    let said = run(desk.path(), "probe job.toml --dialect linuxcnc -o verify.nc").expect_err("no room");
+    let desk = workplace(1);
+    let said = desk.run("probe job.toml --dialect linuxcnc -o verify.nc").expect_err("no room");
     assert!(said.contains("V002"), "{said}");
 }

@@ -29,3 +29,4 @@ mod split_allowance;
 mod study;
 mod target_and_guard;
 mod verification;
+mod workplace;

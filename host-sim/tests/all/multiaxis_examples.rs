@@ -4,7 +4,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::multiaxis_support::{Machine as Independent, feeds, matched, truepath};
+use crate::multiaxis_support::{Machine as Independent, feeds, matched};
+use crate::workplace::truepath;
 use truepath_ground::diagnostics::Source;
 use truepath_multiaxis::Machine;
 

@@ -1,6 +1,7 @@
 //! `truepath multiaxis`: codes that change what X, Y and Z are, and words that act at the end of a move.
 
-use crate::multiaxis_support::{Feed, Machine, TRUNNION, feeds, truepath};
+use crate::multiaxis_support::{Feed, Machine, TRUNNION, feeds};
+use crate::workplace::truepath;
 
 /// Where a move of X, Y, Z and both rotary axes starts.
 const START: &str = "G21 G90 G94 F500\nG0 X0 Y0 Z0 A0 C0\n";

@@ -1,6 +1,7 @@
 //! `truepath multiaxis` with programs as controls and people write them: what stays, what is refused, what is told.
 
-use crate::multiaxis_support::{HEADS, TRUNNION, feeds, truepath};
+use crate::multiaxis_support::{HEADS, TRUNNION, feeds};
+use crate::workplace::truepath;
 use tempfile::TempDir;
 
 /// A move that errs by more than 5 µm, whatever stands around it.

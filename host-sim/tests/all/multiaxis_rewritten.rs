@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::multiaxis_support::{Feed, HEADS, Machine, TABLE_HEAD, TABLES_BC, TRUNNION, feeds, matched, truepath};
+use crate::multiaxis_support::{Feed, HEADS, Machine, TABLE_HEAD, TABLES_BC, TRUNNION, feeds, matched};
+use crate::workplace::truepath;
 use tempfile::TempDir;
 
 /// Rounding of what is written: four decimals of a millimetre, six of an inch.

@@ -1,19 +1,12 @@
 //! Probe files from the command line: flags that describe columns, the table of points, the raw file, a wild point.
 
+use crate::workplace::{text, truepath};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 const JOB: &str = include_str!("../../demo/corner/job.toml");
 const POCKET: &str = include_str!("../../../core/tests/data/pocket-probe.txt");
-
-fn truepath(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_truepath")).args(arguments).current_dir(folder).output().expect("the program runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
 
 /// A folder with job and program of a demonstration, and a probe file.
 fn desk(part: &str, probe: &[u8]) -> tempfile::TempDir {
@@ -44,7 +37,7 @@ fn flags_describe_the_columns_and_win_over_the_job() {
     let flags =
         ["--cols", "z,x,y", "--sep", "semicolon", "--decimal", "comma", "--frame", "machine", "--point", "surface"];
     let arguments = [&["inspect", "job.toml", "--probe", "probe.txt", "--json"], &flags[..]].concat();
-    let found = errors(&truepath(&arguments, desk.path()));
+    let found = errors(&truepath(desk.path(), &arguments));
     for (found, expected) in found.iter().zip([0.08, 0.09, 0.099_393, 0.09, 0.08]) {
         assert!((found - expected).abs() < 1e-6, "{found} instead of {expected}");
     }
@@ -55,7 +48,7 @@ fn flags_describe_the_columns_and_win_over_the_job() {
 fn a_format_on_the_command_line_stands_in_for_that_of_the_job() {
     let desk = desk("corner", &data("inspection.txt"));
     let arguments = ["inspect", "job.toml", "--probe", "probe.txt", "--json", "--format", "inspection"];
-    assert_eq!(errors(&truepath(&arguments, desk.path())).len(), 5);
+    assert_eq!(errors(&truepath(desk.path(), &arguments)).len(), 5);
 }
 
 #[test]
@@ -68,7 +61,7 @@ fn flags_that_contradict_each_other_are_refused() {
         (&["--frame", "machine"], "the work offset is not known"),
         (&["--frame", "table"], "possible values: work, machine"),
     ] {
-        let failed = truepath(&[&["inspect", "job.toml", "--probe", "probe.txt"], flags].concat(), desk.path());
+        let failed = truepath(desk.path(), &[&["inspect", "job.toml", "--probe", "probe.txt"], flags].concat());
         assert_eq!(failed.status.code(), Some(1), "{flags:?}");
         assert!(text(&failed.stderr).contains(words), "{flags:?}: {}", text(&failed.stderr));
     }
@@ -77,7 +70,7 @@ fn flags_that_contradict_each_other_are_refused() {
 #[test]
 fn inspect_keeps_the_raw_file_and_lists_every_reading() {
     let desk = desk("corner", &data("linuxcnc.txt"));
-    let done = truepath(&["inspect", "job.toml", "--probe", "probe.txt", "-o", "out"], desk.path());
+    let done = truepath(desk.path(), &["inspect", "job.toml", "--probe", "probe.txt", "-o", "out"]);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     let out = desk.path().join("out");
     assert_eq!(fs::read(out.join("probe-raw.txt")).unwrap(), data("linuxcnc.txt"));
@@ -87,14 +80,14 @@ fn inspect_keeps_the_raw_file_and_lists_every_reading() {
     assert!(rows[1].starts_with("1,used,") && rows[1].ends_with(",0.5,0.08,"), "{points}");
     assert_eq!(rows[6], "6,aside,,80.0,19.0,,,,,-4.000 mm from the nominal wall");
     assert_eq!(rows.len(), 7);
-    let again = truepath(&["inspect", "job.toml", "--probe", "probe.txt", "-o", "out"], desk.path());
+    let again = truepath(desk.path(), &["inspect", "job.toml", "--probe", "probe.txt", "-o", "out"]);
     assert_eq!(again.status.code(), Some(1), "written over without --force");
 }
 
 /// Corrects a demonstration; the summary and the table of points.
 fn corrected(part: &str, probe: &str) -> (serde_json::Value, String, String) {
     let desk = desk(part, probe.as_bytes());
-    let done = truepath(&["correct", "job.toml", "--probe", "probe.txt", "-o", "out"], desk.path());
+    let done = truepath(desk.path(), &["correct", "job.toml", "--probe", "probe.txt", "-o", "out"]);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     let read = |name: &str| fs::read_to_string(desk.path().join("out").join(name)).unwrap();
     assert_eq!(read("probe-raw.txt"), probe);

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use crate::workplace::truepath;
 use truepath_core::geometry::Point;
 use truepath_core::image::{
     Binding, CorrectionLimits, FeedLaw, FineOffset, ImageNode, ImageSettings, PathWindow, build, image_bytes,
@@ -11,10 +11,6 @@ use truepath_core::image::{
 use truepath_core::units::{Offset, Position, Real};
 
 const FEED_NM_PER_TICK: i64 = 10_000;
-
-fn truepath(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_truepath")).args(arguments).current_dir(folder).output().expect("the program runs")
-}
 
 fn fine(nm: i64) -> FineOffset {
     FineOffset::checked_from_offset(Offset::from_nm(nm)).expect("in range")

@@ -1,10 +1,8 @@
 //! Several finishing contours of one program, from the probing program to the corrected part and the next one.
 
-use std::fs;
-use std::path::Path;
-use std::process::Command;
-
 use serde_json::Value;
+
+use crate::workplace::{Workplace, plant, pocket_job};
 
 /// A pocket and its island, cut with one cutter.
 const POCKET_AND_ISLAND: &str = "G21 G90 G17\nT2 M6\nS9000 M3\nG0 X28 Y6 Z10\nG1 Z-7 F300\nG3 X30 Y4 I2 J0 F700\n\
@@ -13,52 +11,16 @@ const POCKET_AND_ISLAND: &str = "G21 G90 G17\nT2 M6\nS9000 M3\nG0 X28 Y6 Z10\nG1
     G1 X36\nG2 X42 Y23 I0 J-6\nG1 Y17\nG2 X36 Y11 I-6 J0\nG1 X24\nG2 X18 Y17 I0 J6\nG1 Y23\nG2 X24 Y29 I6 J0\nG1 X30\n\
     G3 X32 Y31 I0 J2\nG0 Z10\nM30\n";
 
-const JOB: &str = "version = 1\nprogram = \"part.nc\"\nwall = \"right\"\n[stock]\nallowance_mm = 0.4\n[tool]\n\
-    diameter_mm = 8.0\nteeth = 3\nhelix_deg = 35.0\n[cut]\naxial_depth_mm = 7.0\n[force]\nmaterial = \"al-6082-t6\"\n\
-    [machine]\nstiffness_x_n_per_mm = 2300\nstiffness_y_n_per_mm = 2300\n[probe]\nball_diameter_mm = 2.0\n\
-    format = \"linuxcnc-log\"\nz_reference = \"centre\"\n";
+/// A folder with a program, its job, and a machine that the job does not state.
+fn workplace(program: &str) -> Workplace {
+    let plant = plant("[[0.0006, 0.00002], [0.00002, 0.0005]]");
+    Workplace::with(&[("part.nc", program), ("job.toml", &pocket_job(7.0, 2300)), ("plant.toml", &plant)])
+}
 
-/// Not the machine that the job states.
-const PLANT: &str = "ktc_n_per_mm2 = 900\nkrc_n_per_mm2 = 250\nkte_n_per_mm = 10\nkre_n_per_mm = 13\n\
-    size_exponent = 0.15\ncompliance_mm_per_n = [[0.0006, 0.00002], [0.00002, 0.0005]]\nbend = 0.1\n\
-    probe_noise_mm = 0.001\nseed = 3\n";
-
-struct Desk(tempfile::TempDir);
-
-impl Desk {
-    fn new(program: &str) -> Self {
-        let desk = Self(tempfile::tempdir().expect("a folder"));
-        desk.write("part.nc", program);
-        desk.write("job.toml", JOB);
-        desk.write("plant.toml", PLANT);
-        desk
-    }
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-    fn write(&self, name: &str, text: &str) {
-        fs::write(self.path().join(name), text).expect("written");
-    }
-    fn read(&self, name: &str) -> String {
-        fs::read_to_string(self.path().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
-    }
-    /// Runs a command; its summary, or what it said.
-    fn run(&self, arguments: &str) -> Result<Value, String> {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_truepath"));
-        let done = command.arg("--json").args(arguments.split(' ')).current_dir(self.path()).output().expect("it runs");
-        match done.status.code() {
-            Some(0) => Ok(serde_json::from_slice(&done.stdout).expect("JSON")),
-            _ => Err(String::from_utf8_lossy(&done.stderr).into_owned()),
-        }
-    }
-    fn call(&self, arguments: &str) -> Value {
-        self.run(arguments).unwrap_or_else(|said| panic!("{arguments}: {said}"))
-    }
-    /// Probing program, first part and its points.
-    fn first_part(&self) -> Value {
-        self.call("probe job.toml --dialect linuxcnc -o verify.nc");
-        self.call("simulate job.toml --plant plant.toml --touch verify.nc -o first")
-    }
+/// Probing program, first part and its points.
+fn first_part(desk: &Workplace) -> Value {
+    desk.call("probe job.toml --dialect linuxcnc -o verify.nc");
+    desk.call("simulate job.toml --plant plant.toml --touch verify.nc -o first")
 }
 
 /// Largest wall errors of the contours of a simulation, mm.
@@ -69,7 +31,7 @@ fn errors(summary: &Value) -> Vec<f64> {
 
 #[test]
 fn every_contour_is_touched_corrected_together_and_better() {
-    let desk = Desk::new(POCKET_AND_ISLAND);
+    let desk = workplace(POCKET_AND_ISLAND);
     let plan = desk.call("probe job.toml --dialect linuxcnc -o verify.nc");
     let mut places: Vec<(String, String)> = Vec::new();
     for point in plan["points"].as_array().expect("points") {
@@ -105,8 +67,8 @@ fn every_contour_is_touched_corrected_together_and_better() {
 
 #[test]
 fn a_contour_that_nobody_touched_keeps_its_bytes_and_the_part_does_not_pass() {
-    let desk = Desk::new(POCKET_AND_ISLAND);
-    desk.first_part();
+    let desk = workplace(POCKET_AND_ISLAND);
+    first_part(&desk);
     desk.call("probe job.toml --feature contour-1 --dialect linuxcnc -o one.nc");
     desk.call("simulate job.toml --plant plant.toml --touch one.nc -o only");
     let done = desk.call("correct job.toml --probe only/probe.txt -o out");
@@ -149,8 +111,8 @@ fn changed(log: &str, change: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> String {
 
 #[test]
 fn a_wild_touch_spoils_nothing_and_a_wrong_unit_is_named() {
-    let desk = Desk::new(POCKET_AND_ISLAND);
-    desk.first_part();
+    let desk = workplace(POCKET_AND_ISLAND);
+    first_part(&desk);
     let log = desk.read("first/probe.txt");
     let count = log.lines().filter(|l| !l.starts_with('#')).count();
     // The last two readings, of the contour with fewest of them, are two millimetres off.
@@ -213,12 +175,12 @@ fn placed(map: impl Fn([i64; 2]) -> [i64; 2], ccw: bool) -> String {
 
 #[test]
 fn together_turned_and_shifted_they_are_corrected_to_the_last_bit_alike() {
-    let plain = Desk::new(&placed(|p| p, true));
-    plain.first_part();
+    let plain = workplace(&placed(|p| p, true));
+    first_part(&plain);
     plain.call("correct job.toml --probe first/probe.txt -o out");
     let log = plain.read("first/probe.txt");
     // A quarter turn about the origin, then a shift; the readings and their nominal places alike.
-    let turned = Desk::new(&placed(|[x, y]| [-y + 7_000, x - 13_000], true));
+    let turned = workplace(&placed(|[x, y]| [-y + 7_000, x - 13_000], true));
     let line = |line: &str| {
         let mut f: Vec<String> = line.split(',').map(str::to_owned).collect();
         if f.len() == 9 && !line.starts_with('#') {
@@ -234,7 +196,7 @@ fn together_turned_and_shifted_they_are_corrected_to_the_last_bit_alike() {
     turned.write("probe.txt", &log.lines().map(line).collect::<String>());
     turned.call("correct job.toml --probe probe.txt -o out");
     for contour in ["contour-1", "contour-2"] {
-        let rows = |desk: &Desk| -> Vec<Vec<String>> {
+        let rows = |desk: &Workplace| -> Vec<Vec<String>> {
             let text = desk.read(&format!("out/contours/{contour}/correction.csv"));
             text.lines().skip(1).map(|l| l.split(',').map(str::to_owned).collect()).collect()
         };
@@ -255,17 +217,17 @@ fn together_turned_and_shifted_they_are_corrected_to_the_last_bit_alike() {
 #[test]
 fn cutters_and_roughing_the_other_way_are_asked_about() {
     let two = POCKET_AND_ISLAND.replace("G0 Z10\nX28 Y31", "G0 Z10\nT3 M6\nG0 X28 Y31");
-    let desk = Desk::new(&two);
+    let desk = workplace(&two);
     let said = desk.run("probe job.toml --dialect linuxcnc -o verify.nc").expect_err("two cutters");
     assert!(said.contains("G071") && said.contains("number in [tool]"), "{said}");
-    desk.write("job.toml", &JOB.replace("[tool]", "[tool]\nnumber = 3"));
+    desk.write("job.toml", pocket_job(7.0, 2300).replace("[tool]", "[tool]\nnumber = 3"));
     let plan = desk.call("probe job.toml --dialect linuxcnc -o verify.nc");
     assert!(plan["points"].as_array().expect("points").iter().all(|p| p["line"].as_u64() > Some(19)), "{plan}");
 
     // A straight wall, roughed against the direction of finishing, half a millimetre before it.
     let legs = "G21 G90 G17\nT1 M6\nS4000 M3\nG0 X-5.5 Y60 Z10\nG1 Z-7 F500\nG1 Y0 F600\nG1 X-5.5 Y-20\nG0 Z10\nX-5 Y-20\n\
         G1 Z-7 F500\nG1 Y60 F600\nG0 Z10\nM30\n";
-    let desk = Desk::new(legs);
+    let desk = workplace(legs);
     let said = desk.run("probe job.toml --dialect linuxcnc -o verify.nc").expect_err("one may be roughing");
     assert!(said.contains("G071") && said.contains("roughing of the other"), "{said}");
     desk.call("probe job.toml --feature contour-2 --dialect linuxcnc -o verify.nc");
@@ -276,7 +238,7 @@ fn a_contour_that_cannot_be_read_does_not_keep_the_others_from_being_corrected()
     // The island is cut at a feed per revolution of a spindle that stands.
     let island = POCKET_AND_ISLAND
         .replace("X28 Y31\nG1 Z-7 F300\nG3 X30 Y29 I2 J0 F700", "M5\nX28 Y31\nG1 Z-7 F300\nG3 X30 Y29 I2 J0 F700\nS0");
-    let desk = Desk::new(&island);
+    let desk = workplace(&island);
     let plan = desk.call("probe job.toml --dialect linuxcnc -o verify.nc");
     assert!(plan["warnings"].to_string().contains("contour-2 is left as it is"), "{}", plan["warnings"]);
 }

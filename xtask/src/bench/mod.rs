@@ -4,8 +4,7 @@
 //! release build and are the same on every repeat. Neither is a number of cycles on a microcontroller.
 
 pub mod long;
-pub mod multiaxis;
-pub mod reading;
+pub mod rates;
 pub mod table;
 
 use std::process::{Child, Command, Stdio};

@@ -3,7 +3,7 @@
 pub mod budget;
 mod document;
 pub mod elf;
-mod emulator;
+pub mod emulator;
 mod image;
 mod linker;
 mod rate;

@@ -1,12 +1,9 @@
 //! What the runs need, and the comparison of the three ways to run.
 
 use super::program::{Parts, Program, Run};
-use crate::firmware::Board;
-use crate::repository::{may_install, program as command, succeeds};
+use crate::firmware::{Board, emulator};
 use crate::step::Failure;
-use crate::toolchain::{Toolchain, install};
-
-const QEMU: &str = "qemu-system-arm";
+use crate::toolchain::Toolchain;
 
 /// Runs whose digests have to be equal everywhere: part, kind and number of setpoints, other options; together above
 /// 10⁶ setpoints.
@@ -54,11 +51,7 @@ impl Bench {
     /// # Errors
     /// Something does not build, or the emulator is missing.
     pub fn set_up(release: bool) -> Result<Self, Failure> {
-        let there = || succeeds(command(QEMU).arg("--version"));
-        let installed = || may_install() && install(&[QEMU]).is_ok() && there();
-        if !(there() || installed()) {
-            return Err(Failure::Missing(format!("no emulator of the virtual board: apt-get install {QEMU}")));
-        }
+        emulator::command()?;
         let elf = Board::Virtual.image().build(&Toolchain::find()?, &[])?;
         let debug = Program::build(false)?;
         let release = release.then(|| Program::build(true)).transpose()?;

@@ -7,7 +7,6 @@ mod machine;
 mod notes;
 mod parts;
 mod proof;
-mod python;
 mod recording;
 mod route_b;
 mod story;

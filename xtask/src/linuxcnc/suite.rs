@@ -12,9 +12,9 @@ use super::notes::{self, Notes};
 use super::parts::Parts;
 use super::recording::{JOINTS, Recording, Row};
 use super::verdict::{self, Verdict};
-use super::{install, python, timing};
+use super::{install, timing};
 use crate::bench::table::replace;
-use crate::repository::root;
+use crate::repository::{program, root, run as run_command};
 use crate::step::{Failure, Outcome};
 
 /// Servo periods per second of the sample machine.
@@ -34,7 +34,7 @@ pub fn run(only: Option<&str>, write: bool) -> Outcome {
         let names: Vec<&str> = ALL.iter().map(|s| s.name).collect();
         return Err(Failure::found(format!("there is no such scenario; there are: {}", names.join(", "))));
     }
-    python::check()?;
+    operators_component()?;
     install::component_if_changed()?;
     let sample = Sample::fresh("machine")?;
     let parts = Parts::make(&sample)?;
@@ -70,6 +70,13 @@ pub fn run(only: Option<&str>, write: bool) -> Outcome {
         replace(&root().join(DOCUMENT), "scenarios", &verdict::document(&verdicts))?;
     }
     Ok(outcome)
+}
+
+/// The tests of the operator's component, which need no LinuxCNC: Python's own `unittest`.
+fn operators_component() -> Result<(), Failure> {
+    let folder = root().join("linuxcnc/tests");
+    // Without the folders of compiled files, which would lie among the sources.
+    run_command(program("python3").args(["-B", "-m", "unittest", "discover", "--quiet", "-s"]).arg(folder))
 }
 
 /// What recordings are judged by.

@@ -1,8 +1,9 @@
 //! Programs → canonical moves: order of execution, what is known of a position, and the bytes each step comes from.
 
+use crate::interpret::interpret;
 use truepath_rs274::{
-    Axes, Canon, Coolant, DeviceMemory, GcodeErrorKind, Interpreter, Lines, Options, PathControl, Plane, Spindle,
-    Token, ToolLength, Units, Words,
+    Axes, Canon, Coolant, DeviceMemory, GcodeErrorKind, Lines, Options, PathControl, Plane, Spindle, Token, ToolLength,
+    Units, Words,
 };
 use truepath_units::{Offset, Position, Real};
 
@@ -10,7 +11,7 @@ const P18: &[u8] = include_bytes!("../data/p18-corner.nc");
 
 fn steps(program: &[u8]) -> Vec<(u32, Canon)> {
     let mut steps = Vec::new();
-    let run = Interpreter::new(Options::default()).run(program, &mut DeviceMemory::new().lend(), &mut |event| {
+    let run = interpret(Options::default(), program, &mut DeviceMemory::new().lend(), &mut |event| {
         steps.push((event.source.line, event.canon));
         Ok(())
     });
@@ -128,24 +129,23 @@ fn a_writer_can_change_one_word_and_keep_every_other_byte() {
     // The X of every cutting move becomes `X9`; everything else stays, byte for byte.
     let mut written = Vec::new();
     let mut kept = 0;
-    Interpreter::new(Options::default())
-        .run(P18, &mut DeviceMemory::new().lend(), &mut |event| {
-            let Canon::Feed { from, to } = event.canon else { return Ok(()) };
-            let line = Lines::new(P18).nth(event.source.line as usize - 1).ok_or(GcodeErrorKind::NoMotion)?;
-            assert_eq!(line.span(), event.source.block);
-            for token in Words::new(line) {
-                if let Ok(Token::Word(word)) = token
-                    && word.letter == b'X'
-                    && from.z == to.z
-                {
-                    written.extend_from_slice(&P18[kept..word.span.start]);
-                    written.extend_from_slice(b"X9");
-                    kept = word.span.end();
-                }
+    interpret(Options::default(), P18, &mut DeviceMemory::new().lend(), &mut |event| {
+        let Canon::Feed { from, to } = event.canon else { return Ok(()) };
+        let line = Lines::new(P18).nth(event.source.line as usize - 1).ok_or(GcodeErrorKind::NoMotion)?;
+        assert_eq!(line.span(), event.source.block);
+        for token in Words::new(line) {
+            if let Ok(Token::Word(word)) = token
+                && word.letter == b'X'
+                && from.z == to.z
+            {
+                written.extend_from_slice(&P18[kept..word.span.start]);
+                written.extend_from_slice(b"X9");
+                kept = word.span.end();
             }
-            Ok(())
-        })
-        .expect("readable");
+        }
+        Ok(())
+    })
+    .expect("readable");
     written.extend_from_slice(&P18[kept..]);
     let text = String::from_utf8_lossy(P18);
     let expected = text.replace("G01 X34. Y35. F250.", "G01 X9 Y35. F250.").replace("G01 X90.", "G01 X9");
@@ -156,9 +156,7 @@ fn a_writer_can_change_one_word_and_keep_every_other_byte() {
 fn what_the_receiver_refuses_is_an_error_at_its_block() {
     let program = b"G21 G90\n  G0 X1 (one)\nM2";
     let refused =
-        Interpreter::new(Options::default()).run(program, &mut DeviceMemory::new().lend(), &mut |event| match event
-            .canon
-        {
+        interpret(Options::default(), program, &mut DeviceMemory::new().lend(), &mut |event| match event.canon {
             Canon::Traverse { .. } => Err(GcodeErrorKind::NoContour),
             _ => Ok(()),
         });

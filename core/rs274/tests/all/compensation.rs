@@ -5,9 +5,10 @@
 //! their sense, end of the third axis), or `error LINE` where it stopped.
 #![allow(clippy::unwrap_used, clippy::arithmetic_side_effects, clippy::indexing_slicing, clippy::panic)]
 
+use crate::interpret::interpret;
 use std::path::{Path, PathBuf};
 
-use truepath_rs274::{Axes, Canon, CompensationBy, DeviceMemory, GcodeError, Interpreter, Options, Plane, Tool, Units};
+use truepath_rs274::{Axes, Canon, CompensationBy, DeviceMemory, GcodeError, Options, Plane, Tool, Units};
 use truepath_units::geometry::Point;
 use truepath_units::{Offset, Position};
 
@@ -39,7 +40,7 @@ fn run(program: &[u8]) -> (Vec<Move>, Option<GcodeError>) {
     let mut moves = Vec::new();
     let options =
         Options { start: Axes::ORIGIN, compensation: CompensationBy::Table, tools: &TOOLS, ..Options::default() };
-    let answer = Interpreter::new(options).run(program, &mut DeviceMemory::new().lend(), &mut |event| {
+    let answer = interpret(options, program, &mut DeviceMemory::new().lend(), &mut |event| {
         let unit = if event.modal.units == Units::Inches { 25.4e6 } else { 1e6 };
         let number = |p: Position| p.nm() as f64 / unit;
         let place = |at: Axes| [at.x, at.y, at.z].map(|p| p.map_or(f64::NAN, number)).to_vec();

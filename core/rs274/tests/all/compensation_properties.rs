@@ -1,8 +1,9 @@
 //! Whatever stands between G41 and G40: the cutter's path has no gap, keeps its steps in order, and nothing panics.
 #![allow(clippy::unwrap_used, clippy::arithmetic_side_effects, clippy::indexing_slicing, clippy::panic)]
 
+use crate::interpret::interpret;
 use proptest::prelude::*;
-use truepath_rs274::{Axes, Canon, DeviceMemory, GcodeError, GcodeErrorKind, Interpreter, Options};
+use truepath_rs274::{Axes, Canon, DeviceMemory, GcodeError, GcodeErrorKind, Options};
 
 /// What is seen of a run: moves, comments and feeds in their order.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +16,7 @@ enum Seen {
 fn run(program: &str) -> (Vec<Seen>, Result<(), GcodeError>) {
     let mut seen = Vec::new();
     let options = Options { start: Axes::ORIGIN, ..Options::default() };
-    let result = Interpreter::new(options).run(program.as_bytes(), &mut DeviceMemory::new().lend(), &mut |event| {
+    let result = interpret(options, program.as_bytes(), &mut DeviceMemory::new().lend(), &mut |event| {
         match event.canon {
             Canon::Traverse { from, to } | Canon::Feed { from, to } | Canon::Arc { from, to, .. } => {
                 seen.push(Seen::Move { line: event.source.line, from, to });

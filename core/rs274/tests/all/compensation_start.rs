@@ -1,6 +1,7 @@
 //! Where G41 and G42 begin and end on controls with start-up type A, and whose radius counts.
 
-use truepath_rs274::{Axes, Canon, CompensationBy, DeviceMemory, Dialect, GcodeError, Interpreter, Options};
+use crate::interpret::interpret;
+use truepath_rs274::{Axes, Canon, CompensationBy, DeviceMemory, Dialect, GcodeError, Options};
 use truepath_units::{Offset, Position};
 
 const FIVE: CompensationBy = CompensationBy::Radius(Offset::from_um(5_000));
@@ -11,7 +12,7 @@ const OWN: [Dialect; 2] = [Dialect::Linuxcnc, Dialect::Mach];
 fn moves(program: &str, dialect: Dialect, compensation: CompensationBy) -> Result<String, GcodeError> {
     let mut moves = Vec::new();
     let options = Options { start: Axes::ORIGIN, dialect, compensation, ..Options::default() };
-    Interpreter::new(options).run(program.as_bytes(), &mut DeviceMemory::new().lend(), &mut |event| {
+    interpret(options, program.as_bytes(), &mut DeviceMemory::new().lend(), &mut |event| {
         let tenths = |p: Option<Position>| p.map_or("?".to_owned(), |p| format!("{}", p.nm() / 100_000));
         let place = |at: Axes| [at.x, at.y, at.z].map(tenths).join(",");
         match event.canon {

@@ -2,8 +2,9 @@
 //! programs give shifted, turned and mirrored corners to the last bit. The table's places follow from
 //! t = r · tan(θ/2), computed outside of this crate with 20 digits.
 
+use crate::interpret::interpret;
 use proptest::prelude::*;
-use truepath_rs274::{Axes, Canon, CompensationBy, DeviceMemory, GcodeError, Interpreter, Options, Plane};
+use truepath_rs274::{Axes, Canon, CompensationBy, DeviceMemory, GcodeError, Options, Plane};
 use truepath_units::{Offset, Position};
 
 /// A line or an arc: its kind (`F`, `T`, `L` for G2, `R` for G3), line of the program, end, centre; nanometres.
@@ -12,7 +13,7 @@ type Move = (char, u32, [i64; 2], [i64; 2]);
 fn run(program: &str, options: Options<'_>) -> Result<Vec<Move>, GcodeError> {
     let mut moves = Vec::new();
     let mut memory = DeviceMemory::new();
-    Interpreter::new(options).run(program.as_bytes(), &mut memory.lend(), &mut |event| {
+    interpret(options, program.as_bytes(), &mut memory.lend(), &mut |event| {
         let at = |to: Axes, [a, b]: [usize; 2]| [a, b].map(|axis| to.get(axis).map_or(i64::MAX, Position::nm));
         let turn = |counter_clockwise: bool| if counter_clockwise { 'R' } else { 'L' };
         let line = event.source.line;
@@ -163,27 +164,26 @@ fn what_stands_between_the_two_lines_comes_behind_the_corner_in_its_order() {
     let program = "G21 G90 F100\nG0 X0 Y0 Z0\nG1 X50 ,R10\n(turn) F50\nS900 M3\nY40\nM30";
     let mut seen = String::new();
     let mut memory = DeviceMemory::new();
-    Interpreter::new(Options::default())
-        .run(program.as_bytes(), &mut memory.lend(), &mut |event| {
-            if event.source.line > 2 {
-                seen.push(match event.canon {
-                    Canon::Feed { .. } => 'f',
-                    Canon::Arc { .. } => 'a',
-                    Canon::Comment(_) => 'c',
-                    Canon::FeedRate(_) => 'F',
-                    Canon::SpindleSpeed(_) => 'S',
-                    Canon::Spindle(_) => 'M',
-                    Canon::End(_) => 'E',
-                    _ => '?',
-                });
-                // The arc is cut at the feed of its block.
-                if let Canon::Arc { .. } = event.canon {
-                    assert_eq!(event.modal.feed.map(truepath_units::Real::bits), Some(100 << 32));
-                }
+    interpret(Options::default(), program.as_bytes(), &mut memory.lend(), &mut |event| {
+        if event.source.line > 2 {
+            seen.push(match event.canon {
+                Canon::Feed { .. } => 'f',
+                Canon::Arc { .. } => 'a',
+                Canon::Comment(_) => 'c',
+                Canon::FeedRate(_) => 'F',
+                Canon::SpindleSpeed(_) => 'S',
+                Canon::Spindle(_) => 'M',
+                Canon::End(_) => 'E',
+                _ => '?',
+            });
+            // The arc is cut at the feed of its block.
+            if let Canon::Arc { .. } = event.canon {
+                assert_eq!(event.modal.feed.map(truepath_units::Real::bits), Some(100 << 32));
             }
-            Ok(())
-        })
-        .unwrap();
+        }
+        Ok(())
+    })
+    .unwrap();
     assert_eq!(seen, "facFSMfE");
 }
 

@@ -1,13 +1,14 @@
 //! Lengths without a point, as calculators and as controls set to least increments read them; M99 in a main program.
 
-use truepath_rs274::{Axes, Canon, DeviceMemory, Dialect, GcodeError, Interpreter, Options, PointlessLength, Warning};
+use crate::interpret::interpret;
+use truepath_rs274::{Axes, Canon, DeviceMemory, Dialect, GcodeError, Options, PointlessLength, Warning};
 use truepath_units::Position;
 
 /// The end of the last move in nanometres, F in 2⁻³² and the warnings from `W014` on.
 fn end(program: &str, options: Options<'_>) -> Result<([i64; 3], i64, Vec<Warning>), GcodeError> {
     let (mut at, mut feed) = (Axes::UNKNOWN, 0);
     let mut memory = DeviceMemory::new();
-    let summary = Interpreter::new(options).run(program.as_bytes(), &mut memory.lend(), &mut |event| {
+    let summary = interpret(options, program.as_bytes(), &mut memory.lend(), &mut |event| {
         if let Canon::Traverse { to, .. } | Canon::Feed { to, .. } | Canon::Arc { to, .. } = event.canon {
             at = to;
         }
@@ -80,8 +81,8 @@ fn a_main_program_that_repeats_itself_is_read_once_with_a_warning_of_its_own() {
         let mut memory = DeviceMemory::new();
         let mut moves = 0;
         let program = b"%\nO1\nG21 G91 F100.\nG1 X1.\nM98 P2\nM99\nO2\nG1 X1.\nM99\n%\n";
-        let summary = Interpreter::new(Options { start: Axes::ORIGIN, ..options })
-            .run(program, &mut memory.lend(), &mut |event| {
+        let summary =
+            interpret(Options { start: Axes::ORIGIN, ..options }, program, &mut memory.lend(), &mut |event| {
                 moves += i32::from(matches!(event.canon, Canon::Feed { .. }));
                 Ok(())
             })

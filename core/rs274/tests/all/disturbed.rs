@@ -4,11 +4,12 @@
 //! for each kind of disturbance one character a place, from before the first byte to behind the last: `=` the stream of the
 //! undisturbed program, `!` refused, `a` … another stream, which is listed.
 
+use crate::interpret::interpret;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use truepath_rs274::{Axes, Canon, Comment, CommentKind, Dialect, GcodeError, HostMemory, Interpreter, Options};
+use truepath_rs274::{Axes, Canon, Comment, CommentKind, Dialect, GcodeError, HostMemory, Options};
 use truepath_units::{Offset, Position};
 
 /// What is put between two bytes.
@@ -133,7 +134,7 @@ fn ours(program: &[u8], dialect: Dialect) -> (String, Option<GcodeError>) {
     };
     let mut said = String::new();
     let mm = |p: Option<Position>| p.map_or(f64::NAN, |p| p.nm() as f64 / 1e6);
-    let run = Interpreter::new(options).run(program, &mut buffers.lend(), &mut |event| {
+    let run = interpret(options, program, &mut buffers.lend(), &mut |event| {
         let written = match event.canon {
             Canon::Traverse { to, .. } => write!(said, "T{:.3},{:.3},{:.3}|", mm(to.x), mm(to.y), mm(to.z)),
             Canon::Feed { to, .. } => write!(said, "F{:.3},{:.3},{:.3}|", mm(to.x), mm(to.y), mm(to.z)),

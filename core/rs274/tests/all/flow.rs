@@ -1,17 +1,17 @@
 //! Parameters, expressions, subprograms and loops against what LinuxCNC's `rs274` (2.9) says of the same programs, and
 //! their limits.
 
+use crate::interpret::interpret;
 use proptest::prelude::*;
 use truepath_rs274::{
-    Axes, Canon, Comment, CommentKind, Dialect, GcodeError, HostMemory, Interpreter, Library, LibraryFile, Options,
-    Program,
+    Axes, Canon, Comment, CommentKind, Dialect, GcodeError, HostMemory, Library, LibraryFile, Options, Program,
 };
 
 /// What a program says: its messages, and `x y z` in millimetres for every move.
 fn said_with(program: &Program<'_>, options: Options<'_>) -> (Vec<String>, Option<GcodeError>) {
     let mut memory = Box::new(HostMemory::new());
     let mut said = Vec::new();
-    let run = Interpreter::new(options).run(*program, &mut memory.lend(), &mut |event| {
+    let run = interpret(options, *program, &mut memory.lend(), &mut |event| {
         match event.canon {
             Canon::Comment(body) => {
                 let comment = Comment::of(body.of(event.text));

@@ -1,6 +1,7 @@
 //! Moves of a machine whose offsets and tools are known, against what LinuxCNC's interpreter printed for the same blocks.
 
-use truepath_rs274::{Axes, Canon, DeviceMemory, Interpreter, Machine, Modal, Options, Tool, Units};
+use crate::interpret::interpret;
+use truepath_rs274::{Axes, Canon, DeviceMemory, Machine, Modal, Options, Tool, Units};
 use truepath_units::Offset;
 
 const INCH: i64 = 25_400_000;
@@ -26,7 +27,7 @@ fn moves(program: &str) -> Result<Vec<String>, String> {
             [to.x, to.y, to.z].map(|p| format!("{:.4}", p.map_or(f64::NAN, |p| p.nm() as f64 / unit) + 0.0));
         format!("{x} {y} {z}").replace("-0.0000", "0.0000")
     };
-    let run = Interpreter::new(options).run(program.as_bytes(), &mut memory.lend(), &mut |event| {
+    let run = interpret(options, program.as_bytes(), &mut memory.lend(), &mut |event| {
         let (kind, to) = match event.canon {
             Canon::Traverse { to, .. } => ("T", to),
             Canon::Feed { to, .. } => ("F", to),

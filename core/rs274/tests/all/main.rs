@@ -10,6 +10,7 @@ mod decimal;
 mod disturbed;
 mod errors;
 mod flow;
+mod interpret;
 mod machine;
 mod properties;
 mod search;

@@ -1,8 +1,9 @@
 //! What posts and machinists write beyond the book: the smallest program of each, how it is read, and its warning.
 
+use crate::interpret::interpret;
 use truepath_rs274::{
-    ArcCentres, Axes, Canon, ContourOptions, DeviceMemory, Dialect, GcodeError, Interpreter, Machine, Options, Program,
-    Units, WarningKind, find_contours, read_contour,
+    ArcCentres, Axes, Canon, ContourOptions, DeviceMemory, Dialect, GcodeError, Machine, Options, Program, Units,
+    WarningKind, find_contours, read_contour,
 };
 use truepath_units::geometry::Block;
 use truepath_units::{Offset, Position};
@@ -19,7 +20,7 @@ fn read_with(program: &str, options: Options<'_>) -> Result<(String, Vec<&'stati
     let mut moves = Vec::new();
     let tenths = |p: Option<Position>| p.map_or("?".to_owned(), |p| format!("{}", p.nm() / 100_000));
     let place = |at: Axes| [at.x, at.y, at.z].map(tenths).join(",");
-    let run = Interpreter::new(options).run(program.as_bytes(), &mut DeviceMemory::new().lend(), &mut |event| {
+    let run = interpret(options, program.as_bytes(), &mut DeviceMemory::new().lend(), &mut |event| {
         match event.canon {
             Canon::Traverse { to, .. } => moves.push(format!("T{}", place(to))),
             Canon::Feed { to, .. } => moves.push(format!("F{}", place(to))),
@@ -196,14 +197,11 @@ fn further_work_offsets_of_a_haas_are_those_of_g154() {
     let offset = |code: &str| {
         let mut offset = 0;
         let program = format!("G21 {code}\nG0 X1. Y1.\nM30");
-        let run = Interpreter::new(options(Dialect::Haas)).run(
-            program.as_bytes(),
-            &mut DeviceMemory::new().lend(),
-            &mut |event| {
+        let run =
+            interpret(options(Dialect::Haas), program.as_bytes(), &mut DeviceMemory::new().lend(), &mut |event| {
                 offset = event.modal.work_offset;
                 Ok(())
-            },
-        );
+            });
         run.map(|_| offset).map_err(|e| e.kind.code())
     };
     assert_eq!(offset("G110"), offset("G154 P1"));
@@ -284,7 +282,8 @@ fn the_tools_origins_and_dynamics_of_siemens_own_language_are_read() {
     is_refused(&others, "G21 G0 G153 Z0", "G032");
     // The tool that has no number is not the one before it.
     let mut tools = Vec::new();
-    let run = Interpreter::new(options(Dialect::Siemens)).run(
+    let run = interpret(
+        options(Dialect::Siemens),
         b"T3 M6\nT=\"B\" M6\nM30",
         &mut DeviceMemory::new().lend(),
         &mut |event| {
@@ -300,16 +299,13 @@ fn the_tools_origins_and_dynamics_of_siemens_own_language_are_read() {
 #[test]
 fn the_second_tool_beside_m6_is_the_next_one() {
     let mut tools = Vec::new();
-    let run = Interpreter::new(options(Dialect::Fanuc)).run(
-        b"T07 T11 M06\nM6\nM30",
-        &mut DeviceMemory::new().lend(),
-        &mut |event| {
+    let run =
+        interpret(options(Dialect::Fanuc), b"T07 T11 M06\nM6\nM30", &mut DeviceMemory::new().lend(), &mut |event| {
             if let Canon::ChangeTool(tool) = event.canon {
                 tools.push(tool);
             }
             Ok(())
-        },
-    );
+        });
     assert_eq!((run.is_ok(), tools), (true, vec![Some(7), Some(11)]));
     is_refused(&ALL, "T7 T11", "G022");
     is_refused(&[Dialect::Linuxcnc, Dialect::Haas], "T7 T11 M6", "G022");

@@ -1,6 +1,94 @@
-//! What a draft holds.
+//! What a draft holds: the keys of a job in the making, and the contours of its program.
 
-use super::entry::Entry;
+/// Where a value comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Origin {
+    /// It belongs to every job.
+    Fixed,
+    /// The program shows it.
+    Program,
+    /// Nobody has said it.
+    Default,
+    /// The user said it.
+    Given,
+    /// Nobody has said it, and it is left out: what is taken then is wide.
+    Left,
+    /// Nobody has said it, and nothing can be taken for it.
+    Open,
+}
+
+/// A key with its value.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Entry {
+    /// With its table.
+    pub key: String,
+    /// As TOML; of what is open or left out, a proposal or nothing.
+    pub value: String,
+    /// Where it comes from.
+    pub origin: Origin,
+    /// In words.
+    pub why: String,
+    /// The line of the program that shows it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<u32>,
+    /// Whether the user should look at it before metal is cut.
+    pub check: bool,
+}
+
+impl Entry {
+    fn new(key: &str, value: &str, origin: Origin, why: &str) -> Self {
+        let (key, value, why) = (key.to_owned(), value.to_owned(), why.to_owned());
+        Self { key, value, origin, why, line: None, check: false }
+    }
+    pub(super) fn fixed(key: &str, value: &str) -> Self {
+        Self::new(key, value, Origin::Fixed, "")
+    }
+    pub(super) fn given(key: &str, value: &str) -> Self {
+        Self::new(key, &toml_value(value), Origin::Given, "as you said")
+    }
+    /// Shown by a line of the program; 0 for none.
+    pub(super) fn read(key: &str, value: &str, why: &str, line: u32) -> Self {
+        Self::new(key, value, Origin::Program, why).at_line(Some(line).filter(|line| *line > 0))
+    }
+    pub(super) fn default(key: &str, value: &str, why: &str, check: bool) -> Self {
+        Self { check, ..Self::new(key, value, Origin::Default, why) }
+    }
+    pub(super) fn open(key: &str, proposal: &str, why: &str) -> Self {
+        Self { check: true, ..Self::new(key, proposal, Origin::Open, why) }
+    }
+    pub(super) fn left(key: &str, why: &str) -> Self {
+        Self::new(key, "", Origin::Left, why)
+    }
+    pub(super) fn at_line(self, line: Option<u32>) -> Self {
+        Self { line, ..self }
+    }
+    pub(super) fn doubtful(self) -> Self {
+        Self { check: true, ..self }
+    }
+
+    /// The name of its table, empty at the top of the file, and the key in it.
+    pub fn place(&self) -> (&str, &str) {
+        self.key.split_once('.').unwrap_or(("", &self.key))
+    }
+
+    /// Why it stands there, for the comment behind it.
+    pub fn reason(&self) -> String {
+        let line = self.line.map_or_else(String::new, |line| format!("line {line}: "));
+        match self.origin {
+            Origin::Default => format!("default, please check: {}", self.why),
+            Origin::Program if self.check => format!("{line}{}; please check", self.why),
+            _ => format!("{line}{}", self.why),
+        }
+    }
+}
+
+/// A value as TOML has it: what is no number, list or word of TOML is a text.
+pub(super) fn toml_value(value: &str) -> String {
+    let plain = value.trim();
+    let is_toml = !plain.contains(['\n', '\r']) && format!("x = {plain}").parse::<toml::Table>().is_ok();
+    if is_toml { plain.to_owned() } else { toml::Value::String(plain.to_owned()).to_string() }
+}
 
 /// A finishing contour of the program.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]

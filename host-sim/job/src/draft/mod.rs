@@ -12,13 +12,11 @@
 //! | the text of the file | `text` |
 
 mod contents;
-mod entry;
 mod side;
 mod text;
 
-pub use contents::{ContourNote, Draft};
-use entry::toml_value;
-pub use entry::{Entry, Origin};
+use contents::toml_value;
+pub use contents::{ContourNote, Draft, Entry, Origin};
 
 use std::collections::BTreeMap;
 use std::path::Path;

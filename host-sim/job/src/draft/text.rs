@@ -2,8 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::contents::Draft;
-use super::entry::{Entry, Origin};
+use super::contents::{Draft, Entry, Origin};
 
 /// Tables in the order of the file.
 const TABLES: [&str; 11] =

@@ -109,6 +109,30 @@ pub struct Which {
     pub pass: Option<u32>,
 }
 
+/// What the command line of a command that reads a probe file says in place of the job.
+#[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
+pub struct Said {
+    /// Of the probe file.
+    #[command(flatten)]
+    pub probe: ProbeFlags,
+    /// Which cut of the program.
+    #[command(flatten)]
+    pub which: Which,
+}
+
+impl Said {
+    /// A job with this in force.
+    ///
+    /// # Errors
+    /// As [`JobFile::read`] and [`JobFile::override_probe`].
+    pub fn read(&self, job: &std::path::Path) -> Result<JobFile, InputError> {
+        let mut job = JobFile::read(job)?;
+        job.override_probe(&self.probe)?;
+        job.which = self.which.clone();
+        Ok(job)
+    }
+}
+
 /// Where the correction is applied; a job is corrected in one place only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Route {

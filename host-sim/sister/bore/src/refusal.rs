@@ -1,5 +1,9 @@
 //! Why a bore cannot be computed, with the limit it met.
 
+use truepath_ground::diagnostics::Failure;
+
+use super::codes::{B001, B002, B003, B004, B005, B006};
+
 /// What is wrong with the numbers of a bore.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
@@ -67,6 +71,22 @@ impl Refusal {
     /// [`Refusal::Range`] for any other.
     pub fn unless_in(name: &'static str, unit: &'static str, found: f64, low: f64, high: f64) -> Result<(), Self> {
         if (low..=high).contains(&found) { Ok(()) } else { Err(Self::Range { name, unit, found, low, high }) }
+    }
+}
+
+impl From<Refusal> for Failure {
+    /// The error with its code, what was expected and what to do.
+    fn from(refusal: Refusal) -> Self {
+        let (row, expected) = match &refusal {
+            Refusal::Range { unit, low, high, .. } => (B001, format!("{low} to {high}{}{unit}", gap(unit))),
+            Refusal::NoRelativeTurn => (B002, "a cutter that turns against its path".to_owned()),
+            Refusal::Apart { .. } => (B003, "passes of every tooth that meet".to_owned()),
+            Refusal::Passes { limit, .. } => (B004, format!("at most {limit}")),
+            Refusal::Comparisons { limit } => (B005, format!("at most {limit} steps")),
+            Refusal::OutOfReach { .. } => (B006, "a height within reach".to_owned()),
+            Refusal::Unfinished => return Self::Internal(refusal.to_string()),
+        };
+        row.error(refusal.to_string(), expected).into()
     }
 }
 

@@ -6,7 +6,6 @@ use truepath_bore::{depth, picture, tables};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::{OutputFolder, json};
 
-use super::refused::refused;
 use super::summary::BoreSummary;
 
 /// Files this command may write.
@@ -76,7 +75,7 @@ fn patch(setup: &Setup, profile: &Profile, depth_mm: f64) -> Result<Grid, Failur
     let steps = |count: usize| (0..=count).map(move |n| n as f64 / count as f64);
     let z_mm: Vec<f64> = steps(72).map(|s| s * depth_mm).collect();
     let rays: Vec<f64> = steps(96).map(|s| middle + half * (2.0 * s - 1.0)).collect();
-    let radii = depth::surface(setup, &z_mm, &rays).map_err(|e| refused(&e))?;
+    let radii = depth::surface(setup, &z_mm, &rays)?;
     let largest = radii.iter().flatten().copied().fold(f64::MIN, f64::max);
     let along = rays.iter().map(|phi| (phi - middle) * highest).collect();
     Ok((z_mm, along, radii.into_iter().map(|row| row.into_iter().map(|r| r - largest).collect()).collect()))

@@ -1,7 +1,6 @@
 //! `bore`: the profile that a circling cutter leaves, its parameters, what it depends on.
 
 mod files;
-mod refused;
 mod summary;
 mod words;
 
@@ -9,7 +8,6 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use files::{FILES, write};
-use refused::refused;
 use truepath_bore::dependence::TeethRow;
 use truepath_bore::envelope::{Profile, cutting_teeth};
 use truepath_bore::motion::Cutter;
@@ -157,25 +155,24 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<BoreSummary, 
     if let (Some(found), None) = (&wanted, options.feed) {
         setup.feed_mm_per_min = found.feed_mm_per_min;
     }
-    let profile = setup.profile(0.0).map_err(|e| refused(&e))?;
+    let profile = setup.profile(0.0)?;
     let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
-    let parameters =
-        texture(&profile, &Cutoffs { lambda_c_mm: options.lambda_c, upr: options.upr }).map_err(|e| refused(&e))?;
+    let parameters = texture(&profile, &Cutoffs { lambda_c_mm: options.lambda_c, upr: options.upr })?;
     let motion = profile.passes.motion;
     let roots = options.phi.map(|phi| listed(&profile, phi)).transpose()?;
-    let on_teeth = dependence::on_teeth(&setup, TEETH.max(setup.cutter.teeth)).map_err(|e| refused(&e))?;
+    let on_teeth = dependence::on_teeth(&setup, TEETH.max(setup.cutter.teeth))?;
     progress(0.2);
     let climb = setup.rpm < 0.0;
     let here = |row: &TeethRow| if climb { row.climb_mm } else { row.conventional_mm };
     let teeth_exponent =
         dependence::exponent(on_teeth.iter().filter_map(|row| Some((f64::from(row.teeth), here(row)?))));
     let on_runout = if setup.cutter.teeth > 1 {
-        dependence::on_runout(&setup, &mut |share| progress(0.2 + 0.5 * share)).map_err(|e| refused(&e))?
+        dependence::on_runout(&setup, &mut |share| progress(0.2 + 0.5 * share))?
     } else {
         Vec::new()
     };
     let levels = match options.depth {
-        Some(depth) => depth::levels(&setup, depth, LEVELS).map_err(|e| refused(&e))?,
+        Some(depth) => depth::levels(&setup, depth, LEVELS)?,
         None => Vec::new(),
     };
     progress(0.8);
@@ -208,7 +205,7 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<BoreSummary, 
         teeth_exponent,
         on_feed: dependence::on_feed(&setup),
         on_runout,
-        on_helix: dependence::on_helix(&setup).map_err(|e| refused(&e))?,
+        on_helix: dependence::on_helix(&setup)?,
         levels,
         warnings: warnings(&setup, &profile),
     };
@@ -221,8 +218,8 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<BoreSummary, 
 }
 
 fn wanted(setup: &Setup, wanted_mm: f64, feed: Option<f64>) -> Result<Wanted, Failure> {
-    let found = feed_for(setup, wanted_mm).map_err(|e| refused(&e))?;
-    let profile = found.profile(0.0).map_err(|e| refused(&e))?;
+    let found = feed_for(setup, wanted_mm)?;
+    let profile = found.profile(0.0)?;
     // Only the ratio of the speeds counts.
     let ratio = setup.feed_mm_per_min / found.feed_mm_per_min;
     Ok(Wanted {
@@ -235,7 +232,7 @@ fn wanted(setup: &Setup, wanted_mm: f64, feed: Option<f64>) -> Result<Wanted, Fa
 }
 
 fn listed(profile: &Profile, phi_deg: f64) -> Result<Roots, Failure> {
-    truepath_bore::Refusal::unless_in("angle of the ray", "°", phi_deg, -3600.0, 3600.0).map_err(|e| refused(&e))?;
+    truepath_bore::Refusal::unless_in("angle of the ray", "°", phi_deg, -3600.0, 3600.0)?;
     let phi = truepath_bore::passes::around(phi_deg.to_radians());
     let list = roots(&profile.passes, phi);
     let on_ray = list.iter().filter(|r| r.on_ray).count();

@@ -1,6 +1,5 @@
 //! `correct`: from a probe file to the corrected program or the correction image.
 
-mod replacing;
 mod several;
 
 use std::path::{Path as FilePath, PathBuf};
@@ -12,9 +11,9 @@ use truepath_correction::second_pass;
 use truepath_correction::summary::CorrectSummary;
 use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
-use truepath_ground::output::{OutputFolder, json};
+use truepath_ground::output::OutputFolder;
 use truepath_job::feature::listing;
-use truepath_job::job::{JobFile, ProbeFlags, ROUTES, Route, Which, one_of};
+use truepath_job::job::{ROUTES, Route, Said, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_program::first_pass_of;
@@ -22,10 +21,10 @@ use truepath_report::page::render;
 use truepath_report::pages;
 use truepath_report::pages::{Points, REPORT};
 
-use super::correction_files::{FILES, HISTORY, write};
+use super::correction_files::{FILES, HISTORY, commit, write_contour, write_program};
+use super::history::refuse_replacing;
 use super::pocket;
 use crate::terminal::Terminal;
-use replacing::refuse_replacing;
 
 /// What is corrected.
 #[derive(Clone, Debug, Default, Args)]
@@ -50,19 +49,16 @@ pub struct Options {
     /// Replace the files of an earlier run.
     #[arg(long)]
     pub force: bool,
-    /// What is said of the probe file in place of the job.
+    /// What is said in place of the job.
     #[command(flatten)]
-    pub probe_flags: ProbeFlags,
-    /// Which cut of the program.
-    #[command(flatten)]
-    pub which: Which,
+    pub said: Said,
 }
 
 /// Corrects and prints what is expected.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
-    let Options { job, output, force, which, .. } = options;
+    let Options { job, output, force, said, .. } = options;
     if options.no_probe {
-        let options = pocket::Options { force: *force, which: which.clone(), ..Default::default() };
+        let options = pocket::Options { force: *force, which: said.which.clone(), ..Default::default() };
         return pocket::compensate(&options, job, output, terminal);
     }
     let summary = terminal.watch("correcting", |progress| run(options, progress))?;
@@ -118,17 +114,11 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
 /// # Errors
 /// As [`correct_pass`], and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSummary, Failure> {
-    let read = |job: &FilePath| {
-        let mut job = JobFile::read(job)?;
-        job.override_probe(&options.probe_flags)?;
-        job.which = options.which.clone();
-        Ok::<JobFile, Failure>(job)
-    };
-    let job = read(&options.job)?;
+    let job = options.said.read(&options.job)?;
     // clap has seen to it that there is one.
     let probe = options.probe.as_deref().unwrap_or(FilePath::new(""));
     let file = Source::read(probe)?;
-    let first = options.first_pass.as_deref().map(|first| Pass::read(read(first)?)).transpose()?;
+    let first = options.first_pass.as_deref().map(|first| Pass::read(options.said.read(first)?)).transpose()?;
     let pass = match first {
         Some(_) => Pass::read(job)?,
         None => {
@@ -178,13 +168,11 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
             (pass.over(surface)?, done, Points::FirstPass)
         }
     };
-    folder.write("probe-raw.txt", file.bytes())?;
-    folder.write("summary.json", &json(&done.summary)?)?;
-    if first.is_none() {
-        folder.write(HISTORY, &History::first(&pass, &measurement, &done)?.text()?)?;
-    }
-    write(&folder, &pass, &measurement, &done)?;
-    folder.write(REPORT, &render(&pages::corrected(&pass, &measurement, &done, points)?)?)?;
-    folder.commit()?;
+    // A second pass has no next part.
+    let history = if first.is_none() { Some(History::first(&pass, &measurement, &done)?) } else { None };
+    write_program(&folder, &pass, &done)?;
+    write_contour(&folder, "", &measurement, &done, history.as_ref())?;
+    let page = pages::corrected(&pass, &measurement, &done, points)?;
+    commit(folder, &file, &done.summary, &render(&page)?)?;
     Ok(done.summary)
 }

@@ -14,10 +14,12 @@ use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::page::render_all;
-use truepath_report::pages::{self, Points, REPORT};
+use truepath_report::pages::{self, Points};
 
-use super::super::correction_files::{FILES, HISTORY, contour_folder, contour_name, write_contour, write_program};
-use super::replacing::refuse_replacing;
+use super::super::correction_files::{
+    FILES, HISTORY, commit, contour_folder, contour_name, write_contour, write_program,
+};
+use super::super::history::refuse_replacing;
 
 /// Corrects the walls that were touched, and leaves the others as they are.
 pub(super) fn run(
@@ -65,9 +67,9 @@ pub(super) fn run(
     }
     for ((pass, measurement), done) in touched.iter().copied().zip(&corrected) {
         let (name, place, lines) = (contour_name(pass), contour_folder(pass), pass.core.contour.lines);
-        write_contour(&folder, &place, measurement, done)?;
+        let history = History::first(pass, measurement, done)?;
+        write_contour(&folder, &place, measurement, done, Some(&history))?;
         folder.write(&format!("{place}summary.json"), &json(&done.summary)?)?;
-        folder.write(&format!("{place}{HISTORY}"), &History::first(pass, measurement, done)?.text()?)?;
         pages.push((name.clone(), pages::corrected(pass, measurement, done, Points::ThisPass)?));
         let summary = Some(CorrectSummary { program: None, ..done.summary.clone() });
         contours.push(ContourSummary { contour: name, corrected: true, lines: [lines.first, lines.last], summary });
@@ -80,10 +82,7 @@ pub(super) fn run(
     if let (Some((pass, _)), Some(done)) = (touched.first(), corrected.first()) {
         write_program(&folder, pass, done)?;
     }
-    folder.write("probe-raw.txt", file.bytes())?;
-    folder.write("summary.json", &json(&summary)?)?;
-    folder.write(REPORT, &render_all(&pages)?)?;
-    folder.commit()?;
+    commit(folder, file, &summary, &render_all(&pages)?)?;
     Ok(summary)
 }
 

@@ -1,6 +1,5 @@
 //! `learn`: from the probe file of a part that was cut with a correction to the correction of the next part.
 
-mod past;
 mod several;
 
 use std::path::PathBuf;
@@ -10,18 +9,17 @@ use truepath_correction::as_milled::AsMilled;
 use truepath_correction::codes::{Q002, Q003, Q005, Q007};
 use truepath_correction::learn::{LearnSummary, learn};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
-use truepath_ground::output::{OutputFolder, json};
-use truepath_job::job::{JobFile, ProbeFlags, ROUTES, Route, Which, one_of};
+use truepath_ground::output::OutputFolder;
+use truepath_job::job::{ROUTES, Route, Said, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::correction_csv;
 use truepath_report::page::render;
-use truepath_report::pages::{REPORT, learned};
-
-pub(super) use past::history_in;
+use truepath_report::pages::learned;
 
 use super::correct::words as correction;
-use super::correction_files::{FILES, HISTORY, MILLED, write};
+use super::correction_files::{FILES, HISTORY, MILLED, commit, write_contour, write_program};
+use super::history::history_in;
 use crate::terminal::Terminal;
 
 /// What is learned from.
@@ -44,12 +42,9 @@ pub struct Options {
     /// Replace the files of an earlier run.
     #[arg(long)]
     pub force: bool,
-    /// What is said of the probe file in place of the job.
+    /// What is said in place of the job.
     #[command(flatten)]
-    pub probe_flags: ProbeFlags,
-    /// Which cut of the program.
-    #[command(flatten)]
-    pub which: Which,
+    pub said: Said,
 }
 
 /// Learns and prints what was learned.
@@ -104,22 +99,15 @@ fn words(s: &LearnSummary) -> String {
 /// As [`learn`], a folder without a history or with another corrected program, and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSummary, Failure> {
     refuse_same_folder(options)?;
-    let mut job = JobFile::read(&options.job)?;
-    job.override_probe(&options.probe_flags)?;
-    job.which = options.which.clone();
-    let pass = match <[Pass; 1]>::try_from(Pass::every(job)?) {
+    let pass = match <[Pass; 1]>::try_from(Pass::every(options.said.read(&options.job)?)?) {
         Ok([only]) => only,
         Err(walls) => {
-            return several::run(
-                walls,
-                (&options.probe, &options.from),
-                (&options.output, options.force, options.route),
-                progress,
-            );
+            let to = (options.output.as_path(), options.force, options.route);
+            return several::run(walls, (&options.probe, &options.from), to, progress);
         }
     };
     let history = history_in(&options.from, &options.from)?;
-    let level = history.facts.level().filter(|_| options.which.pass.is_none() && pass.plan.is_some());
+    let level = history.facts.level().filter(|_| options.said.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
     let file = Source::read(&options.probe)?;
     let measurement = Measurement::read(&pass, &file)?;
@@ -140,14 +128,11 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
         whole_contour_error_mm: milled.whole_contour(),
         contours: Vec::new(),
     };
-    let page = learned(&pass, &measurement, &done.corrected, &milled, &summary)?;
-    folder.write("probe-raw.txt", file.bytes())?;
-    folder.write("summary.json", &json(&summary)?)?;
-    folder.write(HISTORY, &done.history.text()?)?;
-    write(&folder, &pass, &measurement, &done.corrected)?;
+    write_program(&folder, &pass, &done.corrected)?;
+    write_contour(&folder, "", &measurement, &done.corrected, Some(&done.history))?;
     folder.write(MILLED, &correction_csv(&milled.rows)?)?;
-    folder.write(REPORT, &render(&page)?)?;
-    folder.commit()?;
+    let page = learned(&pass, &measurement, &done.corrected, &milled, &summary)?;
+    commit(folder, &file, &summary, &render(&page)?)?;
     Ok(summary)
 }
 

@@ -14,12 +14,12 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::correction_csv;
 use truepath_report::page::render_all;
-use truepath_report::pages::{REPORT, learned};
+use truepath_report::pages::learned;
 
 use super::super::correction_files::{
-    FILES, HISTORY, MILLED, contour_folder, contour_name, write_contour, write_program,
+    FILES, HISTORY, MILLED, commit, contour_folder, contour_name, write_contour, write_program,
 };
-use super::past::history_in;
+use super::super::history::history_in;
 
 /// Learns from every contour that has a history.
 pub(super) fn run(
@@ -75,9 +75,8 @@ pub(super) fn run(
             contours: Vec::new(),
         };
         pages.push((name.clone(), learned(wall.pass, wall.measurement, &done.corrected, &milled, &summary)?));
-        write_contour(&folder, &place, wall.measurement, &done.corrected)?;
+        write_contour(&folder, &place, wall.measurement, &done.corrected, Some(&done.history))?;
         folder.write(&format!("{place}summary.json"), &json(&summary)?)?;
-        folder.write(&format!("{place}{HISTORY}"), &done.history.text()?)?;
         folder.write(&format!("{place}{MILLED}"), &correction_csv(&milled.rows)?)?;
         contours.push(ContourLearned { contour: name, summary });
     }
@@ -88,10 +87,7 @@ pub(super) fn run(
     warnings.extend(said_of_every(said));
     let summary = LearnSummary::of_every(contours, warnings);
     let summary = summary.ok_or_else(|| Failure::Internal("no contour was learned from".to_owned()))?;
-    folder.write("probe-raw.txt", file.bytes())?;
-    folder.write("summary.json", &json(&summary)?)?;
-    folder.write(REPORT, &render_all(&pages)?)?;
-    folder.commit()?;
+    commit(folder, &file, &summary, &render_all(&pages)?)?;
     Ok(summary)
 }
 

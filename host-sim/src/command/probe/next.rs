@@ -24,7 +24,7 @@ use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
-use crate::command::learn::history_in;
+use crate::command::history::history_in;
 
 /// Plans further touches from files. `progress` is told the share done, 0…1.
 ///

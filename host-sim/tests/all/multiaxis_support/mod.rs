@@ -5,9 +5,6 @@
 
 #![allow(dead_code, reason = "every test file uses a part of it")]
 
-use std::path::Path;
-use std::process::{Command, Output};
-
 /// X, Y, Z in mm, A, B, C in degrees.
 pub type Place = [f64; 6];
 
@@ -196,11 +193,6 @@ pub fn matched<'m>(original: &[Feed], rewritten: &'m [Feed]) -> Vec<&'m [Feed]> 
     let pieces = pieces.collect();
     assert!(rest.is_empty(), "moves that the original does not have");
     pieces
-}
-
-/// Runs the program.
-pub fn truepath(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_truepath")).args(arguments).current_dir(folder).output().expect("the program runs")
 }
 
 /// A trunnion with axes off the origin.

@@ -1,13 +1,7 @@
 //! `truepath probe` as a user calls it.
 
-use std::path::Path;
-use std::process::{Command, Output};
-
 use super::parts::POCKET;
-
-fn truepath(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_truepath")).args(arguments).current_dir(folder).output().expect("the program runs")
-}
+use crate::workplace::truepath;
 
 fn part() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();

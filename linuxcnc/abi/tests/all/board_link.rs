@@ -7,6 +7,25 @@ use board_support::*;
 use truepath_abi::board::{Board, BoardSettings, BoardSettingsError, Cause, PACKET_BYTES, RECOVERY_TICKS};
 use truepath_core::rewrite::{Flags, Mode, Output, Status};
 
+const SAFETY: &str = include_str!("../../../../docs/safety.md");
+const HERE: &str = include_str!("board_link.rs");
+
+#[test]
+fn the_table_of_the_controllers_end_names_tests_that_exist() {
+    let (_, behind) = SAFETY.split_once("## When the board is not heard").unwrap();
+    let section = behind.split("\n## ").next().unwrap();
+    let named: Vec<&str> = section
+        .lines()
+        .filter(|line| line.starts_with("| ") && line.contains('`'))
+        .filter_map(|line| line.trim_end_matches('|').rsplit_once('|'))
+        .flat_map(|(_, tests)| tests.split('`').skip(1).step_by(2))
+        .collect();
+    assert!(named.len() > 8, "{named:?}");
+    for name in named.iter().filter(|name| !name.ends_with(".rs")) {
+        assert!(HERE.contains(&format!("#[test]\nfn {name}()")), "{name}");
+    }
+}
+
 #[test]
 fn a_part_over_the_link_is_corrected_as_by_the_rewriter_alone_to_the_last_bit() {
     let mut rig = Rig::ready(board_settings());

@@ -1,6 +1,5 @@
 //! The C interface, for the component on the PC and for the one with a board.
 
-mod board_document;
 mod board_header;
 mod board_link;
 mod board_properties;

@@ -1,0 +1,78 @@
+//! The history of a folder, and the correction beside it: the one that `learn` goes on from, and the one that `correct` is
+//! about to replace.
+
+use std::path::Path as FilePath;
+
+use truepath_core::checksum::crc32;
+use truepath_correction::codes::{Q001, Q004};
+use truepath_correction::learning::{History, Part, refuse_corrected};
+use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_job::measurement::Measurement;
+use truepath_job::pass::{Pass, PathBuffer};
+
+use super::correction_files::HISTORY;
+
+/// Reads the history of a folder, and makes sure that the correction beside it, or in the folder `base` of all contours, is
+/// the one it tells of.
+pub(super) fn history_in(folder: &FilePath, base: &FilePath) -> Result<History, InputError> {
+    let place = folder.join(HISTORY);
+    if !place.exists() {
+        let found = format!("{} holds no {HISTORY}", folder.display());
+        let help = "name the folder that truepath correct or truepath learn wrote the correction of this part into; a second pass of truepath split has no next part";
+        return Err(InputError::new(Q001, found, "a folder with a correction and its history", help).in_file(folder));
+    }
+    let history = History::read(&Source::read(&place)?)?;
+    let mut held = 0;
+    for file in &history.next.files {
+        let places = [folder.join(&file.name), base.join(&file.name)];
+        let Some((place, bytes)) = places.into_iter().find_map(|p| std::fs::read(&p).ok().map(|bytes| (p, bytes)))
+        else {
+            continue;
+        };
+        held += 1;
+        let crc = format!("{:08x}", crc32(&bytes));
+        if crc != file.crc32 {
+            let found = format!("{} has the CRC-32 {crc}", place.display());
+            let expected = format!("{}, as {HISTORY} says of the correction it was cut with", file.crc32);
+            return Err(Q004.error(found, expected).in_file(&place));
+        }
+    }
+    if held == 0 {
+        let names: Vec<&str> = history.next.files.iter().map(|file| file.name.as_str()).collect();
+        let found = format!("{} does not hold the correction", folder.display());
+        let help = "name the folder as truepath correct or truepath learn left it";
+        return Err(InputError::new(Q004, found, names.join(" or "), help).in_file(folder));
+    }
+    Ok(history)
+}
+
+/// Refuses points that lie where the correction in the output folder leaves the wall.
+///
+/// `correct` takes what the points show for what no correction leaves. Given the points of a part that was already cut
+/// with one, it would make a correction of what is left and put it in the place of the whole one: the next part would be
+/// nearly as wrong as the first. The probe file may say so itself (`M038`); else the correction in the output folder is
+/// what the points can be held against. Limit: in an empty folder, and with a file that says nothing, it cannot be known.
+///
+/// # Errors
+/// `Q008` with both distances.
+pub(super) fn refuse_replacing(
+    place: &FilePath,
+    probe: &FilePath,
+    pass: &Pass,
+    measurement: &Measurement,
+) -> Result<(), Failure> {
+    if !place.exists() || pass.job.feed.is_some() {
+        return Ok(());
+    }
+    // What cannot be read, or is of another cut, says nothing about this part.
+    let Ok(history) = Source::read(place).map_err(Failure::from).and_then(|file| Ok(History::read(&file)?)) else {
+        return Ok(());
+    };
+    if history.facts.agree(pass).is_err() {
+        return Ok(());
+    }
+    let mut buffer = PathBuffer::default();
+    let path = pass.sample(&mut buffer)?;
+    let part = Part::new(history.next_number(), measurement, None)?;
+    refuse_corrected(pass, &path, &history, &part).map_err(|error| error.in_file(probe).into())
+}
