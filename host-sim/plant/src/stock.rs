@@ -1,7 +1,8 @@
 //! The raw stock before this pass: a surface, with material on the wall's side of it.
 //!
 //! Without a measured surface it is the parallel curve of the nominal centre path at `r − h` towards the wall, h varying smoothly
-//! if the machine says so. An open path is extended tangentially by 40 mm at both ends, a closed one is closed.
+//! if the machine says so. An open path is extended tangentially by 40 mm at both ends, a closed one is closed. Where the two
+//! ends of a path meet at an outside corner, or run out beyond it, the stock has its corner where the two curves cross.
 //!
 //! Limit: the stock does not vary with height.
 
@@ -10,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 use super::arcs::EngagedArcs;
 use super::grid::Grid;
 use super::machine::Machine;
-use super::parallel::parallel_curve;
+use super::parallel::{cut_at_crossing, parallel_curve};
 use super::path::Path;
 use super::setup::Cut;
 use super::vector::{Point, add, along, cross, dot, mix, scaled, squared_distance, sub, unit};
@@ -58,7 +59,11 @@ impl Stock {
             Some(points) => (extended(points.clone()), false),
             None => {
                 let curve = parallel_curve(path, cut, machine);
-                if path.closed { (curve, true) } else { (extended(curve), false) }
+                match (cut_at_crossing(&curve, path.side), path.closed) {
+                    (Some(closed), _) => (closed, true),
+                    (None, true) => (curve, true),
+                    (None, false) => (extended(curve), false),
+                }
             }
         };
         let points = subdivided(&points, closed);

@@ -8,6 +8,7 @@
 
 use super::corner;
 use super::sample::Sample;
+use super::seam::Seam;
 use super::setup::{CutSetup, Helix, WallLaw};
 use super::walk::{closes_smoothly, margin, walk};
 use truepath_units::Offset;
@@ -93,6 +94,9 @@ impl<'a> Path<'a> {
         let used = buffer.get_mut(..needed).unwrap_or_default();
         corner::mark(used, setup);
         corner::mark_rolled(used, contour, setup);
+        if let Some(seam) = Seam::of(contour, setup) {
+            seam.mark(used, setup);
+        }
         let samples: &'a [Sample] = used;
         let inside = |s: &&Sample| s.s >= Offset::ZERO && s.s <= contour.length();
         let first = samples.iter().take_while(|s| s.s < Offset::ZERO).count();
