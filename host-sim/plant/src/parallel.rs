@@ -19,6 +19,8 @@ const CORNER_RAD: f64 = 0.25;
 const FAN_RAD: f64 = 0.01;
 /// How far from its ends a curve is looked for crossing itself there, mm.
 const ENDS_MM: f64 = 60.0;
+/// A curve whose end comes this near to its start runs on into it, mm.
+const JOINED_MM: f64 = 0.02;
 
 /// The parallel curve on which the raw surface lies.
 pub(super) fn parallel_curve(path: &Path, cut: &Cut, machine: &Machine) -> Vec<Point> {
@@ -56,8 +58,9 @@ pub(super) fn parallel_curve(path: &Path, cut: &Cut, machine: &Machine) -> Vec<P
     curve
 }
 
-/// The curve from where its end crosses its start at an outside corner, closed; `None` where its ends do not cross so.
-pub(super) fn cut_at_crossing(curve: &[Point], side: Side) -> Option<Vec<Point>> {
+/// The curve closed where its end comes back to its start: cut at an outside corner where both run out beyond it, joined
+/// where the end runs on into the start or over it. `None` where its ends do not meet so.
+pub(super) fn closed_at_its_ends(curve: &[Point], side: Side) -> Option<Vec<Point>> {
     let last = curve.len().checked_sub(1)?;
     let (head, tail) = (pieces_within(curve.iter()), pieces_within(curve.iter().rev()));
     for end in (last - tail + 1..=last).rev() {
@@ -71,7 +74,15 @@ pub(super) fn cut_at_crossing(curve: &[Point], side: Side) -> Option<Vec<Point>>
             }
         }
     }
-    None
+    let runs_on = |start: &usize| {
+        let (out, on) = (sub(curve[last], curve[last - 1]), sub(curve[*start], curve[start - 1]));
+        let (off, square) = (sub(curve[last], curve[start - 1]), dot(on, on));
+        let share = dot(off, on) / square;
+        let beside = cross(off, on).abs() / square.sqrt();
+        (0.0..=1.0).contains(&share) && beside < JOINED_MM && turn(out, on).abs() < CORNER_RAD
+    };
+    let start = (1..=head).take_while(|start| start + 1 < last).find(runs_on)?;
+    Some(curve[start..].to_vec())
 }
 
 /// How many pieces of a curve end within [`ENDS_MM`] of its first point, along it.

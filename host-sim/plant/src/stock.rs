@@ -2,7 +2,8 @@
 //!
 //! Without a measured surface it is the parallel curve of the nominal centre path at `r − h` towards the wall, h varying smoothly
 //! if the machine says so. An open path is extended tangentially by 40 mm at both ends, a closed one is closed. Where the two
-//! ends of a path meet at an outside corner, or run out beyond it, the stock has its corner where the two curves cross.
+//! ends of a path run out beyond an outside corner, the stock has its corner where the two curves cross; where the end runs over
+//! the start, it is closed there.
 //!
 //! Limit: the stock does not vary with height.
 
@@ -11,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 use super::arcs::EngagedArcs;
 use super::grid::Grid;
 use super::machine::Machine;
-use super::parallel::{cut_at_crossing, parallel_curve};
+use super::parallel::{closed_at_its_ends, parallel_curve};
 use super::path::Path;
 use super::setup::Cut;
 use super::vector::{Point, add, along, cross, dot, mix, scaled, squared_distance, sub, unit};
@@ -59,7 +60,7 @@ impl Stock {
             Some(points) => (extended(points.clone()), false),
             None => {
                 let curve = parallel_curve(path, cut, machine);
-                match (cut_at_crossing(&curve, path.side), path.closed) {
+                match (closed_at_its_ends(&curve, path.side), path.closed) {
                     (Some(closed), _) => (closed, true),
                     (None, true) => (curve, true),
                     (None, false) => (extended(curve), false),

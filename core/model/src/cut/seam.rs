@@ -8,14 +8,15 @@
 //! Limits: a contour that runs on into itself without a corner has no seam here; see [`closes_smoothly`]. What a lead
 //! took away before the contour began is not known, and legs that cross are straight.
 
+use super::corner::{self, EDGE};
 use super::sample::Sample;
 use super::setup::CutSetup;
 use super::walk::closes_smoothly;
-use truepath_units::geometry::{Contour, Direction, FACET_TURN_LIMIT, Point, Side};
+use truepath_units::geometry::{Block, Contour, Direction, FACET_TURN_LIMIT, Point, Side};
 use truepath_units::{Offset, Real, isqrt_rounded};
 
-/// How near the corner the wall is no longer looked at; see [`super::corner`].
-const EDGE: Offset = Offset::from_um(1_000);
+/// How far beyond the end of a leg its wall may end: what programs round.
+const ROUNDED: Offset = Offset::from_um(10);
 /// Legs that meet at less than this sine do not make a corner.
 const LEAST_SINE: Real = Real::ratio(1, 5);
 
@@ -85,9 +86,15 @@ fn meet(samples: &mut [Sample], setup: &CutSetup, start: Point, finished: Offset
     }
 }
 
-/// The corner at which the straight first and last leg of a contour cross on the far side of the wall.
+/// The corner at which the straight first and last leg of a contour cross on the far side of the wall. Behind the last leg
+/// the cutter may roll round the corner, onto the first one.
 fn crossing(contour: &Contour, setup: &CutSetup) -> Option<Seam> {
-    let (first, last) = (contour.blocks().first()?, contour.blocks().last()?);
+    let rolls = |block: &&Block| {
+        let towards_wall = |radius: Offset| (radius > Offset::ZERO) == (setup.wall == Side::Left);
+        block.curve.signed_radius().is_some_and(|r| towards_wall(r) && r.abs() < setup.radius + corner::ROLLED)
+    };
+    let first = contour.blocks().first()?;
+    let last = contour.blocks().iter().rev().find(|block| !rolls(block))?;
     if first.curve.signed_radius().is_some() || last.curve.signed_radius().is_some() {
         return None;
     }
@@ -97,7 +104,7 @@ fn crossing(contour: &Contour, setup: &CutSetup) -> Option<Seam> {
     if !towards_wall || sine.abs() < LEAST_SINE || out.dot(on) >= FACET_TURN_LIMIT {
         return None;
     }
-    let length = contour.length();
+    let length = last.s + last.curve.length() - first.s;
     // Where a line beside the first leg and one beside the last cross: arc lengths on either.
     let cross = |beside_first: Offset, beside_last: Offset| {
         let a = first.curve.start() + setup.wall.normal(on).times(beside_first);
@@ -107,8 +114,8 @@ fn crossing(contour: &Contour, setup: &CutSetup) -> Option<Seam> {
     };
     let (wall, stock) = (setup.radius, setup.radius - setup.allowance);
     let [wall_from, wall_to] = cross(wall, wall);
-    let on_first = wall_from >= Offset::ZERO && wall_from <= first.curve.length();
-    let on_last = wall_to <= length && wall_to >= length - last.curve.length();
+    let on_first = wall_from >= -ROUNDED && wall_from <= first.curve.length();
+    let on_last = wall_to <= length + ROUNDED && wall_to >= length - last.curve.length();
     // Both raw surfaces end where they cross; when the last leg comes, the first one's wall stands.
     let ends = [cross(stock, stock)[0], cross(wall, stock)[1]];
     (on_first && on_last && wall_from < wall_to).then_some(Seam::Corner { stock: ends, wall: [wall_from, wall_to] })
