@@ -88,7 +88,7 @@ impl ContourPass {
     /// contour that cannot fit is refused before it is walked along.
     ///
     /// # Errors
-    /// When the buffer is too short, or an outside arc is so tight that it leaves no wall.
+    /// When the buffer is too short, or path and cutter leave no wall.
     pub fn sample<'a>(
         &self,
         contour: &Contour,
@@ -104,6 +104,7 @@ impl ContourPass {
         }
         Path::sample(contour, &self.setup, self.step(), buffer, shape).map_err(|error| match error {
             PathError::NoWall { line } => JobError::Undercut { line },
+            PathError::Jagged { line } => JobError::Jagged { line },
             PathError::BufferTooShort { needed, lent } => JobError::full(Buffer::Samples, needed, lent),
         })
     }

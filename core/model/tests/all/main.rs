@@ -6,3 +6,4 @@ mod engagement_properties;
 mod guard;
 mod invariance;
 mod laws;
+mod seam;
