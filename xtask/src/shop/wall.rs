@@ -116,7 +116,12 @@ mod tests {
     fn a_corner_at_the_seam_is_no_wall_but_what_lies_beside_it_is() {
         // Round a pocket of 30 by 20 mm with a cutter of 10 mm, from one of its corners.
         let spoiled_at = |near: f64| {
-            let legs = [([0.0, 0.0], [20.0, 0.0]), ([20.0, 0.0], [20.0, 10.0]), ([20.0, 10.0], [0.0, 10.0]), ([0.0, 10.0], [0.0, 0.0])];
+            let legs = [
+                ([0.0, 0.0], [20.0, 0.0]),
+                ([20.0, 0.0], [20.0, 10.0]),
+                ([20.0, 10.0], [0.0, 10.0]),
+                ([0.0, 10.0], [0.0, 0.0]),
+            ];
             let mut rows: Vec<Row> = Vec::new();
             for (from, to) in legs {
                 let length = apart(from, to);
@@ -127,7 +132,12 @@ mod tests {
                     let centre = [from[0] + heading[0] * along, from[1] + heading[1] * along];
                     let s_mm = begin + along;
                     let error_mm = if s_mm < near || s_mm > 60.0 - near { 0.3 } else { 0.01 };
-                    rows.push(Row { s_mm, centre, wall: [centre[0] + 5.0 * heading[1], centre[1] - 5.0 * heading[0]], error_mm });
+                    rows.push(Row {
+                        s_mm,
+                        centre,
+                        wall: [centre[0] + 5.0 * heading[1], centre[1] - 5.0 * heading[0]],
+                        error_mm,
+                    });
                 }
             }
             largest(&rows, 10.0)

@@ -69,10 +69,20 @@ fn an_outline_that_runs_out_beyond_its_corner_has_stock_and_wall_up_to_it() {
         for d in [0.5f64, 1.0, 2.0] {
             let (found, expected) = (engaged(&path, corner - d), (d / 5.0).asin().to_degrees());
             let more = found - expected;
-            assert!((-0.1..0.7 + 0.12 * expected).contains(&more), "{case}: {found}° for {expected}°, {d} mm before the end");
+            assert!(
+                (-0.1..0.7 + 0.12 * expected).contains(&more),
+                "{case}: {found}° for {expected}°, {d} mm before the end"
+            );
         }
         assert!(engaged(&path, corner + 0.2) < 0.01, "{case}");
-        for (s, wall) in [(8.5, false), (9.9, false), (10.2, true), (corner - 1.2, true), (corner - 0.9, false), (corner + 4.0, false)] {
+        for (s, wall) in [
+            (8.5, false),
+            (9.9, false),
+            (10.2, true),
+            (corner - 1.2, true),
+            (corner - 0.9, false),
+            (corner + 4.0, false),
+        ] {
             assert_eq!(sample(&path, s).on_wall, wall, "{case}: at {s} mm");
         }
         assert!(sample(&path, 8.8).rounds_corner && sample(&path, corner + 0.2).rounds_corner, "{case}");
