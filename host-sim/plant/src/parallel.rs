@@ -87,8 +87,13 @@ pub(super) fn closed_at_its_ends(curve: &[Point], side: Side) -> Option<Vec<Poin
 
 /// How many pieces of a curve end within [`ENDS_MM`] of its first point, along it.
 fn pieces_within<'a>(points: impl Iterator<Item = &'a Point> + Clone) -> usize {
+    let mut way = 0.0;
     let lengths = points.clone().zip(points.skip(1)).map(|(a, b)| distance(*a, *b));
-    lengths.scan(0.0, |way, length| Some(*way += length).map(|()| *way)).take_while(|way| *way <= ENDS_MM).count()
+    let ends = lengths.map(|length| {
+        way += length;
+        way
+    });
+    ends.take_while(|way| *way <= ENDS_MM).count()
 }
 
 /// Cuts the end of `curve` back to where the curve after the corner at `i` crosses it.
