@@ -114,7 +114,7 @@ fn where_a_lap_runs_over_its_start_no_stock_is_left_and_the_load_falls_before() 
 #[test]
 fn a_path_of_sharp_corners_far_smaller_than_the_cutter_is_refused_with_its_line() {
     let zigzag = |pitch: f64, count: u32| {
-        let at = |k: u32| [f64::from(k) * pitch, if k % 2 == 0 { 0.0 } else { pitch }];
+        let at = |k: u32| [f64::from(k) * pitch, if k.is_multiple_of(2) { 0.0 } else { pitch }];
         lines(&(0..=count).map(at).collect::<Vec<_>>())
     };
     let sampled = |blocks: &[Block]| {
