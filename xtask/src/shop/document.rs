@@ -13,7 +13,7 @@ const JUDGED: &str = "Judged is the wall all round, the mean over ten heights, b
     a corner, no less and no more. Where a contour comes back to its start at a corner, or runs over it, the virtual machine \
     remembers what it cut there: the load falls over the last millimetres, as it does in life. A contour that runs on into itself \
     without a corner or overlap is cut as if it had no beginning, and so it is corrected; on a machine that remembered it, the full correction would meet a \
-    load that falls to nothing over the last 3 to 8 mm, and up to the size of the correction (0.009 to 0.029 mm in this table) would be cut too \
+    load that falls to nothing over the last 3 to 8 mm, and up to the size of the correction (0.002 to 0.037 mm in this table) would be cut too \
     deep there; where a program's lap overlaps its start, the fall of the load is known. What the plunge into a corner leaves, the cutter standing there \
     without load, is not milled.";
 
