@@ -1,7 +1,8 @@
 //! The kernels whose cost is watched, for the benchmarks and for the counter of instructions.
 //!
 //! A tick of the rewriter and the steps of the cut are measured in the middle of paths of 10, 1,000 and 100,000 equal
-//! segments: their cost must not depend on the length. Identification and design are measured whole, on the papers'
+//! segments: their cost must not depend on the length. The search for the finishing contours is measured whole, on programs
+//! of several shapes and lengths, reading included. Identification and design are measured whole, on the papers'
 //! corner and on a pocket.
 
 #[allow(dead_code)]
@@ -11,6 +12,7 @@ mod part;
 #[allow(dead_code)]
 #[path = "../../wire/tests/all/rewrite_support/mod.rs"]
 mod rewrite_support;
+mod search;
 mod servo;
 mod whole;
 
@@ -48,6 +50,14 @@ pub const KERNELS: &[Kernel] = &[
     Kernel { name: "wall/10", calls: 1000, prepare: || wall(10) },
     Kernel { name: "wall/1000", calls: 1000, prepare: || wall(1_000) },
     Kernel { name: "wall/100000", calls: 1000, prepare: || wall(100_000) },
+    Kernel { name: "search/pocketing-10000", calls: 1, prepare: || search::work(search::pocketing(10_000)) },
+    Kernel { name: "search/pocketing-100000", calls: 1, prepare: || search::work(search::pocketing(100_000)) },
+    Kernel { name: "search/depths-10000", calls: 1, prepare: || search::work(search::depths(10_000)) },
+    Kernel { name: "search/depths-100000", calls: 1, prepare: || search::work(search::depths(100_000)) },
+    Kernel { name: "search/contours-2000", calls: 1, prepare: || search::work(search::contours(2_000)) },
+    Kernel { name: "search/contours-20000", calls: 1, prepare: || search::work(search::contours(20_000)) },
+    Kernel { name: "search/adaptive-10000", calls: 1, prepare: || search::work(search::adaptive(10_000)) },
+    Kernel { name: "search/adaptive-20000", calls: 1, prepare: || search::work(search::adaptive(20_000)) },
     Kernel { name: "identify/corner", calls: 1, prepare: || whole::identify(whole::corner()) },
     Kernel { name: "identify/pocket", calls: 1, prepare: || whole::identify(whole::pocket()) },
     Kernel { name: "design/corner", calls: 1, prepare: || whole::design(whole::corner()) },

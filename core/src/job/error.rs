@@ -71,6 +71,12 @@ errors! {
             line: u32,
         } = "J013",
             "line {line}: this arc turns round the wall more tightly than the cutter: it leaves no wall to correct";
+        /// Sharp corners lie so near to each other that no wall stands beside the path.
+        Jagged {
+            /// The line that is too much.
+            line: u32,
+        } = "J028",
+            "line {line}: the path has more than 32 sharp corners within one diameter of the cutter: no wall stands beside it";
         /// No reading can be used.
         NoContact {
             /// Line of the first reading.
@@ -164,6 +170,7 @@ impl JobError {
             Self::Measurement(error) => Some(error.line),
             Self::NoFeed { line }
             | Self::Undercut { line }
+            | Self::Jagged { line }
             | Self::OffTheWall { line, .. }
             | Self::NoContact { line, .. } => Some(*line),
             _ => None,

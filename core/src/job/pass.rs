@@ -88,22 +88,37 @@ impl ContourPass {
     /// contour that cannot fit is refused before it is walked along.
     ///
     /// # Errors
-    /// When the buffer is too short, or an outside arc is so tight that it leaves no wall.
+    /// When the buffer is too short, or path and cutter leave no wall.
     pub fn sample<'a>(
         &self,
         contour: &Contour,
         buffer: &'a mut [Sample],
         shape: impl FnMut(&mut Sample),
     ) -> Result<Path<'a>, JobError> {
+        self.sample_every(self.step(), contour, buffer, shape)
+    }
+
+    /// The same at another step.
+    ///
+    /// # Errors
+    /// As [`ContourPass::sample`].
+    pub fn sample_every<'a>(
+        &self,
+        step: Offset,
+        contour: &Contour,
+        buffer: &'a mut [Sample],
+        shape: impl FnMut(&mut Sample),
+    ) -> Result<Path<'a>, JobError> {
         let lent = buffer.len();
         // Every block but the first may save one sample.
-        let steps = contour.length().nm().checked_div(self.step().nm()).unwrap_or(0).unsigned_abs() as usize;
+        let steps = contour.length().nm().checked_div(step.nm()).unwrap_or(0).unsigned_abs() as usize;
         let least = steps.saturating_sub(contour.blocks().len());
         if least > lent {
             return Err(JobError::full(Buffer::Samples, least, lent));
         }
-        Path::sample(contour, &self.setup, self.step(), buffer, shape).map_err(|error| match error {
+        Path::sample(contour, &self.setup, step, buffer, shape).map_err(|error| match error {
             PathError::NoWall { line } => JobError::Undercut { line },
+            PathError::Jagged { line } => JobError::Jagged { line },
             PathError::BufferTooShort { needed, lent } => JobError::full(Buffer::Samples, needed, lent),
         })
     }

@@ -182,6 +182,12 @@ impl Path {
         self.s_mm.is_empty()
     }
 
+    /// Whether the path ends where it starts and goes on there without a corner.
+    pub fn runs_on(&self) -> bool {
+        let ends = self.tangent.first().zip(self.tangent.last());
+        self.closed && ends.is_some_and(|(on, out)| turn(*out, *on).abs() < FACET_RAD)
+    }
+
     /// Sample nearest to the distance `s_mm` along the path.
     pub fn index_at(&self, s_mm: f64) -> usize {
         let k = self.s_mm.partition_point(|&s| s < s_mm).clamp(1, self.len() - 1);

@@ -1,7 +1,9 @@
 //! The raw stock before this pass: a surface, with material on the wall's side of it.
 //!
 //! Without a measured surface it is the parallel curve of the nominal centre path at `r − h` towards the wall, h varying smoothly
-//! if the machine says so. An open path is extended tangentially by 40 mm at both ends, a closed one is closed.
+//! if the machine says so. An open path is extended tangentially by 40 mm at both ends, a closed one is closed. Where the two
+//! ends of a path run out beyond an outside corner, the stock has its corner where the two curves cross; where the end runs over
+//! the start, it is closed there.
 //!
 //! Limit: the stock does not vary with height.
 
@@ -10,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 use super::arcs::EngagedArcs;
 use super::grid::Grid;
 use super::machine::Machine;
-use super::parallel::parallel_curve;
+use super::parallel::{closed_at_its_ends, parallel_curve};
 use super::path::Path;
 use super::setup::Cut;
 use super::vector::{Point, add, along, cross, dot, mix, scaled, squared_distance, sub, unit};
@@ -58,7 +60,11 @@ impl Stock {
             Some(points) => (extended(points.clone()), false),
             None => {
                 let curve = parallel_curve(path, cut, machine);
-                if path.closed { (curve, true) } else { (extended(curve), false) }
+                match (closed_at_its_ends(&curve, path.side), path.closed) {
+                    (Some(closed), _) => (closed, true),
+                    (None, true) => (curve, true),
+                    (None, false) => (extended(curve), false),
+                }
             }
         };
         let points = subdivided(&points, closed);

@@ -10,15 +10,15 @@ const STYLE: &str = include_str!("planned.css");
 /// Columns of an unrolled wall at most.
 const COLUMNS: usize = 260;
 /// Bounds of the classes of colour, as multiples of the tolerance.
-const BOUNDS: [f64; 6] = [-2.0, -1.0, -0.5, 0.5, 1.0, 2.0];
+const BOUNDS: [f64; 6] = [-1.0, -0.5, -0.2, 0.2, 0.5, 1.0];
 const CLASSES: [&str; 7] = [
-    "cut deeper than twice the tolerance",
     "cut deeper than the tolerance",
-    "cut deep, within the tolerance",
-    "within half of the tolerance",
-    "material left, within the tolerance",
+    "cut deep, more than half of the tolerance",
+    "cut deep",
+    "within a fifth of the tolerance",
+    "material left",
+    "material left, more than half of the tolerance",
     "more left than the tolerance",
-    "more left than twice the tolerance",
 ];
 
 /// The page of a plan for a program.

@@ -151,3 +151,32 @@ fn a_contour_in_a_loop_or_a_subprogram_is_written_out_for_every_depth() {
         assert!(done.summary.warnings.iter().any(|w| w.contains("written out")), "{:?}", done.summary.warnings);
     }
 }
+
+#[test]
+fn an_outline_that_begins_and_ends_beyond_its_corner_is_corrected_up_to_the_corner() {
+    let machine: Machine = toml::from_str(PLANT).unwrap();
+    let program = "G21 G90 G17\nT1 M6\nS4000 M3\nG0 X-5 Y-12 Z10\nG1 Z-10 F500\nG1 Y65 F600\nG1 X85\nG1 Y-5\nG1 X-12\nG0 Z10\nM30\n";
+    let pass = pass(&job(10.0, "right", "helical"), program);
+    let first = shown(virtual_mill::mill(&pass, &machine, None));
+    let places = [30.0, 60.0, 100.0, 140.0, 190.0, 220.0, 270.0, 300.0];
+    let probe = shown(virtual_mill::probe(&pass, &first, &places, &[0.2, 0.5, 0.8], 4.0));
+    let done = corrected(&pass, probe);
+    let second = shown(virtual_mill::mill_program(&pass, &machine, done.program.as_deref().unwrap()));
+    let (before, after) = (first.mean_errors(), second.mean_errors());
+    // The corner of the part is 12 mm behind the start and 12 mm before the end; the last 4 mm lose their load on the way.
+    let length = first.path.length_mm;
+    let largest = |errors: &[f64], from: f64, to: f64| {
+        let range = first.path.index_at(from)..first.path.index_at(to);
+        errors[range].iter().fold(0.0f64, |most, e| most.max(e.abs()))
+    };
+    // Where the load falls it is known to a sample of the path.
+    for (from, to, left) in
+        [(13.0, 40.0, 0.1), (length - 40.0, length - 17.0, 0.1), (length - 17.0, length - 13.0, 0.2)]
+    {
+        let [before, after] = [&before, &after].map(|errors| largest(errors, from, to));
+        assert!(before > 0.015 && after < left * before, "{from} to {to} mm: {before} became {after}");
+    }
+    // A millimetre before the corner more than half of the load is gone.
+    let [end, steady] = [length - 13.0, length - 20.0].map(|s| before[first.path.index_at(s)]);
+    assert!(end < 0.5 * steady, "{end} of {steady}");
+}

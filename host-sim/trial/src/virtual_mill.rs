@@ -50,7 +50,7 @@ fn path(pass: &Pass) -> Result<plant::Path, PlantError> {
 }
 
 /// The cut of a pass for the plant.
-fn cut(pass: &Pass) -> plant::Cut {
+fn cut(pass: &Pass, path: &plant::Path) -> plant::Cut {
     let setup = &pass.core.setup;
     let first = pass.blocks.first().map_or(0.0, |b| float(b.feed));
     let changes = pass.blocks.windows(2).filter(|w| w[0].feed != w[1].feed);
@@ -70,7 +70,8 @@ fn cut(pass: &Pass) -> plant::Cut {
             Spindle::Clockwise | Spindle::Stopped => plant::Spindle::Clockwise,
         },
         surface: pass.surface.as_ref().map(|surface| surface.points().to_vec()),
-        memory_mm: Some(3.0),
+        // A path that runs on into itself is cut as if it had no beginning.
+        memory_mm: path.runs_on().then_some(3.0),
     }
 }
 
@@ -80,7 +81,7 @@ fn cut(pass: &Pass) -> plant::Cut {
 /// What the plant refuses.
 pub fn mill(pass: &Pass, machine: &plant::Machine, commanded: Option<&[plant::Point]>) -> Result<Milled, Failure> {
     let path = path(pass).map_err(|e| refused(&e))?;
-    plant::mill(&path, &cut(pass), machine, commanded).map_err(|e| refused(&e))
+    plant::mill(&path, &cut(pass, &path), machine, commanded).map_err(|e| refused(&e))
 }
 
 /// Mills a pass with a corrected program: along its path and at its feeds.
@@ -90,7 +91,7 @@ pub fn mill(pass: &Pass, machine: &plant::Machine, commanded: Option<&[plant::Po
 pub fn mill_program(pass: &Pass, machine: &plant::Machine, text: &[u8]) -> Result<Milled, Failure> {
     let blocks = contour(pass, text)?;
     let path = path(pass).map_err(|e| refused(&e))?;
-    let mut cut = cut(pass);
+    let mut cut = cut(pass, &path);
     if pass.job.numbers.cut.feed_mm_per_min.is_none() {
         (cut.feed_mm_per_min, cut.feed_changes) = feeds(&path, &blocks);
     }
@@ -108,7 +109,7 @@ pub fn mill_recorded(
     placement: &Placement,
 ) -> Result<(Milled, recorded::Facts), Failure> {
     let path = path(pass).map_err(|e| refused(&e))?;
-    let mut cut = cut(pass);
+    let mut cut = cut(pass, &path);
     let z_mm = pass.core.contour.z.nm() as f64 / 1e6;
     let found = recorded::cut_path(setpoints, placement, &path, &cut, z_mm)?;
     (cut.feed_mm_per_min, cut.feed_changes) = (found.feed_mm_per_min, found.feed_changes);

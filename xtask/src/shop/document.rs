@@ -6,6 +6,17 @@ use std::fmt::Write;
 use super::table::Program;
 use super::way::{End, Run, Way};
 
+/// What the table judges.
+const JUDGED: &str = "Judged is the wall all round, the mean over ten heights, but for 6 mm (or two fifths of the cutter's diameter) at \
+    the ends of an open contour and 1 mm beside a corner: on a corner there is no one normal to measure along, and a ball \
+    cannot touch the wall of an inside corner before the cutter's own rounding has ended. A corner in which a contour begins and ends is such \
+    a corner, no less and no more. Where a contour comes back to its start at a corner, or runs over it, the virtual machine \
+    remembers what it cut there: the load falls over the last millimetres, as it does in life. A contour that runs on into itself \
+    without a corner or overlap is cut as if it had no beginning, and so it is corrected; on a machine that remembered it, the full correction would meet a \
+    load that falls to nothing over the last 3 to 8 mm, and up to the size of the correction (0.002 to 0.037 mm in this table) would be cut too \
+    deep there; where a program's lap overlaps its start, the fall of the load is known. What the plunge into a corner leaves, the cutter standing there \
+    without load, is not milled.";
+
 type Results<'a> = [(&'a Program, &'a Way)];
 
 /// A line for every program.
@@ -74,7 +85,8 @@ pub fn document(results: &Results) -> String {
          and hands named. Each goes the whole way with a job that says cutter, wall side (where no G41 says it), allowance, and \
          what the format of a job asks for besides: `truepath probe`, touches by `truepath simulate --touch` on a virtual machine \
          that shares no physics with the model and knows the wall from the table, `truepath correct`, and `truepath simulate \
-         --from`. *Lines named*: the same with the lines of the wall in `[[feature]]`, where the bare job did not go through.\n\
+         --from`. *Lines named*: the same with the lines of the wall in `[[feature]]`, where the bare job did not go through.\n\n\
+         {JUDGED}\n\n\
          {}\n| program | in the manner of | bare job | lines named | before mm | after mm | times less |\n\
          |---|---|---|---|--:|--:|--:|\n",
         counts(results)

@@ -1,7 +1,8 @@
 //! A wall as the virtual machine left it, judged where there is one.
 //!
-//! `judged` of `simulate` leaves out both ends of every contour. Here a closed contour is judged all round, its seam included, and nothing is judged beside a place where the wall
-//! ends: at a corner the direction of the error is anybody's choice.
+//! `judged` of `simulate` leaves out both ends of every contour. Here a closed contour is judged all round, its seam included,
+//! and nothing is judged beside a place where the wall ends: at a corner the direction of the error is anybody's choice. A
+//! corner in which a contour begins and ends is one like the others.
 
 use std::fs;
 use std::path::Path;
@@ -10,6 +11,8 @@ use std::path::Path;
 const ENDS: (f64, f64) = (6.0, 0.4);
 /// Left out beside a corner, mm.
 const CORNER_MM: f64 = 1.0;
+/// Walls at the two ends of a closed contour that are farther apart belong to two sides of a corner, mm.
+const SAME_WALL_MM: f64 = 0.1;
 /// A wall that advances by less than this share of the path is a corner that the cutter rolls about.
 const ROLLED: f64 = 0.05;
 
@@ -45,6 +48,9 @@ fn largest(rows: &[Row], diameter_mm: f64) -> Option<f64> {
         if wall < ROLLED * path || wall > 10.0 * path {
             corners.extend([pair[0].s_mm, pair[1].s_mm]);
         }
+    }
+    if is_closed && apart(first.wall, last.wall) > SAME_WALL_MM {
+        corners.extend([first.s_mm, last.s_mm]);
     }
     // Across the seam of a closed contour as well.
     let length = last.s_mm - first.s_mm;
@@ -104,6 +110,40 @@ mod tests {
         let spoiled = |s: f64| if (19.5..28.5).contains(&s) || !(5.0..=42.0).contains(&s) { 4.0 } else { 0.02 };
         assert_eq!(largest(&rolled(spoiled), 10.0), Some(0.02));
         assert_eq!(largest(&rolled(|s| if s > 30.0 && s < 31.0 { -0.5 } else { 0.0 }), 10.0), Some(0.5));
+    }
+
+    #[test]
+    fn a_corner_at_the_seam_is_no_wall_but_what_lies_beside_it_is() {
+        // Round a pocket of 30 by 20 mm with a cutter of 10 mm, from one of its corners.
+        let spoiled_at = |near: f64| {
+            let legs = [
+                ([0.0, 0.0], [20.0, 0.0]),
+                ([20.0, 0.0], [20.0, 10.0]),
+                ([20.0, 10.0], [0.0, 10.0]),
+                ([0.0, 10.0], [0.0, 0.0]),
+            ];
+            let mut rows: Vec<Row> = Vec::new();
+            for (from, to) in legs {
+                let length = apart(from, to);
+                let heading = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+                let begin = rows.last().map_or(0.0, |row| row.s_mm);
+                for k in usize::from(begin > 0.0)..=(length * 10.0) as usize {
+                    let along = k as f64 * 0.1;
+                    let centre = [from[0] + heading[0] * along, from[1] + heading[1] * along];
+                    let s_mm = begin + along;
+                    let error_mm = if s_mm < near || s_mm > 60.0 - near { 0.3 } else { 0.01 };
+                    rows.push(Row {
+                        s_mm,
+                        centre,
+                        wall: [centre[0] + 5.0 * heading[1], centre[1] - 5.0 * heading[0]],
+                        error_mm,
+                    });
+                }
+            }
+            largest(&rows, 10.0)
+        };
+        assert_eq!(spoiled_at(0.9), Some(0.01));
+        assert_eq!(spoiled_at(1.3), Some(0.3));
     }
 
     #[test]

@@ -13,9 +13,9 @@ use truepath_units::{Offset, Real};
 const MARGIN: Offset = Offset::from_um(-2);
 /// How near the edge of an outside corner the wall is no longer looked at: a correction of one wall shifts the end of
 /// the other, which along its own normal would look like a deep cut.
-const EDGE: Offset = Offset::from_um(1_000);
+pub(super) const EDGE: Offset = Offset::from_um(1_000);
 /// A wall of a smaller radius than this is an edge that the cutter rolls round.
-const ROLLED: Offset = Offset::from_um(100);
+pub(super) const ROLLED: Offset = Offset::from_um(100);
 /// How much of a path made of short lines is looked at to see how it turns, as a share of the cutter's radius, and how
 /// many lines at most to either side.
 const TURN_WINDOW: Real = Real::ratio(1, 5);

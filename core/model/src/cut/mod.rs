@@ -37,6 +37,7 @@ mod engagement;
 mod force;
 mod path;
 mod sample;
+mod seam;
 mod setup;
 mod walk;
 mod wall;

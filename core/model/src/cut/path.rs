@@ -8,10 +8,11 @@
 
 use super::corner;
 use super::sample::Sample;
+use super::seam::Seam;
 use super::setup::{CutSetup, Helix, WallLaw};
 use super::walk::{closes_smoothly, margin, walk};
 use truepath_units::Offset;
-use truepath_units::geometry::{Contour, Point, Side};
+use truepath_units::geometry::{Contour, FACET_TURN_LIMIT, Point, Side};
 
 /// The sampled path: a straight run-in, the contour, a straight run-out, in a slice lent by the caller.
 #[derive(Clone, Copy, Debug)]
@@ -42,11 +43,20 @@ pub enum PathError {
         /// Line of the program.
         line: u32,
     },
+    /// The path has so many sharp corners within one diameter of the cutter that no wall stands beside it.
+    Jagged {
+        /// Line of the program that is too much.
+        line: u32,
+    },
 }
 
 /// How much narrower than the cutter an arc round an edge may be: a cutter measures a little more than it is called, and
 /// programs round.
 const TOO_WIDE: Offset = Offset::from_um(50);
+/// Sharp corners that a path may have within one diameter of the cutter. It is also what bounds the samples that any step
+/// of the cut looks at: every corner has hundreds.
+const MOST_CORNERS: usize = 32;
+
 impl<'a> Path<'a> {
     /// How many samples [`Path::sample`] needs at a step.
     pub fn samples_needed(contour: &Contour, setup: &CutSetup, step: Offset) -> usize {
@@ -60,7 +70,7 @@ impl<'a> Path<'a> {
     /// that changes within a block.
     ///
     /// # Errors
-    /// [`PathError`] when the buffer is too short or an arc leaves no wall.
+    /// [`PathError`] when the buffer is too short or path and cutter leave no wall.
     pub fn sample(
         contour: &Contour,
         setup: &CutSetup,
@@ -78,6 +88,9 @@ impl<'a> Path<'a> {
                 }
             }
         }
+        if let Some(line) = jagged(contour, setup) {
+            return Err(PathError::Jagged { line });
+        }
         let needed = Self::samples_needed(contour, setup, step);
         let lent = buffer.len();
         if needed > lent {
@@ -93,6 +106,9 @@ impl<'a> Path<'a> {
         let used = buffer.get_mut(..needed).unwrap_or_default();
         corner::mark(used, setup);
         corner::mark_rolled(used, contour, setup);
+        if let Some(seam) = Seam::of(contour, setup) {
+            seam.mark(used, setup);
+        }
         let samples: &'a [Sample] = used;
         let inside = |s: &&Sample| s.s >= Offset::ZERO && s.s <= contour.length();
         let first = samples.iter().take_while(|s| s.s < Offset::ZERO).count();
@@ -174,4 +190,22 @@ impl<'a> Path<'a> {
             _ => after,
         }
     }
+}
+
+/// The line at which a path has had more than [`MOST_CORNERS`] sharp corners within one diameter of the cutter.
+fn jagged(contour: &Contour, setup: &CutSetup) -> Option<u32> {
+    let blocks = contour.blocks();
+    let mut corners = [None; MOST_CORNERS];
+    let mut slots = (0..MOST_CORNERS).cycle();
+    for (before, block) in blocks.iter().zip(blocks.iter().skip(1)) {
+        if before.curve.end_heading().dot(block.curve.start_heading()) >= FACET_TURN_LIMIT {
+            continue;
+        }
+        let oldest = slots.next().and_then(|slot| corners.get_mut(slot))?;
+        if oldest.is_some_and(|s| block.s - s < setup.radius + setup.radius) {
+            return Some(block.line);
+        }
+        *oldest = Some(block.s);
+    }
+    None
 }

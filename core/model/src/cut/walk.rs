@@ -24,13 +24,10 @@ fn run_out(setup: &CutSetup) -> Offset {
 pub(super) fn walk(contour: &Contour, setup: &CutSetup, step: Offset, mut emit: impl FnMut(Sample)) {
     let blocks = contour.blocks();
     let (Some(start), Some(end)) = (blocks.first(), blocks.last()) else { return };
-    // Where a lap runs over its own start the wall is finished and no stock is left.
-    let bare = contour.overlap().map_or(Offset::MAX, |overlap| contour.length() - overlap);
     let mut give = |s: Offset, point: Point, heading: Direction, block: usize| {
         let normal = setup.wall.normal(heading);
         let feed = blocks.get(block).map_or(Real::ZERO, |b| b.feed);
-        let reach = if s > bare { setup.radius } else { setup.radius - setup.allowance };
-        let stock = point + normal.times(reach);
+        let stock = point + normal.times(setup.radius - setup.allowance);
         emit(Sample { s, point, normal, stock, feed, block: block as u32, ..Sample::BLANK });
     };
     let beyond = run_out(setup);

@@ -7,3 +7,4 @@ mod guard;
 mod invariance;
 mod laws;
 mod process;
+mod seam;

@@ -41,7 +41,38 @@ fn same_curve(a: &Curve, b: &Curve) -> bool {
 /// Whether two paths run over the same places, from wherever and in whichever direction.
 pub(super) fn coincide(a: &[Block], b: &[Block]) -> bool {
     let on = |a: &[Block], b: &[Block]| look(a, b, &mut |left| (left.abs() <= SAME).then_some(left.abs())).is_some();
-    on(a, b) && on(b, a)
+    !Extent::of(a).is_apart(&Extent::of(b), SAME) && on(a, b) && on(b, a)
+}
+
+/// A rectangle along the axes that holds a path.
+pub(super) struct Extent {
+    /// Its lower and upper end along x and y, nm.
+    ends: [[i64; 2]; 2],
+}
+
+impl Extent {
+    pub(super) fn of(path: &[Block]) -> Self {
+        let mut ends = [[i64::MAX, i64::MIN]; 2];
+        for block in path {
+            // No place of an arc is farther from the nearer of its ends than half of its length.
+            let more = match block.curve.shape() {
+                Shape::Line => 0,
+                Shape::Arc { .. } => block.curve.length().nm() / 2,
+            };
+            for point in [block.curve.start(), block.curve.end()] {
+                for ([lower, upper], at) in ends.iter_mut().zip([point.x.nm(), point.y.nm()]) {
+                    *lower = at.saturating_sub(more).min(*lower);
+                    *upper = at.saturating_add(more).max(*upper);
+                }
+            }
+        }
+        Self { ends }
+    }
+    /// Whether two of them are farther from each other than `gap`.
+    pub(super) fn is_apart(&self, other: &Self, gap: Offset) -> bool {
+        let beyond = |([lower, _], [_, upper]): (&[i64; 2], &[i64; 2])| lower.saturating_sub(*upper) > gap.nm();
+        self.ends.iter().zip(&other.ends).any(beyond) || other.ends.iter().zip(&self.ends).any(beyond)
+    }
 }
 
 /// How much farther from the wall of `other` a path lies: all of it on the free side of `other`, which in turn is not

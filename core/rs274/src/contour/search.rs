@@ -13,11 +13,12 @@
 //! 6. What remains are finishing contours, numbered in the order of execution.
 //!
 //! Exactly one is needed; the caller decides what to do about none or several. Cost: every pair of different paths is
-//! looked at from up to 320 places. Without a known side of the wall rule 5 does not apply.
+//! looked at from up to 320 places, unless the rectangles that hold them are farther apart than a cutter's diameter. Without a
+//! known side of the wall rule 5 does not apply.
 
 use super::found::{Criteria, Found, Role};
 use super::idle::mark;
-use super::relation::{coincide, farther, same};
+use super::relation::{Extent, coincide, farther, same};
 use super::split::without_leads;
 use truepath_units::geometry::Block;
 use truepath_units::{Offset, Position};
@@ -110,8 +111,12 @@ fn deepest(runs: &[Found], head: usize) -> Option<Position> {
 fn rough(runs: &[Found], blocks: &[Block], criteria: &Criteria, index: usize) -> Option<Role> {
     let own = runs.get(index)?;
     let depth = deepest(runs, index);
+    let extent = Extent::of(own.blocks(blocks));
     for (nearer, other) in runs.iter().enumerate().rev() {
         if nearer == index || other.like != nearer || !counts(other, criteria) || other.idle.is_some() {
+            continue;
+        }
+        if extent.is_apart(&Extent::of(other.blocks(blocks)), criteria.diameter) {
             continue;
         }
         let deep_enough = match (deepest(runs, nearer), depth) {

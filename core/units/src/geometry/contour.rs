@@ -91,18 +91,20 @@ impl<'a> Contour<'a> {
         let count = self.blocks.len().min(OVERLAPPED);
         let head = Contour::new(self.blocks.get(..count)?)?;
         let tail = Contour::new(self.blocks.get(self.blocks.len().saturating_sub(count)..)?)?;
+        // The first and the last place where a point lies on it: head and tail of a short contour hold each other's ends.
         let on = |of: &Contour, point: Point, heading: Direction| {
-            let mut at = None;
+            let mut places: Option<(Offset, Offset)> = None;
             of.feet(point, |foot| {
                 let along = |s| of.at(s, 0).is_some_and(|place| place.heading.dot(heading) >= ALONG);
-                if at.is_none() && foot.beside && foot.left.abs() <= ON_ITSELF && along(foot.s) {
-                    at = Some(foot.s);
+                if foot.beside && foot.left.abs() <= ON_ITSELF && along(foot.s) {
+                    places = Some((places.map_or(foot.s, |(first, _)| first), foot.s));
                 }
             });
-            at
+            places
         };
-        let overlap = on(&head, last.curve.end(), last.curve.end_heading())?;
-        let back = tail.length() - on(&tail, first.curve.start(), first.curve.start_heading())?;
+        let (overlap, _) = on(&head, last.curve.end(), last.curve.end_heading())?;
+        let (_, start) = on(&tail, first.curve.start(), first.curve.start_heading())?;
+        let back = tail.length() - start;
         let short = |s: Offset| s > ON_ITSELF && s.nm() <= self.length().nm() / 4;
         (short(overlap) && short(back)).then_some(overlap)
     }

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use truepath_core::cut::{ForceTable, Path, PathError, Sample};
+use truepath_core::cut::{ForceTable, Path, Sample};
 use truepath_core::identify::{Parameters, neighbours};
 use truepath_core::process::{ImmersionGrid, Mill, Slices};
 use truepath_core::units::{Offset, Real};
@@ -207,11 +207,8 @@ impl<'a> Planner<'a> {
         let finest = Offset::from_nm(setup.radius.nm() / 8);
         let step = Offset::from_um(resolution.step_um).min(finest);
         samples.resize(Path::samples_needed(&contour, setup, step), Sample::BLANK);
-        let path = Path::sample(&contour, setup, step, samples, |_| ());
-        let path = path.map_err(|error| match error {
-            PathError::NoWall { line } => self.pass.refused(&truepath_core::job::JobError::Undercut { line }),
-            PathError::BufferTooShort { .. } => Failure::Internal("a path that needs more samples than it said".into()),
-        })?;
+        let path = self.pass.core.sample_every(step, &contour, samples, |_| ());
+        let path = path.map_err(|error| self.pass.refused(&error))?;
         Ok(path.with_law(self.known.law()))
     }
 
@@ -275,11 +272,12 @@ fn slices(path: &Path, resolution: Resolution) -> Slices {
 }
 
 /// Machines that the points do not tell from the one that was found, however many they are, because the model is not the cut: the
-/// force by 2 %, the radial share by 3 %, the edge by 5 %, the exponent of the chip by 0.02 and the bending by 0.05.
+/// force by 2 %, the radial share by 3 %, the edge by 5 %, the exponent of the chip by 0.02, the bending
+/// by 0.05 and the size of the cutter by 2 um.
 fn unmodelled(found: &Parameters) -> impl Iterator<Item = Parameters> + use<> {
     let found = *found;
     let scaled = |value: Real, percent: i64| value + value * Real::ratio(percent, 100);
-    let mut other = [found; 5];
+    let mut other = [found; 6];
     other[0].compliance.mean = scaled(found.compliance.mean, 2);
     other[0].compliance.difference = scaled(found.compliance.difference, 2);
     other[0].compliance.cross = scaled(found.compliance.cross, 2);
@@ -288,6 +286,7 @@ fn unmodelled(found: &Parameters) -> impl Iterator<Item = Parameters> + use<> {
     other[2].coefficients.kre = scaled(found.coefficients.kre, 5);
     other[3].coefficients.size_exponent = found.coefficients.size_exponent + Real::ratio(2, 100);
     other[4].compliance.bend = found.compliance.bend + Real::ratio(5, 100);
+    other[5].undersize = found.undersize + Offset::from_um(2);
     other.into_iter()
 }
 

@@ -34,7 +34,7 @@ impl Inputs<'_> {
         match *error {
             JobError::Program(error) => InputError::of_program(self.program, &error).into(),
             JobError::NoFeed { line } => at_line(of_job(error), line),
-            JobError::Undercut { line } => at_line(of_job(error), line),
+            JobError::Undercut { line } | JobError::Jagged { line } => at_line(of_job(error), line),
             JobError::Measurement(error) => {
                 self.probe.map_or_else(|| Failure::Internal(error.to_string()), |file| of_probe(file, &error).into())
             }
@@ -75,6 +75,10 @@ fn of_job(error: &JobError) -> InputError {
         JobError::Undercut { .. } => (
             "an outside arc of the path at least as wide as the cutter's radius",
             "check the side (wall = \"left\" or \"right\") and the cutter's diameter in the job",
+        ),
+        JobError::Jagged { .. } => (
+            "a contour with a wall that this cutter makes",
+            "check diameter_mm and the unit of the program (G20, G21); name the lines of the contour in [[feature]] if it is another",
         ),
         JobError::WallsDiffer => (
             "the same side in both",
