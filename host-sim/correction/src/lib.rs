@@ -8,6 +8,7 @@
 //! | a whole correction with its programs, images and figures | [`correct`], [`summary`] |
 //! | the second of two passes | [`first_pass`], [`second_pass`] |
 //! | the next part | [`learning`], [`learn`], [`as_milled`] |
+//! | planned passes as a program | [`planned`] |
 //! | where to touch, and the program that does | [`verification`] |
 //! | accuracy from the measurement alone | [`inspection`] |
 
@@ -26,6 +27,7 @@ pub mod learn;
 pub mod learning;
 pub mod misfit;
 mod parallel_walls;
+pub mod planned;
 pub mod remarks;
 pub mod rows;
 pub mod second_pass;
