@@ -177,7 +177,7 @@ fn passes(moves: &[Move], depth: &Depth, section: &Section, lines: &text::Lines,
             blocks.collect::<Vec<_>>()
         });
         let lines = LineRange { first: begin + *first as u32, last: begin + until(k) - 1 };
-        RepeatedPass { lines, parts, z_nm: (section.z + depth.turns[k].raise).nm() }
+        RepeatedPass { lines, parts, z_nm: section.height_of(depth.turns[k].raise).nm() }
     };
     lines.passes.iter().enumerate().map(pass).collect()
 }

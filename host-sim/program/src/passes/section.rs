@@ -12,6 +12,7 @@ use truepath_ground::codes::Row;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::super::deviation::distance;
+use super::super::grid::Grid;
 use super::super::line::Block;
 use super::super::pen::place;
 use super::super::survey::{Kind, Move};
@@ -38,6 +39,8 @@ pub(super) struct Section {
     pub(super) parts: [Vec<usize>; 3],
     /// Height of the contour.
     pub(super) z: Position,
+    /// The numbers that the program can write.
+    pub(super) grid: Grid,
     /// To which height the cutter comes before it goes down, where that is known.
     pub(super) height: Option<Position>,
     /// At which height it goes from the end of a pass to the start of the next.
@@ -54,6 +57,17 @@ pub(super) struct Section {
     pub(super) centre_path: bool,
     /// How far the end of the lead-out is from the contour.
     pub(super) end_free: Offset,
+}
+
+impl Section {
+    /// The height of a pass so much above the contour, as it can be written.
+    pub(super) fn height_of(&self, raise: Offset) -> Position {
+        if raise == Offset::ZERO {
+            return self.z;
+        }
+        let steps = self.grid.steps((self.z + raise).nm());
+        Position::from_nm(self.grid.nm(steps).round() as i64)
+    }
 }
 
 /// The text a section is looked for in.
@@ -158,6 +172,7 @@ impl<'a> Text<'a> {
         let section = Section {
             lines: self.lines_of(start..end)?,
             end_free: self.free(&parts),
+            grid: Grid::of(moves[start].modal.units),
             moves: start..end,
             parts,
             z,

@@ -10,7 +10,6 @@ use truepath_ground::diagnostics::Failure;
 
 use super::super::feed::scaled;
 use super::super::fit::Shape;
-use super::super::grid::Grid;
 use super::super::line::Block;
 use super::super::pen::{Pen, place};
 use super::super::survey::Move;
@@ -60,19 +59,19 @@ pub(super) fn write(
     for (k, turn) in depth.turns.iter().enumerate() {
         typist.check_start(depth, k, ends)?;
         let first = typist.lines.len();
-        typist.comment(&remark(depth, k, &typist.z_text(section.z + turn.raise)), semicolon);
+        typist.comment(&remark(depth, k, &typist.z_text(section.height_of(turn.raise))), semicolon);
         let [from, _] = if turn.reversed { [ends[1], ends[0]] } else { ends };
         if k > 0 {
-            typist.rise();
+            typist.rise(from);
             typist.travel(from);
-            typist.go_down(section.z + turn.raise, false);
+            typist.go_down(section.height_of(turn.raise), false);
         } else if !section.keeps_descent {
             let elsewhere = from != ends[0];
             if elsewhere {
                 typist.lift_to(section.clearance);
                 typist.travel(from);
             }
-            typist.go_down(section.z + turn.raise, elsewhere);
+            typist.go_down(section.height_of(turn.raise), elsewhere);
         }
         let cuts = typist.pass(turn, k == 0)?;
         lines.passes.push((first, cuts));
@@ -144,7 +143,7 @@ impl<'a> Typist<'a> {
     }
 
     fn z_text(&self, z: Position) -> String {
-        let grid = Grid::of(self.modal().units);
+        let grid = self.section.grid;
         format!("Z{}", grid.text(grid.steps(z.nm())))
     }
 
@@ -213,10 +212,14 @@ impl<'a> Typist<'a> {
         Ok(())
     }
 
-    fn rise(&mut self) {
+    /// Up to go to a place: to the clearance, or where the cutter stays to the height from which the program goes down.
+    fn rise(&mut self, to: [i64; 2]) {
         self.end_compensation();
-        let steps = self.section.ascent.clone();
-        for step in steps {
+        let section = self.section;
+        let stays = self.at == to;
+        let top = section.height.filter(|h| stays && *h < section.clearance).unwrap_or(section.clearance);
+        for step in &section.ascent {
+            let step = Step { z: step.z.min(top), ..*step };
             if self.z.is_none_or(|z| step.z > z) {
                 self.step(&step);
             }
@@ -378,7 +381,7 @@ impl<'a> Typist<'a> {
         let home = place(last.to).ok_or_else(|| Failure::Internal("a contour to an unknown place".to_owned()))?;
         let mut lifted = false;
         if self.at != home {
-            self.rise();
+            self.rise(home);
             self.travel(home);
             lifted = section.rises;
             if !lifted && section.end_free == Offset::ZERO {
