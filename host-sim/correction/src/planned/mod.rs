@@ -22,7 +22,7 @@ use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
 use truepath_job::levels;
 use truepath_job::pass::Pass;
-use truepath_program::passes::{Depth, Repeated, Turn, can_repeat, repeat_contours};
+use truepath_program::passes::{Depth, Repeated, RepeatedPass, Turn, can_repeat, repeat_contours};
 use truepath_program::{BlockEdit, Difference, Origin, RewriteOptions, Rewritten, rewrite_program};
 
 use crate::correct::written_out;
@@ -189,8 +189,14 @@ impl Planned {
         let mut edits: Vec<BlockEdit> = Vec::new();
         for ((depth, (wall, _)), pass) in self.repeated.depths.iter().zip(&self.places).zip(&self.passes) {
             let wall = &walls[*wall];
+            let mut before: Option<(bool, &RepeatedPass)> = None;
             for (planned, written) in wall.passes.iter().zip(&depth.passes) {
-                edits.extend(paths::edits(pass, wall.path, planned, written)?);
+                let mut own = paths::edits(pass, wall.path, planned, written)?;
+                if let Some((reversed, earlier)) = before.replace((planned.reversed, written)) {
+                    let end = edits.last().and_then(|edit| edit.samples.last().copied());
+                    paths::meet(earlier, written, [reversed, planned.reversed], end, &mut own);
+                }
+                edits.append(&mut own);
             }
         }
         // Each depth has its lines in the order of cutting, and depths follow each other in that of the program.

@@ -90,7 +90,7 @@ pub const SPRING: Part = Part {
 pub const SUBPROGRAM: Part = Part {
     name: "depths by a subprogram",
     program: "%\nO10\nG21 G90 G17\nT1 M6\nS5000 M3\nG0 X-12 Y0 Z20\nG0 Z0\nM98 P20 L3\nG90 G0 Z20\nM30\nO20\nG91 G1 Z-4 F300\nG90 G1 X60 F500\nG3 X70 Y10 I0 J10\nG1 Y50\nG1 X64 Y60\n\
-              G0 Z5\nG0 X-12 Y0\nM99\n%\n",
+              G91 G0 Z30\nG90 G0 X-12 Y0\nG91 G0 Z-30\nM99\n%\n",
     job: ["dialect = \"fanuc\"\nwall = \"right\"", "allowance_mm = 0.5", "diameter_mm = 10.0"],
 };
 
@@ -153,13 +153,16 @@ impl Written {
             for ((planned, lines), z) in self.passes.iter().zip(&depth.passes).zip(&depth.z_mm) {
                 let on = |line: u32| lines[0] <= line && line <= lines[1];
                 let runs: Vec<_> = survey.runs.iter().filter(|found| on(found.run.lines.first)).collect();
-                let [found] = runs[..] else { panic!("{}: {} runs on {lines:?}\n{}", part.name, runs.len(), self.text()) };
+                let [found] = runs[..] else {
+                    panic!("{}: {} runs on {lines:?}\n{}", part.name, runs.len(), self.text())
+                };
                 assert!(on(found.run.lines.last), "{}", self.text());
                 assert_eq!(found.run.z.map(|z| z.nm()), Some((z * 1e6).round() as i64), "{}", part.name);
                 let blocks = found.blocks(&survey.blocks);
                 largest = largest.max(self.deviation(planned, blocks));
                 let float = |feed: Real| truepath_ground::units::float(feed);
-                let wanted = |feed: f64| self.feeds.iter().any(|own| (float(*own) * planned.feed - feed).abs() < 0.06 * 25.4);
+                let wanted =
+                    |feed: f64| self.feeds.iter().any(|own| (float(*own) * planned.feed - feed).abs() < 0.06 * 25.4);
                 let fed = blocks.iter().filter(|block| wanted(float(block.feed))).count();
                 assert!(2 * fed > blocks.len(), "{}: feeds of {lines:?}\n{}", part.name, self.text());
             }

@@ -218,9 +218,11 @@ impl<'a> Typist<'a> {
         let section = self.section;
         let stays = self.at == to;
         let top = section.height.filter(|h| stays && *h < section.clearance).unwrap_or(section.clearance);
-        for step in &section.ascent {
+        let steps = &section.ascent;
+        for (k, step) in steps.iter().enumerate() {
             let step = Step { z: step.z.min(top), ..*step };
-            if self.z.is_none_or(|z| step.z > z) {
+            let goes_on = step.z < top && step.rapid && steps.get(k + 1).is_some_and(|next| next.rapid);
+            if !goes_on && self.z.is_none_or(|z| step.z > z) {
                 self.step(&step);
             }
         }
