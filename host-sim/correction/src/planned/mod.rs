@@ -22,12 +22,14 @@ use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
 use truepath_job::levels;
 use truepath_job::pass::Pass;
+use truepath_program::codes::P002;
 use truepath_program::passes::{Depth, Repeated, RepeatedPass, Turn, can_repeat, repeat_contours};
 use truepath_program::{BlockEdit, Difference, Origin, RewriteOptions, Rewritten, rewrite_program};
 
 use crate::correct::written_out;
 use crate::feeds::written_feeds_count;
 
+use paths::Leads;
 pub use plan::{PlannedDepth, PlannedPass, PlannedWall};
 
 /// A program with planned passes.
@@ -80,7 +82,17 @@ pub fn write_every(walls: &[PlannedWall<'_>], probe: Option<u32>) -> Result<Plan
             repeated(walls, &flat.iter().collect::<Vec<_>>())?
         }
     };
-    let written = planned.moved(walls, program_crc(first.program.bytes()), probe)?;
+    let original = program_crc(first.program.bytes());
+    let written = match planned.moved(walls, original, probe, Leads::Carried) {
+        Err(Failure::Input(error)) if error.code() == P002.code => {
+            warnings.push(format!(
+                "{}: the move before the contour cannot be changed: the leads begin and end where they did, and each pass comes to its path along them",
+                first.program.name()
+            ));
+            planned.moved(walls, original, probe, Leads::Kept)?
+        }
+        written => written?,
+    };
     warnings.extend(planned.left.iter().cloned());
     if walls.iter().any(|wall| wall.pass.job.feed.is_some()) {
         warnings.push("[feed] of the job has no part in planned passes: each has the feed of the plan".to_owned());
@@ -185,13 +197,19 @@ fn repeated(walls: &[PlannedWall<'_>], passes: &[&Pass]) -> Result<Planned, Fail
 
 impl Planned {
     /// Moves every pass to where it is to run.
-    fn moved(&self, walls: &[PlannedWall<'_>], original: u32, probe: Option<u32>) -> Result<Rewritten, Failure> {
+    fn moved(
+        &self,
+        walls: &[PlannedWall<'_>],
+        original: u32,
+        probe: Option<u32>,
+        leads: Leads,
+    ) -> Result<Rewritten, Failure> {
         let mut edits: Vec<BlockEdit> = Vec::new();
         for ((depth, (wall, _)), pass) in self.repeated.depths.iter().zip(&self.places).zip(&self.passes) {
             let wall = &walls[*wall];
             let mut before: Option<(bool, &RepeatedPass)> = None;
             for (planned, written) in wall.passes.iter().zip(&depth.passes) {
-                let mut own = paths::edits(pass, wall.path, planned, written)?;
+                let mut own = paths::edits(pass, wall.path, planned, written, leads)?;
                 if let Some((reversed, earlier)) = before.replace((planned.reversed, written)) {
                     let end = edits.last().and_then(|edit| edit.samples.last().copied());
                     paths::meet(earlier, written, [reversed, planned.reversed], end, &mut own);

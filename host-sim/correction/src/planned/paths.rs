@@ -8,18 +8,27 @@ use truepath_program::BlockEdit;
 use truepath_program::passes::RepeatedPass;
 
 use super::plan::PlannedPass;
-use crate::edits::carried_edits;
+use crate::edits::{carried_edits, tapered_edits};
 
 /// A lead-in takes up what it is this many times longer than.
 const LEAST_LEAD: i64 = 5;
 
-/// The path of a pass on the lines on which it was written out: leads are moved as they are, by what the contour is moved at
-/// their end, so that they meet it as before.
+/// What becomes of the leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Leads {
+    /// They are moved as they are, by what the contour is moved at their end, so that they meet it as before.
+    Carried,
+    /// They begin and end where they did, and the displacement comes and goes along them.
+    Kept,
+}
+
+/// The path of a pass on the lines on which it was written out.
 pub(super) fn edits(
     pass: &Pass,
     path: &Path<'_>,
     planned: &PlannedPass,
     written: &RepeatedPass,
+    leads: Leads,
 ) -> Result<Vec<BlockEdit>, Failure> {
     let [lead_in, contour, lead_out] = &written.parts;
     let mut placed = pass.clone();
@@ -29,7 +38,11 @@ pub(super) fn edits(
     for (block, line) in placed.blocks.iter_mut().zip(contour) {
         block.line = line.line;
     }
-    let mut edits = carried_edits(&placed, [lead_in, lead_out], path, &planned.nodes);
+    let moved = match leads {
+        Leads::Carried => carried_edits,
+        Leads::Kept => tapered_edits,
+    };
+    let mut edits = moved(&placed, [lead_in, lead_out], path, &planned.nodes);
     if planned.reversed {
         edits.reverse();
         edits.iter_mut().for_each(|edit| edit.samples.reverse());

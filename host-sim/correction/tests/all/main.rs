@@ -5,3 +5,4 @@ mod parts;
 mod planned;
 mod refused;
 mod search;
+mod shop;

@@ -125,7 +125,8 @@ impl<'a> Text<'a> {
         let tool = self.moves[first].modal.tool;
         let level = |i: usize| {
             let m = &self.moves[i];
-            matches!(m.kind, Kind::Feed | Kind::Arc(..)) && [m.from.z, m.to.z] == [Some(z); 2] && m.modal.tool == tool
+            let cuts = matches!(m.kind, Kind::Feed | Kind::Arc(..)) && m.from.point().is_some();
+            cuts && [m.from.z, m.to.z] == [Some(z); 2] && m.modal.tool == tool
         };
         let before = (0..first).rev().take_while(|&i| level(i)).last().unwrap_or(first);
         let behind = (last + 1..self.moves.len()).take_while(|&i| level(i)).last().unwrap_or(last);
@@ -245,8 +246,6 @@ impl<'a> Text<'a> {
             let Some(to) = m.to.z.filter(|to| *to > steps.last().map_or(z, |s| s.z)) else { break };
             steps.push(Step { rapid: matches!(m.kind, Kind::Traverse), z: to, like: i });
         }
-        let goes_up = |m: &Move| m.modal.absolute && m.stands_still() && m.to.z.is_some_and(|to| to > z);
-        let rises = moves.get(end).is_none_or(|m| goes_up(m) || matches!(m.kind, Kind::Away(_)));
         let same = |m: &&Move| {
             let (a, b) = (&m.modal, &moves[run].modal);
             (a.tool, a.work_offset, a.shifts) == (b.tool, b.work_offset, b.shifts)
@@ -257,6 +256,9 @@ impl<'a> Text<'a> {
         if steps.last().is_none_or(|s| s.z < top) {
             steps.push(Step { rapid: true, z: top, like: run });
         }
+        let least = height.filter(|h| *h > z).map_or(top, |h| h.min(top));
+        let goes_up = |m: &Move| m.modal.absolute && m.stands_still() && m.to.z.is_some_and(|to| to >= least);
+        let rises = moves.get(end).is_none_or(|m| goes_up(m) || matches!(m.kind, Kind::Away(_)));
         Some((top, steps, rises))
     }
 

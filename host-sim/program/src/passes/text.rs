@@ -3,7 +3,7 @@
 //! Everything is written out, in absolute places: motion, both coordinates, height and feed, so that no pass depends on
 //! what was in force before it. Behind the last pass the feed, G91 and the place of the program are there again.
 
-use truepath_core::gcode::Modal;
+use truepath_core::gcode::{Modal, Motion};
 use truepath_core::geometry::{Shape as CurveShape, Side};
 use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::Failure;
@@ -376,6 +376,28 @@ impl<'a> Typist<'a> {
         format!("G4{} {offset}", if side == Side::Right { 1 } else { 2 })
     }
 
+    /// Behind a rapid: the motion that the next move relies on.
+    fn restore_motion(&mut self) -> Result<(), Failure> {
+        let Some(next) = self.text.moves.get(self.section.moves.end) else { return Ok(()) };
+        let block = self.text.block(next.line);
+        let named = next.modal.motion.is_some_and(|motion| block.names(motion));
+        match next.motion_before {
+            _ if named => Ok(()),
+            None | Some(Motion::Traverse) => Ok(()),
+            Some(Motion::Feed) => {
+                let z = self.z.unwrap_or(self.section.clearance);
+                let words = format!("{} {}", self.code(1), self.z_text(z));
+                self.line(&words);
+                Ok(())
+            }
+            Some(_) => {
+                let found = "the move behind the contour relies on the code of its last line, and the last pass has begun there";
+                let expected = "a G code on this line, or a last pass in the direction of the program";
+                Err(self.text.refusal(P010, next.line, [found, expected, P010.remedy]))
+            }
+        }
+    }
+
     /// Puts back place, feed, G91 and what acts behind the contour; whether the cutter stands higher than in the program.
     fn back(&mut self) -> Result<bool, Failure> {
         let (section, moves) = (self.section, self.text.moves);
@@ -391,7 +413,9 @@ impl<'a> Typist<'a> {
                 let expected = "a move up behind the contour, or a last pass in the direction of the program";
                 return Err(self.text.refusal(P010, last.line, [found, expected, P010.remedy]));
             }
-            if !lifted {
+            if lifted {
+                self.restore_motion()?;
+            } else {
                 self.go_down(section.z, false);
             }
         }

@@ -1,7 +1,7 @@
 //! A program whose contours are cut in several passes: beside them it does the same, and every pass cuts what it has to.
 
 use truepath_core::gcode::{Canon, LineRange, Modal, Options};
-use truepath_core::geometry::Curve;
+use truepath_core::geometry::{Curve, Shape};
 use truepath_core::units::Position;
 use truepath_ground::units::float;
 
@@ -140,6 +140,13 @@ fn passes(original: &[Fact], written: &[Fact], replaced: &Replaced) -> Result<()
     if wanted.next().is_some() { Err("a pass has become shorter".to_owned()) } else { Ok(()) }
 }
 
+/// By how much the radius of an arc changes from its start to its end, nm: the circle that is read depends on the end it is
+/// given from.
+fn spiral(curve: &Curve) -> f64 {
+    let Shape::Arc { centre, .. } = curve.shape() else { return 0.0 };
+    (curve.start().distance(centre) - curve.end().distance(centre)).nm().abs() as f64
+}
+
 fn same_cut(curve: &Curve, cut: &Cut, fact: &Fact) -> Result<(), &'static str> {
     // A step of the program's numbers, and what the rounding of the one before leaves.
     let slack = 2.0 * Grid::of(fact.modal.units).step_nm();
@@ -154,7 +161,7 @@ fn same_cut(curve: &Curve, cut: &Cut, fact: &Fact) -> Result<(), &'static str> {
         || !near(end, cut.curve.end())
         || !straight
         || bend(curve) * sense * bend(&cut.curve) < 0.0
-        || middle(curve).distance(middle(&cut.curve)).nm() as f64 > 4.0 * slack
+        || middle(curve).distance(middle(&cut.curve)).nm() as f64 > 4.0 * slack + spiral(&cut.curve)
     {
         return Err("the path");
     }
