@@ -146,37 +146,55 @@ impl Written {
 
     /// Every pass is on its lines where the plan wants it, at its height and feed; gives the largest distance, mm.
     pub fn cuts_as_planned(&self, part: &Part) -> f64 {
-        let source = Source::new("written.nc", self.program.text.clone());
-        let survey = Survey::read(&part.job(), &source).expect("a readable program");
-        let mut largest = 0.0f64;
-        for depth in &self.program.depths {
-            for ((planned, lines), z) in self.passes.iter().zip(&depth.passes).zip(&depth.z_mm) {
-                let on = |line: u32| lines[0] <= line && line <= lines[1];
-                let runs: Vec<_> = survey.runs.iter().filter(|found| on(found.run.lines.first)).collect();
-                let [found] = runs[..] else {
-                    panic!("{}: {} runs on {lines:?}\n{}", part.name, runs.len(), self.text())
-                };
-                assert!(on(found.run.lines.last), "{}", self.text());
-                assert_eq!(found.run.z.map(|z| z.nm()), Some((z * 1e6).round() as i64), "{}", part.name);
-                let blocks = found.blocks(&survey.blocks);
-                largest = largest.max(self.deviation(planned, blocks));
-                let float = |feed: Real| truepath_ground::units::float(feed);
-                let wanted =
-                    |feed: f64| self.feeds.iter().any(|own| (float(*own) * planned.feed - feed).abs() < 0.06 * 25.4);
-                let fed = blocks.iter().filter(|block| wanted(float(block.feed))).count();
-                assert!(2 * fed > blocks.len(), "{}: feeds of {lines:?}\n{}", part.name, self.text());
-            }
-        }
-        largest
+        let wall = Wall { passes: &self.passes, points: &self.points, feeds: &self.feeds };
+        cut_as_planned(part.name, &self.program, &part.job(), &[wall])
     }
+}
 
+/// What was asked for along a wall: the contour of the original, nm, and its feeds.
+pub struct Wall<'a> {
+    pub passes: &'a [PlannedPass],
+    pub points: &'a [[i64; 2]],
+    pub feeds: &'a [Real],
+}
+
+/// Reads a written program back; gives the largest distance of a pass from its plan, mm.
+pub fn cut_as_planned(name: &str, program: &PlannedProgram, job: &JobFile, walls: &[Wall<'_>]) -> f64 {
+    let source = Source::new("written.nc", program.text.clone());
+    let survey = Survey::read(job, &source).expect("a readable program");
+    let text = String::from_utf8_lossy(&program.text);
+    let mut largest = 0.0f64;
+    for depth in &program.depths {
+        let wall = &walls[depth.wall];
+        for ((planned, lines), z) in wall.passes.iter().zip(&depth.passes).zip(&depth.z_mm) {
+            let on = |line: u32| lines[0] <= line && line <= lines[1];
+            let runs: Vec<_> = survey.runs.iter().filter(|found| on(found.run.lines.first)).collect();
+            let [found] = runs[..] else { panic!("{name}: {} runs on {lines:?}\n{text}", runs.len()) };
+            assert!(on(found.run.lines.last), "{name}: {text}");
+            assert_eq!(found.run.z.map(|z| z.nm()), Some((z * 1e6).round() as i64), "{name}");
+            let blocks = found.blocks(&survey.blocks);
+            largest = largest.max(wall.deviation(planned, blocks));
+            let float = |feed: Real| truepath_ground::units::float(feed);
+            let wanted =
+                |feed: f64| wall.feeds.iter().any(|own| (float(*own) * planned.feed - feed).abs() < 0.06 * 25.4);
+            let fed = blocks.iter().filter(|block| wanted(float(block.feed))).count();
+            assert!(2 * fed > blocks.len(), "{name}: feeds of {lines:?}\n{text}");
+        }
+    }
+    largest
+}
+
+impl Wall<'_> {
     /// How far the wanted points are from some blocks, mm; they are passed in their order.
     fn deviation(&self, planned: &PlannedPass, blocks: &[Block]) -> f64 {
-        let wanted = self.points.iter().zip(&planned.nodes).map(|(p, node)| {
-            let d = node.total();
+        let spot = |k: usize| self.points.get(k);
+        // On the spot of a sharp corner the pass steps from the first to the last of the displacements there.
+        let between = |k: &usize| *k > 0 && spot(k - 1) == spot(*k) && spot(*k) == spot(k + 1);
+        let place = |k: usize| {
+            let (p, d) = (self.points[k], planned.nodes[k].total());
             [p[0] + d.x.nm(), p[1] + d.y.nm()]
-        });
-        let mut wanted: Vec<[i64; 2]> = wanted.collect();
+        };
+        let mut wanted: Vec<[i64; 2]> = (0..self.points.len()).filter(|k| !between(k)).map(place).collect();
         if planned.reversed {
             wanted.reverse();
         }

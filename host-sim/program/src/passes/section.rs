@@ -251,12 +251,14 @@ impl<'a> Text<'a> {
             (a.tool, a.work_offset, a.shifts) == (b.tool, b.work_offset, b.shifts)
         };
         let travels = moves[..run].iter().rev().take_while(same).filter(|m| matches!(m.kind, Kind::Traverse));
+        // At the end of the moves up it goes to another place, or ends.
+        let travels_at = steps.last().map(|s| s.z);
         let highest = || travels.filter(|m| !m.stands_still()).filter_map(|m| m.to.z).max();
-        let top = steps.last().map(|s| s.z).or_else(highest).max(height).filter(|top| *top > z)?;
+        let top = travels_at.or_else(highest).max(height).filter(|top| *top > z)?;
         if steps.last().is_none_or(|s| s.z < top) {
             steps.push(Step { rapid: true, z: top, like: run });
         }
-        let least = height.filter(|h| *h > z).map_or(top, |h| h.min(top));
+        let least = [height, travels_at].into_iter().flatten().filter(|h| *h > z).fold(top, Position::min);
         let goes_up = |m: &Move| m.modal.absolute && m.stands_still() && m.to.z.is_some_and(|to| to >= least);
         let rises = moves.get(end).is_none_or(|m| goes_up(m) || matches!(m.kind, Kind::Away(_)));
         Some((top, steps, rises))
