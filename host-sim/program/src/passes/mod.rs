@@ -23,12 +23,12 @@ mod text;
 
 use truepath_core::gcode::{LineRange, Lines, Options, Token, Words};
 use truepath_core::geometry::Block as Curves;
-use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::line::Block;
 use super::proof::{Cut, Replaced, same_beside};
 use super::survey::{Move, survey};
-use crate::codes::P008;
+use crate::codes::{P008, P009};
 use section::{Section, Text};
 
 pub use request::{Depth, Turn};
@@ -82,8 +82,25 @@ pub fn can_repeat(source: &Source, depth: &Depth, options: Options<'static>) -> 
 /// compensation that goes beyond the leads, `P009` for a contour that cannot be written again, `P010` for a reversed pass that
 /// has no safe start, `P008` when the text fails the proof, and the interpreter's own errors.
 pub fn repeat_contours(source: &Source, depths: &[Depth], options: Options<'static>) -> Result<Repeated, Failure> {
+    let (repeated, replaced) = laid_out(source, depths, options)?;
+    same_beside(source.bytes(), &repeated.text, &replaced, options).map_err(|what| {
+        let line = replaced.first().map_or(0, |r| r.original.first);
+        let span =
+            Lines::new(source.bytes()).find(|l| l.number == line).map_or(0..0, |l| l.span().start..l.span().end());
+        let found = format!("the program with several passes in place of this contour does more than that: {what}");
+        P008.error(found, "a program that differs in the passes alone").at(source, span)
+    })?;
+    Ok(repeated)
+}
+
+/// The program with the passes, not yet proved, and what the proof needs.
+fn laid_out(
+    source: &Source,
+    depths: &[Depth],
+    options: Options<'static>,
+) -> Result<(Repeated, Vec<Replaced>), Failure> {
     let bytes = source.bytes();
-    let moves = survey(bytes, options).map_err(|e| truepath_ground::diagnostics::InputError::of_program(source, &e))?;
+    let moves = survey(bytes, options).map_err(|e| InputError::of_program(source, &e))?;
     let lines: Vec<_> = Lines::new(bytes).collect();
     let text = Text { source, lines: &lines, moves: &moves };
     let two_digits = lines.iter().map(|&l| Block::new(l, false)).any(|b| b.motion_word().is_some() && b.two_digits());
@@ -98,15 +115,9 @@ pub fn repeat_contours(source: &Source, depths: &[Depth], options: Options<'stat
     if let Some(pair) = written.windows(2).find(|pair| pair[0].1.lines[1] >= pair[1].1.lines[0]) {
         let found = "two depths of the contour share lines of the program";
         let expected = "lines of their own for every depth";
-        return Err(text.refusal(crate::codes::P009, pair[1].1.lines[0], [found, expected, crate::codes::P009.remedy]));
+        return Err(text.refusal(P009, pair[1].1.lines[0], [found, expected, P009.remedy]));
     }
-    let (repeated, replaced) = assemble(bytes, &text, depths, &written);
-    same_beside(bytes, &repeated.text, &replaced, options).map_err(|what| {
-        let line = replaced.first().map_or(0, |r| r.original.first);
-        let found = format!("the program with several passes in place of this contour does more than that: {what}");
-        text.refusal(P008, line, [&found, "a program that differs in the passes alone", P008.remedy])
-    })?;
-    Ok(repeated)
+    Ok(assemble(bytes, &text, depths, &written))
 }
 
 /// Puts the lines of the sections into the program.
@@ -207,4 +218,82 @@ fn comments_begin_with_semicolon(program: &[u8]) -> bool {
         _ => None,
     });
     first == Some(&b';')
+}
+
+#[cfg(test)]
+mod tests {
+    use truepath_core::units::Offset;
+
+    use super::*;
+
+    const ORIGINAL: &str = "%\nG21 G90\nM3 S1500\nG0 X0 Y-8 Z10\nG1 Z-5 F300\nN10 G1 X0 Y0 (in)\nN20 G1 X20 F250\nG3 X25 Y5 I0 J5\nN30 G1 Y30\nG0 Z10\nG0 X50 Y50\nM30\n%\n";
+
+    fn depth(turns: &[(f64, bool, f64)]) -> Depth {
+        let source = Source::new("p.nc", ORIGINAL.as_bytes().to_vec());
+        let moves = survey(source.bytes(), Options::default()).expect("readable");
+        let contour = moves.iter().filter(|m| (7..=9).contains(&m.line));
+        let block = |m: &Move| Some(Curves { curve: m.curve()?, line: m.line, ..Curves::BLANK });
+        let turn = |&(raise, reversed, feed): &(f64, bool, f64)| Turn {
+            raise: Offset::from_nm((raise * 1e6) as i64),
+            reversed,
+            feed,
+        };
+        Depth {
+            contour: contour.filter_map(block).collect(),
+            springs: Vec::new(),
+            allowance: Offset::from_um(500),
+            turns: turns.iter().map(turn).collect(),
+        }
+    }
+
+    fn laid() -> (String, Vec<Replaced>) {
+        let source = Source::new("p.nc", ORIGINAL.as_bytes().to_vec());
+        let depth = depth(&[(2.0, false, 1.0), (0.0, false, 0.8), (0.0, true, 0.5)]);
+        let Ok((repeated, replaced)) = laid_out(&source, &[depth], Options::default()) else { panic!("refused") };
+        (String::from_utf8(repeated.text).expect("ASCII"), replaced)
+    }
+
+    #[test]
+    fn every_pass_is_written_out_and_proved() {
+        let (text, replaced) = laid();
+        let expected = "%\nG21 G90\nM3 S1500\nG0 X0 Y-8 Z10\n(TRUEPATH PASS 1 OF 3, Z-3.)\nG1 Z-3. F300.\n(in)\nN10 G1 X0. Y0. F300.\n\
+            N20 G1 X20. Y0. F250.\nG3 X25. Y5. I0. J5.\nN30 G1 X25. Y30.\n(TRUEPATH PASS 2 OF 3, Z-5., FEED 80 PERCENT)\nG0 Z10.\n\
+            G0 X0. Y-8.\nG1 Z-5. F300.\nG1 X0. Y0. F240.\nG1 X20. Y0. F200.\nG3 X25. Y5. I0. J5.\nG1 X25. Y30.\n\
+            (TRUEPATH PASS 3 OF 3, Z-5., FEED 50 PERCENT, REVERSED)\nG0 Z10.\nG1 Z-5. F300.\nG1 X25. Y5. F125.\nG2 X20. Y0. I-5. J0.\n\
+            G1 X0. Y0.\nG1 X0. Y-8. F150.\nG0 Z10.\nG0 X25. Y30.\nF250.\nG0 Z10\nG0 X50 Y50\nM30\n%\n";
+        assert_eq!(text, expected);
+        assert_eq!(same_beside(ORIGINAL.as_bytes(), text.as_bytes(), &replaced, Options::default()), Ok(()));
+    }
+
+    #[test]
+    fn every_change_of_a_pass_or_beside_it_is_found() {
+        let (text, replaced) = laid();
+        for (what, with) in [
+            ("S1500", "S1501"),
+            ("X0 Y-8 Z10", "X0 Y-8.1 Z10"),
+            ("G1 Z-3. F300.\n", "G1 Z-3. F300.\nM8\n"),
+            ("G1 Z-3.", "G1 Z-3.1"),
+            ("G1 Z-3.", "G1 Z-5.5"),
+            ("N20 G1 X20. Y0. F250.", "N20 G1 X20. Y0. F251."),
+            ("N20 G1 X20. Y0.", "N20 G1 X20. Y0.001"),
+            ("G3 X25. Y5. I0. J5.", "G2 X25. Y5. I5. J0."),
+            ("G3 X25. Y5. I0. J5.\nG1 X25. Y30.\n(TRUEPATH PASS 3", "G1 X25. Y5.\nG1 X25. Y30.\n(TRUEPATH PASS 3"),
+            ("G0 X0. Y-8.\n", "G0 Z9.\nG0 X0. Y-8.\n"),
+            ("G0 X0. Y-8.\n", "G1 X0. Y-8.\n"),
+            ("F240.", "F250."),
+            ("G1 X0. Y0.\nG1 X0. Y-8.", "G1 X0. Y-8."),
+            ("F250.\nG0 Z10\n", "F260.\nG0 Z10\n"),
+            ("G0 X25. Y30.\n", ""),
+            ("G0 X50 Y50", "G0 X50 Y51"),
+            ("(TRUEPATH PASS 2", "G64\n(TRUEPATH PASS 2"),
+        ] {
+            let tampered = text.replacen(what, with, 1);
+            assert_ne!(tampered, text, "{what}");
+            let lines = |text: &str| text.lines().count() as u32;
+            let mut replaced = replaced.clone();
+            replaced[0].written.last = replaced[0].written.last + lines(&tampered) - lines(&text);
+            let verdict = same_beside(ORIGINAL.as_bytes(), tampered.as_bytes(), &replaced, Options::default());
+            assert!(verdict.is_err(), "{what} -> {with} was not noticed");
+        }
+    }
 }
