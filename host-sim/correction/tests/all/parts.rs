@@ -104,11 +104,16 @@ impl Part {
     }
 
     pub fn job(&self) -> JobFile {
+        self.job_and("")
+    }
+
+    /// The job with further tables.
+    pub fn job_and(&self, tables: &str) -> JobFile {
         let [head, stock, tool] = self.job;
         let text = format!(
             "version = 1\nprogram = \"part.nc\"\n{head}\n[stock]\n{stock}\n[tool]\n{tool}\nteeth = 4\nhelix_deg = 35.0\n[cut]\n\
              axial_depth_mm = 4.0\n[force]\nmaterial = \"al-7075-t6\"\n[machine]\nstiffness_x_n_per_mm = 1900\n\
-             stiffness_y_n_per_mm = 1900\n[probe]\nball_diameter_mm = 4.0\nformat = \"linuxcnc\"\nz_reference = \"centre\"\n"
+             stiffness_y_n_per_mm = 1900\n[probe]\nball_diameter_mm = 4.0\nformat = \"linuxcnc\"\nz_reference = \"centre\"\n{tables}"
         );
         shown(JobFile::parse(Source::new("job.toml", text.into_bytes()), FilePath::new("")).map_err(Failure::from))
     }
