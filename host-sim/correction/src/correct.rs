@@ -322,7 +322,7 @@ fn written_program(
 
 /// The same passes of the program with its subprograms and loops written out, and what is said about it, where a line of
 /// a contour is executed several times; `None` where that is not what failed, or the cuts would be others.
-fn written_out(passes: &[&Pass], failure: &Failure) -> Option<(Vec<Pass>, String)> {
+pub(crate) fn written_out(passes: &[&Pass], failure: &Failure) -> Option<(Vec<Pass>, String)> {
     let Failure::Input(error) = failure else { return None };
     let first = passes.first()?;
     if error.code() != P004.code || !first.job.features.is_empty() {

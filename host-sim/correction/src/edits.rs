@@ -32,7 +32,17 @@ fn correction_at(path: &Path, nodes: &[Node], s: Offset, ends_block: bool) -> Ve
 /// The corrected path, one list of points per line of the program, from the end of the block before to its own end. Where
 /// the moves that lead to the contour and away from it are known, the correction comes and goes along them.
 pub fn block_edits(pass: &Pass, path: &Path, nodes: &[Node], schedule: Option<&Schedule>) -> Vec<BlockEdit> {
-    written_with(pass, pass.leads(), path, (nodes, schedule), |u| u * u * (Real::from_int(3) - u - u))
+    written_with(pass, pass.leads(), path, (nodes, schedule), tapered)
+}
+
+/// The share of a correction that comes and goes along a lead.
+fn tapered(u: Real) -> Real {
+    u * u * (Real::from_int(3) - u - u)
+}
+
+/// The same with leads along which the correction comes and goes, so that they begin and end where they did.
+pub fn tapered_edits(pass: &Pass, leads: [&[Block]; 2], path: &Path, nodes: &[Node]) -> Vec<BlockEdit> {
+    written_with(pass, leads, path, (nodes, None), tapered)
 }
 
 /// The same with leads that are moved as they are, by what the contour is moved at their end.

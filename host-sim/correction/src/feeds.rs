@@ -41,7 +41,7 @@ pub fn planned(
         let help = "use route = \"program\", or remove [feed]";
         return Err(contradiction(pass, "feed", found, "feeds that are written into the program", help));
     }
-    written_feeds_count(pass)?;
+    written_feeds_count(pass, "[feed] changes F words", "remove [feed]")?;
     let (limit_n, limited_by) = match table.limit {
         ForceLimit::Newtons(limit) => (float(limit), "max_force_n"),
         ForceLimit::Probed if !probed => {
@@ -60,8 +60,11 @@ pub fn planned(
     Ok(Feeds { schedule, summary: Some(summary) })
 }
 
-/// Refuses F words that the job overrides by others.
-fn written_feeds_count(pass: &Pass) -> Result<(), Failure> {
+/// Refuses F words that the job overrides by others, where somebody `changes` them; `instead` is the way on without that.
+///
+/// # Errors
+/// `J008`, and what is wrong with job or program.
+pub(crate) fn written_feeds_count(pass: &Pass, changes: &str, instead: &str) -> Result<(), Failure> {
     const KEY: &str = "cut.feed_mm_per_min";
     if pass.job.numbers.cut.feed_mm_per_min.is_none() {
         return Ok(());
@@ -73,13 +76,13 @@ fn written_feeds_count(pass: &Pass) -> Result<(), Failure> {
     let differs = written.blocks.iter().zip(&pass.blocks).find(|(written, cut)| written.feed != cut.feed);
     differs.map_or(Ok(()), |(written, cut)| {
         let found = format!(
-            "{KEY} is {}, line {} of the program says F{}, and [feed] changes F words",
+            "{KEY} is {}, line {} of the program says F{}, and {changes}",
             float(cut.feed),
             written.line,
             float(written.feed)
         );
-        let help = "write the feed of the cut into the program and remove cut.feed_mm_per_min, or remove [feed]";
-        Err(contradiction(pass, KEY, &found, "F words that are the feeds of the cut", help))
+        let help = format!("write the feed of the cut into the program and remove cut.feed_mm_per_min, or {instead}");
+        Err(contradiction(pass, KEY, &found, "F words that are the feeds of the cut", &help))
     })
 }
 

@@ -9,6 +9,7 @@
 //! | the second of two passes | [`first_pass`], [`second_pass`] |
 //! | passes that hold the wall at every height | [`plan`] |
 //! | the next part | [`learning`], [`learn`], [`as_milled`] |
+//! | planned passes as a program | [`planned`] |
 //! | where to touch, and the program that does | [`verification`] |
 //! | accuracy from the measurement alone | [`inspection`] |
 
@@ -28,6 +29,7 @@ pub mod learning;
 pub mod misfit;
 mod parallel_walls;
 pub mod plan;
+pub mod planned;
 pub mod remarks;
 pub mod rows;
 pub mod second_pass;

@@ -17,6 +17,10 @@ truepath_ground::codes! {
         / "use --route coprocessor, or post the program with the path of the cutter's centre",
     P008 => "the corrected program is not proved to do what the original does beside the contour"
         / "use --route coprocessor; nothing was written. The program does something the writer does not know: please send it in",
+    P009 => "the cut along the contour cannot be written again as several passes"
+        / "give the contour a way down of its own, leads and a way up behind it, with nothing else on its lines",
+    P010 => "a pass that cannot run against the direction of the program"
+        / "let it run as the program does, or give the contour a straight lead-in and a lead-out that ends off the wall",
     T001 => "a line of the tool table that cannot be read"
         / "write rows like T1 P1 X0 Z12.98 D3.175 ;comment",
     T002 => "a line of the parameter file that cannot be read"

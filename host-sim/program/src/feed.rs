@@ -69,6 +69,12 @@ fn programmed(modal: &Modal) -> Option<String> {
     ((read - value(modal)).abs() < 1e-9).then_some(text)
 }
 
+/// The value of the F word of a feed times a factor; `None` when there is no feed, or no F word of six decimals is it.
+pub(crate) fn scaled(modal: &Modal, factor: f64) -> Option<String> {
+    modal.feed?;
+    if factor == 1.0 { programmed(modal) } else { Some(number(value(modal) * factor, decimals(modal))) }
+}
+
 impl Writer<'_> {
     /// Refuses a line with several feeds of its own.
     pub(super) fn refuse_several_feeds(&self, cuts: &[Move]) -> Result<(), Failure> {

@@ -30,6 +30,7 @@ mod fit;
 mod grid;
 mod header;
 mod line;
+pub mod passes;
 mod pen;
 mod proof;
 mod spacing;

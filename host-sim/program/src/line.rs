@@ -27,6 +27,8 @@ struct Style {
 
 /// Words that say where a move goes.
 const GEOMETRY: &[u8] = b"XYIJR";
+/// Ten times the G codes that only say how a path is written: motion, G40 to G42.1, G90, G91.
+const PATH_CODES: [i64; 11] = [0, 10, 20, 30, 400, 410, 411, 420, 421, 900, 910];
 /// M codes that act when the move is over: stops, end, spindle and coolant off.
 const AFTER_MOVE: [i64; 7] = [0, 1, 2, 5, 9, 30, 60];
 
@@ -88,6 +90,46 @@ impl<'a> Block<'a> {
     /// Whether the control cuts the corner to the next line (`,R`, `,C`).
     pub(super) fn has_corner(&self) -> bool {
         self.tokens.iter().any(|t| matches!(t, Token::Corner(_)))
+    }
+    /// Whether it steers the program, sets a parameter, or computes what is more than a place or a feed.
+    pub(super) fn computes(&self) -> bool {
+        self.tokens.iter().any(|token| match token {
+            Token::Assignment(_) | Token::Control(_) => true,
+            Token::Word(word) => word.value.is_none() && b"GMSTDHPLO".contains(&word.letter),
+            _ => false,
+        })
+    }
+    /// Its N word as it is written.
+    pub(super) fn number(&self) -> Option<&'a [u8]> {
+        self.line.text.get(self.word_range(self.word(b'N')?))
+    }
+    /// Its D word as it is written.
+    pub(super) fn offset_word(&self) -> Option<&'a [u8]> {
+        self.line.text.get(self.word_range(self.word(b'D')?))
+    }
+    /// Its comments as they are written; `;` alone is none.
+    pub(super) fn comments(&self) -> impl Iterator<Item = &'a [u8]> {
+        let text = self.line.text;
+        self.tokens.iter().filter_map(move |token| match token {
+            Token::Comment { body, .. } if body.len > 0 => text.get(self.range(token)),
+            _ => None,
+        })
+    }
+    /// The words that neither lead along a path nor say how it is written, as they are written: those that act when the move
+    /// is over, or the others.
+    pub(super) fn functions(&self, behind: bool) -> Vec<&'a [u8]> {
+        let switches = self.switches_compensation_on();
+        let leads = |word: &&WrittenWord| match word.letter {
+            b'G' => word.value.and_then(|v| v.exactly_times(10)).is_some_and(|code| PATH_CODES.contains(&code)),
+            b'D' => switches,
+            letter => b"NXYZIJKRF".contains(&letter),
+        };
+        let others = self.words().filter(|word| !leads(word) && acts_after_move(word) == behind);
+        others.filter_map(|word| self.line.text.get(self.word_range(word))).collect()
+    }
+    /// Whether the line begins with `/`.
+    pub(super) fn may_be_skipped(&self) -> bool {
+        matches!(self.tokens.first(), Some(Token::BlockDelete { .. }))
     }
     /// Whether it has G41, G42, G41.1 or G42.1.
     pub(super) fn switches_compensation_on(&self) -> bool {

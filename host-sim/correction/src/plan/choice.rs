@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use truepath_core::cut::{ForceTable, Path, Sample};
 use truepath_core::identify::{Parameters, neighbours};
+use truepath_core::job;
 use truepath_core::process::{ImmersionGrid, Mill, Slices};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
@@ -13,13 +14,14 @@ use truepath_job::job::PlanTable;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
-use super::bench::{Bench, Stage};
+use super::bench::Bench;
 use super::confidence::{Draws, Predicted};
 use super::process::{Cut, words};
 use super::refit::refit;
 use super::search::{Candidate, search};
 use super::wall::{WallFigures, WallMap};
 use crate::correction::{Identification, identify};
+use crate::planned::{self, PlannedPass, PlannedProgram};
 
 /// The most processes to choose from.
 const MOST: usize = 6;
@@ -88,15 +90,6 @@ pub struct Plan {
     pub confidence: f64,
 }
 
-/// A process as it is to be run.
-#[derive(Clone, Debug)]
-pub struct Designed {
-    /// The part after it, with its passes.
-    pub stage: Stage,
-    /// The figures of its wall.
-    pub wall: WallFigures,
-}
-
 /// How finely a bench looks.
 #[derive(Clone, Copy, Debug)]
 struct Resolution {
@@ -111,6 +104,19 @@ const MIDDLE: Resolution = Resolution { step_um: 500, slices: 24 };
 const FINE: Resolution = Resolution { step_um: 250, slices: 48 };
 /// Levels that slices are divided by: 2, 3 and 4.
 const DIVISIONS: usize = 12;
+
+/// The program of a process.
+#[derive(Clone, Debug)]
+pub struct WrittenPlan {
+    /// Its bytes, where its passes stand, and what was changed.
+    pub program: PlannedProgram,
+    /// The figures of the wall of the identified machine.
+    pub wall: WallFigures,
+    /// That wall unrolled.
+    pub map: WallMap,
+    /// Largest distance of a commanded place from the programmed path, mm.
+    pub largest_correction_mm: f64,
+}
 
 /// What a process is planned for: the finishing pass and the machine that was identified on it.
 #[derive(Clone, Debug)]
@@ -177,16 +183,11 @@ impl<'a> Planner<'a> {
         })
     }
 
-    /// Designs a process finely and hands it, with the path it is for, to `take`.
+    /// Designs a process finely and writes its program; `probe` is the CRC-32 of the points. `progress` is told the share done.
     ///
     /// # Errors
-    /// A contour that cannot be sampled, and those of `take`.
-    pub fn design<T>(
-        &self,
-        cuts: &[Cut],
-        progress: &mut dyn FnMut(f64),
-        take: impl FnOnce(&Path, &Designed) -> Result<T, Failure>,
-    ) -> Result<T, Failure> {
+    /// A contour that cannot be sampled, a correction beyond the clamp, and those of [`planned::write`].
+    pub fn write(&self, cuts: &[Cut], probe: u32, progress: &mut dyn FnMut(f64)) -> Result<WrittenPlan, Failure> {
         const TURNS: u32 = 16;
         let (table, grid) = (self.known.table(), ImmersionGrid::new());
         let mut samples = Vec::new();
@@ -197,8 +198,44 @@ impl<'a> Planner<'a> {
             stage = bench.cut(stage, cut, TURNS);
             progress((k + 1) as f64 / cuts.len() as f64);
         }
-        let wall = bench.figures(&stage.left);
-        take(&path, &Designed { stage, wall })
+        let depth = path.setup().axial_depth;
+        let passes: Vec<PlannedPass> = stage
+            .passes
+            .iter()
+            .map(|pass| PlannedPass {
+                nodes: pass.nodes.clone(),
+                raise: Offset::from_mm(depth * pass.order.raised),
+                reversed: pass.order.order.reversed,
+                feed: float(pass.order.order.feed),
+            })
+            .collect();
+        for pass in &passes {
+            job::check_clamp(&self.pass.job.numbers, &path, &pass.nodes).map_err(|error| self.pass.refused(&error))?;
+        }
+        let program = planned::write(self.pass, &path, &passes, Some(probe))?;
+        let nodes = passes.iter().flat_map(|pass| &pass.nodes);
+        Ok(WrittenPlan {
+            program,
+            wall: bench.figures(&stage.left),
+            map: bench.map(&stage.left),
+            largest_correction_mm: nodes.map(|node| mm(node.total().length())).fold(0.0, f64::max),
+        })
+    }
+
+    /// The limits of the job that the program stands: passes can only be added where its leads let them, and run the other way where
+    /// these can be turned round. What cannot is said.
+    pub fn possible(&self, mut limits: PlanTable) -> (PlanTable, Vec<String>) {
+        let mut said = Vec::new();
+        if let Err(failure) = planned::can_repeat_pass(self.pass) {
+            (limits.max_cuts, limits.max_levels) = (1, 1);
+            said.push(format!("no pass can be added to this program, so that one is all that is planned: {failure}"));
+        } else if limits.reverse
+            && let Err(failure) = planned::can_reverse(self.pass)
+        {
+            limits.reverse = false;
+            said.push(format!("no pass of this program can run the other way: {failure}"));
+        }
+        (limits, said)
     }
 
     fn path<'p>(&self, resolution: Resolution, samples: &'p mut Vec<Sample>) -> Result<Path<'p>, Failure> {

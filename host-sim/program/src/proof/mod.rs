@@ -9,6 +9,7 @@
 //! only.
 
 mod along;
+mod beside;
 mod bytes;
 mod facts;
 mod inside;
@@ -24,6 +25,7 @@ use truepath_core::gcode::{Lines, Options};
 
 use super::edit::BlockEdit;
 
+pub(super) use beside::{Cut, Replaced, same_beside};
 pub(super) use kink::Kink;
 
 /// What is compared.

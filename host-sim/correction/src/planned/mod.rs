@@ -1,0 +1,258 @@
+//! Planned passes as a program: the finishing contour gives way to the passes of a plan.
+//!
+//! | step | where |
+//! |---|---|
+//! | the program with every pass written out along the programmed path | [`truepath_program::passes`], with its proof |
+//! | what is asked for and what is told of it | `plan` |
+//! | each pass moved to where it is to run, leads carried along | `paths` |
+//! | the text, and the proof that nothing else has moved | [`rewrite_program`] |
+//! | what was done, in words | `report` |
+//!
+//! All depths of the feature that are cut alike get the same passes; spring passes behind them are replaced as well. Lines in
+//! subprograms and loops are written out first, as for every corrected program.
+
+mod paths;
+mod plan;
+mod report;
+
+use truepath_core::checksum::crc32;
+use truepath_core::cut::Path;
+use truepath_core::gcode::{LineRange, program_crc};
+use truepath_core::units::Offset;
+use truepath_ground::diagnostics::Failure;
+use truepath_job::levels;
+use truepath_job::pass::Pass;
+use truepath_program::codes::P002;
+use truepath_program::passes::{Depth, Repeated, RepeatedPass, Turn, can_repeat, repeat_contours};
+use truepath_program::{BlockEdit, Difference, Origin, RewriteOptions, Rewritten, rewrite_program};
+
+use crate::correct::written_out;
+use crate::feeds::written_feeds_count;
+
+use paths::Leads;
+pub use plan::{PlannedDepth, PlannedPass, PlannedWall};
+
+/// A program with planned passes.
+#[derive(Clone, Debug)]
+pub struct PlannedProgram {
+    /// Its bytes.
+    pub text: Vec<u8>,
+    /// Where the passes stand.
+    pub depths: Vec<PlannedDepth>,
+    /// What moving the passes has changed, against the programmed path written out.
+    pub difference: Difference,
+    /// `difference.txt`.
+    pub report: String,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Writes the program of a wall with its plan; `probe` is the CRC-32 of the points that the plan comes from.
+///
+/// # Errors
+/// As [`write_every`].
+pub fn write(
+    pass: &Pass,
+    path: &Path<'_>,
+    passes: &[PlannedPass],
+    probe: Option<u32>,
+) -> Result<PlannedProgram, Failure> {
+    write_every(&[PlannedWall { pass, path, passes }], probe)
+}
+
+/// Writes one program with the plans of all walls of a part. A wall whose correction is one pass has a plan of one.
+///
+/// # Errors
+/// `P004` for a contour executed several times that cannot be written out, `P006` for feeds that cannot be written,
+/// `P007` for compensation beyond the leads, `P009` for a contour that cannot be cut in several passes, `P010` for a pass that
+/// cannot run the other way, `J008` for a changed feed where the F words are not those of the cut, and whatever
+/// [`rewrite_program`] refuses.
+pub fn write_every(walls: &[PlannedWall<'_>], probe: Option<u32>) -> Result<PlannedProgram, Failure> {
+    for wall in walls {
+        checked(wall)?;
+    }
+    let first = walls.first().ok_or_else(|| Failure::Internal("no wall to be planned".to_owned()))?.pass;
+    let mut warnings = Vec::new();
+    let passes: Vec<&Pass> = walls.iter().map(|wall| wall.pass).collect();
+    let planned = match repeated(walls, &passes) {
+        Ok(planned) => planned,
+        Err(failure) => {
+            let (flat, said) = written_out(&passes, &failure).ok_or(failure)?;
+            warnings.push(said);
+            repeated(walls, &flat.iter().collect::<Vec<_>>())?
+        }
+    };
+    let original = program_crc(first.program.bytes());
+    let written = match planned.moved(walls, original, probe, Leads::Carried) {
+        Err(Failure::Input(error)) if error.code() == P002.code => {
+            warnings.push(format!(
+                "{}: the move before the contour cannot be changed: the leads begin and end where they did, and each pass comes to its path along them",
+                first.program.name()
+            ));
+            planned.moved(walls, original, probe, Leads::Kept)?
+        }
+        written => written?,
+    };
+    warnings.extend(planned.left.iter().cloned());
+    if walls.iter().any(|wall| wall.pass.job.feed.is_some()) {
+        warnings.push("[feed] of the job has no part in planned passes: each has the feed of the plan".to_owned());
+    }
+    let depths = planned.depths(&written);
+    let report = report::text(first.program.name(), walls, &depths, &written);
+    Ok(PlannedProgram { text: written.text, depths, difference: written.difference, report, warnings })
+}
+
+/// Whether the contour of a pass can be cut in several passes in the direction of the program.
+///
+/// # Errors
+/// As [`write`].
+pub fn can_repeat_pass(pass: &Pass) -> Result<(), Failure> {
+    possible(pass, false)
+}
+
+/// Whether a pass along the contour can run against the direction of the program. Where there is no lead-out that ends off the
+/// wall, [`write`] further wants a pass in the direction of the program at the same depth or below right before it.
+///
+/// # Errors
+/// As [`write`]; `P010` where the reason is the direction.
+pub fn can_reverse(pass: &Pass) -> Result<(), Failure> {
+    possible(pass, true)
+}
+
+fn possible(pass: &Pass, reversed: bool) -> Result<(), Failure> {
+    let turn = |reversed| Turn { raise: Offset::ZERO, reversed, feed: 1.0 };
+    let turns = vec![turn(false), turn(reversed)];
+    let tried =
+        |pass: &Pass| can_repeat(&pass.program, &depth(pass, turns.clone())?, pass.job.numbers.program_options());
+    match tried(pass) {
+        Err(failure) => {
+            let (flat, _) = written_out(&[pass], &failure).ok_or(failure)?;
+            flat.first().map_or(Ok(()), tried)
+        }
+        possible => possible,
+    }
+}
+
+/// A plan that can be meant.
+fn checked(wall: &PlannedWall<'_>) -> Result<(), Failure> {
+    let wrong = |what: &str| Err(Failure::Internal(format!("a plan {what}")));
+    let raised = |pass: &PlannedPass| pass.raise != Offset::ZERO;
+    if wall.passes.last().is_none_or(raised) {
+        return wrong("whose last pass does not finish the wall");
+    }
+    for pass in wall.passes {
+        if pass.nodes.len() != wall.path.count() {
+            return wrong("for another contour");
+        }
+        if pass.raise < Offset::ZERO || !(pass.feed.is_finite() && pass.feed > 0.0) {
+            return wrong("below the programmed depth, or without a feed");
+        }
+    }
+    if wall.passes.iter().any(|pass| pass.feed != 1.0) {
+        written_feeds_count(wall.pass, "the plan changes F words", "plan without other feeds")?;
+    }
+    Ok(())
+}
+
+/// The passes of walls along the programmed path, and the programs they come from.
+struct Planned {
+    repeated: Repeated,
+    /// Wall and level of every depth.
+    places: Vec<(usize, u32)>,
+    /// The passes of the depths, on the program that was repeated.
+    passes: Vec<Pass>,
+    left: Vec<String>,
+}
+
+/// One depth as the program writer wants it.
+fn depth(pass: &Pass, turns: Vec<Turn>) -> Result<Depth, Failure> {
+    let level = pass.level();
+    let springs = pass.plan.iter().flat_map(|plan| &plan.passes).filter(|one| one.spring && one.number == level);
+    let springs = springs.map(|one| Ok(pass.along(one, pass.job.numbers.wall)?.blocks));
+    Ok(Depth {
+        contour: pass.blocks.clone(),
+        springs: springs.collect::<Result<_, Failure>>()?,
+        allowance: pass.core.setup.allowance,
+        turns,
+    })
+}
+
+/// Writes out the passes of all depths; `passes` are those of the walls, or the same of another text of the program.
+fn repeated(walls: &[PlannedWall<'_>], passes: &[&Pass]) -> Result<Planned, Failure> {
+    let (mut depths, mut places, mut own, mut left) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (at, (wall, pass)) in walls.iter().zip(passes).enumerate() {
+        let turns: Vec<Turn> = wall.passes.iter().map(PlannedPass::turn).collect();
+        let levels = levels::each(pass, wall.path, |level, pass, _| {
+            depths.push(depth(pass, turns.clone())?);
+            places.push((at, level));
+            own.push(pass.clone());
+            Ok(())
+        })?;
+        left.extend(levels.left);
+    }
+    let first = passes.first().ok_or_else(|| Failure::Internal("no wall to be planned".to_owned()))?;
+    let repeated = repeat_contours(&first.program, &depths, first.job.numbers.program_options())?;
+    Ok(Planned { repeated, places, passes: own, left })
+}
+
+impl Planned {
+    /// Moves every pass to where it is to run.
+    fn moved(
+        &self,
+        walls: &[PlannedWall<'_>],
+        original: u32,
+        probe: Option<u32>,
+        leads: Leads,
+    ) -> Result<Rewritten, Failure> {
+        let mut edits: Vec<BlockEdit> = Vec::new();
+        for ((depth, (wall, _)), pass) in self.repeated.depths.iter().zip(&self.places).zip(&self.passes) {
+            let wall = &walls[*wall];
+            let mut before: Option<(bool, &RepeatedPass)> = None;
+            for (planned, written) in wall.passes.iter().zip(&depth.passes) {
+                let mut own = paths::edits(pass, wall.path, planned, written, leads)?;
+                if let Some((reversed, earlier)) = before.replace((planned.reversed, written)) {
+                    let end = edits.last().and_then(|edit| edit.samples.last().copied());
+                    paths::meet(earlier, written, [reversed, planned.reversed], end, &mut own);
+                }
+                edits.append(&mut own);
+            }
+        }
+        // Each depth has its lines in the order of cutting, and depths follow each other in that of the program.
+        let begins =
+            |line: u32| self.repeated.depths.iter().find(|d| d.written.contains(line)).map(|d| d.written.first);
+        edits.sort_by_key(|edit| begins(edit.line));
+        let pass = self.passes.first().ok_or_else(|| Failure::Internal("no wall to be planned".to_owned()))?;
+        let mut notes = report::notes(walls);
+        if self.repeated.depths.iter().any(|depth| depth.centre_path) {
+            let radius = pass.core.setup.radius.nm() as f64 / 1e6;
+            notes.push(format!(
+                "path of the cutter centre: the cutter radius of {radius} mm is part of it, D is not used"
+            ));
+        }
+        let job = &pass.job;
+        let options = RewriteOptions {
+            tolerance: job.tolerance,
+            max_arc_radius: job.max_arc_radius,
+            max_kink_deg: job.max_kink_deg,
+            program: job.numbers.program_options(),
+            origin: Origin { program: Some(original), job: Some(crc32(job.source().bytes())), probe },
+            notes,
+            ..RewriteOptions::default()
+        };
+        let source = truepath_ground::diagnostics::Source::new(pass.program.name(), self.repeated.text.clone());
+        rewrite_program(&source, &edits, &options)
+    }
+
+    /// Where the passes stand in the written program.
+    fn depths(&self, written: &Rewritten) -> Vec<PlannedDepth> {
+        let lines = |lines: LineRange| [lines.first, lines.last];
+        let depth = |(depth, &(wall, level)): (&truepath_program::passes::RepeatedDepth, &(usize, u32))| PlannedDepth {
+            wall,
+            level,
+            replaced: lines(depth.replaced),
+            passes: depth.passes.iter().map(|pass| lines(written.lines(pass.lines))).collect(),
+            z_mm: depth.passes.iter().map(|pass| pass.z_nm as f64 / 1e6).collect(),
+        };
+        self.repeated.depths.iter().zip(&self.places).map(depth).collect()
+    }
+}

@@ -1,0 +1,55 @@
+//! What was written in the place of a contour, for people.
+
+use std::fmt::Write as _;
+
+use truepath_program::Rewritten;
+
+use super::plan::{PlannedDepth, PlannedPass, PlannedWall};
+
+/// Remarks for the head of the program.
+pub(super) fn notes(walls: &[PlannedWall<'_>]) -> Vec<String> {
+    let note = |wall: &PlannedWall<'_>| format!("planned: {} passes along the finished wall", wall.passes.len());
+    walls.iter().map(note).collect()
+}
+
+/// `difference.txt`.
+pub(super) fn text(original: &str, walls: &[PlannedWall<'_>], depths: &[PlannedDepth], written: &Rewritten) -> String {
+    let mut text = format!("{original} with planned passes\n\n");
+    // Writing to a String cannot fail.
+    for depth in depths {
+        let [first, last] = depth.replaced;
+        let passes = &walls[depth.wall].passes;
+        let _ = writeln!(text, "lines {first}-{last} of the original became {} passes:", passes.len());
+        for (k, (pass, lines)) in passes.iter().zip(&depth.passes).enumerate() {
+            let _ = writeln!(
+                text,
+                "  pass {} lines {}-{} Z{:.4} mm, {}{}",
+                k + 1,
+                lines[0],
+                lines[1],
+                depth.z_mm[k],
+                way(pass),
+                extent(pass)
+            );
+        }
+    }
+    text.push_str(
+        "\nThe program with these passes along the programmed path and the original were read and compared step by step:\n\
+         beside these lines every step, mode and byte is the same, and every pass cuts the lines and arcs of the original\n\
+         at its height and feed. Then the passes were moved:\n\n",
+    );
+    text + &written.difference.text("the passes along the programmed path")
+}
+
+fn way(pass: &PlannedPass) -> String {
+    let direction = if pass.reversed { "against the programmed direction" } else { "in the programmed direction" };
+    format!("{direction}, feed {:.0} %", pass.feed * 100.0)
+}
+
+fn extent(pass: &PlannedPass) -> String {
+    let sizes = pass.nodes.iter().map(|node| {
+        let total = node.total();
+        (total.x.nm() as f64).hypot(total.y.nm() as f64) / 1e6
+    });
+    format!(", moved by up to {:.4} mm", sizes.fold(0.0, f64::max))
+}
