@@ -153,10 +153,15 @@ impl CorrectSummary {
 
 /// The name of the corrected program beside `corrected.nc`: that of the original with its extension, `part.corrected.nc`.
 pub fn corrected_name(program: &str) -> String {
+    name_with(program, "corrected")
+}
+
+/// The file name of a program with a word before its extension: `part.planned.nc`.
+pub fn name_with(program: &str, word: &str) -> String {
     let name = program.rsplit(['/', '\\']).next().unwrap_or(program);
     match name.rsplit_once('.') {
-        Some((stem, extension)) if !stem.is_empty() => format!("{stem}.corrected.{extension}"),
-        _ => format!("{name}.corrected"),
+        Some((stem, extension)) if !stem.is_empty() => format!("{stem}.{word}.{extension}"),
+        _ => format!("{name}.{word}"),
     }
 }
 

@@ -5,6 +5,10 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use truepath_correction::plan::choice::{Choice, Plan};
 use truepath_correction::plan::wall::WallMap;
+use truepath_ground::diagnostics::Failure;
+
+use truepath_ground::table::table;
+use truepath_ground::units::rounded;
 
 const STYLE: &str = include_str!("planned.css");
 /// Columns of an unrolled wall at most.
@@ -49,7 +53,7 @@ pub fn planned_page(plan: &Plan, program: &str) -> String {
                     }
                     h2 { "Time against error" }
                     (front(plan))
-                    div.scroll tabindex="0" role="region" aria-label="Choices" { (table(plan)) }
+                    div.scroll tabindex="0" role="region" aria-label="Choices" { (choices(plan)) }
                     h2 { "The wall, unrolled" }
                     (legend(plan))
                     figure { (wall(&plan.map, plan.tolerance_mm)) figcaption { "as programmed" } }
@@ -94,7 +98,7 @@ fn verdict(plan: &Plan) -> String {
     }
 }
 
-fn table(plan: &Plan) -> Markup {
+fn choices(plan: &Plan) -> Markup {
     html! {
         table {
             thead { tr {
@@ -221,4 +225,27 @@ fn wall(map: &WallMap, tolerance: f64) -> Markup {
             text x=((WIDTH + LEFT) / 2.0) y=(TALL + 18.0) text-anchor="middle" { "along the contour" }
         }
     }
+}
+
+/// One place of the unrolled wall.
+#[derive(serde::Serialize)]
+struct MapRow {
+    s_mm: f64,
+    height_mm: f64,
+    error_mm: f64,
+}
+
+/// `wall-map.csv`: the wall unrolled as it is predicted, place by place, heights above the tip from the lowest.
+///
+/// # Errors
+/// Internal, when memory cannot be written.
+pub fn planned_map_csv(map: &WallMap) -> Result<Vec<u8>, Failure> {
+    let places = map.s_mm.iter().zip(&map.error_mm);
+    table(places.flat_map(|(s, column)| {
+        map.height_mm.iter().zip(column).map(|(height, error)| MapRow {
+            s_mm: rounded(*s, 3),
+            height_mm: rounded(*height, 4),
+            error_mm: rounded(*error, 6),
+        })
+    }))
 }
