@@ -14,6 +14,7 @@ mod multiaxis_modes;
 mod multiaxis_program;
 mod multiaxis_rewritten;
 mod multiaxis_support;
+mod plan;
 mod plot;
 mod pocket;
 mod pocket_plant;

@@ -1,8 +1,8 @@
 //! The commanded displacements with which a pass leaves what it is meant to leave.
 
 use super::depths::Depths;
-use super::mill::{Load, Mill, Order, Wall};
-use super::part::Part;
+use super::mill::{Load, Mill, Order};
+use super::part::{Part, Wall};
 use crate::correct::{Node, commanded, settle_ends};
 
 use truepath_units::geometry::Vector;

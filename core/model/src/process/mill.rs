@@ -2,7 +2,7 @@
 
 use super::depths::{Depths, part_of};
 use super::grid::{ANGLES, Cumulative, Force, ImmersionGrid};
-use super::part::Part;
+use super::part::{Part, Wall};
 use super::slices::{MAX_SLICES, Slices};
 use crate::cut::{Compliance, Envelope, Loop, Milling, Passage, WallLaw, mixed};
 use truepath_units::geometry::{Direction, Vector};
@@ -30,15 +30,6 @@ pub struct Load {
     pub engaged: Real,
     /// The thickest chip of a tooth, mm, as the mean along the contour of what it is at every place.
     pub chip: Real,
-}
-
-/// The wall that the cutter of a pass would leave, were there stock everywhere.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wall {
-    /// Material left (positive); `None` where no wall stands or the pass does not reach down.
-    pub error: Option<Offset>,
-    /// Sample of the contour whose cutter made it, counted from the first of the contour; limited to the contour.
-    pub made_by: u32,
 }
 
 /// A machine at work on a wall: what [`Loop`] is for one pass over an even stock.

@@ -30,6 +30,6 @@ mod slices;
 pub use aim::{Aim, AimWorkspace, Reached, aim};
 pub use depths::Depths;
 pub use grid::ImmersionGrid;
-pub use mill::{Load, Mill, Order, Wall};
-pub use part::Part;
+pub use mill::{Load, Mill, Order};
+pub use part::{Part, Wall};
 pub use slices::{MAX_SLICES, Slices};

@@ -4,6 +4,15 @@ use super::slices::Slices;
 use crate::cut::Path;
 use truepath_units::Offset;
 
+/// The wall that the cutter of a pass would leave, were there stock everywhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wall {
+    /// Material left (positive); `None` where no wall stands or the pass does not reach down.
+    pub error: Option<Offset>,
+    /// Sample of the contour whose cutter made it, counted from the first of the contour; limited to the contour.
+    pub made_by: u32,
+}
+
 /// The remaining stock along the normal at every sample of a path (run-in and run-out included) and in every slice of the
 /// height: positive is material left, negative a wall that was cut too deep. In a slice lent by the caller, all slices of a sample
 /// side by side.
@@ -59,7 +68,7 @@ impl<'a> Part<'a> {
 
     /// Takes the envelope of a pass away: `walls` as [`Mill::walls`](super::Mill::walls) read them. Before the first and
     /// behind the last sample of an open contour the wall goes on as at its ends.
-    pub fn take(&mut self, path: &Path, walls: &[super::Wall]) {
+    pub fn take(&mut self, path: &Path, walls: &[Wall]) {
         let count = self.slices.count();
         for (index, own) in walls.chunks(count).enumerate() {
             let from = path.first().saturating_add(index).saturating_mul(count);
