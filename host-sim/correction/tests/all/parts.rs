@@ -78,7 +78,7 @@ pub const SIEMENS: Part = Part {
     job: ["dialect = \"siemens\"", "allowance_mm = 0.4", "diameter_mm = 10\ncompensation = \"radius\""],
 };
 
-/// Two depths, each with a spring pass behind it, in a subprogram.
+/// Two depths, the first with a spring pass behind it.
 pub const SPRING: Part = Part {
     name: "two depths with spring passes",
     program: "G21 G90 G17\nT1 M6\nS5000 M3\nG0 X-12 Y0 Z20\nG0 Z2\nG1 Z-6 F300\nG1 X0 F500\nG1 X60\nG3 X70 Y10 I0 J10\nG1 Y50\nG1 X68 Y60\nG0 Z5\nG0 X-12 Y0\nG1 Z-6 F300\nG1 X0 F500\nG1 X60\n\
