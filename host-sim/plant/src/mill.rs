@@ -247,7 +247,7 @@ impl Milled {
     }
 
     fn displaced(&self, level: f64, force: impl Fn(&Sample, &Flutes) -> NormalTangential) -> Vec<Point> {
-        let reach = 1.0 + self.machine.bend * (1.0 - level);
+        let reach = self.machine.reach(level);
         self.samples
             .iter()
             .map(|s| {
