@@ -61,7 +61,7 @@ pub use flutes::{Flutes, NormalTangential};
 pub use machine::{BendLaw, Machine, WallLaw};
 pub use mill::{Milled, Sample, Track, mill};
 pub use part::{
-    Equilibrium, HeightScore, Heights, LapFacts, LapSample, Part, Run, Surface, SurfaceScore, Worst,
+    Equilibrium, HeightScore, Heights, LapFacts, LapSample, Part, Run, Surface, SurfaceScore, Worst, laps_along,
 };
 pub use path::{Path, Side};
 pub use place::Place;

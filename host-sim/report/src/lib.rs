@@ -17,5 +17,5 @@ pub use inspection::{InspectSummary, ToleranceSummary, inspect_summary};
 pub use points::{judged_points_csv, points_csv};
 pub use reading::{LawPlaces, PointRow, read_correction, read_points, read_trace, read_wall, read_walls};
 pub use summary::{SimulateSummary, simulate_summary};
-pub use tables::{Trace, TraceRow, compare_csv, correction_csv, trace, trace_csv, walls_csv};
+pub use tables::{Trace, TraceRow, compare_csv, correction_csv, trace, trace_csv, wall_map_csv, walls_csv};
 pub use wall::{WallRow, wall_csv};

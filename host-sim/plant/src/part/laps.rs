@@ -111,6 +111,11 @@ pub(super) fn laps(path: &Path, run: &Run, stock_mm: f64) -> Vec<Lap> {
     laps
 }
 
+/// How many laps of a run go along the contour, with at most `stock_mm` on the wall.
+pub fn laps_along(path: &Path, run: &Run, stock_mm: f64) -> usize {
+    laps(path, run, stock_mm).len()
+}
+
 fn finish(lap: &mut Lap, laps: &mut Vec<Lap>) {
     let steps = std::mem::take(&mut lap.steps);
     if steps.iter().map(|s| s.way_mm).sum::<f64>() > SHORTEST_MM {

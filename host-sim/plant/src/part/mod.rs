@@ -17,7 +17,7 @@ mod slices;
 mod surface;
 mod whole;
 
-pub use laps::Run;
+pub use laps::{Run, laps_along};
 pub use march::{Equilibrium, LapFacts, LapSample};
 pub use slices::Heights;
 pub use surface::{HeightScore, Surface, SurfaceScore, Worst};

@@ -34,6 +34,7 @@ impl Slice {
         0.5 * (self.lower + self.upper)
     }
 
+    #[cfg(test)]
     pub(super) fn thickness(self) -> f64 {
         self.upper - self.lower
     }

@@ -10,7 +10,9 @@ use crate::error::{PlantError, require};
 use crate::flutes::Flutes;
 use crate::machine::Machine;
 use crate::path::Path;
+use crate::score::{Score, judged_trim_mm};
 use crate::setup::Cut;
+use crate::vector::{Point, along};
 
 /// So many different feeds of a lap have a force table each; of more, those within ¼ % share one.
 const MOST_FEEDS: usize = 64;
@@ -149,6 +151,49 @@ impl Part {
             self.slices.iter().map(|s| (s.lower, s.upper)).collect(),
             (0..self.slices.len()).map(error).collect(),
         )
+    }
+
+    /// Lower and upper edge of the wall, mm.
+    pub fn height_mm(&self) -> [f64; 2] {
+        let edge = |slice: Option<&Slice>, of: fn(&Slice) -> f64| slice.map_or(0.0, of);
+        [edge(self.slices.first(), |s| s.lower), edge(self.slices.last(), |s| s.upper)]
+    }
+
+    /// Judges the wall, in the numbers of a single pass ([`crate::Milled::score`]): the ten heights are all slices.
+    pub fn score(&self) -> Score {
+        let surface = self.surface();
+        let means = surface.means();
+        let trim = judged_trim_mm(self.cut.radius_mm);
+        let judged = |i: &usize| surface.s_mm[*i] > trim && surface.s_mm[*i] < self.path.length_mm - trim;
+        let places = || (0..means.len()).filter(judged).filter(|i| means[*i].is_finite());
+        let errors = |i: usize| surface.errors_mm.iter().map(move |slice| slice[i]);
+        let most = |of: &dyn Fn(usize) -> f64| places().map(of).fold(f64::NEG_INFINITY, f64::max);
+        let squares: f64 = places().map(|i| means[i] * means[i]).sum();
+        Score {
+            max_error_mm: most(&|i| means[i].abs()),
+            rms_error_mm: (squares / places().count() as f64).sqrt(),
+            worst_height_mm: most(&|i| errors(i).map(f64::abs).fold(0.0, f64::max)),
+            gouge_mm: most(&|i| -means[i]),
+            axial_form_mm: most(&|i| {
+                let (least, most) = errors(i).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), e| (a.min(e), b.max(e)));
+                most - least
+            }),
+        }
+    }
+
+    /// Wall error at each nominal sample, mean over the height, mm; NaN where no wall is.
+    pub fn mean_errors(&self) -> Vec<f64> {
+        let means = self.surface().means();
+        let row = |i: usize| self.rays.ray(self.rays.of_sample(i)).map_or(f64::NAN, |ray| means[ray.row]);
+        (0..self.path.len()).map(row).collect()
+    }
+
+    /// The wall as it is at a height, in the sense of the contour, mm. Undefined places are left out.
+    pub fn wall_at(&self, z_mm: f64) -> Vec<Point> {
+        let place = |(i, e): (usize, f64)| {
+            e.is_finite().then(|| along(self.path.wall(i, self.cut.radius_mm), self.path.normal[i], -e))
+        };
+        self.errors_at(z_mm).into_iter().enumerate().filter_map(place).collect()
     }
 
     /// Wall error at each nominal sample at a height, between the middles of slices by proportion, mm; NaN where no wall is.
