@@ -47,6 +47,12 @@ pub enum BendLaw {
     Maxwell,
 }
 
+impl BendLaw {
+    fn is_usual(&self) -> bool {
+        *self == Self::Alike
+    }
+}
+
 /// Machine, cutter and material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "MachineFile", into = "MachineFile")]
@@ -192,7 +198,7 @@ struct MachineFile {
     stiffness_y_n_per_mm: Option<f64>,
     #[serde(default)]
     bend: f64,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "BendLaw::is_usual")]
     bend_law: BendLaw,
     #[serde(default)]
     runout_mm: Vec<f64>,

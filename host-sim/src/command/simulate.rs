@@ -19,9 +19,7 @@ use truepath_plant::{Surface, judged_trim_mm};
 use truepath_report::page::Along;
 use truepath_report::pages::{REPORT, simulated};
 use truepath_report::plot::Column;
-use truepath_report::{
-    SimulateSummary, Trace, page, plot, simulate_summary, trace, trace_csv, wall_csv, wall_map_csv,
-};
+use truepath_report::{SimulateSummary, Trace, page, plot, simulate_summary, trace, trace_csv, wall_csv, wall_map_csv};
 use truepath_trial::codes::{L001, L002};
 use truepath_trial::replay::Placement;
 use truepath_trial::setpoints::Setpoints;
@@ -346,9 +344,7 @@ fn milled(
 fn probed_wall(pass: &Pass, made: &Made) -> String {
     let levels: [f64; HEIGHTS] = std::array::from_fn(|k| k as f64 / (HEIGHTS - 1) as f64);
     let (tip, depth, walls) = match made {
-        Made::Pass(milled) => {
-            (pass.core.contour.z.nm() as f64 / 1e6, milled.cut.axial_depth_mm, milled.walls(&levels))
-        }
+        Made::Pass(milled) => (pass.core.contour.z.nm() as f64 / 1e6, milled.cut.axial_depth_mm, milled.walls(&levels)),
         Made::Part(part) => {
             let [bottom, top] = part.height_mm();
             let wall = |level: &f64| part.wall_at(bottom + level * (top - bottom));

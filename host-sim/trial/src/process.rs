@@ -43,7 +43,8 @@ pub fn cut(pass: &Pass, machine: &plant::Machine, program: &Source) -> Result<pl
         laps += part.cut(run).map_err(refused)?;
     }
     if laps == 0 {
-        let (found, expected) = (format!("{} runs, none along the contour", runs.len()), "runs along the contour of the job");
+        let (found, expected) =
+            (format!("{} runs, none along the contour", runs.len()), "runs along the contour of the job");
         return Err(S008.error(found, expected).in_file(program.name().as_ref()).into());
     }
     Ok(part)
@@ -57,7 +58,8 @@ pub fn laps(pass: &Pass, program: &Source) -> Result<usize, Failure> {
     let (path, cut) = virtual_mill::path_and_cut(pass)?;
     let stock = mm(pass.core.setup.allowance);
     let runs = runs(pass, program)?;
-    let along = |run: &plant::Run| plant::laps_along(&path, &plant::Run { spindle_rpm: cut.spindle_rpm, ..run.clone() }, stock);
+    let along =
+        |run: &plant::Run| plant::laps_along(&path, &plant::Run { spindle_rpm: cut.spindle_rpm, ..run.clone() }, stock);
     Ok(runs.iter().map(along).sum())
 }
 

@@ -6,8 +6,8 @@
 use super::rays::Rays;
 use super::slices::Slice;
 use crate::grid::Grid;
-use crate::parallel::AllowanceWave;
 use crate::machine::Machine;
+use crate::parallel::AllowanceWave;
 use crate::path::Path;
 use crate::setup::Cut;
 use crate::vector::{Point, along, cross, dot, squared_distance, sub};
@@ -50,7 +50,9 @@ impl Field {
             .iter()
             .map(|row| {
                 let allowance = match &cut.surface {
-                    Some(surface) => return crossing(row.ray.foot, row.ray.normal, r, surface).map_or(f64::NAN, |v| r - v),
+                    Some(surface) => {
+                        return crossing(row.ray.foot, row.ray.normal, r, surface).map_or(f64::NAN, |v| r - v);
+                    }
                     None => cut.allowance_mm + wave.at(row.s_mm),
                 };
                 let raw = along(row.ray.foot, row.ray.normal, r - allowance);

@@ -120,7 +120,8 @@ impl Immersion {
             self.mark(phi, ray.normal);
         }
         let live = |row: &[f64]| row.iter().any(|d| *d > -slack);
-        let used = self.depth.chunks(self.slices.max(1)).rposition(live).map_or(0, |last| (last + 2).min(self.phi.len()));
+        let used =
+            self.depth.chunks(self.slices.max(1)).rposition(live).map_or(0, |last| (last + 2).min(self.phi.len()));
         self.phi.truncate(used);
     }
 

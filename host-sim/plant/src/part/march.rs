@@ -135,7 +135,9 @@ impl Engaged {
         self.first = march.slices.partition_point(|s| s.upper <= tip + 1e-9);
         self.cut = march.slices.partition_point(|s| s.middle() < tip);
         self.edges.clear();
-        self.edges.extend(march.slices[self.first..].iter().filter_map(|s| s.above(tip)).map(|s| (s.lower - tip, s.upper - tip)));
+        self.edges.extend(
+            march.slices[self.first..].iter().filter_map(|s| s.above(tip)).map(|s| (s.lower - tip, s.upper - tip)),
+        );
         let depth = march.cut.axial_depth_mm;
         let level = |(a, b): &(f64, f64)| 0.5 * (a + b) / depth;
         self.reach.clear();

@@ -107,10 +107,7 @@ impl Rays {
 fn between(path: &Path, i: usize, normals: (Point, Point), radius: f64, push: &mut dyn FnMut(Point, Point, f64)) {
     let angle = turn(normals.0, normals.1);
     let spreads = (angle > 0.0) == (path.side == Side::Right);
-    let long = distance(
-        along(path.centre[i - 1], normals.0, radius),
-        along(path.centre[i], normals.1, radius),
-    );
+    let long = distance(along(path.centre[i - 1], normals.0, radius), along(path.centre[i], normals.1, radius));
     if !spreads || long <= 1.01 * path.step_mm {
         return;
     }

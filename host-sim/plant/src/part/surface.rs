@@ -99,12 +99,7 @@ impl Weighed {
 }
 
 impl Surface {
-    pub(super) fn new(
-        s_mm: Vec<f64>,
-        wall_mm: Vec<f64>,
-        slices_mm: Vec<(f64, f64)>,
-        errors_mm: Vec<Vec<f64>>,
-    ) -> Self {
+    pub(super) fn new(s_mm: Vec<f64>, wall_mm: Vec<f64>, slices_mm: Vec<(f64, f64)>, errors_mm: Vec<Vec<f64>>) -> Self {
         Self { s_mm, wall_mm, slices_mm, errors_mm }
     }
 
@@ -171,8 +166,7 @@ impl Surface {
             }
         }
         let mean = self.means();
-        let mean_over_height_mm =
-            places.iter().map(|i| mean[*i].abs()).filter(|m| m.is_finite()).fold(0.0, f64::max);
+        let mean_over_height_mm = places.iter().map(|i| mean[*i].abs()).filter(|m| m.is_finite()).fold(0.0, f64::max);
         Some(SurfaceScore {
             mean_over_height_mm,
             profile_mm: all.most(f64::abs),

@@ -175,7 +175,8 @@ impl Part {
             worst_height_mm: most(&|i| errors(i).map(f64::abs).fold(0.0, f64::max)),
             gouge_mm: most(&|i| -means[i]),
             axial_form_mm: most(&|i| {
-                let (least, most) = errors(i).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), e| (a.min(e), b.max(e)));
+                let (least, most) =
+                    errors(i).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), e| (a.min(e), b.max(e)));
                 most - least
             }),
         }

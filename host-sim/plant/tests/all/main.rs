@@ -5,9 +5,7 @@ mod part;
 mod reference;
 mod symmetry;
 
-use truepath_plant::{
-    BendLaw, Cut, Machine, Milled, Path, PlantError, Point, Segment, Side, Spindle, WallLaw, mill,
-};
+use truepath_plant::{BendLaw, Cut, Machine, Milled, Path, PlantError, Point, Segment, Side, Spindle, WallLaw, mill};
 
 fn line(from: Point, to: Point) -> Segment {
     Segment::Line { from, to }

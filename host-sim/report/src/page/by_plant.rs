@@ -114,8 +114,7 @@ pub fn milled(pass: &Milled, trace: &Trace, label: &str) -> Along {
 /// A part that several runs have cut with its trace, one row per nominal sample.
 pub fn parted(part: &Part, trace: &Trace, label: &str) -> Along {
     let [bottom, top] = part.height_mm();
-    let errors: Vec<Vec<f64>> =
-        (0..HEIGHTS).map(|k| part.errors_at(bottom + (top - bottom) * fraction(k))).collect();
+    let errors: Vec<Vec<f64>> = (0..HEIGHTS).map(|k| part.errors_at(bottom + (top - bottom) * fraction(k))).collect();
     let last = last_beside(part);
     let feed = |i: usize| last[i].map_or(f64::NAN, |sample| sample.feed_mm_per_min);
     along(part.path(), top - bottom, &errors, &feed, trace, label)
