@@ -28,24 +28,23 @@ pub fn cut(pass: &Pass, machine: &plant::Machine, program: &Source) -> Result<pl
     let mut tips: Vec<f64> = levels::alike(pass)?.into_iter().map(|above| tip + mm(above)).collect();
     tips.push(tip);
     let runs = runs(pass, program)?;
-    let heights = plant::Heights {
-        edges_z_mm: runs.iter().flat_map(|run| run.tip_z_mm.first().copied()).collect(),
-        ..plant::Heights::of(
-            tips.iter().copied().fold(f64::INFINITY, f64::min),
-            tips.iter().copied().fold(f64::NEG_INFINITY, f64::max) + depth,
-        )
-    };
     let (path, set_up) = virtual_mill::path_and_cut(pass)?;
+    let stock = mm(pass.core.setup.allowance);
+    let along: Vec<&plant::Run> = runs.iter().filter(|run| plant::laps_along(&path, run, stock) > 0).collect();
+    if along.is_empty() {
+        let found = format!("{} runs, none along the contour", runs.len());
+        return Err(S008.error(found, "runs along the contour of the job").in_file(program.name().as_ref()).into());
+    }
+    let edges_z_mm: Vec<f64> = along.iter().flat_map(|run| run.tip_z_mm.first().copied()).collect();
+    let bottom = tips.iter().copied().fold(f64::INFINITY, f64::min);
+    let top = tips.iter().copied().fold(f64::NEG_INFINITY, f64::max) + depth;
+    // What deeper runs cut below the wall pushes them away from it.
+    let stock_from_z_mm = edges_z_mm.iter().copied().fold(bottom, f64::min);
+    let heights = plant::Heights { stock_from_z_mm, edges_z_mm, ..plant::Heights::of(bottom, top) };
     let refused = |error: plant::PlantError| virtual_mill::refused(&error);
     let mut part = plant::Part::new(&path, &set_up, machine, &heights).map_err(refused)?;
-    let mut laps = 0;
-    for run in &runs {
-        laps += part.cut(run).map_err(refused)?;
-    }
-    if laps == 0 {
-        let (found, expected) =
-            (format!("{} runs, none along the contour", runs.len()), "runs along the contour of the job");
-        return Err(S008.error(found, expected).in_file(program.name().as_ref()).into());
+    for run in along {
+        part.cut(run).map_err(refused)?;
     }
     Ok(part)
 }
@@ -55,12 +54,10 @@ pub fn cut(pass: &Pass, machine: &plant::Machine, program: &Source) -> Result<pl
 /// # Errors
 /// Whatever is wrong with the program.
 pub fn laps(pass: &Pass, program: &Source) -> Result<usize, Failure> {
-    let (path, cut) = virtual_mill::path_and_cut(pass)?;
+    let (path, _) = virtual_mill::path_and_cut(pass)?;
     let stock = mm(pass.core.setup.allowance);
     let runs = runs(pass, program)?;
-    let along =
-        |run: &plant::Run| plant::laps_along(&path, &plant::Run { spindle_rpm: cut.spindle_rpm, ..run.clone() }, stock);
-    Ok(runs.iter().map(along).sum())
+    Ok(runs.iter().map(|run| plant::laps_along(&path, run, stock)).sum())
 }
 
 fn z_mm(pass: &Pass) -> f64 {

@@ -3,7 +3,7 @@
 //! A circle of the cutter takes what it covers, if it comes from outside: a hole behind material that stands leaves the surface
 //! where it is.
 
-use super::rays::Rays;
+use super::rays::{Rays, UNDERCUT_MM};
 use super::slices::Slice;
 use crate::grid::Grid;
 use crate::machine::Machine;
@@ -55,8 +55,11 @@ impl Field {
                     }
                     None => cut.allowance_mm + wave.at(row.s_mm),
                 };
+                if row.on_part {
+                    return allowance;
+                }
                 let raw = along(row.ray.foot, row.ray.normal, r - allowance);
-                centres.near(raw, r - allowance - 1e-3, &mut near);
+                centres.near(raw, r - allowance - UNDERCUT_MM, &mut near);
                 if near.is_empty() { allowance } else { NONE_MM }
             })
             .collect();

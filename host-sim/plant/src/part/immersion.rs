@@ -41,6 +41,8 @@ pub(super) struct Immersion {
     /// By crossing, then by slice, mm; negative in the air.
     depth: Vec<f64>,
     slices: usize,
+    /// By slice, the immersion beyond which it is in the air.
+    ends: Vec<f64>,
 }
 
 /// A ray's crossing: immersion, and how far beyond the nominal wall, mm.
@@ -219,9 +221,24 @@ impl Immersion {
         found
     }
 
-    /// The largest immersion that may be in material.
-    pub(super) fn end(&self) -> f64 {
-        self.phi.last().copied().unwrap_or_default()
+    /// Notes for every slice beyond which immersion it is in the air by more than `slack`.
+    pub(super) fn bound(&mut self, slack: f64) {
+        let n = self.slices;
+        self.ends.clear();
+        self.ends.resize(n, f64::NEG_INFINITY);
+        for (j, row) in self.depth.chunks(n.max(1)).take(self.phi.len()).enumerate() {
+            let beyond = self.phi[(j + 1).min(self.phi.len() - 1)];
+            for (end, depth) in self.ends.iter_mut().zip(row) {
+                if *depth > -slack {
+                    *end = beyond;
+                }
+            }
+        }
+    }
+
+    /// The largest immersion at which a slice may be in material.
+    pub(super) fn end(&self, slice: usize) -> f64 {
+        self.ends.get(slice).copied().unwrap_or(f64::NEG_INFINITY)
     }
 }
 

@@ -303,8 +303,7 @@ impl March<'_> {
                 ray: self.rays.of_sample(place.index),
                 reversed: self.reversed,
             };
-            let slack = 3.0 * norm(d) + 0.15;
-            immersion.find(&stand, self.rays, field, engaged.first, (d, &engaged.share), slack);
+            immersion.find(&stand, self.rays, field, engaged.first, (d, &engaged.share), slack(d));
             at_crossings.clear();
             at_crossings.extend(immersion.phi.iter().map(|phi| flutes.primitive(None, *phi, edge)));
             let primitive = |phi: f64| flutes.primitive(None, phi, edge);
@@ -315,7 +314,9 @@ impl March<'_> {
         let normal = self.path.normal[step.nominal];
         let open = mean.settle(normal, CLOSED_MM, |d| self.machine.deflection(evaluate(d).force));
         // The last try need not have been the best.
-        (evaluate(mean.at), open)
+        let settled = evaluate(mean.at);
+        immersion.bound(slack(mean.at));
+        (settled, open)
     }
 
     /// The displacement at the instant at which a tooth passes the middle of a slice, and by how much it stayed open.
@@ -362,8 +363,11 @@ fn at_height(
     if immersion.phi.is_empty() {
         return sum;
     }
-    let end = immersion.end();
     for (k, &(lower, upper)) in engaged.edges.iter().enumerate() {
+        let end = immersion.end(k);
+        if end < 0.0 {
+            continue;
+        }
         let by = moved(from, to, engaged.reach[k]);
         let (a, b) = (sense * lag * (height - lower), sense * lag * (height - upper));
         let (lo, hi) = (a.min(b), a.max(b));
@@ -388,6 +392,11 @@ fn at_height(
         }
     }
     sum
+}
+
+/// How far beside its mean place the cutter may be at an instant, mm.
+fn slack(mean: Point) -> f64 {
+    3.0 * norm(mean) + 0.15
 }
 
 fn in_xy(normal: Point, travel: Point, force: Point) -> Point {

@@ -11,7 +11,7 @@ use crate::path::{FACET_RAD, Path, Side};
 use crate::vector::{Point, along, distance, mix, scaled, turn, turned};
 
 /// A nominal wall point that the nominal path itself cuts away by more than this is not on the part, mm.
-const UNDERCUT_MM: f64 = 0.02;
+pub(super) const UNDERCUT_MM: f64 = 0.02;
 
 /// A normal of the path.
 #[derive(Debug, Clone, Copy)]

@@ -9,6 +9,8 @@ pub struct Heights {
     pub bottom_z_mm: f64,
     /// Z of its upper edge, mm.
     pub top_z_mm: f64,
+    /// Z down to which there is stock, mm: at the lower edge, or below it where deeper runs pass under the wall.
+    pub stock_from_z_mm: f64,
     /// Z at which a slice ends besides, mm: the tips of the runs, so that none ends within a slice.
     pub edges_z_mm: Vec<f64>,
     /// Slices over the whole height, 1…400; 30 are enough (`docs/plant.md`).
@@ -18,7 +20,7 @@ pub struct Heights {
 impl Heights {
     /// A wall cut from its lower edge, in 30 slices.
     pub fn of(bottom_z_mm: f64, top_z_mm: f64) -> Self {
-        Self { bottom_z_mm, top_z_mm, edges_z_mm: Vec::new(), slices: 30 }
+        Self { bottom_z_mm, top_z_mm, stock_from_z_mm: bottom_z_mm, edges_z_mm: Vec::new(), slices: 30 }
     }
 }
 
@@ -48,20 +50,31 @@ impl Slice {
 /// Edges nearer to each other than this are one, mm.
 const SAME_MM: f64 = 1e-6;
 
+/// Slices below the wall, which only push, are this much thicker.
+const BELOW: f64 = 3.0;
+/// Slices at most.
+const MOST: f64 = 2000.0;
+
 /// Slices from the lowest to the highest.
 pub(super) fn slices(heights: &Heights) -> Result<Vec<Slice>, PlantError> {
     let (bottom, top) = (heights.bottom_z_mm, heights.top_z_mm);
     require(top > bottom && top - bottom <= 500.0, "top_z_mm", top, "above the lower edge, by up to 500 mm")?;
     let count = heights.slices;
     require((1..=400).contains(&count), "slices", count as f64, "1 to 400")?;
-    let mut edges: Vec<f64> = heights.edges_z_mm.iter().copied().filter(|z| *z > bottom && *z < top).collect();
-    edges.extend([bottom, top]);
+    let deepest = heights.stock_from_z_mm;
+    let deep = deepest <= bottom && bottom - deepest <= 500.0;
+    require(deep, "stock_from_z_mm", deepest, "at the lower edge or up to 500 mm below it")?;
+    let mut edges: Vec<f64> = heights.edges_z_mm.iter().copied().filter(|z| *z > deepest && *z < top).collect();
+    edges.extend([deepest, bottom, top]);
     edges.sort_by(f64::total_cmp);
     edges.dedup_by(|b, a| *b - *a < SAME_MM);
     let thickest = (top - bottom) / count as f64;
+    let thickest = |lower: f64| if lower < bottom - SAME_MM { BELOW * thickest } else { thickest };
+    let pieces: f64 = edges.windows(2).map(|band| ((band[1] - band[0]) / thickest(band[0])).ceil()).sum();
+    require(pieces <= MOST, "stock_from_z_mm", deepest, "a height that 2000 slices fill")?;
     let bands = edges.windows(2).flat_map(|band| {
         let (lower, height) = (band[0], band[1] - band[0]);
-        let pieces = (height / thickest - 1e-9).ceil().max(1.0);
+        let pieces = (height / thickest(lower) - 1e-9).ceil().max(1.0);
         (0..pieces as usize).map(move |k| Slice {
             lower: lower + height * k as f64 / pieces,
             upper: lower + height * (k + 1) as f64 / pieces,
@@ -83,6 +96,10 @@ mod tests {
         assert!(all.iter().all(|s| s.thickness() <= 1.0 + 1e-9));
         assert!(all.iter().any(|s| (s.upper + 11.0).abs() < 1e-9));
         assert!(slices(&Heights::of(-5.0, -5.0)).is_err());
+        let below = slices(&Heights { stock_from_z_mm: -19.5, ..heights.clone() }).expect("a height");
+        assert_eq!((below[0].lower, below[0].upper), (-19.5, -17.25));
+        assert!(below.iter().any(|s| s.lower == -15.0));
+        assert!(slices(&Heights { stock_from_z_mm: -12.0, ..heights }).is_err());
     }
 
     #[test]

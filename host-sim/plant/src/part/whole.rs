@@ -29,6 +29,8 @@ pub struct Part {
     cut: Cut,
     machine: Machine,
     slices: Vec<Slice>,
+    /// The first slice of the wall; below it is stock that deeper runs cut.
+    bottom: usize,
     rays: Rays,
     field: Field,
     equilibrium: Equilibrium,
@@ -54,6 +56,7 @@ impl Part {
             path: path.clone(),
             cut: cut.clone(),
             machine: machine.clone(),
+            bottom: slices.partition_point(|s| s.middle() < heights.bottom_z_mm),
             slices,
             rays,
             field,
@@ -141,6 +144,7 @@ impl Part {
     /// The wall as it is now.
     pub fn surface(&self) -> Surface {
         let rows = &self.rays.rows;
+        let wall = self.bottom..self.slices.len();
         let error = |k: usize| {
             let value = move |row: usize| if rows[row].on_part { self.field.row(row)[k] } else { f64::NAN };
             (0..rows.len()).map(value).collect()
@@ -148,15 +152,15 @@ impl Part {
         Surface::new(
             rows.iter().map(|row| row.s_mm).collect(),
             rows.iter().map(|row| row.wall_mm).collect(),
-            self.slices.iter().map(|s| (s.lower, s.upper)).collect(),
-            (0..self.slices.len()).map(error).collect(),
+            self.slices[wall.clone()].iter().map(|s| (s.lower, s.upper)).collect(),
+            wall.map(error).collect(),
         )
     }
 
     /// Lower and upper edge of the wall, mm.
     pub fn height_mm(&self) -> [f64; 2] {
         let edge = |slice: Option<&Slice>, of: fn(&Slice) -> f64| slice.map_or(0.0, of);
-        [edge(self.slices.first(), |s| s.lower), edge(self.slices.last(), |s| s.upper)]
+        [edge(self.slices.get(self.bottom), |s| s.lower), edge(self.slices.last(), |s| s.upper)]
     }
 
     /// Judges the wall, in the numbers of a single pass ([`crate::Milled::score`]): the ten heights are all slices.
@@ -200,7 +204,8 @@ impl Part {
     /// Wall error at each nominal sample at a height, between the middles of slices by proportion, mm; NaN where no wall is.
     pub fn errors_at(&self, z_mm: f64) -> Vec<f64> {
         let above = self.slices.partition_point(|s| s.middle() <= z_mm);
-        let (a, b) = (above.saturating_sub(1), above.min(self.slices.len() - 1));
+        let above = above.clamp(self.bottom, self.slices.len());
+        let (a, b) = (above.saturating_sub(1).max(self.bottom), above.min(self.slices.len() - 1));
         let (za, zb) = (self.slices[a].middle(), self.slices[b].middle());
         let u = if b > a { (z_mm - za) / (zb - za) } else { 0.0 };
         let error = |i: usize| {

@@ -202,6 +202,27 @@ fn a_level_over_a_finished_one_cuts_only_its_own_height() {
 }
 
 #[test]
+fn a_run_below_the_wall_is_pushed_away_by_the_stock_there() {
+    // Two levels of 10 mm; judged is the upper one. Mean law, straight wall: the second leaves what the first left.
+    let (path, cut) = (straight(), d20());
+    let heights = Heights { stock_from_z_mm: -10.0, edges_z_mm: vec![0.0, -10.0], ..Heights::of(0.0, 10.0) };
+    let mut part = Part::new(&path, &cut, &p23(), &heights).expect("a part");
+    assert_eq!(part.cut(&along(&path, &cut, 0.0, 0.0)), Ok(1));
+    let first = mean_at(&part, 35.0);
+    assert_eq!(part.cut(&along(&path, &cut, 0.0, -10.0)), Ok(1));
+    let second = mean_at(&part, 35.0);
+    assert!((first - 0.0914).abs() < 0.0005 && (second - first).abs() < 1e-4, "{first} {second}");
+    assert_eq!(part.height_mm(), [0.0, 10.0]);
+    assert_eq!(part.surface().slices_mm.len(), 30);
+    // Without that stock it springs.
+    let mut air = whole(&path, &cut, &p23());
+    for tip in [0.0, -10.0] {
+        assert_eq!(air.cut(&along(&path, &cut, 0.0, tip)), Ok(1));
+    }
+    assert!(mean_at(&air, 35.0) < 0.5 * first);
+}
+
+#[test]
 fn turning_everything_by_a_quarter_turns_the_wall_of_two_passes_with_it() {
     let turned = |p: Point| [-p[1] + 7.0, p[0] - 3.0];
     let quarter: Vec<Segment> = corner()
