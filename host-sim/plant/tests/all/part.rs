@@ -107,8 +107,9 @@ fn at_the_instant_the_cutter_yields_to_the_stock_of_the_instant() {
         let force = |e: f64| -flutes.at_wall(0, z, &arcs(e), 1.0)[0] / 1150.0;
         let (expected, plain) = (answered(&force), force(mean));
         let (found, found_mean) = (instant.errors_at(z)[i], of_mean.errors_at(z)[i]);
-        assert!((found - expected).abs() < 1e-4, "z = {z}: {found} for {expected}");
-        assert!((found_mean - plain).abs() < 1e-4, "z = {z}: {found_mean} for {plain}");
+        // Between two steps of the way a ridge of up to 0.05²/2r stays.
+        assert!((found - expected).abs() < 2e-4, "z = {z}: {found} for {expected}");
+        assert!((found_mean - plain).abs() < 2e-4, "z = {z}: {found_mean} for {plain}");
         most = most.max((found - found_mean).abs());
     }
     assert!(most > 0.001, "{most}");
