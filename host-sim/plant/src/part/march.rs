@@ -111,6 +111,14 @@ pub(super) struct March<'a> {
     pub(super) which: &'a [usize],
 }
 
+/// The teeth at a step.
+#[derive(Clone, Copy)]
+struct Teeth<'a> {
+    flutes: &'a Flutes,
+    /// Edge force relative to sharp ones.
+    edge: f64,
+}
+
 /// The slices that a step cuts, seen from the tip.
 #[derive(Debug, Default)]
 struct Engaged {
@@ -207,14 +215,14 @@ impl March<'_> {
             length += step.way_mm;
             *travelled_mm += step.way_mm;
             let edge = 1.0 + self.machine.edge_wear_per_m * *travelled_mm * 1e-3;
+            let teeth = Teeth { flutes: &self.flutes[which], edge };
             while waiting.front().is_some_and(|(at, _)| length - at > past) {
                 if let Some((_, circles)) = waiting.pop_front() {
                     field.cut(self.rays, &circles, radius, stock, &mut near);
                 }
             }
-            let flutes = &self.flutes[which];
             engaged.at(step.tip_z_mm, self);
-            let (settled, open) = self.settle(step, flutes, edge, &engaged, field, &mut way);
+            let (settled, open) = self.settle(step, teeth, &engaged, field, &mut way);
             residual_mm = residual_mm.max(open);
             open_places += usize::from(open > OPEN_MM);
             let actual = add(step.commanded, settled.displacement);
@@ -237,7 +245,7 @@ impl March<'_> {
                     } else {
                         let moved = sub(settled.displacement, way.before);
                         guess.at = add(guess.at, moved);
-                        self.instant((k, tooth), &settled, flutes, edge, &engaged, &way.immersion, guess)
+                        self.instant((k, tooth), &settled, teeth, &engaged, &way.immersion, guess)
                     };
                     residual_mm = residual_mm.max(open);
                     open_places += usize::from(open > OPEN_MM);
@@ -280,15 +288,8 @@ impl March<'_> {
     }
 
     /// Finds the mean centre; leaves the depths of it in `way.immersion`.
-    fn settle(
-        &self,
-        step: &Step,
-        flutes: &Flutes,
-        edge: f64,
-        engaged: &Engaged,
-        field: &Field,
-        way: &mut Way,
-    ) -> (Settled, f64) {
+    fn settle(&self, step: &Step, teeth: Teeth<'_>, engaged: &Engaged, field: &Field, way: &mut Way) -> (Settled, f64) {
+        let Teeth { flutes, edge } = teeth;
         let Way { immersion, at_crossings, mean, .. } = way;
         let per_radian = self.cut.teeth as f64 / (2.0 * PI);
         let mut evaluate = |d: Point| {
@@ -324,8 +325,7 @@ impl March<'_> {
         &self,
         (slice, tooth): (usize, usize),
         mean: &Settled,
-        flutes: &Flutes,
-        edge: f64,
+        teeth: Teeth<'_>,
         engaged: &Engaged,
         immersion: &Immersion,
         guess: &mut Guess,
@@ -333,7 +333,7 @@ impl March<'_> {
         let (lower, upper) = engaged.edges[slice];
         let height = 0.5 * (lower + upper);
         let force = |v: Point| {
-            let sum = at_height(flutes, tooth, height, edge, engaged, immersion, (mean.displacement, v));
+            let sum = at_height(teeth, (tooth, height), engaged, immersion, (mean.displacement, v));
             self.machine.deflection(in_xy(mean.normal, mean.travel, sum))
         };
         match self.equilibrium {
@@ -349,10 +349,8 @@ impl March<'_> {
 /// Force in (n, t) at the instant at which `tooth` makes the wall at `height` above the tip, with the centre displaced by `to`
 /// where the depths hold for `from`.
 fn at_height(
-    flutes: &Flutes,
-    tooth: usize,
-    height: f64,
-    edge: f64,
+    Teeth { flutes, edge }: Teeth<'_>,
+    (tooth, height): (usize, f64),
     engaged: &Engaged,
     immersion: &Immersion,
     (from, to): (Point, Point),

@@ -97,7 +97,7 @@ fn at_the_instant_the_cutter_yields_to_the_stock_of_the_instant() {
     };
     let mean = answered(&|e| -flutes.mean(&arcs(e), 1.0)[0] / 1150.0);
     let run = along(&path, &cut, 0.0, 0.0);
-    let instant = cut_by(&path, &cut, &machine, &[run.clone()]);
+    let instant = cut_by(&path, &cut, &machine, std::slice::from_ref(&run));
     let mut of_mean = whole(&path, &cut, &machine).with(Equilibrium::Mean);
     assert_eq!(of_mean.cut(&run), Ok(1));
     let i = path.index_at(35.0);
@@ -161,7 +161,7 @@ fn a_step_to_the_side_leaves_what_it_is_commanded_to_and_its_deflection() {
 fn a_run_in_the_other_direction_is_conventional_where_the_first_climbs() {
     let (path, cut) = (straight(), d20());
     let run = along(&path, &cut, 0.0, 0.0);
-    let climb = cut_by(&path, &cut, &p23(), &[run.clone()]);
+    let climb = cut_by(&path, &cut, &p23(), std::slice::from_ref(&run));
     let conventional = cut_by(&path, &cut, &p23(), &[reversed(run)]);
     assert!(climb.laps()[0].climb && !conventional.laps()[0].climb && conventional.laps()[0].reversed);
     // The same as a wall on the other side.
