@@ -185,8 +185,8 @@ impl March<'_> {
     /// Goes along a lap and takes the stock; `travelled_mm` is the way that the edges have cut before, and after.
     pub(super) fn go(&self, lap: &Lap, field: &mut Field, travelled_mm: &mut f64) -> (LapFacts, Vec<LapSample>) {
         let radius = self.cut.radius_mm;
-        let teeth = self.flutes.first().map_or(1, Flutes::distinct_teeth);
-        let distinct = if self.machine.law == WallLaw::Mean { 1 } else { teeth };
+        let each = self.flutes.first().map_or(1, Flutes::distinct_teeth);
+        let distinct = if self.machine.law == WallLaw::Mean { 1 } else { each };
         let largest = self.machine.runout_mm.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let radii: Vec<f64> = if self.machine.law == WallLaw::Mean {
             vec![radius + if largest.is_finite() { largest } else { 0.0 }]
