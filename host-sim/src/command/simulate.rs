@@ -317,7 +317,14 @@ fn milled(
             let trace = page::trace_of_part(&part);
             let along = page::parted(&part, &trace, "cut by the virtual machine, all passes of the program");
             let surface = Some(part.surface());
-            return Ok(Done { by: "plant", trace, along, made: Some(Made::Part(part)), surface, facts: None });
+            return Ok(Done {
+                by: "plant",
+                trace,
+                along,
+                made: Some(Made::Part(Box::new(part))),
+                surface,
+                facts: None,
+            });
         }
         Commanded::Nominal => (virtual_mill::mill(pass, machine, None)?, None),
         Commanded::Program(program) => (virtual_mill::mill_executed(pass, machine, program)?, None),
@@ -340,7 +347,7 @@ fn milled(
     };
     let along = page::milled(&milled, &trace, label);
     let surface = Some(Surface::of(&milled, pass.core.contour.z.nm() as f64 / 1e6, SLICES));
-    Ok(Done { by: "plant", trace, along, made: Some(Made::Pass(milled)), surface, facts })
+    Ok(Done { by: "plant", trace, along, made: Some(Made::Pass(Box::new(milled))), surface, facts })
 }
 
 /// The wall as cut, for a simulated probe: program coordinates, mm, from the lowest height to the highest.

@@ -83,9 +83,9 @@ pub(crate) fn path_and_cut(pass: &Pass) -> Result<(plant::Path, plant::Cut), Fai
 #[derive(Debug)]
 pub enum Made {
     /// One pass, alike at every depth of its feature.
-    Pass(Milled),
+    Pass(Box<Milled>),
     /// All runs of a program.
-    Part(plant::Part),
+    Part(Box<plant::Part>),
 }
 
 /// Mills a pass along its nominal path, or along commanded centres.
