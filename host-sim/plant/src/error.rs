@@ -39,6 +39,8 @@ pub enum PlantError {
         /// Teeth of the cutter.
         teeth: usize,
     },
+    /// `bend_law = "maxwell"` on a single pass with one engagement for all heights.
+    BendLaw,
     /// The commanded path leaves the nominal path before its end.
     NotCovered {
         /// Nominal length reached, mm.
@@ -66,6 +68,9 @@ impl fmt::Display for PlantError {
             Self::OutOfRange { key, value, expected } => write!(f, "{key} = {value}: expected {expected}"),
             Self::RunoutCount { found, teeth } => {
                 write!(f, "runout_mm has {found} values for {teeth} teeth: give one a tooth, or none")
+            }
+            Self::BendLaw => {
+                write!(f, "bend_law = \"maxwell\" needs the engagement of every height: simulate with --program")
             }
             Self::NotCovered { covered_mm, length_mm } => {
                 write!(f, "the commanded path follows the contour for {covered_mm:.1} of {length_mm:.1} mm")

@@ -14,7 +14,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
+use super::machine::Machine;
 use super::mill::Milled;
+use super::part::Part;
+use super::path::Path;
 use super::vector::{Point, along, dot, mix, norm, squared_distance, sub};
 
 /// Points of the wall lie this near to each other, mm: a ball of 2 mm sinks 0.03 µm between them.
@@ -34,11 +37,46 @@ struct Spot {
     normal: Point,
 }
 
+/// Whose wall it is.
+#[derive(Debug, Clone, Copy)]
+enum Made<'m> {
+    /// A pass, with Z of the cutter's tip.
+    Pass(&'m Milled, f64),
+    /// A part that several runs have cut.
+    Part(&'m Part),
+}
+
+impl<'m> Made<'m> {
+    fn machine(self) -> &'m Machine {
+        match self {
+            Self::Pass(milled, _) => &milled.machine,
+            Self::Part(part) => part.machine(),
+        }
+    }
+
+    fn path(self) -> (&'m Path, f64) {
+        match self {
+            Self::Pass(milled, _) => (&milled.path, milled.cut.radius_mm),
+            Self::Part(part) => (part.path(), part.set_up().radius_mm),
+        }
+    }
+
+    /// Wall errors at the samples of the path; beyond tip and top those of tip and top.
+    fn errors(self, z_mm: f64) -> Vec<f64> {
+        match self {
+            Self::Pass(milled, tip) => {
+                let level = ((z_mm - tip) / milled.cut.axial_depth_mm).clamp(0.0, 1.0);
+                milled.wall_errors(&[level]).into_iter().next().unwrap_or_default()
+            }
+            Self::Part(part) => part.errors_at(z_mm),
+        }
+    }
+}
+
 /// A milled wall, felt with a ball.
 #[derive(Debug)]
 pub struct Felt<'m> {
-    milled: &'m Milled,
-    tip_z_mm: f64,
+    made: Made<'m>,
     layers: BTreeMap<i64, Vec<Spot>>,
     noise: ChaCha8Rng,
 }
@@ -46,9 +84,18 @@ pub struct Felt<'m> {
 impl<'m> Felt<'m> {
     /// A wall; `tip_z_mm` is the Z of the cutter's tip in its pass.
     pub fn new(milled: &'m Milled, tip_z_mm: f64) -> Self {
-        let mut noise = ChaCha8Rng::seed_from_u64(milled.machine.seed);
+        Self::made(Made::Pass(milled, tip_z_mm))
+    }
+
+    /// The wall of a part as all its runs have left it.
+    pub fn of_part(part: &'m Part) -> Self {
+        Self::made(Made::Part(part))
+    }
+
+    fn made(made: Made<'m>) -> Self {
+        let mut noise = ChaCha8Rng::seed_from_u64(made.machine().seed);
         noise.set_stream(3);
-        Self { milled, tip_z_mm, layers: BTreeMap::new(), noise }
+        Self { made, layers: BTreeMap::new(), noise }
     }
 
     /// The share of the way at which a ball, its centre at the height `z_mm`, meets the wall first; 0 where it touches it
@@ -96,18 +143,17 @@ impl<'m> Felt<'m> {
     /// What the next reading is off along the way of the ball, mm: Gaussian, by the probe of the machine.
     pub fn noise_mm(&mut self) -> f64 {
         let drawn: f64 = StandardNormal.sample(&mut self.noise);
-        self.milled.machine.probe_noise_mm * drawn
+        self.made.machine().probe_noise_mm * drawn
     }
 
     /// The wall at a height; beyond tip and top that of tip and top.
     fn layer(&mut self, z_mm: f64) -> &[Spot] {
-        let (milled, tip) = (self.milled, self.tip_z_mm);
+        let made = self.made;
         self.layers.entry((z_mm / LAYER_MM).round() as i64).or_insert_with(|| {
-            let level = ((z_mm - tip) / milled.cut.axial_depth_mm).clamp(0.0, 1.0);
-            let path = &milled.path;
-            let errors = milled.wall_errors(&[level]).into_iter().next().unwrap_or_default();
+            let (path, radius) = made.path();
+            let errors = made.errors(z_mm);
             let spot = |(k, error): (usize, f64)| Spot {
-                place: along(path.wall(k, milled.cut.radius_mm), path.normal[k], -error),
+                place: along(path.wall(k, radius), path.normal[k], -error),
                 normal: path.normal[k],
             };
             let wall: Vec<Spot> = errors.into_iter().enumerate().filter(|(_, e)| e.is_finite()).map(spot).collect();

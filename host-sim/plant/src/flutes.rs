@@ -42,6 +42,8 @@ pub struct Flutes {
     sense: f64,
     /// One table, or one a tooth with runout.
     tables: Vec<Vec<Node>>,
+    /// Their mean, if there are several.
+    mean: Option<Vec<Node>>,
 }
 
 impl Flutes {
@@ -49,7 +51,7 @@ impl Flutes {
     pub fn new(cut: &Cut, machine: &Machine, climb: bool, feed_mm_per_min: f64) -> Self {
         let feed = cut.feed_per_tooth_mm(feed_mm_per_min);
         let sense = if climb { -1.0 } else { 1.0 };
-        let tables = (0..machine.runout_mm.len().max(1))
+        let tables: Vec<Vec<Node>> = (0..machine.runout_mm.len().max(1))
             .map(|tooth| {
                 let chip = |phi: f64| chip_thickness(phi, feed, tooth, &machine.runout_mm);
                 tabulate(|phi| density(machine, sense, phi, chip(phi)))
@@ -60,7 +62,43 @@ impl Flutes {
             depth: cut.axial_depth_mm,
             lag_rad_per_mm: cut.helix_deg.to_radians().tan() / cut.radius_mm,
             sense,
+            mean: (tables.len() > 1).then(|| averaged(&tables)),
             tables,
+        }
+    }
+
+    /// Lag of the edge per height, rad/mm.
+    pub(super) fn lag_rad_per_mm(&self) -> f64 {
+        self.lag_rad_per_mm
+    }
+
+    /// +1 where φ grows as the cutter turns (conventional), −1 where it falls (climb).
+    pub(super) fn sense(&self) -> f64 {
+        self.sense
+    }
+
+    /// Teeth of the cutter.
+    pub(super) fn teeth(&self) -> usize {
+        self.teeth
+    }
+
+    /// ∫₀^φ g dφ of the force density g per unit depth of a tooth, or of the mean of all; `edge_factor` multiplies the edge part.
+    pub(super) fn primitive(&self, tooth: Option<usize>, phi: f64, edge_factor: f64) -> NormalTangential {
+        let sum = sum_at(self.table(tooth), phi);
+        [sum[0] + edge_factor * sum[2], sum[1] + edge_factor * sum[3]]
+    }
+
+    /// The force density of a tooth, N/mm.
+    pub(super) fn density(&self, tooth: usize, phi: f64, edge_factor: f64) -> NormalTangential {
+        let g = slope_at(self.table(Some(tooth)), phi);
+        [g[0] + edge_factor * g[2], g[1] + edge_factor * g[3]]
+    }
+
+    fn table(&self, tooth: Option<usize>) -> &[Node] {
+        match (tooth, &self.mean) {
+            (None, Some(mean)) => mean,
+            (None, None) => &self.tables[0],
+            (Some(tooth), _) => &self.tables[tooth % self.tables.len()],
         }
     }
 
@@ -128,6 +166,22 @@ fn tabulate(g: impl Fn(f64) -> [f64; 4]) -> Vec<Node> {
         table.push(node);
     }
     table
+}
+
+/// The mean of several primitives.
+fn averaged(tables: &[Vec<Node>]) -> Vec<Node> {
+    let share = 1.0 / tables.len() as f64;
+    let node = |k: usize| {
+        let mut mean = Node::default();
+        for table in tables {
+            for i in 0..4 {
+                mean.sum[i] += share * table[k].sum[i];
+                mean.slope[i] += share * table[k].slope[i];
+            }
+        }
+        mean
+    };
+    (0..=CELLS).map(node).collect()
 }
 
 /// Adds `scale · (G(b) − G(a))`, chip and edge part together.

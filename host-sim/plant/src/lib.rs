@@ -41,6 +41,7 @@ mod grid;
 mod machine;
 mod mill;
 mod parallel;
+mod part;
 mod path;
 mod place;
 mod probe;
@@ -57,8 +58,11 @@ pub use arcs::EngagedArcs;
 pub use error::PlantError;
 pub use feel::Felt;
 pub use flutes::{Flutes, NormalTangential};
-pub use machine::{Machine, WallLaw};
+pub use machine::{BendLaw, Machine, WallLaw};
 pub use mill::{Milled, Sample, Track, mill};
+pub use part::{
+    Equilibrium, HeightScore, Heights, LapFacts, LapSample, Part, Run, Surface, SurfaceScore, Worst, laps_along,
+};
 pub use path::{Path, Side};
 pub use place::Place;
 pub use probe::{ProbePlan, Touch, probe, probeopen_text};

@@ -10,6 +10,7 @@
 //! size_exponent = 0.2               # chip coefficients × (h / 0.05 mm)^(−m)
 //! compliance_mm_per_n = [[0.00087, 0.00011], [0.00011, 0.00111]]   # or stiffness_x_n_per_mm and stiffness_y_n_per_mm
 //! bend = 0.15                       # compliance × (1 + bend·(1 − z/b)): the tip moves most
+//! bend_law = "alike"                # a force moves the cutter alike wherever it attacks; or "maxwell"
 //! runout_mm = [0.0, 0.004, -0.002, 0.001]   # radial, one a tooth, in the order in which they pass
 //! edge_wear_per_m = 0.05            # edge force grows by this fraction per metre of path
 //! stock_variation_mm = 0.05         # largest deviation of the allowance
@@ -34,6 +35,24 @@ pub enum WallLaw {
     Mean,
 }
 
+/// How far a force bends the cutter by the height at which it attacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BendLaw {
+    /// Alike at every height.
+    #[default]
+    Alike,
+    /// As far as the cutter bends at that height under a force elsewhere, (1 + bend·(1 − z/b)) / (1 + bend/2) of the mean:
+    /// Maxwell's reciprocity. A force spread evenly over the depth bends it as under the other law.
+    Maxwell,
+}
+
+impl BendLaw {
+    fn is_usual(&self) -> bool {
+        *self == Self::Alike
+    }
+}
+
 /// Machine, cutter and material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "MachineFile", into = "MachineFile")]
@@ -52,6 +71,8 @@ pub struct Machine {
     pub compliance_mm_per_n: [[f64; 2]; 2],
     /// Cutter bending: the compliance at height z is multiplied by 1 + bend·(1 − z/b).
     pub bend: f64,
+    /// What the height at which a force attacks has to do with it.
+    pub bend_law: BendLaw,
     /// Radial runout, mm, one value a tooth in the order in which they pass a place, or empty.
     pub runout_mm: Vec<f64>,
     /// Growth of the edge force per metre of path, 1/m.
@@ -79,6 +100,7 @@ impl Machine {
             size_exponent: 0.0,
             compliance_mm_per_n: [[0.0; 2]; 2],
             bend: 0.0,
+            bend_law: BendLaw::Alike,
             runout_mm: Vec::new(),
             edge_wear_per_m: 0.0,
             stock_variation_mm: 0.0,
@@ -136,6 +158,19 @@ impl Machine {
         Ok(())
     }
 
+    /// How far the cutter moves at a level of the axial depth (0 tip … 1 top) against its top; nothing moves against the force.
+    pub(super) fn reach(&self, level: f64) -> f64 {
+        (1.0 + self.bend * (1.0 - level)).max(0.0)
+    }
+
+    /// How much a force counts that attacks at a level of the axial depth.
+    pub(super) fn attack(&self, level: f64) -> f64 {
+        match self.bend_law {
+            BendLaw::Alike => 1.0,
+            BendLaw::Maxwell => self.reach(level) / (1.0 + 0.5 * self.bend),
+        }
+    }
+
     /// Displacement under a force, mm.
     pub(super) fn deflection(&self, force: [f64; 2]) -> [f64; 2] {
         let c = &self.compliance_mm_per_n;
@@ -163,6 +198,8 @@ struct MachineFile {
     stiffness_y_n_per_mm: Option<f64>,
     #[serde(default)]
     bend: f64,
+    #[serde(default, skip_serializing_if = "BendLaw::is_usual")]
+    bend_law: BendLaw,
     #[serde(default)]
     runout_mm: Vec<f64>,
     #[serde(default)]
@@ -208,6 +245,7 @@ impl TryFrom<MachineFile> for Machine {
             size_exponent: file.size_exponent,
             compliance_mm_per_n,
             bend: file.bend,
+            bend_law: file.bend_law,
             runout_mm: file.runout_mm,
             edge_wear_per_m: file.edge_wear_per_m,
             stock_variation_mm: file.stock_variation_mm,
@@ -233,6 +271,7 @@ impl From<Machine> for MachineFile {
             stiffness_x_n_per_mm: None,
             stiffness_y_n_per_mm: None,
             bend: m.bend,
+            bend_law: m.bend_law,
             runout_mm: m.runout_mm,
             edge_wear_per_m: m.edge_wear_per_m,
             stock_variation_mm: m.stock_variation_mm,

@@ -11,7 +11,7 @@ use super::arcs::EngagedArcs;
 use super::error::PlantError;
 use super::flutes::{Flutes, NormalTangential};
 use super::follow::Commanded;
-use super::machine::{Machine, WallLaw};
+use super::machine::{BendLaw, Machine, WallLaw};
 use super::path::Path;
 use super::setup::Cut;
 use super::stock::{Frame, Stock};
@@ -90,10 +90,14 @@ pub struct Milled {
 /// Cuts along `commanded` (a polyline of the cutter's centre, any sampling, with or without leads), or along the nominal path.
 ///
 /// # Errors
-/// A value out of range, or a command that does not follow the contour within 3 mm to its end.
+/// A value out of range, a bending law that needs the engagement of every height, or a command that does not follow the contour
+/// within 3 mm to its end.
 pub fn mill(path: &Path, cut: &Cut, machine: &Machine, commanded: Option<&[Point]>) -> Result<Milled, PlantError> {
     cut.check()?;
     machine.check(cut.teeth)?;
+    if machine.bend_law != BendLaw::Alike {
+        return Err(PlantError::BendLaw);
+    }
     let commanded = match commanded {
         Some(polyline) => Commanded::following(path, polyline)?,
         None => Commanded::nominal(path),
@@ -247,7 +251,7 @@ impl Milled {
     }
 
     fn displaced(&self, level: f64, force: impl Fn(&Sample, &Flutes) -> NormalTangential) -> Vec<Point> {
-        let reach = 1.0 + self.machine.bend * (1.0 - level);
+        let reach = self.machine.reach(level);
         self.samples
             .iter()
             .map(|s| {

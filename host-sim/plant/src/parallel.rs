@@ -126,7 +126,7 @@ fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> {
 }
 
 /// Smooth deviation of the allowance: a few waves of random phase, never more than the stated amplitude.
-struct AllowanceWave {
+pub(super) struct AllowanceWave {
     waves: Vec<(f64, f64, f64)>,
 }
 
@@ -134,7 +134,7 @@ impl AllowanceWave {
     /// Lengths of the waves as multiples of the shortest; not commensurate, so that the sum does not repeat.
     const LENGTHS: [f64; 4] = [1.0, 1.618, 2.639, 4.236];
 
-    fn new(machine: &Machine) -> Self {
+    pub(super) fn new(machine: &Machine) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(machine.seed);
         rng.set_stream(1);
         let amplitude = machine.stock_variation_mm / Self::LENGTHS.len() as f64;
@@ -148,7 +148,7 @@ impl AllowanceWave {
         Self { waves }
     }
 
-    fn at(&self, s: f64) -> f64 {
+    pub(super) fn at(&self, s: f64) -> f64 {
         self.waves.iter().map(|(a, k, p)| a * (k * s + p).sin()).sum()
     }
 }

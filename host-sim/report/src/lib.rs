@@ -19,5 +19,5 @@ pub use planned::{planned_map_csv, planned_page};
 pub use points::{judged_points_csv, points_csv};
 pub use reading::{LawPlaces, PointRow, read_correction, read_points, read_trace, read_wall, read_walls};
 pub use summary::{SimulateSummary, simulate_summary};
-pub use tables::{Trace, TraceRow, compare_csv, correction_csv, trace, trace_csv, walls_csv};
+pub use tables::{Trace, TraceRow, compare_csv, correction_csv, trace, trace_csv, wall_map_csv, walls_csv};
 pub use wall::{WallRow, wall_csv};

@@ -5,7 +5,7 @@ use truepath_ground::units::mm;
 use truepath_job::feature::FeatureSummary;
 use truepath_job::job::Assumed;
 use truepath_job::pass::{Pass, milling_name};
-use truepath_plant::Score;
+use truepath_plant::{LapFacts, Score, SurfaceScore};
 use truepath_trial::recorded;
 
 use super::tables::TraceRow;
@@ -36,6 +36,12 @@ pub struct SimulateSummary {
     /// The wall away from its ends, where the cutter plunges and lifts; by the plant only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub judged: Option<Score>,
+    /// The same wall at every height; by the plant only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<SurfaceScore>,
+    /// The laps along the wall that were cut in order, where a whole program was.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub laps: Vec<LapFacts>,
     /// The recorded pass that was cut along, if one was.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorded: Option<recorded::Facts>,
@@ -76,6 +82,8 @@ impl SimulateSummary {
             max_chip_area_mm2: most(|one| one.max_chip_area_mm2),
             max_chip_volume_mm3: most(|one| one.max_chip_volume_mm3),
             judged: None,
+            surface: None,
+            laps: Vec::new(),
             recorded: None,
             feature: None,
             contour: None,
@@ -102,6 +110,8 @@ pub fn simulate_summary(pass: &Pass, by: &'static str, trace: &[TraceRow], warni
         max_chip_volume_mm3: most(|r| r.chip_area_mm2) * mm(pass.core.setup.radius),
         milling: milling_name(pass.core.setup.milling),
         judged: None,
+        surface: None,
+        laps: Vec::new(),
         recorded: None,
         feature: pass.feature(&[]),
         contour: None,

@@ -5,6 +5,7 @@ use truepath_correction::rows::{CorrectionRow, wall_mm};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::table::table;
 use truepath_ground::units::{float, mm, rounded};
+use truepath_plant::Surface;
 use truepath_trial::compare::{Row, Walls};
 
 /// One place of a simulated pass.
@@ -96,6 +97,42 @@ pub fn trace_csv(trace: &Trace) -> Result<Vec<u8>, Failure> {
         error_mm: rounded(r.error_mm, 6),
         ..*r
     }))
+}
+
+/// A place on an unrolled wall.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+struct MapRow {
+    s_mm: f64,
+    z_mm: f64,
+    error_mm: f64,
+    wall_mm: f64,
+}
+
+/// Places of `wall-map.csv` are at least this far apart along the wall, mm.
+const MAP_MM: f64 = 0.2;
+
+/// `wall-map.csv`: the wall unrolled, slice by slice from the lowest; where no wall stands there is no row.
+///
+/// # Errors
+/// Internal, when memory cannot be written.
+pub fn wall_map_csv(surface: &Surface) -> Result<Vec<u8>, Failure> {
+    let mut kept: Vec<usize> = Vec::new();
+    for (place, wall) in surface.wall_mm.iter().enumerate() {
+        if kept.last().is_none_or(|last| wall - surface.wall_mm[*last] >= MAP_MM - 1e-6) {
+            kept.push(place);
+        }
+    }
+    let slices = surface.slices_mm.iter().zip(&surface.errors_mm);
+    let rows = slices.flat_map(|((lower, upper), errors)| {
+        let row = move |place: &usize| MapRow {
+            s_mm: rounded(surface.s_mm[*place], 4),
+            z_mm: rounded(0.5 * (lower + upper), 4),
+            error_mm: rounded(errors[*place], 6),
+            wall_mm: rounded(surface.wall_mm[*place], 4),
+        };
+        kept.iter().filter(|place| errors[**place].is_finite()).map(row)
+    });
+    table(rows)
 }
 
 /// `correction.csv`.

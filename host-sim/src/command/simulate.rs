@@ -15,22 +15,25 @@ use truepath_job::feature::listing;
 use truepath_job::job::{JobFile, Which};
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_plant as plant;
-use truepath_plant::Milled;
+use truepath_plant::{Surface, judged_trim_mm};
 use truepath_report::page::Along;
 use truepath_report::pages::{REPORT, simulated};
 use truepath_report::plot::Column;
-use truepath_report::{SimulateSummary, Trace, page, plot, simulate_summary, trace, trace_csv, wall_csv};
+use truepath_report::{SimulateSummary, Trace, page, plot, simulate_summary, trace, trace_csv, wall_csv, wall_map_csv};
 use truepath_trial::codes::{L001, L002};
 use truepath_trial::replay::Placement;
 use truepath_trial::setpoints::Setpoints;
-use truepath_trial::{recorded, virtual_mill};
+use truepath_trial::virtual_mill::Made;
+use truepath_trial::{process, recorded, virtual_mill};
 
 use super::correction_files::{CONTOURS, contour_folder, contour_name};
 use super::placement::PlacementOptions;
 use crate::terminal::Terminal;
 
 /// Files this command may write.
-const FILES: &[&str] = &["trace.csv", "wall.csv", PROBED, TOUCHED, "summary.json", "trace.svg", REPORT, CONTOURS];
+const FILES: &[&str] = &["trace.csv", "wall.csv", MAP, PROBED, TOUCHED, "summary.json", "trace.svg", REPORT, CONTOURS];
+/// The wall unrolled.
+const MAP: &str = "wall-map.csv";
 /// The wall as cut, at several heights.
 const PROBED: &str = "probed-wall.csv";
 /// What the machine writes while it runs the probing program.
@@ -39,6 +42,11 @@ const TOUCHED: &str = "probe.txt";
 const CORRECTED: &str = "corrected.nc";
 /// Heights of probed-wall.csv, over the whole depth.
 const HEIGHTS: usize = 21;
+/// Slices in which a single pass is judged at every height.
+const SLICES: usize = 30;
+
+/// An elastic loop that stays open by more than this is told, mm.
+const OPEN_MM: f64 = 1e-3;
 
 /// What is simulated.
 #[derive(Clone, Debug, Default, Args)]
@@ -55,6 +63,10 @@ pub struct Options {
     /// Cut with the corrected program in DIR, written by truepath correct or learn.
     #[arg(long, value_name = "DIR", requires = "plant", conflicts_with = "setpoints")]
     pub from: Option<PathBuf>,
+    /// Cut with this program: all that it does along the wall, pass after pass on one part, each over what the one before
+    /// left at every height.
+    #[arg(long, value_name = "FILE", requires = "plant", conflicts_with_all = ["setpoints", "from"])]
+    pub program: Option<PathBuf>,
     /// Touch the wall with this program, written by truepath probe, and write probe.txt, the file that the machine would
     /// have written.
     #[arg(long, value_name = "FILE", requires = "plant")]
@@ -105,10 +117,29 @@ fn words(summary: &SimulateSummary, output: &FilePath) -> String {
         )
     });
     let contours: String = contours.collect();
+    let laps = summary.laps.iter().enumerate().map(|(k, lap)| {
+        format!(
+            "lap {}: tip at Z {:.3} mm, {}{}, {:.3} mm beside the contour, {:.1} mm long, largest mean force {:.0} N\n",
+            k + 1,
+            lap.tip_z_mm,
+            if lap.climb { "climb" } else { "conventional" },
+            if lap.reversed { ", reversed" } else { "" },
+            lap.beside_mm,
+            lap.length_mm,
+            lap.largest_force_n
+        )
+    });
+    let laps: String = laps.collect();
+    let surface = summary.surface.as_ref().map_or_else(String::new, |all| {
+        format!(
+            "at every height: profile error {:.4} mm (at s {:.1}, Z {:.2} mm), 95 % within {:.4} mm, deepest gouge {:.4} mm\n",
+            all.profile_mm, all.worst.s_mm, all.worst.z_mm, all.p95_mm, all.gouge_mm
+        )
+    });
     format!(
         "{contours}{}{:.1} mm of contour, {} milling, by the {}\n\
          largest wall error {:.4} mm (rms {:.4}), largest engagement {:.2} degrees, largest mean force {:.0} N\n\
-         {judged}{cut}written to {}; to look at: {}\n",
+         {judged}{surface}{laps}{cut}written to {}; to look at: {}\n",
         summary.feature.as_ref().map(listing).unwrap_or_default(),
         summary.length_mm,
         summary.milling,
@@ -133,6 +164,7 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     let walls = Pass::every(job)?;
     let source = |file: &FilePath| Source::read(file);
     let corrected = options.from.as_ref().map(|dir| source(&dir.join(CORRECTED))).transpose()?;
+    let whole = options.program.as_deref().map(source).transpose()?;
     let probing = options.touch.as_deref().map(source).transpose()?;
     let machine = options.plant.as_deref().map(read_machine).transpose()?;
     let folder = OutputFolder::create(&options.output, options.force, FILES)?;
@@ -143,27 +175,40 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
         let done = match &machine {
             None => {
                 let (trace, along) = predicted(pass, &mut warnings)?;
-                Done { by: "core", trace, along, milled: None, facts: None }
+                Done { by: "core", trace, along, made: None, surface: None, facts: None }
             }
             Some(machine) => {
-                let commanded = match (&recording, &corrected) {
-                    (Some((setpoints, placement)), _) => Commanded::Recorded(setpoints, placement),
-                    (None, Some(program)) => Commanded::Program(program),
-                    (None, None) => Commanded::Nominal,
+                let commanded = match (&recording, &corrected, &whole) {
+                    (Some((setpoints, placement)), ..) => Commanded::Recorded(setpoints, placement),
+                    (None, Some(program), _) if several_passes(pass, program)? => Commanded::Whole(program),
+                    (None, Some(program), _) => Commanded::Program(program),
+                    (None, None, Some(program)) => Commanded::Whole(program),
+                    (None, None, None) => Commanded::Nominal,
                 };
                 self::milled(pass, machine, &commanded, &mut warnings)?
             }
         };
+        let (judged, laps) = match &done.made {
+            None => (None, Vec::new()),
+            Some(Made::Pass(milled)) => (Some(milled.score()), Vec::new()),
+            Some(Made::Part(part)) => (Some(part.score()), part.laps().to_vec()),
+        };
+        let trim = judged_trim_mm(mm(pass.core.setup.radius));
         let summary = SimulateSummary {
-            judged: done.milled.as_ref().map(Milled::score),
+            judged,
+            surface: done.surface.as_ref().and_then(|surface| surface.score(trim)),
+            laps,
             recorded: done.facts,
             contour: several.then(|| contour_name(pass)),
             ..simulate_summary(pass, done.by, &done.trace, warnings)
         };
         let place = if several { contour_folder(pass) } else { String::new() };
         let write = |name: &str, bytes: &[u8]| folder.write(&format!("{place}{name}"), bytes);
-        if let Some(milled) = done.milled.as_ref().filter(|_| options.probed_wall) {
-            write(PROBED, probed_wall(pass, milled).as_bytes())?;
+        if let Some(made) = done.made.as_ref().filter(|_| options.probed_wall) {
+            write(PROBED, probed_wall(pass, made).as_bytes())?;
+        }
+        if let Some(surface) = &done.surface {
+            write(MAP, &wall_map_csv(surface)?)?;
         }
         write("trace.csv", &trace_csv(&done.trace)?)?;
         write("wall.csv", &wall_csv(&done.trace)?)?;
@@ -172,11 +217,11 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
             write("summary.json", &json(&summary)?)?;
         }
         pages.push((contour_name(pass), simulated(pass, done.along, &summary)));
-        milled.extend(done.milled.map(|milled| (pass, milled)));
+        milled.extend(done.made.map(|made| (pass, made)));
         all.push(summary);
     }
     if let Some(program) = probing.as_ref().filter(|_| !milled.is_empty()) {
-        let milled: Vec<(&Pass, &Milled)> = milled.iter().map(|(pass, milled)| (*pass, milled)).collect();
+        let milled: Vec<(&Pass, &Made)> = milled.iter().map(|(pass, made)| (*pass, made)).collect();
         folder.write(TOUCHED, virtual_mill::touch(&milled, program)?.as_bytes())?;
     }
     let summary = SimulateSummary::of_every(all).ok_or_else(|| Failure::Internal("no contour".to_owned()))?;
@@ -227,8 +272,14 @@ struct Done {
     by: &'static str,
     trace: Trace,
     along: Along,
-    milled: Option<Milled>,
+    made: Option<Made>,
+    surface: Option<Surface>,
     facts: Option<recorded::Facts>,
+}
+
+/// Whether a program goes along the wall more often than the job's own: then one pass is not all of it.
+fn several_passes(pass: &Pass, program: &Source) -> Result<bool, Failure> {
+    Ok(process::laps(pass, program)? > process::laps(pass, &pass.program)?)
 }
 
 /// What the virtual machine is told to do.
@@ -239,6 +290,8 @@ enum Commanded<'a> {
     Recorded(&'a Setpoints, &'a Placement),
     /// Another program of the same cut.
     Program(&'a Source),
+    /// A program with all its passes.
+    Whole(&'a Source),
 }
 
 /// The pass as a virtual machine cuts it.
@@ -252,6 +305,27 @@ fn milled(
     warnings: &mut Vec<String>,
 ) -> Result<Done, Failure> {
     let (milled, facts) = match commanded {
+        Commanded::Whole(program) => {
+            let part = process::cut(pass, machine, program)?;
+            let worst = part.laps().iter().map(|lap| lap.residual_mm).fold(0.0, f64::max);
+            if worst > OPEN_MM {
+                let open: usize = part.laps().iter().map(|lap| lap.open_places).sum();
+                warnings.push(format!(
+                    "the elastic loop did not settle at {open} places, teeth and heights (worst residual {worst:.4} mm)"
+                ));
+            }
+            let trace = page::trace_of_part(&part);
+            let along = page::parted(&part, &trace, "cut by the virtual machine, all passes of the program");
+            let surface = Some(part.surface());
+            return Ok(Done {
+                by: "plant",
+                trace,
+                along,
+                made: Some(Made::Part(Box::new(part))),
+                surface,
+                facts: None,
+            });
+        }
         Commanded::Nominal => (virtual_mill::mill(pass, machine, None)?, None),
         Commanded::Program(program) => (virtual_mill::mill_executed(pass, machine, program)?, None),
         Commanded::Recorded(setpoints, placement) => {
@@ -269,18 +343,26 @@ fn milled(
     let label = match commanded {
         Commanded::Nominal => "cut by the virtual machine",
         Commanded::Recorded(..) => "cut by the virtual machine along the recorded path",
-        Commanded::Program(_) => "cut by the virtual machine with the corrected program",
+        Commanded::Program(_) | Commanded::Whole(_) => "cut by the virtual machine with the corrected program",
     };
     let along = page::milled(&milled, &trace, label);
-    Ok(Done { by: "plant", trace, along, milled: Some(milled), facts })
+    let surface = Some(Surface::of(&milled, pass.core.contour.z.nm() as f64 / 1e6, SLICES));
+    Ok(Done { by: "plant", trace, along, made: Some(Made::Pass(Box::new(milled))), surface, facts })
 }
 
 /// The wall as cut, for a simulated probe: program coordinates, mm, from the lowest height to the highest.
-fn probed_wall(pass: &Pass, milled: &Milled) -> String {
+fn probed_wall(pass: &Pass, made: &Made) -> String {
     let levels: [f64; HEIGHTS] = std::array::from_fn(|k| k as f64 / (HEIGHTS - 1) as f64);
-    let (tip, depth) = (pass.core.contour.z.nm() as f64 / 1e6, milled.cut.axial_depth_mm);
+    let (tip, depth, walls) = match made {
+        Made::Pass(milled) => (pass.core.contour.z.nm() as f64 / 1e6, milled.cut.axial_depth_mm, milled.walls(&levels)),
+        Made::Part(part) => {
+            let [bottom, top] = part.height_mm();
+            let wall = |level: &f64| part.wall_at(bottom + level * (top - bottom));
+            (bottom, top - bottom, levels.iter().map(wall).collect())
+        }
+    };
     let mut text = String::from("z_mm,x_mm,y_mm\n");
-    for (level, wall) in levels.iter().zip(milled.walls(&levels)) {
+    for (level, wall) in levels.iter().zip(walls) {
         let z = tip + level * depth;
         // Writing to a String cannot fail.
         wall.iter().for_each(|[x, y]| _ = writeln!(text, "{z:.4},{x:.6},{y:.6}"));

@@ -1,7 +1,7 @@
 //! The machine and the material of a case, as the plant has them: everything the model knows of and several things it
 //! does not (runout, wear, uneven stock, an unsymmetric compliance, a cutter that is not as large as measured).
 
-use truepath_plant::{Machine, WallLaw};
+use truepath_plant::{BendLaw, Machine, WallLaw};
 
 use super::draw::Draw;
 use super::part::{Material, Part};
@@ -54,6 +54,7 @@ pub fn machine(draw: &mut Draw, part: &Part, width: Width) -> Drawn {
         size_exponent,
         compliance_mm_per_n,
         bend,
+        bend_law: BendLaw::Alike,
         runout_mm: teeth,
         edge_wear_per_m: wear,
         stock_variation_mm: stock,

@@ -20,6 +20,7 @@ mod pocket;
 mod pocket_plant;
 mod pocket_slot;
 mod probe_command;
+mod process;
 mod recorded;
 mod rehearsal;
 mod replay;

@@ -31,4 +31,6 @@ truepath_ground::codes! {
         / "record the whole pass; check the frame, --origin-mm and --rotation-deg, and that it is the program of the job",
     S007 => "no row of the pass has the spindle on"
         / "record a pass with the spindle on",
+    S008 => "a program that does not go along the wall of the job"
+        / "give a program of the same part, in the same coordinates and with the tool of the job",
 }

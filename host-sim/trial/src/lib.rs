@@ -4,6 +4,7 @@
 pub mod codes;
 pub mod compare;
 pub mod probing;
+pub mod process;
 pub mod recorded;
 pub mod replay;
 pub mod setpoints;

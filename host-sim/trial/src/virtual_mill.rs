@@ -19,11 +19,11 @@ use crate::recorded;
 use crate::replay::Placement;
 use crate::setpoints::{Frame, Row, Setpoints};
 
-fn coordinates(p: Point) -> [f64; 2] {
+pub(crate) fn coordinates(p: Point) -> [f64; 2] {
     [p.x.nm() as f64 / 1e6, p.y.nm() as f64 / 1e6]
 }
 
-fn refused(error: &PlantError) -> Failure {
+pub(crate) fn refused(error: &PlantError) -> Failure {
     L003.error(error.to_string(), "").into()
 }
 
@@ -73,6 +73,20 @@ fn cut(pass: &Pass, path: &plant::Path) -> plant::Cut {
         // A path that runs on into itself is cut as if it had no beginning.
         memory_mm: path.runs_on().then_some(3.0),
     }
+}
+
+/// The nominal path and the cut of a pass for the plant.
+pub(crate) fn path_and_cut(pass: &Pass) -> Result<(plant::Path, plant::Cut), Failure> {
+    Ok((path(pass).map_err(|e| refused(&e))?, cut(pass)))
+}
+
+/// Who made a wall.
+#[derive(Debug)]
+pub enum Made {
+    /// One pass, alike at every depth of its feature.
+    Pass(Box<Milled>),
+    /// All runs of a program.
+    Part(Box<plant::Part>),
 }
 
 /// Mills a pass along its nominal path, or along commanded centres.
@@ -180,19 +194,28 @@ const fn row(point: Point, z_nm: i64) -> Row {
 ///
 /// # Errors
 /// `L004` for a program that cannot be executed, or that drives the ball into a wall.
-pub fn touch<'m>(walls: &[(&Pass, &'m Milled)], program: &Source) -> Result<String, Failure> {
+pub fn touch(walls: &[(&Pass, &Made)], program: &Source) -> Result<String, Failure> {
     let Some((any, _)) = walls.first() else { return Err(Failure::Internal("no wall to be touched".to_owned())) };
     let probe = any.job.require_probe()?;
     let ball = 0.5 * mm(probe.ball_diameter);
     let centre_above = if probe.z_reference == ZReference::Tip { ball } else { 0.0 };
-    let felt = |(pass, milled): &(&Pass, &'m Milled)| plant::Felt::new(milled, pass.core.contour.z.nm() as f64 / 1e6);
-    let felt = walls.iter().map(felt).collect();
-    let mut levels = Vec::new();
-    for (pass, _) in walls {
-        let tip = pass.core.contour.z.nm() as f64 / 1e6;
-        let tips = std::iter::once(0.0).chain(levels::alike(pass)?.into_iter().map(mm));
-        levels
-            .push(Levels { tips: tips.map(|above| tip + above).collect(), depth: float(pass.core.setup.axial_depth) });
+    let (mut felt, mut levels) = (Vec::new(), Vec::new());
+    for (pass, made) in walls {
+        match made {
+            Made::Pass(milled) => {
+                let tip = pass.core.contour.z.nm() as f64 / 1e6;
+                let tips = std::iter::once(0.0).chain(levels::alike(pass)?.into_iter().map(mm));
+                let tips = tips.map(|above| tip + above).collect();
+                felt.push(plant::Felt::new(milled, tip));
+                levels.push(Levels { tips, depth: float(pass.core.setup.axial_depth) });
+            }
+            // Its wall is known at every depth.
+            Made::Part(part) => {
+                let [bottom, top] = part.height_mm();
+                felt.push(plant::Felt::of_part(part));
+                levels.push(Levels { tips: vec![bottom], depth: top - bottom });
+            }
+        }
     }
     let mut beside = Beside { felt, levels, centre_above };
     let text = String::from_utf8_lossy(program.bytes());

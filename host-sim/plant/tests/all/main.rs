@@ -1,10 +1,11 @@
 //! The plant against the closed forms, the published corner and the symmetries of the physics.
 
 mod effects;
+mod part;
 mod reference;
 mod symmetry;
 
-use truepath_plant::{Cut, Machine, Milled, Path, Point, Segment, Side, Spindle, WallLaw, mill};
+use truepath_plant::{BendLaw, Cut, Machine, Milled, Path, PlantError, Point, Segment, Side, Spindle, WallLaw, mill};
 
 fn line(from: Point, to: Point) -> Segment {
     Segment::Line { from, to }

@@ -4,7 +4,7 @@
 //! beside a correction its values are taken linearly between its samples at the arc lengths of the correction. Limits: a place of
 //! a corrected pass belongs to the nominal place that its commanded centre passes nearest to.
 
-use truepath_plant::{Milled, Sample};
+use truepath_plant::{LapSample, Milled, Part, Path, Sample};
 
 use super::by_core::{Along, columns};
 use super::column::{FEED, FINE, UNIT};
@@ -44,6 +44,50 @@ pub fn trace_of(pass: &Milled) -> Trace {
     beside(pass).into_iter().enumerate().map(row).collect()
 }
 
+/// A part that several runs have cut, with one row for every nominal sample: the wall that all of them left, and of engagement,
+/// force and deflection what the last one beside the sample had.
+pub fn trace_of_part(part: &Part) -> Trace {
+    let (path, cut) = (part.path(), part.set_up());
+    let errors = part.mean_errors();
+    let last = last_beside(part);
+    let row = |(i, sample): (usize, Option<&LapSample>)| {
+        let leaving = sample.map_or(0.0, |s| s.leaving_rad);
+        let feed = sample.map_or(0.0, |s| cut.feed_per_tooth_mm(s.feed_mm_per_min));
+        let [fx_n, fy_n] = sample.map_or([0.0; 2], |s| s.force_n);
+        let moved = |axis: usize| sample.map_or(0.0, |s| s.actual[axis] - s.commanded[axis]);
+        let wall = |axis: usize| path.centre[i][axis] + path.normal[i][axis] * cut.radius_mm;
+        TraceRow {
+            s_mm: path.s_mm[i],
+            x_mm: path.centre[i][0],
+            y_mm: path.centre[i][1],
+            arc_deg: leaving.to_degrees(),
+            chip_area_mm2: cut.axial_depth_mm * feed * (1.0 - leaving.cos()),
+            force_n: fx_n.hypot(fy_n),
+            fx_n,
+            fy_n,
+            dx_mm: moved(0),
+            dy_mm: moved(1),
+            error_mm: errors[i],
+            wall_x_mm: wall(0),
+            wall_y_mm: wall(1),
+        }
+    };
+    last.into_iter().enumerate().map(row).collect()
+}
+
+/// For every nominal sample the last step beside it, or beside the nearest sample before it that has one.
+fn last_beside(part: &Part) -> Vec<Option<&LapSample>> {
+    let mut beside: Vec<Option<&LapSample>> = vec![None; part.path().s_mm.len()];
+    for sample in part.samples().iter().flatten() {
+        beside[sample.nominal] = Some(sample);
+    }
+    let mut last = beside.iter().find_map(|sample| *sample);
+    for sample in &mut beside {
+        if sample.is_none() { *sample = last } else { last = *sample }
+    }
+    beside
+}
+
 /// For every nominal sample the one of the pass whose commanded centre is nearest, in the order of the path. Along an uncorrected
 /// pass that is the sample itself.
 fn beside(pass: &Milled) -> Vec<&Sample> {
@@ -63,11 +107,32 @@ fn beside(pass: &Milled) -> Vec<&Sample> {
 
 /// A single pass with its trace, one row per nominal sample.
 pub fn milled(pass: &Milled, trace: &Trace, label: &str) -> Along {
-    let (path, cut) = (&pass.path, &pass.cut);
+    let feed = |i: usize| pass.cut.feed_at(pass.path.s_mm[i]);
+    along(&pass.path, pass.cut.axial_depth_mm, &over_height(pass), &feed, trace, label)
+}
+
+/// A part that several runs have cut with its trace, one row per nominal sample.
+pub fn parted(part: &Part, trace: &Trace, label: &str) -> Along {
+    let [bottom, top] = part.height_mm();
+    let errors: Vec<Vec<f64>> = (0..HEIGHTS).map(|k| part.errors_at(bottom + (top - bottom) * fraction(k))).collect();
+    let last = last_beside(part);
+    let feed = |i: usize| last[i].map_or(f64::NAN, |sample| sample.feed_mm_per_min);
+    along(part.path(), top - bottom, &errors, &feed, trace, label)
+}
+
+/// One row per nominal sample.
+fn along(
+    path: &Path,
+    depth_mm: f64,
+    errors: &[Vec<f64>],
+    feed: &dyn Fn(usize) -> f64,
+    trace: &Trace,
+    label: &str,
+) -> Along {
     let kept = Kept::of(path.s_mm.len());
     let column = |of: &dyn Fn(usize) -> f64, decimals| Column::of(kept.indices().map(of), decimals);
     let rows = kept.indices().map(|i| trace.get(i).copied());
-    let feeds = column(&|i| cut.feed_at(path.s_mm[i]), FEED);
+    let feeds = column(feed, FEED);
     let contour = Contour {
         s_mm: column(&|i| path.s_mm[i], FINE),
         x_mm: column(&|i| path.centre[i][0], FINE),
@@ -80,9 +145,8 @@ pub fn milled(pass: &Milled, trace: &Trace, label: &str) -> Along {
         milled: None,
         after: None,
     };
-    let errors = over_height(pass);
     let nodes = kept.nodes().flat_map(|i| errors.iter().map(move |row| row[i])).collect();
-    Along { contour, heights: of_depth(cut.axial_depth_mm, &kept, [Some(nodes), None, None]), note: kept.note() }
+    Along { contour, heights: of_depth(depth_mm, &kept, [Some(nodes), None, None]), note: kept.note() }
 }
 
 /// Puts two passes in place of those of a contour, and gives their walls over the height. Within `trim_mm` of the ends, where the

@@ -22,7 +22,7 @@ mod program;
 mod several;
 
 pub use by_core::{Along, PredictedPasses, Words, nominal, predicted, simulated};
-pub use by_plant::{milled, milled_twice, trace_of};
+pub use by_plant::{milled, milled_twice, parted, trace_of, trace_of_part};
 pub use column::Column;
 pub use contour::{Contour, Heights, Outlines, PassColumns, Polyline};
 pub use data::{Figure, Kind, Page, Parameter, State, Verdict};

@@ -26,6 +26,11 @@ fn figures(s: &SimulateSummary) -> Vec<Figure> {
     let figures = [
         Figure::mm("largest wall error", s.max_error_mm).map(|f| f.noted("mean over the height")),
         Figure::mm("root mean square", s.rms_error_mm),
+        s.surface
+            .as_ref()
+            .and_then(|all| Figure::mm("profile error", all.profile_mm))
+            .map(|f| f.noted("largest at any height, away from the ends")),
+        s.surface.as_ref().and_then(|all| Figure::mm("95 % of the surface within", all.p95_mm)),
         Figure::of("largest engagement", s.max_arc_deg, 2, "°"),
         Figure::of("largest mean force", s.max_force_n, 1, "N"),
         Figure::of("largest chip area", s.max_chip_area_mm2, 4, "mm²").map(|f| f.noted("per tooth")),
