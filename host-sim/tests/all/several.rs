@@ -120,7 +120,7 @@ fn a_wild_touch_spoils_nothing_and_a_wrong_unit_is_named() {
     desk.write("wild.txt", &wild);
     let done = desk.call("correct job.toml --probe wild.txt -o out");
     assert_eq!(done["points_rejected"].as_u64().unwrap() + done["points_outlying"].as_u64().unwrap(), 2, "{done}");
-    desk.write("inch.txt", &changed(&log, |_, place| place.map(|v| v / 25.4)));
+    desk.write("inch.txt", changed(&log, |_, place| place.map(|v| v / 25.4)));
     let said = desk.run("correct job.toml --probe inch.txt -o never").expect_err("inches");
     assert!(said.contains("M011"), "{said}");
     assert!(!desk.path().join("never").exists());
@@ -193,7 +193,7 @@ fn together_turned_and_shifted_they_are_corrected_to_the_last_bit_alike() {
         }
         if line.starts_with("# program") { String::new() } else { f.join(",") + "\n" }
     };
-    turned.write("probe.txt", &log.lines().map(line).collect::<String>());
+    turned.write("probe.txt", log.lines().map(line).collect::<String>());
     turned.call("correct job.toml --probe probe.txt -o out");
     for contour in ["contour-1", "contour-2"] {
         let rows = |desk: &Workplace| -> Vec<Vec<String>> {

@@ -77,7 +77,9 @@ fn cut(pass: &Pass, path: &plant::Path) -> plant::Cut {
 
 /// The nominal path and the cut of a pass for the plant.
 pub(crate) fn path_and_cut(pass: &Pass) -> Result<(plant::Path, plant::Cut), Failure> {
-    Ok((path(pass).map_err(|e| refused(&e))?, cut(pass)))
+    let path = path(pass).map_err(|e| refused(&e))?;
+    let cut = cut(pass, &path);
+    Ok((path, cut))
 }
 
 /// Who made a wall.
