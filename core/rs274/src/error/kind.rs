@@ -2,7 +2,9 @@
 
 use super::super::text::{Byte, Letter};
 use super::super::{GCode, LineRange};
-use super::{CompensationError, CornerError, CycleError, ExpressionError, FlowError, ParameterError, SettingError};
+use super::{
+    CompensationError, CornerError, CycleError, ExpressionError, FlowError, KlartextError, ParameterError, SettingError,
+};
 use truepath_units::{Millimetres, Offset, errors};
 
 /// A language that is not G-code as read here.
@@ -250,6 +252,8 @@ errors! {
         Corner(error: CornerError) = error.code(), "{error}";
         /// An offset, a tool, a mode.
         Setting(error: SettingError) = error.code(), "{error}";
+        /// A conversational block.
+        Klartext(error: KlartextError) = error.code(), "{error}";
     }
 }
 
@@ -271,5 +275,6 @@ themes!(
     Flow(FlowError),
     Cycle(CycleError),
     Corner(CornerError),
-    Setting(SettingError)
+    Setting(SettingError),
+    Klartext(KlartextError)
 );

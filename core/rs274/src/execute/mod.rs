@@ -13,6 +13,7 @@
 //! | `cycle.rs`, `cycle_words.rs` | canned cycles |
 //! | `curve.rs`, `spline.rs` | splines, and their flattening |
 //! | `memory.rs` | what codes remember from block to block |
+//! | `klartext/` | conversational blocks |
 //! | `readout.rs` | parameters that follow the machine |
 
 mod arc;
@@ -25,6 +26,8 @@ mod curve;
 mod cycle;
 mod cycle_words;
 mod home;
+#[cfg(feature = "klartext")]
+mod klartext;
 mod memory;
 mod modes;
 mod motion;
@@ -91,6 +94,8 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     saved: [Option<SavedModes>; LEVELS],
     /// Modes that come back before the next block.
     returning: Option<SavedModes>,
+    #[cfg(feature = "klartext")]
+    klartext: klartext::KlartextMemory<'p>,
 }
 
 impl<S> Surroundings for Execution<'_, '_, '_, S> {
@@ -145,8 +150,16 @@ where
             changed_tools: heapless::Vec::new(),
             saved: [None; LEVELS],
             returning: None,
+            #[cfg(feature = "klartext")]
+            klartext: klartext::KlartextMemory::default(),
         };
         execution.modal.absolute_centres = options.arc_centres == ArcCentres::Absolute;
+        #[cfg(feature = "klartext")]
+        if options.dialect.is_klartext() {
+            // Poles are places.
+            execution.modal.absolute_centres = true;
+            execution.centres = ArcCentres::Absolute;
+        }
         execution.load_machine();
         execution
     }
@@ -158,6 +171,10 @@ where
         self.source = sentence.source;
         if sentence.line.text.contains(&b'\r') {
             self.warn(WarningKind::ReturnInLine, sentence.line.span());
+        }
+        #[cfg(feature = "klartext")]
+        if self.options.dialect.is_klartext() {
+            return self.klartext(sentence);
         }
         self.restore_returning()?;
         let mut block = BlockWords::gather(sentence, self.options.dialect)?;
@@ -215,6 +232,9 @@ where
         if !self.compensation.is_idle() {
             return self.compensate(canon, span);
         }
+        if self.is_no_move(&canon) {
+            return Ok(());
+        }
         let Some(sink) = self.sink.take() else {
             return Ok(());
         };
@@ -222,6 +242,17 @@ where
         let answer = sink(&event);
         self.sink = Some(sink);
         answer.map_err(|kind| self.error(kind, span))
+    }
+
+    /// Whether a conversational block leads to where the tool stands already: `L R0 FMAX`, or the way between a lead and
+    /// the path beside the contour.
+    fn is_no_move(&self, canon: &Canon) -> bool {
+        match canon {
+            Canon::Feed { from, to } | Canon::Traverse { from, to } => {
+                self.options.dialect.is_klartext() && from == to && from.point().is_some()
+            }
+            _ => false,
+        }
     }
 
     pub(super) fn error(&self, kind: GcodeErrorKind, span: Span) -> GcodeError {

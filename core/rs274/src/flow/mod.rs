@@ -5,6 +5,8 @@ mod call;
 mod control;
 mod frame;
 mod keyword;
+#[cfg(feature = "klartext")]
+mod klartext;
 mod next;
 mod open;
 mod place;
@@ -13,6 +15,8 @@ mod reader;
 mod sentence;
 mod statement;
 
+#[cfg(feature = "klartext")]
+pub(super) use keyword::Label;
 pub(super) use next::{Next, Target};
 pub use program::{Library, LibraryFile, Program};
 pub(super) use reader::Reader;
