@@ -23,7 +23,7 @@ use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::units::mm;
 
 use crate::codes::J027;
-use crate::feature::Survey;
+use crate::feature::{Survey, comments};
 use crate::job::JobFile;
 
 /// What was found out, and what is said of it.
@@ -109,12 +109,9 @@ pub fn drawn(job: &JobFile, program: &Source) -> Result<Option<Drawn>, InputErro
 fn wear(program: &Source) -> bool {
     Lines::new(program.bytes()).any(|line| {
         let tokens: Vec<Token> = Words::new(line).map_while(Result::ok).collect();
-        let comments = tokens.iter().any(|token| match token {
-            Token::Comment { body, .. } => {
-                let text = String::from_utf8_lossy(body.of(program.bytes())).to_ascii_uppercase();
-                text.split(|c: char| !c.is_ascii_alphabetic()).any(|word| word == "WEAR")
-            }
-            _ => false,
+        let comments = comments(line).iter().any(|(_, body)| {
+            let text = String::from_utf8_lossy(body.of(program.bytes())).to_ascii_uppercase();
+            text.split(|c: char| !c.is_ascii_alphabetic()).any(|word| word == "WEAR")
         });
         let is = |letter: u8, values: &[i64]| {
             let exactly = |value: truepath_core::gcode::Decimal| value.exactly_times(1);

@@ -37,7 +37,7 @@ impl Writer<'_> {
         for (index, step) in before.iter().enumerate().rev() {
             self.refuse_other_file(step)?;
             let block = self.block(step.line);
-            let named = [b'X', b'Y'].map(|letter| block.word(letter).is_some());
+            let named = [0, 1].map(|axis| block.names_axis(axis));
             match step.kind {
                 Kind::Traverse | Kind::Feed if !step.in_cycle() && !block.has_corner() => {}
                 Kind::Arc(..) if place(step.from).is_some() => {

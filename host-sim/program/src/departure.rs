@@ -104,13 +104,13 @@ impl Writer<'_> {
     fn go_home(&mut self, pen: Pen, step: &Move, by: [f64; 2]) {
         let block = self.block(step.line);
         let to = [step.to.x, step.to.y];
-        let value = |axis: usize, letter| {
+        let value = |axis: usize| {
             let to = to[axis]?.nm() as f64;
-            let named = block.word(letter).is_some();
+            let named = block.names_axis(axis) && !block.klartext().is_some_and(|line| line.steps(axis));
             let needed = if step.modal.absolute { !named && by[axis] != 0.0 } else { named || by[axis] != 0.0 };
             needed.then(|| pen.value(axis, to))
         };
-        let values = [value(0, b'X'), value(1, b'Y')];
+        let values = [value(0), value(1)];
         if values.iter().any(Option::is_some) {
             let text = block.repositioned(values);
             self.replaced.insert(step.line, vec![text]);

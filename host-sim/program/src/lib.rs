@@ -29,6 +29,7 @@ mod feed;
 mod fit;
 mod grid;
 mod header;
+mod klartext;
 mod line;
 mod pen;
 mod proof;

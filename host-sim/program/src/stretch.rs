@@ -91,7 +91,9 @@ impl Writer<'_> {
                 && pen.is_at(from)
                 && Pen::new(end.map(|v| v as f64), &step.modal).is_at(to)
         };
-        if as_programmed && stays() && edit.samples.iter().all(|s| beside(s) <= 0.5 * tolerance) {
+        // A rounding behind the line turns with the line after it.
+        let rounded = block_is_rounded(cuts, self.manner.klartext);
+        if as_programmed && !rounded && stays() && edit.samples.iter().all(|s| beside(s) <= 0.5 * tolerance) {
             if self.motion != step.modal.motion && !step.modal.motion.is_some_and(|m| self.block(step.line).names(m)) {
                 self.state_motion(step);
             }
@@ -106,7 +108,7 @@ impl Writer<'_> {
         let max_radius =
             if straight { self.options.max_arc_radius.min(LARGEST_IN_LINES) } else { self.options.max_arc_radius };
         let block = self.original(step.line);
-        let own_feed = block.word(b'F').is_some();
+        let own_feed = block.has_feed();
         let mut text: Vec<Vec<u8>> = Vec::new();
         for (k, &(from, to, percent)) in spans.iter().enumerate() {
             let samples = &edit.samples[from..=to];
@@ -116,10 +118,16 @@ impl Writer<'_> {
                     Shape::Line => Motion::Feed,
                     Shape::Arc { counter_clockwise, .. } => Motion::Arc { counter_clockwise },
                 };
-                let mut words = pen.draw(*target, &piece.shape);
                 let more = k + 1 < spans.len() || index + 1 < pieces.len();
                 let first = text.is_empty();
                 let feed = if index == 0 { self.feed_word(step, percent, first && own_feed)? } else { None };
+                if let Some(line) = block.klartext() {
+                    let drawn = pen.drawn(*target, &piece.shape);
+                    let feed = feed.as_deref().map(|feed| feed.trim_end_matches('.'));
+                    text.extend(if first { line.moved(&drawn, more, feed) } else { line.further(&drawn, !more, feed) });
+                    continue;
+                }
+                let mut words = pen.draw(*target, &piece.shape);
                 text.push(if first {
                     block.moved(motion, self.motion != Some(motion), &words, more, feed.as_deref())
                 } else {
@@ -129,6 +137,7 @@ impl Writer<'_> {
                 self.motion = Some(motion);
             }
         }
+        self.rewritten.insert(step.line);
         self.replaced.insert(step.line, text);
         Ok(())
     }
@@ -158,6 +167,11 @@ impl Writer<'_> {
         }
         Ok(())
     }
+}
+
+/// Whether a conversational line has the moves of a rounding or a chamfer behind its own.
+fn block_is_rounded(cuts: &[Move], klartext: bool) -> bool {
+    klartext && cuts.iter().filter(|cut| cut.cuts()).count() > 1
 }
 
 /// Pieces through the samples from where the pen is, in program coordinates, and the places they end at.

@@ -272,7 +272,13 @@ where
     /// The bytes of the block without the blanks around them.
     pub(super) fn block_span(&self) -> Span {
         let text = self.line.text;
-        let lead = text.len().saturating_sub(text.trim_ascii_start().len());
-        Span { start: self.line.start.saturating_add(lead), len: text.trim_ascii().len() }
+        let mut behind = text.trim_ascii_start();
+        if self.options.dialect.is_klartext() {
+            // The block number is no part of it.
+            let digits = behind.iter().take_while(|b| b.is_ascii_digit()).count();
+            behind = behind.get(digits..).unwrap_or(&[]).trim_ascii_start();
+        }
+        let lead = text.len().saturating_sub(behind.len());
+        Span { start: self.line.start.saturating_add(lead), len: behind.trim_ascii_end().len() }
     }
 }

@@ -4,9 +4,9 @@
 //! what lies between is executed four times in all. A rounding or a chamfer belongs to the line before it, whose end it
 //! changes, and is read with it.
 
-use super::super::expression::{arc_tangent, computed, function_of};
+use super::super::expression::{arc_tangent, computed};
 use super::super::klartext::{Formula, comparison, label_name, parameter};
-use super::super::lexical::{Function, Operator, trimmed};
+use super::super::lexical::{Operator, trimmed};
 use super::super::parameter::Surroundings;
 use super::super::{
     FlowError, GcodeError, GcodeErrorKind, KlartextBlock, KlartextError, KlartextValue, KlartextWord, Line, Lines,
@@ -59,8 +59,8 @@ impl<'p> Reader<'p> {
         {
             sentence.push(word).map_err(|kind| self.error(kind, word.span))?;
         }
-        let nothing = matches!(block.statement, Statement::Empty | Statement::Passed);
-        Ok(if nothing && block.comment.is_none() { Read::Empty } else { Read::Block })
+        let nothing = block.statement == Statement::Empty && block.comment.is_none();
+        Ok(if nothing { Read::Empty } else { Read::Block })
     }
 
     /// The value of a word; 0 where it has none.
@@ -117,7 +117,8 @@ impl<'p> Reader<'p> {
     /// Executes a block that steers the program or sets a parameter.
     pub(super) fn steer_klartext(&mut self, machine: &mut impl Surroundings) -> Result<(), GcodeError> {
         let block = KlartextBlock::of(self.line).map_err(|e| e.in_file(self.place.file))?;
-        let (rest, span) = (block.rest(), block.span_of(block.rest()));
+        let rest = trimmed(block.rest());
+        let span = block.span_of(rest);
         match block.statement {
             Statement::Label => {
                 let Some((label, rest)) = label_name(rest) else {
@@ -291,7 +292,8 @@ fn of_function(number: u8, formula: &mut Formula<'_, '_>) -> Result<f64, GcodeEr
         formula.operand()
     };
     Ok(match number {
-        0 => first,
+        // FN 5 to FN 7 name their function: `FN 6: Q1 = SIN +30`.
+        0 | 5..=7 => first,
         1 => computed(Operator::Plus, first, second(b"+")?)?,
         2 => computed(Operator::Minus, first, second(b"-")?)?,
         3 => computed(Operator::Times, first, second(b"*")?)?,
@@ -299,9 +301,6 @@ fn of_function(number: u8, formula: &mut Formula<'_, '_>) -> Result<f64, GcodeEr
             let divisor = second(b"DIV").or_else(|_| second(b"/"))?;
             computed(Operator::Over, first, divisor)?
         }
-        5 => function_of(Function::Sqrt, first)?,
-        6 => function_of(Function::Sin, first)?,
-        7 => function_of(Function::Cos, first)?,
         8 => {
             let other = second(b"LEN")?;
             libm::sqrt(first * first + other * other)

@@ -10,6 +10,8 @@ mod decimal;
 mod disturbed;
 mod errors;
 mod flow;
+#[cfg(feature = "klartext")]
+mod klartext;
 mod machine;
 mod properties;
 mod search;

@@ -38,12 +38,13 @@ impl Assumed {
 }
 
 /// Names of the controls a program may be written for.
-pub const DIALECTS: [(&str, Dialect); 5] = [
+pub const DIALECTS: [(&str, Dialect); 6] = [
     ("linuxcnc", Dialect::Linuxcnc),
     ("fanuc", Dialect::Fanuc),
     ("haas", Dialect::Haas),
     ("siemens", Dialect::Siemens),
     ("mach", Dialect::Mach),
+    ("heidenhain", Dialect::Heidenhain),
 ];
 
 /// Stiffness at the cutter when nothing is said, N/mm: between a router (1,000) and a heavy machining centre (20,000).

@@ -64,7 +64,8 @@ pub(super) struct Proof {
 
 /// Compares; the error says what has changed that must not.
 pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
-    bytes::compare(claim.original, claim.written, claim.touched, claim.head)?;
+    let klartext = claim.program.dialect.is_klartext();
+    bytes::compare(claim.original, claim.written, claim.touched, claim.head, klartext)?;
     let read = |text: &[u8]| {
         facts(text, claim.program, claim.centre_path).map_err(|e| format!("line {} cannot be read: {e}", e.line))
     };
