@@ -2,7 +2,8 @@
 
 use crate::gcode::compensation::CompensationError;
 use crate::gcode::{
-    CornerError, CycleError, ExpressionError, FlowError, GcodeErrorKind, KlartextError, ParameterError, SettingError, WarningKind,
+    CornerError, CycleError, ExpressionError, FlowError, GcodeErrorKind, KlartextError, ParameterError, SettingError,
+    WarningKind,
 };
 use crate::image::ImageError;
 use crate::job::{Buffer, JobError};

@@ -90,7 +90,9 @@ pub use flow::{Library, LibraryFile, Program, Word};
 pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};
 pub use interpreter::{Executed, Interpreter, ProgramSummary};
 #[cfg(feature = "klartext")]
-pub use klartext::{Form, KlartextBlock, KlartextValue, KlartextWord, KlartextWords, Statement, letter as klartext_letter};
+pub use klartext::{
+    Form, KlartextBlock, KlartextValue, KlartextWord, KlartextWords, Statement, letter as klartext_letter,
+};
 pub use lexical::{Decimal, Number, NumberError, Token, Words, WrittenWord};
 pub use modal::{Modal, Motion};
 pub use mode::{Coolant, FeedMode, PathControl, Plane, RetractLevel, Spindle, ToolLength, Units};

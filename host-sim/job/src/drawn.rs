@@ -15,7 +15,7 @@
 //!
 //! Without a sign the user is asked.
 
-use truepath_core::gcode::{Criteria, Found, Lines, Role, Token, Words};
+use truepath_core::gcode::{Criteria, Found, KlartextBlock, LineRange, Lines, Role, Statement, Token, Words};
 use truepath_core::geometry::{Block, Direction, FACET_TURN_LIMIT, Side};
 use truepath_core::job::Compensation;
 use truepath_core::units::{Offset, Real};
@@ -64,6 +64,9 @@ pub fn drawn(job: &JobFile, program: &Source) -> Result<Option<Drawn>, InputErro
     if wear(program) {
         return centre("a comment or D0 says that D holds wear");
     }
+    if led_by_control(program, found.run.lines) {
+        return outline("APPR, DEP, RND or CHF shape it at the control, as a drawing does and no CAM system");
+    }
     let arcs = |inside: bool| contour.iter().filter_map(move |block| towards_wall(block, wall, inside));
     if arcs(true).any(|r| r < radius - radius.scaled(SAME)) {
         return centre("an inside arc is tighter than the cutter, which could not follow it as an outline");
@@ -103,6 +106,14 @@ pub fn drawn(job: &JobFile, program: &Source) -> Result<Option<Drawn>, InputErro
     let line = Lines::new(program.bytes()).find(|l| l.number == found.run.lines.first).map(|l| l.span());
     let span = line.map_or(0..0, |span| span.start..span.end());
     Err(J027.error(found_text, "compensation in [tool] of the job").at(program, span))
+}
+
+/// Whether a conversational program leads to the contour or rounds its corners by blocks of their own.
+fn led_by_control(program: &Source, lines: LineRange) -> bool {
+    let blocks =
+        Lines::new(program.bytes()).filter(|line| lines.first <= line.number + 1 && line.number <= lines.last + 1);
+    let mut statements = blocks.filter_map(|line| KlartextBlock::of(line).ok()).map(|block| block.statement);
+    statements.any(|s| s.is_corner() || matches!(s, Statement::Approach(..) | Statement::Depart(..)))
 }
 
 /// Whether D0 or a comment says that D holds wear.

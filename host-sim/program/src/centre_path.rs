@@ -96,7 +96,7 @@ impl Writer<'_> {
         for stretch in stretches {
             let behind = moves[stretch.end..].iter().position(|m| !m.stands_still());
             let until = behind.map_or(moves.len(), |i| stretch.end + i + 1);
-            let mut last_travel = None;
+            let (mut last_travel, mut rapid) = (None, false);
             for step in &moves[stretch.start..until] {
                 self.refuse_other_file(step)?;
                 self.centre.insert(step.line);
@@ -104,7 +104,9 @@ impl Writer<'_> {
                     continue;
                 }
                 if self.manner.klartext {
-                    self.write_conversational_centre(step, last_travel.replace(step.line) == Some(step.line))?;
+                    let again = last_travel.replace(step.line) == Some(step.line);
+                    self.write_conversational_centre(step, again.then_some(rapid))?;
+                    rapid = matches!(step.kind, Kind::Traverse);
                     continue;
                 }
                 if !step.stands_still() && last_travel.replace(step.line) == Some(step.line) {
@@ -118,8 +120,8 @@ impl Writer<'_> {
     }
 
     /// Writes one move beside the contour of a conversational program; `again` where its block has become one already, as
-    /// those of leads do.
-    fn write_conversational_centre(&mut self, step: &Move, again: bool) -> Result<(), Failure> {
+    /// those of leads do, and whether that is one of FMAX.
+    fn write_conversational_centre(&mut self, step: &Move, again: Option<bool>) -> Result<(), Failure> {
         let refused = |writer: &Self| {
             let found = "this move cannot be written where compensation (RL, RR) leads the cutter's centre";
             Err(writer.refuse_compensation(step.line, found))
@@ -134,7 +136,7 @@ impl Writer<'_> {
         let target = pen.nearest(to);
         let text = |axis: usize| pen.value(axis, target[axis]);
         let texts = match step.kind {
-            Kind::Traverse | Kind::Feed if !line.is_lead() && !again => {
+            Kind::Traverse | Kind::Feed if !line.is_lead() && again.is_none() => {
                 if step.stands_still() && !block.names_axis(0) && !block.names_axis(1) {
                     return Ok(());
                 }
@@ -150,11 +152,14 @@ impl Writer<'_> {
                     geometry::Shape::Line => None,
                 });
                 let drawn = Drawn { to: [text(0), text(1)], arc };
-                if again { line.further(&drawn, false, None) } else { line.lead(&drawn, matches!(step.kind, Kind::Traverse)) }
+                match again {
+                    Some(rapid) => line.further(&drawn, false, line.feed().filter(|_| rapid).as_deref()),
+                    None => line.lead(&drawn, matches!(step.kind, Kind::Traverse)),
+                }
             }
             _ => return refused(self),
         };
-        match self.replaced.get_mut(&step.line).filter(|_| again) {
+        match self.replaced.get_mut(&step.line).filter(|_| again.is_some()) {
             Some(parts) => parts.extend(texts),
             None => {
                 self.replaced.insert(step.line, texts);

@@ -55,6 +55,13 @@ impl<'a> KlartextLine<'a> {
         self.words.iter().any(|w| w.letter == letter::FEED && w.value_span.len > 0)
     }
 
+    /// The number of F.
+    pub(super) fn feed(&self) -> Option<String> {
+        let word = self.words.iter().find(|w| w.letter == letter::FEED && w.value_span.len > 0)?;
+        let start = word.value_span.start - self.line.start;
+        Some(String::from_utf8_lossy(self.line.text.get(start..start + word.value_span.len)?).into_owned())
+    }
+
     /// Whether it has RL or RR.
     pub(super) fn switches_compensation_on(&self) -> bool {
         self.words.iter().any(|w| w.letter == letter::SIDE && !self.text(w).ends_with(b"0"))
@@ -98,8 +105,18 @@ impl<'a> KlartextLine<'a> {
         let mut named = false;
         for word in &self.words {
             let drawn = [
-                b'X', b'Y', b'x', b'y', letter::POLAR_RADIUS, letter::POLAR_RADIUS_STEP, letter::POLAR_ANGLE,
-                letter::POLAR_ANGLE_STEP, letter::RADIUS, letter::TURN, letter::LENGTH, letter::ANGLE,
+                b'X',
+                b'Y',
+                b'x',
+                b'y',
+                letter::POLAR_RADIUS,
+                letter::POLAR_RADIUS_STEP,
+                letter::POLAR_ANGLE,
+                letter::POLAR_ANGLE_STEP,
+                letter::RADIUS,
+                letter::TURN,
+                letter::LENGTH,
+                letter::ANGLE,
             ];
             let after = word.letter == letter::FUNCTION && self.acts_after(word);
             if drawn.contains(&word.letter) || (after && more) || (last && !after) {
@@ -293,7 +310,10 @@ pub(super) fn with_poles(lines: &[Line<'_>], replaced: &mut std::collections::BT
             let whole = original.words.iter().filter(|w| matches!(w.letter, b'X' | b'Y')).count() == 2;
             pole = whole.then(|| original.alone(&String::from_utf8_lossy(original.statement_text())));
             moved = false;
-        } else if moved && uses_pole(&original) && let Some(pole) = &pole {
+        } else if moved
+            && uses_pole(&original)
+            && let Some(pole) = &pole
+        {
             replaced.insert(line.number, vec![pole.clone(), line.text.to_vec()]);
             moved = false;
         }
@@ -390,7 +410,10 @@ mod tests {
     #[test]
     fn only_the_places_of_a_move_beside_the_contour_change() {
         let values = |x: Option<&str>, y: Option<&str>| [x.map(str::to_owned), y.map(str::to_owned)];
-        assert_eq!(line("7 L  IX+10 R0 FMAX").repositioned(values(Some("4."), Some("-2.5"))), b"7 L  X+4 Y-2.5 R0 FMAX");
+        assert_eq!(
+            line("7 L  IX+10 R0 FMAX").repositioned(values(Some("4."), Some("-2.5"))),
+            b"7 L  X+4 Y-2.5 R0 FMAX"
+        );
         assert_eq!(line("L Z+5 FMAX").repositioned(values(Some("4."), None)), b"L X+4 Z+5 FMAX");
         assert_eq!(line("L X+1 Y+2 RR F9").without_compensation(), b"L X+1 Y+2 R0 F9");
         assert_eq!(line("5 RND R2").commented(), b"5 ; RND R2");
@@ -405,7 +428,8 @@ mod tests {
 
         let program = b"CC X+0 Y+0 ; middle\nC X+1 Y+0 DR+\nC X+2 Y+0 DR+\nLP PR+3 PA+4\n";
         let lines: Vec<_> = Lines::new(program).collect();
-        let mut replaced = std::collections::BTreeMap::from([(2, vec![b"CC X+9 Y+9".to_vec(), b"C X+1 Y+1 DR+".to_vec()])]);
+        let mut replaced =
+            std::collections::BTreeMap::from([(2, vec![b"CC X+9 Y+9".to_vec(), b"C X+1 Y+1 DR+".to_vec()])]);
         with_poles(&lines, &mut replaced);
         assert_eq!(replaced[&3], [b"CC X+0 Y+0".to_vec(), b"C X+2 Y+0 DR+".to_vec()]);
         assert!(!replaced.contains_key(&4));

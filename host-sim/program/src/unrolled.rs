@@ -7,8 +7,8 @@
 use std::collections::BTreeSet;
 
 use truepath_core::gcode::{
-    Executed, HostMemory, Interpreter, KlartextBlock, KlartextValue, Line, Lines, Number, Options, Statement, Token, Words,
-    klartext_letter as letter,
+    Executed, HostMemory, Interpreter, KlartextBlock, KlartextValue, Line, Lines, Number, Options, Statement, Token,
+    Words, klartext_letter as letter,
 };
 
 use super::klartext::{continues, first_number, numbered, without_number};
@@ -209,7 +209,8 @@ mod tests {
         let program = "0 BEGIN PGM A MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-9\n2 Q1 = -2\n3 L X+0 Y+0 Z+2 R0 FMAX M3\n4 LBL 1\n\
             5 L Z+Q1 FQ9 F200 ; down\n6 L X+10\n7 Q1 = Q1 - 2\n8 L X+0\n9 CALL LBL 1 REP 1\n10 CALL LBL \"up\"\n11 L M30\n\
             12 LBL \"up\"\n13 L Z+50 FMAX\n14 LBL 0\n15 END PGM A MM\n";
-        let text = unrolled(program.replace("FQ9 ", "").as_bytes(), options).expect("a program that can be written out");
+        let text =
+            unrolled(program.replace("FQ9 ", "").as_bytes(), options).expect("a program that can be written out");
         let expected = "0 BEGIN PGM A MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-9\n2 L X+0 Y+0 Z+2 R0 FMAX M3\n3 L Z-2 F200 ; down\n\
             4 L X+10\n5 L X+0\n6 L Z-4 F200 ; down\n7 L X+10\n8 L X+0\n9 L Z+50 FMAX\n10 L M30\n11 END PGM A MM\n";
         assert_eq!(String::from_utf8(text).unwrap(), expected);

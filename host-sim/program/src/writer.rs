@@ -7,8 +7,8 @@ use truepath_ground::codes::Row;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::edit::RewriteOptions;
-use super::line::{Block, Manner};
 use super::klartext::Drawn;
+use super::line::{Block, Manner};
 use super::pen::Pen;
 use super::survey::Move;
 use crate::codes::P004;

@@ -53,8 +53,18 @@ pub(super) fn write(
     let lines: Vec<Line<'_>> = raw.iter().map(|l| Line { text: text(l).unwrap_or(l.text), ..*l }).collect();
     let replaced: Replaced = stripped.iter().map(|(&line, text)| (line, vec![text.clone()])).collect();
     let centre = BTreeSet::new();
-    let mut writer =
-        Writer { source, lines, options, replaced, manner, motion: None, unchanged: 0, centre, rewritten: BTreeSet::new(), feed: None };
+    let mut writer = Writer {
+        source,
+        lines,
+        options,
+        replaced,
+        manner,
+        motion: None,
+        unchanged: 0,
+        centre,
+        rewritten: BTreeSet::new(),
+        feed: None,
+    };
     if edits.is_empty() {
         return Err(Failure::Internal("there is no line to correct".to_owned()));
     }

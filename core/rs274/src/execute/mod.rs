@@ -232,9 +232,6 @@ where
         if !self.compensation.is_idle() {
             return self.compensate(canon, span);
         }
-        if self.is_no_move(&canon) {
-            return Ok(());
-        }
         let Some(sink) = self.sink.take() else {
             return Ok(());
         };
@@ -242,17 +239,6 @@ where
         let answer = sink(&event);
         self.sink = Some(sink);
         answer.map_err(|kind| self.error(kind, span))
-    }
-
-    /// Whether a conversational block leads to where the tool stands already: `L R0 FMAX`, or the way between a lead and
-    /// the path beside the contour.
-    fn is_no_move(&self, canon: &Canon) -> bool {
-        match canon {
-            Canon::Feed { from, to } | Canon::Traverse { from, to } => {
-                self.options.dialect.is_klartext() && from == to && from.point().is_some()
-            }
-            _ => false,
-        }
     }
 
     pub(super) fn error(&self, kind: GcodeErrorKind, span: Span) -> GcodeError {

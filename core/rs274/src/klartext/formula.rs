@@ -183,7 +183,15 @@ impl<'m, 't> Formula<'m, 't> {
             (b"INT", libm::trunc),
             (b"FRAC", |x| x - libm::trunc(x)),
             (b"NEG", |x| -x),
-            (b"SGN", |x| if x > 0.0 { 1.0 } else if x < 0.0 { -1.0 } else { 0.0 }),
+            (b"SGN", |x| {
+                if x > 0.0 {
+                    1.0
+                } else if x < 0.0 {
+                    -1.0
+                } else {
+                    0.0
+                }
+            }),
         ] {
             if let Some(rest) = named(self.rest, name) {
                 self.rest = rest;

@@ -302,9 +302,7 @@ fn head(text: &[u8]) -> Result<(Statement, &[u8]), KlartextError> {
         return match (second(b"DEF"), second(b"CALL")) {
             (Some(rest), _) => cycle(rest),
             (None, Some(rest)) if named(trimmed(rest), b"PAT").is_some() => Err(KlartextError::Pattern),
-            (None, Some(rest)) => {
-                Ok((Statement::CycleCall, named(trimmed(rest), b"POS").unwrap_or(rest)))
-            }
+            (None, Some(rest)) => Ok((Statement::CycleCall, named(trimmed(rest), b"POS").unwrap_or(rest))),
             (None, None) => Err(KlartextError::Block),
         };
     }
@@ -328,7 +326,11 @@ fn head(text: &[u8]) -> Result<(Statement, &[u8]), KlartextError> {
         return Ok((Statement::Assignment, text));
     }
     let reset = second(b"RESET").or_else(|| second(b"MODE"));
-    if is(b"BLK") || is(b"SEL") && second(b"TABLE").is_some() || is(b"QS") || (is(b"PLANE") || is(b"FUNCTION")) && reset.is_some() {
+    if is(b"BLK")
+        || is(b"SEL") && second(b"TABLE").is_some()
+        || is(b"QS")
+        || (is(b"PLANE") || is(b"FUNCTION")) && reset.is_some()
+    {
         return simple(Statement::Passed);
     }
     if let Some((_, refused)) = REFUSED.iter().find(|(name, _)| is(name)) {

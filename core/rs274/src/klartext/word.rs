@@ -266,11 +266,7 @@ impl<'a> KlartextWords<'a> {
         if first && matches!(from.first(), Some(b'0'..=b'9' | b'Q' | b'q')) {
             return self.valued(from, letter::TOOL, Takes::Number, from).map(Some);
         }
-        for (name, letter) in [
-            (&b"DR2"[..], letter::LARGER_EDGE),
-            (b"DR", letter::LARGER),
-            (b"DL", letter::LONGER),
-        ] {
+        for (name, letter) in [(&b"DR2"[..], letter::LARGER_EDGE), (b"DR", letter::LARGER), (b"DL", letter::LONGER)] {
             if let Some(rest) = named(from, name) {
                 return self.valued(from, letter, Takes::Number, rest).map(Some);
             }

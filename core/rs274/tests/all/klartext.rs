@@ -123,7 +123,8 @@ fn a_tangent_arc_straight_ahead_is_a_line_and_one_without_a_line_before_it_is_re
 
 #[test]
 fn polar_blocks_lead_by_distance_and_angle_and_cp_turns_as_often_as_its_angle() {
-    let read = moves("CC X+0 Y+0\nLP PR+20 PA+90 F100\nLP IPA-90\nCP PA+180 DR+\nCTP PR+30 PA+180\nCP IPA+810 IZ+9 DR+");
+    let read =
+        moves("CC X+0 Y+0\nLP PR+20 PA+90 F100\nLP IPA-90\nCP PA+180 DR+\nCTP PR+30 PA+180\nCP IPA+810 IZ+9 DR+");
     assert_eq!(read[0], ('F', 5, [0, 20_000, -5_000], [0; 2]));
     assert_eq!(read[1], ('F', 6, [20_000, 0, -5_000], [0; 2]));
     assert_eq!(read[2], ('R', 7, [-20_000, 0, -5_000], [0, 0]));
@@ -149,9 +150,10 @@ fn roundings_and_chamfers_cut_the_corner_of_the_lines_around_them_and_belong_to_
         [('F', 5, [46_000, 0, -5_000], [0; 2]), ('F', 5, [50_000, 4_000, -5_000], [0; 2])]
     );
     let read = run(&program("L X+50 F100\nRND R10 F50\nL Y+40"), Options::default()).unwrap();
-    assert_eq!(read.warnings.as_slice().iter().map(|w| (w.kind, w.line)).collect::<Vec<_>>(), [
-        (WarningKind::FeedOfCorner, 5)
-    ]);
+    assert_eq!(
+        read.warnings.as_slice().iter().map(|w| (w.kind, w.line)).collect::<Vec<_>>(),
+        [(WarningKind::FeedOfCorner, 5)]
+    );
 }
 
 #[test]
@@ -230,7 +232,9 @@ fn leads_that_cannot_be_reached_or_lead_to_nothing_are_refused() {
 
 #[test]
 fn labels_are_called_and_parts_are_repeated() {
-    let read = moves("CALL LBL 7\nLBL 1\nL IX+1 F100\nCALL LBL 1 REP 2/2\nL Y+9\nM30\nLBL 7\nL IY+2 F50\nCALL LBL \"in\"\nLBL 0\nLBL \"in\"\nL IY+1\nLBL 0");
+    let read = moves(
+        "CALL LBL 7\nLBL 1\nL IX+1 F100\nCALL LBL 1 REP 2/2\nL Y+9\nM30\nLBL 7\nL IY+2 F50\nCALL LBL \"in\"\nLBL 0\nLBL \"in\"\nL IY+1\nLBL 0",
+    );
     let lines: Vec<_> = read.iter().map(|m| (m.1, m.2[0], m.2[1])).collect();
     assert_eq!(
         lines,
@@ -316,15 +320,14 @@ fn tools_feeds_and_functions_are_those_of_every_dialect() {
 #[test]
 fn holes_go_down_and_back_and_other_cycles_are_refused_where_they_run() {
     let cycle = "CYCL DEF 200 DRILLING ~\n  Q200=+2 ;SET-UP CLEARANCE ~\n  Q201=-15 ;DEPTH ~\n  Q203=+1 ;SURFACE ~\n  Q204=+20 ;2ND CLEARANCE";
-    let read = moves(&format!("{cycle}\nL X+10 R0 FMAX M99\nL X+20 FMAX\nCYCL CALL M8\nL X+30 FMAX M89\nL X+40 FMAX M99"));
+    let read =
+        moves(&format!("{cycle}\nL X+10 R0 FMAX M99\nL X+20 FMAX\nCYCL CALL M8\nL X+30 FMAX M89\nL X+40 FMAX M99"));
     let heights: Vec<_> = read.iter().map(|m| (m.0, m.1, m.2[0] / 1000, m.2[2] / 1000)).collect();
     assert_eq!(heights[..4], [('T', 9, 10, -5), ('T', 9, 10, 3), ('F', 9, 10, -14), ('T', 9, 10, 21)]);
-    assert_eq!(heights.iter().filter(|h| h.0 == 'F').map(|h| (h.1, h.2)).collect::<Vec<_>>(), [
-        (9, 10),
-        (11, 20),
-        (12, 30),
-        (13, 40)
-    ]);
+    assert_eq!(
+        heights.iter().filter(|h| h.0 == 'F').map(|h| (h.1, h.2)).collect::<Vec<_>>(),
+        [(9, 10), (11, 20), (12, 30), (13, 40)]
+    );
     assert_eq!(moves("CYCL DEF 251 RECTANGULAR POCKET ~\nQ215=+0 ;OPERATION\nL X+10 F100").len(), 1);
     assert_eq!(refused("CYCL DEF 251 RECTANGULAR POCKET\nL X+10 FMAX M99"), (5, 1, "G199"));
     assert_eq!(refused("CYCL CALL"), (4, 1, "G200"));

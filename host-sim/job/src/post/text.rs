@@ -40,9 +40,8 @@ impl TextLine {
 
 /// All lines.
 pub(super) fn lines(bytes: &[u8]) -> Vec<TextLine> {
-    let begins = |line: Line<'_>| {
-        KlartextBlock::of(line).is_ok_and(|block| matches!(block.statement, Statement::Begin(_)))
-    };
+    let begins =
+        |line: Line<'_>| KlartextBlock::of(line).is_ok_and(|block| matches!(block.statement, Statement::Begin(_)));
     if Lines::new(bytes).any(begins) {
         return Lines::new(bytes).map(|line| conversational(line, bytes)).collect();
     }

@@ -14,10 +14,11 @@
 //! and DEP the same backwards. The direction of the contour is known when its first move comes: until then APPR waits.
 //! No wall depends on leads, so they are computed in floating point.
 
+use super::super::super::compensation::Waiting;
 use super::super::super::flow::{Next, Sentence};
 use super::super::super::{
-    Axes, Canon, Event, Form, GcodeError, GcodeErrorKind, KlartextError, Line, Source, Span, Word,
-    klartext_letter as letter,
+    Axes, Canon, Event, Form, GcodeError, GcodeErrorKind, KlartextBlock, KlartextError, Line, Source, Span, Statement,
+    Word, klartext_letter as letter,
 };
 use super::super::Execution;
 use super::Lowered;
@@ -47,8 +48,9 @@ pub(super) struct Lead<'p> {
     source: Source,
     from: Axes,
     to: Axes,
-    /// Whether the way to the auxiliary point is one of FMAX.
+    /// Whether the way to the auxiliary point is one of FMAX; then F counts behind it.
     rapid: bool,
+    feed: Option<Word>,
 }
 
 /// A place or a vector of the plane, nm.
@@ -66,12 +68,7 @@ where
     S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
 {
     /// APPR: its modes now, its way with the first move of the contour.
-    pub(super) fn approach(
-        &mut self,
-        sentence: &Sentence<'p>,
-        form: Form,
-        polar: bool,
-    ) -> Result<Next, GcodeError> {
+    pub(super) fn approach(&mut self, sentence: &Sentence<'p>, form: Form, polar: bool) -> Result<Next, GcodeError> {
         let span = self.block_span();
         if self.klartext.lead.is_some() {
             return Err(self.error(KlartextError::ContourMissing.into(), span));
@@ -79,7 +76,11 @@ where
         let of = |wanted: u8| sentence.words.iter().find(|w| w.letter == wanted).copied();
         let mut words = Lowered::new();
         let asked = self.functions(sentence, &mut words)?;
-        self.feeds(sentence, &mut words)?;
+        let rapid = self.klartext.rapid;
+        let feed = of(letter::FEED).filter(|_| rapid);
+        if feed.is_none() {
+            self.feeds(sentence, &mut words)?;
+        }
         let from = self.at;
         let to = self.place_of(sentence, polar)?;
         let shape = self.shape(sentence, form)?;
@@ -90,9 +91,8 @@ where
         }
         let next = self.lower(sentence, &words)?;
         self.carry_out(asked)?;
-        let rapid = self.klartext.rapid;
         let (line, source) = (self.line, self.source);
-        self.klartext.lead = Some(Lead { shape, side: of(letter::SIDE), line, source, from, to, rapid });
+        self.klartext.lead = Some(Lead { shape, side: of(letter::SIDE), line, source, from, to, rapid, feed });
         self.klartext.direction = None;
         self.klartext.rapid = false;
         self.at = to;
@@ -127,13 +127,22 @@ where
         (self.modal.wall, self.modal.compensated) = (wall, radius.is_some());
         let [at, beside] = [auxiliary, begin].map(|p| Axes { z: lead.to.z, ..at(p) });
         self.at = lead.from;
-        if lead.rapid { self.traverse_to(at, span)? } else { self.feed_to(at, span)? }
+        let mut sentence = Sentence::new(self.text);
+        (sentence.line, sentence.source) = (lead.line, lead.source);
+        if lead.rapid {
+            self.traverse_to(at, span)?
+        } else {
+            self.feed_to(at, span)?
+        }
+        if let Some(feed) = lead.feed {
+            let mut words = Lowered::new();
+            self.put(&mut words, b'F', feed.value, feed.span)?;
+            self.lower(&sentence, &words)?;
+        }
         self.lead_to(beside, arc, span)?;
         (self.modal.wall, self.modal.compensated) = before;
         let mut words = Lowered::new();
         self.side(lead.side, &mut words)?;
-        let mut sentence = Sentence::new(self.text);
-        (sentence.line, sentence.source) = (lead.line, lead.source);
         self.lower(&sentence, &words)?;
         // The way on, from where the cutter stands to the contour as it is programmed: it begins the path beside it.
         if beside != lead.to {
@@ -192,6 +201,16 @@ where
         self.klartext.rapid = false;
         self.carry_out(asked)?;
         Ok(next)
+    }
+
+    /// Whether a step is the way between a lead and the path beside the contour, on which the cutter stands already.
+    pub(in super::super) fn is_way_of_lead(&self, step: &Waiting<'p>) -> bool {
+        let Canon::Feed { from, to } = step.canon else { return false };
+        let (line, start) = (step.source.line, step.source.block.start);
+        let block = || KlartextBlock::of(Line { number: line, start, text: step.source.block.of(step.text) });
+        self.options.dialect.is_klartext()
+            && from == to
+            && block().is_ok_and(|block| matches!(block.statement, Statement::Approach(..)))
     }
 
     /// Where the words of a lead lead; what they do not name stays.
@@ -264,10 +283,7 @@ impl Shape {
         let turned = |arc: LeadArc, by: f64| {
             let spoke = [begin[0] - arc.centre[0], begin[1] - arc.centre[1]];
             let (sine, cosine) = (libm::sin(by), libm::cos(by));
-            [
-                arc.centre[0] + spoke[0] * cosine - spoke[1] * sine,
-                arc.centre[1] + spoke[0] * sine + spoke[1] * cosine,
-            ]
+            [arc.centre[0] + spoke[0] * cosine - spoke[1] * sine, arc.centre[1] + spoke[0] * sine + spoke[1] * cosine]
         };
         match self.form {
             Form::Line => Some((moved(begin, direction, -self.length?), None)),

@@ -17,12 +17,12 @@ mod path;
 use super::super::block::BlockWords;
 use super::super::flow::{Next, Sentence};
 use super::super::{
-    Canon, CornerError, Decimal, Event, GcodeError, GcodeErrorKind, KlartextError, Line, Lines, Number,
-    Span, Statement, Units, WarningKind, Word, klartext_letter as letter,
+    Canon, CornerError, Decimal, Event, GcodeError, GcodeErrorKind, KlartextError, Line, Lines, Number, Span,
+    Statement, Units, WarningKind, Word, klartext_letter as letter,
 };
 use super::Execution;
-use truepath_units::{Offset, Position};
 use truepath_units::geometry::Vector;
+use truepath_units::{Offset, Position};
 
 use lead::Lead;
 
@@ -233,8 +233,25 @@ where
                 137 => self.put_code(words, 940, span)?,
                 140 => asked.lift = Some(span),
                 // Rotary axes, look-ahead, wear and feeds in corners: no place depends on them.
-                90 | 94 | 97 | 98 | 101..=103 | 107..=113 | 115..=117 | 120 | 124 | 126 | 127 | 129 | 134 | 135
-                | 138 | 141 | 143..=145 | 148..=150 | 197 => self.emit(Canon::OtherM(m), span)?,
+                90
+                | 94
+                | 97
+                | 98
+                | 101..=103
+                | 107..=113
+                | 115..=117
+                | 120
+                | 124
+                | 126
+                | 127
+                | 129
+                | 134
+                | 135
+                | 138
+                | 141
+                | 143..=145
+                | 148..=150
+                | 197 => self.emit(Canon::OtherM(m), span)?,
                 _ => {
                     self.warn(WarningKind::UnknownM { m }, span);
                     self.emit(Canon::OtherM(m), span)?;
@@ -317,9 +334,7 @@ where
 fn placed(error: GcodeError, text: &[u8]) -> GcodeError {
     let holds = |line: &Line<'_>| line.start <= error.start && error.start <= line.span().end();
     match Lines::new(text).find(holds) {
-        Some(line) if line.number != error.line => {
-            GcodeError::new(error.kind, &line, error.span()).in_file(error.file)
-        }
+        Some(line) if line.number != error.line => GcodeError::new(error.kind, &line, error.span()).in_file(error.file),
         _ => error,
     }
 }

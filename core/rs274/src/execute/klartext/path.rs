@@ -45,11 +45,7 @@ impl Way {
             Self::Line => to.from(from),
             Self::Arc { centre, counter_clockwise } => {
                 let spoke = at.from(centre);
-                if counter_clockwise {
-                    Vector { x: -spoke.y, y: spoke.x }
-                } else {
-                    Vector { x: spoke.y, y: -spoke.x }
-                }
+                if counter_clockwise { Vector { x: -spoke.y, y: spoke.x } } else { Vector { x: spoke.y, y: -spoke.x } }
             }
         };
         (vector.length_squared() > 0).then_some(vector)
@@ -131,9 +127,7 @@ where
             self.put(&mut words, name, corner.value, corner.span)?;
         }
         let moves = from.zip(to).filter(|(from, to)| from != to || matches!(way, Some(Way::Arc { .. })));
-        let ends = way.zip(moves).map(|(way, (from, to))| {
-            (way.direction(from, from, to), way.direction(to, from, to))
-        });
+        let ends = way.zip(moves).map(|(way, (from, to))| (way.direction(from, from, to), way.direction(to, from, to)));
         if self.klartext.lead.is_some() && named {
             let Some((Some(start), _)) = ends.filter(|_| !rapid) else {
                 return Err(self.error(KlartextError::ContourMissing.into(), span));
