@@ -154,7 +154,7 @@ impl Writer<'_> {
                 let drawn = Drawn { to: [text(0), text(1)], arc };
                 match again {
                     Some(rapid) => line.further(&drawn, false, line.feed().filter(|_| rapid).as_deref()),
-                    None => line.lead(&drawn, matches!(step.kind, Kind::Traverse)),
+                    None => line.lead(&drawn, matches!(step.kind, Kind::Traverse), true, None),
                 }
             }
             _ => return refused(self),
@@ -206,5 +206,38 @@ impl Writer<'_> {
         };
         self.replaced.insert(step.line, vec![text]);
         Ok(())
+    }
+
+    /// Writes the moves of an APPR (`to_contour`) or DEP block out, displaced by as much as the contour beside it: all of a
+    /// lead to the contour, and the arc of one from it, whose straight move goes where it went.
+    pub(super) fn write_lead(&mut self, moves: &[Move], by: [f64; 2], to_contour: bool) {
+        let Some(number) = moves.first().map(|step| step.line) else { return };
+        let block = self.original(number);
+        let Some(line) = block.klartext() else { return };
+        let (centre_path, mut rapid) = (self.centre.contains(&number), false);
+        let mut texts = Vec::new();
+        for step in moves {
+            let Some(to) = place(step.to) else { continue };
+            let pen = Pen::new(place(step.from).unwrap_or(to).map(|v| v as f64), &step.modal);
+            let grid = pen.grid();
+            let shift = if to_contour || matches!(step.kind, Kind::Arc(..)) { by } else { [0.0; 2] };
+            let target = pen.nearest([0, 1].map(|axis| (to[axis] as f64 + shift[axis]).round() as i64));
+            let arc = step.curve().and_then(|curve| match curve.shape() {
+                geometry::Shape::Arc { centre, sweep } => {
+                    let centre = [centre.x.nm() as f64 + shift[0], centre.y.nm() as f64 + shift[1]];
+                    Some((centre.map(|v| grid.text(grid.steps_of(v))), sweep.bits() > 0))
+                }
+                geometry::Shape::Line => None,
+            });
+            let drawn = Drawn { to: [0, 1].map(|axis| pen.value(axis, target[axis])), arc };
+            let fast = matches!(step.kind, Kind::Traverse);
+            texts.extend(if texts.is_empty() {
+                line.lead(&drawn, fast, centre_path, None)
+            } else {
+                line.further(&drawn, false, line.feed().filter(|_| rapid).as_deref())
+            });
+            rapid = fast;
+        }
+        self.replaced.insert(number, texts);
     }
 }

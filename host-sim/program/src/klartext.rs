@@ -157,11 +157,12 @@ impl<'a> KlartextLine<'a> {
         }
     }
 
-    /// The first move of APPR or DEP, or another move written out: the side is left out where it is RL or RR.
-    pub(super) fn lead(&self, drawn: &Drawn, rapid: bool) -> Vec<Vec<u8>> {
-        let stripped = self.without_compensation();
+    /// The first move of APPR or DEP, or another move written out; `centre` where it is the path of the cutter's centre, and
+    /// RL and RR are left out.
+    pub(super) fn lead(&self, drawn: &Drawn, rapid: bool, centre: bool, feed: Option<&str>) -> Vec<Vec<u8>> {
+        let stripped = if centre { self.without_compensation() } else { self.line.text.to_vec() };
         let line = KlartextLine::new(Line { number: self.line.number, start: 0, text: &stripped });
-        let mut texts = line.moved(drawn, false, None);
+        let mut texts = line.moved(drawn, false, feed);
         // The way to a lead is one of FMAX where the block before was; its own F counts behind it.
         if rapid && let Some(text) = texts.last_mut() {
             let comment = line.comment();

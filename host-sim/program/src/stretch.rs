@@ -9,6 +9,7 @@ use super::deviation::distance;
 use super::edit::BlockEdit;
 use super::feed::spans;
 use super::fit::{Piece, Samples, Shape, fit};
+use super::klartext::KlartextLine;
 use super::pen::{Pen, place};
 use super::spacing::bulges;
 use super::survey::{Kind, Move};
@@ -49,6 +50,7 @@ impl Writer<'_> {
                 self.follow(pen.under(&step.modal), step);
                 self.state_motion(step);
             }
+            self.write_way_to_lead(&moves[..at], step);
             let cuts = &moves[at..];
             let count = cuts.iter().take_while(|m| m.line == edit.line && (m.cuts() || m.stands_still())).count();
             self.edit(pen, &cuts[..count], edit, tolerance)?;
@@ -58,6 +60,20 @@ impl Writer<'_> {
         }
         self.restore_feed()?;
         Ok(end)
+    }
+
+    /// The way of FMAX to a lead stands in the block of the lead.
+    fn write_way_to_lead(&mut self, before: &[Move], step: &Move) {
+        if self.replaced.contains_key(&step.line)
+            || !self.original(step.line).klartext().is_some_and(KlartextLine::is_lead)
+        {
+            return;
+        }
+        let same = before.iter().rev().take_while(|m| (m.line, m.jumps) == (step.line, step.jumps)).count();
+        let way = before[before.len() - same..].to_vec();
+        if !way.is_empty() {
+            self.write_lead(&way, [0.0; 2], true);
+        }
     }
 
     /// Writes one line of the contour.
@@ -109,7 +125,9 @@ impl Writer<'_> {
             if straight { self.options.max_arc_radius.min(LARGEST_IN_LINES) } else { self.options.max_arc_radius };
         let block = self.original(step.line);
         let own_feed = block.has_feed();
-        let mut text: Vec<Vec<u8>> = Vec::new();
+        let is_lead = block.klartext().is_some_and(KlartextLine::is_lead);
+        let mut text: Vec<Vec<u8>> = self.replaced.get(&step.line).filter(|_| is_lead).cloned().unwrap_or_default();
+        let behind_way = !text.is_empty();
         for (k, &(from, to, percent)) in spans.iter().enumerate() {
             let samples = &edit.samples[from..=to];
             let (pieces, points) = pieces(pen, samples, &curves, within, max_radius);
@@ -124,7 +142,14 @@ impl Writer<'_> {
                 if let Some(line) = block.klartext() {
                     let drawn = pen.drawn(*target, &piece.shape);
                     let feed = feed.as_deref().map(|feed| feed.trim_end_matches('.'));
-                    text.extend(if first { line.moved(&drawn, more, feed) } else { line.further(&drawn, !more, feed) });
+                    let own = line.feed().filter(|_| behind_way && k == 0 && index == 0);
+                    let feed = feed.or(own.as_deref());
+                    let centre = self.centre.contains(&step.line);
+                    text.extend(match (first, is_lead) {
+                        (true, false) => line.moved(&drawn, more, feed),
+                        (true, true) => line.lead(&drawn, false, centre, feed),
+                        (false, _) => line.further(&drawn, !more && !is_lead, feed),
+                    });
                     continue;
                 }
                 let mut words = pen.draw(*target, &piece.shape);

@@ -14,11 +14,11 @@
 //! and DEP the same backwards. The direction of the contour is known when its first move comes: until then APPR waits.
 //! No wall depends on leads, so they are computed in floating point.
 
-use super::super::super::compensation::Waiting;
+use super::super::super::compensation::{Cutter, StartUp, Waiting};
 use super::super::super::flow::{Next, Sentence};
 use super::super::super::{
     Axes, Canon, Event, Form, GcodeError, GcodeErrorKind, KlartextBlock, KlartextError, Line, Source, Span, Statement,
-    Word, klartext_letter as letter,
+    WarningKind, Word, klartext_letter as letter,
 };
 use super::super::Execution;
 use super::Lowered;
@@ -123,12 +123,13 @@ where
         let Some((auxiliary, arc)) = lead.shape.backwards(begin, direction, aside, left, place(from)) else {
             return Err(self.error(KlartextError::Lead.into(), span));
         };
-        let before = (self.modal.wall, self.modal.compensated);
-        (self.modal.wall, self.modal.compensated) = (wall, radius.is_some());
         let [at, beside] = [auxiliary, begin].map(|p| Axes { z: lead.to.z, ..at(p) });
         self.at = lead.from;
         let mut sentence = Sentence::new(self.text);
         (sentence.line, sentence.source) = (lead.line, lead.source);
+        // All of it is written anew where compensation is taken out, and the last piece of it is the entry.
+        let switches = wall.filter(|_| wall != self.modal.wall);
+        (self.modal.wall, self.modal.compensated) = (wall, radius.is_some());
         if lead.rapid {
             self.traverse_to(at, span)?
         } else {
@@ -139,11 +140,18 @@ where
             self.put(&mut words, b'F', feed.value, feed.span)?;
             self.lower(&sentence, &words)?;
         }
+        if switches.is_some() {
+            self.emit(Canon::Compensation { wall, offset_number: self.modal.radius_offset }, span)?;
+            if radius.is_none() {
+                self.warn(WarningKind::CompensationNotApplied, span);
+            }
+        }
         self.lead_to(beside, arc, span)?;
-        (self.modal.wall, self.modal.compensated) = before;
-        let mut words = Lowered::new();
-        self.side(lead.side, &mut words)?;
-        self.lower(&sentence, &words)?;
+        if let Some(radius) = radius.filter(|r| *r != Offset::ZERO) {
+            let side = if left == (radius > Offset::ZERO) { Side::Left } else { Side::Right };
+            let cutter = Cutter { side, radius: radius.abs() };
+            self.compensation.start(cutter, self.modal.plane, StartUp::Next);
+        }
         // The way on, from where the cutter stands to the contour as it is programmed: it begins the path beside it.
         if beside != lead.to {
             self.feed_to(lead.to, span)?;
@@ -183,6 +191,10 @@ where
             return Err(self.error(KlartextError::Lead.into(), span));
         };
         let arc = arc.map(|arc| LeadArc { counter_clockwise: !arc.counter_clockwise, ..arc });
+        // Its moves are still written anew where compensation is taken out.
+        if self.modal.wall.is_some() {
+            self.emit(Canon::Compensation { wall: None, offset_number: None }, span)?;
+        }
         let last = if form == Form::LineArc { to } else { Axes { z: to.z, ..at(auxiliary) } };
         if form == Form::LineArc {
             let z = self.at.z;
@@ -191,12 +203,7 @@ where
         } else {
             self.lead_to(last, arc, span)?;
         }
-        if self.modal.wall.is_some() {
-            self.modal.wall = None;
-            self.modal.radius_offset = None;
-            self.modal.compensated = false;
-            self.emit(Canon::Compensation { wall: None, offset_number: None }, span)?;
-        }
+        (self.modal.wall, self.modal.radius_offset, self.modal.compensated) = (None, None, false);
         self.klartext.direction = None;
         self.klartext.rapid = false;
         self.carry_out(asked)?;
