@@ -83,9 +83,10 @@ pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
         stretches += 1;
         let slack = (2.0 + f64::from(stretches)) * claim.step.max(50.0);
         let begin = original[old..].iter().position(|f| inside::is_cut(f, edits)).map(|at| {
-            // What else its line does belongs to it.
+            // What else its line does belongs to it, but for the way of FMAX to a lead.
             let line = original[old + at].line;
-            old + at - original[old..old + at].iter().rev().take_while(|f| f.line == line).count()
+            let before = original[old..old + at].iter().rev();
+            old + at - before.take_while(|f| f.line == line && !f.travels()).count()
         });
         let until = begin.unwrap_or(original.len());
         let end = begin.map(|at| stretch_end(&original, at, edits));
