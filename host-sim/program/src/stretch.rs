@@ -53,7 +53,9 @@ impl Writer<'_> {
             self.write_way_to_lead(&moves[..at], step);
             let cuts = &moves[at..];
             let count = cuts.iter().take_while(|m| m.line == edit.line && (m.cuts() || m.stands_still())).count();
-            self.edit(pen, &cuts[..count], edit, tolerance)?;
+            let covered = covered(&cuts[..count], edit, self.manner.klartext);
+            self.edit(pen, &cuts[..covered], edit, tolerance)?;
+            self.write_way_from_lead(pen, &cuts[covered..count]);
             edits.pop();
             at += count;
             end = at;
@@ -73,6 +75,20 @@ impl Writer<'_> {
         let way = before[before.len() - same..].to_vec();
         if !way.is_empty() {
             self.write_lead(&way, [0.0; 2], true);
+        }
+    }
+
+    /// The way on from a lead stands in the block of the lead too; it ends where it did.
+    fn write_way_from_lead(&mut self, pen: &mut Pen, way: &[Move]) {
+        for step in way {
+            let Some(to) = place(step.to) else { continue };
+            *pen = pen.under(&step.modal);
+            let target = pen.nearest(to);
+            let drawn = pen.drawn(target, &Shape::Line);
+            let text = self.original(step.line).klartext().map(|line| line.further(&drawn, false, None));
+            if let (Some(parts), Some(text)) = (self.replaced.get_mut(&step.line), text) {
+                parts.extend(text);
+            }
         }
     }
 
@@ -192,6 +208,18 @@ impl Writer<'_> {
         }
         Ok(())
     }
+}
+
+/// How many of the moves of a line a corrected path covers: of a conversational lead, those up to where it ends.
+fn covered(cuts: &[Move], edit: &BlockEdit, klartext: bool) -> usize {
+    let Some(&end) = edit.samples.last().filter(|_| klartext && cuts.len() > 1) else { return cuts.len() };
+    let near = |step: &Move| place(step.to).is_some_and(|to| is_near(to, end));
+    cuts.iter().rposition(near).map_or(cuts.len(), |last| last + 1)
+}
+
+/// Whether two places are as near as a correction leaves them, 2 mm.
+pub(super) fn is_near(a: [i64; 2], b: [i64; 2]) -> bool {
+    (0..2).all(|axis| (a[axis] - b[axis]).abs() < 2_000_000)
 }
 
 /// Whether a conversational line has the moves of a rounding or a chamfer behind its own.

@@ -23,6 +23,7 @@ use outside::Bounds;
 use truepath_core::gcode::{Lines, Options};
 
 use super::edit::BlockEdit;
+use super::stretch::is_near;
 
 pub(super) use kink::Kink;
 
@@ -69,7 +70,10 @@ pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
     let read = |text: &[u8]| {
         facts(text, claim.program, claim.centre_path).map_err(|e| format!("line {} cannot be read: {e}", e.line))
     };
-    let original = read(claim.original)?;
+    let mut original = read(claim.original)?;
+    if klartext {
+        without_ways_from_leads(&mut original, claim.edits);
+    }
     let head = claim.head.0 + 1..=claim.head.0 + Lines::new(claim.head.1).count() as u32;
     let written: Vec<Fact> = read(claim.written)?.into_iter().filter(|f| !head.contains(&f.line)).collect();
 
@@ -130,6 +134,18 @@ pub(super) fn same_steps(a: &[u8], b: &[u8], options: Options<'static>) -> bool 
         Some(facts.into_iter().filter_map(plain).collect::<Vec<_>>())
     };
     read(a).is_some_and(|a| read(b).is_some_and(|b| a == b))
+}
+
+/// A conversational lead may lead on behind where its corrected path ends: that is no part of the contour.
+fn without_ways_from_leads(facts: &mut [Fact], edits: &[BlockEdit]) {
+    for edit in edits {
+        let Some(&end) = edit.samples.last() else { continue };
+        let near = |fact: &Fact| fact.curve().is_some_and(|c| is_near([c.end().x.nm(), c.end().y.nm()], end));
+        let of_line = |fact: &Fact| fact.line == edit.line && fact.curve().is_some();
+        if let Some(last) = facts.iter().rposition(|fact| of_line(fact) && near(fact)) {
+            facts.iter_mut().skip(last + 1).filter(|fact| of_line(fact)).for_each(|fact| fact.line = 0);
+        }
+    }
 }
 
 /// Where a stretch that begins at `begin` ends: after its last cutting step.
