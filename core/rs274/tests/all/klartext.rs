@@ -275,7 +275,7 @@ fn q_parameters_are_computed_and_compared() {
         let expected = (value * 1e3) as i64;
         assert_eq!([read[0].2[0], read[0].2[1]], [expected, -expected], "{formula}");
     }
-    let looped = "Q1 = 0\nLBL 3\nQ1 = Q1 + 2\nL X+Q1 FQ9 F100\nFN 12: IF +Q1 LT +6 GOTO LBL 3\nFN 9: IF +Q1 EQU +6 GOTO LBL \"out\"\nL Y+1\nLBL \"out\"";
+    let looped = "Q1 = 0\nLBL 3\nQ1 = Q1 + 2\nL X+Q1 F100\nFN 12: IF +Q1 LT +6 GOTO LBL 3\nFN 9: IF +Q1 EQU +6 GOTO LBL \"out\"\nL Y+1\nLBL \"out\"";
     assert_eq!(moves(looped).iter().map(|m| m.2[0]).collect::<Vec<_>>(), [2_000, 4_000, 6_000]);
     for (blocks, code) in [
         ("Q1 = 1 / 0", "G171"),

@@ -186,7 +186,7 @@ where
         };
         let aside = normal(unit(direction), left);
         // Backwards, it is a lead to the contour with the direction and the side of its sense turned.
-        let back = unit(direction).map(|v| neg(v));
+        let back = unit(direction).map(neg);
         let Some((auxiliary, arc)) = shape.backwards(place(end), back, aside, !left, place(goal)) else {
             return Err(self.error(KlartextError::Lead.into(), span));
         };
