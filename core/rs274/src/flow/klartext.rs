@@ -5,7 +5,7 @@
 //! changes, and is read with it.
 
 use super::super::expression::{arc_tangent, computed};
-use super::super::klartext::{Formula, comparison, label_name, parameter};
+use super::super::klartext::{Formula, behind, comparison, parameter, written_number};
 use super::super::lexical::{Operator, trimmed};
 use super::super::parameter::Surroundings;
 use super::super::{
@@ -265,6 +265,19 @@ impl<'p> Reader<'p> {
         let rest = trimmed(rest);
         if rest.is_empty() { Ok(()) } else { Err(self.error(FlowError::TextBehind, block.span_of(rest))) }
     }
+}
+
+/// The name of a label, and what follows it.
+fn label_name(text: &[u8]) -> Option<(Label, &[u8])> {
+    let text = trimmed(text);
+    if text.first() == Some(&b'"') {
+        let name = behind(text);
+        let end = name.iter().position(|b| *b == b'"')?;
+        return Some((Label::new(name.get(..end.saturating_add(1))?), behind(name.get(end..)?)));
+    }
+    let (rest, value) = written_number(text);
+    let value = value.ok()?.exactly_times(1).and_then(|n| u32::try_from(n).ok())?;
+    Some((Label::numbered(value), rest))
 }
 
 /// What stands behind a word of letters.

@@ -15,8 +15,6 @@ mod reader;
 mod sentence;
 mod statement;
 
-#[cfg(feature = "klartext")]
-pub(super) use keyword::Label;
 pub(super) use next::{Next, Target};
 pub use program::{Library, LibraryFile, Program};
 pub(super) use reader::Reader;

@@ -5,7 +5,6 @@
 //! is 0.
 
 use super::super::expression::{arc_tangent, computed, function_of};
-use super::super::flow::Label;
 use super::super::lexical::{Function, Operator, trimmed};
 use super::super::{ExpressionError, GcodeErrorKind, KlartextError, Memory};
 use super::word::{behind, named, number};
@@ -28,19 +27,6 @@ pub(in super::super) fn parameter(text: &[u8]) -> Option<(u16, &[u8])> {
     let (number, rest) = rest.split_at_checked(digits)?;
     let number = core::str::from_utf8(number).ok()?.parse::<u16>().ok().filter(|n| *n <= most)?;
     Some((number.saturating_add(first), rest))
-}
-
-/// The name of a label, and what follows it.
-pub(in super::super) fn label_name(text: &[u8]) -> Option<(Label, &[u8])> {
-    let text = trimmed(text);
-    if text.first() == Some(&b'"') {
-        let name = behind(text);
-        let end = name.iter().position(|b| *b == b'"')?;
-        return Some((Label::new(name.get(..end.saturating_add(1))?), behind(name.get(end..)?)));
-    }
-    let (rest, value) = number(text);
-    let value = value.ok()?.exactly_times(1).and_then(|n| u32::try_from(n).ok())?;
-    Some((Label::numbered(value), rest))
 }
 
 /// What FN 9 … FN 12 compare by.

@@ -2,7 +2,7 @@
 //!
 //! It is a language of its own and not a dialect of G-code words: a block begins with the name of what it does (`L`,
 //! `CR`, `TOOL CALL`, `CYCL DEF`), which says what the words behind it mean. So it has a reader of lines of its own, which
-//! gives the same [`Sentence`](crate::flow::Sentence) to the same machine: `flow/klartext.rs` follows labels, repetitions
+//! gives the same `Sentence` to the same machine: `flow/klartext.rs` follows labels, repetitions
 //! and jumps and computes Q parameters, `execute/klartext` turns a block into the words of G-code that do the same, with
 //! the spans of the original, so that modes, feeds, tools, radius compensation, corners and arcs are those of every
 //! other dialect and every message has the line and column of the block.
@@ -19,6 +19,7 @@ mod formula;
 mod statement;
 mod word;
 
-pub(super) use formula::{Formula, comparison, label_name, parameter};
+pub(super) use formula::{Formula, comparison, parameter};
 pub use statement::{Form, KlartextBlock, Statement};
 pub use word::{KlartextValue, KlartextWord, KlartextWords, letter};
+pub(super) use word::{behind, number as written_number};

@@ -302,12 +302,12 @@ pub(super) fn named<'t>(text: &'t [u8], name: &[u8]) -> Option<&'t [u8]> {
 }
 
 /// All but the first byte.
-pub(super) fn behind(text: &[u8]) -> &[u8] {
+pub(in super::super) fn behind(text: &[u8]) -> &[u8] {
     text.get(1..).unwrap_or(&[])
 }
 
 /// A number, with a point or a comma.
-pub(super) fn number(text: &[u8]) -> (&[u8], Result<Decimal, NumberError>) {
+pub(in super::super) fn number(text: &[u8]) -> (&[u8], Result<Decimal, NumberError>) {
     Decimal::read(text, |byte| matches!(byte, b'.' | b','), |_| false)
 }
 
