@@ -28,6 +28,8 @@ mod cycle_words;
 mod home;
 #[cfg(feature = "klartext")]
 mod klartext;
+#[cfg(feature = "klartext")]
+mod klartext_memory;
 mod memory;
 mod modes;
 mod motion;
@@ -95,7 +97,7 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     /// Modes that come back before the next block.
     returning: Option<SavedModes>,
     #[cfg(feature = "klartext")]
-    klartext: klartext::KlartextMemory<'p>,
+    klartext: klartext_memory::KlartextMemory<'p>,
 }
 
 impl<S> Surroundings for Execution<'_, '_, '_, S> {
@@ -151,7 +153,7 @@ where
             saved: [None; LEVELS],
             returning: None,
             #[cfg(feature = "klartext")]
-            klartext: klartext::KlartextMemory::default(),
+            klartext: klartext_memory::KlartextMemory::default(),
         };
         execution.modal.absolute_centres = options.arc_centres == ArcCentres::Absolute;
         #[cfg(feature = "klartext")]

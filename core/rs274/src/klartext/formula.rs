@@ -7,27 +7,10 @@
 use super::super::expression::{arc_tangent, computed, function_of};
 use super::super::lexical::{Function, Operator, trimmed};
 use super::super::{ExpressionError, GcodeErrorKind, KlartextError, Memory};
-use super::word::{behind, named, number};
+use super::text::{behind, named, number, parameter};
 
-/// The first place of QL and of QR in the memory; Q0 is 1.
-const LOCAL: u16 = 3_001;
-const RETAINED: u16 = 4_001;
 /// Brackets and functions inside each other.
 const DEPTH: u8 = 16;
-
-/// A Q parameter at the start of a text: its place in the memory, and what follows it.
-pub(in super::super) fn parameter(text: &[u8]) -> Option<(u16, &[u8])> {
-    let rest = named(text, b"Q")?;
-    let (first, most, rest) = match (named(rest, b"L"), named(rest, b"R")) {
-        (Some(rest), _) => (LOCAL, 499, rest),
-        (None, Some(rest)) => (RETAINED, 499, rest),
-        (None, None) => (1, 1_999, rest),
-    };
-    let digits = rest.iter().take_while(|b| b.is_ascii_digit()).count();
-    let (number, rest) = rest.split_at_checked(digits)?;
-    let number = core::str::from_utf8(number).ok()?.parse::<u16>().ok().filter(|n| *n <= most)?;
-    Some((number.saturating_add(first), rest))
-}
 
 /// What FN 9 … FN 12 compare by.
 pub(in super::super) fn comparison(text: &[u8]) -> Option<(Operator, &[u8])> {

@@ -9,17 +9,21 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `statement.rs` | what a block does, by the words at its start |
+//! | `kind.rs`, `statement.rs` | what blocks do, and which one a line is |
 //! | `word.rs` | the words behind it |
-//! | `formula.rs` | Q parameters and what is computed with them |
+//! | `text.rs` | names, numbers, Q parameters |
+//! | `formula.rs` | what is computed with them |
 //!
 //! Sources: the user's manuals of iTNC 530, TNC 320/620/640 and TNC7 (conversational programming).
 
 mod formula;
+mod kind;
 mod statement;
+mod text;
 mod word;
 
-pub(super) use formula::{Formula, comparison, parameter};
-pub use statement::{Form, KlartextBlock, Statement};
+pub(super) use formula::{Formula, comparison};
+pub use kind::{Form, Statement};
+pub use statement::KlartextBlock;
+pub(super) use text::{behind, number as written_number, parameter};
 pub use word::{KlartextValue, KlartextWord, KlartextWords, letter};
-pub(super) use word::{behind, number as written_number};

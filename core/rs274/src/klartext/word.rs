@@ -2,8 +2,8 @@
 
 use super::super::lexical::{NumberError, is_blank, trimmed};
 use super::super::{Decimal, GcodeError, GcodeErrorKind, KlartextError, Line, Span};
-use super::formula::parameter;
-use super::statement::Statement;
+use super::kind::Statement;
+use super::text::{behind, named, number, parameter};
 
 /// Letters of words as [`Word`](crate::Word) keeps them. Axes have their own (`X` … `W`); what is counted from the present
 /// place (`IX`) has the small one.
@@ -293,22 +293,6 @@ impl Iterator for KlartextWords<'_> {
         self.failed = word.is_err();
         Some(word)
     }
-}
-
-/// What stands behind a name, if the text begins with it, in any case.
-pub(super) fn named<'t>(text: &'t [u8], name: &[u8]) -> Option<&'t [u8]> {
-    let (start, rest) = text.split_at_checked(name.len())?;
-    if start.eq_ignore_ascii_case(name) { Some(rest) } else { None }
-}
-
-/// All but the first byte.
-pub(in super::super) fn behind(text: &[u8]) -> &[u8] {
-    text.get(1..).unwrap_or(&[])
-}
-
-/// A number, with a point or a comma.
-pub(in super::super) fn number(text: &[u8]) -> (&[u8], Result<Decimal, NumberError>) {
-    Decimal::read(text, |byte| matches!(byte, b'.' | b','), |_| false)
 }
 
 /// A number or a Q parameter at the start of a text, and what follows it; `None` where neither stands.

@@ -12,7 +12,7 @@ use super::super::super::{
     Axes, Canon, Event, GCode, GcodeError, GcodeErrorKind, KlartextError, Lines, Motion, Number, Word,
 };
 use super::super::Execution;
-use super::Lowered;
+use super::super::klartext_memory::{Asked, Lowered};
 use super::path::PLACE;
 use truepath_units::{Offset, Position};
 
@@ -124,7 +124,7 @@ where
         }
         let next = self.lower(sentence, &words)?;
         self.call_cycle()?;
-        self.carry_out(super::Asked { cycle: false, ..asked })?;
+        self.carry_out(Asked { cycle: false, ..asked })?;
         Ok(next)
     }
 

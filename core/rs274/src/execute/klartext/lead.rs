@@ -14,44 +14,19 @@
 //! and DEP the same backwards. The direction of the contour is known when its first move comes: until then APPR waits.
 //! No wall depends on leads, so they are computed in floating point.
 
+use super::super::super::block::BlockWords;
 use super::super::super::compensation::{Cutter, StartUp, Waiting};
 use super::super::super::flow::{Next, Sentence};
 use super::super::super::{
-    Axes, Canon, Event, Form, GcodeError, GcodeErrorKind, KlartextBlock, KlartextError, Line, Source, Span, Statement,
+    Axes, Canon, Event, Form, GcodeError, GcodeErrorKind, KlartextBlock, KlartextError, Line, Span, Statement,
     WarningKind, Word, klartext_letter as letter,
 };
 use super::super::Execution;
-use super::Lowered;
+use super::super::klartext_memory::{Lead, Lowered, Shape};
+
 use super::path::PLACE;
 use truepath_units::geometry::{Curve, Point, Side, Vector};
 use truepath_units::{Offset, Position, div_rounded};
-
-/// What a lead is made of.
-#[derive(Clone, Copy, Debug)]
-struct Shape {
-    form: Form,
-    /// `LEN`, nm.
-    length: Option<f64>,
-    /// `R`, nm.
-    radius: Option<f64>,
-    /// `CCA`, radians.
-    angle: Option<f64>,
-}
-
-/// An APPR whose contour is still to come.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lead<'p> {
-    shape: Shape,
-    /// R0, RL, RR.
-    side: Option<Word>,
-    line: Line<'p>,
-    source: Source,
-    from: Axes,
-    to: Axes,
-    /// Whether the way to the auxiliary point is one of FMAX; then F counts behind it.
-    rapid: bool,
-    feed: Option<Word>,
-}
 
 /// A place or a vector of the plane, nm.
 type Plane = [f64; 2];
@@ -268,7 +243,7 @@ where
     /// The radius by which RL and RR move the path aside; `None` where the program is the path of the centre.
     fn radius_of_cutter(&mut self, span: Span) -> Result<Option<Offset>, GcodeError> {
         let sentence = Sentence::new(self.text);
-        let mut block = super::BlockWords::gather(&sentence, self.options.dialect)?;
+        let mut block = BlockWords::gather(&sentence, self.options.dialect)?;
         let diameter = self.diameter_of_table(&mut block, span)?;
         let half = |d: Offset| Offset::from_nm(i64::try_from(div_rounded(d.nm().into(), 2)).unwrap_or(i64::MAX));
         Ok(diameter.map(half))

@@ -21,49 +21,8 @@ use super::super::{
     Statement, Units, WarningKind, Word, klartext_letter as letter,
 };
 use super::Execution;
-use truepath_units::geometry::Vector;
-use truepath_units::{Offset, Position};
-
-use lead::Lead;
-
-/// Words that one block becomes.
-const LOWERED: usize = 32;
-
-/// What conversational blocks remember.
-#[derive(Debug, Default)]
-pub(super) struct KlartextMemory<'p> {
-    /// CC: X and Y, as written.
-    pole: [Option<Number>; 2],
-    /// The direction in which the last move of the plane ended, of any length.
-    direction: Option<Vector>,
-    /// APPR, until the contour shows where it leads to.
-    lead: Option<Lead<'p>>,
-    /// Whether the last positioning block was one of FMAX.
-    rapid: bool,
-    /// F of TOOL CALL.
-    feed_of_tool: Option<Word>,
-    /// DR of TOOL CALL.
-    pub(super) oversize: Offset,
-    /// The cycle that CYCL DEF has defined, and whether every positioning block calls it (M89).
-    cycle: Option<u16>,
-    calls_cycle: bool,
-    /// Whether the block before has taken the rounding or chamfer that comes.
-    corner_taken: bool,
-}
-
-/// What M functions of a block ask for beside what they switch.
-#[derive(Clone, Copy, Debug, Default)]
-struct Asked {
-    /// M91, M92.
-    machine: bool,
-    /// M99.
-    cycle: bool,
-    /// M140, with its place.
-    lift: Option<Span>,
-}
-
-/// The words of a block in G-code.
-type Lowered = heapless::Vec<Word, LOWERED>;
+use super::klartext_memory::{Asked, LOWERED, Lowered};
+use truepath_units::Position;
 
 impl<'p, S> Execution<'p, '_, '_, S>
 where

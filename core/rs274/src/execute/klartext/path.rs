@@ -3,12 +3,12 @@
 use super::super::super::flow::{Next, Sentence};
 use super::super::super::shifts::sin_cos_degrees;
 use super::super::super::{
-    Event, GcodeError, GcodeErrorKind, KlartextError, Number, SettingError, Span, Statement, Word,
-    klartext_letter as letter,
+    CornerError, Decimal, Event, GcodeError, GcodeErrorKind, KlartextError, Number, SettingError, Span, Statement,
+    Word, klartext_letter as letter,
 };
 use super::super::Execution;
 use super::super::arc::centre_from_radius;
-use super::Lowered;
+use super::super::klartext_memory::{Asked, Lowered};
 use truepath_units::geometry::{Point, Vector};
 use truepath_units::{Offset, Position, Real, atan2, div_rounded};
 
@@ -91,7 +91,7 @@ where
             }
             _ => {
                 if let Some(corner) = corner {
-                    return Err(self.error(super::CornerError::WithoutLine.into(), corner.span));
+                    return Err(self.error(CornerError::WithoutLine.into(), corner.span));
                 }
                 let turned = of(letter::TURN);
                 let arc = self.arc_way(statement, from, to, turned, of(letter::RADIUS))?;
@@ -145,7 +145,7 @@ where
             }
         }
         let calls = self.klartext.calls_cycle && named;
-        self.carry_out(super::Asked { cycle: asked.cycle || calls, ..asked })?;
+        self.carry_out(Asked { cycle: asked.cycle || calls, ..asked })?;
         Ok(next)
     }
 
@@ -192,7 +192,7 @@ where
             let value = match axis.checked_sub(3).and_then(|a| self.modal.auxiliary.get(a)) {
                 Some(at) if axis < 6 => {
                     let at = at.saturating_add(by.nm());
-                    super::Decimal::new(at, 6).map_or(Number::ZERO, Number::Exact)
+                    Decimal::new(at, 6).map_or(Number::ZERO, Number::Exact)
                 }
                 Some(at) => self.written(Position::from_nm(at.saturating_add(by.nm()))),
                 None => {
