@@ -2,7 +2,8 @@
 
 use crate::gcode::compensation::CompensationError;
 use crate::gcode::{
-    CornerError, CycleError, ExpressionError, FlowError, GcodeErrorKind, ParameterError, SettingError, WarningKind,
+    CornerError, CycleError, ExpressionError, FlowError, GcodeErrorKind, KlartextError, ParameterError, SettingError,
+    WarningKind,
 };
 use crate::image::ImageError;
 use crate::job::{Buffer, JobError};
@@ -12,7 +13,7 @@ use crate::probe::{ProbeErrorKind, Suspicion};
 pub use crate::units::errors::{Row, number};
 
 /// The rows of every enum of errors.
-pub const CATALOGUE: [&[Row]; 15] = [
+pub const CATALOGUE: [&[Row]; 16] = [
     GcodeErrorKind::CATALOGUE,
     ParameterError::CATALOGUE,
     CompensationError::CATALOGUE,
@@ -21,6 +22,7 @@ pub const CATALOGUE: [&[Row]; 15] = [
     CycleError::CATALOGUE,
     CornerError::CATALOGUE,
     SettingError::CATALOGUE,
+    KlartextError::CATALOGUE,
     WarningKind::CATALOGUE,
     ProbeErrorKind::CATALOGUE,
     Suspicion::CATALOGUE,

@@ -14,6 +14,8 @@ pub enum Dialect {
     Siemens,
     /// Mach3 and Mach4: G70 and G71 are units.
     Mach,
+    /// HEIDENHAIN's conversational language, `.h`; read where the feature `klartext` is built in.
+    Heidenhain,
 }
 
 impl Dialect {
@@ -21,6 +23,10 @@ impl Dialect {
     /// never set is vacant, not 0.
     pub const fn has_macro_b(self) -> bool {
         matches!(self, Self::Fanuc | Self::Haas)
+    }
+    /// Whether blocks are conversational: no words of G-code.
+    pub const fn is_klartext(self) -> bool {
+        matches!(self, Self::Heidenhain)
     }
     /// Whether programs are steered by LinuxCNC's O words.
     pub const fn has_o_words(self) -> bool {

@@ -61,6 +61,8 @@ mod flow;
 mod group;
 mod identity;
 mod interpreter;
+#[cfg(feature = "klartext")]
+mod klartext;
 mod lexical;
 mod mcode;
 mod modal;
@@ -81,12 +83,16 @@ pub use contour::{
 };
 pub use dialect::Dialect;
 pub use error::{
-    CornerError, CycleError, ExpressionError, FlowError, Foreign, GcodeError, GcodeErrorKind, ParameterError,
-    SettingError,
+    CornerError, CycleError, ExpressionError, FlowError, Foreign, GcodeError, GcodeErrorKind, KlartextError,
+    ParameterError, SettingError,
 };
 pub use flow::{Library, LibraryFile, Program, Word};
 pub use identity::{CORRECTED_MARK, is_marked_corrected, program_crc};
 pub use interpreter::{Executed, Interpreter, ProgramSummary};
+#[cfg(feature = "klartext")]
+pub use klartext::{
+    Form, KlartextBlock, KlartextValue, KlartextWord, KlartextWords, Statement, letter as klartext_letter,
+};
 pub use lexical::{Decimal, Number, NumberError, Token, Words, WrittenWord};
 pub use modal::{Modal, Motion};
 pub use mode::{Coolant, FeedMode, PathControl, Plane, RetractLevel, Spindle, ToolLength, Units};

@@ -90,6 +90,8 @@ errors! {
         } = "W026",
             "this cutting move starts at an unknown {axis}: it is taken for a move to the part, and no wall it may cut is corrected; give the place with G0 before if it cuts one",
                 axis = Letter(axis);
+        /// F of a rounding or a chamfer.
+        FeedOfCorner = "W028", "the feed of a rounding or chamfer is not looked at: its arc counts as cut at the feed of the contour";
         /// A call that is made no times.
         CallOfNoTimes = "W027",
             "L0 is read as no call; some controls call once: remove the block, or write L1";

@@ -81,7 +81,8 @@ choice!(
     5 = Format::Dprnt
 );
 choice!(
-    Dialect: 0 = Dialect::Linuxcnc, 1 = Dialect::Fanuc, 2 = Dialect::Haas, 3 = Dialect::Siemens, 4 = Dialect::Mach
+    Dialect: 0 = Dialect::Linuxcnc, 1 = Dialect::Fanuc, 2 = Dialect::Haas, 3 = Dialect::Siemens, 4 = Dialect::Mach,
+    5 = Dialect::Heidenhain
 );
 choice!(PointlessLength: 0 = PointlessLength::Calculator, 1 = PointlessLength::Least);
 choice!(ArcCentres: 0 = ArcCentres::Detect, 1 = ArcCentres::Incremental, 2 = ArcCentres::Absolute);

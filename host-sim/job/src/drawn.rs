@@ -15,7 +15,7 @@
 //!
 //! Without a sign the user is asked.
 
-use truepath_core::gcode::{Criteria, Found, Lines, Role, Token, Words};
+use truepath_core::gcode::{Criteria, Found, KlartextBlock, LineRange, Lines, Role, Statement, Token, Words};
 use truepath_core::geometry::{Block, Direction, FACET_TURN_LIMIT, Side};
 use truepath_core::job::Compensation;
 use truepath_core::units::{Offset, Real};
@@ -23,7 +23,7 @@ use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::units::mm;
 
 use crate::codes::J027;
-use crate::feature::Survey;
+use crate::feature::{Survey, comments};
 use crate::job::JobFile;
 
 /// What was found out, and what is said of it.
@@ -63,6 +63,9 @@ pub fn drawn(job: &JobFile, program: &Source) -> Result<Option<Drawn>, InputErro
     let outline = |why| answer(Compensation::Radius, why);
     if wear(program) {
         return centre("a comment or D0 says that D holds wear");
+    }
+    if led_by_control(program, found.run.lines) {
+        return outline("APPR, DEP, RND or CHF shape it at the control, as a drawing does and no CAM system");
     }
     let arcs = |inside: bool| contour.iter().filter_map(move |block| towards_wall(block, wall, inside));
     if arcs(true).any(|r| r < radius - radius.scaled(SAME)) {
@@ -105,16 +108,21 @@ pub fn drawn(job: &JobFile, program: &Source) -> Result<Option<Drawn>, InputErro
     Err(J027.error(found_text, "compensation in [tool] of the job").at(program, span))
 }
 
+/// Whether a conversational program leads to the contour or rounds its corners by blocks of their own.
+fn led_by_control(program: &Source, lines: LineRange) -> bool {
+    let blocks =
+        Lines::new(program.bytes()).filter(|line| lines.first <= line.number + 1 && line.number <= lines.last + 1);
+    let mut statements = blocks.filter_map(|line| KlartextBlock::of(line).ok()).map(|block| block.statement);
+    statements.any(|s| s.is_corner() || matches!(s, Statement::Approach(..) | Statement::Depart(..)))
+}
+
 /// Whether D0 or a comment says that D holds wear.
 fn wear(program: &Source) -> bool {
     Lines::new(program.bytes()).any(|line| {
         let tokens: Vec<Token> = Words::new(line).map_while(Result::ok).collect();
-        let comments = tokens.iter().any(|token| match token {
-            Token::Comment { body, .. } => {
-                let text = String::from_utf8_lossy(body.of(program.bytes())).to_ascii_uppercase();
-                text.split(|c: char| !c.is_ascii_alphabetic()).any(|word| word == "WEAR")
-            }
-            _ => false,
+        let comments = comments(line).iter().any(|(_, body)| {
+            let text = String::from_utf8_lossy(body.of(program.bytes())).to_ascii_uppercase();
+            text.split(|c: char| !c.is_ascii_alphabetic()).any(|word| word == "WEAR")
         });
         let is = |letter: u8, values: &[i64]| {
             let exactly = |value: truepath_core::gcode::Decimal| value.exactly_times(1);

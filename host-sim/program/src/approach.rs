@@ -6,6 +6,7 @@
 use truepath_ground::diagnostics::Failure;
 
 use super::edit::BlockEdit;
+use super::klartext::KlartextLine;
 use super::pen::{Pen, place};
 use super::survey::{Kind, Move};
 use super::writer::Writer;
@@ -36,8 +37,14 @@ impl Writer<'_> {
         by = by.map(|v| grid.nm(grid.steps_of(v)));
         for (index, step) in before.iter().enumerate().rev() {
             self.refuse_other_file(step)?;
+            if self.original(step.line).klartext().is_some_and(KlartextLine::is_lead) {
+                let lead: Vec<Move> = before.iter().filter(|m| m.line == step.line).copied().collect();
+                self.write_lead(&lead, by, true);
+                let reached = [0, 1].map(|axis| from[axis] as f64 + by[axis]);
+                return Ok(Pen::new(reached, &first.modal));
+            }
             let block = self.block(step.line);
-            let named = [b'X', b'Y'].map(|letter| block.word(letter).is_some());
+            let named = [0, 1].map(|axis| block.names_axis(axis));
             match step.kind {
                 Kind::Traverse | Kind::Feed if !step.in_cycle() && !block.has_corner() => {}
                 Kind::Arc(..) if place(step.from).is_some() => {

@@ -17,7 +17,8 @@ use truepath_ground::diagnostics::Failure;
 
 use super::edit::{BlockEdit, RewriteOptions};
 use super::fit::Shape;
-use super::line::Block;
+use super::klartext::{Drawn, KlartextLine};
+use super::line::{Block, Manner};
 use super::pen::{Pen, place};
 use super::survey::{Kind, Move};
 use super::writer::Writer;
@@ -44,14 +45,28 @@ pub(super) fn without_switches(
     lines: &[Line<'_>],
     moves: &[Move],
     stretches: &[Range<usize>],
+    manner: Manner,
 ) -> Result<BTreeMap<u32, Vec<u8>>, u32> {
     let mut stripped = BTreeMap::new();
     for stretch in stretches {
         let first = moves[stretch.start].line;
         let before = lines.iter().rev().skip_while(|l| l.number > first);
-        let found = before.map(|&l| (l.number, Block::new(l, false))).find(|(_, b)| b.switches_compensation_on());
+        let found = before.map(|&l| (l.number, Block::new(l, manner))).find(|(_, b)| b.switches_compensation_on());
         let (number, block) = found.ok_or(first)?;
-        stripped.insert(number, block.without_compensation());
+        // A lead is written anew as a whole.
+        if !block.klartext().is_some_and(KlartextLine::is_lead) {
+            stripped.insert(number, block.without_compensation());
+        }
+        if manner.klartext {
+            // A block may name the side again.
+            let last = moves[stretch.clone()].iter().map(|m| m.line).max().unwrap_or(first);
+            for line in lines.iter().filter(|l| l.number > number && l.number <= last) {
+                let block = Block::new(*line, manner);
+                if block.switches_compensation_on() {
+                    stripped.insert(line.number, block.without_compensation());
+                }
+            }
+        }
     }
     Ok(stripped)
 }
@@ -81,11 +96,17 @@ impl Writer<'_> {
         for stretch in stretches {
             let behind = moves[stretch.end..].iter().position(|m| !m.stands_still());
             let until = behind.map_or(moves.len(), |i| stretch.end + i + 1);
-            let mut last_travel = None;
+            let (mut last_travel, mut rapid) = (None, false);
             for step in &moves[stretch.start..until] {
                 self.refuse_other_file(step)?;
                 self.centre.insert(step.line);
                 if edits.iter().any(|e| e.line == step.line) || matches!(step.kind, Kind::Away(_)) {
+                    continue;
+                }
+                if self.manner.klartext {
+                    let again = last_travel.replace(step.line) == Some(step.line);
+                    self.write_conversational_centre(step, again.then_some(rapid))?;
+                    rapid = matches!(step.kind, Kind::Traverse);
                     continue;
                 }
                 if !step.stands_still() && last_travel.replace(step.line) == Some(step.line) {
@@ -93,6 +114,55 @@ impl Writer<'_> {
                     return Err(self.refuse_compensation(step.line, found));
                 }
                 self.write_centre(step)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes one move beside the contour of a conversational program; `again` where its block has become one already, as
+    /// those of leads do, and whether that is one of FMAX.
+    fn write_conversational_centre(&mut self, step: &Move, again: Option<bool>) -> Result<(), Failure> {
+        let refused = |writer: &Self| {
+            let found = "this move cannot be written where compensation (RL, RR) leads the cutter's centre";
+            Err(writer.refuse_compensation(step.line, found))
+        };
+        let Some(to) = place(step.to).filter(|_| !step.in_cycle()) else {
+            // Heights alone are known before any place is.
+            return if step.is_straight() && step.to.point().is_none() { Ok(()) } else { refused(self) };
+        };
+        let block = self.original(step.line);
+        let Some(line) = block.klartext() else { return refused(self) };
+        let pen = Pen::new(place(step.from).unwrap_or(to).map(|v| v as f64), &step.modal);
+        let target = pen.nearest(to);
+        let text = |axis: usize| pen.value(axis, target[axis]);
+        let texts = match step.kind {
+            Kind::Traverse | Kind::Feed if !line.is_lead() && again.is_none() => {
+                if step.stands_still() && !block.names_axis(0) && !block.names_axis(1) {
+                    return Ok(());
+                }
+                vec![line.repositioned([Some(text(0)), Some(text(1))])]
+            }
+            Kind::Traverse | Kind::Feed | Kind::Arc(_, 0) => {
+                let arc = step.curve().and_then(|curve| match curve.shape() {
+                    geometry::Shape::Arc { centre, sweep } => {
+                        let grid = pen.grid();
+                        let centre = [centre.x.nm() as f64, centre.y.nm() as f64];
+                        Some((centre.map(|v| grid.text(grid.steps_of(v))), sweep.bits() > 0))
+                    }
+                    geometry::Shape::Line => None,
+                });
+                let drawn = Drawn { to: [text(0), text(1)], arc };
+                match again {
+                    Some(rapid) => line.further(&drawn, false, line.feed().filter(|_| rapid).as_deref()),
+                    None => line.lead(&drawn, matches!(step.kind, Kind::Traverse), true, None),
+                }
+            }
+            _ => return refused(self),
+        };
+        match self.replaced.get_mut(&step.line).filter(|_| again.is_some()) {
+            Some(parts) => parts.extend(texts),
+            None => {
+                self.replaced.insert(step.line, texts);
             }
         }
         Ok(())
@@ -136,5 +206,38 @@ impl Writer<'_> {
         };
         self.replaced.insert(step.line, vec![text]);
         Ok(())
+    }
+
+    /// Writes the moves of an APPR (`to_contour`) or DEP block out, displaced by as much as the contour beside it: all of a
+    /// lead to the contour, and the arc of one from it, whose straight move goes where it went.
+    pub(super) fn write_lead(&mut self, moves: &[Move], by: [f64; 2], to_contour: bool) {
+        let Some(number) = moves.first().map(|step| step.line) else { return };
+        let block = self.original(number);
+        let Some(line) = block.klartext() else { return };
+        let (centre_path, mut rapid) = (self.centre.contains(&number), false);
+        let mut texts = Vec::new();
+        for step in moves {
+            let Some(to) = place(step.to) else { continue };
+            let pen = Pen::new(place(step.from).unwrap_or(to).map(|v| v as f64), &step.modal);
+            let grid = pen.grid();
+            let shift = if to_contour || matches!(step.kind, Kind::Arc(..)) { by } else { [0.0; 2] };
+            let target = pen.nearest([0, 1].map(|axis| (to[axis] as f64 + shift[axis]).round() as i64));
+            let arc = step.curve().and_then(|curve| match curve.shape() {
+                geometry::Shape::Arc { centre, sweep } => {
+                    let centre = [centre.x.nm() as f64 + shift[0], centre.y.nm() as f64 + shift[1]];
+                    Some((centre.map(|v| grid.text(grid.steps_of(v))), sweep.bits() > 0))
+                }
+                geometry::Shape::Line => None,
+            });
+            let drawn = Drawn { to: [0, 1].map(|axis| pen.value(axis, target[axis])), arc };
+            let fast = matches!(step.kind, Kind::Traverse);
+            texts.extend(if texts.is_empty() {
+                line.lead(&drawn, fast, centre_path, None)
+            } else {
+                line.further(&drawn, false, line.feed().filter(|_| rapid).as_deref())
+            });
+            rapid = fast;
+        }
+        self.replaced.insert(number, texts);
     }
 }

@@ -7,6 +7,7 @@
 use truepath_core::gcode::Plane;
 use truepath_ground::diagnostics::Failure;
 
+use super::klartext::KlartextLine;
 use super::pen::{Pen, place};
 use super::survey::{Kind, Move};
 use super::writer::Writer;
@@ -23,6 +24,7 @@ impl Writer<'_> {
         if let Some(next) = after.iter().find(|m| !matches!(m.kind, Kind::Away(_) | Kind::Origin)) {
             self.state_motion(next);
         }
+        let mut led = false;
         for (index, step) in after.iter().enumerate() {
             if by == [0.0; 2] {
                 return Ok(None);
@@ -45,6 +47,19 @@ impl Writer<'_> {
             }
             let from = [step.from.x, step.from.y];
             let pen = Pen::new([0, 1].map(|axis| from[axis].map_or(0.0, |p| p.nm() as f64) + by[axis]), &step.modal);
+            if self.original(step.line).klartext().is_some_and(KlartextLine::is_lead) {
+                let same = |m: &&Move| (m.line, m.jumps) == (step.line, step.jumps);
+                let lead: Vec<Move> = after.iter().skip(index).take_while(same).copied().collect();
+                // Its first move has written it.
+                if !led {
+                    self.write_lead(&lead, by, false);
+                    led = true;
+                }
+                match lead.first() {
+                    Some(m) if m.is_straight() && !m.stands_still() => return Ok(Some((index, pen))),
+                    _ => continue,
+                }
+            }
             match step.kind {
                 _ if step.in_cycle() => {
                     let hole = after.iter().skip(index).take_while(|m| (m.line, m.jumps) == (step.line, step.jumps));
@@ -104,13 +119,13 @@ impl Writer<'_> {
     fn go_home(&mut self, pen: Pen, step: &Move, by: [f64; 2]) {
         let block = self.block(step.line);
         let to = [step.to.x, step.to.y];
-        let value = |axis: usize, letter| {
+        let value = |axis: usize| {
             let to = to[axis]?.nm() as f64;
-            let named = block.word(letter).is_some();
+            let named = block.names_axis(axis) && !block.klartext().is_some_and(|line| line.steps(axis));
             let needed = if step.modal.absolute { !named && by[axis] != 0.0 } else { named || by[axis] != 0.0 };
             needed.then(|| pen.value(axis, to))
         };
-        let values = [value(0, b'X'), value(1, b'Y')];
+        let values = [value(0), value(1)];
         if values.iter().any(Option::is_some) {
             let text = block.repositioned(values);
             self.replaced.insert(step.line, vec![text]);

@@ -88,7 +88,7 @@ impl Writer<'_> {
 
     /// Forgets the scheduled feed when a line between the last one written and `line` has an F word.
     pub(super) fn notice_feeds_before(&mut self, line: u32) {
-        let passed = self.feed.as_ref().is_some_and(|f| (f.line + 1..line).any(|l| self.block(l).word(b'F').is_some()));
+        let passed = self.feed.as_ref().is_some_and(|f| (f.line + 1..line).any(|l| self.block(l).has_feed()));
         if passed {
             self.feed = None;
         }
@@ -111,7 +111,8 @@ impl Writer<'_> {
     pub(super) fn restore_feed(&mut self) -> Result<(), Failure> {
         let Some(Scheduled { line, modal, .. }) = self.feed.take() else { return Ok(()) };
         let text = self.programmed_feed(line, &modal)?;
-        let text = self.original(line).alone(&format!("F{text}"));
+        let word = if self.manner.klartext { format!("L F{}", text.trim_end_matches('.')) } else { format!("F{text}") };
+        let text = self.original(line).alone(&word);
         if let Some(parts) = self.replaced.get_mut(&line) {
             parts.push(text);
         }

@@ -2,17 +2,24 @@
 
 use std::ops::Range;
 
-use truepath_core::gcode::{CORRECTED_MARK, Lines, Token, Words};
+use truepath_core::gcode::{CORRECTED_MARK, Dialect, KlartextBlock, Line, Lines, Statement, Token, Words};
 
 use super::edit::{Purpose, RewriteOptions};
 
 /// How the mark of a first pass begins.
-const FIRST_PASS: &str = "(TRUEPATH FIRST PASS";
+const FIRST_PASS: &str = "TRUEPATH FIRST PASS";
 /// What stands before the CRC-32 of the original.
-const ORIGINAL: &str = "(ORIGINAL CRC32 ";
+const ORIGINAL: &str = "ORIGINAL CRC32 ";
 
 /// How many lines stand before the mark: `%` and the program's name stay first, because controls look for them there.
-pub(super) fn place(program: &[u8]) -> u32 {
+/// In a conversational program it stands behind BEGIN PGM.
+pub(super) fn place(program: &[u8], dialect: Dialect) -> u32 {
+    if dialect.is_klartext() {
+        let begins = |line: &Line<'_>| {
+            KlartextBlock::of(*line).is_ok_and(|block| matches!(block.statement, Statement::Begin(_)))
+        };
+        return Lines::new(program).find(begins).map_or(0, |line| line.number);
+    }
     let mut after = 0;
     for line in Lines::new(program) {
         let tokens: Vec<_> = Words::new(line).map_while(Result::ok).collect();
@@ -30,7 +37,7 @@ pub(super) fn place(program: &[u8]) -> u32 {
 
 /// The lines of the mark.
 pub(super) fn text(crc: u32, options: &RewriteOptions, line_end: &[u8]) -> Vec<u8> {
-    let facts = format!("{ORIGINAL}{crc:08X}, TOLERANCE {} MM)", options.tolerance.nm() as f64 / 1e6);
+    let facts = format!("({ORIGINAL}{crc:08X}, TOLERANCE {} MM)", options.tolerance.nm() as f64 / 1e6);
     let named = |name: &str, crc: Option<u32>| crc.map(|crc| format!("({name} CRC32 {crc:08X})"));
     let origin = [named("JOB", options.origin.job), named("PROBE FILE", options.origin.probe)];
     let tool = format!("(WRITTEN BY TRUEPATH {})", env!("CARGO_PKG_VERSION"));
@@ -39,7 +46,7 @@ pub(super) fn text(crc: u32, options: &RewriteOptions, line_end: &[u8]) -> Vec<u
             (CORRECTED_MARK.to_owned(), "(DO NOT CORRECT AGAIN, DO NOT ARM A COPROCESSOR WITH THIS PROGRAM)".to_owned())
         }
         Purpose::FirstPass { left } => (
-            format!("{FIRST_PASS}, LEAVES {} MM)", left.nm() as f64 / 1e6),
+            format!("({FIRST_PASS}, LEAVES {} MM)", left.nm() as f64 / 1e6),
             "(PROBE THE WALL BEFORE THE SECOND PASS)".to_owned(),
         ),
     };
@@ -47,6 +54,11 @@ pub(super) fn text(crc: u32, options: &RewriteOptions, line_end: &[u8]) -> Vec<u
     let mut text = Vec::new();
     let lines = [mark, facts].into_iter().chain(origin.into_iter().flatten());
     for line in lines.chain([tool, warning]).chain(notes) {
+        let line = if options.program.dialect.is_klartext() {
+            format!("; {}", line.trim_start_matches('(').trim_end_matches(')'))
+        } else {
+            line
+        };
         text.extend_from_slice(line.as_bytes());
         text.extend_from_slice(line_end);
     }

@@ -29,6 +29,7 @@ mod feed;
 mod fit;
 mod grid;
 mod header;
+mod klartext;
 mod line;
 pub mod passes;
 mod pen;

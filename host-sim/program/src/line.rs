@@ -6,11 +6,23 @@ use std::ops::Range;
 
 use truepath_core::gcode::{Line, Motion, Token, Words, WrittenWord};
 
+use super::klartext::KlartextLine;
+
 /// A line with its tokens.
 pub(super) struct Block<'a> {
     line: Line<'a>,
     tokens: Vec<Token>,
     style: Style,
+    klartext: Option<KlartextLine<'a>>,
+}
+
+/// How the lines of a program are written.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Manner {
+    /// `G01` rather than `G1`, where a line has no G word of its own.
+    pub(super) two_digits: bool,
+    /// Conversational blocks instead of words of G-code.
+    pub(super) klartext: bool,
 }
 
 /// How the words of a line are spelt.
@@ -33,12 +45,13 @@ const PATH_CODES: [i64; 11] = [0, 10, 20, 30, 400, 410, 411, 420, 421, 900, 910]
 const AFTER_MOVE: [i64; 7] = [0, 1, 2, 5, 9, 30, 60];
 
 impl<'a> Block<'a> {
-    /// Takes a line apart; `two_digits` is how its G words are written when it has none.
-    pub(super) fn new(line: Line<'a>, two_digits: bool) -> Self {
+    /// Takes a line apart.
+    pub(super) fn new(line: Line<'a>, manner: Manner) -> Self {
+        let Manner { two_digits, klartext } = manner;
         // A line the interpreter has executed has no unreadable token.
-        let tokens: Vec<Token> = Words::new(line).map_while(Result::ok).collect();
-        let mut block =
-            Self { line, tokens, style: Style { gap: " ", lower: false, two_digits, ends_with_semicolon: false } };
+        let tokens: Vec<Token> = if klartext { Vec::new() } else { Words::new(line).map_while(Result::ok).collect() };
+        let style = Style { gap: " ", lower: false, two_digits, ends_with_semicolon: false };
+        let mut block = Self { line, tokens, style, klartext: klartext.then(|| KlartextLine::new(line)) };
         block.style = block.spelling();
         block
     }
@@ -73,12 +86,30 @@ impl<'a> Block<'a> {
     pub(super) fn word(&self, letter: u8) -> Option<&WrittenWord> {
         self.words().find(|w| w.letter == letter)
     }
+    /// The line as a conversational block.
+    pub(super) const fn klartext(&self) -> Option<&KlartextLine<'a>> {
+        self.klartext.as_ref()
+    }
+    /// Whether it names X (0) or Y (1).
+    pub(super) fn names_axis(&self, axis: usize) -> bool {
+        match &self.klartext {
+            Some(line) => line.names(axis),
+            None => self.word([b'X', b'Y'][axis]).is_some(),
+        }
+    }
+    /// Whether it has a word of F.
+    pub(super) fn has_feed(&self) -> bool {
+        self.klartext.as_ref().map_or_else(|| self.word(b'F').is_some(), KlartextLine::has_feed)
+    }
     /// G0, G1, G2 or G3, if the line has it.
     pub(super) fn motion_word(&self) -> Option<&WrittenWord> {
         self.words().find(|w| w.letter == b'G' && whole(w).is_some_and(|n| (0..=3).contains(&n)))
     }
     /// Whether the line says itself how it moves. A G word that is computed counts: what it names is not known here.
     pub(super) fn names(&self, motion: Motion) -> bool {
+        if self.klartext.is_some() {
+            return true;
+        }
         let tenths = Some(i64::from(motion.code().tenths()));
         let names = |w: &WrittenWord| w.value.is_none() || w.value.and_then(|v| v.exactly_times(10)) == tenths;
         self.motion_word().is_some() || self.words().any(|w| w.letter == b'G' && names(w))
@@ -133,10 +164,16 @@ impl<'a> Block<'a> {
     }
     /// Whether it has G41, G42, G41.1 or G42.1.
     pub(super) fn switches_compensation_on(&self) -> bool {
+        if let Some(line) = &self.klartext {
+            return line.switches_compensation_on();
+        }
         self.words().any(compensates)
     }
     /// The line without the words that switch compensation on, and without D.
     pub(super) fn without_compensation(&self) -> Vec<u8> {
+        if let Some(line) = &self.klartext {
+            return line.without_compensation();
+        }
         let words = self.words().filter(|w| compensates(w) || w.letter == b'D');
         let edits = words.map(|w| (self.with_blanks_before(self.word_range(w)), String::new()));
         self.edited(edits.collect())
@@ -211,6 +248,9 @@ impl<'a> Block<'a> {
 
     /// A line with nothing but these words.
     pub(super) fn alone(&self, words: &str) -> Vec<u8> {
+        if let Some(line) = &self.klartext {
+            return line.alone(words);
+        }
         let mut text = self.start();
         text.extend_from_slice(self.spelt(words).as_bytes());
         self.end(text)
@@ -234,6 +274,9 @@ impl<'a> Block<'a> {
 
     /// The line with the values of X and Y replaced where they are `Some`; a missing word is added beside the other.
     pub(super) fn repositioned(&self, values: [Option<String>; 2]) -> Vec<u8> {
+        if let Some(line) = &self.klartext {
+            return line.repositioned(values);
+        }
         let mut edits = Vec::new();
         let mut added = String::new();
         for (letter, value) in [b'X', b'Y'].into_iter().zip(values) {

@@ -4,6 +4,7 @@ use truepath_core::gcode::{Axes, Modal};
 
 use super::fit::Shape;
 use super::grid::Grid;
+use super::klartext::Drawn;
 
 /// A point of the plane, nanometres, program coordinates.
 pub(super) type Place = [f64; 2];
@@ -59,6 +60,17 @@ impl Pen {
         }
         self.at = target;
         words
+    }
+    /// The same as the values of a conversational block.
+    pub(super) fn drawn(&mut self, target: Place, shape: &Shape) -> Drawn {
+        let to = [0, 1].map(|axis| self.value(axis, target[axis]));
+        let text = |v: f64| self.grid.text(self.grid.steps_of(v));
+        let arc = match shape {
+            Shape::Arc { centre, counter_clockwise } => Some((centre.map(text), *counter_clockwise)),
+            Shape::Line => None,
+        };
+        self.at = target;
+        Drawn { to, arc }
     }
 }
 

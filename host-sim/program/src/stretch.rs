@@ -9,6 +9,7 @@ use super::deviation::distance;
 use super::edit::BlockEdit;
 use super::feed::spans;
 use super::fit::{Piece, Samples, Shape, fit};
+use super::klartext::KlartextLine;
 use super::pen::{Pen, place};
 use super::spacing::bulges;
 use super::survey::{Kind, Move};
@@ -49,15 +50,46 @@ impl Writer<'_> {
                 self.follow(pen.under(&step.modal), step);
                 self.state_motion(step);
             }
+            self.write_way_to_lead(&moves[..at], step);
             let cuts = &moves[at..];
             let count = cuts.iter().take_while(|m| m.line == edit.line && (m.cuts() || m.stands_still())).count();
-            self.edit(pen, &cuts[..count], edit, tolerance)?;
+            let covered = covered(&cuts[..count], edit, self.manner.klartext);
+            self.edit(pen, &cuts[..covered], edit, tolerance)?;
+            self.write_way_from_lead(pen, &cuts[covered..count]);
             edits.pop();
             at += count;
             end = at;
         }
         self.restore_feed()?;
         Ok(end)
+    }
+
+    /// The way of FMAX to a lead stands in the block of the lead.
+    fn write_way_to_lead(&mut self, before: &[Move], step: &Move) {
+        if self.replaced.contains_key(&step.line)
+            || !self.original(step.line).klartext().is_some_and(KlartextLine::is_lead)
+        {
+            return;
+        }
+        let same = before.iter().rev().take_while(|m| (m.line, m.jumps) == (step.line, step.jumps)).count();
+        let way = before[before.len() - same..].to_vec();
+        if !way.is_empty() {
+            self.write_lead(&way, [0.0; 2], true);
+        }
+    }
+
+    /// The way on from a lead stands in the block of the lead too; it ends where it did.
+    fn write_way_from_lead(&mut self, pen: &mut Pen, way: &[Move]) {
+        for step in way {
+            let Some(to) = place(step.to) else { continue };
+            *pen = pen.under(&step.modal);
+            let target = pen.nearest(to);
+            let drawn = pen.drawn(target, &Shape::Line);
+            let text = self.original(step.line).klartext().map(|line| line.further(&drawn, false, None));
+            if let (Some(parts), Some(text)) = (self.replaced.get_mut(&step.line), text) {
+                parts.extend(text);
+            }
+        }
     }
 
     /// Writes one line of the contour.
@@ -91,7 +123,9 @@ impl Writer<'_> {
                 && pen.is_at(from)
                 && Pen::new(end.map(|v| v as f64), &step.modal).is_at(to)
         };
-        if as_programmed && stays() && edit.samples.iter().all(|s| beside(s) <= 0.5 * tolerance) {
+        // A rounding behind the line turns with the line after it.
+        let rounded = block_is_rounded(cuts, self.manner.klartext);
+        if as_programmed && !rounded && stays() && edit.samples.iter().all(|s| beside(s) <= 0.5 * tolerance) {
             if self.motion != step.modal.motion && !step.modal.motion.is_some_and(|m| self.block(step.line).names(m)) {
                 self.state_motion(step);
             }
@@ -106,8 +140,10 @@ impl Writer<'_> {
         let max_radius =
             if straight { self.options.max_arc_radius.min(LARGEST_IN_LINES) } else { self.options.max_arc_radius };
         let block = self.original(step.line);
-        let own_feed = block.word(b'F').is_some();
-        let mut text: Vec<Vec<u8>> = Vec::new();
+        let own_feed = block.has_feed();
+        let is_lead = block.klartext().is_some_and(KlartextLine::is_lead);
+        let mut text: Vec<Vec<u8>> = self.replaced.get(&step.line).filter(|_| is_lead).cloned().unwrap_or_default();
+        let behind_way = !text.is_empty();
         for (k, &(from, to, percent)) in spans.iter().enumerate() {
             let samples = &edit.samples[from..=to];
             let (pieces, points) = pieces(pen, samples, &curves, within, max_radius);
@@ -116,10 +152,23 @@ impl Writer<'_> {
                     Shape::Line => Motion::Feed,
                     Shape::Arc { counter_clockwise, .. } => Motion::Arc { counter_clockwise },
                 };
-                let mut words = pen.draw(*target, &piece.shape);
                 let more = k + 1 < spans.len() || index + 1 < pieces.len();
                 let first = text.is_empty();
                 let feed = if index == 0 { self.feed_word(step, percent, first && own_feed)? } else { None };
+                if let Some(line) = block.klartext() {
+                    let drawn = pen.drawn(*target, &piece.shape);
+                    let feed = feed.as_deref().map(|feed| feed.trim_end_matches('.'));
+                    let own = line.feed().filter(|_| behind_way && k == 0 && index == 0);
+                    let feed = feed.or(own.as_deref());
+                    let centre = self.centre.contains(&step.line);
+                    text.extend(match (first, is_lead) {
+                        (true, false) => line.moved(&drawn, more, feed),
+                        (true, true) => line.lead(&drawn, false, centre, feed),
+                        (false, _) => line.further(&drawn, !more && !is_lead, feed),
+                    });
+                    continue;
+                }
+                let mut words = pen.draw(*target, &piece.shape);
                 text.push(if first {
                     block.moved(motion, self.motion != Some(motion), &words, more, feed.as_deref())
                 } else {
@@ -129,6 +178,7 @@ impl Writer<'_> {
                 self.motion = Some(motion);
             }
         }
+        self.rewritten.insert(step.line);
         self.replaced.insert(step.line, text);
         Ok(())
     }
@@ -158,6 +208,23 @@ impl Writer<'_> {
         }
         Ok(())
     }
+}
+
+/// How many of the moves of a line a corrected path covers: of a conversational lead, those up to where it ends.
+fn covered(cuts: &[Move], edit: &BlockEdit, klartext: bool) -> usize {
+    let Some(&end) = edit.samples.last().filter(|_| klartext && cuts.len() > 1) else { return cuts.len() };
+    let near = |step: &Move| place(step.to).is_some_and(|to| is_near(to, end));
+    cuts.iter().rposition(near).map_or(cuts.len(), |last| last + 1)
+}
+
+/// Whether two places are as near as a correction leaves them, 2 mm.
+pub(super) fn is_near(a: [i64; 2], b: [i64; 2]) -> bool {
+    (0..2).all(|axis| (a[axis] - b[axis]).abs() < 2_000_000)
+}
+
+/// Whether a conversational line has the moves of a rounding or a chamfer behind its own.
+fn block_is_rounded(cuts: &[Move], klartext: bool) -> bool {
+    klartext && cuts.iter().filter(|cut| cut.cuts()).count() > 1
 }
 
 /// Pieces through the samples from where the pen is, in program coordinates, and the places they end at.

@@ -6,8 +6,12 @@
 
 use std::collections::BTreeSet;
 
-use truepath_core::gcode::{Executed, HostMemory, Interpreter, Lines, Number, Options, Token, Words};
+use truepath_core::gcode::{
+    Executed, HostMemory, Interpreter, KlartextBlock, KlartextValue, Line, Lines, Number, Options, Statement, Token,
+    Words, klartext_letter as letter,
+};
 
+use super::klartext::{continues, first_number, numbered, without_number};
 use super::proof::same_steps;
 
 /// Blocks written at most.
@@ -15,6 +19,9 @@ const LONGEST: usize = 200_000;
 
 /// The program written out; `None` when it cannot be read, calls another file, becomes too long, or would not do the same.
 pub fn unrolled(program: &[u8], options: Options<'static>) -> Option<Vec<u8>> {
+    if options.dialect.is_klartext() {
+        return conversational(program, options);
+    }
     let end: &[u8] = if program.windows(2).any(|pair| pair == b"\r\n") { b"\r\n" } else { b"\n" };
     let percent = |line: &&&[u8]| line.first() == Some(&b'%');
     let lines: Vec<&[u8]> = Lines::new(program).map(|line| line.text).collect();
@@ -39,6 +46,73 @@ pub fn unrolled(program: &[u8], options: Options<'static>) -> Option<Vec<u8>> {
     read.ok()?;
     lines.last().filter(|_| lines.len() > 1).filter(percent).into_iter().for_each(|line| put(line));
     (!foreign && count <= LONGEST && same_steps(program, &text, options)).then_some(text)
+}
+
+/// The same for a conversational program: labels, calls, repetitions and jumps are gone, Q parameters are values. The
+/// values of a cycle stay with it, and END PGM at the end; blocks are numbered as they were.
+fn conversational(program: &[u8], options: Options<'static>) -> Option<Vec<u8>> {
+    let end: &[u8] = if program.windows(2).any(|pair| pair == b"\r\n") { b"\r\n" } else { b"\n" };
+    let lines: Vec<Line<'_>> = Lines::new(program).collect();
+    let mut text = Vec::new();
+    let mut count = 0usize;
+    let put = |text: &mut Vec<u8>, line: &[u8]| {
+        text.extend_from_slice(line);
+        text.extend_from_slice(end);
+    };
+    let mut memory = Box::new(HostMemory::new());
+    let read = Interpreter::new(options).run_observed(program, &mut memory.lend(), &mut |_| Ok(()), |block| {
+        count += 1;
+        if count > LONGEST || block.steers {
+            return;
+        }
+        put(&mut text, &conversational_line(block));
+        // What belongs to CYCL DEF: values in lines of their own.
+        if KlartextBlock::of(block.line).is_ok_and(|b| matches!(b.statement, Statement::Cycle(..))) {
+            let behind = lines.iter().skip(block.source.line as usize);
+            let values = |line: &&Line<'_>| {
+                KlartextBlock::of(**line).is_ok_and(|b| b.statement == Statement::Assignment && b.number.is_none())
+            };
+            behind.take_while(values).for_each(|line| put(&mut text, line.text));
+        }
+    });
+    read.ok()?;
+    let ends = |line: &&Line<'_>| KlartextBlock::of(**line).is_ok_and(|b| b.statement == Statement::End);
+    let last = lines.iter().find(ends)?;
+    let closing = without_number(last.text).trim_ascii();
+    if !text.trim_ascii_end().ends_with(closing) {
+        put(&mut text, closing);
+    }
+    if let Some(first) = first_number(program) {
+        text = numbered(&text, first, continues);
+    }
+    (count <= LONGEST && same_steps(program, &text, options)).then_some(text)
+}
+
+/// The line of an executed conversational block, without its number and with the values of its Q parameters.
+fn conversational_line(block: &Executed<'_>) -> Vec<u8> {
+    let base = block.line.span().start;
+    let mut text = block.line.text.to_vec();
+    let Ok(parsed) = KlartextBlock::of(block.line) else { return text };
+    let words: Vec<_> = parsed.words().map_while(Result::ok).collect();
+    for word in words.iter().rev().filter(|w| matches!(w.value, KlartextValue::Parameter { .. })) {
+        let value = block.words.iter().find(|given| given.span == word.span).map(|given| given.value);
+        if let Some(Number::Computed(value)) = value {
+            let range = word.value_span.start - base..word.value_span.end() - base;
+            let number = decimal(value);
+            let number = number.trim_end_matches('.');
+            let sign = if number.starts_with('-') { "" } else { "+" };
+            let unsigned = matches!(word.letter, letter::FEED | letter::SPEED | letter::FUNCTION | letter::TOOL);
+            let number = if unsigned { number.to_owned() } else { format!("{sign}{number}") };
+            text.splice(range, number.into_bytes());
+        }
+    }
+    if let Some(number) = parsed.number {
+        let (from, to) = (number.start - base, number.end() - base);
+        let behind = text[to..].trim_ascii_start().to_vec();
+        text.truncate(from);
+        text.extend(behind);
+    }
+    text
 }
 
 /// The line of an executed block; its block number only the first time.
@@ -126,6 +200,19 @@ mod tests {
         let program = "%\nO1\nG21 G90\nG0 X0 Y0 Z2\nM98 P7 L2\nM30\nO7\nN1 G91 G1 Z-2. F99\nG90\nM99\n%\n";
         let text = unrolled(program.as_bytes(), options).expect("a program that can be written out");
         let expected = "%\nO1\nG21 G90\nG0 X0 Y0 Z2\nN1 G91 G1 Z-2. F99\nG90\nG91 G1 Z-2. F99\nG90\nM30\n%\n";
+        assert_eq!(String::from_utf8(text).unwrap(), expected);
+    }
+
+    #[test]
+    fn labels_of_conversational_programs_become_lines() {
+        let options = Options { dialect: truepath_core::gcode::Dialect::Heidenhain, ..Options::default() };
+        let program = "0 BEGIN PGM A MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-9\n2 Q1 = -2\n3 L X+0 Y+0 Z+2 R0 FMAX M3\n4 LBL 1\n\
+            5 L Z+Q1 FQ9 F200 ; down\n6 L X+10\n7 Q1 = Q1 - 2\n8 L X+0\n9 CALL LBL 1 REP 1\n10 CALL LBL \"up\"\n11 L M30\n\
+            12 LBL \"up\"\n13 L Z+50 FMAX\n14 LBL 0\n15 END PGM A MM\n";
+        let text =
+            unrolled(program.replace("FQ9 ", "").as_bytes(), options).expect("a program that can be written out");
+        let expected = "0 BEGIN PGM A MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-9\n2 L X+0 Y+0 Z+2 R0 FMAX M3\n3 L Z-2 F200 ; down\n\
+            4 L X+10\n5 L X+0\n6 L Z-4 F200 ; down\n7 L X+10\n8 L X+0\n9 L Z+50 FMAX\n10 L M30\n11 END PGM A MM\n";
         assert_eq!(String::from_utf8(text).unwrap(), expected);
     }
 

@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use truepath_core::gcode::{Line, Modal, Motion};
+use truepath_core::gcode::{KlartextBlock, Line, Modal, Motion, Statement};
 use truepath_ground::codes::Row;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::edit::RewriteOptions;
-use super::line::Block;
+use super::klartext::Drawn;
+use super::line::{Block, Manner};
 use super::pen::Pen;
 use super::survey::Move;
 use crate::codes::P004;
@@ -31,12 +32,14 @@ pub(super) struct Writer<'a> {
     pub(super) lines: Vec<Line<'a>>,
     pub(super) options: &'a RewriteOptions,
     pub(super) replaced: Replaced,
-    pub(super) two_digits: bool,
+    pub(super) manner: Manner,
     /// The motion in force in the written text.
     pub(super) motion: Option<Motion>,
     pub(super) unchanged: usize,
     /// Lines whose words lead beside the path of the cutter's centre: they are never kept.
     pub(super) centre: BTreeSet<u32>,
+    /// Lines of the contour that are written anew.
+    pub(super) rewritten: BTreeSet<u32>,
     /// The feed in force in the written text, where it is another one than in the program.
     pub(super) feed: Option<Scheduled>,
 }
@@ -44,7 +47,7 @@ pub(super) struct Writer<'a> {
 impl<'a> Writer<'a> {
     /// A line as it was.
     pub(super) fn original(&self, number: u32) -> Block<'a> {
-        Block::new(self.line(number), self.two_digits)
+        Block::new(self.line(number), self.manner)
     }
     /// Its text; nothing for a line of another file.
     fn line(&self, number: u32) -> Line<'a> {
@@ -53,11 +56,13 @@ impl<'a> Writer<'a> {
     }
     /// A line as it stands now.
     pub(super) fn block(&self, number: u32) -> Block<'_> {
-        let line = match self.replaced.get(&number).and_then(|lines| lines.first()) {
+        // A pole stands before its arc.
+        let of = |lines: &'_ Vec<Vec<u8>>| if self.manner.klartext { lines.len().saturating_sub(1) } else { 0 };
+        let line = match self.replaced.get(&number).and_then(|lines| lines.get(of(lines))) {
             Some(text) => Line { number, start: 0, text },
             None => self.line(number),
         };
-        Block::new(line, self.two_digits)
+        Block::new(line, self.manner)
     }
     pub(super) fn refusal(&self, row: Row, line: u32, texts: [&str; 3]) -> Failure {
         let span = self.line(line).span();
@@ -108,8 +113,7 @@ impl<'a> Writer<'a> {
             return;
         }
         let block = self.block(step.line);
-        let value = |axis: usize, letter| block.word(letter).map(|_| pen.value(axis, pen.at[axis]));
-        let values = [value(0, b'X'), value(1, b'Y')];
+        let values = [0, 1].map(|axis| block.names_axis(axis).then(|| pen.value(axis, pen.at[axis])));
         if values.iter().any(Option::is_some) {
             let text = block.repositioned(values);
             self.replaced.insert(step.line, vec![text]);
@@ -122,12 +126,26 @@ impl<'a> Writer<'a> {
         let to = step.to.point()?;
         let target = [to.x.nm() as f64 + by[0], to.y.nm() as f64 + by[1]];
         let block = self.block(step.line);
+        if let Some(line) = block.klartext() {
+            // The pole may be that of other arcs, and a tangent arc follows what stands before it.
+            let grid = pen.grid();
+            let arc = step.curve().and_then(|curve| match curve.shape() {
+                truepath_core::geometry::Shape::Arc { centre, sweep } => {
+                    let centre = [centre.x.nm() as f64 + by[0], centre.y.nm() as f64 + by[1]];
+                    Some((centre.map(|v| grid.text(grid.steps_of(v))), sweep.bits() > 0))
+                }
+                truepath_core::geometry::Shape::Line => None,
+            });
+            let drawn = Drawn { to: [0, 1].map(|axis| pen.value(axis, target[axis])), arc };
+            let text = line.moved(&drawn, false, None);
+            self.replaced.insert(step.line, text);
+            return Some(Pen::new(target, &step.modal));
+        }
         let mut text = None;
         if step.modal.absolute {
-            let value = |axis: usize, letter| {
-                (block.word(letter).is_some() || by[axis] != 0.0).then(|| pen.value(axis, target[axis]))
-            };
-            text = Some(block.repositioned([value(0, b'X'), value(1, b'Y')]));
+            let value =
+                |axis: usize| (block.names_axis(axis) || by[axis] != 0.0).then(|| pen.value(axis, target[axis]));
+            text = Some(block.repositioned([value(0), value(1)]));
         }
         if step.modal.absolute_centres
             && let Some(curve) = step.curve()
@@ -137,7 +155,7 @@ impl<'a> Writer<'a> {
             let centre = [centre.x.nm() as f64 + by[0], centre.y.nm() as f64 + by[1]];
             let grid = pen.grid();
             text = Some(
-                Block::new(line, self.two_digits)
+                Block::new(line, self.manner)
                     .with_values([(b'I', 0), (b'J', 1)].map(|(l, axis)| (l, grid.text(grid.steps_of(centre[axis]))))),
             );
         }
@@ -145,5 +163,28 @@ impl<'a> Writer<'a> {
             self.replaced.insert(step.line, vec![text]);
         }
         Some(Pen::new(target, &step.modal))
+    }
+
+    /// Roundings and chamfers that the control was to cut behind lines written anew are part of the path now: their
+    /// blocks become comments.
+    pub(super) fn replace_corners(&mut self, raw: &[Line<'_>]) {
+        for pair in 0..raw.len() {
+            let number = raw[pair].number;
+            if !self.rewritten.contains(&number) {
+                continue;
+            }
+            for line in &raw[pair + 1..] {
+                let Ok(block) = KlartextBlock::of(*line) else { break };
+                if block.statement.is_corner() {
+                    let text = self.original(line.number).klartext().map(|l| l.commented());
+                    text.into_iter().for_each(|text| {
+                        self.replaced.insert(line.number, vec![text]);
+                    });
+                }
+                if block.statement != Statement::Empty {
+                    break;
+                }
+            }
+        }
     }
 }

@@ -13,7 +13,8 @@ use truepath_ground::diagnostics::{Failure, Source};
 use super::centre_path;
 use super::edit::{BlockEdit, RewriteOptions};
 use super::header;
-use super::line::Block;
+use super::klartext;
+use super::line::{Block, Manner};
 use super::survey::Move;
 use super::writer::{Replaced, Writer};
 use crate::codes::P008;
@@ -40,18 +41,30 @@ pub(super) fn write(
     options: &RewriteOptions,
 ) -> Result<Written, Failure> {
     let raw: Vec<Line<'_>> = Lines::new(source.bytes()).collect();
-    let two_digits = raw.iter().map(|&l| Block::new(l, false)).any(|b| b.motion_word().is_some() && b.two_digits());
+    let conversational = options.program.dialect.is_klartext();
+    let mut manner = Manner { two_digits: false, klartext: conversational };
+    manner.two_digits = raw.iter().map(|&l| Block::new(l, manner)).any(|b| b.motion_word().is_some() && b.two_digits());
     let compensated = centre_path::stretches(moves, edits);
     let noted = centre_path::noted(options);
     let options = if compensated.is_empty() { options } else { &noted };
-    let switches = centre_path::without_switches(&raw, moves, &compensated);
+    let switches = centre_path::without_switches(&raw, moves, &compensated, manner);
     let stripped = switches.as_ref().cloned().unwrap_or_default();
     let text = |l: &Line<'_>| stripped.get(&l.number).map(Vec::as_slice);
     let lines: Vec<Line<'_>> = raw.iter().map(|l| Line { text: text(l).unwrap_or(l.text), ..*l }).collect();
     let replaced: Replaced = stripped.iter().map(|(&line, text)| (line, vec![text.clone()])).collect();
     let centre = BTreeSet::new();
-    let mut writer =
-        Writer { source, lines, options, replaced, two_digits, motion: None, unchanged: 0, centre, feed: None };
+    let mut writer = Writer {
+        source,
+        lines,
+        options,
+        replaced,
+        manner,
+        motion: None,
+        unchanged: 0,
+        centre,
+        rewritten: BTreeSet::new(),
+        feed: None,
+    };
     if edits.is_empty() {
         return Err(Failure::Internal("there is no line to correct".to_owned()));
     }
@@ -83,6 +96,10 @@ pub(super) fn write(
         writer.depart(pen, &moves[at - 1], &moves[at..])?;
     }
     writer.refuse_repetition(moves, writer.replaced.keys().copied())?;
+    if conversational {
+        writer.replace_corners(&raw);
+        klartext::with_poles(&raw, &mut writer.replaced);
+    }
     let (text, head) = assemble(source.bytes(), &raw, &writer.replaced, options);
     let touched = writer.replaced.iter().map(|(&line, parts)| (line, parts.len())).collect();
     Ok(Written { text, head, touched, unchanged: writer.unchanged, centre_path: !compensated.is_empty() })
@@ -99,7 +116,7 @@ fn assemble(
     let ends: Vec<&[u8]> = lines.iter().zip(next_starts).map(|(l, next)| &program[l.span().end()..next]).collect();
     let usual = ends.iter().copied().find(|end| !end.is_empty()).unwrap_or(b"\n");
     let head = header::text(options.origin.program.unwrap_or_else(|| program_crc(program)), options, usual);
-    let head_after = header::place(program);
+    let head_after = header::place(program, options.program.dialect);
 
     let mut text = program[..lines.first().map_or(0, |l| l.start)].to_vec();
     if head_after == 0 {
@@ -116,6 +133,11 @@ fn assemble(
         if line.number == head_after {
             text.extend_from_slice(&head);
         }
+    }
+    if options.program.dialect.is_klartext()
+        && let Some(first) = klartext::first_number(program)
+    {
+        text = klartext::numbered(&text, first, klartext::continues);
     }
     (text, (head_after, head))
 }

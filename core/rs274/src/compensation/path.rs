@@ -52,10 +52,10 @@ pub enum StartUp {
 
 impl StartUp {
     /// That of a dialect: the next move's on Fanuc and Haas set to start-up type A, as they are delivered, and with Siemens'
-    /// NORM, whatever the first move's own length and direction.
+    /// NORM, whatever the first move's own length and direction; a TNC leads to beside the start of the contour too.
     pub const fn of(dialect: Dialect) -> Self {
         match dialect {
-            Dialect::Fanuc | Dialect::Haas | Dialect::Siemens => Self::Next,
+            Dialect::Fanuc | Dialect::Haas | Dialect::Siemens | Dialect::Heidenhain => Self::Next,
             Dialect::Linuxcnc | Dialect::Mach => Self::Own,
         }
     }

@@ -79,6 +79,12 @@ impl<'p> CompensationStage<'p> {
         }
     }
 
+    /// Takes it that the caller has named that place: the next move begins where it says.
+    #[cfg(feature = "klartext")]
+    pub(crate) fn forget_place_left(&mut self) {
+        self.beside = None;
+    }
+
     /// Takes a step; what may go on afterwards is [`Self::next`].
     ///
     /// # Errors

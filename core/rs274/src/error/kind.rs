@@ -2,7 +2,9 @@
 
 use super::super::text::{Byte, Letter};
 use super::super::{GCode, LineRange};
-use super::{CompensationError, CornerError, CycleError, ExpressionError, FlowError, ParameterError, SettingError};
+use super::{
+    CompensationError, CornerError, CycleError, ExpressionError, FlowError, KlartextError, ParameterError, SettingError,
+};
 use truepath_units::{Millimetres, Offset, errors};
 
 /// A language that is not G-code as read here.
@@ -49,7 +51,7 @@ errors! {
         /// The program is in another language.
         ForeignDialect(language: Foreign) = "G009",
             if matches!(language, Foreign::Heidenhain) =>
-                "this is a Heidenhain conversational program (BEGIN PGM), not G-code; post it for an ISO control";
+                "this is a HEIDENHAIN conversational program (BEGIN PGM); name dialect heidenhain. Where that is named the firmware of a board says so, which does not read it: use the PC";
             if matches!(language, Foreign::Siemens) =>
                 "this is a word of Siemens' own language, of which some are read in dialect siemens; name that dialect, or write origins by G54 to G59 and cycles as moves, or post the program for ISO mode";
             "an E word: this is a 3D printer's program, or a number with an exponent; post it for a milling machine, with plain numbers";
@@ -250,6 +252,8 @@ errors! {
         Corner(error: CornerError) = error.code(), "{error}";
         /// An offset, a tool, a mode.
         Setting(error: SettingError) = error.code(), "{error}";
+        /// A conversational block.
+        Klartext(error: KlartextError) = error.code(), "{error}";
     }
 }
 
@@ -271,5 +275,6 @@ themes!(
     Flow(FlowError),
     Cycle(CycleError),
     Corner(CornerError),
-    Setting(SettingError)
+    Setting(SettingError),
+    Klartext(KlartextError)
 );

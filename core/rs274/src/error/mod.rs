@@ -3,7 +3,7 @@
 //! Every kind has a code that never changes its meaning (`G00…` lexical, `G02…` one block, `G03…` a code, `G04…` motion,
 //! `G05…` arcs and corners, `G11…` corners, `G07…` the contour, `G08…` parameters, `G12…` and `G13…` cutter compensation,
 //! `G14…` and `G15…` the order of blocks, `G16…` and
-//! `G17…` expressions) and carries both sides of a mismatch.
+//! `G17…` expressions, `G18…` … `G21…` conversational programs) and carries both sides of a mismatch.
 
 mod compensation;
 mod corner;
@@ -11,6 +11,7 @@ mod cycle;
 mod expression;
 mod flow;
 mod kind;
+mod klartext;
 mod parameter;
 mod setting;
 
@@ -24,6 +25,7 @@ pub use cycle::CycleError;
 pub use expression::ExpressionError;
 pub use flow::FlowError;
 pub use kind::{Foreign, GcodeErrorKind};
+pub use klartext::KlartextError;
 pub use parameter::ParameterError;
 pub use setting::SettingError;
 

@@ -82,7 +82,19 @@ where
     }
 
     /// The diameter that D, or the tool in the spindle, has; `None` where the program is the path of the centre.
-    fn diameter_of_table(&mut self, block: &mut BlockWords, span: Span) -> Result<Option<Offset>, GcodeError> {
+    pub(super) fn diameter_of_table(
+        &mut self,
+        block: &mut BlockWords,
+        span: Span,
+    ) -> Result<Option<Offset>, GcodeError> {
+        let diameter = self.diameter_by_options(block, span)?;
+        // DR of a conversational TOOL CALL.
+        #[cfg(feature = "klartext")]
+        let diameter = diameter.map(|d| d + self.klartext.oversize + self.klartext.oversize);
+        Ok(diameter)
+    }
+
+    fn diameter_by_options(&mut self, block: &mut BlockWords, span: Span) -> Result<Option<Offset>, GcodeError> {
         let word = block.use_word(b'D');
         if let Some(word) = word {
             self.modal.radius_offset = Some(self.whole(word)?);
@@ -146,6 +158,10 @@ where
 
     /// Gives a step that has waited to the sink; what it answers is an error at the step's block.
     fn give(&mut self, step: &Waiting<'p>) -> Result<(), GcodeError> {
+        #[cfg(feature = "klartext")]
+        if self.is_way_of_lead(step) {
+            return Ok(());
+        }
         let Some(sink) = self.sink.take() else {
             return Ok(());
         };

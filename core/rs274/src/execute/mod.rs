@@ -13,6 +13,7 @@
 //! | `cycle.rs`, `cycle_words.rs` | canned cycles |
 //! | `curve.rs`, `spline.rs` | splines, and their flattening |
 //! | `memory.rs` | what codes remember from block to block |
+//! | `klartext/` | conversational blocks |
 //! | `readout.rs` | parameters that follow the machine |
 
 mod arc;
@@ -25,6 +26,10 @@ mod curve;
 mod cycle;
 mod cycle_words;
 mod home;
+#[cfg(feature = "klartext")]
+mod klartext;
+#[cfg(feature = "klartext")]
+mod klartext_memory;
 mod memory;
 mod modes;
 mod motion;
@@ -91,6 +96,8 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     saved: [Option<SavedModes>; LEVELS],
     /// Modes that come back before the next block.
     returning: Option<SavedModes>,
+    #[cfg(feature = "klartext")]
+    klartext: klartext_memory::KlartextMemory<'p>,
 }
 
 impl<S> Surroundings for Execution<'_, '_, '_, S> {
@@ -145,8 +152,16 @@ where
             changed_tools: heapless::Vec::new(),
             saved: [None; LEVELS],
             returning: None,
+            #[cfg(feature = "klartext")]
+            klartext: klartext_memory::KlartextMemory::default(),
         };
         execution.modal.absolute_centres = options.arc_centres == ArcCentres::Absolute;
+        #[cfg(feature = "klartext")]
+        if options.dialect.is_klartext() {
+            // Poles are places.
+            execution.modal.absolute_centres = true;
+            execution.centres = ArcCentres::Absolute;
+        }
         execution.load_machine();
         execution
     }
@@ -158,6 +173,10 @@ where
         self.source = sentence.source;
         if sentence.line.text.contains(&b'\r') {
             self.warn(WarningKind::ReturnInLine, sentence.line.span());
+        }
+        #[cfg(feature = "klartext")]
+        if self.options.dialect.is_klartext() {
+            return self.klartext(sentence);
         }
         self.restore_returning()?;
         let mut block = BlockWords::gather(sentence, self.options.dialect)?;
@@ -241,7 +260,13 @@ where
     /// The bytes of the block without the blanks around them.
     pub(super) fn block_span(&self) -> Span {
         let text = self.line.text;
-        let lead = text.len().saturating_sub(text.trim_ascii_start().len());
-        Span { start: self.line.start.saturating_add(lead), len: text.trim_ascii().len() }
+        let mut behind = text.trim_ascii_start();
+        if self.options.dialect.is_klartext() {
+            // The block number is no part of it.
+            let digits = behind.iter().take_while(|b| b.is_ascii_digit()).count();
+            behind = behind.get(digits..).unwrap_or(&[]).trim_ascii_start();
+        }
+        let lead = text.len().saturating_sub(behind.len());
+        Span { start: self.line.start.saturating_add(lead), len: behind.trim_ascii_end().len() }
     }
 }

@@ -93,7 +93,7 @@ impl<'p> Reader<'p> {
     }
 
     /// The end of a subprogram: its next turn, or back.
-    fn turn(&mut self, machine: &mut impl Surroundings) {
+    pub(super) fn turn(&mut self, machine: &mut impl Surroundings) {
         self.jumps = self.jumps.saturating_add(1);
         let depth = self.calls.len() as u8;
         if let Some(call) = self.calls.last_mut()

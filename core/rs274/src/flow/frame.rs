@@ -20,6 +20,10 @@ pub(in super::super) struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
+    /// Of a file in a language without `%`.
+    pub(in super::super) const WHOLE: Self =
+        Self { open: 1, close: u32::MAX - 1, outside: None, last: Line { number: 1, start: 0, text: &[] } };
+
     /// Of a file.
     pub(in super::super) fn of(program: &'a [u8]) -> Self {
         let percents = || Lines::new(program).filter(|l| first_byte(l) == Some(b'%'));

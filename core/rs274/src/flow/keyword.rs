@@ -54,17 +54,17 @@ impl Keyword {
 
 /// The name of a label: its letters or digits, mixed to 64 bits (FNV-1a).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Label(u64);
+pub(in super::super) struct Label(u64);
 
 impl Label {
     /// From a name in lower case without blanks.
-    pub(super) fn new(name: &[u8]) -> Self {
+    pub(in super::super) fn new(name: &[u8]) -> Self {
         let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01B3);
         Self(name.iter().fold(0xCBF2_9CE4_8422_2325, step))
     }
 
     /// From a number.
-    pub(super) fn numbered(number: u32) -> Self {
+    pub(in super::super) fn numbered(number: u32) -> Self {
         Self::new(&digits(number))
     }
 }

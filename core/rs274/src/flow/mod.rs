@@ -5,6 +5,8 @@ mod call;
 mod control;
 mod frame;
 mod keyword;
+#[cfg(feature = "klartext")]
+mod klartext;
 mod next;
 mod open;
 mod place;

@@ -24,13 +24,13 @@ pub(in super::super) struct Reader<'p> {
     /// The line being read.
     pub(super) line: Line<'p>,
     frame: Frame<'p>,
-    skip_block_delete: bool,
+    pub(super) skip_block_delete: bool,
     block_limit: u32,
     blocks: u32,
 }
 
 /// What a line turned out to be.
-enum Read {
+pub(super) enum Read {
     Empty,
     Block,
     /// A statement that steers the program.
@@ -50,7 +50,7 @@ impl<'p> Reader<'p> {
             jumps: 0,
             ended: false,
             line: Line { number: 1, start: 0, text: &[] },
-            frame: Frame::of(program.text),
+            frame: if options.dialect.is_klartext() { Frame::WHOLE } else { Frame::of(program.text) },
             skip_block_delete: options.skip_block_delete,
             block_limit: options.block_limit,
             blocks: 0,
@@ -81,6 +81,8 @@ impl<'p> Reader<'p> {
             match self.read(machine, sentence)? {
                 Read::Empty => {}
                 Read::Block => return Ok(true),
+                #[cfg(feature = "klartext")]
+                Read::Control(_) if self.dialect.is_klartext() => self.steer_klartext(machine)?,
                 Read::Control(span) => self.steer(span, machine)?,
             }
         }
@@ -89,7 +91,8 @@ impl<'p> Reader<'p> {
 
     /// The first line with text behind the end of the program, unless that is a subprogram.
     pub(in super::super) fn text_after_end(&mut self) -> Option<Line<'p>> {
-        if !self.calls.is_empty() {
+        // Labels stand behind M30.
+        if !self.calls.is_empty() || self.dialect.is_klartext() {
             return None;
         }
         let (lines, frame) = (&mut self.place.lines, &self.frame);
@@ -126,6 +129,10 @@ impl<'p> Reader<'p> {
         sentence.words.clear();
         sentence.block_delete = None;
         sentence.has_comments = false;
+        #[cfg(feature = "klartext")]
+        if self.dialect.is_klartext() {
+            return self.klartext(machine, sentence);
+        }
         let mut assignments = Assignments::new();
         let mut begun = false;
         for token in Words::new(line) {

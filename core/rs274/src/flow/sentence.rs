@@ -38,6 +38,14 @@ pub(in super::super) struct Sentence<'p> {
     pub(in super::super) block_delete: Option<Span>,
     /// Whether it has comments.
     pub(in super::super) has_comments: bool,
+    /// What a conversational block does, and what stands behind the words that say so.
+    #[cfg(feature = "klartext")]
+    pub(in super::super) statement: super::super::Statement,
+    #[cfg(feature = "klartext")]
+    pub(in super::super) rest: Span,
+    /// Its comment, from `;` on.
+    #[cfg(feature = "klartext")]
+    pub(in super::super) comment: Option<Span>,
 }
 
 impl<'p> Sentence<'p> {
@@ -50,10 +58,16 @@ impl<'p> Sentence<'p> {
             words: heapless::Vec::new(),
             block_delete: None,
             has_comments: false,
+            #[cfg(feature = "klartext")]
+            statement: super::super::Statement::Empty,
+            #[cfg(feature = "klartext")]
+            rest: Span { start: 0, len: 0 },
+            #[cfg(feature = "klartext")]
+            comment: None,
         }
     }
 
-    pub(super) fn push(&mut self, word: Word) -> Result<(), GcodeErrorKind> {
+    pub(in super::super) fn push(&mut self, word: Word) -> Result<(), GcodeErrorKind> {
         self.words.push(word).map_err(|_| GcodeErrorKind::TooManyWords { limit: WORDS as u8 })
     }
 }

@@ -91,7 +91,7 @@ const TABLE: &[(&[u8], &str)] = &[
     ),
     (
         b"0 BEGIN PGM CORNER MM\n1 L X+0",
-        "line 1, column 1: G009: this is a Heidenhain conversational program (BEGIN PGM), not G-code; post it for an ISO control",
+        "line 1, column 1: G009: this is a HEIDENHAIN conversational program (BEGIN PGM); name dialect heidenhain. Where that is named the firmware of a board says so, which does not read it: use the PC",
     ),
     (
         b"S\nG1 X1 E0.4",

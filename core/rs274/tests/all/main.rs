@@ -11,6 +11,8 @@ mod disturbed;
 mod errors;
 mod flow;
 mod interpret;
+#[cfg(feature = "klartext")]
+mod klartext;
 mod machine;
 mod properties;
 mod search;

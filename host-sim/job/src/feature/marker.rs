@@ -3,7 +3,7 @@
 //! `END` may repeat the name. Markers are found in the text, not in the order of execution, so that a subprogram can
 //! hold them; they do not nest, and a name is used once.
 
-use truepath_core::gcode::{LineRange, Lines, Token, Words};
+use truepath_core::gcode::{KlartextBlock, Line, LineRange, Lines, Span, Token, Words};
 use truepath_ground::codes::Row;
 use truepath_ground::diagnostics::{InputError, Source};
 
@@ -33,8 +33,7 @@ pub(super) fn marked(program: &Source) -> Result<Vec<Marked>, InputError> {
     let mut list: Vec<Marked> = Vec::new();
     let mut open: Option<Marked> = None;
     for line in Lines::new(bytes) {
-        for token in Words::new(line).map_while(Result::ok) {
-            let Token::Comment { span, body } = token else { continue };
+        for (span, body) in comments(line) {
             let Some(marker) = marker(&String::from_utf8_lossy(body.of(bytes))) else { continue };
             let span = span.start..span.end();
             let error = |row: Row, found: String, expected: &str, help: &str| {
@@ -83,6 +82,23 @@ pub(super) fn marked(program: &Source) -> Result<Vec<Marked>, InputError> {
     }
 }
 
+/// The comments of a line, with what is inside them; in a line that is no G-code, that of a conversational block.
+pub(crate) fn comments(line: Line<'_>) -> Vec<(Span, Span)> {
+    let mut found = Vec::new();
+    for token in Words::new(line) {
+        match token {
+            Ok(Token::Comment { span, body }) => found.push((span, body)),
+            Ok(_) => {}
+            Err(_) => {
+                let comment = KlartextBlock::of(line).ok().and_then(|block| block.comment);
+                let body = |span: Span| Span { start: span.start + 1, len: span.len - 1 };
+                return comment.map_or(found, |span| vec![(span, body(span))]);
+            }
+        }
+    }
+    found
+}
+
 /// What a comment marks; `None` for a comment about something else.
 fn marker(comment: &str) -> Option<Marker> {
     let mut words = comment.split_whitespace();
@@ -117,6 +133,9 @@ mod tests {
                 .unwrap();
         let found: Vec<_> = list.iter().map(|m| (m.id.as_str(), m.lines.first, m.lines.last)).collect();
         assert_eq!(found, [("a-1", 2, 4), ("b", 5, 6)]);
+        let list = scan("0 BEGIN PGM A MM\n1 ; TRUEPATH BEGIN c\n2 L X+1 F100\n3 L X+2 ; TRUEPATH END\n").unwrap();
+        let found: Vec<_> = list.iter().map(|m| (m.id.as_str(), m.lines.first, m.lines.last)).collect();
+        assert_eq!(found, [("c", 2, 4)]);
     }
 
     #[test]

@@ -17,6 +17,7 @@ mod choice;
 mod doubt;
 mod listing;
 mod marker;
+pub(crate) use marker::comments;
 mod place;
 mod plan;
 mod region;

@@ -3,7 +3,7 @@
 //! `blocks` are N words when the program has any, and line numbers when it has none; `lines` are always line numbers.
 //! An N word that the program uses more than once names no place.
 
-use truepath_core::gcode::{LineRange, Lines, Token, Words};
+use truepath_core::gcode::{KlartextBlock, LineRange, Lines, Token, Words};
 use truepath_ground::codes::Row;
 use truepath_ground::diagnostics::{InputError, Source};
 
@@ -80,10 +80,16 @@ fn by_lines(first: u32, last: u32, program: &Source) -> Result<LineRange, (Strin
     ))
 }
 
-/// The whole N words of a program with their lines.
+/// The whole N words of a program with their lines, or its conversational block numbers.
 fn numbers(program: &Source) -> Vec<(u32, u32)> {
     let mut list = Vec::new();
     for line in Lines::new(program.bytes()) {
+        let conversational = Words::new(line).next().is_none_or(|token| token.is_err());
+        if conversational && let Some(span) = KlartextBlock::of(line).ok().and_then(|block| block.number) {
+            let digits = std::str::from_utf8(span.of(program.bytes())).ok();
+            list.extend(digits.and_then(|d| d.parse().ok()).map(|n| (n, line.number)));
+            continue;
+        }
         for token in Words::new(line).map_while(Result::ok) {
             let Token::Word(word) = token else { continue };
             if word.letter == b'N' {

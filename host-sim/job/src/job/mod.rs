@@ -42,7 +42,7 @@ pub use check_pocket::{Mode, PerSection, PocketTable};
 pub use check_probe::{FORMATS, ProbeFlags, columns, one_of};
 pub use check_tool::Shank;
 pub use material::{MATERIALS, Material};
-pub use open::{Assumed, DIALECTS, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, dialect_name};
+pub use open::{Assumed, DIALECTS, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, WORD_DIALECTS, dialect_name};
 
 pub(crate) use check_feature::is_id;
 

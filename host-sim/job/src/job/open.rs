@@ -38,13 +38,17 @@ impl Assumed {
 }
 
 /// Names of the controls a program may be written for.
-pub const DIALECTS: [(&str, Dialect); 5] = [
+pub const DIALECTS: [(&str, Dialect); 6] = [
     ("linuxcnc", Dialect::Linuxcnc),
     ("fanuc", Dialect::Fanuc),
     ("haas", Dialect::Haas),
     ("siemens", Dialect::Siemens),
     ("mach", Dialect::Mach),
+    ("heidenhain", Dialect::Heidenhain),
 ];
+
+/// Those of them that write G-code.
+pub const WORD_DIALECTS: [(&str, Dialect); 5] = [DIALECTS[0], DIALECTS[1], DIALECTS[2], DIALECTS[3], DIALECTS[4]];
 
 /// Stiffness at the cutter when nothing is said, N/mm: between a router (1,000) and a heavy machining centre (20,000).
 pub const USUAL_STIFFNESS: i32 = 4_000;

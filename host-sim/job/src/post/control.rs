@@ -4,7 +4,7 @@
 
 use truepath_core::gcode::Dialect;
 
-use super::text::{TextLine, plain};
+use super::text::{BEGIN_PGM, TextLine, plain};
 use super::tokens::tokens;
 
 /// The control, and what shows it.
@@ -25,6 +25,7 @@ const GRBL: (Dialect, Option<&str>) = (Dialect::Linuxcnc, Some("grbl"));
 const HAAS: (Dialect, Option<&str>) = (Dialect::Haas, Some("haas"));
 const FANUC: (Dialect, Option<&str>) = (Dialect::Fanuc, Some("fanuc"));
 const SIEMENS: (Dialect, Option<&str>) = (Dialect::Siemens, None);
+const HEIDENHAIN: (Dialect, Option<&str>) = (Dialect::Heidenhain, None);
 const MACH: (Dialect, Option<&str>) = (Dialect::Mach, None);
 
 /// Words in comments; the first that stands in one counts.
@@ -58,6 +59,7 @@ pub(super) fn control(lines: &[TextLine], name: &str) -> Option<Control> {
         let control = match ending.as_str() {
             "ngc" => LINUXCNC,
             "mpf" | "spf" => SIEMENS,
+            "h" => HEIDENHAIN,
             "gcode" => GRBL,
             _ => return None,
         };
@@ -87,6 +89,9 @@ fn by_words(lines: &[TextLine]) -> Option<Sign> {
         let code = line.code.as_str();
         let without_n = code.trim_start_matches('N').trim_start_matches(|c: char| c.is_ascii_digit());
         let says = |control, what: &str| Some((control, format!("{what} is of its language"), line.number));
+        if code.starts_with(BEGIN_PGM) {
+            return says(HEIDENHAIN, "BEGIN PGM");
+        }
         let siemens = ["CR=", "SUPA", "MSG(", "CYCLE", "T=\"", "TRANS", "MCALL", "_MPF", "_SPF"];
         if let Some(word) = siemens.into_iter().find(|word| code.contains(word)) {
             return says(SIEMENS, word);
@@ -172,7 +177,7 @@ mod tests {
 
     #[test]
     fn every_control_has_its_signs() {
-        use Dialect::{Fanuc, Haas, Linuxcnc, Mach, Siemens};
+        use Dialect::{Fanuc, Haas, Heidenhain, Linuxcnc, Mach, Siemens};
         for (text, name, expected) in [
             ("(Post Processor: linuxcnc_post)\nG21\n", "a.nc", Some((Linuxcnc, Some("linuxcnc"), 1))),
             ("(Post Processor: grbl_post)\n", "a.nc", Some((Linuxcnc, Some("grbl"), 1))),
@@ -187,6 +192,8 @@ mod tests {
             ("(Fraeser 6mm (2 Schneiden))\n(Created by Estlcam)\n", "a.nc", Some((Mach, Some("grbl"), 1))),
             ("%\nN0010 G40 G17 G90 G70\n", "a.ptp", Some((Siemens, None, 2))),
             ("%O1200(HEBEL)\nG15H1\n", "a.nc", Some((Fanuc, Some("fanuc"), 2))),
+            ("0 BEGIN PGM 17 MM\n1 ; FANUC\n", "a.h", Some((Heidenhain, None, 1))),
+            ("L X+10 R0 FMAX\n", "a.h", Some((Heidenhain, None, 0))),
             ("G21\nG1 X1 F100\n", "a.nc", None),
             ("(PART FOR HAASE LTD)\n", "a.nc", None),
         ] {

@@ -1,6 +1,6 @@
 //! Lines of a program, apart into words and comments, whatever dialect they are written in.
 
-use truepath_core::gcode::Lines;
+use truepath_core::gcode::{KlartextBlock, KlartextValue, Line, Lines, Statement, Units, klartext_letter as letter};
 
 /// One line.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,8 +40,45 @@ impl TextLine {
 
 /// All lines.
 pub(super) fn lines(bytes: &[u8]) -> Vec<TextLine> {
+    let begins =
+        |line: Line<'_>| KlartextBlock::of(line).is_ok_and(|block| matches!(block.statement, Statement::Begin(_)));
+    if Lines::new(bytes).any(begins) {
+        return Lines::new(bytes).map(|line| conversational(line, bytes)).collect();
+    }
     Lines::new(bytes).map(|line| apart(line.number, &decoded(line.text))).collect()
 }
+
+/// A line of a conversational program: its comment, and in place of its words what they would be in G-code where that is
+/// asked for, the unit and the tool.
+fn conversational(line: Line<'_>, bytes: &[u8]) -> TextLine {
+    let mut text = TextLine { number: line.number, code: String::new(), remarks: Vec::new(), nested: false };
+    let Ok(block) = KlartextBlock::of(line) else { return text };
+    let remark = block.comment.map(|span| decoded(span.of(bytes)));
+    text.remarks.extend(remark.map(|remark| remark.trim_start_matches([';', '*', ' ', '-']).trim().to_owned()));
+    match block.statement {
+        Statement::Begin(Units::Inches) => text.code = format!("{BEGIN_PGM}G20"),
+        Statement::Begin(Units::Millimetres) => text.code = format!("{BEGIN_PGM}G21"),
+        Statement::ToolCall => {
+            for word in block.words().map_while(Result::ok) {
+                let written = word.span.of(bytes);
+                match (word.letter, word.value) {
+                    (letter::TOOL, KlartextValue::Number(number)) => {
+                        if let Some(number) = number.exactly_times(1) {
+                            text.code = format!("T{number}M6");
+                        }
+                    }
+                    (letter::TOOL_NAME, _) => text.remarks.push(decoded(written).trim_matches('"').to_owned()),
+                    _ => {}
+                }
+            }
+        }
+        _ => {}
+    }
+    text
+}
+
+/// How the first block of a conversational program begins.
+pub(super) const BEGIN_PGM: &str = "BEGINPGM";
 
 /// A text in UTF-8, or as the code page of western Europe has it.
 fn decoded(bytes: &[u8]) -> String {
@@ -106,6 +143,16 @@ mod tests {
         assert_eq!((line.code.as_str(), line.nested), ("G0X1T=\"\"", true));
         assert_eq!(line.remarks, ["a (b) c", "mill_8", "d"]);
         assert_eq!(apart(1, "G1 (never closed").remarks, ["never closed"]);
+    }
+
+    #[test]
+    fn a_conversational_program_says_its_unit_and_its_tools() {
+        let read = lines(b"0 BEGIN PGM A INCH\n1 ; T5 D=10\n2 TOOL CALL 5 Z S100 ; here\n3 * - Wall\n4 L X+5 R0\n");
+        let codes: Vec<_> = read.iter().map(|l| l.code.as_str()).collect();
+        assert_eq!(codes, ["BEGINPGMG20", "", "T5M6", "", ""]);
+        let remarks: Vec<_> = read.iter().flat_map(|l| l.remarks.iter().map(String::as_str)).collect();
+        assert_eq!(remarks, ["T5 D=10", "here", "Wall"]);
+        assert!(read[0].has("G20"));
     }
 
     #[test]

@@ -25,7 +25,7 @@ use truepath_core::gcode::{LineRange, Lines, Options, Token, Words};
 use truepath_core::geometry::Block as Curves;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
-use super::line::Block;
+use super::line::{Block, Manner};
 use super::proof::{Cut, Replaced, same_beside};
 use super::survey::{Move, survey};
 use crate::codes::{P008, P009};
@@ -103,7 +103,13 @@ fn laid_out(
     let moves = survey(bytes, options).map_err(|e| InputError::of_program(source, &e))?;
     let lines: Vec<_> = Lines::new(bytes).collect();
     let text = Text { source, lines: &lines, moves: &moves };
-    let two_digits = lines.iter().map(|&l| Block::new(l, false)).any(|b| b.motion_word().is_some() && b.two_digits());
+    if options.dialect.is_klartext() {
+        let line = depths.first().and_then(|depth| depth.contour.first()).map_or(1, |block| block.line);
+        let help = "cut it in one pass with truepath correct, or plan a G-code program of the same part";
+        return Err(text.refusal(P009, line, ["a conversational program", "a program in G-code", help]));
+    }
+    let two_digits =
+        lines.iter().map(|&l| Block::new(l, Manner::default())).any(|b| b.motion_word().is_some() && b.two_digits());
     let semicolon = comments_begin_with_semicolon(bytes);
     let mut written = Vec::new();
     for (at, depth) in depths.iter().enumerate() {

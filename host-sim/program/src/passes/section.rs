@@ -13,7 +13,7 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::super::deviation::distance;
 use super::super::grid::Grid;
-use super::super::line::Block;
+use super::super::line::{Block, Manner};
 use super::super::pen::place;
 use super::super::survey::{Kind, Move};
 use super::request::Depth;
@@ -82,7 +82,7 @@ impl<'a> Text<'a> {
     pub(super) fn block(&self, line: u32) -> Block<'a> {
         let index = (line as usize).checked_sub(1);
         let text = index.and_then(|i| self.lines.get(i)).copied();
-        Block::new(text.unwrap_or(Line { number: line, start: 0, text: &[] }), false)
+        Block::new(text.unwrap_or(Line { number: line, start: 0, text: &[] }), Manner::default())
     }
 
     pub(super) fn refusal(&self, row: Row, line: u32, [found, expected, help]: [&str; 3]) -> Failure {

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use truepath_core::gcode::Lines;
 
+use super::super::klartext::without_number;
+
 /// Compares the bytes of both programs: `touched` gives how many lines a line has become, `head` the lines added
 /// after line `head_after`.
 pub(super) fn compare(
@@ -11,7 +13,16 @@ pub(super) fn compare(
     written: &[u8],
     touched: &BTreeMap<u32, usize>,
     (head_after, head): (u32, &[u8]),
+    klartext: bool,
 ) -> Result<(), String> {
+    // A conversational program gets the block numbers that its control would count.
+    let lines = |text| {
+        let mut lines = lines(text);
+        if klartext {
+            lines.iter_mut().for_each(|line| *line = without_number(line).trim_ascii_start());
+        }
+        lines
+    };
     let (old, new) = (lines(original), lines(written));
     let head_lines = lines(head);
     let mut at = 0;

@@ -1,6 +1,8 @@
 //! What a program does, step by step, as the proof compares it.
 
-use truepath_core::gcode::{Axes, Canon, Decimal, GcodeError, HostMemory, Interpreter, Modal, Motion, Options};
+use truepath_core::gcode::{
+    Axes, Canon, Decimal, GcodeError, HostMemory, Interpreter, KlartextBlock, Line, Modal, Motion, Options,
+};
 use truepath_core::geometry::Curve;
 
 /// One step of a program.
@@ -76,6 +78,8 @@ pub(super) fn facts(program: &[u8], options: Options, centre_path: bool) -> Resu
         let what = match event.canon {
             // `;` at the end of a line says nothing.
             Canon::Comment(span) if span.len == 0 => return Ok(()),
+            // A rounding that has become part of the path stands as a comment.
+            Canon::Comment(span) if options.dialect.is_klartext() && is_corner(span.of(event.text)) => return Ok(()),
             Canon::Compensation { .. } if centre_path => return Ok(()),
             Canon::Comment(span) => What::Comment(span.of(event.text).to_vec()),
             Canon::Traverse { from, to } => What::Straight { rapid: true, from, to },
@@ -97,4 +101,9 @@ pub(super) fn facts(program: &[u8], options: Options, centre_path: bool) -> Resu
         Ok(())
     })?;
     Ok(facts)
+}
+
+/// Whether a text is the block of a rounding or a chamfer.
+fn is_corner(text: &[u8]) -> bool {
+    KlartextBlock::of(Line { number: 1, start: 0, text }).is_ok_and(|block| block.statement.is_corner())
 }

@@ -24,6 +24,7 @@ use outside::Bounds;
 use truepath_core::gcode::{Lines, Options};
 
 use super::edit::BlockEdit;
+use super::stretch::is_near;
 
 pub(super) use beside::{Cut, Replaced, same_beside};
 pub(super) use kink::Kink;
@@ -66,11 +67,15 @@ pub(super) struct Proof {
 
 /// Compares; the error says what has changed that must not.
 pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
-    bytes::compare(claim.original, claim.written, claim.touched, claim.head)?;
+    let klartext = claim.program.dialect.is_klartext();
+    bytes::compare(claim.original, claim.written, claim.touched, claim.head, klartext)?;
     let read = |text: &[u8]| {
         facts(text, claim.program, claim.centre_path).map_err(|e| format!("line {} cannot be read: {e}", e.line))
     };
-    let original = read(claim.original)?;
+    let mut original = read(claim.original)?;
+    if klartext {
+        without_ways_from_leads(&mut original, claim.edits);
+    }
     let head = claim.head.0 + 1..=claim.head.0 + Lines::new(claim.head.1).count() as u32;
     let written: Vec<Fact> = read(claim.written)?.into_iter().filter(|f| !head.contains(&f.line)).collect();
 
@@ -84,9 +89,10 @@ pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
         stretches += 1;
         let slack = (2.0 + f64::from(stretches)) * claim.step.max(50.0);
         let begin = original[old..].iter().position(|f| inside::is_cut(f, edits)).map(|at| {
-            // What else its line does belongs to it.
+            // What else its line does belongs to it, but for the way of FMAX to a lead.
             let line = original[old + at].line;
-            old + at - original[old..old + at].iter().rev().take_while(|f| f.line == line).count()
+            let before = original[old..old + at].iter().rev();
+            old + at - before.take_while(|f| f.line == line && !f.travels()).count()
         });
         let until = begin.unwrap_or(original.len());
         let end = begin.map(|at| stretch_end(&original, at, edits));
@@ -130,6 +136,18 @@ pub(super) fn same_steps(a: &[u8], b: &[u8], options: Options<'static>) -> bool 
         Some(facts.into_iter().filter_map(plain).collect::<Vec<_>>())
     };
     read(a).is_some_and(|a| read(b).is_some_and(|b| a == b))
+}
+
+/// A conversational lead may lead on behind where its corrected path ends: that is no part of the contour.
+fn without_ways_from_leads(facts: &mut [Fact], edits: &[BlockEdit]) {
+    for edit in edits {
+        let Some(&end) = edit.samples.last() else { continue };
+        let near = |fact: &Fact| fact.curve().is_some_and(|c| is_near([c.end().x.nm(), c.end().y.nm()], end));
+        let of_line = |fact: &Fact| fact.line == edit.line && fact.curve().is_some();
+        if let Some(last) = facts.iter().rposition(|fact| of_line(fact) && near(fact)) {
+            facts.iter_mut().skip(last + 1).filter(|fact| of_line(fact)).for_each(|fact| fact.line = 0);
+        }
+    }
 }
 
 /// Where a stretch that begins at `begin` ends: after its last cutting step.

@@ -12,7 +12,7 @@ use summary::{summary, words};
 use truepath_core::gcode::{Dialect, PointlessLength, Units};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFile, OutputFolder, json};
-use truepath_job::job::{DECIMALS, DIALECTS, one_of};
+use truepath_job::job::{DECIMALS, WORD_DIALECTS, one_of};
 use truepath_multiaxis::ball::Contacts;
 use truepath_multiaxis::codes::{A008, A009, A010, A011, A014};
 use truepath_multiaxis::machine::{Coordinates, Kind, Letter};
@@ -72,7 +72,7 @@ pub struct Options {
     #[arg(long)]
     pub unroll: bool,
     /// The control the program is written for.
-    #[arg(long, value_parser = one_of(&DIALECTS), default_value = "linuxcnc")]
+    #[arg(long, value_parser = one_of(&WORD_DIALECTS), default_value = "linuxcnc")]
     pub dialect: Dialect,
     /// What a length without a point is: millimetres and inches, or least increments (0.001 mm, 0.0001 in).
     #[arg(long, value_parser = one_of(&DECIMALS), default_value = "calculator")]

@@ -237,7 +237,12 @@ fn control(job: &JobFile) -> Result<ProbeDialect, InputError> {
     known.ok_or_else(|| {
         let found =
             "--dialect is not given, and job and program name no control that a verification program is written for";
-        let help = "add --dialect of the control that the probe is on; grbl for grbl and grblHAL";
+        let conversational = job.numbers.dialect.is_klartext();
+        let help = if conversational {
+            "no verification program is written in conversational language: leave -o out, which lists the places, touch them with a program of your own (TCH PROBE 3 and FN 16) or with --dialect of another control, and give its file, a table of any layout, to --probe"
+        } else {
+            "add --dialect of the control that the probe is on; grbl for grbl and grblHAL"
+        };
         InputError::new(C001, found, "one of haas, fanuc, linuxcnc, grbl", help)
     })
 }
