@@ -27,11 +27,11 @@ fn number(of: &Value, keys: &[&str]) -> f64 {
 #[test]
 fn a_planned_program_holds_at_every_height_what_one_pass_does_not() {
     let desk = measured();
-    // What one pass reaches at best, corrected, decides what is asked of several.
+    // What one corrected pass is expected to reach is asked for with 95 %: that takes several.
     let loose = desk.call(&format!("{PLAN} --tolerance 1"));
     let one = &loose["choices"][0];
     assert_eq!(loose["recommended"].as_u64(), Some(1), "one pass holds a millimetre");
-    let tolerance = 0.6 * number(one, &["profile_mm"]);
+    let tolerance = number(one, &["profile_mm"]);
     let done = desk.call(&format!("{PLAN} --tolerance {tolerance:.4} --write -o plan"));
     let chosen = done["written"]["choice"].as_u64().expect("a choice") as usize;
     assert!(chosen > 1 && Some(chosen as u64) == done["recommended"].as_u64());
@@ -56,7 +56,7 @@ fn a_planned_program_holds_at_every_height_what_one_pass_does_not() {
     // The wall is the same: its probing program serves, and the points say what the map says.
     desk.call("simulate job.toml --plant plant.toml --program plan/planned.nc --touch verify.nc -o touched");
     let seen = desk.call("inspect job.toml --probe touched/probe.txt -o seen");
-    assert!(number(&seen, &["max_error_mm"]) < tolerance + 0.004);
+    assert!(number(&seen, &["summary", "max_error_mm"]) < tolerance + 0.004);
 }
 
 #[test]
