@@ -186,7 +186,7 @@ impl<'a> Planner<'a> {
     /// Designs a process finely and writes its program; `probe` is the CRC-32 of the points. `progress` is told the share done.
     ///
     /// # Errors
-    /// A contour that cannot be sampled, a correction beyond the clamp, and those of [`planned::write`].
+    /// A contour that cannot be sampled, a correction beyond the clamp, and those of [`planned::write()`].
     pub fn write(&self, cuts: &[Cut], probe: u32, progress: &mut dyn FnMut(f64)) -> Result<WrittenPlan, Failure> {
         const TURNS: u32 = 16;
         let (table, grid) = (self.known.table(), ImmersionGrid::new());

@@ -8,7 +8,7 @@
 //! |---|---|
 //! | [`refit`] | machine and material under the physics of several passes |
 //! | [`process`] | what a process is: cuts with aim, levels, direction and feed |
-//! | [`bench`] | the identified machine, ready to cut processes at a resolution |
+//! | [`mod@bench`] | the identified machine, ready to cut processes at a resolution |
 //! | [`limits`] | what a process has to keep |
 //! | [`search`] | candidates, coarse to fine, and the front of time against error |
 //! | [`confidence`] | how sure the predicted error is |

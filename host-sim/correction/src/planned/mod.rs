@@ -105,16 +105,16 @@ pub fn write_every(walls: &[PlannedWall<'_>], probe: Option<u32>) -> Result<Plan
 /// Whether the contour of a pass can be cut in several passes in the direction of the program.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn can_repeat_pass(pass: &Pass) -> Result<(), Failure> {
     possible(pass, false)
 }
 
 /// Whether a pass along the contour can run against the direction of the program. Where there is no lead-out that ends off the
-/// wall, [`write`] further wants a pass in the direction of the program at the same depth or below right before it.
+/// wall, [`write()`] further wants a pass in the direction of the program at the same depth or below right before it.
 ///
 /// # Errors
-/// As [`write`]; `P010` where the reason is the direction.
+/// As [`write()`]; `P010` where the reason is the direction.
 pub fn can_reverse(pass: &Pass) -> Result<(), Failure> {
     possible(pass, true)
 }

@@ -5,7 +5,7 @@
 //! the next start; where that is below it, it stays there. All other lines keep their bytes.
 //!
 //! The paths are still those of the program: [`rewrite_program`](crate::rewrite_program) moves each pass to where it is to be.
-//! What is written is read back and proved ([`proof`](super::proof)): beside these lines both programs do the same step by
+//! What is written is read back and proved (module `proof`): beside these lines both programs do the same step by
 //! step, and on them every pass cuts what the program cut, at the height and feed it is to have.
 //!
 //! | step | where |
