@@ -9,7 +9,7 @@ const CORE: [(&str, &[&str]); 5] = [
     ("core/units", &["errors", "checksum", "geometry"]),
     ("core/rs274", &[]),
     ("core/wire", &["image", "rewrite", "link"]),
-    ("core/model", &["probe", "cut", "identify", "correct"]),
+    ("core/model", &["probe", "cut", "identify", "correct", "process"]),
     ("core", &["job", "errors"]),
 ];
 /// Names under which unrelated things gather.

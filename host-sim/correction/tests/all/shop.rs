@@ -56,6 +56,15 @@ fn programs_of_the_shop_cut_a_plan_on_every_wall_and_depth() {
         let walls = passes.iter().zip(&paths).zip(&plans);
         let walls: Vec<_> = walls.map(|((pass, path), passes)| PlannedWall { pass, path, passes }).collect();
         let answers = passes.iter().map(can_reverse).collect::<Result<Vec<()>, _>>();
+        if file.ends_with(".h") {
+            // A conversational program is corrected, but not cut in several passes.
+            let refused = passes
+                .iter()
+                .map(can_repeat_pass)
+                .all(|answer| matches!(answer, Err(Failure::Input(e)) if e.code() == "P009"));
+            assert!(refused && answers.is_err(), "{file}");
+            continue;
+        }
         assert!(passes.iter().all(|pass| can_repeat_pass(pass).is_ok()), "{file}");
         let program = match write_every(&walls, None) {
             Ok(program) => program,
