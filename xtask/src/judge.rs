@@ -2,8 +2,9 @@
 //!
 //! The judge is a program with its own physics and none of this repository's code: `make SCENARIO DIR` writes what a
 //! user would have after the first part (`program.nc`, `job.toml`, `probe.txt`), `score SCENARIO PROGRAM` cuts a
-//! corrected program on the same machine and prints `before_mm` and `after_mm` as JSON. It is not part of the
-//! repository; where it is absent the check is skipped, and says so.
+//! corrected program on the same machine and prints `before_mm` and `after_mm` as JSON. Another one, `judge3/judge3.py`, cuts
+//! programs of several passes and looks at every height of the wall: it scores what `truepath plan` writes for the
+//! tolerance of its scenario. They are not part of the repository; where they are absent the check is skipped, and says so.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -58,7 +59,9 @@ impl Score {
 /// Corrects every scenario and compares with the minima. Without a path the judge is looked for as `judge/judge.py`
 /// in the folders beside the repository.
 pub fn run_all(given: Option<&Path>) -> Outcome {
-    let Some(judge) = given.map(|path| root().join(path)).or_else(beside).filter(|path| path.is_file()) else {
+    let Some(judge) =
+        given.map(|path| root().join(path)).or_else(|| beside("judge/judge.py")).filter(|path| path.is_file())
+    else {
         return match given {
             Some(path) => Err(Failure::found(format!("no judge at {}", path.display()))),
             None => Ok(Passed::Skipped("no judge (judge/judge.py) in a folder beside the repository".into())),
@@ -98,7 +101,81 @@ pub fn run_all(given: Option<&Path>) -> Outcome {
             println!("{listed:<20} not among the judge's scenarios");
         }
     }
+    if let Some(judge) = beside("judge3/judge3.py") {
+        plan_all(&judge, &mut missed)?;
+    }
     if missed.is_empty() { Ok(Passed::Done) } else { Err(Failure::found(format!("missed: {}", missed.join(", ")))) }
+}
+
+/// Times better that a planned wall has to be at its worst height, and the machining time it may take for it.
+const PLANNED: (f64, f64) = (8.0, 3.5);
+
+/// Plans every scenario for its tolerance and has the written program scored at every height.
+fn plan_all(judge: &Path, missed: &mut Vec<String>) -> Result<(), Failure> {
+    println!(
+        "\n{:<20} {:>10} {:>9} {:>8} {:>9} {:>6} {:>8}",
+        "every height", "before mm", "after mm", "factor", "tolerance", "time", "plan"
+    );
+    for scenario in scenarios(judge)? {
+        let name = scenario.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        match planned(judge, &scenario, &name) {
+            Ok(line) => {
+                let (least, most) = PLANNED;
+                let reached = line.after <= line.tolerance && line.before / line.after >= least && line.ratio <= most;
+                println!(
+                    "{name:<20} {:>10.4} {:>9.4} {:>7.1}x {:>9.4} {:>5.2}x {:>6.1} s  {}",
+                    line.before,
+                    line.after,
+                    line.before / line.after,
+                    line.tolerance,
+                    line.ratio,
+                    line.seconds,
+                    if reached { "reached" } else { "MISSED" }
+                );
+                if !reached {
+                    missed.push(name);
+                }
+            }
+            Err(failure) => {
+                let (Failure::Found(reason) | Failure::Missing(reason)) = failure;
+                println!("{name:<20} failed: {reason}");
+                missed.push(name);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What became of a plan: largest errors at any height, mm, and machining time over that of the program.
+struct Planned {
+    before: f64,
+    after: f64,
+    tolerance: f64,
+    ratio: f64,
+    seconds: f64,
+}
+
+fn planned(judge: &Path, scenario: &Path, name: &str) -> Result<Planned, Failure> {
+    let folder = target().join("judge").join(name);
+    let python = |verb: &str| {
+        let mut command = program("python3");
+        command.arg(judge).arg(verb).arg(scenario);
+        command
+    };
+    let wanted = std::fs::read_to_string(scenario).map_err(|e| Failure::found(format!("{name}: {e}")))?;
+    let lacks = || Failure::found(format!("{name}: no figure where one was expected"));
+    let tolerance = number(&wanted, "profile_tolerance_mm").ok_or_else(lacks)?;
+    read(python("make").arg(&folder))?;
+    let mut truepath = Command::new(target().join("release").join("truepath"));
+    truepath.current_dir(&folder).args(["plan", "job.toml", "--probe", "probe.txt", "--tolerance"]);
+    truepath.arg(tolerance.to_string()).args(["--write", "-o", "planned", "--force"]);
+    let start = Instant::now();
+    read(&mut truepath)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let said = read(python("score").arg(folder.join("planned").join("planned.nc")))?;
+    let profile = |of: &str| said.split_once(&format!("\"{of}\":")).and_then(|(_, rest)| number(rest, "profile_max"));
+    let (before, after) = (profile("before").ok_or_else(lacks)?, profile("after").ok_or_else(lacks)?);
+    Ok(Planned { before, after, tolerance, ratio: number(&said, "time_ratio").ok_or_else(lacks)?, seconds })
 }
 
 /// Makes the part, corrects it, has it scored. Returns the score and the seconds the correction took.
@@ -120,11 +197,10 @@ fn correct(judge: &Path, scenario: &Path, name: &str) -> Result<(Score, f64), Fa
     Ok((score, seconds))
 }
 
-/// The judge in a folder beside the repository; the first by name.
-fn beside() -> Option<PathBuf> {
+/// A judge in a folder beside the repository; the first by name.
+fn beside(name: &str) -> Option<PathBuf> {
     let folders = root().parent()?.read_dir().ok()?;
-    let mut found: Vec<PathBuf> =
-        folders.flatten().map(|f| f.path().join("judge/judge.py")).filter(|p| p.is_file()).collect();
+    let mut found: Vec<PathBuf> = folders.flatten().map(|f| f.path().join(name)).filter(|p| p.is_file()).collect();
     found.sort();
     found.into_iter().next()
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use truepath_core::correct::Profile;
 use truepath_core::cut::{Path, WallLaw};
 use truepath_core::identify;
 use truepath_core::units::{Offset, Real};
@@ -50,6 +51,10 @@ pub struct CorrectSummary {
     pub max_sigma_mm: f64,
     /// What no XY correction can remove: the largest deviation from the target over the heights of the band, mm.
     pub axial_form_error_mm: f64,
+    /// Largest predicted error at any height of the wall without correction, the sign aside, mm: its profile error.
+    pub profile_error_before_mm: f64,
+    /// The same with it, mm.
+    pub profile_error_after_mm: f64,
     /// Deepest predicted gouge at any height of the engaged depth, mm (positive).
     pub worst_gouge_mm: f64,
     /// What the gouge guard allowed of what the target wants; absent without `max_gouge_mm`.
@@ -126,6 +131,8 @@ impl CorrectSummary {
             max_error_before_mm: largest(|s| s.max_error_before_mm),
             max_sigma_mm: largest(|s| s.max_sigma_mm),
             axial_form_error_mm: largest(|s| s.axial_form_error_mm),
+            profile_error_before_mm: largest(|s| s.profile_error_before_mm),
+            profile_error_after_mm: largest(|s| s.profile_error_after_mm),
             worst_gouge_mm: largest(|s| s.worst_gouge_mm),
             max_correction_mm: largest(|s| s.max_correction_mm),
             points_used: used,
@@ -198,8 +205,14 @@ pub fn correct_summary(
     let errors = predicted.iter().map(|p| p.after.aim(target, None).abs());
     let at = errors.enumerate().max_by_key(|(_, error)| *error).map(|(at, _)| at);
     let sample = at.and_then(|at| path.samples().get(path.first() + at));
+    let anywhere = |wall: &Profile| wall.highest.abs().max(wall.deepest().abs());
+    let profile_error_after_mm = largest(predicted.iter().map(|p| anywhere(&p.after)));
+    let mut warnings = warnings;
+    warnings.extend(beyond_tolerance(pass, profile_error_after_mm));
     CorrectSummary {
         version: 1,
+        profile_error_before_mm: largest(predicted.iter().map(|p| anywhere(&p.before))),
+        profile_error_after_mm,
         max_error_before_mm: largest(predicted.iter().map(|p| p.before.aim(target, None).abs())),
         max_error_after_mm,
         max_error_after_s_mm: sample.map_or(0.0, |sample| mm(sample.s)),
@@ -227,6 +240,17 @@ pub fn correct_summary(
         warnings,
         contours: Vec::new(),
     }
+}
+
+/// What to say of a wall that one pass cannot hold within the tolerance of the job at every height.
+fn beyond_tolerance(pass: &Pass, profile_mm: f64) -> Option<String> {
+    let tolerance = pass.job.part.tolerance?;
+    let half = mm(tolerance.upper).min(-mm(tolerance.lower));
+    (profile_mm > half && half > 0.0).then(|| {
+        format!(
+            "one corrected pass leaves {profile_mm:.3} mm at some height of the wall, beyond the tolerance of {half} mm: truepath plan looks for passes that hold it at every height"
+        )
+    })
 }
 
 fn parameters(identified: &Identification) -> BTreeMap<&'static str, Parameter> {

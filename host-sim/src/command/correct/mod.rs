@@ -80,6 +80,7 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
          what the points leave open (1 sigma)   {:>8.4} mm\n\
          \x20 where the largest error is expected  {:>8.4} mm\n\
          left over the height, beyond X and Y   {:>8.4} mm\n\
+         at any height: without, with correction {:>7.4}, {:.4} mm\n\
          deepest cut at any height              {:>8.4} mm\n\
          largest correction                     {:>8.4} mm\n\
          \n\
@@ -93,6 +94,8 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
         s.max_sigma_mm,
         s.sigma_at_max_error_mm,
         s.axial_form_error_mm,
+        s.profile_error_before_mm,
+        s.profile_error_after_mm,
         s.worst_gouge_mm,
         s.max_correction_mm,
     );
