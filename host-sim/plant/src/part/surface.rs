@@ -17,6 +17,10 @@ pub struct Surface {
     pub errors_mm: Vec<Vec<f64>>,
 }
 
+/// How near the edge of an outside corner a wall is not judged, mm: along its own normal the end of the other wall would look like
+/// a deep cut, and a place that the cutter leaves there like a wall in the stock.
+const EDGE_MM: f64 = 1.0;
+
 /// A place and its error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Worst {
@@ -132,10 +136,25 @@ impl Surface {
         0.5 * (self.wall_mm[(i + 1).min(last)] - self.wall_mm[i.saturating_sub(1)])
     }
 
-    /// Judges the wall away from its ends, `trim_mm` each. `None` where nothing is to be judged.
+    /// Places beside which a wall stands, and none ends within [`EDGE_MM`].
+    fn away_from_edges(&self) -> Vec<bool> {
+        let stands = |i: usize| self.errors_mm.iter().any(|errors| errors[i].is_finite());
+        let mut away: Vec<bool> = (0..self.s_mm.len()).map(stands).collect();
+        let ends: Vec<f64> = (0..away.len()).filter(|i| !away[*i]).map(|i| self.s_mm[i]).collect();
+        for (away, s) in away.iter_mut().zip(&self.s_mm) {
+            let next = ends.partition_point(|end| end < s);
+            let near = [next.checked_sub(1), Some(next)].into_iter().flatten().filter_map(|k| ends.get(k));
+            *away &= near.map(|end| (end - s).abs()).fold(f64::INFINITY, f64::min) > EDGE_MM;
+        }
+        away
+    }
+
+    /// Judges the wall away from its ends, `trim_mm` each, and from the edges of outside corners. `None` where nothing is to be
+    /// judged.
     pub fn score(&self, trim_mm: f64) -> Option<SurfaceScore> {
         let length = *self.s_mm.last()?;
-        let judged = |i: &usize| self.s_mm[*i] > trim_mm && self.s_mm[*i] < length - trim_mm;
+        let away = self.away_from_edges();
+        let judged = |i: &usize| away[*i] && self.s_mm[*i] > trim_mm && self.s_mm[*i] < length - trim_mm;
         let places: Vec<usize> = (0..self.s_mm.len()).filter(judged).collect();
         let (mut all, mut heights) = (Weighed::default(), Vec::new());
         let mut worst: Option<Worst> = None;
