@@ -88,6 +88,11 @@ fn edged() -> Coefficients {
     Coefficients { kte: real(12.0), kre: real(16.0), ..coefficients() }
 }
 
+/// A machine of edged teeth.
+fn on<'a>(path: &'a Path<'a>, table: &'a ForceTable, compliance: Compliance) -> Loop<'a> {
+    Loop { coefficients: edged(), ..machine(path, table, compliance) }
+}
+
 fn soft(k: f64) -> Compliance {
     Compliance::from_stiffness(real(k), real(k))
 }
@@ -99,13 +104,7 @@ fn one_pass_over_an_even_stock_is_that_of_the_model_of_one_pass() {
         let setup = setup(law);
         let path = path(&blocks, &setup, 250);
         let table = ForceTable::new(Real::ZERO);
-        let machine = Loop {
-            path: &path,
-            table: &table,
-            coefficients: edged(),
-            compliance: soft(3000.0),
-            undersize: Offset::ZERO,
-        };
+        let machine = on(&path, &table, soft(3000.0));
         let grid = ImmersionGrid::new();
         let mut bench = Bench::new(machine, &grid, Slices::new(12));
         bench.cut(&FORWARD, &[]);
@@ -134,13 +133,7 @@ fn a_rigid_machine_leaves_nothing_whatever_the_passes() {
     let setup = setup(WallLaw::Helical);
     let path = path(&blocks, &setup, 500);
     let table = ForceTable::new(Real::ZERO);
-    let machine = Loop {
-        path: &path,
-        table: &table,
-        coefficients: edged(),
-        compliance: Compliance::default(),
-        undersize: Offset::ZERO,
-    };
+    let machine = on(&path, &table, Compliance::default());
     let grid = ImmersionGrid::new();
     let mut bench = Bench::new(machine, &grid, Slices::new(12));
     bench.cut(&Order { first: 6, ..FORWARD }, &[]);
@@ -157,8 +150,7 @@ fn spring_passes_come_nearer_each_time_and_never_put_anything_back() {
     let setup = setup(WallLaw::Helical);
     let path = path(&blocks, &setup, 500);
     let table = ForceTable::new(Real::ZERO);
-    let machine =
-        Loop { path: &path, table: &table, coefficients: edged(), compliance: soft(1500.0), undersize: Offset::ZERO };
+    let machine = on(&path, &table, soft(1500.0));
     let grid = ImmersionGrid::new();
     let mut bench = Bench::new(machine, &grid, Slices::new(12));
     let mut before = f64::MAX;
@@ -180,8 +172,7 @@ fn a_reversed_pass_is_one_of_the_other_milling_on_the_reversed_path() {
     let table = ForceTable::new(Real::ZERO);
     let grid = ImmersionGrid::new();
     let there = path(&blocks, &climbing, 500);
-    let machine =
-        Loop { path: &there, table: &table, coefficients: edged(), compliance: soft(1500.0), undersize: Offset::ZERO };
+    let machine = on(&there, &table, soft(1500.0));
     let mut back = Bench::new(machine, &grid, Slices::new(12));
     back.cut(&BACK, &[]);
     use truepath_units::geometry::{Curve, Point};
@@ -201,8 +192,7 @@ fn the_cut_before_leaves_no_height_below_and_the_last_is_better_for_it() {
     let setup = setup(WallLaw::Helical);
     let path = path(&blocks, &setup, 500);
     let table = ForceTable::new(Real::ZERO);
-    let machine =
-        Loop { path: &path, table: &table, coefficients: edged(), compliance: soft(1200.0), undersize: Offset::ZERO };
+    let machine = on(&path, &table, soft(1200.0));
     let grid = ImmersionGrid::new();
     let mut one = Bench::new(machine, &grid, Slices::new(24));
     let (_, reached) = one.aimed(&FORWARD, Aim::Middle);
@@ -224,8 +214,7 @@ fn a_pass_in_air_takes_nothing_and_is_not_pushed() {
     let setup = setup(WallLaw::Helical);
     let path = path(&blocks, &setup, 500);
     let table = ForceTable::new(Real::ZERO);
-    let machine =
-        Loop { path: &path, table: &table, coefficients: edged(), compliance: soft(1200.0), undersize: Offset::ZERO };
+    let machine = on(&path, &table, soft(1200.0));
     let grid = ImmersionGrid::new();
     let mut bench = Bench::new(machine, &grid, Slices::new(12));
     let away = Node { chip: Vector::from_nm(0, 5_000_000), edge: Vector::ZERO };
