@@ -9,7 +9,7 @@ use truepath_correction::plan::choice::{Plan, Planner, Wanted};
 use truepath_correction::plan::wall::WallFigures;
 use truepath_correction::planned::PlannedDepth;
 use truepath_correction::summary::name_with;
-use truepath_ground::codes::{C001, J004};
+use truepath_ground::codes::{C001, J004, J008};
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::limits::Limits;
@@ -165,6 +165,12 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
     job.which = options.which.clone();
     let wanted = wanted(options, &job)?;
     let pass = Pass::read(job)?;
+    if pass.surface.is_some() {
+        let found = "stock.surface is given: the allowance is not even";
+        let help = "plan the job of the whole, even allowance";
+        let error = InputError::new(J008, found, "a job with stock.allowance_mm", help);
+        return Err(error.at(pass.job.source(), pass.job.span("stock.surface")).into());
+    }
     let file = Source::read(&options.probe)?;
     let (pass, measurement) = Measurement::of_one(pass, &file)?;
     let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
