@@ -81,6 +81,6 @@ pub use paper::{PaperRatio, PaperTransfer};
 pub use profile::{Band, HEIGHTS, Profile, Target, add_residual, begin, finish, profile, read_slices};
 pub use reader::{InOrder, WallReader};
 pub use refine::Update;
-pub(crate) use refine::settle_ends;
+pub(crate) use refine::{SMOOTHED, fill_gaps, settle_ends, smooth};
 pub use scratch::Scratch;
 pub use shrinkage::Damped;

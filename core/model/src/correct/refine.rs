@@ -9,12 +9,12 @@ use truepath_units::{Offset, Real};
 /// What one refinement does to a cutter position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Update {
-    sum: Offset,
-    count: u32,
+    pub(crate) sum: Offset,
+    pub(crate) count: u32,
 }
 
 impl Update {
-    fn mean(&self) -> Offset {
+    pub(crate) fn mean(&self) -> Offset {
         self.sum.scaled(Real::ratio(1, i64::from(self.count.max(1))))
     }
 }
@@ -51,10 +51,10 @@ pub(super) fn refine(
 }
 
 /// Times that updates are smoothed under a guard: over about the length on which a circle leaves its tangent by a micrometre.
-const SMOOTHED: usize = 3;
+pub(crate) const SMOOTHED: usize = 3;
 
 /// Every update becomes half of itself and a quarter of either neighbour; at the ends nothing comes from beyond.
-fn smooth(updates: &mut [Update]) {
+pub(crate) fn smooth(updates: &mut [Update]) {
     let mut before: Option<Offset> = None;
     for at in 0..updates.len() {
         let behind = updates.get(at.saturating_add(1)).map(Update::mean);
@@ -67,7 +67,7 @@ fn smooth(updates: &mut [Update]) {
 }
 
 /// Gives updates that have no wall of their own the straight line between their neighbours'.
-fn fill_gaps(updates: &mut [Update]) {
+pub(crate) fn fill_gaps(updates: &mut [Update]) {
     let mut at = 0usize;
     while at < updates.len() {
         let gap = updates.iter().skip(at).take_while(|u| u.count == 0).count();

@@ -3,7 +3,7 @@
 use super::depths::Depths;
 use super::mill::{Load, Mill, Order};
 use super::part::{Part, Wall};
-use crate::correct::{Node, commanded, settle_ends};
+use crate::correct::{Node, SMOOTHED, Update, commanded, fill_gaps, settle_ends, smooth};
 
 use truepath_units::geometry::Vector;
 use truepath_units::{Offset, Real};
@@ -26,8 +26,8 @@ pub struct AimWorkspace<'w> {
     pub moved: &'w mut [Vector],
     /// As [`Mill::walls`] fills them; afterwards those of the best commands.
     pub walls: &'w mut [Wall],
-    /// One to a sample of the contour: shifts in the order of the path, and how many made each.
-    pub shifts: &'w mut [(Offset, u32)],
+    /// One to a sample of the contour: by how much it has to go nearer to the wall.
+    pub shifts: &'w mut [Update],
     /// One to a sample of the contour.
     pub best: &'w mut [Node],
     /// Depths around the cutter.
@@ -51,9 +51,6 @@ pub struct Reached {
 const STEP: Offset = Offset::from_um(500);
 /// Near enough to the aim.
 const NEAR: Offset = Offset::from_nm(500);
-/// Times that shifts are smoothed: from a quarter of each neighbour, over about the length on which a circle leaves its tangent
-/// by a micrometre.
-const SMOOTHED: usize = 3;
 
 /// Finds the commands of a pass over a part. `nodes` holds a first guess on entry (zero will do) and the commands that came nearest to
 /// the aim on return; `workspace.walls` the walls they leave.
@@ -72,7 +69,7 @@ pub fn aim(
         let load = mill.run(part, order, |i| commanded(path, nodes, i), workspace.depths, workspace.moved);
         mill.walls(order, workspace.moved, workspace.walls);
         let (mut miss, mut largest) = (Offset::ZERO, Offset::ZERO);
-        workspace.shifts.fill((Offset::ZERO, 0));
+        workspace.shifts.fill(Update::default());
         for (index, walls) in workspace.walls.chunks(count).enumerate() {
             let before = part.beside(path.first().saturating_add(index));
             let Some(left) = Left::of(walls, before) else { continue };
@@ -83,8 +80,9 @@ pub fn aim(
                 largest = largest.max(left.largest());
             }
             for wall in walls.iter().filter(|w| w.error.is_some()) {
-                if let Some((sum, of)) = workspace.shifts.get_mut(wall.made_by as usize) {
-                    (*sum, *of) = (*sum + error, of.saturating_add(1));
+                if let Some(shift) = workspace.shifts.get_mut(wall.made_by as usize) {
+                    shift.sum += error;
+                    shift.count = shift.count.saturating_add(1);
                 }
             }
         }
@@ -99,10 +97,11 @@ pub fn aim(
             break;
         }
         let relaxed = if turn <= 4 { Real::ONE } else { Real::ratio(6, 10) };
-        spread(workspace.shifts);
+        fill_gaps(workspace.shifts);
+        (0..SMOOTHED).for_each(|_| smooth(workspace.shifts));
         let samples = path.samples().iter().skip(path.first());
         for ((node, shift), sample) in nodes.iter_mut().zip(workspace.shifts.iter()).zip(samples) {
-            let by = shift.0.max(-STEP).min(STEP).scaled(relaxed);
+            let by = shift.mean().max(-STEP).min(STEP).scaled(relaxed);
             node.chip = node.chip + sample.normal.times(by);
         }
         settle_ends(path, nodes);
@@ -153,36 +152,5 @@ impl Left {
 
     fn largest(&self) -> Offset {
         self.highest.abs().max(self.lowest.abs())
-    }
-}
-
-/// Makes means of the sums, gives samples that made no wall the straight line between their neighbours, and smooths.
-fn spread(shifts: &mut [(Offset, u32)]) {
-    let mean = |(sum, count): (Offset, u32)| sum.scaled(Real::ratio(1, i64::from(count.max(1))));
-    let mut at = 0usize;
-    while at < shifts.len() {
-        let gap = shifts.iter().skip(at).take_while(|s| s.1 == 0).count();
-        if gap > 0 {
-            let before = at.checked_sub(1).and_then(|i| shifts.get(i)).copied().map(mean);
-            let after = shifts.get(at.saturating_add(gap)).copied().map(mean);
-            let (from, to) = (before.or(after).unwrap_or_default(), after.or(before).unwrap_or_default());
-            for (k, slot) in shifts.iter_mut().skip(at).take(gap).enumerate() {
-                let share = Real::ratio(k.saturating_add(1) as i64, gap.saturating_add(1) as i64);
-                *slot = (from + (to - from).scaled(share), 1);
-            }
-        }
-        at = at.saturating_add(gap).saturating_add(1);
-    }
-    shifts.iter_mut().for_each(|shift| *shift = (mean(*shift), 1));
-    for _ in 0..SMOOTHED {
-        let mut before: Option<Offset> = None;
-        for at in 0..shifts.len() {
-            let behind = shifts.get(at.saturating_add(1)).map(|s| s.0);
-            let Some(slot) = shifts.get_mut(at) else { break };
-            let own = slot.0;
-            let sum = own + own + before.unwrap_or(own) + behind.unwrap_or(own);
-            slot.0 = sum.scaled(Real::ratio(1, 4));
-            before = Some(own);
-        }
     }
 }

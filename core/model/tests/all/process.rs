@@ -1,7 +1,7 @@
 //! Several passes along one wall: the field of stock against the model of one pass, and against what must be so.
 use crate::corner;
 use corner::*;
-use truepath_model::correct::{Band, Node, Profile, commanded, profile};
+use truepath_model::correct::{Band, Node, Profile, Update, commanded, profile};
 use truepath_model::cut::*;
 use truepath_model::process::{
     Aim, AimWorkspace, Depths, ImmersionGrid, Load, Mill, Order, Part, Reached, Slices, Wall, aim,
@@ -54,7 +54,7 @@ impl<'a> Bench<'a> {
         let mut workspace = AimWorkspace {
             moved: &mut self.moved,
             walls: &mut self.walls,
-            shifts: &mut vec![(Offset::ZERO, 0); count],
+            shifts: &mut vec![Update::default(); count],
             best: &mut vec![Node::default(); count],
             depths: &mut self.depths,
         };

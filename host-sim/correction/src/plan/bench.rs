@@ -1,6 +1,6 @@
 //! The identified machine, ready to cut processes.
 
-use truepath_core::correct::{Node, commanded};
+use truepath_core::correct::{Node, Update, commanded};
 use truepath_core::cut::Path;
 use truepath_core::geometry::Vector;
 use truepath_core::process::{Aim, AimWorkspace, Depths, Load, Mill, Part, Slices, Wall, aim};
@@ -47,7 +47,7 @@ pub struct Stage {
 struct Buffers {
     moved: Vec<Vector>,
     walls: Vec<Wall>,
-    shifts: Vec<(Offset, u32)>,
+    shifts: Vec<Update>,
     best: Vec<Node>,
     depths: Box<Depths>,
 }
@@ -144,7 +144,7 @@ impl<'a> Bench<'a> {
         Buffers {
             moved: vec![Vector::ZERO; self.mill.displacements_needed()],
             walls: vec![Wall::default(); self.mill.walls_needed()],
-            shifts: vec![(Offset::ZERO, 0); count],
+            shifts: vec![Update::default(); count],
             best: vec![Node::default(); count],
             depths: Box::new(Depths::NONE),
         }
