@@ -97,7 +97,11 @@ impl<'a> Bench<'a> {
     /// The part after one pass of the program as it is, which shows what planning is for.
     pub fn as_programmed(&self) -> Stage {
         let whole = Cut::whole(Aim::Middle);
-        self.run(self.raw(), &whole, |_, _, nodes, _| nodes.fill(Node::default()))
+        self.run(self.raw(), &whole, |part, order, _, buffers| {
+            let load = self.mill.run(part, &order.order, |_| Vector::ZERO, &mut buffers.depths, &mut buffers.moved);
+            self.mill.walls(&order.order, &buffers.moved, &mut buffers.walls);
+            load
+        })
     }
 
     /// The part after one more cut, designed in at most `turns` steps a pass.
@@ -110,7 +114,7 @@ impl<'a> Bench<'a> {
                 best: &mut buffers.best,
                 depths: &mut buffers.depths,
             };
-            aim(&self.mill, (part, &order.order), (order.aim, turns), nodes, &mut workspace);
+            aim(&self.mill, (part, &order.order), (order.aim, turns), nodes, &mut workspace).load
         })
     }
 
@@ -150,16 +154,19 @@ impl<'a> Bench<'a> {
         }
     }
 
-    fn run(&self, mut stage: Stage, cut: &Cut, design: impl Fn(&Part, &PassOrder, &mut [Node], &mut Buffers)) -> Stage {
+    fn run(
+        &self,
+        mut stage: Stage,
+        cut: &Cut,
+        design: impl Fn(&Part, &PassOrder, &mut [Node], &mut Buffers) -> Load,
+    ) -> Stage {
         let path = self.path();
         let mut buffers = self.buffers();
         let mut nodes = vec![Node::default(); path.count()];
         for order in cut.orders(self.slices) {
             let mut part = Part::of(self.slices, &mut stage.left);
-            design(&part, &order, &mut nodes, &mut buffers);
-            let command = |index| commanded(path, &nodes, index);
-            let load = self.mill.run(&part, &order.order, command, &mut buffers.depths, &mut buffers.moved);
-            self.mill.walls(&order.order, &buffers.moved, &mut buffers.walls);
+            // The walls of the design are in the buffers.
+            let load = design(&part, &order, &mut nodes, &mut buffers);
             part.take(path, &buffers.walls);
             stage.passes.push(CutPass { order, nodes: nodes.clone(), load });
             let feed = f64::from(cut.feed_percent) / 100.0;
