@@ -127,16 +127,21 @@ impl<'d> Section<'d> {
 
     /// The tables of a list written as `[[key]]`, in order.
     pub fn sections(&self, key: &'static str) -> Result<Vec<Section<'d>>, InputError> {
+        self.sections_named(key, key)
+    }
+
+    /// The tables of a list within a table, in order; `name` is that of both, as in `[[plan.cutter]]`.
+    pub fn sections_named(&self, key: &'static str, name: &'static str) -> Result<Vec<Section<'d>>, InputError> {
         note(|| self.path(key), || Kind::Tables);
         let Some(value) = self.value(key) else { return Ok(Vec::new()) };
-        let help = format!("write every one of them as [[{key}]] with one key a line");
+        let help = format!("write every one of them as [[{name}]] with one key a line");
         let Some(list) = value.raw.as_array() else { return Err(self.wrong_type(&value, "a list of tables", &help)) };
         let table = |entry: &'d Spanned<DeValue<'d>>| {
             let Some(table) = entry.get_ref().as_table() else {
                 return Err(self.wrong_type(&value, "a list of tables", &help));
             };
             let (source, spans) = (self.source, self.spans);
-            Ok(Section { source, name: key, span: entry.span(), table, asked: RefCell::default(), spans })
+            Ok(Section { source, name, span: entry.span(), table, asked: RefCell::default(), spans })
         };
         list.iter().map(table).collect()
     }
@@ -317,6 +322,11 @@ impl<'d> Section<'d> {
         known.dedup();
         Err(InputError::new(J003, format!("{name} is no key of {place}"), one_of(&known), help)
             .at(self.source, key.span()))
+    }
+
+    /// Where the table stands in the file.
+    pub fn place(&self) -> Range<usize> {
+        self.span.clone()
     }
 
     /// The text of the file at a span.

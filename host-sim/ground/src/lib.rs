@@ -3,6 +3,7 @@
 //!
 //! Lowest room of the host; it knows the core's units and nothing of milling.
 
+pub mod cholesky;
 pub mod codes;
 pub mod decimal;
 pub mod diagnostics;

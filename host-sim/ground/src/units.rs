@@ -7,6 +7,11 @@ pub const fn mm(v: Offset) -> f64 {
     v.nm() as f64 / 1e6
 }
 
+/// A length of so many millimetres, to the nanometre.
+pub fn nm(mm: f64) -> Offset {
+    Offset::from_nm((mm * 1e6).round() as i64)
+}
+
 /// A number of the model, in its own unit.
 pub const fn float(v: Real) -> f64 {
     v.bits() as f64 / 4_294_967_296.0

@@ -27,10 +27,11 @@ pub(super) fn density(machine: &Machine, sense: f64, phi: f64, chip: f64) -> [f6
         |tangential: f64, radial: f64| [sense * tangential * s - radial * c, -sense * tangential * c - radial * s];
     let m = machine.size_exponent;
     let area = if chip > 0.0 { chip.powf(1.0 - m) * REFERENCE_CHIP_MM.powf(m) } else { 0.0 };
-    let [cn, ct] = resolve(machine.ktc_n_per_mm2 * area, machine.krc_n_per_mm2 * area);
+    let level = machine.force_factor;
+    let [cn, ct] = resolve(level * machine.ktc_n_per_mm2 * area, level * machine.krc_n_per_mm2 * area);
     // At the very ends of the arc the chip is zero but the edge is in contact; only runout lifts a tooth off.
     let contact = if chip > 0.0 || machine.runout_mm.is_empty() { 1.0 } else { 0.0 };
-    let [en, et] = resolve(machine.kte_n_per_mm * contact, machine.kre_n_per_mm * contact);
+    let [en, et] = resolve(level * machine.kte_n_per_mm * contact, level * machine.kre_n_per_mm * contact);
     [cn, ct, en, et]
 }
 

@@ -5,6 +5,8 @@
 //!
 //! What lies behind the wall is material: a ball whose centre is there touches.
 //!
+//! Instead of a milled wall it may be the raw stock, before the pass: alike at every height.
+//!
 //! Limit: as for the probe, the slope of the wall over the height is not seen, and nothing but the wall of the pass is
 //! there: neither floor nor clamps nor the walls of other passes.
 
@@ -18,7 +20,9 @@ use super::machine::Machine;
 use super::mill::Milled;
 use super::part::Part;
 use super::path::Path;
-use super::vector::{Point, along, dot, mix, norm, squared_distance, sub};
+use super::setup::Cut;
+use super::stock::Stock;
+use super::vector::{Point, along, dot, mix, norm, scaled, squared_distance, sub, unit};
 
 /// Points of the wall lie this near to each other, mm: a ball of 2 mm sinks 0.03 µm between them.
 const SPACING_MM: f64 = 0.02;
@@ -30,11 +34,39 @@ const GAP_STEPS: f64 = 5.0;
 /// A point beside which the wall is this far away along its own heading belongs to no place of it, mm.
 const BESIDE_MM: f64 = 0.5;
 
+/// Readings nearer to each other than this are of one touch, fast and slow, mm.
+const SAME_TOUCH_MM: f64 = 0.2;
+
 /// A point of the wall with the unit normal into the material.
 #[derive(Debug, Clone, Copy)]
 struct Spot {
     place: Point,
     normal: Point,
+}
+
+/// The raw stock before a pass, to be felt.
+#[derive(Debug)]
+pub struct RawStock {
+    stock: Stock,
+    machine: Machine,
+}
+
+impl RawStock {
+    /// What the passes before this one have left for a cut, as the machine says it is uneven.
+    pub fn new(path: &Path, cut: &Cut, machine: &Machine) -> Self {
+        Self { stock: Stock::new(path, cut, machine), machine: machine.clone() }
+    }
+
+    fn spots(&self) -> Vec<Spot> {
+        let (points, closed, side) = self.stock.outline();
+        let normal = |from: Point, to: Point| {
+            let [x, y] = unit(sub(to, from));
+            scaled([-y, x], side)
+        };
+        let ends = points.iter().skip(1).chain(points.first().filter(|_| closed));
+        let pieces = points.iter().zip(ends);
+        pieces.map(|(from, to)| Spot { place: *from, normal: normal(*from, *to) }).collect()
+    }
 }
 
 /// Whose wall it is.
@@ -44,6 +76,8 @@ enum Made<'m> {
     Pass(&'m Milled, f64),
     /// A part that several runs have cut.
     Part(&'m Part),
+    /// Nobody has cut it yet.
+    Stock(&'m RawStock),
 }
 
 impl<'m> Made<'m> {
@@ -51,25 +85,28 @@ impl<'m> Made<'m> {
         match self {
             Self::Pass(milled, _) => &milled.machine,
             Self::Part(part) => part.machine(),
+            Self::Stock(stock) => &stock.machine,
         }
     }
 
-    fn path(self) -> (&'m Path, f64) {
-        match self {
-            Self::Pass(milled, _) => (&milled.path, milled.cut.radius_mm),
-            Self::Part(part) => (part.path(), part.set_up().radius_mm),
-        }
-    }
-
-    /// Wall errors at the samples of the path; beyond tip and top those of tip and top.
-    fn errors(self, z_mm: f64) -> Vec<f64> {
-        match self {
+    /// Points of the wall at a height in their order, and from which distance on two neighbours are the ends of two walls;
+    /// beyond tip and top it is that of tip and top.
+    fn wall(self, z_mm: f64) -> (Vec<Spot>, f64) {
+        let (path, radius, errors) = match self {
             Self::Pass(milled, tip) => {
                 let level = ((z_mm - tip) / milled.cut.axial_depth_mm).clamp(0.0, 1.0);
-                milled.wall_errors(&[level]).into_iter().next().unwrap_or_default()
+                let errors = milled.wall_errors(&[level]).into_iter().next().unwrap_or_default();
+                (&milled.path, milled.cut.radius_mm, errors)
             }
-            Self::Part(part) => part.errors_at(z_mm),
-        }
+            Self::Part(part) => (part.path(), part.set_up().radius_mm, part.errors_at(z_mm)),
+            Self::Stock(stock) => return (stock.spots(), f64::INFINITY),
+        };
+        let spot = |(k, error): (usize, f64)| Spot {
+            place: along(path.wall(k, radius), path.normal[k], -error),
+            normal: path.normal[k],
+        };
+        let wall = errors.into_iter().enumerate().filter(|(_, e)| e.is_finite()).map(spot).collect();
+        (wall, GAP_STEPS * path.step_mm)
     }
 }
 
@@ -79,6 +116,9 @@ pub struct Felt<'m> {
     made: Made<'m>,
     layers: BTreeMap<i64, Vec<Spot>>,
     noise: ChaCha8Rng,
+    /// How many touches there were, and where the ball stopped last, mm.
+    touches: u64,
+    last: Option<[f64; 3]>,
 }
 
 impl<'m> Felt<'m> {
@@ -92,10 +132,15 @@ impl<'m> Felt<'m> {
         Self::made(Made::Part(part))
     }
 
+    /// The stock before any pass.
+    pub fn of_stock(stock: &'m RawStock) -> Self {
+        Self::made(Made::Stock(stock))
+    }
+
     fn made(made: Made<'m>) -> Self {
         let mut noise = ChaCha8Rng::seed_from_u64(made.machine().seed);
         noise.set_stream(3);
-        Self { made, layers: BTreeMap::new(), noise }
+        Self { made, layers: BTreeMap::new(), noise, touches: 0, last: None }
     }
 
     /// The share of the way at which a ball, its centre at the height `z_mm`, meets the wall first; 0 where it touches it
@@ -140,24 +185,28 @@ impl<'m> Felt<'m> {
         })
     }
 
-    /// What the next reading is off along the way of the ball, mm: Gaussian, by the probe of the machine.
-    pub fn noise_mm(&mut self) -> f64 {
+    /// What the next reading is off along the way of the ball, mm, by the probe of the machine: Gaussian noise, lobes by the
+    /// direction of the way in the plane, wild touches. `at` is where the ball stops; a second reading there is of the same touch.
+    pub fn off_mm(&mut self, at: [f64; 3], way: Point) -> f64 {
         let drawn: f64 = StandardNormal.sample(&mut self.noise);
-        self.made.machine().probe_noise_mm * drawn
+        let machine = self.made.machine();
+        let off = machine.probe_noise_mm * drawn;
+        if norm(way) == 0.0 {
+            return off;
+        }
+        let apart = |last: [f64; 3]| (0..3).map(|k| (at[k] - last[k]).powi(2)).sum::<f64>().sqrt() > SAME_TOUCH_MM;
+        if self.last.is_none_or(apart) {
+            self.touches += 1;
+        }
+        self.last = Some(at);
+        off + machine.probe.beyond(self.touches - 1, way, machine.seed)
     }
 
     /// The wall at a height; beyond tip and top that of tip and top.
     fn layer(&mut self, z_mm: f64) -> &[Spot] {
         let made = self.made;
         self.layers.entry((z_mm / LAYER_MM).round() as i64).or_insert_with(|| {
-            let (path, radius) = made.path();
-            let errors = made.errors(z_mm);
-            let spot = |(k, error): (usize, f64)| Spot {
-                place: along(path.wall(k, radius), path.normal[k], -error),
-                normal: path.normal[k],
-            };
-            let wall: Vec<Spot> = errors.into_iter().enumerate().filter(|(_, e)| e.is_finite()).map(spot).collect();
-            let gap = GAP_STEPS * path.step_mm;
+            let (wall, gap) = made.wall(z_mm);
             let mut dense = Vec::new();
             for pair in wall.windows(2) {
                 let length = norm(sub(pair[1].place, pair[0].place));

@@ -2,7 +2,7 @@
 //!
 //! It takes the place of the real machine in demonstrations and tests, so it shares no physics code with the core and models more
 //! than the core does: teeth on a helix, edge forces, chip-size effect, cross-coupled compliance, bending over the height, runout,
-//! wear, uneven stock, probe noise. A correction that works here has not been judged by the model that made it.
+//! wear, uneven stock, a yielding wall, drift, drives that lag, a probe with noise, lobes and wild touches. A correction that works here has not been judged by the model that made it.
 //!
 //! Frame and signs: XY plane, mm, N, rad. `t` is the direction of travel, `n` points from the cutter's centre towards the finished
 //! wall, immersion φ is measured from `n` towards `t`. With the spindle clockwise, a wall on the right is climb milling. Wall
@@ -31,8 +31,12 @@
 //! # Ok::<(), truepath_plant::PlantError>(())
 //! ```
 
+mod allowance;
 mod arcs;
 mod chip;
+mod driven;
+mod drives;
+mod dynamometer;
 mod error;
 mod feel;
 mod flutes;
@@ -45,18 +49,22 @@ mod part;
 mod path;
 mod place;
 mod probe;
+mod probe_errors;
 mod score;
 mod segment;
 mod setup;
 mod stock;
 mod swept;
-
+mod uneven_stock;
 mod vector;
 mod wall;
+mod yielding;
 
 pub use arcs::EngagedArcs;
+pub use drives::Drives;
+pub use dynamometer::Dynamometer;
 pub use error::PlantError;
-pub use feel::Felt;
+pub use feel::{Felt, RawStock};
 pub use flutes::{Flutes, NormalTangential};
 pub use machine::{BendLaw, Machine, WallLaw};
 pub use mill::{Milled, Sample, Track, mill};
@@ -66,7 +74,10 @@ pub use part::{
 pub use path::{Path, Side};
 pub use place::Place;
 pub use probe::{ProbePlan, Touch, probe, probeopen_text};
+pub use probe_errors::ProbeErrors;
 pub use score::{Comparison, Judged, Score, judged_levels, judged_trim_mm};
 pub use segment::Segment;
 pub use setup::{Cut, FeedChange, Spindle};
+pub use uneven_stock::UnevenStock;
 pub use vector::Point;
+pub use yielding::YieldingWall;

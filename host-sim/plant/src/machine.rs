@@ -17,12 +17,45 @@
 //! stock_wavelength_mm = 40.0
 //! law = "helical"                   # or "mean"
 //! probe_noise_mm = 0.002            # standard deviation of a touch
+//! force_factor = 1.18               # all cutting forces of this part
+//! radius_error_mm = -0.01           # the cutter is that much larger than the program believes
+//! drift_mm = [0.012, 0.009]         # how far the datum has moved at the end of the contour
 //! seed = 1
+//!
+//! [stock]                           # UnevenStock
+//! seed = 7
+//! waves = 0.25
+//! wavelength_mm = 40.0
+//! step = -0.25
+//! step_from_mm = 60.0
+//! corner = 0.2
+//! level = 0.05
+//!
+//! [yielding]                        # YieldingWall
+//! from_mm = 20.0
+//! to_mm = 45.0
+//! rise_mm = 5.0
+//! compliance_mm_per_n = 0.0002
+//!
+//! [drives]                          # Drives
+//! time_constant_s = 0.008
+//! backlash_mm = [0.004, 0.003]
+//!
+//! [probe]                           # ProbeErrors
+//! lobing_mm = 0.003
+//! lobing_deg = 15.0
+//! wild_mm = 0.2
+//! wild_one_in = 24
 //! ```
 
 use serde::{Deserialize, Serialize};
 
+use super::drives::Drives;
 use super::error::{PlantError, require};
+use super::probe_errors::ProbeErrors;
+use super::uneven_stock::UnevenStock;
+use super::vector::{Point, along, dot};
+use super::yielding::YieldingWall;
 
 /// Which force makes the wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -87,9 +120,28 @@ pub struct Machine {
     pub probe_noise_mm: f64,
     /// Seed of the stock's and the probe's chance.
     pub seed: u64,
+    /// Factor on all cutting forces of this part: a worn cutter, a harder piece.
+    pub force_factor: f64,
+    /// How much larger the cutter is than its nominal radius, mm.
+    pub radius_error_mm: f64,
+    /// How far the datum has moved at the end of the contour, x and y, mm; evenly along it.
+    pub drift_mm: Point,
+    /// What is uneven about the stock.
+    pub stock: UnevenStock,
+    /// A stretch of the wall that yields.
+    pub yielding: YieldingWall,
+    /// What the drives do with the command.
+    pub drives: Drives,
+    /// What the probe reads wrong besides noise.
+    pub probe: ProbeErrors,
 }
 
 impl Machine {
+    /// Whether nothing is said of how the stock is uneven.
+    pub fn has_even_stock(&self) -> bool {
+        self.stock.is_even() && self.stock_variation_mm.abs() <= 0.0
+    }
+
     /// A machine that does not yield, cutting material that does not resist. Start of a definition by struct update.
     pub fn rigid() -> Self {
         Self {
@@ -108,6 +160,13 @@ impl Machine {
             law: WallLaw::Helical,
             probe_noise_mm: 0.0,
             seed: 0,
+            force_factor: 1.0,
+            radius_error_mm: 0.0,
+            drift_mm: [0.0; 2],
+            stock: UnevenStock::default(),
+            yielding: YieldingWall::default(),
+            drives: Drives::default(),
+            probe: ProbeErrors::default(),
         }
     }
 
@@ -137,6 +196,7 @@ impl Machine {
             ("edge_wear_per_m", self.edge_wear_per_m),
             ("stock_variation_mm", self.stock_variation_mm),
             ("probe_noise_mm", self.probe_noise_mm),
+            ("force_factor", self.force_factor),
         ];
         for (key, value) in not_negative {
             let ok = value >= 0.0 && value.is_finite();
@@ -155,7 +215,26 @@ impl Machine {
             let ok = value.abs() <= 1.0;
             require(ok, "runout_mm", value, "up to 1 mm")?;
         }
-        Ok(())
+        let large = self.radius_error_mm;
+        require(large.abs() <= 1.0, "radius_error_mm", large, "up to 1 mm")?;
+        for &value in &self.drift_mm {
+            require(value.abs() <= 1.0, "drift_mm", value, "up to 1 mm")?;
+        }
+        self.stock.check()?;
+        self.yielding.check()?;
+        self.drives.check()?;
+        self.probe.check()
+    }
+
+    /// Radius of a tooth that cuts, mm, where the nominal one is `radius_mm`.
+    pub(super) fn tooth_radius(&self, radius_mm: f64, tooth: usize) -> f64 {
+        radius_mm + (self.radius_error_mm + self.runout_mm.get(tooth).copied().unwrap_or(0.0))
+    }
+
+    /// Radius of the longest tooth, mm.
+    pub(super) fn longest_radius(&self, radius_mm: f64) -> f64 {
+        let teeth = 0..self.runout_mm.len().max(1);
+        teeth.map(|tooth| self.tooth_radius(radius_mm, tooth)).fold(f64::MIN, f64::max)
     }
 
     /// How far the cutter moves at a level of the axial depth (0 tip … 1 top) against its top; nothing moves against the force.
@@ -171,10 +250,12 @@ impl Machine {
         }
     }
 
-    /// Displacement under a force, mm.
-    pub(super) fn deflection(&self, force: [f64; 2]) -> [f64; 2] {
+    /// Displacement of the cutter against the wall under a force, mm, at a place along the contour whose wall has this normal.
+    pub(super) fn deflection(&self, force: Point, s_mm: f64, normal: Point) -> Point {
         let c = &self.compliance_mm_per_n;
-        [c[0][0] * force[0] + c[0][1] * force[1], c[1][0] * force[0] + c[1][1] * force[1]]
+        let cutter = [c[0][0] * force[0] + c[0][1] * force[1], c[1][0] * force[0] + c[1][1] * force[1]];
+        let wall = self.yielding.at(s_mm);
+        if wall > 0.0 { along(cutter, normal, wall * dot(force, normal)) } else { cutter }
     }
 }
 
@@ -214,6 +295,37 @@ struct MachineFile {
     probe_noise_mm: f64,
     #[serde(default)]
     seed: u64,
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    force_factor: f64,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    radius_error_mm: f64,
+    #[serde(default, skip_serializing_if = "stays")]
+    drift_mm: Point,
+    // Tables come last.
+    #[serde(default, skip_serializing_if = "UnevenStock::is_even")]
+    stock: UnevenStock,
+    #[serde(default, skip_serializing_if = "YieldingWall::is_rigid")]
+    yielding: YieldingWall,
+    #[serde(default, skip_serializing_if = "Drives::is_exact")]
+    drives: Drives,
+    #[serde(default, skip_serializing_if = "ProbeErrors::is_none")]
+    probe: ProbeErrors,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn is_one(value: &f64) -> bool {
+    *value == 1.0
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+fn stays(value: &Point) -> bool {
+    *value == [0.0; 2]
 }
 
 fn default_wavelength() -> f64 {
@@ -253,6 +365,13 @@ impl TryFrom<MachineFile> for Machine {
             law: file.law,
             probe_noise_mm: file.probe_noise_mm,
             seed: file.seed,
+            force_factor: file.force_factor,
+            radius_error_mm: file.radius_error_mm,
+            drift_mm: file.drift_mm,
+            stock: file.stock,
+            yielding: file.yielding,
+            drives: file.drives,
+            probe: file.probe,
         };
         machine.check_ranges().map_err(|e| e.to_string())?;
         Ok(machine)
@@ -279,6 +398,13 @@ impl From<Machine> for MachineFile {
             law: m.law,
             probe_noise_mm: m.probe_noise_mm,
             seed: m.seed,
+            force_factor: m.force_factor,
+            radius_error_mm: m.radius_error_mm,
+            drift_mm: m.drift_mm,
+            stock: m.stock,
+            yielding: m.yielding,
+            drives: m.drives,
+            probe: m.probe,
         }
     }
 }
@@ -311,7 +437,35 @@ mod tests {
             ..Machine::rigid()
         };
         let text = toml::to_string(&machine).expect("writes");
-        assert_eq!(read(&text), Ok(machine));
+        assert!(!text.contains("force_factor") && !text.contains("\n["), "what is not there is not written: {text}");
+        assert_eq!(read(&text), Ok(machine.clone()));
+        let uneven = Machine {
+            force_factor: 1.18,
+            drift_mm: [0.01, -0.005],
+            stock: UnevenStock { waves: 0.25, seed: 4, ..UnevenStock::default() },
+            yielding: YieldingWall { to_mm: 40.0, compliance_mm_per_n: 1e-4, ..YieldingWall::default() },
+            drives: Drives { time_constant_s: 0.005, backlash_mm: [0.004, 0.0] },
+            probe: ProbeErrors { wild_mm: 0.2, ..ProbeErrors::default() },
+            ..machine
+        };
+        assert_eq!(read(&toml::to_string(&uneven).expect("writes")), Ok(uneven));
+    }
+
+    #[test]
+    fn a_nuisance_out_of_its_range_is_an_error_that_names_it() {
+        let stiff = "stiffness_x_n_per_mm = 1000\nstiffness_y_n_per_mm = 1000\n";
+        for (line, key) in [
+            ("force_factor = -1", "force_factor"),
+            ("[stock]\nwaves = 1.5", "stock.waves"),
+            ("[stock]\nwaves = 0.6\nstep = -0.5", "stock"),
+            ("[yielding]\nfrom_mm = 3", "yielding.to_mm"),
+            ("[drives]\nbacklash_mm = [0, 2]", "drives.backlash_mm"),
+            ("[probe]\nwild_one_in = 0", "probe.wild_one_in"),
+            ("[probe]\nlobes = 3", "lobes"),
+        ] {
+            let error = read(&format!("{SHORT}{stiff}{line}\n")).expect_err(line);
+            assert!(error.contains(key), "{line}: {error}");
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@
 //! Limits: no vibration; engagement does not vary with height; a tooth's instantaneous displacement does not change its chip.
 
 use super::arcs::EngagedArcs;
+use super::driven::driven;
 use super::error::PlantError;
 use super::flutes::{Flutes, NormalTangential};
 use super::follow::Commanded;
@@ -32,7 +33,7 @@ const WINDOW_MM: f64 = 6.0;
 pub struct Sample {
     /// Nominal place of the actual centre along the contour, mm.
     pub s_mm: f64,
-    /// Commanded centre, mm.
+    /// Commanded centre, mm, as the drives have followed it.
     pub commanded: Point,
     /// Actual centre under the mean force, mm.
     pub actual: Point,
@@ -98,10 +99,12 @@ pub fn mill(path: &Path, cut: &Cut, machine: &Machine, commanded: Option<&[Point
     if machine.bend_law != BendLaw::Alike {
         return Err(PlantError::BendLaw);
     }
-    let commanded = match commanded {
+    let mut commanded = match commanded {
         Some(polyline) => Commanded::following(path, polyline)?,
         None => Commanded::nominal(path),
     };
+    let told = commanded.centre.iter().zip(&commanded.nominal).map(|(p, k)| (*p, *k, cut.feed_at(path.s_mm[*k])));
+    commanded.centre = driven(&told.collect::<Vec<_>>(), path, machine);
     let mut feeds: Vec<f64> = Vec::new();
     let mut feed_index = |s: f64| {
         let feed = cut.feed_at(s);
@@ -174,7 +177,7 @@ impl Pass<'_> {
         let mut best: Option<(Sample, f64)> = None;
         for turn in 0..LOOP_STEPS {
             let sample = self.sample(step, flutes, d);
-            let answer = self.machine.deflection(sample.force_n);
+            let answer = self.machine.deflection(sample.force_n, sample.s_mm, sample.normal);
             let open = sub(answer, d);
             let size = norm(open);
             if best.as_ref().is_none_or(|b| size < b.1) {
@@ -226,10 +229,9 @@ impl Milled {
     /// Circles that make the wall at the height `level` (0 tip … 1 top of the engaged depth), one track a distinct tooth.
     pub fn tracks(&self, level: f64) -> Vec<Track> {
         let machine = &self.machine;
-        let largest = machine.runout_mm.iter().copied().fold(f64::MIN, f64::max);
         match machine.law {
             WallLaw::Mean => vec![Track {
-                radius_mm: self.cut.radius_mm + if largest > f64::MIN { largest } else { 0.0 },
+                radius_mm: machine.longest_radius(self.cut.radius_mm),
                 centre: self.displaced(level, |s, f| f.mean(&s.engaged, s.edge_factor)),
             }],
             WallLaw::Helical => {
@@ -237,7 +239,7 @@ impl Milled {
                 let teeth = self.flutes.first().map_or(0, Flutes::distinct_teeth);
                 (0..teeth)
                     .map(|tooth| Track {
-                        radius_mm: self.cut.radius_mm + machine.runout_mm.get(tooth).copied().unwrap_or(0.0),
+                        radius_mm: machine.tooth_radius(self.cut.radius_mm, tooth),
                         centre: self.displaced(level, |s, f| f.at_wall(tooth, height, &s.engaged, s.edge_factor)),
                     })
                     .collect()
@@ -256,7 +258,7 @@ impl Milled {
             .iter()
             .map(|s| {
                 let f = s.in_xy(force(s, &self.flutes[s.flutes]));
-                along(s.commanded, self.machine.deflection(f), reach)
+                along(s.commanded, self.machine.deflection(f, s.s_mm, s.normal), reach)
             })
             .collect()
     }

@@ -1,13 +1,9 @@
 //! The raw surface as a parallel curve of the nominal centre path, at `r − h` towards the wall.
 //!
 //! On an inside corner or a tight concave arc the curve is longer than the path and gets points of its own; at an outside corner
-//! it is cut where its two legs cross. The allowance may vary along the path, smoothly and by chance.
+//! it is cut where its two legs cross. The allowance may vary along the path.
 
-use std::f64::consts::TAU;
-
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
-
+use super::allowance::Allowance;
 use super::machine::Machine;
 use super::path::{Path, Side};
 use super::setup::Cut;
@@ -24,8 +20,8 @@ const JOINED_MM: f64 = 0.02;
 
 /// The parallel curve on which the raw surface lies.
 pub(super) fn parallel_curve(path: &Path, cut: &Cut, machine: &Machine) -> Vec<Point> {
-    let wave = AllowanceWave::new(machine);
-    let offset = |i: usize| cut.radius_mm - (cut.allowance_mm + wave.at(path.s_mm[i]));
+    let allowance = Allowance::new(path, cut, machine);
+    let offset = |i: usize| cut.radius_mm - allowance.at(path.s_mm[i]);
     let mut curve: Vec<Point> = Vec::with_capacity(path.len());
     let count = if path.closed { path.len() - 1 } else { path.len() };
     for i in 0..count {
@@ -123,32 +119,4 @@ fn crossing(a: Point, b: Point, c: Point, d: Point) -> Option<Point> {
     }
     let (x, y) = (cross(w, v) / det, cross(w, u) / det);
     ((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y)).then(|| along(a, u, x))
-}
-
-/// Smooth deviation of the allowance: a few waves of random phase, never more than the stated amplitude.
-pub(super) struct AllowanceWave {
-    waves: Vec<(f64, f64, f64)>,
-}
-
-impl AllowanceWave {
-    /// Lengths of the waves as multiples of the shortest; not commensurate, so that the sum does not repeat.
-    const LENGTHS: [f64; 4] = [1.0, 1.618, 2.639, 4.236];
-
-    pub(super) fn new(machine: &Machine) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(machine.seed);
-        rng.set_stream(1);
-        let amplitude = machine.stock_variation_mm / Self::LENGTHS.len() as f64;
-        let waves = Self::LENGTHS
-            .iter()
-            .map(|l| {
-                let phase = TAU * f64::from(rng.next_u32()) / 2f64.powi(32);
-                (amplitude, TAU / (l * machine.stock_wavelength_mm), phase)
-            })
-            .collect();
-        Self { waves }
-    }
-
-    pub(super) fn at(&self, s: f64) -> f64 {
-        self.waves.iter().map(|(a, k, p)| a * (k * s + p).sin()).sum()
-    }
 }

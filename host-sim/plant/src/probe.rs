@@ -1,7 +1,8 @@
 //! The probe: a ball that comes along the nominal normal and stops at the wall as it is.
 //!
 //! The ball touches where it meets the wall first, which on a wall that is tilted by g against the nominal one lies R·g beside
-//! the place aimed at (R·g²/2 along the normal). Noise is Gaussian along the normal, drawn in the order of the points.
+//! the place aimed at (R·g²/2 along the normal). Noise is Gaussian along the normal, drawn in the order of the points; what the probe
+//! reads wrong besides lies along the normal too.
 //!
 //! Limit: the contact is found in the plane of the ball's centre; the slope of the wall over the height is not seen.
 
@@ -64,7 +65,8 @@ pub fn probe(milled: &Milled, plan: &ProbePlan) -> Result<Vec<Touch>, PlantError
                 return Err(PlantError::NoWallAt { s_mm });
             }
             let wall = path.wall(i, milled.cut.radius_mm);
-            let rest = rest_along_normal(milled, errors, i, ball) + noise.sample(&mut rng);
+            let wrong = milled.machine.probe.beyond(out.len() as u64, path.normal[i], milled.machine.seed);
+            let rest = rest_along_normal(milled, errors, i, ball) + noise.sample(&mut rng) + wrong;
             let c = along(wall, path.normal[i], rest);
             let z = plan.tip_z_mm + level * milled.cut.axial_depth_mm;
             out.push(Touch { s_mm, level, ball_centre: [c[0], c[1], z] });

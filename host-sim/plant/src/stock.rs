@@ -55,6 +55,11 @@ impl Frame {
 }
 
 impl Stock {
+    /// Its points, closed or not, and the sign of the side on which material lies: 1 on the left.
+    pub(super) fn outline(&self) -> (&[Point], bool, f64) {
+        (&self.points, self.closed, self.side)
+    }
+
     pub(super) fn new(path: &Path, cut: &Cut, machine: &Machine) -> Self {
         let (points, closed) = match &cut.surface {
             Some(points) => (extended(points.clone()), false),

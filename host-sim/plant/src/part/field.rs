@@ -5,9 +5,9 @@
 
 use super::rays::{Rays, UNDERCUT_MM};
 use super::slices::Slice;
+use crate::allowance::Allowance;
 use crate::grid::Grid;
 use crate::machine::Machine;
-use crate::parallel::AllowanceWave;
 use crate::path::Path;
 use crate::setup::Cut;
 use crate::vector::{Point, along, cross, dot, squared_distance, sub};
@@ -41,7 +41,7 @@ pub(super) struct Circles {
 impl Field {
     /// The raw stock.
     pub(super) fn new(path: &Path, rays: &Rays, cut: &Cut, machine: &Machine, slices: &[Slice]) -> Self {
-        let wave = AllowanceWave::new(machine);
+        let before = Allowance::new(path, cut, machine);
         let r = cut.radius_mm;
         let centres = Grid::of(r, path.centre.iter().copied());
         let mut near = Vec::new();
@@ -53,7 +53,7 @@ impl Field {
                     Some(surface) => {
                         return crossing(row.ray.foot, row.ray.normal, r, surface).map_or(f64::NAN, |v| r - v);
                     }
-                    None => cut.allowance_mm + wave.at(row.s_mm),
+                    None => before.at(row.s_mm),
                 };
                 if row.on_part {
                     return allowance;

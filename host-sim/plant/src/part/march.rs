@@ -53,7 +53,7 @@ pub struct LapSample {
     pub nominal: usize,
     /// Nominal place of the actual centre along the contour, mm.
     pub s_mm: f64,
-    /// Commanded centre, mm.
+    /// Commanded centre, mm, as the drives have followed it.
     pub commanded: Point,
     /// Actual centre under the mean force, mm.
     pub actual: Point,
@@ -187,11 +187,10 @@ impl March<'_> {
         let radius = self.cut.radius_mm;
         let each = self.flutes.first().map_or(1, Flutes::distinct_teeth);
         let distinct = if self.machine.law == WallLaw::Mean { 1 } else { each };
-        let largest = self.machine.runout_mm.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let radii: Vec<f64> = if self.machine.law == WallLaw::Mean {
-            vec![radius + if largest.is_finite() { largest } else { 0.0 }]
+            vec![self.machine.longest_radius(radius)]
         } else {
-            (0..distinct).map(|tooth| radius + self.machine.runout_mm.get(tooth).copied().unwrap_or_default()).collect()
+            (0..distinct).map(|tooth| self.machine.tooth_radius(radius, tooth)).collect()
         };
         let mut way = Way {
             immersion: Immersion::default(),
@@ -313,7 +312,10 @@ impl March<'_> {
             Settled { displacement: d, travel, normal: place.normal, s_mm: place.s_mm, force, leaving }
         };
         let normal = self.path.normal[step.nominal];
-        let open = mean.settle(normal, CLOSED_MM, |d| self.machine.deflection(evaluate(d).force));
+        let open = mean.settle(normal, CLOSED_MM, |d| {
+            let at = evaluate(d);
+            self.machine.deflection(at.force, at.s_mm, at.normal)
+        });
         // The last try need not have been the best.
         let settled = evaluate(mean.at);
         immersion.bound(slack(mean.at));
@@ -334,7 +336,7 @@ impl March<'_> {
         let height = 0.5 * (lower + upper);
         let force = |v: Point| {
             let sum = at_height(teeth, (tooth, height), engaged, immersion, (mean.displacement, v));
-            self.machine.deflection(in_xy(mean.normal, mean.travel, sum))
+            self.machine.deflection(in_xy(mean.normal, mean.travel, sum), mean.s_mm, mean.normal)
         };
         match self.equilibrium {
             Equilibrium::Mean => (force(mean.displacement), 0.0),

@@ -6,6 +6,7 @@ use super::march::{Equilibrium, LapFacts, LapSample, March};
 use super::rays::Rays;
 use super::slices::{Heights, Slice, slices};
 use super::surface::Surface;
+use crate::driven::driven;
 use crate::error::{PlantError, require};
 use crate::flutes::Flutes;
 use crate::machine::Machine;
@@ -80,8 +81,11 @@ impl Part {
     /// A value out of range.
     pub fn cut(&mut self, run: &Run) -> Result<usize, PlantError> {
         run.check()?;
-        let found = laps(&self.path, run, self.field.most());
-        for lap in &found {
+        let mut found = laps(&self.path, run, self.field.most());
+        for lap in &mut found {
+            let told: Vec<_> = lap.steps.iter().map(|s| (s.commanded, s.nominal, s.feed_mm_per_min)).collect();
+            let goes = driven(&told, &self.path, &self.machine);
+            lap.steps.iter_mut().zip(goes).for_each(|(step, centre)| step.commanded = centre);
             let climb = self.cut.is_climb(&self.path) != lap.reversed;
             let mut feeds: Vec<f64> = lap.steps.iter().map(|step| step.feed_mm_per_min).collect();
             let mut each = feeds.clone();

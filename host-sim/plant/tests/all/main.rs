@@ -1,6 +1,7 @@
 //! The plant against the closed forms, the published corner and the symmetries of the physics.
 
 mod effects;
+mod nuisances;
 mod part;
 mod reference;
 mod symmetry;
