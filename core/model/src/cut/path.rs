@@ -123,6 +123,21 @@ impl<'a> Path<'a> {
         Ok(Self { samples, first, count, step, stock_step, crowded, closed, setup: *setup, helix })
     }
 
+    /// The same path with its raw stock moved along the normal of every sample by `shift`, positive towards the wall, in a
+    /// buffer as long as its samples.
+    pub fn with_stock_moved<'b>(&self, buffer: &'b mut [Sample], mut shift: impl FnMut(&Sample) -> Offset) -> Path<'b> {
+        let count = self.samples.len().min(buffer.len());
+        let used = buffer.get_mut(..count).unwrap_or_default();
+        for (slot, sample) in used.iter_mut().zip(self.samples) {
+            *slot = Sample { stock: sample.stock + sample.normal.times(shift(sample)), ..*sample };
+        }
+        let samples: &'b [Sample] = used;
+        let gaps = samples.iter().zip(samples.iter().skip(1)).map(|(a, b)| a.stock.distance(b.stock));
+        let Self { first, count, step, crowded, closed, setup, helix, .. } = *self;
+        let stock_step = gaps.max().unwrap_or_default();
+        Path { samples, first, count, step, stock_step, crowded, closed, setup, helix }
+    }
+
     /// The same path under another wall law.
     pub const fn with_law(mut self, law: WallLaw) -> Self {
         self.setup.law = law;

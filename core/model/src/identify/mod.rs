@@ -77,3 +77,4 @@ pub use observation::{Observation, PredictionWorkspace, predict};
 pub use parameters::{COUNT, Parameter, Parameters, Prior};
 pub use part::{EarlierPart, Eliminated};
 pub use solve::{Information, Matrix, square_root};
+pub use tails::weights as prior_weights;

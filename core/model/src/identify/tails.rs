@@ -27,7 +27,7 @@ pub(super) fn cost(theta: &[Real; COUNT]) -> Real {
 }
 
 /// By how much the prior draws each parameter back, per standard deviation of distance.
-pub(super) fn weights(theta: &[Real; COUNT]) -> [Real; COUNT] {
+pub fn weights(theta: &[Real; COUNT]) -> [Real; COUNT] {
     let mut weights = [Real::ONE; COUNT];
     for ((weight, t), parameter) in weights.iter_mut().zip(theta).zip(Parameter::ALL) {
         if is_long_tailed(parameter) {

@@ -65,6 +65,8 @@ pub fn aim(
     let count = part.slices().count();
     let mut reached = Reached { miss: Offset::MAX, ..Reached::default() };
     let mut since = 0u32;
+    // Whether the walls at hand are those of the best commands.
+    let mut at_hand = false;
     for turn in 1..=turns.max(1) {
         let load = mill.run(part, order, |i| commanded(path, nodes, i), workspace.depths, workspace.moved);
         mill.walls(order, workspace.moved, workspace.walls);
@@ -86,7 +88,8 @@ pub fn aim(
                 }
             }
         }
-        if miss < reached.miss {
+        at_hand = miss < reached.miss;
+        if at_hand {
             reached = Reached { miss, largest, turns: turn, load };
             workspace.best.copy_from_slice(nodes);
             since = 0;
@@ -105,6 +108,9 @@ pub fn aim(
             node.chip = node.chip + sample.normal.times(by);
         }
         settle_ends(path, nodes);
+    }
+    if at_hand {
+        return reached;
     }
     nodes.copy_from_slice(workspace.best);
     mill.run(part, order, |i| commanded(path, nodes, i), workspace.depths, workspace.moved);

@@ -41,6 +41,8 @@ pub struct Mill<'a> {
     /// The angle over which a tooth passes a slice, rad.
     lag: Real,
     pitch: Real,
+    /// Wall error beside the model.
+    residual: &'a [Offset],
 }
 
 /// Residual at which a loop counts as solved.
@@ -104,9 +106,27 @@ impl<'a> Mill<'a> {
         let setup = machine.path.setup();
         let helix = machine.path.helix();
         let lag = helix.lag_per_mm * slices.thickness(setup.axial_depth);
-        Self { machine, grid, slices, lag, pitch: helix.pitch }
+        Self { machine, grid, slices, lag, pitch: helix.pitch, residual: &[] }
     }
 
+    /// The same, whose walls have an error beside the model: for one sample of the contour after the other all slices.
+    #[must_use]
+    pub const fn with_residual(self, residual: &'a [Offset]) -> Self {
+        Self { residual, ..self }
+    }
+
+    /// The same with another machine on the path.
+    #[must_use]
+    pub const fn with<'b>(&'b self, machine: Loop<'b>) -> Mill<'b> {
+        Mill {
+            machine,
+            grid: self.grid,
+            slices: self.slices,
+            lag: self.lag,
+            pitch: self.pitch,
+            residual: self.residual,
+        }
+    }
     /// The machine.
     pub const fn machine(&self) -> &Loop<'a> {
         &self.machine
@@ -181,8 +201,10 @@ impl<'a> Mill<'a> {
                 let Some(wall) = envelope.error(at, guess) else { continue };
                 guess = wall.made_by.saturating_add(1);
                 let own = wall.made_by.saturating_sub(path.first()).min(path.count().saturating_sub(1));
-                if let Some(slot) = walls.get_mut(index.saturating_mul(count).saturating_add(k)) {
-                    *slot = Wall { error: Some(wall.error + self.machine.undersize), made_by: own as u32 };
+                let at = index.saturating_mul(count).saturating_add(k);
+                let beside = self.machine.undersize + self.residual.get(at).copied().unwrap_or_default();
+                if let Some(slot) = walls.get_mut(at) {
+                    *slot = Wall { error: Some(wall.error + beside), made_by: own as u32 };
                 }
             }
         }
