@@ -3,7 +3,7 @@
 truepath_ground::codes! {
     J001 => "a file named by the job cannot be read"
         / "correct the name: it is taken relative to the job file's folder",
-    J009 => "the actual surface of the stock is for the host only: a device takes an even allowance"
+    J009 => "stock that was measured is for the host only: a device that computes its own image takes an even allowance"
         / "make the image here, with truepath correct --route coprocessor, and upload it",
     K001 => "the surface of the stock is no table of points"
         / "write a first line x_mm,y_mm and then one point of the surface a line, decimal points, in the order of travel",
@@ -25,6 +25,12 @@ truepath_ground::codes! {
         / "keep every n-th reading of a scan: some places on each wall and in every corner, each at several heights, tell all there is; truepath inspect takes the whole file",
     M042 => "the probe file is of another format than the job says"
         / "write the format that the error names into [probe] of the job, or give it with --format",
+    K004 => "touches of the stock that lie on the finished wall"
+        / "touch the stock before the finishing pass, with the program that truepath probe --stock writes, and name that file in stock.probe",
+    K005 => "too few touches of the stock"
+        / "touch it at more places, spread along the whole contour: truepath probe --stock writes the program",
+    K006 => "touches that are not of the stock of this contour"
+        / "check that the file is of this part before its finishing pass, in the work coordinates of its program, and allowance_mm in the job",
     N001 => "several features can be corrected, and none is named"
         / "add --feature and one of these names; each of them is a correction of its own",
     N002 => "no feature of that name"

@@ -11,12 +11,14 @@
 //! | what a path under G41 is, where the job does not say it | `drawn` |
 //! | the cuts of a program, and which of them the job means | [`feature`] |
 //! | the surface the stock really has | [`surface`] |
+//! | the stock as it was touched before the pass | [`probed_stock`], between its places [`allowance`] |
 //! | feeds in place of the programmed ones | [`feed`] |
 //! | contour, cut and machine as the core takes them | [`pass`], at every depth [`levels`] |
 //! | the format of a probe file, by its contents | `probe_format` |
 //! | the points of a probe file on that contour | [`measurement`], on several of them `sharing` |
 //! | what refuses a job, a program or a point, as an error with its place | [`refusal`] |
 
+pub mod allowance;
 pub mod codes;
 mod cutter;
 mod depth;
@@ -31,6 +33,7 @@ mod otherwise;
 pub mod pass;
 pub mod post;
 mod probe_format;
+pub mod probed_stock;
 pub mod refusal;
 mod sharing;
 pub mod surface;

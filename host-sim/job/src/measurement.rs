@@ -12,11 +12,9 @@ use crate::codes::M040;
 use crate::levels;
 use crate::otherwise::otherwise;
 use crate::pass::Pass;
-use crate::probe_format::settled;
+use crate::probe_format::{LARGEST_FILE, settled};
 use crate::refusal::why;
 
-/// Readings kept at most.
-pub(crate) const LARGEST_FILE: usize = 1 << 20;
 /// Points that machine and material are identified from at most: the fit cuts the contour around every place some hundred
 /// times, which takes a minute for as many. A tenth of them says all that the model has room for.
 pub const MOST_POINTS: usize = 2_000;

@@ -22,6 +22,7 @@ use crate::feature::{FeaturePass, FeatureSummary, Plan};
 use crate::feed::Schedule;
 use crate::job::{Assumed, JobFile, Which};
 use crate::probe_format::settled;
+use crate::probed_stock::{self, ProbedStock, TouchedPass};
 use crate::refusal::Inputs;
 use crate::surface::{Surface, stock_point};
 
@@ -44,6 +45,8 @@ pub struct Pass {
     pub blocks: Vec<Block>,
     /// The actual surface of the stock; without one the stock is the parallel curve at the allowance.
     pub surface: Option<Surface>,
+    /// The stock as touches have found it; never beside a surface.
+    pub stock: Option<ProbedStock>,
     /// The feature it belongs to; `None` in a program with one cut and no names.
     pub plan: Option<Plan>,
     /// Things the user should know, in the order in which they were noticed.
@@ -72,7 +75,7 @@ impl Pass {
         cutter::settle(&mut job, &program)?;
         let drawn = find_out_drawn(&mut job, &program)?;
         let plan = feature::plan(&job, &program)?;
-        Self::of_plan(job, program, plan, drawn.as_ref())
+        Self::of_plan(job, program, plan, drawn.as_ref())?.over_probed()
     }
 
     /// Reads job and program: a pass for every contour that the job's cutter finishes, in the order of the program; the one
@@ -86,7 +89,7 @@ impl Pass {
         let drawn = find_out_drawn(&mut job, &program)?;
         let plans = feature::plans(&job, &program)?;
         if plans.is_empty() {
-            return Ok(vec![Self::of_plan(job, program, None, drawn.as_ref())?]);
+            return Ok(vec![Self::of_plan(job, program, None, drawn.as_ref())?.over_probed()?]);
         }
         let several = plans.len() > 1;
         let (mut passes, mut refused, mut left) = (Vec::new(), None, Vec::new());
@@ -96,7 +99,7 @@ impl Pass {
                 job.which.feature.clone_from(&plan.id);
             }
             let name = plan.id.clone().unwrap_or_default();
-            match Self::of_plan(job, program.clone(), Some(plan), drawn.as_ref()) {
+            match Self::of_plan(job, program.clone(), Some(plan), drawn.as_ref()).and_then(Self::over_probed) {
                 Ok(pass) => passes.push(pass),
                 Err(Failure::Input(error)) if several => {
                     left.push(format!("{name} is left as it is: {}: {}", error.code(), error.found()));
@@ -170,11 +173,61 @@ impl Pass {
         }
         warnings.extend(plan.iter().flat_map(|p| p.warnings.iter().cloned()));
         let surface = job.read_surface()?;
-        let pass = Self { job, program, core, blocks, surface: None, plan, warnings };
+        let pass = Self { job, program, core, blocks, surface: None, stock: None, plan, warnings };
         match surface {
             Some(surface) => pass.over(surface),
             None => Ok(pass),
         }
+    }
+
+    /// The same pass over the stock that the touches which the job names have found.
+    fn over_probed(self) -> Result<Self, Failure> {
+        let Some(file) = self.job.read_stock_probe()? else { return Ok(self) };
+        let stock = {
+            let refused = |error: &JobError| self.refused_of(&file, error);
+            let contour = self.path_contour();
+            let touched =
+                TouchedPass { job: &self.job, core: &self.core, plan: self.plan.as_ref(), contour, refused: &refused };
+            probed_stock::read(&touched, &file)?
+        };
+        Ok(match stock {
+            Some(stock) => {
+                let said = stock.facts.text();
+                let mut pass = self.over_stock(stock);
+                pass.warnings.push(said);
+                pass
+            }
+            None => {
+                let mut pass = self;
+                pass.warnings.push(format!("{}: no touch is of this contour: its stock is taken as even", file.name()));
+                pass
+            }
+        })
+    }
+
+    /// The same pass over stock that was touched: its allowance becomes the mean one along the contour.
+    #[must_use]
+    pub fn over_stock(mut self, stock: ProbedStock) -> Self {
+        self.core.setup.allowance = Offset::from_nm((stock.facts.mean_mm * 1e6).round() as i64);
+        self.stock = Some(stock);
+        self
+    }
+
+    /// The same over another pass's stock, where that was touched.
+    fn over_stock_of(self, other: &Self) -> Self {
+        match &other.stock {
+            Some(stock) => self.over_stock(stock.clone()),
+            None => self,
+        }
+    }
+
+    /// The same cut in another text of its program; the stock that was touched stays what it is.
+    ///
+    /// # Errors
+    /// As [`Pass::read`].
+    pub fn of_text(&self, mut job: JobFile, program: Source) -> Result<Self, Failure> {
+        job.stock_probe = None;
+        Ok(Self::new(job, program)?.over_stock_of(self))
     }
 
     /// The same pass over an actual surface: its allowance becomes the median distance of the surface from the finished
@@ -208,7 +261,7 @@ impl Pass {
         let median = allowances.get(allowances.len() / 2).copied().unwrap_or_default();
         let allowance = Offset::from_nm((median * 1e6).round() as i64);
         self.core.setup.allowance = allowance;
-        self.surface = Some(surface);
+        (self.surface, self.stock) = (Some(surface), None);
         Ok(self)
     }
 
@@ -262,7 +315,8 @@ impl Pass {
     pub fn at_level(&self, number: u32) -> Result<Self, Failure> {
         let mut job = self.job_as_cut();
         job.which.pass = Some(number);
-        Ok(Self::of_plan(job, self.program.clone(), self.plan.clone(), None)?.cut_with(self.core.cut_with))
+        let other = Self::of_plan(job, self.program.clone(), self.plan.clone(), None)?;
+        Ok(other.over_stock_of(self).cut_with(self.core.cut_with))
     }
 
     /// One of the passes of the same feature, spring passes included. `wall` is the side of its own travel; `None` where
@@ -275,7 +329,7 @@ impl Pass {
         job.numbers.part = Some(pass.part);
         job.numbers.wall = wall;
         let plan = self.plan.clone().map(|plan| Plan { wall, ..plan });
-        Self::of_part(job, self.program.clone(), plan)
+        Ok(Self::of_part(job, self.program.clone(), plan)?.over_stock_of(self))
     }
 
     /// The job with the allowance of the cut, for another pass of the same feature.
@@ -326,7 +380,14 @@ impl Pass {
         };
         let Some(surface) = &self.surface else {
             buffer.0 = vec![Sample::BLANK; needed];
-            return self.core.sample(&contour, &mut buffer.0, fed).map_err(|error| self.refused(&error));
+            let radius = mm(self.core.setup.radius);
+            let shape = |sample: &mut Sample| {
+                if let Some(stock) = &self.stock {
+                    sample.stock = stock_point(sample, radius - stock.allowance.at(mm(sample.s)));
+                }
+                fed(sample);
+            };
+            return self.core.sample(&contour, &mut buffer.0, shape).map_err(|error| self.refused(&error));
         };
         let mut even = vec![Sample::BLANK; needed];
         let stock: Vec<Point> = {

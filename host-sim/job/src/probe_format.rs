@@ -17,6 +17,9 @@ use truepath_ground::diagnostics::{InputError, Source};
 use crate::codes::{J043, J044};
 use crate::job::{FORMATS, JobFile};
 
+/// Readings kept at most.
+pub(crate) const LARGEST_FILE: usize = 1 << 20;
+
 /// Lines with something on them that are looked at.
 const LINES: usize = 60;
 

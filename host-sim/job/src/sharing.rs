@@ -16,9 +16,9 @@ use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, Source};
 
 use crate::levels;
-use crate::measurement::{Aside, LARGEST_FILE, Measurement, numbered};
+use crate::measurement::{Aside, Measurement, numbered};
 use crate::pass::Pass;
-use crate::probe_format::settled;
+use crate::probe_format::{LARGEST_FILE, settled};
 
 /// A depth of one of the walls.
 struct Depth<'a> {

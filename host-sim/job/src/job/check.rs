@@ -1,6 +1,7 @@
 //! From tables and keys to a [`JobFile`]: presence, ranges, choices and contradictions.
 
 use std::cell::RefCell;
+use std::ops::Range;
 use std::path::Path;
 
 use toml::de::DeTable;
@@ -27,6 +28,7 @@ use super::check_tool::{reach, tool};
 use super::material::MATERIALS;
 use super::open::{Assumed, DIALECTS, Open, usual_machine};
 use super::{JobFile, Which};
+use crate::codes::J001;
 
 /// The stiffest machine a job can state; where none is stated only the cutter bends.
 const RIGID: Machine =
@@ -103,7 +105,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         reach(&source, &tool_section, (&tool, &shank), &cut)?;
     }
     let force = match root.section("force")? {
-        Some(section) => force(&source, &section, &open, &mut assumed)?,
+        Some(section) => force(&source, &section, folder, &open, &mut assumed)?,
         None => open.force(None, &mut assumed),
     };
     let read = root.section("probe")?.map(|section| probe(&source, &section, &mut assumed)).transpose()?;
@@ -117,12 +119,12 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     let depth = deep.then_some(cut.axial_depth);
     let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), depth)?;
     let feed = feed(root.section("feed")?.as_ref())?;
-    let plan = plan(root.section("plan")?.as_ref())?;
+    let (plan, plan_cutters) = plan(root.section("plan")?.as_ref(), &tool)?;
     let part = part(&source, root.section("part")?.as_ref())?;
     root.close()?;
     let program = path;
-    let Stock { allowance, surface } = stock;
-    let surface = surface.map(|name| folder.join(name));
+    let Stock { allowance, surface, probe: stock_probe } = stock;
+    let [surface, stock_probe] = [surface, stock_probe].map(|name| name.map(|name| folder.join(name)));
     drop(root);
     Ok(JobFile {
         program,
@@ -144,13 +146,16 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         tolerance: writing.tolerance,
         max_arc_radius: writing.max_arc_radius,
         max_kink_deg: writing.max_kink_deg,
+        discrepancy: writing.discrepancy,
         route: writing.route,
         feed,
         plan,
+        plan_cutters,
         part,
         pocket,
         shank,
         surface,
+        stock_probe,
         features,
         which: Which::default(),
         drawn: false,
@@ -184,25 +189,37 @@ fn cut(section: &Section<'_>, open: &Open) -> Result<(Cut, bool), InputError> {
     Ok((Cut { axial_depth, spindle_rpm, feed_mm_per_min }, depth.is_some()))
 }
 
-fn force(source: &Source, section: &Section<'_>, open: &Open, assumed: &mut Vec<Assumed>) -> Result<Force, InputError> {
+fn force(
+    source: &Source,
+    section: &Section<'_>,
+    folder: &Path,
+    open: &Open,
+    assumed: &mut Vec<Assumed>,
+) -> Result<Force, InputError> {
     const MODELS: [(&str, ForceModel); 3] =
         [("auto", ForceModel::Auto), ("helical", ForceModel::Helical), ("mean", ForceModel::Mean)];
     const KEYS: [&str; 4] = ["ktc_n_per_mm2", "krc_n_per_mm2", "kte_n_per_mm", "kre_n_per_mm"];
     let stated_model = section.choice("model", &MODELS)?;
     let model = stated_model.unwrap_or(ForceModel::Auto);
+    if let Some((name, place)) = section.text("from")? {
+        let others = ["material", KEYS[0], KEYS[1], KEYS[2], KEYS[3]];
+        if let Some(value) = others.into_iter().find_map(|key| section.value(key)) {
+            let found = format!("{} is given as well as force.from", value.path);
+            let help = "remove from, or what it takes the place of";
+            return Err(section.contradiction(&value, &found, "measured coefficients or other ones", help));
+        }
+        section.close()?;
+        return measured(source, place.span, &folder.join(name), model);
+    }
     let materials: Vec<(&str, usize)> = MATERIALS.iter().enumerate().map(|(i, m)| (m.name, i)).collect();
     let Some(index) = section.choice("material", &materials)? else {
         if KEYS.iter().all(|key| section.value(key).is_none()) {
             section.close()?;
             return Ok(open.force(stated_model, assumed));
         }
-        let ktc = section.required_number(KEYS[0], Limits::above("0", "20000", "N/mm²"))?.as_real();
-        let krc = section.required_number(KEYS[1], Limits::within("0", "20000", "N/mm²"))?.as_real();
-        let edge = Limits::within("0", "500", "N/mm");
-        let kte = section.required_number(KEYS[2], edge)?.as_real();
-        let kre = section.required_number(KEYS[3], edge)?.as_real();
+        let force = coefficients(section, model)?;
         section.close()?;
-        return Ok(Force { ktc, krc, kte, kre, model, stated: true });
+        return Ok(force);
     };
     if let Some(value) = KEYS.into_iter().find_map(|key| section.value(key)) {
         let found = format!("{} is given as well as force.material", value.path);
@@ -215,6 +232,30 @@ fn force(source: &Source, section: &Section<'_>, open: &Open, assumed: &mut Vec<
     let [ktc, krc, kte, kre] =
         MATERIALS[index].coefficients.map(|text| Decimal::parse(text).map_or(Real::ZERO, Decimal::as_real));
     Ok(Force { ktc, krc, kte, kre, model, stated: true })
+}
+
+/// The four coefficients, all of which must be there.
+fn coefficients(section: &Section<'_>, model: ForceModel) -> Result<Force, InputError> {
+    let edge = Limits::within("0", "500", "N/mm");
+    Ok(Force {
+        ktc: section.required_number("ktc_n_per_mm2", Limits::above("0", "20000", "N/mm²"))?.as_real(),
+        krc: section.required_number("krc_n_per_mm2", Limits::within("0", "20000", "N/mm²"))?.as_real(),
+        kte: section.required_number("kte_n_per_mm", edge)?.as_real(),
+        kre: section.required_number("kre_n_per_mm", edge)?.as_real(),
+        model,
+        stated: true,
+    })
+}
+
+/// The coefficients that `truepath forces` has written; its other tables are for people.
+fn measured(job: &Source, place: Range<usize>, path: &Path, model: ForceModel) -> Result<Force, InputError> {
+    let source = Source::read(path)
+        .map_err(|error| J001.error(error.found(), "forces.toml as truepath forces writes it").at(job, place))?;
+    let table = notation::parse(&source, "the file of measured forces")?;
+    let spans = RefCell::new(Spans::new());
+    let root = Section::root(&source, &table, &spans);
+    notation::version(&source, &root)?;
+    coefficients(&root.required_section("force", "the four coefficients, as truepath forces writes them")?, model)
 }
 
 /// Stiffness, and the backlash of both axes.

@@ -25,11 +25,15 @@ pub(super) struct Writing {
     pub(super) tolerance: Offset,
     pub(super) max_arc_radius: Offset,
     pub(super) max_kink_deg: f64,
+    pub(super) discrepancy: bool,
     pub(super) route: Route,
 }
 
 /// Routes by name.
 pub const ROUTES: [(&str, Route); 2] = [("program", Route::Program), ("coprocessor", Route::Coprocessor)];
+
+/// What is made of what the points show beside machine and material, by name.
+const DISCREPANCY: [(&str, bool); 2] = [("cancel", true), ("ignore", false)];
 
 /// What the table says.
 pub(super) fn correct(
@@ -52,6 +56,7 @@ pub(super) fn correct(
         tolerance: DEFAULT_TOLERANCE,
         max_arc_radius: DEFAULT_ARC_RADIUS,
         max_kink_deg: 1.0,
+        discrepancy: true,
         route: Route::Program,
     };
     let Some(section) = section else { return Ok((correct, writing)) };
@@ -69,6 +74,7 @@ pub(super) fn correct(
     correct.max_gouge = section.number("max_gouge_mm", Limits::within("0", "1", "mm"))?.map(Decimal::as_mm);
     let clamping = "number the clampings of a part from 1";
     correct.setup = section.whole("setup", Limits::within("1", "99999", ""), clamping)?.unwrap_or(correct.setup);
+    writing.discrepancy = section.choice("discrepancy", &DISCREPANCY)?.unwrap_or(writing.discrepancy);
     writing.route = section.choice("route", &ROUTES)?.unwrap_or(Route::Program);
     section.close()?;
     Ok((correct, writing))

@@ -1,4 +1,4 @@
-//! The `[stock]` table: an even allowance, or the surface that the pass before left.
+//! The `[stock]` table: an even allowance, as it is or as touches of the stock correct it, or the surface that the pass before left.
 
 use truepath_core::units::Offset;
 use truepath_ground::decimal::Decimal;
@@ -13,12 +13,14 @@ pub(super) struct Stock {
     pub(super) allowance: Offset,
     /// File of the actual surface.
     pub(super) surface: Option<String>,
+    /// File of touches of the stock.
+    pub(super) probe: Option<String>,
 }
 
 impl Stock {
     /// Before a slot: the whole of the cutter is in the material, half of it towards either wall.
     pub(super) const fn of_a_slot(diameter: Offset) -> Self {
-        Self { allowance: Offset::from_nm(diameter.nm() / 2), surface: None }
+        Self { allowance: Offset::from_nm(diameter.nm() / 2), surface: None, probe: None }
     }
 }
 
@@ -26,6 +28,16 @@ impl Stock {
 pub(super) fn stock(section: &Section<'_>, diameter: Offset) -> Result<Stock, InputError> {
     let limits = Limits::above("0", "100", "mm");
     let surface = section.text("surface")?;
+    let probe = section.text("probe")?;
+    if let (Some(_), Some((_, place))) = (&surface, &probe) {
+        let found = "stock.probe is given as well as stock.surface";
+        let help = "remove one of them: probe with allowance_mm, or surface alone";
+        return Err(section.contradiction(place, found, "touches of the stock or its actual surface", help));
+    }
+    if let Some((_, place)) = probe.as_ref().filter(|(name, _)| name.is_empty()) {
+        let expected = "the file name of touches of the stock";
+        return Err(section.out_of_range(place, expected, "name the probe file, relative to this file"));
+    }
     let Some(value) = section.value("allowance_mm") else {
         let Some((name, place)) = surface else {
             return Err(section.missing("allowance_mm", &format!("a number, {}, or surface", limits.phrase())));
@@ -35,7 +47,11 @@ pub(super) fn stock(section: &Section<'_>, diameter: Offset) -> Result<Stock, In
             return Err(section.out_of_range(&place, expected, "name the surface, relative to this file"));
         }
         section.close()?;
-        return Ok(Stock { allowance: Offset::from_nm(diameter.nm() / 5), surface: Some(name.to_owned()) });
+        return Ok(Stock {
+            allowance: Offset::from_nm(diameter.nm() / 5),
+            surface: Some(name.to_owned()),
+            probe: None,
+        });
     };
     let allowance = section.number_in(&value, limits).map(Decimal::as_mm)?;
     if let Some((_, place)) = surface {
@@ -49,5 +65,5 @@ pub(super) fn stock(section: &Section<'_>, diameter: Offset) -> Result<Stock, In
         return Err(section.out_of_range(&value, &expected, help));
     }
     section.close()?;
-    Ok(Stock { allowance, surface: None })
+    Ok(Stock { allowance, surface: None, probe: probe.map(|(name, _)| name.to_owned()) })
 }

@@ -37,7 +37,7 @@ pub use check_correct::ROUTES;
 pub use check_feature::{FeaturePlace, FeatureRole, FeatureTable};
 pub use check_feed::{FeedTable, ForceLimit};
 pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
-pub use check_plan::PlanTable;
+pub use check_plan::{CutterStiffness, PlanCutter, PlanTable};
 pub use check_pocket::{Mode, PerSection, PocketTable};
 pub use check_probe::{FORMATS, ProbeFlags, columns, one_of};
 pub use check_tool::Shank;
@@ -61,12 +61,16 @@ pub struct JobFile {
     pub max_arc_radius: Offset,
     /// Kinks of the written path where the program is smooth are kept below this, 0.1…10 degrees.
     pub max_kink_deg: f64,
+    /// Whether a correction cancels what the points show beside machine and material.
+    pub discrepancy: bool,
     /// Where the correction is applied.
     pub route: Route,
     /// How far the feeds along the contour may be changed; `None` leaves every F word.
     pub feed: Option<FeedTable>,
     /// What `truepath plan` has to keep.
     pub plan: PlanTable,
+    /// Cutters it may use beside that of the job.
+    pub plan_cutters: Vec<PlanCutter>,
     /// What the customer of the part is told; empty without `[part]`.
     pub part: PartTable,
     /// What `truepath pocket` cuts; `None` without `[pocket]`.
@@ -75,6 +79,8 @@ pub struct JobFile {
     pub shank: Shank,
     /// The actual surface of the stock, as a path that can be opened; its allowance follows from it.
     pub surface: Option<PathBuf>,
+    /// The file of touches of the stock before the pass, as a path that can be opened.
+    pub stock_probe: Option<PathBuf>,
     /// The `[[feature]]` tables.
     pub features: Vec<FeatureTable>,
     /// Which feature and pass the command is about.
@@ -169,15 +175,39 @@ impl JobFile {
         Surface::read(&Source::new(path.display().to_string(), bytes)).map(Some)
     }
 
+    /// Reads the touches of the stock, when the job names any.
+    ///
+    /// # Errors
+    /// `J001`, pointing at the key `stock.probe`.
+    pub(crate) fn read_stock_probe(&self) -> Result<Option<Source>, InputError> {
+        let Some(path) = &self.stock_probe else { return Ok(None) };
+        let bytes = std::fs::read(path).map_err(|error| {
+            let reason = InputError::unreadable(path, &error);
+            let help = "correct the name, relative to the job file's folder; truepath probe --stock writes the program that touches the stock, truepath correct without stock.probe takes an even allowance";
+            InputError::new(J001, reason.found(), "readable touches of the stock", help)
+                .at(&self.source, self.span("stock.probe"))
+        })?;
+        Ok(Some(Source::new(path.display().to_string(), bytes)))
+    }
+
+    /// The key that says of stock that it is measured, where one does.
+    pub const fn measured_stock(&self) -> Option<&'static str> {
+        match (&self.surface, &self.stock_probe) {
+            (Some(_), _) => Some("stock.surface"),
+            (None, Some(_)) => Some("stock.probe"),
+            (None, None) => None,
+        }
+    }
+
     /// The compact form for a device that makes its own image.
     ///
     /// # Errors
-    /// `J009` when the stock is an actual surface, which stays on the host.
+    /// `J009` when the stock was measured, which stays on the host.
     pub fn compact(&self) -> Result<Vec<u8>, Failure> {
-        if self.surface.is_some() {
-            let found = "stock.surface is given: a device takes an even allowance only";
-            let error = J009.error(found, "stock.allowance_mm");
-            return Err(error.at(&self.source, self.span("stock.surface")).into());
+        if let Some(key) = self.measured_stock() {
+            let found = format!("{key} is given: a device that computes its own image takes an even allowance only");
+            let error = J009.error(found, "stock.allowance_mm alone, or an image made here");
+            return Err(error.at(&self.source, self.span(key)).into());
         }
         let mut compact = [0; truepath_core::job::COMPACT_BYTES];
         let compact = self.numbers.to_compact(&mut compact).map_err(|e| Failure::Internal(e.to_string()))?;

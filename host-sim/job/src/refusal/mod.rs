@@ -11,9 +11,10 @@ use crate::job::JobFile;
 
 mod readings;
 
-use readings::{line_span, of_contacts, of_probe};
+use readings::{of_contacts, of_probe};
 
 pub use readings::why;
+pub(crate) use readings::{line_span, suspected};
 
 /// The files an error may point into.
 #[derive(Clone, Copy, Debug)]

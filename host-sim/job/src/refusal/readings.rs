@@ -46,7 +46,7 @@ pub(super) fn of_contacts(error: &JobError, job: &JobFile) -> InputError {
 }
 
 /// What may be wrong with the readings, and what to do about it.
-fn suspected(suspicion: Suspicion) -> (String, &'static str) {
+pub(crate) fn suspected(suspicion: Suspicion) -> (String, &'static str) {
     let help = match suspicion {
         Suspicion::Inches => {
             "the file is in inches and was read in millimetres: convert it, say so in [probe] (unit of columns), or probe with the program's unit active"
@@ -113,7 +113,7 @@ pub fn why(reason: &Rejected) -> String {
 }
 
 /// The whole line of a reading.
-pub(super) fn line_span(file: &Source, line: u32) -> std::ops::Range<usize> {
+pub(crate) fn line_span(file: &Source, line: u32) -> std::ops::Range<usize> {
     let start = file.span_at(line, 1, 0).start;
     let len = file.bytes()[start..].iter().take_while(|b| !matches!(b, b'\n' | b'\r')).count();
     start..start + len

@@ -12,9 +12,9 @@ use truepath_job::job::JobFile;
 
 /// Tables that do not exclude each other, and those that do in the second and third job.
 const JOBS: [&str; 3] = [
-    "version = 1\nprogram = \"p.nc\"\n[stock]\nallowance_mm = 0.5\n[tool]\ndiameter_mm = 10\nmeasured_diameter_mm = 10\nteeth = 4\n\
+    "version = 1\nprogram = \"p.nc\"\n[stock]\nallowance_mm = 0.5\nprobe = \"stock.txt\"\n[tool]\ndiameter_mm = 10\nmeasured_diameter_mm = 10\nteeth = 4\n\
      [cut]\naxial_depth_mm = 5\n[force]\nmaterial = \"steel-40\"\n[machine]\n[probe]\nball_diameter_mm = 6\nformat = \"columns\"\n\
-     [correct]\n[feed]\nmin_percent = 50\n[plan]\n[part]\nlower_mm = -0.1\nupper_mm = 0.1\n[pocket]\n\
+     [correct]\n[feed]\nmin_percent = 50\n[plan]\n[[plan.cutter]]\nnumber = 2\nhelix_deg = 40\n[part]\nlower_mm = -0.1\nupper_mm = 0.1\n[pocket]\n\
      [[feature]]\nid = \"a\"\nallowance_mm = 0.4\n",
     "version = 1\nprogram = \"p.nc\"\n[stock]\nsurface = \"s.csv\"\n[tool]\ndiameter_mm = 10\nteeth = 4\n\
      [cut]\naxial_depth_mm = 5\n[force]\nktc_n_per_mm2 = 1\nkrc_n_per_mm2 = 1\nkte_n_per_mm = 1\nkre_n_per_mm = 1\n\
@@ -37,6 +37,11 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("stock", "", "what lies on the wall before this pass"),
     ("stock.allowance_mm", "none", "an even allowance, below the cutter's diameter"),
     ("stock.surface", "none", "in its place: a table of points of the actual surface, relative to this file"),
+    (
+        "stock.probe",
+        "even stock",
+        "with allowance_mm: touches of the stock before this pass, relative to this file: [stock](stock.md)",
+    ),
     ("tool", "", "the cutter"),
     ("tool.diameter_mm", "that of a comment of the program", "nominal diameter"),
     ("tool.measured_diameter_mm", "diameter_mm", "measured diameter, within 10 % of the nominal one"),
@@ -74,8 +79,9 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     (
         "force",
         "between aluminium and steel, with a wide prior",
-        "cutting force, where the fit to the points begins: a material, or the four coefficients",
+        "cutting force, where the fit to the points begins: measured forces, a material, or the four coefficients",
     ),
+    ("force.from", "none", "a file that `truepath forces` wrote, relative to this file: [measured forces](forces.md)"),
     ("force.material", "that of a comment of the program", "a row of the table of materials"),
     ("force.ktc_n_per_mm2", "1150, with a wide prior", "tangential chip coefficient"),
     ("force.krc_n_per_mm2", "370, with a wide prior", "radial chip coefficient"),
@@ -117,6 +123,11 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("correct.tolerance_mm", "0.001", "how far the written path may leave the computed one"),
     ("correct.max_arc_radius_mm", "1000", "arcs of a larger radius are written as lines"),
     ("correct.max_kink_deg", "1", "kinks of the written path where the program is smooth stay below this"),
+    (
+        "correct.discrepancy",
+        "cancel",
+        "what the points show beside machine and material: [discrepancy](discrepancy.md); ignored by a device that computes",
+    ),
     ("correct.route", "program", "where the correction is applied"),
     ("feed", "no F word is changed", "whether and how far feeds may be changed: [feeds](feed.md)"),
     ("feed.min_percent", "none", "lowest feed, percent of the programmed one"),
@@ -139,6 +150,18 @@ const MEANINGS: &[(&str, &str, &str)] = &[
         "none",
         "thinnest chip that still cuts, as the mean along the contour of the thickest of a tooth",
     ),
+    (
+        "plan.cutter",
+        "none",
+        "other cutters that the wall may be finished with, one table each: [plans](plan.md#other-cutters)",
+    ),
+    ("plan.cutter.number", "none", "number of the tool at the machine"),
+    ("plan.cutter.diameter_mm", "that of the job", "diameter"),
+    ("plan.cutter.teeth", "those of the job", "number of teeth"),
+    ("plan.cutter.helix_deg", "none", "helix angle"),
+    ("plan.cutter.stiffness_factor", "1", "stiffness of the machine with it, over that with the cutter of the job"),
+    ("plan.cutter.stickout_mm", "by the factor", "in its place, where `[tool]` has it too: from the collet to the tip"),
+    ("plan.cutter.material", "that of the job", "what it is made of, with stickout_mm"),
     ("part", "", "what the customer is told: [inspection](inspection.md)"),
     ("part.name", "none", "1 to 100 characters on one line, as the five below"),
     ("part.drawing", "none", "drawing"),
@@ -232,7 +255,7 @@ fn page() -> String {
         }
         text += "| key | type | range | default | meaning |\n|---|---|---|---|---|\n";
         let inside = |key: &&Asked| {
-            let (own, _) = key.path.split_once('.').unwrap_or(("", ""));
+            let (own, _) = key.path.rsplit_once('.').unwrap_or(("", ""));
             own == table && !matches!(key.kind, Kind::Table | Kind::Tables)
         };
         for key in keys.iter().filter(inside) {

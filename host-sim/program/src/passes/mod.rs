@@ -13,10 +13,12 @@
 //! | what is asked for | `request` |
 //! | a depth in its program | `section` |
 //! | its lines | `text` |
+//! | what the control is told before each pass | `announced` |
 //!
 //! Limits: G17, constant height along the contour, feed per minute or per revolution. Where the control compensates by the
 //! radius, the passes are paths of the cutter's centre, without G41. Spring passes behind the contour are replaced with it.
 
+mod announced;
 mod request;
 mod section;
 mod text;
@@ -31,6 +33,7 @@ use super::survey::{Move, survey};
 use crate::codes::{P008, P009};
 use section::{Section, Text};
 
+pub use announced::Announced;
 pub use request::{Depth, Turn};
 
 /// A program with its passes written out.
@@ -61,6 +64,9 @@ pub struct RepeatedDepth {
 pub struct RepeatedPass {
     /// Its lines, from its comment on.
     pub lines: LineRange,
+    /// The line on which the way down to it begins: before it the cutter stands above its start. The first line of its path where the
+    /// way down of the program is kept.
+    pub down: u32,
     /// Lead-in, contour, lead-out.
     pub parts: [Vec<Curves>; 3],
     /// Height, nm.
@@ -180,9 +186,9 @@ fn assemble(
 
 /// The passes of a section whose first line is `begin`.
 fn passes(moves: &[Move], depth: &Depth, section: &Section, lines: &text::Lines, begin: u32) -> Vec<RepeatedPass> {
-    let until = |k: usize| lines.passes.get(k + 1).map_or(lines.text.len(), |(first, _)| *first) as u32;
-    let pass = |(k, (first, cuts)): (usize, &(usize, Vec<usize>))| {
-        let mut line = cuts.iter().map(|&line| begin + line as u32);
+    let until = |k: usize| lines.passes.get(k + 1).map_or(lines.text.len(), |next| next.first) as u32;
+    let pass = |(k, own): (usize, &text::PassLines)| {
+        let mut line = own.cuts.iter().map(|&line| begin + line as u32);
         let parts = section.parts.each_ref().map(|part| {
             let blocks = part.iter().filter_map(|&i| Some((moves[i].curve()?, line.next()?)));
             let mut s = truepath_core::units::Offset::ZERO;
@@ -193,8 +199,8 @@ fn passes(moves: &[Move], depth: &Depth, section: &Section, lines: &text::Lines,
             });
             blocks.collect::<Vec<_>>()
         });
-        let lines = LineRange { first: begin + *first as u32, last: begin + until(k) - 1 };
-        RepeatedPass { lines, parts, z_nm: section.height_of(depth.turns[k].raise).nm() }
+        let lines = LineRange { first: begin + own.first as u32, last: begin + until(k) - 1 };
+        RepeatedPass { lines, down: begin + own.down as u32, parts, z_nm: section.height_of(depth.turns[k].raise).nm() }
     };
     lines.passes.iter().enumerate().map(pass).collect()
 }
@@ -249,6 +255,7 @@ mod tests {
             springs: Vec::new(),
             allowance: Offset::from_um(500),
             turns: turns.iter().map(turn).collect(),
+            announced: false,
         }
     }
 

@@ -14,6 +14,8 @@ pub struct Depth {
     pub allowance: Offset,
     /// The passes, in the order of cutting; at least one.
     pub turns: Vec<Turn>,
+    /// Whether something has to be said to the control before the way down to every pass, the first one included.
+    pub announced: bool,
 }
 
 /// One pass along a contour.

@@ -16,7 +16,7 @@ use super::super::grid::Grid;
 use super::super::line::{Block, Manner};
 use super::super::pen::place;
 use super::super::survey::{Kind, Move};
-use super::request::Depth;
+use super::request::{Depth, Turn};
 use crate::codes::{P004, P006, P007, P009, P010};
 
 /// A move up or down where the cutter stands.
@@ -155,14 +155,18 @@ impl<'a> Text<'a> {
         }
         let end = self.end(depth, run.end)?;
         let (height, descent, first_down) = self.way_down(run.start, z);
-        let plain = depth.turns.first().is_some_and(|turn| !turn.reversed && turn.raise == Offset::ZERO);
+        let as_programmed = |turn: &Turn| !turn.reversed && turn.raise == Offset::ZERO;
+        let plain = !depth.announced && depth.turns.first().is_some_and(as_programmed);
         let start = match first_down.filter(|_| !plain) {
             Some(first) => first,
             None if plain => run.start,
             None => {
                 let found = "the cutter comes to the contour along a ramp, or at its depth";
-                let expected =
-                    "a first pass in the direction and at the depth of the program, or a move down where it stands";
+                let expected = if depth.announced {
+                    "a move down where it stands, before which the control can be told of the pass"
+                } else {
+                    "a first pass in the direction and at the depth of the program, or a move down where it stands"
+                };
                 return Err(self.odd(moves[run.start].line, found, expected));
             }
         };

@@ -21,11 +21,20 @@ use crate::codes::{P006, P009, P010};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
     pub(super) text: Vec<Vec<u8>>,
-    /// For every pass, the first of its lines and which line each of its cutting moves has become, in the order of the
-    /// program; all counted from 0.
-    pub(super) passes: Vec<(usize, Vec<usize>)>,
+    /// The passes, in the order of cutting.
+    pub(super) passes: Vec<PassLines>,
     /// Whether the cutter stands higher than in the program when the section is over.
     pub(super) lifted: bool,
+}
+
+/// The lines of a pass, counted from 0.
+#[derive(Clone, Debug)]
+pub(super) struct PassLines {
+    pub(super) first: usize,
+    /// Where the way down begins, above the start of the pass.
+    pub(super) down: usize,
+    /// Which line each cutting move has become, in the order of the program.
+    pub(super) cuts: Vec<usize>,
 }
 
 /// Writes a section.
@@ -61,20 +70,21 @@ pub(super) fn write(
         let first = typist.lines.len();
         typist.comment(&remark(depth, k, &typist.z_text(section.height_of(turn.raise))), semicolon);
         let [from, _] = if turn.reversed { [ends[1], ends[0]] } else { ends };
+        let elsewhere = k == 0 && !section.keeps_descent && from != ends[0];
         if k > 0 {
             typist.rise(from);
+        } else if elsewhere {
+            typist.lift_to(section.clearance);
+        }
+        if k > 0 || elsewhere {
             typist.travel(from);
-            typist.go_down(section.height_of(turn.raise), false);
-        } else if !section.keeps_descent {
-            let elsewhere = from != ends[0];
-            if elsewhere {
-                typist.lift_to(section.clearance);
-                typist.travel(from);
-            }
+        }
+        let down = typist.lines.len();
+        if k > 0 || !section.keeps_descent {
             typist.go_down(section.height_of(turn.raise), elsewhere);
         }
         let cuts = typist.pass(turn, k == 0)?;
-        lines.passes.push((first, cuts));
+        lines.passes.push(PassLines { first, down, cuts });
     }
     lines.lifted = typist.back()?;
     lines.text = typist.lines;
