@@ -1,0 +1,51 @@
+//! `forces.toml`: a `[force]` table as a job takes it, the same as a prior with standard deviations, and the laws.
+
+use std::fmt::Write;
+
+use crate::analysis::Analysis;
+
+/// The file.
+pub fn forces_toml(analysis: &Analysis) -> String {
+    const KEYS: [&str; 4] = ["ktc_n_per_mm2", "krc_n_per_mm2", "kte_n_per_mm", "kre_n_per_mm"];
+    let linear = &analysis.linear;
+    let mut text = format!(
+        "# Force coefficients from measured forces, between {:.4} and {:.4} mm per tooth.\n\
+         # In a job: [force] with from = \"forces.toml\", or this table itself.\nversion = 1\n\n[force]\n",
+        linear.feeds_mm[0], linear.feeds_mm[1]
+    );
+    for (key, coefficient) in KEYS.iter().zip(&linear.coefficients) {
+        let _ = writeln!(text, "{key} = {:.3}", coefficient.value);
+    }
+    text.push_str(
+        "\n[prior]                 # standard deviations of the four, and their correlation in the same order\n",
+    );
+    for (key, coefficient) in KEYS.iter().zip(&linear.coefficients) {
+        let _ = writeln!(text, "{key} = {:.3}", coefficient.sigma);
+    }
+    let rows = linear.correlation.iter().map(|row| format!("[{}]", row.map(|r| format!("{r:.4}")).join(", ")));
+    let _ = writeln!(text, "correlation = [{}]", rows.collect::<Vec<_>>().join(", "));
+    for fitted in analysis.laws.iter().filter(|f| f.weight > 0.005) {
+        let [tangential, radial] = fitted.model.laws;
+        let list = |values: &[f64]| values.iter().map(|v| format!("{v:.5}")).collect::<Vec<_>>().join(", ");
+        let _ = write!(
+            text,
+            "\n[[law]]                 # {:.1} %: {} tangential, {} radial\nprobability = {:.4}\n\
+             tangential = [{}]\nradial = [{}]\nsigma = [{}]\nsize_exponent = [{}]\n",
+            100.0 * fitted.weight,
+            tangential.words(),
+            radial.words(),
+            fitted.weight,
+            list(fitted.model.of(0)),
+            list(fitted.model.of(1)),
+            list(&fitted.sigma),
+            list(
+                &[tangential, radial]
+                    .iter()
+                    .enumerate()
+                    .map(|(d, law)| law.exponent(fitted.model.of(d)))
+                    .collect::<Vec<_>>()
+            )
+        );
+    }
+    text
+}

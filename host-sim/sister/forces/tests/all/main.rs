@@ -1,0 +1,5 @@
+//! Forces from records.
+
+mod real;
+mod recovered;
+mod refused;

@@ -1,0 +1,44 @@
+//! Wrong files, and what is said of them.
+
+use truepath_plant::Dynamometer;
+
+use crate::recovered::{RECORD, Records};
+
+fn code(text: &str, records: &Records) -> (String, String) {
+    let error = records.analysis(text).expect_err("an error");
+    (error.code().to_owned(), error.to_json().to_string())
+}
+
+#[test]
+fn wrong_descriptions_are_refused_with_what_to_do() {
+    let records = Records::new(9000, &Dynamometer::default());
+    let good = records.described(RECORD, 3);
+    // The axes: swapped, turned, not said.
+    let (c, said) = code(&good.replace("feed = \"Fx\"\nacross = \"Fy\"", "feed = \"Fy\"\nacross = \"Fx\""), &records);
+    assert!(c == "E006" && said.contains("feed = \\\"-Fx\\\", across = \\\"-Fy\\\""), "{said}");
+    assert_eq!(code(&good.replace("\"workpiece\"", "\"tool\""), &records).0, "E006");
+    // The unit, either way.
+    let (c, said) = code(&good.replace("repeatability", "unit = \"kN\"\nrepeatability"), &records);
+    assert!(c == "E007" && said.contains("unit = \\\"N\\\""), "{said}");
+    // Tool data, revolutions, columns, rate.
+    assert_eq!(code(&good.replace("helix_deg = 35\n", ""), &records).0, "J004");
+    assert_eq!(code(&good.replace("axial_depth_mm = 6\n", ""), &records).0, "E008");
+    assert_eq!(code(&good.replace("milling = \"down\"\n", ""), &records).0, "E008");
+    assert_eq!(
+        code(&good.replace("record = \"0.csv\"", "record = \"0.csv\"\nfrom_s = 0.5\nto_s = 0.51"), &records).0,
+        "E005"
+    );
+    assert_eq!(code(&good.replace("\"Fx\"", "\"Fq\""), &records).0, "E002");
+    assert_eq!(code(&good.replace("0.csv", "none.csv"), &records).0, "F001");
+    std::fs::write(records.folder().join("0.csv"), "Fx,Fy\n1,2\n3,4\n").expect("a file");
+    assert_eq!(code(&good, &records).0, "E003");
+    std::fs::write(records.folder().join("0.csv"), "Fx,Fy\n1,2\n3,x\n").expect("a file");
+    assert_eq!(code(&good, &records).0, "E001");
+}
+
+#[test]
+fn one_feed_is_told() {
+    let records = Records::new(9001, &Dynamometer::default());
+    let analysis = records.analysis(&records.described(RECORD, 1)).expect("an analysis");
+    assert!(analysis.warnings.iter().any(|w| w.starts_with("one feed only")), "{:?}", analysis.warnings);
+}
