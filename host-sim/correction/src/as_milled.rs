@@ -10,14 +10,18 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::correct::CorrectedPass;
 use crate::correction::{Correction, DesignRequest, evaluate};
+use crate::discrepancy::Along;
 use crate::learning::History;
 use crate::rows::{CorrectionRow, correction_rows};
+use crate::surface::predicted::Surface;
 
 /// The measured part, along the contour.
 #[derive(Clone, Debug)]
 pub struct AsMilled {
     /// The correction it was cut with, and the walls that leaves.
     pub correction: Correction,
+    /// Its wall at every height.
+    pub surface: Surface,
     /// `milled.csv`: the columns of `correction.csv`, of this part.
     pub rows: Vec<CorrectionRow>,
 }
@@ -43,12 +47,14 @@ impl AsMilled {
         let path = pass.sample(&mut buffer)?.with_law(done.identified.law());
         let table = done.identified.table();
         let machine = done.identified.machine(&path, &table);
-        let (residual, residual_sigma) = (&done.residual[..], &done.residual_sigma[..]);
-        let request = DesignRequest { law: Law::Model, residual, residual_sigma, kept: None };
+        // The part is there: what the next one will do otherwise does not count.
+        let beside = Along { repeat: Vec::new(), ..done.beside.clone() };
+        let request = DesignRequest { law: Law::Model, beside: &beside, kept: None };
         let nodes = history.next.correction.nodes().unwrap_or_default();
         let correction = evaluate(pass, &machine, &done.identified, &nodes, &request);
         let rows = correction_rows(&machine, &correction);
-        Ok(Self { correction, rows })
+        let surface = Surface::predicted(&machine, &done.identified, &beside, &nodes);
+        Ok(Self { correction, surface, rows })
     }
 
     /// Whether it was cut with any correction.

@@ -3,9 +3,9 @@
 use truepath_core::checksum::crc32;
 use truepath_core::cut::Path;
 use truepath_core::gcode::program_crc;
+use truepath_core::identify::Observation;
 use truepath_core::image::{DEVICE_NODES, image_bytes};
-use truepath_core::job;
-use truepath_core::units::Offset;
+use truepath_core::job::{self, LawName};
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::units::mm;
 use truepath_job::feature::Plan;
@@ -18,12 +18,15 @@ use truepath_program::codes::P004;
 use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program, unrolled};
 
 use crate::correction::{Correction, DesignRequest, Identification, MeasuredCut, design_correction, identify_together};
+use crate::discrepancy::{Along, PartCut, relieved};
 use crate::edits::block_edits;
 use crate::feeds;
+use crate::identification::Found;
 use crate::remarks::{MeasuredPart, Remarks};
 use crate::rows::{CorrectionRow, correction_rows};
 use crate::summary::{CorrectSummary, correct_summary, corrected_name};
-use crate::warnings::{cut_corrected, kinked, model_warnings};
+use crate::surface::predicted::{Surface, Surfaces};
+use crate::warnings::{beyond_tolerance, cut_corrected, kinked, model_warnings};
 
 /// A correction in memory: everything the command writes follows from it.
 #[derive(Clone, Debug)]
@@ -34,10 +37,8 @@ pub struct CorrectedPass {
     pub correction: Correction,
     /// Feeds in place of the programmed ones, where the job wants any.
     pub schedule: Option<Schedule>,
-    /// Wall error beside the model, one entry per sample of the contour; empty where none is known.
-    pub residual: Vec<Offset>,
-    /// Its standard deviation, the same way.
-    pub residual_sigma: Vec<Offset>,
+    /// What is beside the model along the contour; empty where nothing is known.
+    pub beside: Along,
     /// The summary.
     pub summary: CorrectSummary,
     /// The corrected program, when that is a route.
@@ -94,15 +95,47 @@ pub fn correct_every(
     let both = walls.iter().zip(&sampled);
     let cuts = both.map(|(wall, path)| MeasuredCut { pass: wall.pass, path, measurement: wall.measurement });
     let cuts: Vec<MeasuredCut> = cuts.collect();
-    let identified = identify_together(&cuts, |share| progress(0.2 * share))?;
-    let identified = walls.iter().zip(&sampled).zip(identified).map(|((wall, path), identified)| {
-        let remarks = Remarks::of(wall.measurement, wall.remarks, MeasuredPart::Uncorrected);
-        let lawful = path.with_law(identified.law());
-        let table = identified.table();
-        let law = job::law(&wall.pass.core, &identified.machine(&lawful, &table), &wall.measurement.contacts);
-        IdentifiedWall { pass: wall.pass, path, identified, request: DesignRequest::of(law), remarks }
-    });
+    let identified = identify_together(&cuts, |share| progress(0.1 * share))?;
+    let (identified, along) = beside(&cuts, identified, |share| progress(0.1 + 0.1 * share));
+    let identified =
+        walls.iter().zip(&sampled).zip(identified).zip(&along).map(|(((wall, path), identified), along)| {
+            let remarks = Remarks::of(wall.measurement, wall.remarks, MeasuredPart::Uncorrected);
+            let lawful = path.with_law(identified.law());
+            let table = identified.table();
+            let law = job::law(&wall.pass.core, &identified.machine(&lawful, &table), &wall.measurement.contacts);
+            let request = DesignRequest { beside: along, ..DesignRequest::of(law) };
+            IdentifiedWall { pass: wall.pass, path, identified, request, remarks }
+        });
     correct_identified(identified.collect(), routes, progress)
+}
+
+/// What the walls of an uncorrected part show beside the machine, which is then known better: it with its points, and the
+/// discrepancy along each.
+fn beside(
+    cuts: &[MeasuredCut<'_>],
+    identified: Vec<Identification>,
+    mut progress: impl FnMut(f64),
+) -> (Vec<Identification>, Vec<Along>) {
+    let (Some(cut), Some(known)) = (cuts.first(), identified.first()) else { return (identified, Vec::new()) };
+    // The other laws are kept to be compared with, as they are printed.
+    if !cut.pass.job.discrepancy || cut.pass.job.numbers.correct.law != LawName::Model {
+        let none = vec![Along::default(); identified.len()];
+        return (identified, none);
+    }
+    let observations: Vec<Vec<Observation>> = identified.iter().map(|one| one.observations.clone()).collect();
+    let parts: Vec<PartCut> = cuts
+        .iter()
+        .zip(&observations)
+        .enumerate()
+        .map(|(contour, (cut, observations))| PartCut { path: *cut.path, contour, part: 0, nodes: &[], observations })
+        .collect();
+    let found = Found { core: known.core, earlier: Vec::new(), observations: observations.concat() };
+    let relieved = relieved(&cut.pass.core, found, &parts, &mut progress);
+    let along = parts.iter().map(|part| relieved.along(&part.path, part.contour)).collect();
+    let core = relieved.found.core;
+    let mut rest = relieved.found.observations.into_iter();
+    let own = |own: &Vec<Observation>| Identification { core, observations: rest.by_ref().take(own.len()).collect() };
+    (observations.iter().map(own).collect(), along)
 }
 
 /// A wall and what is known of the machine that cuts it.
@@ -158,8 +191,8 @@ struct Designed<'a> {
     identified: Identification,
     correction: Correction,
     feeds: feeds::Feeds,
-    residual: Vec<Offset>,
-    residual_sigma: Vec<Offset>,
+    beside: Along,
+    surface: Surfaces,
     set_aside: usize,
     probe: u32,
     part: MeasuredPart,
@@ -188,14 +221,17 @@ fn design<'a>(
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.texts.iter().cloned());
     warnings.extend(model_warnings(pass, remarks.measurement, &identified, &correction, &machine));
-    warnings.extend(feeds.warnings(mm(correction.sigma.iter().copied().max().unwrap_or_default())));
+    warnings.extend(feeds.warnings(mm(correction.sigma_by_points.iter().copied().max().unwrap_or_default())));
+    let wall = |nodes| Surface::predicted(&machine, &identified, request.beside, nodes);
+    let surface = Surfaces { before: wall(&[]), after: wall(&correction.nodes) };
+    warnings.extend(beyond_tolerance(pass, &remarks, &surface.after));
     Ok(Designed {
         pass,
         path,
+        surface,
         correction,
         feeds,
-        residual: request.residual.to_vec(),
-        residual_sigma: request.residual_sigma.to_vec(),
+        beside: request.beside.clone(),
         set_aside: remarks.set_aside,
         probe: remarks.probe,
         part: remarks.part,
@@ -271,7 +307,7 @@ impl Designed<'_> {
             program: written.map(|rewritten| rewritten.difference.clone()),
             feed: feeds.summary,
             feature: pass.feature(&levels.written),
-            ..correct_summary(pass, &identified, &path, &correction, self.set_aside, warnings)
+            ..correct_summary(pass, &identified, &path, &correction, self.surface, self.set_aside, warnings)
         };
         let table = identified.table();
         let rows = correction_rows(&identified.machine(&path, &table), &correction);
@@ -279,8 +315,7 @@ impl Designed<'_> {
             identified,
             correction,
             schedule: feeds.schedule,
-            residual: self.residual,
-            residual_sigma: self.residual_sigma,
+            beside: self.beside,
             summary,
             program: written.map(|rewritten| rewritten.text.clone()),
             image,
@@ -335,7 +370,7 @@ pub(crate) fn written_out(passes: &[&Pass], failure: &Failure) -> Option<(Vec<Pa
     for pass in passes {
         let mut job = pass.job.clone();
         job.which.pass = pass.plan.as_ref().map(|_| pass.level());
-        let flat = Pass::new(job, Source::new(pass.program.name(), text.clone())).ok()?;
+        let flat = pass.of_text(job, Source::new(pass.program.name(), text.clone())).ok()?;
         if curves(&flat) != curves(pass) || levels(&flat) != levels(pass) {
             return None;
         }

@@ -14,6 +14,7 @@ use truepath_ground::diagnostics::Failure;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
+use crate::discrepancy::Along;
 use crate::identification::{Found, Points, asked, found};
 use crate::misfit::refuse_misfit;
 use crate::parallel_walls::ParallelWalls;
@@ -36,8 +37,10 @@ pub struct Correction {
     pub unguarded: Vec<Node>,
     /// Predicted wall errors.
     pub predicted: Vec<Predicted>,
-    /// Standard deviation of the predicted error after.
+    /// Standard deviation of the predicted error after, on the next part.
     pub sigma: Vec<Offset>,
+    /// The part of it that more points would lower: the rest is what parts differ in.
+    pub sigma_by_points: Vec<Offset>,
     /// Where only a share of it is applied, if anywhere.
     pub damped: Option<Damped>,
     /// Whether it was used before; `unguarded` is then what it was.
@@ -135,10 +138,8 @@ impl Identification {
 pub struct DesignRequest<'a> {
     /// How it is made.
     pub law: Law,
-    /// Wall error beside the model, one entry per sample of the contour; empty where none is known.
-    pub residual: &'a [Offset],
-    /// Its standard deviation, the same way.
-    pub residual_sigma: &'a [Offset],
+    /// What is beside the model along the contour; empty where nothing is known.
+    pub beside: &'a Along,
     /// A correction that is used again instead of a new one, as far as the guard allows.
     pub kept: Option<&'a [Node]>,
 }
@@ -146,7 +147,8 @@ pub struct DesignRequest<'a> {
 impl DesignRequest<'_> {
     /// By a law, of what the model predicts alone.
     pub const fn of(law: Law) -> Self {
-        Self { law, residual: &[], residual_sigma: &[], kept: None }
+        static NOTHING: Along = Along::NONE;
+        Self { law, beside: &NOTHING, kept: None }
     }
 }
 
@@ -191,7 +193,7 @@ fn guarded_correction(
     let path = machine.path;
     let count = path.count();
     let mut buffers = Buffers::of(path);
-    let mut workspace = buffers.workspace(request.residual);
+    let mut workspace = buffers.workspace(&request.beside.mean);
     let mut nodes = vec![Node::default(); count];
     let mut unguarded = nodes.clone();
     let mut predicted = vec![Predicted::default(); count];
@@ -213,11 +215,15 @@ fn guarded_correction(
         }),
     };
     let damped = made.damped;
-    for (sigma, more) in sigma.iter_mut().zip(request.residual_sigma) {
+    for (sigma, more) in sigma.iter_mut().zip(&request.beside.sigma) {
+        *sigma = hypot_nm(*sigma, *more);
+    }
+    let sigma_by_points = sigma.clone();
+    for (sigma, more) in sigma.iter_mut().zip(&request.beside.repeat) {
         *sigma = hypot_nm(*sigma, *more);
     }
     let used_again = request.kept.is_some();
-    Correction { nodes, unguarded, predicted, sigma, damped, used_again, wanted, passage }
+    Correction { nodes, unguarded, predicted, sigma, sigma_by_points, damped, used_again, wanted, passage }
 }
 
 /// Memory of a design.

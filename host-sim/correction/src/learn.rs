@@ -15,6 +15,8 @@ use crate::correction::{DesignRequest, Identification};
 use crate::learning::{Companion, History, MOST_PARTS, Part, PartPoints, Verdict, update};
 use crate::remarks::{MeasuredPart, Remarks};
 use crate::summary::{ContourSummary, CorrectSummary};
+use crate::surface::predicted::Surface;
+use crate::surface::touched::TouchedSurface;
 
 /// The correction of the next part.
 #[derive(Clone, Debug)]
@@ -38,6 +40,10 @@ pub struct LearnSummary {
     pub verdict: Verdict,
     /// The part that was measured, along the whole contour, as the model of all parts has it.
     pub whole_contour_error_mm: WholeContour,
+    /// Its wall at every height, as the model of all parts has it.
+    pub whole_surface: Surface,
+    /// Its wall at the touched heights, as measured.
+    pub measured_surface: TouchedSurface,
     /// Each of several contours; the rest is the worst of them, or the sum. Absent for one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contours: Vec<ContourLearned>,
@@ -145,8 +151,7 @@ pub fn learn_every(
     let mut identified = Vec::new();
     for ((wall, path), (update, texts)) in walls.iter().zip(&sampled).zip(&taught) {
         let observations = update.joint.observations.last().cloned().unwrap_or_default();
-        let (residual, residual_sigma) = (&update.residual[..], &update.residual_sigma[..]);
-        let request = DesignRequest { law: Law::Model, residual, residual_sigma, kept: update.kept.as_deref() };
+        let request = DesignRequest { law: Law::Model, beside: &update.beside, kept: update.kept.as_deref() };
         let remarks = Remarks::of(wall.measurement, texts, MeasuredPart::Corrected);
         let known = Identification { core: update.joint.core, observations };
         identified.push(IdentifiedWall { pass: wall.pass, path, identified: known, request, remarks });

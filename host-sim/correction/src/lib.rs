@@ -4,6 +4,8 @@
 //! |---|---|
 //! | machine and material from the points | [`identification`] |
 //! | the correction of an identified machine | [`correction`] |
+//! | what parts show beside machine and material | [`discrepancy`] |
+//! | the error of the whole wall, at every height | [`surface`] |
 //! | points that are not of this job | [`misfit`] |
 //! | a whole correction with its programs, images and figures | [`correct`], [`summary`] |
 //! | the second of two passes | [`first_pass`], [`second_pass`] |
@@ -18,6 +20,7 @@ pub mod codes;
 pub mod correct;
 pub mod correction;
 pub mod damped;
+pub mod discrepancy;
 pub mod edits;
 pub mod feeds;
 pub mod first_pass;
@@ -32,7 +35,9 @@ pub mod plan;
 pub mod planned;
 pub mod remarks;
 pub mod rows;
+mod seal;
 pub mod second_pass;
 pub mod summary;
+pub mod surface;
 pub mod verification;
 pub mod warnings;

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use truepath_core::correct::Profile;
 use truepath_core::cut::{Path, WallLaw};
 use truepath_core::identify;
 use truepath_core::units::{Offset, Real};
@@ -16,6 +15,7 @@ use truepath_program::Difference;
 use crate::correction::{Correction, Identification};
 use crate::damped::{DampedSummary, damped_summary};
 use crate::guard::{GuardSummary, guard_summary};
+use crate::surface::predicted::Surfaces;
 
 /// An identified quantity.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -47,14 +47,19 @@ pub struct CorrectSummary {
     pub max_error_after_s_mm: f64,
     /// Standard deviation of the error there, mm.
     pub sigma_at_max_error_mm: f64,
-    /// Largest standard deviation of the error after, mm: what the points leave open.
+    /// Largest standard deviation of the error after, mm: what the points leave open, and what parts differ in.
     pub max_sigma_mm: f64,
+    /// The part of it that more points would lower, mm.
+    pub max_sigma_by_points_mm: f64,
     /// What no XY correction can remove: the largest deviation from the target over the heights of the band, mm.
     pub axial_form_error_mm: f64,
-    /// Largest predicted error at any height of the wall without correction, the sign aside, mm: its profile error.
+    /// Largest error at any height of the wall without correction, the sign aside, mm: its profile error, as it is expected with what
+    /// the points leave open.
     pub profile_error_before_mm: f64,
     /// The same with it, mm.
     pub profile_error_after_mm: f64,
+    /// The whole wall at every height without and with it: how sure these are, and what makes them.
+    pub surface: Surfaces,
     /// Deepest predicted gouge at any height of the engaged depth, mm (positive).
     pub worst_gouge_mm: f64,
     /// What the gouge guard allowed of what the target wants; absent without `max_gouge_mm`.
@@ -130,9 +135,11 @@ impl CorrectSummary {
         Some(Self {
             max_error_before_mm: largest(|s| s.max_error_before_mm),
             max_sigma_mm: largest(|s| s.max_sigma_mm),
+            max_sigma_by_points_mm: largest(|s| s.max_sigma_by_points_mm),
             axial_form_error_mm: largest(|s| s.axial_form_error_mm),
             profile_error_before_mm: largest(|s| s.profile_error_before_mm),
             profile_error_after_mm: largest(|s| s.profile_error_after_mm),
+            surface: Surfaces::worst(all.iter().map(|one| one.surface)),
             worst_gouge_mm: largest(|s| s.worst_gouge_mm),
             max_correction_mm: largest(|s| s.max_correction_mm),
             points_used: used,
@@ -193,6 +200,7 @@ pub fn correct_summary(
     identified: &Identification,
     path: &Path,
     correction: &Correction,
+    surface: Surfaces,
     rejected: usize,
     warnings: Vec<String>,
 ) -> CorrectSummary {
@@ -205,19 +213,17 @@ pub fn correct_summary(
     let errors = predicted.iter().map(|p| p.after.aim(target, None).abs());
     let at = errors.enumerate().max_by_key(|(_, error)| *error).map(|(at, _)| at);
     let sample = at.and_then(|at| path.samples().get(path.first() + at));
-    let anywhere = |wall: &Profile| wall.highest.abs().max(wall.deepest().abs());
-    let profile_error_after_mm = largest(predicted.iter().map(|p| anywhere(&p.after)));
-    let mut warnings = warnings;
-    warnings.extend(beyond_tolerance(pass, profile_error_after_mm));
     CorrectSummary {
         version: 1,
-        profile_error_before_mm: largest(predicted.iter().map(|p| anywhere(&p.before))),
-        profile_error_after_mm,
+        profile_error_before_mm: surface.before.profile.profile_mm,
+        profile_error_after_mm: surface.after.profile.profile_mm,
+        surface,
         max_error_before_mm: largest(predicted.iter().map(|p| p.before.aim(target, None).abs())),
         max_error_after_mm,
         max_error_after_s_mm: sample.map_or(0.0, |sample| mm(sample.s)),
         sigma_at_max_error_mm: at.and_then(|at| correction.sigma.get(at)).map_or(0.0, |sigma| mm(*sigma)),
         max_sigma_mm,
+        max_sigma_by_points_mm: largest(correction.sigma_by_points.iter().copied()),
         axial_form_error_mm,
         worst_gouge_mm: largest(predicted.iter().map(|p| -p.after.deepest())).max(0.0),
         guard: guard_summary(path, correction),
@@ -240,17 +246,6 @@ pub fn correct_summary(
         warnings,
         contours: Vec::new(),
     }
-}
-
-/// What to say of a wall that one pass cannot hold within the tolerance of the job at every height.
-fn beyond_tolerance(pass: &Pass, profile_mm: f64) -> Option<String> {
-    let tolerance = pass.job.part.tolerance?;
-    let half = mm(tolerance.upper).min(-mm(tolerance.lower));
-    (profile_mm > half && half > 0.0).then(|| {
-        format!(
-            "one corrected pass leaves {profile_mm:.3} mm at some height of the wall, beyond the tolerance of {half} mm: truepath plan looks for passes that hold it at every height"
-        )
-    })
 }
 
 fn parameters(identified: &Identification) -> BTreeMap<&'static str, Parameter> {

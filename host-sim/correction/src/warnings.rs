@@ -12,6 +12,8 @@ use truepath_program::Difference;
 use crate::correction::{Correction, Identification};
 use crate::damped::damped_summary;
 use crate::guard::guard_summary;
+use crate::remarks::{MeasuredPart, Remarks};
+use crate::surface::predicted::Surface;
 
 /// What the user should doubt.
 pub fn model_warnings(
@@ -91,7 +93,7 @@ pub fn model_warnings(
         ));
     }
     let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
-    let sigma = correction.sigma.iter().copied().max().unwrap_or_default();
+    let sigma = correction.sigma_by_points.iter().copied().max().unwrap_or_default();
     if let Some(damped) = damped_summary(machine.path, correction) {
         out.push(damped.text());
     } else if sigma.nm() * 8 > peak.nm() {
@@ -104,6 +106,39 @@ pub fn model_warnings(
         out.push(reversal);
     }
     out
+}
+
+/// What to say of a wall that one pass cannot hold within the tolerance at every height: what leaves it, and what to type.
+pub fn beyond_tolerance(pass: &Pass, remarks: &Remarks, after: &Surface) -> Option<String> {
+    let tolerance = pass.job.part.tolerance?;
+    let half = mm(tolerance.upper).min(-mm(tolerance.lower));
+    let (expected, twice_sigma) = (after.profile.profile_mm, 2.0 * after.profile.sigma_mm);
+    if half <= 0.0 || expected + twice_sigma <= half {
+        return None;
+    }
+    let verb = if expected > half { "cannot hold" } else { "may not hold" };
+    let feature = pass.job.which.feature.as_ref().map_or_else(String::new, |id| format!(" --feature {id}"));
+    let plan = |probe: &str| {
+        let job = pass.job.source().name();
+        format!("truepath plan {job} --probe {probe} --tolerance {half}{feature}")
+    };
+    let next = match remarks.part {
+        MeasuredPart::Uncorrected => {
+            format!("passes that hold it at every height: {}", plan(&remarks.measurement.file))
+        }
+        MeasuredPart::Corrected => {
+            format!("passes that hold it, from the points of the part cut without correction: {}", plan("FILE"))
+        }
+        MeasuredPart::FirstPass => {
+            "a part that is made in one piece with more passes would be planned with truepath plan".to_owned()
+        }
+    };
+    Some(format!(
+        "one corrected pass {verb} {half} mm at every height of the wall: {expected:.4} ± {twice_sigma:.4} mm (2 sigma) are expected at the worst place, s = {:.1} mm, {:.1} mm above the tip, most of it {}; {next}",
+        after.s_mm,
+        after.height_mm,
+        after.causes.largest()
+    ))
 }
 
 /// A correction that a part was cut with takes off nearly the same everywhere: the fit finds a cutter that is too large.

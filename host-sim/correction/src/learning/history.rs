@@ -15,6 +15,7 @@ use super::points::Point;
 use crate::codes::{Q001, Q003};
 use crate::correct::CorrectedPass;
 use crate::correction::Correction;
+use crate::seal::{sealed, unsealed};
 
 /// Parts a history keeps: when there are more, the oldest is dropped, and the summary says so.
 pub const MOST_PARTS: usize = 8;
@@ -223,25 +224,4 @@ impl Next {
         let nm = Offset::from_nm;
         sums(&self.predicted_nm).into_iter().zip(sums(&self.sigma_nm)).map(|(e, s)| (nm(e), nm(s))).collect()
     }
-}
-
-/// What a history begins with: its own checksum, that of all bytes behind it.
-const SEAL: &[u8] = b"{\"crc32\":\"";
-
-/// A JSON object with its checksum as the first entry.
-fn sealed(body: &[u8]) -> Vec<u8> {
-    let rest = [body.strip_prefix(b"{").unwrap_or(body), b"\n"].concat();
-    let seal = format!("{:08x}\",", crc32(&rest));
-    [SEAL, seal.as_bytes(), &rest].concat()
-}
-
-/// The JSON object without its checksum; what is wrong with that otherwise.
-fn unsealed(text: &[u8]) -> Result<Vec<u8>, String> {
-    let none = || "does not begin with its checksum".to_owned();
-    let (seal, rest) = text.strip_prefix(SEAL).and_then(|text| text.split_at_checked(10)).ok_or_else(none)?;
-    let crc = format!("{:08x}\",", crc32(rest));
-    if crc.as_bytes() != seal {
-        return Err("was changed, or is not whole: its checksum differs".to_owned());
-    }
-    Ok([b"{", rest].concat())
 }

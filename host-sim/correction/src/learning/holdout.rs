@@ -4,14 +4,14 @@
 //! fewer than four places holds none out.
 
 use truepath_core::correct::commanded;
-use truepath_core::cut::{Path, State};
+use truepath_core::cut::{ForceTable, Path, State};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{Observation, Parameters, PredictionWorkspace, predict};
-use truepath_ground::units::mm;
+use truepath_core::units::Real;
+use truepath_ground::units::{float, mm};
 
 use super::joint::{Joint, PartPoints};
-use super::kernel::Engagement;
-use super::residual::Residual;
+use crate::discrepancy::{CutPoints, Engagement, Sensitivity, stock_sensitivities};
 
 /// Which places are held out.
 #[derive(Clone, Debug)]
@@ -31,9 +31,6 @@ pub struct Residuals {
     pub before_mm: f64,
     /// Of the updated model, which has not seen these places.
     pub after_mm: f64,
-    /// Of the updated model with the residual, when there is one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub after_with_residual_mm: Option<f64>,
 }
 
 impl Holdout {
@@ -60,28 +57,33 @@ impl Holdout {
     }
 
     /// What a model misses at the held-out places of the last part.
-    pub fn residual(&self, path: &Path, parts: &[PartPoints], model: &Joint, beside: Option<&Residual>) -> f64 {
-        parts.last().map_or(0.0, |part| missed(path, part, &self.points, model, beside))
+    pub fn residual(&self, path: &Path, parts: &[PartPoints], model: &Joint) -> f64 {
+        parts.last().map_or(0.0, |part| missed(path, part, &self.points, model))
     }
 }
 
 /// What a model, with what is known beside it, misses at points of a part: root mean square over the places, mm.
-pub(super) fn missed(
-    path: &Path,
-    part: &PartPoints,
-    points: &[Observation],
-    model: &Joint,
-    beside: Option<&Residual>,
-) -> f64 {
+pub(super) fn missed(path: &Path, part: &PartPoints, points: &[Observation], model: &Joint) -> f64 {
     let mut points = points.to_vec();
     let states = predicted(path, part, model, &mut points);
     let path = path.with_law(model.core.law);
-    let engagement = Engagement::of(&path, path.working().start, &states);
-    let squares = points.chunk_by(|a, b| a.s == b.s).map(|place| {
+    let loads = loads(&path, part, model, &points);
+    let cut =
+        CutPoints { path: &path, contour: 0, parts_ago: 1, nodes: &part.nodes, observations: &points, datum: [0.0; 2] };
+    let stocks = stock_sensitivities(&path, &cut, &model.core);
+    let engagement = Engagement::of(&path, 0, path.working().start, &states);
+    let squares = points.chunk_by(|a, b| a.s == b.s).scan(0, |at, place| {
+        let own = *at..*at + place.len();
+        *at += place.len();
+        let over = |values: &[f64]| values[own.clone()].iter().sum::<f64>() / place.len() as f64;
+        let sensitivity = Sensitivity { load: over(&loads), stock: over(&stocks) };
+        let count = place.len() as f64;
         let sum: f64 = place.iter().map(|o| mm(o.error - o.predicted)).sum();
-        let feature = engagement.at(place[0].s, place[0].normal);
-        let more = beside.map_or(0.0, |residual| residual.at(&feature).0);
-        (sum / place.len() as f64 - more).powi(2)
+        let more = model
+            .beside
+            .as_ref()
+            .map_or(0.0, |beside| beside.discrepancy.at(&engagement.at(place[0].s, place[0].normal, sensitivity)));
+        Some((sum / count - more).powi(2))
     });
     let (sum, n) = squares.fold((0.0, 0.0), |(sum, n), square| (sum + square, n + 1.0));
     (sum / f64::max(n, 1.0)).sqrt()
@@ -90,14 +92,34 @@ pub(super) fn missed(
 /// Predicts points of a part by a model, without a datum shift: that of another clamping is not known. Returns the
 /// cutter's states along the path.
 pub(super) fn predicted(path: &Path, part: &PartPoints, model: &Joint, points: &mut [Observation]) -> Vec<State> {
+    let parameters = Parameters { datum: Vector::ZERO, ..model.core.fit.parameters };
+    predict_points(path, part, model, &parameters, points);
     let path = path.with_law(model.core.law);
     let (working, table) = (path.working(), model.core.table());
-    let (mut states, mut displacements) = (vec![State::REST; working.len() + 1], vec![Vector::ZERO; working.len() + 1]);
-    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
-    let parameters = Parameters { datum: Vector::ZERO, ..model.core.fit.parameters };
-    let asked = |i: usize| commanded(&path, &part.nodes, i);
-    predict(&path, &table, &parameters, asked, points, &mut workspace);
-    states.truncate(working.len());
-    model.core.machine(&path, &table).run(working.start, &mut states, asked);
+    let mut states = vec![State::REST; working.len()];
+    model.core.machine(&path, &table).run(working.start, &mut states, |i| commanded(&path, &part.nodes, i));
     states
+}
+
+/// Change of the error at points of a part when force or compliance is larger, mm per unit of the natural logarithm.
+fn loads(path: &Path, part: &PartPoints, model: &Joint, points: &[Observation]) -> Vec<f64> {
+    const STEP: Real = Real::ratio(1, 32);
+    let [above, below] = [STEP, -STEP].map(|step| {
+        let mut theta = model.core.fit.theta;
+        theta[0] += step;
+        let mut points = points.to_vec();
+        predict_points(path, part, model, &model.core.prior.at(&theta), &mut points);
+        points
+    });
+    let per = 2.0 * float(STEP) * float(model.core.prior.sigma[0]).max(1e-9);
+    above.iter().zip(&below).map(|(above, below)| mm(above.predicted - below.predicted) / per).collect()
+}
+
+fn predict_points(path: &Path, part: &PartPoints, model: &Joint, parameters: &Parameters, points: &mut [Observation]) {
+    let path = path.with_law(model.core.law);
+    let room = path.working().len() + 1;
+    let table = ForceTable::new(parameters.coefficients.size_exponent);
+    let (mut states, mut displacements) = (vec![State::REST; room], vec![Vector::ZERO; room]);
+    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
+    predict(&path, &table, parameters, |i| commanded(&path, &part.nodes, i), points, &mut workspace);
 }

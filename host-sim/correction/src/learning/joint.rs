@@ -6,16 +6,15 @@
 
 use truepath_core::correct::{Node, commanded};
 use truepath_core::cut::{Path, WallLaw};
-use truepath_core::geometry::Vector;
-use truepath_core::identify::{Cut, EarlierPart, Observation};
+use truepath_core::identify::Observation;
 use truepath_core::job;
 use truepath_core::units::{Offset, Real, hypot_nm};
-use truepath_ground::units::{float, mm};
+use truepath_ground::units::nm;
 use truepath_job::pass::Pass;
 
 use super::history::Part;
-use super::points::nm;
-use crate::identification::{Found, Points, asked, found};
+use crate::discrepancy::{Along, Discrepancy, PartCut, datums, plain, relieved};
+use crate::identification::asked;
 
 /// A part as the fit takes it.
 #[derive(Clone, Debug)]
@@ -39,6 +38,17 @@ pub struct Joint {
     pub observations: Vec<Vec<Observation>>,
     /// The datum of every part, prior standard deviations.
     pub datums: Vec<[f64; 2]>,
+    /// What they show beside the model; `None` where the job ignores it.
+    pub beside: Option<Beside>,
+}
+
+/// What parts show beside the model, for the next one.
+#[derive(Clone, Debug)]
+pub struct Beside {
+    /// At any place.
+    pub discrepancy: Discrepancy,
+    /// Along the contour.
+    pub along: Along,
 }
 
 /// Share of a cancelled deflection that the model may miss.
@@ -82,8 +92,8 @@ pub struct Companion<'a> {
     pub parts: &'a [PartPoints],
 }
 
-/// Fits machine and material to all parts, of which the companions' points are as well; the wall law is the one given, or
-/// found. `progress` is told the share done.
+/// Fits machine and material to all parts, of which the companions' points are as well, with what they show beside both;
+/// the wall law is the one given, or found. `progress` is told the share done.
 pub fn joint(
     pass: &Pass,
     path: &Path,
@@ -93,40 +103,33 @@ pub fn joint(
     progress: &mut dyn FnMut(f64),
 ) -> Joint {
     // The points of a part stand together: those of the contour itself, then those of its companions.
-    let mut of: Vec<(Path<'_>, &PartPoints)> = Vec::new();
-    let (mut cuts, mut earlier, mut all) = (Vec::new(), Vec::new(), Vec::new());
+    let mut cuts: Vec<PartCut<'_>> = Vec::new();
     for (part, own) in parts.iter().enumerate() {
-        let others = companions.iter().filter_map(|companion| {
-            Some((*companion.path, companion.parts.iter().find(|other| other.number == own.number)?))
+        let others = companions.iter().enumerate().filter_map(|(k, companion)| {
+            let points = companion.parts.iter().find(|other| other.number == own.number)?;
+            Some((k + 1, *companion.path, points))
         });
-        let mut count = 0;
-        for (path, points) in std::iter::once((*path, own)).chain(others) {
-            of.push((path, points));
-            cuts.push(Cut { path, points: points.observations.len(), part });
-            all.extend_from_slice(&points.observations);
-            count += points.observations.len();
+        for (contour, path, points) in std::iter::once((0, *path, own)).chain(others) {
+            cuts.push(PartCut { path, contour, part, nodes: &points.nodes, observations: &points.observations });
         }
-        earlier.push(EarlierPart::new(count));
     }
-    earlier.pop();
-    let points = Points { cuts: &cuts, earlier: &earlier, observations: &all };
     let law = law.or(asked(pass.core.job.force.model));
-    let by_program = |cut: usize, sample: usize| {
-        of.get(cut).map_or(Vector::ZERO, |(path, points)| commanded(path, &points.nodes, sample))
+    let found = plain(&pass.core, law, &cuts, &mut |share| progress(0.5 * share));
+    let (found, datums, beside) = if pass.job.discrepancy {
+        let relieved = relieved(&pass.core, found, &cuts, &mut |share| progress(0.5 + 0.5 * share));
+        let along = relieved.along(path, 0);
+        (relieved.found, relieved.datums, relieved.discrepancy.map(|discrepancy| Beside { discrepancy, along }))
+    } else {
+        let datums = datums(&found, parts.len());
+        (found, datums, None)
     };
-    let Found { core, earlier, observations: all } = found(&pass.core, law, points, by_program, progress);
-    let job::Identified { prior, fit, .. } = &core;
-    let mut rest = all.into_iter();
+    let mut rest = found.observations.into_iter();
     let mut observations: Vec<Vec<Observation>> = Vec::new();
     for cut in &cuts {
-        let own = rest.by_ref().take(cut.points).collect();
-        if observations.len() == cut.part {
+        let own = rest.by_ref().take(cut.observations.len()).collect();
+        if cut.contour == 0 {
             observations.push(own);
         }
     }
-    let [.., sigma_x, sigma_y] = prior.sigma.map(float);
-    let shares = |d: Vector| [mm(d.x) / sigma_x.max(1e-9), mm(d.y) / sigma_y.max(1e-9)];
-    let last = [fit.parameters.datum];
-    let datums = earlier.iter().map(|part| part.datum(prior)).chain(last).take(parts.len()).map(shares).collect();
-    Joint { core, observations, datums }
+    Joint { core: found.core, observations, datums, beside }
 }

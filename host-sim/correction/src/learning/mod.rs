@@ -5,7 +5,7 @@
 //! | parts in their order: points, the correction each was cut with, what was promised | [`History`] |
 //! | what of job and program must be the same | [`Facts`] |
 //! | machine and material from all parts together | [`joint()`] |
-//! | what they show beside that model, smooth along the contour | [`Residual`] |
+//! | what they show beside that model | [`discrepancy`](crate::discrepancy) |
 //! | places left out of a first fit | `holdout` |
 //! | whether a part was cut with the correction it is said to be cut with, if any | `uncorrected` |
 //! | whether the newest part came out worse | `monitor` |
@@ -25,18 +25,14 @@
 //! | Q007 | points of a part that no correction was applied to |
 //! | Q008 | points of a part that a correction was applied to, where none is expected |
 
-mod cholesky;
 mod facts;
 mod history;
 mod holdout;
 mod joint;
-mod kernel;
 mod monitor;
 mod moved;
 mod nodes;
-mod places;
 mod points;
-mod residual;
 mod uncorrected;
 mod update;
 mod verdict;
@@ -44,11 +40,10 @@ mod verdict;
 pub use facts::Facts;
 pub use history::{History, MOST_PARTS, Next, Part, WrittenFile};
 pub use holdout::Residuals;
-pub use joint::{Companion, Joint, PartPoints, joint};
+pub use joint::{Beside, Companion, Joint, PartPoints, joint};
 pub use monitor::PartError;
 pub use nodes::Nodes;
 pub use points::Point;
-pub use residual::Residual;
 pub use uncorrected::{refuse_corrected, refuse_uncorrected};
 pub use update::{Update, update};
 pub use verdict::{Promise, UnmodelledError, UsedAgain, Verdict};

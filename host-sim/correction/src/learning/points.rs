@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use truepath_core::geometry::Direction;
 use truepath_core::identify::Observation;
 use truepath_core::units::{Offset, Real};
-use truepath_ground::units::{float, mm};
+use truepath_ground::units::{float, mm, nm};
 
 /// A touched point of a part. Every number is exact: nanometres have six decimals, and the others fit into a `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,11 +44,6 @@ impl Point {
             && self.error_mm.abs() <= 100.0
             && (0.9..=1.1).contains(&x.hypot(y))
     }
-}
-
-/// A length of a history, to the nanometre.
-pub(super) fn nm(mm: f64) -> Offset {
-    Offset::from_nm((mm * 1e6).round() as i64)
 }
 
 fn real(v: f64) -> Real {

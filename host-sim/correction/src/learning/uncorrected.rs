@@ -17,7 +17,6 @@ use super::history::{History, Part};
 use super::holdout::missed;
 use super::joint::{Joint, PartPoints, joint};
 use super::nodes::Nodes;
-use super::residual::Residual;
 use crate::codes::{Q007, Q008};
 
 /// The one must explain the points this many times worse than the other does.
@@ -29,13 +28,8 @@ const BEYOND_NOISE: f64 = 5.0;
 ///
 /// # Errors
 /// `Q007` with both distances.
-pub fn refuse_uncorrected(
-    path: &Path,
-    part: &PartPoints,
-    before: &Joint,
-    beside: Option<&Residual>,
-) -> Result<(), InputError> {
-    let [with, without] = distances(path, part, before, beside);
+pub fn refuse_uncorrected(path: &Path, part: &PartPoints, before: &Joint) -> Result<(), InputError> {
+    let [with, without] = distances(path, part, before);
     if !is_clear(with, without, part) {
         return Ok(());
     }
@@ -77,8 +71,7 @@ pub fn refuse_corrected(pass: &Pass, path: &Path, history: &History, new: &Part)
         return Ok(());
     }
     let before = joint(pass, path, &known, &[], None, &mut |_| ());
-    let beside = Residual::of(path, &known, &before);
-    let [with, without] = distances(path, &part, &before, beside.as_ref());
+    let [with, without] = distances(path, &part, &before);
     if !is_clear(without, with, &part) {
         return Ok(());
     }
@@ -88,9 +81,9 @@ pub fn refuse_corrected(pass: &Pass, path: &Path, history: &History, new: &Part)
 }
 
 /// How far the points of a part are from the wall of its correction, and from the one that none leaves, mm (rms).
-fn distances(path: &Path, part: &PartPoints, before: &Joint, beside: Option<&Residual>) -> [f64; 2] {
+fn distances(path: &Path, part: &PartPoints, before: &Joint) -> [f64; 2] {
     let plain = PartPoints { nodes: Vec::new(), ..part.clone() };
-    [part, &plain].map(|cut| missed(path, cut, &part.observations, before, beside))
+    [part, &plain].map(|cut| missed(path, cut, &part.observations, before))
 }
 
 /// Whether points are clearly not at the one distance, and at the other one they may be.

@@ -4,26 +4,24 @@ use truepath_core::correct::Node;
 use truepath_core::cut::Path;
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::units::{float, mm};
+use truepath_ground::units::float;
 use truepath_job::pass::Pass;
 
 use super::holdout::{Holdout, Residuals};
 use super::joint::{Companion, Joint, PartPoints, joint};
 use super::monitor::Monitor;
 use super::moved::moved;
-use super::residual::Residual;
 use super::uncorrected::refuse_uncorrected;
 use super::verdict::{Promise, UnmodelledError, Verdict};
+use crate::discrepancy::Along;
 
 /// What follows for the next part.
 #[derive(Clone, Debug)]
 pub struct Update {
     /// Machine and material.
     pub joint: Joint,
-    /// Wall error beside the deflection that the model predicts, one entry per sample of the contour.
-    pub residual: Vec<Offset>,
-    /// Its standard deviation.
-    pub residual_sigma: Vec<Offset>,
+    /// What is beside the deflection that the model predicts, along the contour.
+    pub beside: Along,
     /// The correction to use again, when this part came out worse or nothing explains it.
     pub kept: Option<Vec<Node>>,
     /// Whether fits leave the part out from now on.
@@ -50,29 +48,21 @@ pub fn update(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Update, Failure> {
     let before = joint(pass, path, &earlier, companions, None, &mut |share| progress(0.3 * share));
-    let before_beside = Residual::of(path, &earlier, &before);
-    refuse_uncorrected(path, &newest, &before, before_beside.as_ref())?;
+    refuse_uncorrected(path, &newest, &before)?;
     let moved = moved(path, &newest, &before);
     let mut parts = earlier;
     parts.push(newest);
     let after = joint(pass, path, &parts, companions, None, &mut |share| progress(0.3 + 0.3 * share));
-    let after_beside = Residual::of(path, &parts, &after);
     let holdout = Holdout::of(&parts).map(|held| {
         let less = held.without(&parts);
         let updated =
             joint(pass, path, &less, companions, Some(after.core.law), &mut |share| progress(0.6 + 0.3 * share));
-        let beside = after_beside.as_ref().and_then(|_| Residual::of(path, &less, &updated));
         Residuals {
             places: held.places.clone(),
-            before_mm: held.residual(path, &parts, &before, before_beside.as_ref()),
-            after_mm: held.residual(path, &parts, &updated, None),
-            after_with_residual_mm: beside.map(|beside| held.residual(path, &parts, &updated, Some(&beside))),
+            before_mm: held.residual(path, &parts, &before),
+            after_mm: held.residual(path, &parts, &updated),
         }
     });
-    // A residual that makes unseen places worse, beyond the noise of a reading, is not learned.
-    let noise = parts.last().map_or(0.0, |part| mm(part.noise));
-    let spoils = |h: &Residuals| h.after_with_residual_mm.is_some_and(|with| with > h.after_mm + noise);
-    let after_beside = after_beside.filter(|_| !holdout.as_ref().is_some_and(spoils));
     let monitor = Monitor::of(pass, path, &parts, &after);
     let promise = Promise::of(path, &monitor, promised);
     let all: Vec<_> = after.observations.iter().flatten().copied().collect();
@@ -89,13 +79,13 @@ pub fn update(
         let again = parts.get(again).map(|p| p.nodes.clone()).unwrap_or_default();
         if again.is_empty() { vec![Node::default(); path.count()] } else { again }
     });
-    let (chosen, beside) = if set_aside { (before, before_beside) } else { (after, after_beside) };
+    let mut chosen = if set_aside { before } else { after };
     let all: Vec<_> = chosen.observations.iter().flatten().copied().collect();
     chosen.core.check(&all).map_err(|error| pass.refused(&error))?;
     let mut verdict = Verdict::of(&parts, &monitor, promise, holdout, set_aside.then_some(again), fits);
-    let along = beside.map(|residual| (residual.amplitudes(), residual.along(path, &chosen)));
-    verdict.residual = along.as_ref().map(|(amplitudes, (mean, _))| UnmodelledError::of(*amplitudes, mean));
-    let (residual, residual_sigma) = along.map(|(_, along)| along).unwrap_or_default();
+    let beside = chosen.beside.take();
+    verdict.residual = beside.as_ref().and_then(UnmodelledError::of);
+    let beside = beside.map(|beside| beside.along).unwrap_or_default();
     verdict.say(moved);
-    Ok(Update { joint: chosen, residual, residual_sigma, kept, set_aside, verdict })
+    Ok(Update { joint: chosen, beside, kept, set_aside, verdict })
 }

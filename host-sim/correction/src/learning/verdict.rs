@@ -6,8 +6,9 @@ use truepath_core::units::Offset;
 use truepath_ground::units::mm;
 
 use super::holdout::Residuals;
-use super::joint::PartPoints;
+use super::joint::{Beside, PartPoints};
 use super::monitor::{Monitor, PartError};
+use crate::discrepancy::Sizes;
 
 /// How a part came out.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -65,15 +66,16 @@ pub struct Promise {
 pub struct UnmodelledError {
     /// Largest magnitude along the contour, mm.
     pub max_mm: f64,
-    /// Standard deviation of what holds around a place only, mm.
-    pub local_mm: f64,
-    /// Standard deviation of what holds wherever the cutter is engaged alike, mm.
-    pub keyed_mm: f64,
+    /// Standard deviations of its kinds.
+    #[serde(flatten)]
+    pub sizes: Sizes,
 }
 
 impl UnmodelledError {
-    pub(super) fn of([local_mm, keyed_mm]: [f64; 2], along: &[Offset]) -> Self {
-        Self { max_mm: mm(along.iter().map(|r| r.abs()).max().unwrap_or_default()), local_mm, keyed_mm }
+    /// `None` where nothing is worth a correction.
+    pub(super) fn of(beside: &Beside) -> Option<Self> {
+        let largest = beside.along.mean.iter().map(|r| r.abs()).max()?;
+        Some(Self { max_mm: mm(largest), sizes: beside.discrepancy.sizes() })
     }
 }
 

@@ -4,9 +4,9 @@ use truepath_core::cut::Milling;
 use truepath_core::identify::{Parameter, Prior};
 use truepath_core::job::{self, ZReference};
 use truepath_core::probe::{Reading, Setting};
-use truepath_core::units::{Offset, Position, Real};
+use truepath_core::units::{Position, Real};
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::units::mm;
+use truepath_ground::units::{mm, nm};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
@@ -79,10 +79,6 @@ impl Free {
         }
         prior
     }
-}
-
-pub(super) fn nm(mm: f64) -> Offset {
-    Offset::from_nm((mm * 1e6).round() as i64)
 }
 
 impl Cause {

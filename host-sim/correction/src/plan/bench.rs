@@ -1,5 +1,7 @@
 //! The identified machine, ready to cut processes.
 
+use std::sync::Arc;
+
 use truepath_core::correct::{Node, Update, commanded};
 use truepath_core::cut::Path;
 use truepath_core::geometry::Vector;
@@ -8,7 +10,7 @@ use truepath_core::units::Offset;
 use truepath_ground::units::{float, mm};
 
 use super::process::{Cut, PassOrder};
-use super::wall::{WallFigures, WallMap};
+use crate::surface::wall::{WallFigures, WallMap};
 
 /// A machine at work on one wall, at one resolution.
 #[derive(Clone, Debug)]
@@ -19,6 +21,8 @@ pub struct Bench<'a> {
     minutes: f64,
     /// Of them those of the leads.
     lead_minutes: f64,
+    /// Wall error that parts have shown beside the model, as [`Mill::with_residual`] takes it.
+    residual: Arc<[Offset]>,
 }
 
 /// A pass as it was designed and cut.
@@ -60,7 +64,14 @@ impl<'a> Bench<'a> {
         let feed = |at: usize| float(samples[at].feed).max(1e-3);
         let contour: f64 = (1..samples.len()).map(|k| mm(samples[k].s - samples[k - 1].s) / feed(k)).sum();
         let lead_minutes = lead_mm / feed(0);
-        Self { mill, slices, minutes: contour + lead_minutes, lead_minutes }
+        Self { mill, slices, minutes: contour + lead_minutes, lead_minutes, residual: Arc::default() }
+    }
+
+    /// The same with what parts have shown beside the model: the walls of the passes to size have it, because it was seen
+    /// on them.
+    #[must_use]
+    pub fn with_residual(self, residual: Vec<Offset>) -> Self {
+        Self { residual: residual.into(), ..self }
     }
 
     /// The path.
@@ -73,8 +84,10 @@ impl<'a> Bench<'a> {
     }
     /// Another machine on the same wall, with the same times.
     #[must_use]
-    pub const fn of<'b>(&self, mill: Mill<'b>) -> Bench<'b> {
-        Bench { mill, slices: self.slices, minutes: self.minutes, lead_minutes: self.lead_minutes }
+    pub fn of<'b>(&'b self, machine: truepath_core::cut::Loop<'b>) -> Bench<'b> {
+        let mill = self.mill.with(machine);
+        let (minutes, lead_minutes) = (self.minutes, self.lead_minutes);
+        Bench { mill, slices: self.slices, minutes, lead_minutes, residual: Arc::clone(&self.residual) }
     }
     /// The slices of the wall.
     pub const fn slices(&self) -> Slices {
@@ -107,6 +120,13 @@ impl<'a> Bench<'a> {
     /// The part after one more cut, designed in at most `turns` steps a pass.
     pub fn cut(&self, stage: Stage, cut: &Cut, turns: u32) -> Stage {
         self.run(stage, cut, |part, order, nodes, buffers| {
+            let mill = self.mill_of(order);
+            if cut.spring {
+                let command = |index| commanded(self.path(), nodes, index);
+                let load = mill.run(part, &order.order, command, &mut buffers.depths, &mut buffers.moved);
+                mill.walls(&order.order, &buffers.moved, &mut buffers.walls);
+                return load;
+            }
             let mut workspace = AimWorkspace {
                 moved: &mut buffers.moved,
                 walls: &mut buffers.walls,
@@ -114,7 +134,7 @@ impl<'a> Bench<'a> {
                 best: &mut buffers.best,
                 depths: &mut buffers.depths,
             };
-            aim(&self.mill, (part, &order.order), (order.aim, turns), nodes, &mut workspace).load
+            aim(&mill, (part, &order.order), (order.aim, turns), nodes, &mut workspace).load
         })
     }
 
@@ -126,9 +146,49 @@ impl<'a> Bench<'a> {
         for pass in passes {
             let mut part = Part::of(self.slices, &mut left);
             let command = |index| commanded(path, &pass.nodes, index);
-            self.mill.run(&part, &pass.order.order, command, &mut buffers.depths, &mut buffers.moved);
-            self.mill.walls(&pass.order.order, &buffers.moved, &mut buffers.walls);
+            let mill = self.mill_of(&pass.order);
+            mill.run(&part, &pass.order.order, command, &mut buffers.depths, &mut buffers.moved);
+            mill.walls(&pass.order.order, &buffers.moved, &mut buffers.walls);
             part.take(path, &buffers.walls);
+        }
+        left
+    }
+
+    /// Passes that were designed on another bench of the same wall, as commands of this one.
+    pub fn taken_over(&self, passes: &[CutPass], from: &Bench) -> Vec<CutPass> {
+        let (own, theirs) = (self.path(), from.path());
+        let contour = own.samples().iter().skip(own.first()).take(own.count());
+        let last = theirs.first() + theirs.count() - 1;
+        let at: Vec<usize> =
+            contour.map(|s| theirs.index_at(s.s).clamp(theirs.first(), last) - theirs.first()).collect();
+        let pass = |pass: &CutPass| {
+            let mut order = pass.order;
+            order.order.first = order.order.first * self.slices.count() / from.slices.count();
+            CutPass { order, nodes: at.iter().map(|k| pass.nodes[*k]).collect(), load: pass.load }
+        };
+        passes.iter().map(pass).collect()
+    }
+
+    /// What is left, changed as a coarser bench of the same wall says: by what another machine leaves there beside the identified one.
+    pub fn changed_like(&self, left: &[Offset], coarse: &Bench, (like, other): (&[Offset], &[Offset])) -> Vec<Offset> {
+        let (count, fewer) = (self.slices.count(), coarse.slices.count());
+        let mut changed = left.to_vec();
+        for (column, sample) in changed.chunks_mut(count).zip(self.path().samples()) {
+            let beside = coarse.path().index_at(sample.s) * fewer;
+            for (k, error) in column.iter_mut().enumerate() {
+                let at = beside + k * fewer / count;
+                *error += other[at] - like[at];
+            }
+        }
+        changed
+    }
+
+    /// What is left with an error beside it: one entry for every sample of the contour, slice by slice, mm.
+    pub fn beside(&self, left: &[Offset], error_mm: &[f64]) -> Vec<Offset> {
+        let mut left = left.to_vec();
+        let from = self.path().first() * self.slices.count();
+        for (left, error) in left.iter_mut().skip(from).zip(error_mm) {
+            *left += Offset::from_nm((error * 1e6).round() as i64);
         }
         left
     }
@@ -141,6 +201,11 @@ impl<'a> Bench<'a> {
     /// What is left, unrolled.
     pub fn map(&self, left: &[Offset]) -> WallMap {
         WallMap::of(self.path(), self.slices, left)
+    }
+
+    /// The machine as it cuts a pass.
+    fn mill_of(&self, order: &PassOrder) -> Mill<'_> {
+        if order.is_to_size() { self.mill.clone().with_residual(&self.residual) } else { self.mill.clone() }
     }
 
     fn buffers(&self) -> Buffers {
@@ -163,7 +228,14 @@ impl<'a> Bench<'a> {
         let path = self.path();
         let mut buffers = self.buffers();
         let mut nodes = vec![Node::default(); path.count()];
+        let before = stage.passes.len();
         for order in cut.orders(self.slices) {
+            let same = |pass: &&CutPass| pass.order.order.first == order.order.first;
+            if cut.spring
+                && let Some(earlier) = stage.passes[..before].iter().rev().find(same)
+            {
+                nodes.copy_from_slice(&earlier.nodes);
+            }
             let mut part = Part::of(self.slices, &mut stage.left);
             // The walls of the design are in the buffers.
             let load = design(&part, &order, &mut nodes, &mut buffers);

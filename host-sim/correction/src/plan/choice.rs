@@ -1,27 +1,34 @@
 //! The few processes a user chooses from.
 
+use std::collections::HashMap;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use truepath_core::cut::{ForceTable, Path, Sample};
 use truepath_core::identify::{Parameters, neighbours};
-use truepath_core::job;
-use truepath_core::process::{ImmersionGrid, Mill, Slices};
+use truepath_core::job::{self, Identified};
+use truepath_core::process::{ImmersionGrid, Slices};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::units::{float, mm};
+use truepath_ground::units::float;
 use truepath_job::job::PlanTable;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
+use truepath_program::passes::Turn;
 
 use super::bench::Bench;
-use super::confidence::{Draws, Predicted};
+use super::field::Field;
+use super::mounted::{DIVISIONS, FINE, MIDDLE, Mounted, Resolution};
 use super::process::{Cut, words};
 use super::refit::refit;
 use super::search::{Candidate, search};
-use super::wall::{WallFigures, WallMap};
-use crate::correction::{Identification, identify};
-use crate::planned::{self, PlannedPass, PlannedProgram};
+use crate::correction::{Identification, MeasuredCut, identify_together};
+use crate::planned::{self, PlannedPass};
+use crate::surface::causes::Causes;
+use crate::surface::draws::{Predicted, Uncertain};
+use crate::surface::unmodelled::{unbent, unmodelled};
+use crate::surface::wall::{WallFigures, WallMap};
 
 /// The most processes to choose from.
 const MOST: usize = 6;
@@ -43,6 +50,8 @@ pub struct Wanted {
 pub struct Choice {
     /// Its cuts, in words.
     pub process: String,
+    /// Number of the tool where it is not that of the job.
+    pub cutter: Option<u32>,
     /// Its cuts.
     #[serde(skip)]
     pub cuts: Vec<Cut>,
@@ -62,7 +71,9 @@ pub struct Choice {
     pub map: WallMap,
     /// The share of machines that the points allow whose wall is within the tolerance.
     pub within_tolerance: f64,
-    /// What makes most of its error.
+    /// What makes the error at its worst place.
+    pub causes: Causes,
+    /// What makes most of it.
     pub limited_by: &'static str,
     /// The largest mean force of a pass, N.
     pub force_n: f64,
@@ -90,39 +101,37 @@ pub struct Plan {
     pub confidence: f64,
 }
 
-/// How finely a bench looks.
-#[derive(Clone, Copy, Debug)]
-struct Resolution {
-    /// Along the contour, um.
-    step_um: i64,
-    /// The most slices.
-    slices: usize,
-}
+const COARSE: Resolution = Resolution { step_um: 1000, slices: 12, of_radius: 5 };
 
-const COARSE: Resolution = Resolution { step_um: 1000, slices: 12 };
-const MIDDLE: Resolution = Resolution { step_um: 500, slices: 24 };
-const FINE: Resolution = Resolution { step_um: 250, slices: 48 };
-/// Levels that slices are divided by: 2, 3 and 4.
-const DIVISIONS: usize = 12;
-
-/// The program of a process.
+/// A process designed finely, ready to be written.
 #[derive(Clone, Debug)]
-pub struct WrittenPlan {
-    /// Its bytes, where its passes stand, and what was changed.
-    pub program: PlannedProgram,
+pub struct Designed<'a> {
+    /// The pass of the program that it takes the place of.
+    pub pass: &'a Pass,
+    /// Its path.
+    pub path: Path<'a>,
+    /// Its passes.
+    pub passes: Vec<PlannedPass>,
+    /// Machine and material that it was designed for.
+    pub identified: &'a Identified,
     /// The figures of the wall of the identified machine.
     pub wall: WallFigures,
     /// That wall unrolled.
     pub map: WallMap,
-    /// Largest distance of a commanded place from the programmed path, mm.
-    pub largest_correction_mm: f64,
 }
 
-/// What a process is planned for: the finishing pass and the machine that was identified on it.
+/// What a process is planned for: the finishing pass, the machine that was identified on it, and the cutters that are at hand.
 #[derive(Clone, Debug)]
 pub struct Planner<'a> {
     pass: &'a Pass,
-    known: Identification,
+    own: Mounted<'a>,
+    others: Vec<Mounted<'a>>,
+    /// Why cutters of the job are left out.
+    left_out: Vec<String>,
+    /// Whether planned parts have told of the machine: then what the model lacks is part of what is known.
+    is_learned: bool,
+    /// What they have shown beside it.
+    field: Option<Field>,
 }
 
 impl<'a> Planner<'a> {
@@ -131,79 +140,167 @@ impl<'a> Planner<'a> {
     /// # Errors
     /// Points that do not fit the job, and a contour that cannot be sampled.
     pub fn new(pass: &'a Pass, measurement: &Measurement, progress: impl FnMut(f64)) -> Result<Self, Failure> {
-        let mut buffer = PathBuffer::default();
-        let sampled = pass.sample(&mut buffer)?;
-        let known = identify(pass, &sampled, measurement, progress)?;
-        let mut planner = Self { pass, known };
-        let mut samples = Vec::new();
-        let coarse = planner.path(MIDDLE, &mut samples)?;
-        planner.known = refit(pass, (&sampled, &coarse), measurement, &planner.known)?;
-        Ok(planner)
+        let planner = Self::every(&[(pass, measurement)], progress)?.pop();
+        planner.ok_or_else(|| Failure::Internal("a pass without its planner".to_owned()))
+    }
+
+    /// Of the walls of one part, which one cutter makes: one machine is identified from the points of all.
+    ///
+    /// # Errors
+    /// As [`Planner::new`].
+    pub fn every(walls: &[(&'a Pass, &Measurement)], progress: impl FnMut(f64)) -> Result<Vec<Self>, Failure> {
+        let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
+        let sampled: Vec<Path> =
+            walls.iter().zip(&mut buffers).map(|((pass, _), buffer)| pass.sample(buffer)).collect::<Result<_, _>>()?;
+        let cuts = walls.iter().zip(&sampled);
+        let cuts: Vec<MeasuredCut> =
+            cuts.map(|(&(pass, measurement), path)| MeasuredCut { pass, path, measurement }).collect();
+        let known = identify_together(&cuts, progress)?;
+        let own: Vec<Mounted> =
+            walls.iter().zip(&known).map(|(&(pass, _), known)| Mounted::own(pass, known.clone())).collect();
+        let mut samples: Vec<Vec<Sample>> = walls.iter().map(|_| Vec::new()).collect();
+        let coarse = own.iter().zip(&mut samples).map(|(own, samples)| own.path(MIDDLE, samples));
+        let refitted = refit(&cuts, &coarse.collect::<Result<Vec<_>, _>>()?, known)?;
+        let mounted = walls.iter().zip(refitted).map(|(&(pass, _), known)| {
+            let own = Mounted::own(pass, known);
+            let (mut others, mut left_out) = (Vec::new(), Vec::new());
+            for cutter in &pass.job.plan_cutters {
+                match Mounted::other(pass, own.known(), *cutter) {
+                    Ok(mounted) => others.push(mounted),
+                    Err(why) => left_out.push(why),
+                }
+            }
+            Self { pass, own, others, left_out, is_learned: false, field: None }
+        });
+        Ok(mounted.collect())
+    }
+
+    /// Of a pass and what planned parts have told of the cutter of its job; they tell nothing of other cutters.
+    pub const fn learned(pass: &'a Pass, known: Identification, field: Option<Field>) -> Self {
+        let own = Mounted::own(pass, known);
+        Self { pass, own, others: Vec::new(), left_out: Vec::new(), is_learned: true, field }
+    }
+
+    /// Number of the cutter of the program, where the job says it.
+    pub const fn tool_number(&self) -> Option<u32> {
+        self.pass.job.numbers.tool.number
     }
 
     /// Machine and material.
     pub const fn known(&self) -> &Identification {
-        &self.known
+        self.own.known()
     }
 
-    /// Searches, and looks closely at the best; `progress` is told the share done, 0…1.
+    /// Searches with every cutter, and looks closely at the best; `progress` is told the share done, 0…1.
     ///
     /// # Errors
     /// A contour that cannot be sampled.
     pub fn plan(&self, wanted: &Wanted, progress: &(dyn Fn(f64) + Sync)) -> Result<Plan, Failure> {
-        let (table, grid) = (self.known.table(), ImmersionGrid::new());
+        let (table, grid) = (self.own.table(), ImmersionGrid::new());
         let mut samples = Vec::new();
-        let path = self.path(COARSE, &mut samples)?;
-        let found = search(&self.bench(&path, &table, &grid, COARSE), &wanted.limits, &|share| progress(0.5 * share));
+        let path = self.own.path(MIDDLE, &mut samples)?;
+        let bench = self.bench(&self.own, (&path, &table), &grid, MIDDLE);
+        let cutters: Vec<&Mounted> = std::iter::once(&self.own).chain(&self.others).collect();
+        let mut choices = Vec::new();
+        for (k, mounted) in cutters.iter().enumerate() {
+            let of_all = |share: f64| progress((k as f64 + share) / cutters.len() as f64);
+            choices.extend(self.choices(mounted, &grid, (wanted, bench.minutes()), &of_all)?);
+        }
+        let error = |choice: &Choice| choice.predicted.profile_mm;
+        choices.sort_by(|a, b| a.minutes.total_cmp(&b.minutes).then(error(a).total_cmp(&error(b))));
+        keep_worthwhile(&mut choices, wanted);
+        Ok(Plan::of(&bench, choices, wanted))
+    }
+
+    /// The plan of one process of the program's own cutter: the same cuts, designed anew.
+    ///
+    /// # Errors
+    /// A contour that cannot be sampled.
+    pub fn again(&self, cuts: &[Cut], wanted: &Wanted) -> Result<Plan, Failure> {
+        let (table, grid) = (self.own.table(), ImmersionGrid::new());
+        let (mut samples, mut finer) = (Vec::new(), Vec::new());
+        let path = self.own.path(COARSE, &mut samples)?;
+        let coarse = self.bench(&self.own, (&path, &table), &grid, COARSE);
+        let path = self.own.path(MIDDLE, &mut finer)?;
+        let bench = self.bench(&self.own, (&path, &table), &grid, MIDDLE);
+        let benches = (&bench, &coarse, &self.open(&bench)[..]);
+        let choice = self.look(&self.own, benches, cuts, (wanted, bench.minutes()));
+        Ok(Plan::of(&bench, vec![choice], wanted))
+    }
+
+    /// A cutter at work, with what parts have shown beside the machine.
+    fn bench<'p>(
+        &self,
+        mounted: &Mounted,
+        (path, table): (&'p Path<'p>, &'p ForceTable),
+        grid: &'p ImmersionGrid,
+        resolution: Resolution,
+    ) -> Bench<'p> {
+        let bench = mounted.bench(path, table, grid, resolution);
+        let residual = self.field.as_ref().map(|field| field.along(bench.machine(), bench.slices()));
+        bench.with_residual(residual.unwrap_or_default())
+    }
+
+    /// What is open of what parts have shown beside the machine.
+    fn open(&self, bench: &Bench) -> Vec<Vec<f64>> {
+        self.field.as_ref().map(|field| field.open(bench.machine(), bench.slices())).unwrap_or_default()
+    }
+
+    /// What one cutter can do; `minutes` is the time of the program's own pass.
+    fn choices(
+        &self,
+        mounted: &Mounted,
+        grid: &ImmersionGrid,
+        (wanted, minutes): (&Wanted, f64),
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<Vec<Choice>, Failure> {
+        let table = mounted.table();
+        let (mut samples, mut finer) = (Vec::new(), Vec::new());
+        let path = mounted.path(COARSE, &mut samples)?;
+        let coarse = self.bench(mounted, (&path, &table), grid, COARSE);
+        let written = Writable { pass: self.pass, depth: path.setup().axial_depth, known: Mutex::default() };
+        let found = search(&coarse, (&wanted.limits, &|cuts| written.holds(cuts)), &|share| progress(0.5 * share));
         let found = shortlist(found, wanted.tolerance_mm);
 
-        let mut samples = Vec::new();
-        let path = self.path(MIDDLE, &mut samples)?;
-        let bench = self.bench(&path, &table, &grid, MIDDLE);
+        let path = mounted.path(MIDDLE, &mut finer)?;
+        let bench = self.bench(mounted, (&path, &table), grid, MIDDLE);
+        let open = self.open(&bench);
         let done = AtomicUsize::new(0);
         let look = |candidate: &Candidate| {
-            let choice = self.look(&bench, &grid, candidate, wanted);
+            let choice = self.look(mounted, (&bench, &coarse, &open), &candidate.cuts, (wanted, minutes));
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             progress(0.5 + 0.5 * done as f64 / found.len() as f64);
             choice
         };
-        let mut choices: Vec<Choice> = found.par_iter().map(look).collect();
-        choices.sort_by(|a, b| a.minutes.total_cmp(&b.minutes));
-        keep_worthwhile(&mut choices, wanted);
-        let holds = |choice: &Choice| choice.within_tolerance >= wanted.confidence;
-        let programmed = bench.as_programmed().left;
-        Ok(Plan {
-            as_programmed: bench.figures(&programmed),
-            map: bench.map(&programmed),
-            minutes: bench.minutes(),
-            recommended: choices.iter().position(holds).map(|at| at + 1),
-            choices,
-            tolerance_mm: wanted.tolerance_mm,
-            confidence: wanted.confidence,
-        })
+        Ok(found.par_iter().map(look).collect())
     }
 
-    /// Designs a process finely and writes its program; `probe` is the CRC-32 of the points. `progress` is told the share done.
+    /// Designs a process of the program's own cutter finely, on a path for which `samples` is room. `progress` is told the share done.
     ///
     /// # Errors
-    /// A contour that cannot be sampled, a correction beyond the clamp, and those of [`planned::write()`].
-    pub fn write(&self, cuts: &[Cut], probe: u32, progress: &mut dyn FnMut(f64)) -> Result<WrittenPlan, Failure> {
+    /// A contour that cannot be sampled, and a correction beyond the clamp.
+    pub fn design<'p>(
+        &'p self,
+        cuts: &[Cut],
+        samples: &'p mut Vec<Sample>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Designed<'p>, Failure> {
         const TURNS: u32 = 16;
-        let (table, grid) = (self.known.table(), ImmersionGrid::new());
-        let mut samples = Vec::new();
-        let path = self.path(FINE, &mut samples)?;
-        let bench = self.bench(&path, &table, &grid, FINE);
+        let (table, grid) = (self.own.table(), ImmersionGrid::new());
+        let path = self.own.path(FINE, samples)?;
+        let bench = self.bench(&self.own, (&path, &table), &grid, FINE);
         let mut stage = bench.raw();
         for (k, cut) in cuts.iter().enumerate() {
             stage = bench.cut(stage, cut, TURNS);
             progress((k + 1) as f64 / cuts.len() as f64);
         }
         let depth = path.setup().axial_depth;
+        let (wall, map) = (bench.figures(&stage.left), bench.map(&stage.left));
         let passes: Vec<PlannedPass> = stage
             .passes
-            .iter()
+            .into_iter()
             .map(|pass| PlannedPass {
-                nodes: pass.nodes.clone(),
+                nodes: pass.nodes,
                 raise: Offset::from_mm(depth * pass.order.raised),
                 reversed: pass.order.order.reversed,
                 feed: float(pass.order.order.feed),
@@ -212,20 +309,13 @@ impl<'a> Planner<'a> {
         for pass in &passes {
             job::check_clamp(&self.pass.job.numbers, &path, &pass.nodes).map_err(|error| self.pass.refused(&error))?;
         }
-        let program = planned::write(self.pass, &path, &passes, Some(probe))?;
-        let nodes = passes.iter().flat_map(|pass| &pass.nodes);
-        Ok(WrittenPlan {
-            program,
-            wall: bench.figures(&stage.left),
-            map: bench.map(&stage.left),
-            largest_correction_mm: nodes.map(|node| mm(node.total().length())).fold(0.0, f64::max),
-        })
+        Ok(Designed { pass: self.pass, path, passes, identified: &self.own.known().core, wall, map })
     }
 
-    /// The limits of the job that the program stands: passes can only be added where its leads let them, and run the other way where
+    /// The limits of the job that the program stands, and what is left out: passes can only be added where its leads let them, and run the other way where
     /// these can be turned round. What cannot is said.
     pub fn possible(&self, mut limits: PlanTable) -> (PlanTable, Vec<String>) {
-        let mut said = Vec::new();
+        let mut said = self.left_out.clone();
         if let Err(failure) = planned::can_repeat_pass(self.pass) {
             (limits.max_cuts, limits.max_levels) = (1, 1);
             said.push(format!("no pass can be added to this program, so that one is all that is planned: {failure}"));
@@ -238,63 +328,61 @@ impl<'a> Planner<'a> {
         (limits, said)
     }
 
-    fn path<'p>(&self, resolution: Resolution, samples: &'p mut Vec<Sample>) -> Result<Path<'p>, Failure> {
-        let (contour, setup) = (self.pass.path_contour(), &self.pass.core.setup);
-        // An eighth of the cutter's radius is as much as the engagement of a small cutter stands.
-        let finest = Offset::from_nm(setup.radius.nm() / 8);
-        let step = Offset::from_um(resolution.step_um).min(finest);
-        samples.resize(Path::samples_needed(&contour, setup, step), Sample::BLANK);
-        let path = self.pass.core.sample_every(step, &contour, samples, |_| ());
-        let path = path.map_err(|error| self.pass.refused(&error))?;
-        Ok(path.with_law(self.known.law()))
-    }
-
-    fn bench<'p>(
-        &self,
-        path: &'p Path<'p>,
-        table: &'p ForceTable,
-        grid: &'p ImmersionGrid,
-        resolution: Resolution,
-    ) -> Bench<'p> {
-        let slices = slices(path, resolution);
-        let leads: f64 = self.pass.leads().iter().flat_map(|l| l.iter()).map(|block| mm(block.curve.length())).sum();
-        Bench::new(Mill::new(self.known.machine(path, table), grid, slices), slices, leads)
-    }
-
     /// Cuts a candidate anew, and by every machine that the points allow.
-    fn look(&self, bench: &Bench, grid: &ImmersionGrid, candidate: &Candidate, wanted: &Wanted) -> Choice {
+    fn look(
+        &self,
+        mounted: &Mounted,
+        (bench, coarse, open): (&Bench, &Bench, &[Vec<f64>]),
+        cuts: &[Cut],
+        (wanted, minutes): (&Wanted, f64),
+    ) -> Choice {
         const TURNS: u32 = 12;
         let mut stage = bench.raw();
-        for cut in &candidate.cuts {
+        for cut in cuts {
             stage = bench.cut(stage, cut, TURNS);
         }
-        let machine = bench.machine();
+        let (machine, passes) = (coarse.machine(), coarse.taken_over(&stage.passes, bench));
+        let like = coarse.follow(&passes);
         let mut table = ForceTable::new(machine.table.size_exponent());
-        let mut changed = Vec::new();
-        let found = &self.known.fit().parameters;
-        let others = neighbours(self.known.prior(), self.known.fit());
-        for (parameters, share) in others.chain(unmodelled(found).map(|p| (p, Real::ONE))) {
-            if parameters.machine(bench.path(), &table).cuts_as(machine) {
-                continue;
+        let known = mounted.known();
+        let found = mounted.with(&known.fit().parameters);
+        let mut cut_by = |parameters: Parameters| {
+            if parameters.machine(coarse.path(), &table).cuts_as(machine) {
+                return None;
             }
             if parameters.coefficients.size_exponent != table.size_exponent() {
                 table.tabulate(parameters.coefficients.size_exponent);
             }
-            let other = bench.of(Mill::new(parameters.machine(bench.path(), &table), grid, bench.slices()));
-            changed.push((other.follow(&stage.passes), float(share)));
-        }
+            let other = coarse.of(parameters.machine(coarse.path(), &table)).follow(&passes);
+            Some(bench.changed_like(&stage.left, coarse, (&like, &other)))
+        };
+        let others = neighbours(known.prior(), known.fit());
+        let noise: Vec<_> =
+            others.filter_map(|(other, share)| Some((cut_by(mounted.with(&other))?, float(share)))).collect();
+        let lacking = unmodelled(&found).chain(mounted.unknown(&found)).filter(|_| !self.is_learned);
+        let mut lacking: Vec<_> = lacking.filter_map(&mut cut_by).collect();
+        lacking.extend(open.iter().map(|column| bench.beside(&stage.left, column)));
+        let stiff = cut_by(unbent(&found));
         let wall = bench.figures(&stage.left);
-        let draws = Draws::of((bench.path(), bench.slices()), &stage.left, &changed);
+        let uncertain = Uncertain::of((bench.path(), bench.slices()), &stage.left, &noise, &lacking, stiff.as_deref());
+        let draws = uncertain.largest();
+        let causes = uncertain.causes_at(wall.worst);
         let predicted = draws.predicted();
+        let cutter = mounted.cutter();
+        let with = cutter.map_or_else(String::new, |cutter| {
+            format!("T{}, helix {} degrees: ", cutter.number, float(cutter.helix_deg))
+        });
         Choice {
-            process: words(&candidate.cuts),
-            cuts: candidate.cuts.clone(),
+            process: with + &words(cuts),
+            cutter: cutter.map(|cutter| cutter.number),
+            cuts: cuts.to_vec(),
             passes: stage.passes.len(),
             minutes: stage.minutes,
-            time_ratio: stage.minutes / bench.minutes(),
+            time_ratio: stage.minutes / minutes,
             predicted,
             within_tolerance: draws.within(wanted.tolerance_mm),
-            limited_by: limited_by(&wall, &predicted),
+            limited_by: causes.largest(),
+            causes,
             map: bench.map(&stage.left),
             wall,
             force_n: stage.passes.iter().map(|p| float(p.load.force)).fold(0.0, f64::max),
@@ -303,28 +391,50 @@ impl<'a> Planner<'a> {
     }
 }
 
-fn slices(path: &Path, resolution: Resolution) -> Slices {
-    let wanted = Slices::of(path.setup(), DIVISIONS).count();
-    Slices::new(wanted.min(resolution.slices))
+impl Plan {
+    /// Of choices, the fastest first.
+    fn of(bench: &Bench, choices: Vec<Choice>, wanted: &Wanted) -> Self {
+        let holds = |choice: &Choice| choice.within_tolerance >= wanted.confidence;
+        let programmed = bench.as_programmed().left;
+        Self {
+            as_programmed: bench.figures(&programmed),
+            map: bench.map(&programmed),
+            minutes: bench.minutes(),
+            recommended: choices.iter().position(holds).map(|at| at + 1),
+            choices,
+            tolerance_mm: wanted.tolerance_mm,
+            confidence: wanted.confidence,
+        }
+    }
 }
 
-/// Machines that the points do not tell from the one that was found, however many they are, because the model is not the cut: the
-/// force by 2 %, the radial share by 3 %, the edge by 5 %, the exponent of the chip by 0.02, the bending
-/// by 0.05 and the size of the cutter by 2 um.
-fn unmodelled(found: &Parameters) -> impl Iterator<Item = Parameters> + use<> {
-    let found = *found;
-    let scaled = |value: Real, percent: i64| value + value * Real::ratio(percent, 100);
-    let mut other = [found; 6];
-    other[0].compliance.mean = scaled(found.compliance.mean, 2);
-    other[0].compliance.difference = scaled(found.compliance.difference, 2);
-    other[0].compliance.cross = scaled(found.compliance.cross, 2);
-    other[1].coefficients.krc = scaled(found.coefficients.krc, 3);
-    other[2].coefficients.kte = scaled(found.coefficients.kte, 5);
-    other[2].coefficients.kre = scaled(found.coefficients.kre, 5);
-    other[3].coefficients.size_exponent = found.coefficients.size_exponent + Real::ratio(2, 100);
-    other[4].compliance.bend = found.compliance.bend + Real::ratio(5, 100);
-    other[5].undersize = found.undersize + Offset::from_um(2);
-    other.into_iter()
+/// Which processes the program can be written with: leads and heights decide, and the order of directions.
+struct Writable<'a> {
+    pass: &'a Pass,
+    /// Height of the wall, mm.
+    depth: Real,
+    /// What was found out, by raise and direction of the passes.
+    known: Mutex<HashMap<Vec<(Offset, bool)>, bool>>,
+}
+
+impl Writable<'_> {
+    fn holds(&self, cuts: &[Cut]) -> bool {
+        let slices = Slices::new(DIVISIONS);
+        let orders = cuts.iter().flat_map(|cut| cut.orders(slices));
+        let passes: Vec<(Offset, bool)> =
+            orders.map(|pass| (Offset::from_mm(self.depth * pass.raised), pass.order.reversed)).collect();
+        let found = |known: &Mutex<HashMap<_, bool>>| known.lock().ok().and_then(|known| known.get(&passes).copied());
+        found(&self.known).unwrap_or_else(|| {
+            let turn = |&(raise, reversed): &(Offset, bool)| Turn { raise, reversed, feed: 1.0 };
+            let turns: Vec<Turn> = passes.iter().map(turn).collect();
+            let holds = turns == [Turn { raise: Offset::ZERO, reversed: false, feed: 1.0 }]
+                || planned::possible(self.pass, &turns, false).is_ok();
+            if let Ok(mut known) = self.known.lock() {
+                known.insert(passes, holds);
+            }
+            holds
+        })
+    }
 }
 
 /// Of the front, the most accurate, the first that might hold the tolerance with its neighbours, and the fastest.
@@ -364,15 +474,4 @@ fn keep_worthwhile(choices: &mut Vec<Choice>, wanted: &Wanted) {
         let Some(least) = inner.min_by(|a, b| gain(*a).total_cmp(&gain(*b))) else { break };
         choices.remove(least);
     }
-}
-
-/// The largest part of the error at the worst place, or what is not known of the machine.
-fn limited_by(wall: &WallFigures, predicted: &Predicted) -> &'static str {
-    let parts = [
-        (wall.worst_height_mm, "height (helix)"),
-        (wall.worst_tilt_mm.abs(), "lean (bending and helix)"),
-        (wall.worst_mean_mm.abs(), "mean (what one pass can follow)"),
-        (2.0 * predicted.sigma_mm, "knowledge of the machine"),
-    ];
-    parts.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).map_or("", |part| part.1)
 }

@@ -7,19 +7,29 @@
 //! | piece | what it holds |
 //! |---|---|
 //! | [`refit`] | machine and material under the physics of several passes |
+//! | [`mounted`] | the cutters that are at hand: path, machine and engagement of each |
 //! | [`process`] | what a process is: cuts with aim, levels, direction and feed |
 //! | [`mod@bench`] | the identified machine, ready to cut processes at a resolution |
 //! | [`limits`] | what a process has to keep |
 //! | [`search`] | candidates, coarse to fine, and the front of time against error |
-//! | [`confidence`] | how sure the predicted error is |
-//! | [`wall`] | the wall that is left, and what makes its error |
 //! | [`choice`] | the few processes a user chooses from |
+//! | [`written`] | the program of those that were chosen |
+//! | [`history`] | parts that planned programs have cut, and how the next is cut |
+//! | [`joint`] | machine and material from all passes of all parts |
+//! | [`field`] | what these show beside the machine, over arc length and height |
+//! | [`learn`] | from the points of a planned part to the program of the next |
+//!
+//! What is left of the wall, how sure that is and what makes it: [`crate::surface`].
 
 pub mod bench;
 pub mod choice;
-pub mod confidence;
+pub mod field;
+pub mod history;
+pub mod joint;
+pub mod learn;
 pub mod limits;
+pub mod mounted;
 pub mod process;
 pub mod refit;
 pub mod search;
-pub mod wall;
+pub mod written;

@@ -30,6 +30,8 @@ pub struct Cut {
     pub reversed: bool,
     /// Percent of the programmed feed.
     pub feed_percent: u16,
+    /// A spring pass: the commands of the cut before once more. A cut that aims anew has its own.
+    pub spring: bool,
 }
 
 /// One pass of a cut, which the machine runs.
@@ -41,6 +43,13 @@ pub struct PassOrder {
     pub aim: Aim,
     /// How far its tip stays above that of the program, as a share of the wall's height.
     pub raised: Real,
+}
+
+impl PassOrder {
+    /// Whether it brings the wall to size, and leaves nothing to another.
+    pub const fn is_to_size(&self) -> bool {
+        !matches!(self.aim, Aim::Least(_))
+    }
 }
 
 impl Levels {
@@ -74,7 +83,7 @@ impl Levels {
 impl Cut {
     /// The whole depth in one pass, as the program runs.
     pub const fn whole(aim: Aim) -> Self {
-        Self { aim, levels: Levels::Even(1), reversed: false, feed_percent: 100 }
+        Self { aim, levels: Levels::Even(1), reversed: false, feed_percent: 100, spring: false }
     }
 
     /// The passes of it, in order.
@@ -91,6 +100,7 @@ impl Cut {
     /// In words, for a table.
     pub fn words(&self) -> String {
         let mut words = match self.aim {
+            _ if self.spring => "spring pass".to_owned(),
             Aim::Middle => "to size".to_owned(),
             Aim::Mean => "mean to size".to_owned(),
             Aim::Least(left) => format!("leave {:.0} um", mm(left) * 1e3),

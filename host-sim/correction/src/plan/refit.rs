@@ -1,8 +1,8 @@
 //! Machine and material under the physics of several passes.
 //!
 //! An identification uses the model of one pass, whose instant forces are those of the mean engagement; the tool yields before they are
-//! reached. What that is at the probed places is taken off the measurement, and the machine is identified anew; twice, because it
-//! depends on the machine.
+//! reached. What that is at the probed places is taken off the measurement, and the machine is identified anew, until neither
+//! changes, because the one depends on the other.
 
 use truepath_core::cut::{Envelope, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
@@ -11,42 +11,54 @@ use truepath_core::process::{Depths, ImmersionGrid, Mill, Order, Part, Slices, W
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{float, mm};
-use truepath_job::measurement::Measurement;
-use truepath_job::pass::Pass;
 
-use crate::correction::Identification;
+use crate::correction::{Identification, MeasuredCut};
 use crate::identification::{Found, Points, found};
 
-/// How often the machine is identified anew.
-const ROUNDS: usize = 2;
+/// How often the machine is identified anew at most.
+const ROUNDS: usize = 6;
+/// What is taken off changes by no more than this when it has settled.
+const SETTLED: Offset = Offset::from_nm(300);
 
-/// Identifies the machine anew. `coarse` is the path on which the passes are compared, `sampled` that of the identification.
+/// Identifies the machine anew from the points of all cuts; `coarse` are the paths on which their passes are compared, `known` what was
+/// found before.
 ///
 /// # Errors
 /// Points that are not on the contour.
 pub fn refit(
-    pass: &Pass,
-    (sampled, coarse): (&Path, &Path),
-    measurement: &Measurement,
-    known: &Identification,
-) -> Result<Identification, Failure> {
-    let mut known = known.clone();
-    if known.law() == WallLaw::Mean {
+    cuts: &[MeasuredCut<'_>],
+    coarse: &[Path],
+    mut known: Vec<Identification>,
+) -> Result<Vec<Identification>, Failure> {
+    let Some(first) = cuts.first().filter(|_| known.iter().all(|known| known.law() != WallLaw::Mean)) else {
         return Ok(known);
-    }
-    let measured = measurement.observations()?;
+    };
+    let measured = cuts.iter().map(|cut| cut.measurement.observations()).collect::<Result<Vec<_>, _>>()?;
+    let placed: Vec<Cut> = cuts
+        .iter()
+        .zip(&measured)
+        .map(|(cut, points)| Cut { path: *cut.path, points: points.len(), part: 0 })
+        .collect();
+    let mut before = vec![Offset::ZERO; measured.iter().map(Vec::len).sum()];
     for _ in 0..ROUNDS {
-        let yielded = yielded(coarse, &known, &measured);
-        let mut shifted = measured.clone();
+        let each = coarse.iter().zip(&known).zip(&measured);
+        let yielded: Vec<Offset> = each.flat_map(|((path, known), points)| yielded(path, known, points)).collect();
+        if yielded.iter().zip(&before).all(|(now, before)| (*now - *before).abs() <= SETTLED) {
+            break;
+        }
+        before.clone_from(&yielded);
+        let mut shifted: Vec<Observation> = measured.concat();
         shifted.iter_mut().zip(&yielded).for_each(|(point, by)| point.error -= *by);
-        let cuts = [Cut { path: *sampled, points: shifted.len(), part: 0 }];
-        let points = Points { cuts: &cuts, earlier: &[], observations: &shifted };
+        let points = Points { cuts: &placed, earlier: &[], observations: &shifted };
+        let law = known.first().map(Identification::law);
         let Found { core, mut observations, .. } =
-            found(&pass.core, Some(known.law()), points, |_, _| Vector::ZERO, &mut |_| ());
+            found(&first.pass.core, law, points, |_, _| Vector::ZERO, &mut |_| ());
         for (point, by) in observations.iter_mut().zip(&yielded) {
             (point.error, point.predicted) = (point.error + *by, point.predicted + *by);
         }
-        known = Identification { core, observations };
+        let mut rest = observations.into_iter();
+        let own = |cut: &Cut| Identification { core, observations: rest.by_ref().take(cut.points).collect() };
+        known = placed.iter().map(own).collect();
     }
     Ok(known)
 }

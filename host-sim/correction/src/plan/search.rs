@@ -6,7 +6,8 @@
 //! * the less a cut before leaves, the less the last one is pushed; against the direction of the program the helix leans the other
 //!   way, so that what the cut before left too high is taken by another part of the tooth's way;
 //! * levels as deep as an axial contact ratio of one keep the force as the cutter turns; even levels shorten the tooth's way;
-//! * a thin last cut stands more feed.
+//! * a thin last cut stands more feed;
+//! * a spring pass, with the same commands or with its own, takes what the cut before was pushed away from.
 //!
 //! Which of them helps on a part is found by cutting it. Work grows with the contour's length and no further.
 
@@ -20,7 +21,7 @@ use super::limits::keeps;
 use super::process::{Cut, Levels, leaving};
 
 /// Design steps of a pass in the search.
-const TURNS: u32 = 8;
+const TURNS: u32 = 7;
 /// What a first of several cuts may leave, um.
 const LEFT_FIRST: [i64; 4] = [5, 20, 60, 150];
 /// What a second of three cuts may leave, um.
@@ -31,8 +32,19 @@ const LAST_FEEDS: [u16; 4] = [100, 150, 200, 60];
 const SINGLE_FEEDS: [u16; 3] = [100, 60, 30];
 /// How many of the unfinished parts are gone on with.
 const KEPT: usize = 3;
+/// Of how many processes on the front allowances nearby are tried.
+const REFINED: usize = 3;
+/// Allowances nearby, as factors.
+const FINER: [[i64; 2]; 2] = [[1, 2], [7, 4]];
 /// A candidate that takes longer has to be better by this share.
 const WORTH: f64 = 0.96;
+
+/// Whether a program can be written with these cuts.
+pub type CanWrite<'w> = dyn Fn(&[Cut]) -> bool + Sync + 'w;
+/// Adds what last cuts make of unfinished parts.
+type Finish<'w> = dyn Fn(&[Branch], &[Cut], &mut Vec<Candidate>) + Sync + 'w;
+/// What cuts leave of unfinished parts, to be gone on with.
+type GoOn<'w> = dyn Fn(&[Branch], &[Cut]) -> Vec<Branch> + Sync + 'w;
 
 /// A process that was cut.
 #[derive(Clone, Debug)]
@@ -53,8 +65,13 @@ struct Branch {
     uneven_mm: f64,
 }
 
-/// Searches; `progress` is told the share done, 0…1. Candidates come in the order of their time, each better than all before.
-pub fn search(bench: &Bench, limits: &PlanTable, progress: &(dyn Fn(f64) + Sync)) -> Vec<Candidate> {
+/// Searches among what `writable` says a program can be written with; `progress` is told the share done, 0…1. Candidates come in the
+/// order of their time, each better than all before.
+pub fn search(
+    bench: &Bench,
+    (limits, writable): (&PlanTable, &CanWrite<'_>),
+    progress: &(dyn Fn(f64) + Sync),
+) -> Vec<Candidate> {
     let setup = bench.path().setup();
     let (wall, allowance_um) = (float(setup.axial_depth), (mm(setup.allowance) * 1e3) as i64);
     let helix = bench.path().helix();
@@ -78,11 +95,13 @@ pub fn search(bench: &Bench, limits: &PlanTable, progress: &(dyn Fn(f64) + Sync)
     };
     let finish = |from: &[Branch], cuts: &[Cut], found: &mut Vec<Candidate>| {
         let tasks: Vec<(&Branch, &Cut)> = from.iter().flat_map(|b| cuts.iter().map(move |c| (b, c))).collect();
-        let tasks: Vec<_> = tasks.into_iter().filter(|(b, cut)| fits(b.stage.minutes, cut)).collect();
+        let all = |branch: &Branch, cut: &Cut| -> Vec<Cut> { branch.cuts.iter().copied().chain([*cut]).collect() };
+        let possible = |(b, cut): &(&Branch, &Cut)| fits(b.stage.minutes, cut) && writable(&all(b, cut));
+        let tasks: Vec<_> = tasks.into_iter().filter(possible).collect();
         let cut = |(branch, cut): &(&Branch, &Cut)| {
             let stage = bench.cut(branch.stage.clone(), cut, TURNS);
             let profile_mm = bench.figures(&stage.left).profile_mm;
-            let cuts: Vec<Cut> = branch.cuts.iter().copied().chain([**cut]).collect();
+            let cuts = all(branch, cut);
             keeps(limits, bench, &stage).then_some(Candidate { cuts, minutes: stage.minutes, profile_mm })
         };
         found.extend(tasks.par_iter().filter_map(cut).collect::<Vec<_>>());
@@ -121,7 +140,11 @@ pub fn search(bench: &Bench, limits: &PlanTable, progress: &(dyn Fn(f64) + Sync)
         // Two cuts.
         let lefts = LEFT_FIRST.iter().filter(|um| **um * 10 < allowance_um * 6);
         let before = |um: i64, levels: Levels| Cut { levels, ..Cut::whole(leaving(um)) };
-        let before: Vec<Cut> = lefts.flat_map(|um| shallow.iter().map(move |l| before(*um, *l))).collect();
+        let mut before: Vec<Cut> = lefts.flat_map(|um| shallow.iter().map(move |l| before(*um, *l))).collect();
+        // Half the depth shortens the tooth's way where no contact ratio does.
+        if let ([_, half], None) = (few.as_slice(), contact) {
+            before.push(Cut { levels: *half, ..Cut::whole(leaving(LEFT_FIRST[0])) });
+        }
         let mut first = go_on(&raw, &before);
         progress(0.25);
         finish(&first, &last(&even[..1], ways, &allowed(&LAST_FEEDS)), &mut found);
@@ -129,7 +152,7 @@ pub fn search(bench: &Bench, limits: &PlanTable, progress: &(dyn Fn(f64) + Sync)
         first.sort_by(|a, b| a.uneven_mm.total_cmp(&b.uneven_mm));
         first.truncate(KEPT);
         let more: Vec<Levels> = few.iter().copied().filter(|l| l.count() > 1).collect();
-        finish(&first, &last(&more, ways, &allowed(&LAST_FEEDS[..2])), &mut found);
+        finish(&first, &last(&more, ways, &allowed(&LAST_FEEDS[..3])), &mut found);
         progress(0.7);
         if limits.max_cuts >= 3 {
             // Three cuts.
@@ -141,10 +164,51 @@ pub fn search(bench: &Bench, limits: &PlanTable, progress: &(dyn Fn(f64) + Sync)
             second.sort_by(|a, b| a.uneven_mm.total_cmp(&b.uneven_mm));
             second.truncate(KEPT + 1);
             finish(&second, &last(&even[..1], ways, &allowed(&LAST_FEEDS)), &mut found);
+            finish(&second, &last(&more, ways, &allowed(&LAST_FEEDS[2..3])), &mut found);
         }
     }
+    progress(0.9);
+    refine(&raw[0], &mut found, limits.max_cuts, &finish, &go_on);
     progress(1.0);
     front(found)
+}
+
+/// Looks at allowances between those that were tried, of the processes on the front of several cuts, and at a spring pass behind the
+/// best of each number of passes.
+fn refine(raw: &Branch, found: &mut Vec<Candidate>, max_cuts: usize, finish: &Finish<'_>, go_on: &GoOn<'_>) {
+    let best = front(found.clone());
+    let several = best.iter().rev().filter(|candidate| candidate.cuts.len() > 1).take(REFINED);
+    let between: Vec<Vec<Cut>> = several.flat_map(|candidate| nearby(&candidate.cuts)).collect();
+    let one_after_the_other = |cuts: &[Cut]| -> Vec<Candidate> {
+        let Some((last, before)) = cuts.split_last() else { return Vec::new() };
+        let raw = Branch { cuts: Vec::new(), stage: raw.stage.clone(), uneven_mm: 0.0 };
+        let so_far = before.iter().fold(vec![raw], |branches, cut| go_on(&branches, &[*cut]));
+        let mut found = Vec::new();
+        finish(&so_far, &[*last], &mut found);
+        found
+    };
+    let springs = best.iter().filter(|candidate| candidate.cuts.len() < max_cuts).take(REFINED);
+    let springs = springs.filter_map(|candidate| {
+        let last = candidate.cuts.last()?;
+        Some(candidate.cuts.iter().copied().chain([Cut { spring: true, ..*last }]).collect::<Vec<_>>())
+    });
+    let own = best.iter().filter(|candidate| candidate.cuts.len() == 1 && max_cuts > 1).take(1);
+    let own = own.map(|candidate| [candidate.cuts[0], candidate.cuts[0]].to_vec());
+    let all: Vec<Vec<Cut>> = between.into_iter().chain(springs).chain(own).collect();
+    found.extend(all.par_iter().flat_map_iter(|cuts| one_after_the_other(cuts)).collect::<Vec<_>>());
+}
+
+/// The same cuts with other allowances left by the one before the last.
+fn nearby(cuts: &[Cut]) -> Vec<Vec<Cut>> {
+    let Some(at) = cuts.len().checked_sub(2) else { return Vec::new() };
+    let Aim::Least(left) = cuts[at].aim else { return Vec::new() };
+    let other = |[times, over]: [i64; 2]| {
+        let um = (left.nm() / 1000 * times / over).max(1);
+        let mut cuts = cuts.to_vec();
+        cuts[at].aim = leaving(um);
+        (leaving(um) != Aim::Least(left)).then_some(cuts)
+    };
+    FINER.into_iter().filter_map(other).collect()
 }
 
 /// Those of which none faster is as good.

@@ -6,11 +6,13 @@
 //! | what is asked for and what is told of it | `plan` |
 //! | each pass moved to where it is to run, leads carried along | `paths` |
 //! | the text, and the proof that nothing else has moved | [`rewrite_program`] |
+//! | for the coprocessor instead of both: what arms each pass, and its image | `images` |
 //! | what was done, in words | `report` |
 //!
 //! All depths of the feature that are cut alike get the same passes; spring passes behind them are replaced as well. Lines in
 //! subprograms and loops are written out first, as for every corrected program.
 
+mod images;
 mod paths;
 mod plan;
 mod report;
@@ -19,16 +21,18 @@ use truepath_core::checksum::crc32;
 use truepath_core::cut::Path;
 use truepath_core::gcode::{LineRange, program_crc};
 use truepath_core::units::Offset;
-use truepath_ground::diagnostics::Failure;
+use truepath_ground::diagnostics::{Failure, Source};
 use truepath_job::levels;
-use truepath_job::pass::Pass;
-use truepath_program::codes::P002;
+use truepath_job::pass::{Pass, PathBuffer};
+use truepath_program::codes::{P002, P003, P005};
 use truepath_program::passes::{Depth, Repeated, RepeatedPass, Turn, can_repeat, repeat_contours};
 use truepath_program::{BlockEdit, Difference, Origin, RewriteOptions, Rewritten, rewrite_program};
 
 use crate::correct::written_out;
 use crate::feeds::written_feeds_count;
 
+use images::Laid;
+pub use images::{ArmedWall, PassImage};
 use paths::Leads;
 pub use plan::{PlannedDepth, PlannedPass, PlannedWall};
 
@@ -39,8 +43,10 @@ pub struct PlannedProgram {
     pub text: Vec<u8>,
     /// Where the passes stand.
     pub depths: Vec<PlannedDepth>,
-    /// What moving the passes has changed, against the programmed path written out.
-    pub difference: Difference,
+    /// What moving the passes has changed, against the programmed path written out; `None` where the coprocessor moves them.
+    pub difference: Option<Difference>,
+    /// For the coprocessor, an image of every pass in the order of cutting.
+    pub images: Vec<PassImage>,
     /// `difference.txt`.
     pub report: String,
     /// What the user should know.
@@ -68,38 +74,73 @@ pub fn write(
 /// cannot run the other way, `J008` for a changed feed where the F words are not those of the cut, and whatever
 /// [`rewrite_program`] refuses.
 pub fn write_every(walls: &[PlannedWall<'_>], probe: Option<u32>) -> Result<PlannedProgram, Failure> {
-    for wall in walls {
-        checked(wall)?;
-    }
-    let first = walls.first().ok_or_else(|| Failure::Internal("no wall to be planned".to_owned()))?.pass;
-    let mut warnings = Vec::new();
-    let passes: Vec<&Pass> = walls.iter().map(|wall| wall.pass).collect();
-    let planned = match repeated(walls, &passes) {
-        Ok(planned) => planned,
-        Err(failure) => {
-            let (flat, said) = written_out(&passes, &failure).ok_or(failure)?;
-            warnings.push(said);
-            repeated(walls, &flat.iter().collect::<Vec<_>>())?
-        }
-    };
-    let original = program_crc(first.program.bytes());
+    let (planned, mut warnings) = laid_out(walls, false)?;
+    let first = &planned.original;
+    let original = program_crc(first.bytes());
     let written = match planned.moved(walls, original, probe, Leads::Carried) {
-        Err(Failure::Input(error)) if error.code() == P002.code => {
+        Err(Failure::Input(error)) if [P002, P003, P005].iter().any(|row| row.code == error.code()) => {
             warnings.push(format!(
-                "{}: the move before the contour cannot be changed: the leads begin and end where they did, and each pass comes to its path along them",
-                first.program.name()
+                "{}: what comes before the contour or behind it cannot be moved: the leads begin and end where they did, and each pass comes to its path along them",
+                first.name()
             ));
             planned.moved(walls, original, probe, Leads::Kept)?
         }
         written => written?,
     };
+    let depths = planned.depths(|lines| {
+        let lines = written.lines(lines);
+        [lines.first, lines.last]
+    });
+    let report = report::moved(first.name(), walls, &depths, &written);
+    let (text, difference) = (written.text, Some(written.difference));
+    Ok(PlannedProgram { text, depths, difference, images: Vec::new(), report, warnings })
+}
+
+/// Writes one program with the passes of all walls along the programmed path, each armed on its own, and the images with
+/// which the coprocessor moves them.
+///
+/// # Errors
+/// As [`write_every`]; `P022` for a control that cannot arm each pass, `P009` where the cutter comes to the contour on a ramp, a correction
+/// beyond the clamp at a feed that the image allows, and a job without the number of the tool.
+pub fn write_armed(walls: &[ArmedWall<'_>]) -> Result<PlannedProgram, Failure> {
+    let own: Vec<PlannedWall<'_>> = walls.iter().map(|wall| wall.wall).collect();
+    if let Some(wall) = own.first() {
+        images::check_control(wall.pass)?;
+    }
+    let (planned, mut warnings) = laid_out(&own, true)?;
+    let laid = Laid {
+        repeated: &planned.repeated,
+        walls: planned.places.iter().map(|(wall, _)| *wall).collect(),
+        passes: &planned.passes,
+    };
+    let armed = images::arm(walls, &laid)?;
+    warnings.extend(armed.warnings);
+    let depths = planned.depths(|lines| armed.announced.lines(lines));
+    let report = report::armed(planned.original.name(), &own, &depths, &armed.images);
+    let (text, images) = (armed.announced.text, armed.images);
+    Ok(PlannedProgram { text, depths, difference: None, images, report, warnings })
+}
+
+/// Checks the plans and writes out the passes of all depths, with what the user should know.
+fn laid_out(walls: &[PlannedWall<'_>], announced: bool) -> Result<(Planned, Vec<String>), Failure> {
+    for wall in walls {
+        checked(wall)?;
+    }
+    let mut warnings = Vec::new();
+    let passes: Vec<&Pass> = walls.iter().map(|wall| wall.pass).collect();
+    let planned = match repeated(walls, &passes, announced) {
+        Ok(planned) => planned,
+        Err(failure) => {
+            let (flat, said) = written_out(&passes, &failure).ok_or(failure)?;
+            warnings.push(said);
+            repeated(walls, &flat.iter().collect::<Vec<_>>(), announced)?
+        }
+    };
     warnings.extend(planned.left.iter().cloned());
     if walls.iter().any(|wall| wall.pass.job.feed.is_some()) {
         warnings.push("[feed] of the job has no part in planned passes: each has the feed of the plan".to_owned());
     }
-    let depths = planned.depths(&written);
-    let report = report::text(first.program.name(), walls, &depths, &written);
-    Ok(PlannedProgram { text: written.text, depths, difference: written.difference, report, warnings })
+    Ok((planned, warnings))
 }
 
 /// Whether the contour of a pass can be cut in several passes in the direction of the program.
@@ -107,7 +148,16 @@ pub fn write_every(walls: &[PlannedWall<'_>], probe: Option<u32>) -> Result<Plan
 /// # Errors
 /// As [`write()`].
 pub fn can_repeat_pass(pass: &Pass) -> Result<(), Failure> {
-    possible(pass, false)
+    possible(pass, &in_turn(&[false, false]), false)
+}
+
+/// Whether the coprocessor can be armed for each of several passes along the contour of a pass.
+///
+/// # Errors
+/// As [`write_armed`].
+pub fn can_arm(pass: &Pass) -> Result<(), Failure> {
+    images::check_control(pass)?;
+    possible(pass, &in_turn(&[false, false]), true)
 }
 
 /// Whether a pass along the contour can run against the direction of the program. Where there is no lead-out that ends off the
@@ -116,14 +166,22 @@ pub fn can_repeat_pass(pass: &Pass) -> Result<(), Failure> {
 /// # Errors
 /// As [`write()`]; `P010` where the reason is the direction.
 pub fn can_reverse(pass: &Pass) -> Result<(), Failure> {
-    possible(pass, true)
+    possible(pass, &in_turn(&[false, true]), false)
 }
 
-fn possible(pass: &Pass, reversed: bool) -> Result<(), Failure> {
-    let turn = |reversed| Turn { raise: Offset::ZERO, reversed, feed: 1.0 };
-    let turns = vec![turn(false), turn(reversed)];
-    let tried =
-        |pass: &Pass| can_repeat(&pass.program, &depth(pass, turns.clone())?, pass.job.numbers.program_options());
+fn in_turn(reversed: &[bool]) -> Vec<Turn> {
+    reversed.iter().map(|&reversed| Turn { raise: Offset::ZERO, reversed, feed: 1.0 }).collect()
+}
+
+/// Whether passes can follow each other in the place of a contour, each `announced` to the coprocessor or not; what they are moved by is
+/// not looked at.
+///
+/// # Errors
+/// As [`write()`].
+pub fn possible(pass: &Pass, turns: &[Turn], announced: bool) -> Result<(), Failure> {
+    let tried = |pass: &Pass| {
+        can_repeat(&pass.program, &depth(pass, turns.to_vec(), announced)?, pass.job.numbers.program_options())
+    };
     match tried(pass) {
         Err(failure) => {
             let (flat, _) = written_out(&[pass], &failure).ok_or(failure)?;
@@ -162,10 +220,12 @@ struct Planned {
     /// The passes of the depths, on the program that was repeated.
     passes: Vec<Pass>,
     left: Vec<String>,
+    /// The program of the user.
+    original: Source,
 }
 
 /// One depth as the program writer wants it.
-fn depth(pass: &Pass, turns: Vec<Turn>) -> Result<Depth, Failure> {
+fn depth(pass: &Pass, turns: Vec<Turn>, announced: bool) -> Result<Depth, Failure> {
     let level = pass.level();
     let springs = pass.plan.iter().flat_map(|plan| &plan.passes).filter(|one| one.spring && one.number == level);
     let springs = springs.map(|one| Ok(pass.along(one, pass.job.numbers.wall)?.blocks));
@@ -174,25 +234,30 @@ fn depth(pass: &Pass, turns: Vec<Turn>) -> Result<Depth, Failure> {
         springs: springs.collect::<Result<_, Failure>>()?,
         allowance: pass.core.setup.allowance,
         turns,
+        announced,
     })
 }
 
 /// Writes out the passes of all depths; `passes` are those of the walls, or the same of another text of the program.
-fn repeated(walls: &[PlannedWall<'_>], passes: &[&Pass]) -> Result<Planned, Failure> {
+fn repeated(walls: &[PlannedWall<'_>], passes: &[&Pass], announced: bool) -> Result<Planned, Failure> {
     let (mut depths, mut places, mut own, mut left) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (at, (wall, pass)) in walls.iter().zip(passes).enumerate() {
         let turns: Vec<Turn> = wall.passes.iter().map(PlannedPass::turn).collect();
-        let levels = levels::each(pass, wall.path, |level, pass, _| {
-            depths.push(depth(pass, turns.clone())?);
+        // Depths are compared at the step of all passes, which that of a plan need not be.
+        let mut buffer = PathBuffer::default();
+        let sampled = pass.sample(&mut buffer)?.with_law(wall.path.setup().law);
+        let levels = levels::each(pass, &sampled, |level, pass, _| {
+            depths.push(depth(pass, turns.clone(), announced)?);
             places.push((at, level));
             own.push(pass.clone());
             Ok(())
         })?;
         left.extend(levels.left);
     }
-    let first = passes.first().ok_or_else(|| Failure::Internal("no wall to be planned".to_owned()))?;
+    let (first, wall) =
+        passes.first().zip(walls.first()).ok_or_else(|| Failure::Internal("no wall to be planned".to_owned()))?;
     let repeated = repeat_contours(&first.program, &depths, first.job.numbers.program_options())?;
-    Ok(Planned { repeated, places, passes: own, left })
+    Ok(Planned { repeated, places, passes: own, left, original: wall.pass.program.clone() })
 }
 
 impl Planned {
@@ -239,18 +304,17 @@ impl Planned {
             notes,
             ..RewriteOptions::default()
         };
-        let source = truepath_ground::diagnostics::Source::new(pass.program.name(), self.repeated.text.clone());
+        let source = Source::new(pass.program.name(), self.repeated.text.clone());
         rewrite_program(&source, &edits, &options)
     }
 
-    /// Where the passes stand in the written program.
-    fn depths(&self, written: &Rewritten) -> Vec<PlannedDepth> {
-        let lines = |lines: LineRange| [lines.first, lines.last];
+    /// Where the passes stand in the written program, whose `lines` those of the passes along the programmed path have become.
+    fn depths(&self, lines: impl Fn(LineRange) -> [u32; 2]) -> Vec<PlannedDepth> {
         let depth = |(depth, &(wall, level)): (&truepath_program::passes::RepeatedDepth, &(usize, u32))| PlannedDepth {
             wall,
             level,
-            replaced: lines(depth.replaced),
-            passes: depth.passes.iter().map(|pass| lines(written.lines(pass.lines))).collect(),
+            replaced: [depth.replaced.first, depth.replaced.last],
+            passes: depth.passes.iter().map(|pass| lines(pass.lines)).collect(),
             z_mm: depth.passes.iter().map(|pass| pass.z_nm as f64 / 1e6).collect(),
         };
         self.repeated.depths.iter().zip(&self.places).map(depth).collect()

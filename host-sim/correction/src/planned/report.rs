@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use truepath_program::Rewritten;
 
+use super::images::PassImage;
 use super::plan::{PlannedDepth, PlannedPass, PlannedWall};
 
 /// Remarks for the head of the program.
@@ -12,8 +13,34 @@ pub(super) fn notes(walls: &[PlannedWall<'_>]) -> Vec<String> {
     walls.iter().map(note).collect()
 }
 
-/// `difference.txt`.
-pub(super) fn text(original: &str, walls: &[PlannedWall<'_>], depths: &[PlannedDepth], written: &Rewritten) -> String {
+/// `difference.txt` of passes that were moved in the program.
+pub(super) fn moved(original: &str, walls: &[PlannedWall<'_>], depths: &[PlannedDepth], written: &Rewritten) -> String {
+    passes(original, walls, depths)
+        + "\nThe program with these passes along the programmed path and the original were read and compared step by step:\n\
+           beside these lines every step, mode and byte is the same, and every pass cuts the lines and arcs of the original\n\
+           at its height and feed. Then the passes were moved:\n\n"
+        + &written.difference.text("the passes along the programmed path")
+}
+
+/// `difference.txt` of passes that the coprocessor moves.
+pub(super) fn armed(
+    original: &str,
+    walls: &[PlannedWall<'_>],
+    depths: &[PlannedDepth],
+    images: &[PassImage],
+) -> String {
+    let mut text = passes(original, walls, depths)
+        + "\nThe program without M160 and the original were read and compared step by step: beside these lines every step, mode\n\
+           and byte is the same, and every pass cuts the lines and arcs of the original at its height and feed. The coprocessor\n\
+           moves them, each by its image:\n\n";
+    for (k, image) in images.iter().enumerate() {
+        let _ = writeln!(text, "  planned-{}.tpi  M160 P{}.{}", k + 1, image.feature, image.pass);
+    }
+    text
+}
+
+/// The passes and their lines.
+fn passes(original: &str, walls: &[PlannedWall<'_>], depths: &[PlannedDepth]) -> String {
     let mut text = format!("{original} with planned passes\n\n");
     // Writing to a String cannot fail.
     for depth in depths {
@@ -33,12 +60,7 @@ pub(super) fn text(original: &str, walls: &[PlannedWall<'_>], depths: &[PlannedD
             );
         }
     }
-    text.push_str(
-        "\nThe program with these passes along the programmed path and the original were read and compared step by step:\n\
-         beside these lines every step, mode and byte is the same, and every pass cuts the lines and arcs of the original\n\
-         at its height and feed. Then the passes were moved:\n\n",
-    );
-    text + &written.difference.text("the passes along the programmed path")
+    text
 }
 
 fn way(pass: &PlannedPass) -> String {

@@ -143,6 +143,55 @@ pub(super) fn candidates(
     (sites, kept_off)
 }
 
+/// Where the stock is expected, mm before the nominal wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct StockWall {
+    /// As the job says.
+    pub(super) expected: f64,
+    /// At most: the ball's way is free of it.
+    pub(super) largest: f64,
+}
+
+/// How much nearer than the ball to an end of the contour its stock is not touched, mm: the cutter has not been there, but the
+/// stock may end.
+const FROM_ENDS: f64 = 1.0;
+
+/// Sorts the places where the stock before a pass may be touched, the ball's clearance counted from the largest stock. The load
+/// does not matter: nothing has been cut.
+pub(super) fn before_the_pass(pass: &Pass, path: &Path, ball: Ball, stock: StockWall) -> (Vec<Site>, Vec<KeptOff>) {
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    let radius = mm(path.setup().radius);
+    let walls = final_walls(path, samples, radius);
+    let normal = |sample: &Sample| [float(sample.normal.x), float(sample.normal.y)];
+    let both = walls.iter().zip(samples).filter_map(|(wall, sample)| wall.map(|wall| (wall, normal(sample))));
+    let standing: Vec<Xy> = both.map(|(wall, normal)| along(wall, normal, -stock.largest)).collect();
+    let (once_from, once_to) = milled_once(samples, Offset::from_nm(4 * path.setup().radius.nm()));
+    let (first, last) = (mm(once_from) + ball.radius + FROM_ENDS, mm(once_to) - ball.radius - FROM_ENDS);
+    let length = mm(path.length());
+    let step = (length * SPACING.0).max(SPACING.1);
+    let count = (length / step).floor() as u32;
+    let (mut sites, mut kept_off) = (Vec::new(), Vec::new());
+    for k in 0..=count {
+        let s = Offset::from_nm((f64::from(k) * step * 1e6) as i64);
+        let index = path.index_at(s).clamp(path.first(), path.first() + path.count() - 1);
+        let sample = &path.samples()[index];
+        let normal = normal(sample);
+        let free = |wall| ball.is_free(along(wall, normal, -stock.largest), normal, &standing);
+        match walls[index - path.first()] {
+            _ if mm(sample.s) < first || mm(sample.s) > last => kept_off.push(KeptOff::End),
+            None => kept_off.push(KeptOff::NoWall),
+            Some(_) if sample.near_corner => kept_off.push(KeptOff::SharpCorner),
+            Some(wall) if !free(wall) => kept_off.push(KeptOff::Unproved),
+            Some(wall) => {
+                let block = &pass.blocks[sample.block as usize];
+                let (wall, form) = (along(wall, normal, -stock.expected), form(pass, block, radius));
+                sites.push(Site { s: sample.s, wall, normal, form, line: block.line, unsteady: Offset::ZERO });
+            }
+        }
+    }
+    (sites, kept_off)
+}
+
 /// The states of the elastic loop along the path, at the estimate of machine and material.
 fn states(path: &Path, estimate: &Estimate) -> Vec<State> {
     let parameters = estimate.parameters();

@@ -4,6 +4,9 @@
 //! stay clear of the floor, which may lie as high as the cutter's tip. The heights are spread evenly over what remains:
 //! the outermost tell bending and the helix, those between tell a bad touch.
 //!
+//! Where the profile is asked for, or the wall is taller than one axial contact ratio, they are chosen instead
+//! ([`profile_heights`]).
+//!
 //! Passes of a millimetre or two leave no room for a ball, and make a wall all the same: then the heights are spread over the
 //! wall of several passes that are cut alike, each at another height above the tip that cut it there.
 
@@ -13,7 +16,8 @@ use truepath_ground::units::{float, mm};
 use truepath_job::levels;
 use truepath_job::pass::Pass;
 
-use super::settings::Settings;
+use super::profile_heights::profile_heights;
+use super::settings::{Settings, USUAL_HEIGHTS};
 use crate::codes::V002;
 
 /// A height.
@@ -71,11 +75,25 @@ fn over_several(tips: &[f64], depth: f64, (lowest, below_top): (f64, f64), count
     found
 }
 
-/// The heights of a pass, from the highest down; on other passes of the same wall as well where it has no room for the ball.
+/// Whether every height of the wall of a pass counts: a tolerance was stated, or one instant of a tooth makes more than one height.
+fn asks_for_profile(pass: &Pass, settings: &Settings) -> bool {
+    let setup = &pass.core.setup;
+    let lag = float(setup.helix().lag_per_mm) * float(setup.axial_depth);
+    let pitch = std::f64::consts::TAU / f64::from(setup.teeth);
+    settings.tolerance.is_some() || pass.job.part.tolerance.is_some() || lag > pitch
+}
+
+/// The heights of a pass, from the highest down, with a sentence why these where they were chosen; on other passes of the same
+/// wall as well where it has no room for the ball.
 ///
 /// # Errors
 /// `V002` when the ball has no room between floor and upper end, and whatever is wrong with another pass.
-pub(super) fn heights(pass: &Pass, probe: &Probe, settings: &Settings) -> Result<Vec<Height>, Failure> {
+pub(super) fn heights(
+    pass: &Pass,
+    probe: &Probe,
+    settings: &Settings,
+) -> Result<(Vec<Height>, Option<String>), Failure> {
+    let wanted = settings.heights.unwrap_or(USUAL_HEIGHTS);
     let depth = float(pass.core.setup.axial_depth);
     let radius = mm(probe.ball_diameter) / 2.0;
     let tip_z = pass.core.contour.z.nm() as f64 / 1e6;
@@ -86,7 +104,7 @@ pub(super) fn heights(pass: &Pass, probe: &Probe, settings: &Settings) -> Result
         ZReference::Tip => radius,
     };
     if lowest > highest {
-        let over_several = over_several(&tips(pass)?, depth, (lowest, below_top), settings.heights);
+        let over_several = over_several(&tips(pass)?, depth, (lowest, below_top), wanted);
         if !over_several.is_empty() {
             let height = |(k, (tip, fraction)): (usize, &(f64, f64))| Height {
                 fraction: *fraction,
@@ -94,7 +112,7 @@ pub(super) fn heights(pass: &Pass, probe: &Probe, settings: &Settings) -> Result
                 z_mm: tip_z + tip + fraction * depth - lift,
                 why: if k == 0 { OF_SEVERAL[0] } else { OF_SEVERAL[1] },
             };
-            return Ok(over_several.iter().enumerate().map(height).collect());
+            return Ok((over_several.iter().enumerate().map(height).collect(), None));
         }
         return Err(V002
             .error(
@@ -106,8 +124,20 @@ pub(super) fn heights(pass: &Pass, probe: &Probe, settings: &Settings) -> Result
             )
             .into());
     }
+    if wanted > 1 && asks_for_profile(pass, settings) {
+        let count = settings.heights.map(|count| count as usize);
+        if let Some(chosen) = profile_heights(pass, (lowest, highest), mm(probe.noise), count)? {
+            let height = |(above_tip_mm, why): &(f64, &'static str)| Height {
+                fraction: above_tip_mm / depth,
+                above_tip_mm: *above_tip_mm,
+                z_mm: tip_z + above_tip_mm - lift,
+                why,
+            };
+            return Ok((chosen.above_tip_mm.iter().map(height).collect(), Some(chosen.why)));
+        }
+    }
     // Heights closer together than this tell the same.
-    let count = settings.heights.min(1 + ((highest - lowest) / APART) as u32);
+    let count = wanted.min(1 + ((highest - lowest) / APART) as u32);
     let at = |k: u32| {
         let share = if count == 1 { 0.5 } else { f64::from(k) / f64::from(count - 1) };
         let above_tip_mm = highest + (lowest - highest) * share;
@@ -119,5 +149,5 @@ pub(super) fn heights(pass: &Pass, probe: &Probe, settings: &Settings) -> Result
         };
         Height { fraction: above_tip_mm / depth, above_tip_mm, z_mm: tip_z + above_tip_mm - lift, why }
     };
-    Ok((0..count).map(at).collect())
+    Ok(((0..count).map(at).collect(), None))
 }

@@ -9,6 +9,7 @@
 //! | what a touch there would tell, by the model of the job or of a fit | `estimate`, `sensitivity`, `covariance` |
 //! | the choice of places, each with its reason | `choice`, `reason` |
 //! | the plan: touches in order, every coordinate | `probing_setup`, `plan` |
+//! | places where the stock is touched, before the pass | `stock` |
 //! | further places, given what was measured: the corrected wall is to become certain | `wall_sensitivity`, `choice_next`, `next` |
 //! | the program of a control | `dialect`, `text`, `walk`, `linuxcnc`, `grbl`, `fanuc`, `haas`, `dprnt` |
 //!
@@ -36,9 +37,11 @@ mod next;
 mod part_program;
 mod plan;
 mod probing_setup;
+mod profile_heights;
 mod reason;
 mod sensitivity;
 mod settings;
+mod stock;
 mod text;
 mod walk;
 mod wall_sensitivity;
@@ -51,4 +54,5 @@ pub use part_program::PartProgram;
 pub use plan::{Gained, Place, Plan, Touch, plan, plan_every};
 pub use reason::Unknown;
 pub use settings::Settings;
+pub use stock::{STOCK_HEIGHTS, plan_stock};
 pub use wall_sensitivity::WallSensitivity;

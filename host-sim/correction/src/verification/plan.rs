@@ -18,7 +18,7 @@ use super::part_program::PartProgram;
 use super::probing_setup::ProbingSetup;
 use super::reason::{self, Unknown};
 use super::sensitivity::{Sensitivity, sensitivities};
-use super::settings::Settings;
+use super::settings::{Settings, USUAL_HEIGHTS};
 
 /// A place of the wall.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,6 +102,8 @@ pub struct Plan {
     pub z_is_tip: bool,
     /// Height for moves between places, mm.
     pub safe_z_mm: f64,
+    /// Whether the stock is touched, before the pass.
+    pub before_the_pass: bool,
     /// Places in the order of the contour, one contour after the other.
     pub places: Vec<Place>,
     /// How many places were looked at and kept off, by reason.
@@ -111,6 +113,8 @@ pub struct Plan {
     /// Standard deviation of the wall, mm, before the touches and after them: of the predicted wall, root mean square, or,
     /// of a plan of further places, the largest of the corrected wall.
     pub wall_sigma_mm: [f64; 2],
+    /// Why the heights are what they are, where they were chosen for the profile of the wall.
+    pub heights_why: Option<String>,
     /// What the job does not say and was taken from the program or a default.
     pub assumed: Vec<Assumed>,
     /// What the user should know.
@@ -128,13 +132,28 @@ impl Plan {
             ball_mm: 2.0 * setup.ball.radius,
             z_is_tip: setup.probe.z_reference == truepath_core::job::ZReference::Tip,
             safe_z_mm: setup.safe_z_mm,
+            before_the_pass: false,
             places,
             kept_off: BTreeMap::new(),
             unknowns: Vec::new(),
             wall_sigma_mm: [0.0; 2],
+            heights_why: setup.heights_why,
             assumed: pass.job.assumed.clone(),
             warnings: pass.warnings.clone(),
         }
+    }
+    /// The plans of several contours as one; `None` of none.
+    pub(super) fn joint(plans: Vec<Self>) -> Option<Self> {
+        let mut plans = plans.into_iter();
+        let mut joint = plans.next()?;
+        for other in plans {
+            joint.safe_z_mm = joint.safe_z_mm.max(other.safe_z_mm);
+            joint.places.extend(other.places);
+            joint
+                .warnings
+                .extend(other.warnings.into_iter().filter(|said| !joint.warnings.contains(said)).collect::<Vec<_>>());
+        }
+        Some(joint)
     }
     /// Ball's centre at the stand-off of a place, mm.
     pub fn stand_off(&self, place: &Place) -> [f64; 2] {
@@ -194,14 +213,8 @@ pub fn plan_every(passes: &[Pass], settings: &Settings, progress: &mut dyn FnMut
         let told = &mut |done: f64| progress((at as f64 + done) * share);
         match Wall::of(pass, passes, settings, &mut kept_off, told) {
             Ok(wall) => {
-                if let Some(first) =
-                    walls.first().filter(|first| first.setup.program.work_offset != wall.setup.program.work_offset)
-                {
-                    warnings.push(format!(
-                        "{} is not touched: it is cut in another work offset than {}, and a verification program changes none",
-                        name(pass),
-                        name(first.pass)
-                    ));
+                if let Some(first) = walls.first().filter(|first| !first.setup.shares_offset(&wall.setup)) {
+                    warnings.push(other_offset(pass, first.pass));
                     continue;
                 }
                 walls.push(wall);
@@ -241,14 +254,7 @@ pub fn plan_every(passes: &[Pass], settings: &Settings, progress: &mut dyn FnMut
         let own = mine.map(|(_, place)| Place { contour: contour.clone(), ..place.clone() }).collect();
         plans.push(Plan::of(wall.setup, wall.pass, settings, own));
     }
-    let mut joint = plans.remove(0);
-    for other in plans {
-        joint.safe_z_mm = joint.safe_z_mm.max(other.safe_z_mm);
-        joint.places.extend(other.places);
-        joint
-            .warnings
-            .extend(other.warnings.into_iter().filter(|said| !joint.warnings.contains(said)).collect::<Vec<_>>());
-    }
+    let Some(mut joint) = Plan::joint(plans) else { return Err(Failure::Internal("a plan of no contour".to_owned())) };
     joint.warnings.extend(warnings);
     let mut plan =
         Plan { kept_off, unknowns: reason::unknowns(&chosen.known, &prior), wall_sigma_mm: chosen.wall_sigma, ..joint };
@@ -283,13 +289,22 @@ impl<'a> Wall<'a> {
 }
 
 /// What a contour is called in sentences.
-fn name(pass: &Pass) -> String {
+pub(super) fn name(pass: &Pass) -> String {
     let id = pass.plan.as_ref().and_then(|plan| plan.id.clone());
     id.unwrap_or_else(|| "the contour".to_owned())
 }
 
+/// What is said of a contour that is cut in another work offset than the first one.
+pub(super) fn other_offset(pass: &Pass, first: &Pass) -> String {
+    format!(
+        "{} is not touched: it is cut in another work offset than {}, and a verification program changes none",
+        name(pass),
+        name(first)
+    )
+}
+
 /// Code and finding of a failure.
-fn in_short(failure: &Failure) -> String {
+pub(super) fn in_short(failure: &Failure) -> String {
     match failure {
         Failure::Input(error) => format!("{}: {}", error.code(), error.found()),
         Failure::Usage(what) | Failure::Internal(what) => what.clone(),
@@ -309,12 +324,9 @@ fn plan_warnings(plan: &Plan, law: WallLaw) -> Vec<String> {
             "{found} places instead of {wanted}: no more of them may be touched without being too close together"
         ));
     }
-    if plan.most_heights() < plan.settings.heights as usize {
-        out.push(format!(
-            "{} heights instead of {}: the ball has no room for more",
-            plan.most_heights(),
-            plan.settings.heights
-        ));
+    let heights = plan.settings.heights.unwrap_or(USUAL_HEIGHTS);
+    if plan.most_heights() < heights as usize {
+        out.push(format!("{} heights instead of {}: the ball has no room for more", plan.most_heights(), heights));
     }
     let [before, after] = plan.wall_sigma_mm;
     if after > TELLING.0 && after > TELLING.1 * before {

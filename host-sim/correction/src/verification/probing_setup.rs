@@ -10,7 +10,7 @@ use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
 use super::approach::Ball;
-use super::candidates::{KeptOff, Site, candidates, cut_away_by};
+use super::candidates::{KeptOff, Site, StockWall, before_the_pass, candidates, cut_away_by};
 use super::estimate::Estimate;
 use super::heights::{Height, heights};
 use super::part_program::PartProgram;
@@ -22,6 +22,8 @@ pub(super) struct ProbingSetup {
     pub(super) program: PartProgram,
     pub(super) probe: Probe,
     pub(super) heights: Vec<Height>,
+    /// Why these, where they were chosen.
+    pub(super) heights_why: Option<String>,
     pub(super) ball: Ball,
     pub(super) safe_z_mm: f64,
 }
@@ -38,17 +40,32 @@ impl ProbingSetup {
     /// A job without probe, settings out of range, a ball without room (`V002`, `V003`), and whatever is wrong with the
     /// program.
     pub(super) fn of(pass: &Pass, settings: &Settings) -> Result<Self, Failure> {
+        Self::with_room(pass, settings, (settings.clearance, 2.0 * mm(pass.core.setup.radius)))
+    }
+
+    /// Of the stock before a pass. What the pass is to cut is no more than the largest allowance, so the rest of its width is
+    /// free before it.
+    ///
+    /// # Errors
+    /// As [`ProbingSetup::of`].
+    pub(super) fn before(pass: &Pass, settings: &Settings, stock: StockWall) -> Result<Self, Failure> {
+        let free = 2.0 * mm(pass.core.setup.radius) - stock.largest;
+        Self::with_room(pass, settings, (settings.clearance, free))
+    }
+
+    /// With a clearance, and a width that is free before the wall unless the user says another.
+    fn with_room(pass: &Pass, settings: &Settings, (clearance, free): (f64, f64)) -> Result<Self, Failure> {
         settings.check()?;
         let probe = pass.job.require_probe()?;
         let program = PartProgram::read(pass)?;
-        let heights = heights(pass, &probe, settings)?;
-        let ball = Ball { radius: mm(probe.ball_diameter) / 2.0, clearance: settings.clearance };
-        let free = settings.free_width.unwrap_or(2.0 * mm(pass.core.setup.radius));
+        let (heights, heights_why) = heights(pass, &probe, settings)?;
+        let ball = Ball { radius: mm(probe.ball_diameter) / 2.0, clearance };
+        let free = settings.free_width.unwrap_or(free);
         if ball.width() > free + 1e-9 {
             return Err(no_width(ball, free, settings).into());
         }
         let safe_z_mm = safe_z(pass, settings, &program)?;
-        Ok(Self { program, probe, heights, ball, safe_z_mm })
+        Ok(Self { program, probe, heights, heights_why, ball, safe_z_mm })
     }
 
     /// The places that may be touched, `unsteady` ones too or not, and how many may not, by reason; `others` are the other
@@ -63,7 +80,30 @@ impl ProbingSetup {
         estimate: &Estimate,
         (unsteady, others): (bool, &[&Pass]),
     ) -> Result<(Vec<Site>, BTreeMap<KeptOff, usize>), InputError> {
-        let (mut sites, mut kept_off) = candidates(pass, path, estimate, self.ball, (mm(self.probe.noise), unsteady));
+        let all = candidates(pass, path, estimate, self.ball, (mm(self.probe.noise), unsteady));
+        self.beside_others(all, others)
+    }
+
+    /// The places where the stock before the pass may be touched, and how many may not, by reason.
+    ///
+    /// # Errors
+    /// `V004` without any.
+    pub(super) fn stock_sites(
+        &self,
+        pass: &Pass,
+        path: &Path,
+        stock: StockWall,
+        others: &[&Pass],
+    ) -> Result<(Vec<Site>, BTreeMap<KeptOff, usize>), InputError> {
+        self.beside_others(before_the_pass(pass, path, self.ball, stock), others)
+    }
+
+    /// The places that no other contour of the part takes away.
+    fn beside_others(
+        &self,
+        (mut sites, mut kept_off): (Vec<Site>, Vec<KeptOff>),
+        others: &[&Pass],
+    ) -> Result<(Vec<Site>, BTreeMap<KeptOff, usize>), InputError> {
         let highest = self.heights.first().map_or(f64::NEG_INFINITY, |h| h.z_mm);
         sites.retain(|site| {
             let gone = others
@@ -79,6 +119,11 @@ impl ProbingSetup {
             *counts.entry(reason).or_insert(0) += 1;
         }
         if sites.is_empty() { Err(no_place(&counts)) } else { Ok((sites, counts)) }
+    }
+
+    /// Whether another contour is cut in the same work offset.
+    pub(super) const fn shares_offset(&self, other: &Self) -> bool {
+        self.program.work_offset == other.program.work_offset
     }
 
     /// Between two places, at least, mm.

@@ -12,9 +12,13 @@ pub struct Settings {
     /// Places along the contour; how many are usual depends on what is known.
     #[arg(skip = Settings::default().places)]
     pub places: u32,
-    /// Heights at each place.
-    #[arg(long, value_name = "N", default_value_t = Settings::default().heights)]
-    pub heights: u32,
+    /// Heights at each place [default: 3; up to 5 where the profile of the wall is asked for or it is taller than one axial
+    /// contact ratio].
+    #[arg(long, value_name = "N")]
+    pub heights: Option<u32>,
+    /// Half the width of the tolerance of the wall at every height, mm, which asks for its profile; without it that of `[part]`.
+    #[arg(long, value_name = "MM")]
+    pub tolerance: Option<f64>,
     /// From the ball's surface to the nominal wall where a touch begins, mm.
     #[arg(long, value_name = "MM", default_value_t = Settings::default().clearance)]
     pub clearance: f64,
@@ -44,6 +48,9 @@ pub struct Settings {
     pub probe_tool: Option<u32>,
 }
 
+/// Heights, where the user does not say how many.
+pub(super) const USUAL_HEIGHTS: u32 = 3;
+
 /// What a wall may be off without the ball meeting it before the last approach, mm.
 pub(super) const MARGIN: f64 = 1.0;
 
@@ -51,7 +58,8 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             places: 8,
-            heights: 3,
+            heights: None,
+            tolerance: None,
             clearance: 2.0,
             overtravel: 1.0,
             floor_clearance: 0.5,
@@ -72,7 +80,8 @@ impl Settings {
     /// `V001` at the first that is outside.
     pub fn check(&self) -> Result<(), InputError> {
         within("--points", f64::from(self.places), 1.0..=64.0, "")?;
-        within("--heights", f64::from(self.heights), 1.0..=9.0, "")?;
+        within("--heights", f64::from(self.heights.unwrap_or(USUAL_HEIGHTS)), 1.0..=9.0, "")?;
+        within("--tolerance", self.tolerance.unwrap_or(1.0), 0.0001..=10.0, " mm")?;
         within("--clearance", self.clearance, MARGIN..=50.0, " mm")?;
         within("--overtravel", self.overtravel, 0.1..=5.0, " mm")?;
         within("--floor-clearance", self.floor_clearance, 0.0..=50.0, " mm")?;

@@ -83,6 +83,9 @@ impl Page {
         if let Some(correction) = plan.correction {
             self.comment(&format!("for the part cut with the correction of CRC32 {correction:08X}"));
         }
+        if plan.before_the_pass {
+            self.comment("touches the stock, before the finishing pass: after it no result is of use");
+        }
         self.comment(&format!(
             "points {touches}, places {}, heights {}, ball {} {}",
             plan.places.len(),

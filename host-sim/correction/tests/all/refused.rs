@@ -54,6 +54,16 @@ fn a_ramp_stays_for_a_first_pass_at_its_depth_and_is_no_way_to_another() {
 }
 
 #[test]
+fn where_the_origin_is_set_behind_the_contour_the_leads_stay() {
+    let shifted = changed(SIEMENS, "N160 SUPA", "N155 TRANS\nN160 SUPA");
+    let plan: Plan = |path| vec![pass(path, 0.15, 0.0, false, 1.0), pass(path, 0.02, 0.0, false, 1.0)];
+    let written = shown(shifted.written(plan));
+    assert!(written.program.warnings.iter().any(|said| said.contains("leads begin and end where they did")));
+    assert!(written.cuts_as_planned(&shifted) <= 0.0011);
+    assert!(written.text().contains("N155 TRANS\nN160 SUPA"));
+}
+
+#[test]
 fn feeds_of_a_plan_are_refused_where_the_job_overrides_those_of_the_program() {
     let mut overridden = CORNER.job();
     overridden.numbers.cut.feed_mm_per_min = Some(truepath_core::units::Real::from_int(400));

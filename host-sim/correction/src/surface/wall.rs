@@ -1,4 +1,4 @@
-//! The wall that a process leaves, and what makes its error.
+//! The figures of a wall that is known at every height.
 
 use truepath_core::cut::Path;
 use truepath_core::process::Slices;
@@ -18,16 +18,13 @@ pub struct WallFigures {
     pub p95_mm: f64,
     /// The largest mean over the height: what a shift in x and y cures.
     pub mean_mm: f64,
-    /// At the worst place: the mean over the height.
-    pub worst_mean_mm: f64,
-    /// There: the lean of the wall from tip to top, which bending of the cutter makes, as the error at its ends.
-    pub worst_tilt_mm: f64,
-    /// There: what is left over the height beside both, which the helix makes.
-    pub worst_height_mm: f64,
     /// Where it is along the contour.
     pub worst_s_mm: f64,
     /// Its height above the tip as a share of the wall's.
     pub worst_fraction: f64,
+    /// Which of the errors it is, counted place by place, all heights of a place side by side.
+    #[serde(skip)]
+    pub worst: usize,
 }
 
 /// Where the wall of a contour counts: not within 6 mm, or 0.8 radii if that is more, of the ends of an open contour, where leads
@@ -48,41 +45,39 @@ impl WallFigures {
     /// Of what is left, all slices of a sample side by side.
     pub fn of(path: &Path, slices: Slices, left: &[Offset]) -> Self {
         let count = slices.count();
+        let column = |index: usize| left[index * count..(index + 1) * count].iter().map(|e| mm(*e)).collect();
+        Self::over(judged(path).map(|(index, s)| (s, column(index))))
+    }
+
+    /// Of the errors at places along the contour, mm, each with its arc length and the errors over its height from the tip up, as
+    /// many at every place.
+    pub fn over(places: impl Iterator<Item = (f64, Vec<f64>)>) -> Self {
         let mut figures = Self::default();
         let mut all: Vec<f64> = Vec::new();
-        for (index, s) in judged(path) {
-            let column: Vec<f64> = left[index * count..(index + 1) * count].iter().map(|e| mm(*e)).collect();
-            let mean = column.iter().sum::<f64>() / count as f64;
+        for (s, column) in places {
+            let count = column.len() as f64;
+            let mean = column.iter().sum::<f64>() / count.max(1.0);
             figures.mean_mm = figures.mean_mm.max(mean.abs());
             for (k, error) in column.iter().enumerate() {
                 figures.left_mm = figures.left_mm.max(*error);
                 figures.gouge_mm = figures.gouge_mm.max(-*error);
                 if error.abs() > figures.profile_mm {
                     figures.profile_mm = error.abs();
-                    (figures.worst_s_mm, figures.worst_fraction) = (s, (k as f64 + 0.5) / count as f64);
-                    figures.split(&column, mean);
+                    (figures.worst_s_mm, figures.worst_fraction) = (s, (k as f64 + 0.5) / count);
+                    figures.worst = all.len();
                 }
                 all.push(error.abs());
             }
         }
-        let at = (all.len() * 95 / 100).min(all.len().saturating_sub(1));
-        if !all.is_empty() {
-            figures.p95_mm = *all.select_nth_unstable_by(at, f64::total_cmp).1;
-        }
+        figures.p95_mm = p95(&mut all);
         figures
     }
+}
 
-    /// Splits the errors over the height at one place: mean, straight line, rest.
-    fn split(&mut self, column: &[f64], mean: f64) {
-        let count = column.len() as f64;
-        let place = |k: usize| (2.0 * k as f64 + 1.0) / count - 1.0;
-        let moment: f64 = column.iter().enumerate().map(|(k, e)| place(k) * (e - mean)).sum();
-        let square: f64 = (0..column.len()).map(|k| place(k) * place(k)).sum();
-        let tilt = if square > 0.0 { moment / square } else { 0.0 };
-        let rest = column.iter().enumerate().map(|(k, e)| (e - mean - tilt * place(k)).abs());
-        (self.worst_mean_mm, self.worst_tilt_mm) = (mean, tilt);
-        self.worst_height_mm = rest.fold(0.0, f64::max);
-    }
+/// 95 of 100 of some magnitudes are at most this; zero of none. Their order is lost.
+pub fn p95(magnitudes: &mut [f64]) -> f64 {
+    let at = (magnitudes.len() * 95 / 100).min(magnitudes.len().saturating_sub(1));
+    if magnitudes.is_empty() { 0.0 } else { *magnitudes.select_nth_unstable_by(at, f64::total_cmp).1 }
 }
 
 /// What is left of a wall, unrolled, mm.

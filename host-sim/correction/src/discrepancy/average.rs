@@ -1,0 +1,382 @@
+//! Kernels by their evidence: points of something else, mean and standard deviation.
+
+use truepath_core::cut::Path;
+use truepath_core::identify::COUNT;
+use truepath_core::job;
+use truepath_core::units::Offset;
+use truepath_ground::units::{float, nm};
+
+use super::evidence::{Factored, Task, discrepancy};
+use super::feature::{Engagement, Feature, Sensitivity};
+use super::kernel::Kernel;
+use super::nominal::{sensitivities, stock_sensitivities};
+use super::points::{Points, Row, SHARED};
+
+/// One quantity of a kernel: the values that are tried, with what is believed of each (natural logarithm).
+struct Axis {
+    values: &'static [([f64; 2], f64)],
+    set: fn(&mut Kernel, [f64; 2]),
+}
+
+/// What is tried. Sizes and beliefs are those of shops: most walls are cut evenly, a few with a quarter more stock in places;
+/// machines drift by some micrometres while a contour is cut; a cutter's force rises by some per cent from part to part.
+const AXES: [Axis; 8] = [
+    Axis {
+        values: &[
+            ([0.0, 1.0], -0.7),
+            ([0.03, 4.0], -2.5),
+            ([0.07, 1.0], -3.5),
+            ([0.07, 2.5], -3.0),
+            ([0.07, 6.0], -3.0),
+            ([0.15, 1.0], -4.0),
+            ([0.15, 2.5], -3.5),
+            ([0.15, 6.0], -3.5),
+        ],
+        set: |kernel, [stock, reach]| (kernel.stock, kernel.stock_reach) = (stock, reach),
+    },
+    Axis {
+        values: &[([0.0, 0.0], -0.7), ([0.04, 0.0], -2.0), ([0.15, 0.0], -3.0)],
+        set: |kernel, [load, _]| kernel.load = load,
+    },
+    Axis {
+        values: &[([0.0, 0.0], -0.5), ([0.004, 0.0], -1.6), ([0.012, 0.0], -2.3)],
+        set: |kernel, [drift, _]| kernel.drift = drift,
+    },
+    Axis {
+        values: &[
+            ([0.0, 0.4], -0.7),
+            ([0.002, 0.4], -2.0),
+            ([0.002, 2.0], -2.5),
+            ([0.005, 0.4], -2.5),
+            ([0.005, 2.0], -3.0),
+            ([0.012, 0.4], -3.5),
+            ([0.012, 2.0], -4.0),
+            ([0.03, 0.4], -4.5),
+        ],
+        set: |kernel, [local, reach]| (kernel.local, kernel.local_reach) = (local, reach),
+    },
+    Axis {
+        values: &[
+            ([0.0, 0.0], -0.7),
+            ([0.002, 0.0], -1.6),
+            ([0.005, 0.0], -2.3),
+            ([0.012, 0.0], -3.5),
+            ([0.03, 0.0], -4.5),
+        ],
+        set: |kernel, [keyed, _]| kernel.keyed = keyed,
+    },
+    Axis {
+        values: &[([0.02, 0.0], -1.0), ([0.08, 0.0], -0.9), ([0.15, 0.0], -1.9)],
+        set: |kernel, [wear, _]| kernel.wear = wear,
+    },
+    Axis {
+        values: &[([0.0, 0.0], -0.7), ([0.003, 0.0], -1.6), ([0.008, 0.0], -2.3), ([0.02, 0.0], -3.5)],
+        set: |kernel, [height, _]| kernel.height = height,
+    },
+    Axis {
+        values: &[([0.7, 0.0], -1.6), ([1.0, 0.0], -0.7), ([1.5, 0.0], -1.6), ([2.5, 0.0], -3.0)],
+        set: |kernel, [noise, _]| kernel.noise = noise,
+    },
+];
+
+/// What readings of something else are: one in a hundred, anywhere within half a millimetre.
+const ELSEWHERE: f64 = 0.01 / 0.5;
+/// A value of one quantity that lowers the probability to less is not combined with others.
+const NEARLY: f64 = 0.15;
+/// Combinations that are looked at.
+const MOST_KERNELS: usize = 128;
+/// Kernels of a smaller share than this of the largest do not count.
+const LEAST_SHARE: f64 = 0.02;
+/// Times that points of something else are looked for.
+const ROUNDS: usize = 8;
+/// Sweeps over the axes until nothing is better.
+const SWEEPS: usize = 4;
+/// Places at most between which a standard deviation is interpolated.
+const PLACES: usize = 400;
+
+/// What parts show beside the model.
+#[derive(Clone, Debug)]
+pub struct Discrepancy {
+    points: Points,
+    /// The rows that are used: the others are of something else.
+    used: Vec<usize>,
+    /// Kernels with their shares.
+    kernels: Vec<(f64, Factored)>,
+}
+
+/// Beside every sample of a contour.
+#[derive(Clone, Debug, Default)]
+pub struct Along {
+    /// Expected discrepancy.
+    pub mean: Vec<Offset>,
+    /// Standard deviation of the wall that the next correction leaves by what the points leave open, beyond that by the
+    /// fitted parameters.
+    pub sigma: Vec<Offset>,
+    /// Standard deviation by what the next part does otherwise than the last: level of force, size of the cutter.
+    pub repeat: Vec<Offset>,
+}
+
+impl Along {
+    /// Nothing.
+    pub const NONE: Self = Self { mean: Vec::new(), sigma: Vec::new(), repeat: Vec::new() };
+}
+
+/// How large the kinds are, root mean square over the kernels by their shares.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Sizes {
+    /// Share of the allowance that differs along the contour.
+    pub stock_share: f64,
+    /// Share of the load that differs along the contour at the same stock.
+    pub load_share: f64,
+    /// Drift of the datum, mm.
+    pub drift_mm: f64,
+    /// What holds around a place only, mm.
+    pub local_mm: f64,
+    /// What holds wherever the cutter is engaged alike, mm.
+    pub keyed_mm: f64,
+    /// Level of force from part to part.
+    pub level_share: f64,
+}
+
+impl Discrepancy {
+    /// Of the points; `None` when there are none.
+    pub fn of(points: Points) -> Option<Self> {
+        let mut used: Vec<usize> = (0..points.rows.len()).collect();
+        let mut starts = Kernel::STARTS.to_vec();
+        for round in 0..ROUNDS {
+            let task = Task::of(&points, &used);
+            let climbed = starts.iter().filter_map(|start| ascend(&task, *start));
+            let (best, _) = climbed.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+            starts = vec![best.kernel, Kernel::EVEN];
+            let strange = strangest(&best, &used);
+            // No more than a quarter may be of something else.
+            let Some(strange) = strange.filter(|_| round + 1 < ROUNDS && used.len() * 4 > points.rows.len() * 3) else {
+                let kernels = averaged(&task, &best);
+                return Some(Self { points, used, kernels });
+            };
+            used.retain(|k| *k != strange);
+        }
+        None
+    }
+
+    fn rows(&self) -> impl Iterator<Item = &Row> {
+        self.used.iter().map(|k| &self.points.rows[*k])
+    }
+
+    /// Mean of a quantity over the kernels.
+    fn mean_over(&self, of: impl Fn(&Factored) -> f64) -> f64 {
+        self.kernels.iter().map(|(share, kernel)| share * of(kernel)).sum()
+    }
+
+    /// Expected discrepancy at a place of the next part, mm.
+    pub fn at(&self, place: &Feature) -> f64 {
+        self.mean_over(|factored| {
+            let covariance: Vec<f64> =
+                self.rows().map(|row| factored.kernel.lasting(&self.points.extents, &row.feature, place)).collect();
+            factored.mean(&covariance)
+        })
+    }
+
+    /// Expected discrepancy at every point that was given, in their order, mm; that of its own part, its level of force
+    /// included.
+    pub fn at_points(&self) -> Vec<f64> {
+        let mut all = vec![0.0; self.points.given];
+        for row in &self.points.rows {
+            let value = self.mean_over(|factored| {
+                let covariance: Vec<f64> =
+                    self.rows().map(|other| discrepancy(&self.points, &factored.kernel, other, row)).collect();
+                factored.mean(&covariance)
+            });
+            for slot in &mut all[row.points.clone()] {
+                *slot = value;
+            }
+        }
+        all
+    }
+
+    /// Beside every sample of a contour, where the correction leads the cutter to its nominal place. `core` is the fit of
+    /// the relieved points.
+    pub fn along(&self, path: &Path, contour: usize, core: &job::Identified) -> Along {
+        let path = path.with_law(core.law);
+        let table = core.table();
+        let machine = core.machine(&path, &table);
+        let engagement = Engagement::nominal(&machine, contour);
+        let sensitivity = sensitivities(&path, core);
+        let stock = stock_sensitivities(&path, core);
+        let level = float(core.prior.sigma[0]).max(1e-9);
+        let samples = &path.samples()[path.first()..path.first() + path.count()];
+        let features: Vec<Feature> = samples
+            .iter()
+            .zip(sensitivity.iter().zip(stock))
+            .map(|(sample, (row, stock))| {
+                engagement.at(sample.s, sample.normal, Sensitivity { load: row[0] / level, stock })
+            })
+            .collect();
+        let mean = features.iter().map(|feature| nm(self.at(feature))).collect();
+        let stride = features.len().div_ceil(PLACES).max(1);
+        let known: Vec<[f64; 2]> = (0..features.len())
+            .step_by(stride)
+            .chain(features.len().checked_sub(1))
+            .map(|k| self.deviations(&features[k], &sensitivity[k], core))
+            .collect();
+        let deviation = |k: usize| {
+            let (at, share) = (k / stride, (k % stride) as f64 / stride as f64);
+            let [from, to] = [at, at + 1].map(|at| known.get(at).or(known.last()).copied().unwrap_or_default());
+            [0, 1].map(|which| nm(from[which] + share * (to[which] - from[which])))
+        };
+        let (sigma, repeat) = (0..features.len()).map(deviation).map(|[sigma, repeat]| (sigma, repeat)).unzip();
+        Along { mean, sigma, repeat }
+    }
+
+    /// Standard deviations at a place of the next part, mm: of parameters and discrepancy together, without that which the
+    /// covariance of the fit says already, and of what the part does otherwise than the last.
+    fn deviations(&self, place: &Feature, sensitivity: &[f64; COUNT], core: &job::Identified) -> [f64; 2] {
+        let prior: f64 = (0..SHARED).map(|k| sensitivity[k].powi(2) / self.points.precision[k]).sum();
+        let (mut first, mut second, mut repeat) = (0.0, 0.0, 0.0);
+        for (share, factored) in &self.kernels {
+            let kernel = &factored.kernel;
+            let covariance: Vec<f64> = self
+                .rows()
+                .map(|row| {
+                    let of_parameters = |k: usize| row.sensitivity[k] * sensitivity[k] / self.points.precision[k];
+                    let parametric: f64 = (0..SHARED).map(of_parameters).sum();
+                    parametric + kernel.lasting(&self.points.extents, &row.feature, place)
+                })
+                .collect();
+            let own = kernel.lasting(&self.points.extents, place, place);
+            let variance = (prior + own - factored.known(&covariance)).max(0.0);
+            repeat += share * kernel.between_parts(place, place, [1, 1]);
+            let mean = factored.mean(&covariance);
+            first += share * mean;
+            second += share * (variance + mean * mean);
+        }
+        let together = (second - first * first).max(0.0);
+        let sigma = core.fit.covariance.map(|row| row.map(float));
+        let of_fit: f64 =
+            (0..SHARED).map(|i| (0..SHARED).map(|j| sensitivity[i] * sigma[i][j] * sensitivity[j]).sum::<f64>()).sum();
+        // The walk to the next part is part of what the points leave open of its parameters.
+        let by_points = (together - repeat).max(0.0);
+        [(by_points - of_fit).max(0.0).sqrt(), repeat.sqrt()]
+    }
+
+    /// How large the kinds are.
+    pub fn sizes(&self) -> Sizes {
+        let square = |of: fn(&Kernel) -> f64| self.mean_over(|factored| of(&factored.kernel).powi(2)).sqrt();
+        Sizes {
+            stock_share: square(|k| k.stock),
+            load_share: square(|k| k.load),
+            drift_mm: square(|k| k.drift),
+            local_mm: square(|k| k.local),
+            keyed_mm: square(|k| k.keyed),
+            level_share: square(|k| k.wear),
+        }
+    }
+}
+
+/// By how much a shift of the datum that no clamping makes is more probable than any discrepancy without it, natural logarithm.
+pub(super) fn for_a_shift(points: &Points) -> Option<f64> {
+    let used: Vec<usize> = (0..points.rows.len()).collect();
+    let best = |points: &Points| {
+        let task = Task::of(points, &used);
+        let heights = Kernel::STARTS.iter().filter_map(|start| ascend(&task, *start)).map(|(_, height)| height);
+        heights.max_by(f64::total_cmp)
+    };
+    Some(best(&points.with_free_datum())? - best(points)?)
+}
+
+/// Uphill from a kernel along one axis after the other, by evidence and belief: what is reached, and how high that is.
+fn ascend(task: &Task<'_>, from: Kernel) -> Option<(Factored, f64)> {
+    let mut best = task.factored(&from)?;
+    let mut height = best.evidence + belief(&from);
+    for _ in 0..SWEEPS {
+        let before = height;
+        for axis in &AXES {
+            for (value, _) in axis.values {
+                let mut kernel = best.kernel;
+                (axis.set)(&mut kernel, *value);
+                if kernel == best.kernel {
+                    continue;
+                }
+                let Some(other) = task.factored(&kernel) else { continue };
+                let its = other.evidence + belief(&kernel);
+                if its > height + 1e-9 {
+                    (best, height) = (other, its);
+                }
+            }
+        }
+        if height <= before {
+            break;
+        }
+    }
+    Some((best, height))
+}
+
+/// What is believed of a kernel, natural logarithm.
+fn belief(kernel: &Kernel) -> f64 {
+    let of = |axis: &Axis| {
+        let same = |value: &[f64; 2]| {
+            let mut other = *kernel;
+            (axis.set)(&mut other, *value);
+            other == *kernel
+        };
+        axis.values.iter().find(|(value, _)| same(value)).map_or(f64::NEG_INFINITY, |(_, belief)| *belief)
+    };
+    AXES.iter().map(of).sum()
+}
+
+/// Kernels around the best with their shares: every combination of the values that are nearly as probable by themselves,
+/// the others at their best.
+fn averaged(task: &Task<'_>, best: &Factored) -> Vec<(f64, Factored)> {
+    let height = best.evidence + belief(&best.kernel);
+    let probable = |kernel: &Kernel| {
+        let other = task.factored(kernel)?;
+        let share = (other.evidence + belief(kernel) - height).exp();
+        Some((share, other))
+    };
+    let mut worth: Vec<(f64, usize, [f64; 2])> = Vec::new();
+    for (at, axis) in AXES.iter().enumerate() {
+        for (value, _) in axis.values {
+            let mut kernel = best.kernel;
+            (axis.set)(&mut kernel, *value);
+            if kernel != best.kernel {
+                worth.extend(probable(&kernel).map(|(share, _)| (share, at, *value)));
+            }
+        }
+    }
+    worth.retain(|(share, ..)| *share > NEARLY);
+    worth.sort_by(|(a, ..), (b, ..)| b.total_cmp(a));
+    let mut combined = vec![best.kernel];
+    for (at, axis) in AXES.iter().enumerate() {
+        let values: Vec<[f64; 2]> = worth.iter().filter(|(_, of, _)| *of == at).map(|(.., value)| *value).collect();
+        let room = (MOST_KERNELS / combined.len()).saturating_sub(1);
+        let with = |value: &[f64; 2]| {
+            let set = |kernel: &Kernel| {
+                let mut kernel = *kernel;
+                (axis.set)(&mut kernel, *value);
+                kernel
+            };
+            combined.iter().map(set).collect::<Vec<_>>()
+        };
+        let more: Vec<Kernel> = values.iter().take(room).flat_map(with).collect();
+        combined.extend(more);
+    }
+    let mut kernels: Vec<(f64, Factored)> = combined.iter().filter_map(probable).collect();
+    let most = kernels.iter().map(|(share, _)| *share).fold(0.0, f64::max);
+    kernels.retain(|(share, _)| *share > LEAST_SHARE * most);
+    let sum: f64 = kernels.iter().map(|(share, _)| share).sum();
+    for (share, _) in &mut kernels {
+        *share /= sum;
+    }
+    kernels
+}
+
+/// The used row that is most probably of something else, if any is more probably so than not.
+fn strangest(factored: &Factored, used: &[usize]) -> Option<usize> {
+    let surprise = |(residual, variance): (f64, f64)| {
+        let density = (-0.5 * residual * residual / variance).exp() / (std::f64::consts::TAU * variance).sqrt();
+        density / ELSEWHERE
+    };
+    let each = factored.left_out().into_iter().map(surprise).zip(used);
+    let (least, row) = each.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    (least < 1.0).then_some(*row)
+}

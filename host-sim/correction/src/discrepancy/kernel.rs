@@ -1,0 +1,161 @@
+//! How much the discrepancy at one place says about that at another.
+//!
+//! | kind | what it does to the wall | along the contour |
+//! |---|---|---|
+//! | stock | the allowance larger by a share | Matérn 3/2 |
+//! | load | force or compliance larger by a share: a wall that yields | Matérn 3/2, 2.5 cutter radii |
+//! | drift | the datum moves while the contour is cut: `−n·d(s)` | Matérn 3/2, a third of the contour |
+//! | local | anything, around a place | Matérn 3/2, or the same stretch at much the same engagement |
+//! | keyed | anything, wherever the cutter is engaged alike: what one corner taught is known in the next | engagement now and a quarter of the radius before and behind |
+//! | level | force larger by a share, on the whole part: wear (a random walk from part to part) and another blank | – |
+//! | size | the cutter's size, from part to part (a random walk) | – |
+//!
+//! The walks are counted back from the next part, so that the fitted parameters are those of the part that is to be
+//! corrected. Half of the keyed kind holds whatever the direction of the wall, half only where walls are parallel,
+//! because a machine may yield otherwise along another axis.
+
+use truepath_core::cut::Path;
+use truepath_ground::units::mm;
+
+use super::feature::Feature;
+
+/// Standard deviations of the kinds and the lengths over which they hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kernel {
+    /// Share of the allowance that differs along the contour.
+    pub stock: f64,
+    /// Length over which it does, in cutter radii.
+    pub stock_reach: f64,
+    /// Share of the load that differs along the contour at the same stock.
+    pub load: f64,
+    /// Drift of the datum, mm.
+    pub drift: f64,
+    /// Local, mm.
+    pub local: f64,
+    /// Length over which it holds, in cutter radii.
+    pub local_reach: f64,
+    /// Keyed, mm.
+    pub keyed: f64,
+    /// Walk of the level of force from part to part.
+    pub wear: f64,
+    /// What differs from height to height, mm: it counts as noise.
+    pub height: f64,
+    /// Factor on the noise of the points.
+    pub noise: f64,
+}
+
+/// Level of force of one part against another by its blank.
+const BLANK: f64 = 0.01;
+/// Walk of the cutter's size from part to part, mm.
+const SIZE: f64 = 0.001;
+/// Engagements nearer than this are alike, rad.
+const ALIKE: f64 = 0.15;
+/// Length over which a wall yields otherwise, in cutter radii.
+const YIELDS_OVER: f64 = 2.5;
+/// Share of a contour over which the datum drifts.
+const DRIFTS_OVER: f64 = 1.0 / 3.0;
+
+/// The contours of a part, as far as the kernel must know them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extent {
+    /// Length, mm.
+    pub(super) length: f64,
+    /// Whether it ends where it begins.
+    pub(super) closed: bool,
+    /// Radius of the cutter, mm.
+    pub(super) radius: f64,
+    /// Allowance, mm.
+    pub(super) allowance: f64,
+}
+
+impl Extent {
+    /// Of a path.
+    pub(super) fn of(path: &Path) -> Self {
+        let setup = path.setup();
+        let (radius, allowance) = (mm(setup.radius), mm(setup.allowance));
+        Self { length: mm(path.length()), closed: path.is_closed(), radius, allowance }
+    }
+
+    /// Distance of two places along the contour, mm; on a closed one the chord of a circle as long, on which a covariance of
+    /// the distance stays one.
+    fn way(&self, a: f64, b: f64) -> f64 {
+        let way = (a - b).abs();
+        if !self.closed || self.length <= 0.0 {
+            return way;
+        }
+        let round = self.length / std::f64::consts::PI;
+        round * (way.min((self.length - way).abs()) / round).sin()
+    }
+}
+
+fn matern(way: f64, reach: f64) -> f64 {
+    let x = 3f64.sqrt() * way / reach;
+    (1.0 + x) * (-x).exp()
+}
+
+fn bell(square: f64) -> f64 {
+    (-0.5 * square).exp()
+}
+
+impl Kernel {
+    /// Where the search for kernels begins: an even machine, uneven load, an unknown cause.
+    pub(super) const STARTS: [Self; 4] = [
+        Self::EVEN,
+        Self { stock: 0.15, stock_reach: 2.5, ..Self::EVEN },
+        Self { stock: 0.15, stock_reach: 6.0, height: 0.008, ..Self::EVEN },
+        Self { local: 0.012, local_reach: 2.0, height: 0.008, ..Self::EVEN },
+    ];
+
+    /// A machine as the model has it that cuts even stock.
+    pub(super) const EVEN: Self = Self {
+        stock: 0.0,
+        stock_reach: 1.0,
+        load: 0.0,
+        drift: 0.0,
+        local: 0.0,
+        local_reach: 0.4,
+        keyed: 0.0,
+        wear: 0.02,
+        height: 0.0,
+        noise: 1.0,
+    };
+
+    /// Covariance of two places of one and the same part, as far as it repeats on the next, mm².
+    pub(super) fn lasting(&self, extents: &[Extent], a: &Feature, b: &Feature) -> f64 {
+        let apart = |k: usize| ((a.engaged[k] - b.engaged[k]) / ALIKE).powi(2);
+        let cosine = a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1];
+        let mut sum = 0.0;
+        if self.keyed > 0.0 {
+            let load = apart(0) + apart(1) + apart(2);
+            sum += self.keyed.powi(2) * bell(load) * (0.5 + 0.5 * cosine * cosine);
+        }
+        let Some(extent) = extents.get(a.contour).filter(|_| a.contour == b.contour) else { return sum };
+        let way = extent.way(a.s, b.s);
+        if self.stock > 0.0 {
+            let size = (self.stock * extent.allowance).powi(2);
+            sum += size * (a.stock * b.stock) * matern(way, self.stock_reach * extent.radius);
+        }
+        if self.load > 0.0 {
+            sum += self.load.powi(2) * (a.load * b.load) * matern(way, YIELDS_OVER * extent.radius);
+        }
+        if self.local > 0.0 {
+            let reach = self.local_reach * extent.radius;
+            let alike =
+                if self.local_reach < 1.0 { bell((way / reach).powi(2)) * bell(apart(1)) } else { matern(way, reach) };
+            sum += self.local.powi(2) * alike;
+        }
+        if self.drift > 0.0 {
+            let along = matern((a.s - b.s).abs(), DRIFTS_OVER * extent.length);
+            sum += self.drift.powi(2) * along * cosine;
+        }
+        sum
+    }
+
+    /// Covariance of two places by the level of force and the size of the cutter on their parts, which lie so many parts
+    /// before the next one (1 for the newest), mm².
+    pub(super) fn between_parts(&self, a: &Feature, b: &Feature, parts_ago: [usize; 2]) -> f64 {
+        let shared = parts_ago[0].min(parts_ago[1]) as f64;
+        let own = if parts_ago[0] == parts_ago[1] { BLANK.powi(2) } else { 0.0 };
+        (a.load * b.load) * (self.wear.powi(2) * shared + own) + SIZE.powi(2) * shared
+    }
+}

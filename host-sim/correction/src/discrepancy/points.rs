@@ -1,0 +1,160 @@
+//! The points of all parts, as parameters and discrepancy explain them together.
+
+use truepath_core::correct::{Node, commanded};
+use truepath_core::cut::{Path, State};
+use truepath_core::geometry::Vector;
+use truepath_core::identify::{COUNT, Observation, Parameter, PredictionWorkspace, predict};
+use truepath_core::job;
+use truepath_ground::units::{float, mm};
+
+use super::feature::{Engagement, Feature, Sensitivity};
+use super::kernel::Extent;
+use super::nominal::moved_stock;
+
+/// Points that are looked at one by one; of more the mean over the heights of a place is.
+const MOST_POINTS: usize = 120;
+/// Places that are looked at, the newest parts first.
+const MOST_PLACES: usize = 160;
+/// A datum that may be anywhere, in standard deviations of that of a clamping: 0.15 mm.
+const ANYWHERE: f64 = 100.0;
+/// Parameters that all parts share; the other two are the datum of each.
+pub(super) const SHARED: usize = COUNT - 2;
+
+/// The points of one contour of one part, as a fit has left them.
+#[derive(Clone, Copy, Debug)]
+pub struct CutPoints<'a> {
+    /// Its path, whatever its law.
+    pub path: &'a Path<'a>,
+    /// Its number among the contours of the part.
+    pub contour: usize,
+    /// How many parts before the next one it was cut: 1 for the newest.
+    pub parts_ago: usize,
+    /// The correction it was cut with; empty for none.
+    pub nodes: &'a [Node],
+    /// The points.
+    pub observations: &'a [Observation],
+    /// The datum of the part, prior standard deviations.
+    pub datum: [f64; 2],
+}
+
+/// A point, or the mean of the points of a place.
+#[derive(Clone, Debug)]
+pub(super) struct Row {
+    pub(super) feature: Feature,
+    pub(super) parts_ago: usize,
+    /// Measured − predicted where no parameter is known better than before, mm: the residual of the fit and what the fitted
+    /// parameters have explained.
+    pub(super) unexplained: f64,
+    /// Variance of each of its points by the stated noise, mm².
+    pub(super) noise: f64,
+    /// Points that it is the mean of.
+    pub(super) count: f64,
+    /// Change of the prediction per prior standard deviation of every parameter, mm.
+    pub(super) sensitivity: [f64; COUNT],
+    /// The places of the points among those given.
+    pub(super) points: std::ops::Range<usize>,
+}
+
+/// Points of all parts.
+#[derive(Clone, Debug)]
+pub struct Points {
+    pub(super) rows: Vec<Row>,
+    pub(super) extents: Vec<Extent>,
+    /// Prior precision of the shared parameters: 1, less far from the middle of one with long tails.
+    pub(super) precision: [f64; SHARED],
+    /// Points in all, used or not.
+    pub(super) given: usize,
+}
+
+impl Points {
+    /// The same where the datum may be anywhere.
+    pub(super) fn with_free_datum(&self) -> Self {
+        let mut free = self.clone();
+        for row in &mut free.rows {
+            row.sensitivity[SHARED] *= ANYWHERE;
+            row.sensitivity[SHARED + 1] *= ANYWHERE;
+        }
+        free
+    }
+
+    /// Of a fit of the points; every cut's observations hold the predictions and sensitivities it ended with.
+    pub fn of(cuts: &[CutPoints<'_>], core: &job::Identified) -> Self {
+        let theta: [f64; COUNT] = core.fit.theta.map(float);
+        let level = float(core.prior.sigma[0]).max(1e-9);
+        let table = core.table();
+        let many = cuts.iter().map(|cut| cut.observations.len()).sum::<usize>() > MOST_POINTS;
+        let (mut rows, mut extents): (Vec<Row>, Vec<Option<Extent>>) = (Vec::new(), Vec::new());
+        let mut before = 0;
+        for cut in cuts {
+            let path = cut.path.with_law(core.law);
+            if extents.len() <= cut.contour {
+                extents.resize(cut.contour + 1, None);
+            }
+            extents[cut.contour] = Some(Extent::of(&path));
+            let working = path.working();
+            let mut states = vec![State::REST; working.len()];
+            core.machine(&path, &table).run(working.start, &mut states, |i| commanded(&path, cut.nodes, i));
+            let engagement = Engagement::of(&path, cut.contour, working.start, &states);
+            let stock = stock_sensitivities(&path, cut, core);
+            let mut at = 0;
+            let same = |a: &Observation, b: &Observation| many && a.s == b.s;
+            for group in cut.observations.chunk_by(same) {
+                let stock = &stock[at..at + group.len()];
+                at += group.len();
+                let row = row(cut, (group, stock), &engagement, (&theta, level));
+                rows.push(Row { points: before..before + group.len(), ..row });
+                before += group.len();
+            }
+        }
+        // The newest parts tell most of the next one.
+        rows.sort_by_key(|row| row.parts_ago);
+        rows.truncate(MOST_PLACES);
+        let precision = std::array::from_fn(|k| {
+            let long = matches!(Parameter::ALL[k], Parameter::ComplianceCross | Parameter::Undersize);
+            if long { 3.0 / (2.0 + theta[k] * theta[k]) } else { 1.0 }
+        });
+        let blank = Extent { length: 1.0, closed: false, radius: 1.0, allowance: 0.0 };
+        let extents = extents.into_iter().map(|extent| extent.unwrap_or(blank)).collect();
+        Self { rows, extents, precision, given: before }
+    }
+}
+
+fn row(
+    cut: &CutPoints<'_>,
+    (group, stock): (&[Observation], &[f64]),
+    engagement: &Engagement<'_>,
+    (theta, level): (&[f64; COUNT], f64),
+) -> Row {
+    let count = group.len() as f64;
+    let mean = |f: &dyn Fn(&Observation) -> f64| group.iter().map(f).sum::<f64>() / count;
+    let sensitivity: [f64; COUNT] = std::array::from_fn(|k| mean(&|o| float(o.sensitivity[k]) * mm(o.deviation())));
+    let fitted = |k: usize| if k < SHARED { theta[k] } else { cut.datum[k - SHARED] };
+    let shared: f64 = (0..SHARED).map(|k| sensitivity[k] * fitted(k)).sum();
+    // The two components of a vector are added first: their order is lost.
+    let datum = sensitivity[SHARED] * fitted(SHARED) + sensitivity[SHARED + 1] * fitted(SHARED + 1);
+    let unexplained = mean(&|o| mm(o.error - o.predicted)) + (shared + datum);
+    let stated = mean(&|o| (mm(o.deviation()) / float(o.spread)).powi(2));
+    let of_load = Sensitivity { load: sensitivity[0] / level, stock: stock.iter().sum::<f64>() / count };
+    let feature = engagement.at(group[0].s, group[0].normal, of_load);
+    Row { feature, parts_ago: cut.parts_ago, unexplained, noise: stated, count, sensitivity, points: 0..0 }
+}
+
+/// Change of the error at the points of a cut per allowance, mm per mm.
+pub fn stock_sensitivities(path: &Path, cut: &CutPoints<'_>, core: &job::Identified) -> Vec<f64> {
+    let predicted = |path: &Path| {
+        let room = path.working().len() + 1;
+        let (mut states, mut displacements) = (vec![State::REST; room], vec![Vector::ZERO; room]);
+        let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
+        let mut points = cut.observations.to_vec();
+        let asked = |i: usize| commanded(path, cut.nodes, i);
+        predict(path, &core.table(), &core.fit.parameters, asked, &mut points, &mut workspace);
+        points
+    };
+    let [more, less] = moved_stock(path).map(|(mut buffer, shift)| {
+        let moved = path.with_stock_moved(&mut buffer, |_| shift);
+        (shift, predicted(&moved))
+    });
+    let per = mm(less.0 - more.0);
+    let change = |(more, less): (&Observation, &Observation)| mm(more.predicted - less.predicted) / per;
+    if per > 0.0 { more.1.iter().zip(&less.1).map(change).collect() } else { vec![0.0; cut.observations.len()] }
+}

@@ -1,0 +1,158 @@
+//! Machine and material beside a discrepancy: the parameters are fitted to the points relieved of it.
+//!
+//! Parameters and discrepancy that are most probable together are found in turn: the discrepancy of the points, the
+//! parameters integrated out ([`Discrepancy`]); the parameters by the fit of the core, which is not linear and knows points
+//! of something else; and the discrepancy again about them.
+
+use truepath_core::correct::{Node, commanded};
+use truepath_core::cut::{Path, WallLaw};
+use truepath_core::geometry::Vector;
+use truepath_core::identify::{Cut, EarlierPart, Observation};
+use truepath_core::job;
+use truepath_ground::units::{float, mm, nm};
+
+use super::average::{Along, Discrepancy, for_a_shift};
+use super::points::{CutPoints, Points};
+use crate::identification::{Found, Points as Asked, found};
+
+/// A discrepancy that is nowhere larger is none: the parameters stay as they are, to the last bit.
+const LEAST_MM: f64 = 0.000_5;
+
+/// Times that parameters are fitted to points relieved of a discrepancy that has changed.
+const ROUNDS: u32 = 6;
+
+/// One contour of one part.
+#[derive(Clone, Copy, Debug)]
+pub struct PartCut<'a> {
+    /// Its path.
+    pub path: Path<'a>,
+    /// Its number among the contours of the part.
+    pub contour: usize,
+    /// The part, counted from 0; the cuts of a part stand together, in the order of the parts.
+    pub part: usize,
+    /// The correction it was cut with; empty for none.
+    pub nodes: &'a [Node],
+    /// Its points.
+    pub observations: &'a [Observation],
+}
+
+/// What parts say of machine, material, and what is beside both.
+#[derive(Clone, Debug)]
+pub struct Relieved {
+    /// Machine and material; the points of the cuts stand one behind the other, with the errors that were measured.
+    pub found: Found,
+    /// The datum of every part, prior standard deviations.
+    pub datums: Vec<[f64; 2]>,
+    /// What is beside them; `None` where there are no points.
+    pub discrepancy: Option<Discrepancy>,
+    /// Whether any of it is worth a correction.
+    is_any: bool,
+}
+
+/// Fits machine and material to the points of the cuts, without any discrepancy. `progress` is told the share done.
+pub fn plain(
+    pass: &job::ContourPass,
+    law: Option<WallLaw>,
+    cuts: &[PartCut<'_>],
+    progress: &mut dyn FnMut(f64),
+) -> Found {
+    let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
+    fitted(pass, law, cuts, &measured, progress)
+}
+
+/// As [`plain()`], to observations in place of those of the cuts.
+fn fitted(
+    pass: &job::ContourPass,
+    law: Option<WallLaw>,
+    parts: &[PartCut<'_>],
+    observations: &[Observation],
+    progress: &mut dyn FnMut(f64),
+) -> Found {
+    let cuts: Vec<Cut> =
+        parts.iter().map(|cut| Cut { path: cut.path, points: cut.observations.len(), part: cut.part }).collect();
+    let count = |part: usize| parts.iter().filter(|cut| cut.part == part).map(|cut| cut.observations.len()).sum();
+    let earlier: Vec<EarlierPart> = (0..last_part(parts)).map(|part| EarlierPart::new(count(part))).collect();
+    let by_program =
+        |cut: usize, sample: usize| parts.get(cut).map_or(Vector::ZERO, |cut| commanded(&cut.path, cut.nodes, sample));
+    found(pass, law, Asked { cuts: &cuts, earlier: &earlier, observations }, by_program, progress)
+}
+
+/// What the parts show beside machine and material, which are fitted again to the points relieved of it; `found` is their
+/// [`plain()`] fit. `progress` is told the share done.
+pub fn relieved(
+    pass: &job::ContourPass,
+    mut found: Found,
+    cuts: &[PartCut<'_>],
+    progress: &mut dyn FnMut(f64),
+) -> Relieved {
+    let last = last_part(cuts);
+    let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
+    let mut is_any = false;
+    let mut before: Vec<f64> = vec![0.0; measured.len()];
+    for round in 0..ROUNDS {
+        let beside = Discrepancy::of(points(cuts, &found, last)).map(|d| d.at_points()).unwrap_or_default();
+        let moved = beside.iter().zip(&before).map(|(now, before)| (now - before).abs()).fold(0.0, f64::max);
+        if moved < LEAST_MM {
+            break;
+        }
+        is_any = true;
+        let mut relieved = measured.clone();
+        for (o, mm) in relieved.iter_mut().zip(&beside) {
+            o.error -= nm(*mm);
+        }
+        let share = |share: f64| (f64::from(round) + share) / f64::from(ROUNDS);
+        found = fitted(pass, Some(found.core.law), cuts, &relieved, &mut |done| progress(share(done)));
+        for (o, measured) in found.observations.iter_mut().zip(&measured) {
+            o.error = measured.error;
+        }
+        before = beside;
+    }
+    let discrepancy = Discrepancy::of(points(cuts, &found, last));
+    progress(1.0);
+    Relieved { datums: datums(&found, last + 1), found, discrepancy, is_any }
+}
+
+impl Relieved {
+    /// What is beside a contour, for the next part.
+    pub fn along(&self, path: &Path, contour: usize) -> Along {
+        let along = self.discrepancy.as_ref().map(|d| d.along(path, contour, &self.found.core)).unwrap_or_default();
+        if self.is_any { along } else { Along { mean: Vec::new(), ..along } }
+    }
+}
+
+/// The last part of some cuts.
+fn last_part(cuts: &[PartCut<'_>]) -> usize {
+    cuts.last().map_or(0, |cut| cut.part)
+}
+
+/// By how much a wrong datum explains the points of an uncorrected part better than any discrepancy, natural logarithm of the
+/// odds; `found` is their [`plain()`] fit.
+pub fn odds_of_a_shift(found: &Found, cuts: &[PartCut<'_>]) -> Option<f64> {
+    for_a_shift(&points(cuts, found, last_part(cuts)))
+}
+
+/// The points as the discrepancy takes them.
+fn points(parts: &[PartCut<'_>], found: &Found, last: usize) -> Points {
+    let datums = datums(found, last + 1);
+    let mut rest = &found.observations[..];
+    let cuts: Vec<CutPoints> = parts
+        .iter()
+        .map(|cut| {
+            let (own, others) = rest.split_at(cut.observations.len().min(rest.len()));
+            rest = others;
+            let datum = datums.get(cut.part).copied().unwrap_or_default();
+            let parts_ago = last + 1 - cut.part;
+            CutPoints { path: &cut.path, contour: cut.contour, parts_ago, nodes: cut.nodes, observations: own, datum }
+        })
+        .collect();
+    Points::of(&cuts, &found.core)
+}
+
+/// The datum of every part, prior standard deviations.
+pub fn datums(found: &Found, parts: usize) -> Vec<[f64; 2]> {
+    let job::Identified { prior, fit, .. } = &found.core;
+    let [.., sigma_x, sigma_y] = prior.sigma.map(float);
+    let shares = |d: Vector| [mm(d.x) / sigma_x.max(1e-9), mm(d.y) / sigma_y.max(1e-9)];
+    let last = [fit.parameters.datum];
+    found.earlier.iter().map(|part| part.datum(prior)).chain(last).take(parts).map(shares).collect()
+}
