@@ -14,8 +14,9 @@ use truepath_trial::virtual_mill;
 
 use super::draw::Draw;
 use super::families::family;
-use super::id::{Axis, CaseId};
+use super::id::{Axis, CaseId, Touches};
 use super::machine::{Drawn, Width, machine};
+use super::nuisance::Nuisances;
 use super::part::Part;
 use super::prior::Mistakes;
 use super::seeds::Set;
@@ -59,8 +60,10 @@ pub struct Case {
     pub job: String,
     /// Job and program as read.
     pub pass: Pass,
-    /// The machine while the first part is cut.
+    /// The machine, without what shops add to it.
     pub machine: Machine,
+    /// What shops add to it.
+    pub nuisances: Option<Nuisances>,
     /// Places of the first probing, mm along the contour.
     pub places_mm: Vec<f64>,
     /// Places added after the first correction.
@@ -90,9 +93,19 @@ impl Case {
             let mistakes = Mistakes::draw(&mut chance("belief"), width);
             let case = Self::of(id, part, drawn, &mistakes, &mut chance("places"))?;
             if case.before.score.max_error_mm >= LEAST_MM || attempt == DRAWS {
-                return Ok(case);
+                return case.with_nuisances(family.name);
             }
         }
+    }
+
+    /// Adds the nuisances of its name and mills the first part with them.
+    fn with_nuisances(mut self, family: &'static str) -> Result<Self, Failure> {
+        let Some(which) = self.id.nuisance else { return Ok(self) };
+        let (length_mm, teeth) = (self.first.path.length_mm, self.part.cut.teeth);
+        self.nuisances = Some(Nuisances::new(which, (family, self.id.seed), length_mm, teeth));
+        self.first = virtual_mill::mill(&self.pass, &self.machine_of(1), None)?;
+        self.before = self.first.judge();
+        Ok(self)
     }
 
     fn of(id: &CaseId, part: Part, mut drawn: Drawn, mistakes: &Mistakes, chance: &mut Draw) -> Result<Self, Failure> {
@@ -120,14 +133,41 @@ impl Case {
         if let Some(points) = changed(Axis::Points) {
             (places_mm, levels) = touches(&part, trim, points as usize);
         }
-        let more_mm = places::more(&part.contour, trim);
-        let machine = drawn.machine;
-        Ok(Self { id: id.clone(), part, program, job, pass, machine, places_mm, more_mm, levels, first, before })
+        let mut more_mm = places::more(&part.contour, trim);
+        if id.touches == Touches::Chosen {
+            (places_mm, levels) = places::chosen(&pass)?;
+            more_mm = Vec::new();
+        }
+        Ok(Self {
+            id: id.clone(),
+            part,
+            program,
+            job,
+            pass,
+            machine: drawn.machine,
+            nuisances: None,
+            places_mm,
+            more_mm,
+            levels,
+            first,
+            before,
+        })
     }
 
-    /// The machine while part `number` (1, 2, …) is cut: the same, with another blank and other noise of the probe.
+    /// Places at which part `number` is touched, mm along the contour.
+    pub fn places_of(&self, number: u64) -> Vec<f64> {
+        if number > 1 { places::together(&self.places_mm, &self.more_mm) } else { self.places_mm.clone() }
+    }
+
+    /// The machine while part `number` (1, 2, …) is cut: the same, with another blank and other noise of the probe, and with
+    /// the nuisances as that part has them.
     pub fn machine_of(&self, number: u64) -> Machine {
-        Machine { seed: self.machine.seed.wrapping_add(number - 1), ..self.machine.clone() }
+        let machine = Machine { seed: self.machine.seed.wrapping_add(number - 1), ..self.machine.clone() };
+        let touches = self.places_of(number).len() * self.levels.len();
+        match &self.nuisances {
+            Some(nuisances) => nuisances.on(&machine, number, touches),
+            None => machine,
+        }
     }
 
     /// Touches part `number`. Every part is clamped and its datum taken anew, so the datum shift is another one.

@@ -11,19 +11,27 @@ use std::path::{Path, PathBuf};
 use truepath_core::checksum::crc32;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
-use super::outcome::Outcome;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use crate::codes::{Y001, Y002};
 
 /// Name of the table.
 pub const NAME: &str = "cases.csv";
 
+/// What became of a case, as a line of a table: flat text and numbers.
+pub trait Line: Serialize + DeserializeOwned + Default {
+    /// Name of the case.
+    fn case(&self) -> &str;
+}
+
 /// The table, open for appending.
 #[derive(Debug)]
-pub struct CaseTable {
+pub struct CaseTable<L> {
     path: PathBuf,
     file: File,
     /// Finished cases by name.
-    pub finished: BTreeMap<String, Outcome>,
+    pub finished: BTreeMap<String, L>,
 }
 
 /// What marks the results of this program: its version and the checksum of its own file.
@@ -32,7 +40,7 @@ pub fn program_key() -> String {
     format!("# truepath {} {own:08x}", env!("CARGO_PKG_VERSION"))
 }
 
-impl CaseTable {
+impl<L: Line> CaseTable<L> {
     /// Opens the table in a folder, which is made when it is not there. `afresh` drops what it holds.
     ///
     /// # Errors
@@ -61,7 +69,7 @@ impl CaseTable {
         file.set_len(length).map_err(failed)?;
         std::io::Seek::seek(&mut file, std::io::SeekFrom::End(0)).map_err(failed)?;
         if length == 0 {
-            file.write_all(format!("{key}\n{}", Outcome::header()).as_bytes()).map_err(failed)?;
+            file.write_all(format!("{key}\n{}", header::<L>()).as_bytes()).map_err(failed)?;
         }
         Ok(Self { path, file, finished })
     }
@@ -70,18 +78,30 @@ impl CaseTable {
     ///
     /// # Errors
     /// `F002` when it cannot be written.
-    pub fn append(&mut self, outcome: Outcome) -> Result<(), Failure> {
-        self.file.write_all(outcome.line().as_bytes()).map_err(|e| InputError::unwritable(&self.path, &e))?;
-        self.finished.insert(outcome.case.clone(), outcome);
+    pub fn append(&mut self, outcome: L) -> Result<(), Failure> {
+        self.file.write_all(text(&outcome, false).as_bytes()).map_err(|e| InputError::unwritable(&self.path, &e))?;
+        self.finished.insert(outcome.case().to_owned(), outcome);
         Ok(())
     }
 }
 
-fn read(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Outcome>, Failure> {
+/// The columns of the table, with the end of their line.
+fn header<L: Line>() -> String {
+    text(&L::default(), true).lines().next().unwrap_or_default().to_owned() + "\n"
+}
+
+fn text(outcome: &impl Line, header: bool) -> String {
+    let mut writer = csv::WriterBuilder::new().has_headers(header).from_writer(Vec::new());
+    // Serialising flat text and numbers into memory cannot fail.
+    let _ = writer.serialize(outcome);
+    writer.into_inner().ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default()
+}
+
+fn read<L: Line>(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, L>, Failure> {
     let mut finished = BTreeMap::new();
-    for row in csv::Reader::from_reader(bytes).deserialize::<Outcome>() {
+    for row in csv::Reader::from_reader(bytes).deserialize::<L>() {
         let outcome = row.map_err(|e| Y002.error(format!("{e}"), "lines that a study wrote").in_file(path))?;
-        finished.insert(outcome.case.clone(), outcome);
+        finished.insert(outcome.case().to_owned(), outcome);
     }
     Ok(finished)
 }
@@ -93,6 +113,7 @@ fn other_program(path: &Path, found: &str, key: &str) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::Outcome;
 
     fn outcome(case: &str) -> Outcome {
         Outcome { case: case.to_owned(), factor: Some(12.5), failure: "a, \"b\"".to_owned(), ..Outcome::default() }
@@ -109,13 +130,13 @@ mod tests {
         let whole = std::fs::read(&path).expect("the table");
         for cut in [1, 5, 12] {
             std::fs::write(&path, &whole[..whole.len() - cut]).expect("writable");
-            let table = CaseTable::open(folder.path(), "# key", false).expect("the same table");
+            let table = CaseTable::<Outcome>::open(folder.path(), "# key", false).expect("the same table");
             assert_eq!(table.finished.values().collect::<Vec<_>>(), [&outcome("bore/1001")]);
         }
         let mut table = CaseTable::open(folder.path(), "# key", false).expect("the same table");
         table.append(outcome("boss/1002")).expect("room");
         assert_eq!(std::fs::read(&path).expect("the table"), whole);
-        assert!(CaseTable::open(folder.path(), "# other", false).is_err());
-        assert!(CaseTable::open(folder.path(), "# other", true).expect("afresh").finished.is_empty());
+        assert!(CaseTable::<Outcome>::open(folder.path(), "# other", false).is_err());
+        assert!(CaseTable::<Outcome>::open(folder.path(), "# other", true).expect("afresh").finished.is_empty());
     }
 }

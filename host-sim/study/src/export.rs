@@ -56,7 +56,7 @@ pub fn export(detail: &Detail, folder: &FilePath, force: bool) -> Result<(), Fai
     let out = OutputFolder::create(folder, force, FILES)?;
     out.write("program.nc", case.program.as_bytes())?;
     out.write("job.toml", case.job.as_bytes())?;
-    let plant = toml::to_string(&case.machine).map_err(|e| Failure::Internal(format!("plant.toml: {e}")))?;
+    let plant = toml::to_string(&case.machine_of(1)).map_err(|e| Failure::Internal(format!("plant.toml: {e}")))?;
     out.write("plant.toml", plant.as_bytes())?;
     out.write("probe.txt", case.probe(1, &case.first, &case.places_mm)?.as_bytes())?;
     if let Ok(first_part) = &detail.first_part {
@@ -80,10 +80,16 @@ pub fn export(detail: &Detail, folder: &FilePath, force: bool) -> Result<(), Fai
     Ok(())
 }
 
+/// The largest error at any height, its factor, and what had been expected with its standard deviation.
+fn at_any_height(figures: [Option<f64>; 4]) -> String {
+    let [error, factor, expected, sigma] = figures.map(Option::unwrap_or_default);
+    format!("{error:.4} mm, factor {factor:.1}, expected {expected:.4} ± {:.4} mm (2 sigma)", 2.0 * sigma)
+}
+
 /// The detail in words.
 pub fn words(detail: &Detail) -> String {
     let (case, o) = (&detail.case, &detail.outcome);
-    let (machine, cut) = (&case.machine, &case.part.cut);
+    let (machine, cut) = (&case.machine_of(1), &case.part.cut);
     let mut text = format!(
         "{}: {:?} wall, {:?} spindle, {:.1} mm\n",
         case.id, case.part.contour.side, case.part.spindle, case.first.path.length_mm
@@ -120,6 +126,9 @@ pub fn words(detail: &Detail) -> String {
             machine.edge_wear_per_m, machine.stock_variation_mm, machine.probe_noise_mm
         ),
     );
+    if let Some(nuisance) = case.id.nuisance {
+        line("nuisance", nuisance.title().to_owned());
+    }
     let mm = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.4} mm"));
     line("error before", format!("{} (worst height {})", mm(o.before_mm), mm(o.worst_height_before_mm)));
     match &detail.first_part {
@@ -136,6 +145,15 @@ pub fn words(detail: &Detail) -> String {
                 ),
             );
             line("within 2 sigma", format!("{:.1} % of the contour", 100.0 * o.coverage.unwrap_or_default()));
+            line(
+                "worst at any height",
+                at_any_height([
+                    o.worst_height_mm,
+                    o.worst_height_factor,
+                    o.worst_height_predicted_mm,
+                    o.worst_height_sigma_mm,
+                ]),
+            );
             line("wall law found", o.law.clone());
             for (name, p) in &first_part.corrected.summary.identified {
                 let seen = if p.observable { "" } else { "  (not decided)" };
@@ -166,6 +184,15 @@ pub fn words(detail: &Detail) -> String {
                 ),
             );
             line("within 2 sigma", format!("{:.1} % of the contour", 100.0 * o.learned_coverage.unwrap_or_default()));
+            line(
+                "worst at any height",
+                at_any_height([
+                    o.learned_worst_height_mm,
+                    o.learned_worst_height_factor,
+                    o.learned_worst_height_predicted_mm,
+                    o.learned_worst_height_sigma_mm,
+                ]),
+            );
             for remark in second_part.learned.verdict.remarks() {
                 line("remark", remark.clone());
             }

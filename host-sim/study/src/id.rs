@@ -1,9 +1,11 @@
-//! Names of cases: `family/seed`, and `family/seed/axis=value` where one thing was changed for a grid.
+//! Names of cases: `family/seed`, then as far as they are there `/nuisance`, `/chosen` where the touches are those that
+//! `truepath probe` chooses, and `/axis=value` where one thing was changed for a grid.
 
 use std::fmt;
 use std::str::FromStr;
 
 use super::families::family;
+use super::nuisance::Nuisance;
 use super::seeds::Set;
 
 /// What a grid changes.
@@ -62,6 +64,26 @@ pub struct Cell {
     pub value: f64,
 }
 
+/// Where the parts are touched.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+pub enum Touches {
+    /// Where the family says, a few more after the first correction.
+    #[default]
+    Family,
+    /// Where `truepath probe` would touch: 8 places at 3 heights, every part alike.
+    Chosen,
+}
+
+impl Touches {
+    /// Its name in case ids and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Family => "family",
+            Self::Chosen => "chosen",
+        }
+    }
+}
+
 /// Name of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseId {
@@ -69,6 +91,10 @@ pub struct CaseId {
     pub family: String,
     /// Seed.
     pub seed: u64,
+    /// What is added to its machine.
+    pub nuisance: Option<Nuisance>,
+    /// Where its parts are touched.
+    pub touches: Touches,
     /// The cell of a grid it belongs to.
     pub cell: Option<Cell>,
 }
@@ -79,11 +105,22 @@ impl CaseId {
         // Ids are made from the sets or checked when read.
         Set::of(self.seed).unwrap_or(Set::Random)
     }
+
+    /// Whether it is the case of a family and a seed as it is.
+    pub fn is_plain(&self) -> bool {
+        self.nuisance.is_none() && self.touches == Touches::Family && self.cell.is_none()
+    }
 }
 
 impl fmt::Display for CaseId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.family, self.seed)?;
+        if let Some(nuisance) = self.nuisance {
+            write!(f, "/{}", nuisance.name())?;
+        }
+        if self.touches != Touches::Family {
+            write!(f, "/{}", self.touches.name())?;
+        }
         self.cell.map_or(Ok(()), |cell| write!(f, "/{}={}", cell.axis.name(), cell.value))
     }
 }
@@ -98,16 +135,24 @@ impl FromStr for CaseId {
         let seed = parts.next().unwrap_or_default();
         let seed: u64 = seed.parse().map_err(|_| format!("`{seed}` is no seed"))?;
         Set::of(seed).ok_or_else(|| format!("{seed} is in no set of seeds"))?;
+        let mut parts = parts.peekable();
+        let named = |text: &&str| Nuisance::EACH.into_iter().chain([Nuisance::All]).find(|n| n.name() == *text);
+        let nuisance = parts.peek().and_then(named);
+        if nuisance.is_some() {
+            parts.next();
+        }
+        let chosen = parts.next_if_eq(&Touches::Chosen.name()).is_some();
+        let touches = if chosen { Touches::Chosen } else { Touches::Family };
         let cell = parts.next().map(cell).transpose()?;
         match parts.next() {
-            None => Ok(Self { family: family.name.to_owned(), seed, cell }),
+            None => Ok(Self { family: family.name.to_owned(), seed, nuisance, touches, cell }),
             Some(rest) => Err(format!("`{rest}` follows the id")),
         }
     }
 }
 
 fn cell(text: &str) -> Result<Cell, String> {
-    let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is not axis=value"))?;
+    let (name, value) = text.split_once('=').ok_or_else(|| format!("`{text}` is no nuisance, and not axis=value"))?;
     let axis = Axis::ALL.into_iter().find(|a| a.name() == name).ok_or_else(|| format!("`{name}` is no axis"))?;
     let value: f64 = value.parse().map_err(|_| format!("`{value}` is no number"))?;
     let (low, high) = (axis.values()[0], axis.values()[axis.values().len() - 1]);
@@ -124,10 +169,26 @@ mod tests {
 
     #[test]
     fn an_id_reads_back_as_it_was_written() {
-        for text in ["bore/1001", "corner-far/7003/noise=2.5", "boss/100000/points=30"] {
+        for text in [
+            "bore/1001",
+            "corner-far/7003/noise=2.5",
+            "boss/100000/points=30",
+            "bore/1001/stock-wave",
+            "bore/1001/all/chosen",
+            "wave/7001/chosen",
+            "wave/7001/wear/noise=3",
+        ] {
             assert_eq!(text.parse::<CaseId>().expect("an id").to_string(), text);
         }
-        for text in ["bore", "bore/5", "bore/1001/noise=-1", "bore/1001/wind=1", "cave/1001", "bore/1001/noise=1/x"] {
+        for text in [
+            "bore",
+            "bore/5",
+            "bore/1001/noise=-1",
+            "bore/1001/wind=1",
+            "cave/1001",
+            "bore/1001/noise=1/x",
+            "bore/1001/chosen/all",
+        ] {
             assert!(text.parse::<CaseId>().is_err(), "{text}");
         }
     }

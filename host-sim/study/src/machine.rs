@@ -62,6 +62,7 @@ pub fn machine(draw: &mut Draw, part: &Part, width: Width) -> Drawn {
         law: part.law,
         probe_noise_mm: draw.between(0.001, if wild { 0.008 } else { 0.005 }),
         seed: draw.seed(),
+        ..Machine::rigid()
     };
     let error_mm = draw.scale(low, high).min(0.35 * part.cut.allowance_mm);
     let machine = if part.plain { plain(machine) } else { machine };

@@ -4,27 +4,31 @@ use std::fmt::Write;
 
 use truepath_ground::diagnostics::{Failure, Source};
 
+use super::id::Touches;
 use super::reference::Reached;
 use super::summary::{Row, Summary, Trouble, WORKS};
 use crate::codes::Y005;
 
-/// Where the results begin.
-pub const BEGIN: &str = "<!-- results of truepath study -->";
+/// Where results begin and end.
+pub type Marks = (&'static str, &'static str);
 
-/// Where they end.
-pub const END: &str = "<!-- end of results -->";
+/// Of the families and grids.
+pub const RESULTS: Marks = ("<!-- results of truepath study -->", "<!-- end of results -->");
 
-/// The text of a file with its results replaced.
+/// Of the nuisances.
+pub const NUISANCES: Marks = ("<!-- nuisances of truepath study -->", "<!-- end of nuisances -->");
+
+/// The text of a file with what lies between two marks replaced.
 ///
 /// # Errors
-/// `Y005` when the file has no marks for them.
-pub fn written_into(file: &Source, results: &str) -> Result<String, Failure> {
+/// `Y005` when the file does not have them.
+pub fn written_into(file: &Source, (from, to): Marks, results: &str) -> Result<String, Failure> {
     let text = String::from_utf8_lossy(file.bytes());
-    let marks = text.find(BEGIN).and_then(|begin| Some((begin + BEGIN.len(), text.find(END)?)));
+    let marks = text.find(from).and_then(|begin| Some((begin + from.len(), text.find(to)?)));
     match marks.filter(|(begin, end)| begin <= end) {
         Some((begin, end)) => Ok(format!("{}\n\n{results}\n{}", &text[..begin], &text[end..])),
         None => {
-            let expected = format!("a line `{BEGIN}` and after it a line `{END}`");
+            let expected = format!("a line `{from}` and after it a line `{to}`");
             Err(Y005.error("no place for results", expected).in_file(file.name().as_ref()).into())
         }
     }
@@ -72,24 +76,42 @@ pub fn results(summary: &Summary, reached: &[Reached]) -> String {
     text
 }
 
+/// The results with nuisances.
+pub fn nuisances(summary: &Summary) -> String {
+    let mut text = String::new();
+    for one in &summary.nuisances {
+        let touched =
+            if one.touches == Touches::Chosen.name() { "`truepath probe` chooses" } else { "the family says" };
+        let seeds = one.set.name();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "### {seeds} seeds, touched where {touched}\n");
+        text += &table("nuisance", one.rows.iter());
+    }
+    text
+}
+
 fn listed(sentences: impl Iterator<Item = String>) -> String {
     sentences.map(|s| format!("* {s}\n")).collect()
 }
 
 fn table<'a>(first: &str, rows: impl Iterator<Item = &'a Row>) -> String {
     let mut text = format!(
-        "| {first} | cases | median | P10 | worst | in 2σ | learned: median | P10 | worst | in 2σ | refused | worse |\n\
-         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+        "| {first} | cases | median | P10 | worst | in 2σ | any height | in 2σ | learned: median | P10 | worst | in 2σ | any height | in 2σ | refused | worse |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n"
     );
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.1}"));
+    let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |c| format!("{:.1} %", 100.0 * c));
     for row in rows {
         let _ = write!(text, "| {} | {} |", row.name, row.cases);
-        for (spread, coverage) in [(row.first, row.coverage), (row.learned, row.learned_coverage)] {
+        for (spread, coverage, any, held) in [
+            (row.first, row.coverage, row.any_height, row.any_height_held),
+            (row.learned, row.learned_coverage, row.learned_any_height, row.learned_any_height_held),
+        ] {
             for value in [spread.map(|s| s.median), spread.map(|s| s.p10), spread.map(|s| s.worst)] {
                 let _ = write!(text, " {} |", number(value));
             }
-            let percent = coverage.map_or_else(|| "–".to_owned(), |c| format!("{:.1} %", 100.0 * c));
-            let _ = write!(text, " {percent} |");
+            let any = number(any.map(|s| s.median));
+            let _ = write!(text, " {} | {any} | {} |", percent(coverage), percent(held));
         }
         let _ = writeln!(text, " {} | {} |", row.failures + row.learn_failures, row.worse);
     }
@@ -103,9 +125,12 @@ mod tests {
     #[test]
     fn results_replace_what_lay_between_the_marks() {
         let file = |text: &str| Source::new("study.md", text.as_bytes().to_vec());
-        let text = written_into(&file(&format!("a\n{BEGIN}\nold\n{END}\nb\n")), "new\n").expect("marks");
-        assert_eq!(text, format!("a\n{BEGIN}\n\nnew\n\n{END}\nb\n"));
-        assert_eq!(written_into(&file(&text), "new\n").expect("marks"), text);
-        assert!(written_into(&file("a"), "new").is_err());
+        for (begin, end) in [RESULTS, NUISANCES] {
+            let old = file(&format!("a\n{begin}\nold\n{end}\nb\n"));
+            let text = written_into(&old, (begin, end), "new\n").expect("marks");
+            assert_eq!(text, format!("a\n{begin}\n\nnew\n\n{end}\nb\n"));
+            assert_eq!(written_into(&file(&text), (begin, end), "new\n").expect("marks"), text);
+        }
+        assert!(written_into(&file(&format!("{}\n{}", RESULTS.0, RESULTS.1)), NUISANCES, "new").is_err());
     }
 }

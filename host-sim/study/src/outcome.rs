@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::id::{CaseId, Cell};
+use super::case_table::Line;
+use super::id::CaseId;
 
 /// One line of the table. Lengths are in mm; what was not reached is empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -41,6 +42,12 @@ pub struct Outcome {
     pub worst_height_before_mm: Option<f64>,
     /// Largest error at any height after.
     pub worst_height_mm: Option<f64>,
+    /// worst_height_before/worst_height: the factor of the profile error.
+    pub worst_height_factor: Option<f64>,
+    /// What was expected of the largest error at any height after.
+    pub worst_height_predicted_mm: Option<f64>,
+    /// Standard deviation of that.
+    pub worst_height_sigma_mm: Option<f64>,
     /// Largest spread over the height after.
     pub axial_form_mm: Option<f64>,
     /// Wall law found.
@@ -57,6 +64,14 @@ pub struct Outcome {
     pub learned_predicted_mm: Option<f64>,
     /// Share of the contour where the error after learning lies within 2 sigma.
     pub learned_coverage: Option<f64>,
+    /// Largest error at any height after learning.
+    pub learned_worst_height_mm: Option<f64>,
+    /// worst_height_before/learned_worst_height.
+    pub learned_worst_height_factor: Option<f64>,
+    /// What was expected of it.
+    pub learned_worst_height_predicted_mm: Option<f64>,
+    /// Standard deviation of that.
+    pub learned_worst_height_sigma_mm: Option<f64>,
     /// Deepest gouge after learning, of the mean over the heights.
     pub learned_gouge_mm: Option<f64>,
     /// Whether learning went back to an earlier correction.
@@ -76,9 +91,14 @@ impl Outcome {
         self.case.parse().ok()
     }
 
-    /// The cell of a grid it belongs to.
-    pub fn cell(&self) -> Option<Cell> {
-        self.id().and_then(|id| id.cell)
+    /// Whether the largest error at any height came out within 2 sigma of what had been expected, after the first correction.
+    pub fn worst_height_held(&self) -> Option<bool> {
+        held(self.worst_height_mm, self.worst_height_predicted_mm, self.worst_height_sigma_mm)
+    }
+
+    /// The same after learning.
+    pub fn learned_worst_height_held(&self) -> Option<bool> {
+        held(self.learned_worst_height_mm, self.learned_worst_height_predicted_mm, self.learned_worst_height_sigma_mm)
     }
 
     /// Whether a correction made the part worse.
@@ -86,26 +106,38 @@ impl Outcome {
         let worse = |after: Option<f64>| matches!((self.before_mm, after), (Some(b), Some(a)) if a > b);
         worse(self.after_mm) || worse(self.learned_mm)
     }
-
-    /// The columns of the table.
-    pub fn header() -> String {
-        line(&Self::default(), true).lines().next().unwrap_or_default().to_owned() + "\n"
-    }
-
-    /// The line of the table, with its end.
-    pub fn line(&self) -> String {
-        line(self, false)
-    }
 }
 
-fn line(outcome: &Outcome, header: bool) -> String {
-    let mut writer = csv::WriterBuilder::new().has_headers(header).from_writer(Vec::new());
-    // Serialising flat text and numbers into memory cannot fail.
-    let _ = writer.serialize(outcome);
-    writer.into_inner().ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default()
+/// Whether a value lies within 2 sigma of what was expected.
+fn held(value: Option<f64>, predicted: Option<f64>, sigma: Option<f64>) -> Option<bool> {
+    Some((value? - predicted?).abs() <= 2.0 * sigma?)
+}
+
+impl Line for Outcome {
+    fn case(&self) -> &str {
+        &self.case
+    }
 }
 
 /// Text on one line, for the table.
 pub fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_sigma_hold_from_both_sides_and_nothing_is_said_of_what_is_not_known() {
+        let of = |value| Outcome {
+            worst_height_mm: Some(value),
+            worst_height_predicted_mm: Some(0.040),
+            worst_height_sigma_mm: Some(0.005),
+            ..Outcome::default()
+        };
+        let held: Vec<_> = [0.029, 0.031, 0.049, 0.051].map(|value| of(value).worst_height_held()).to_vec();
+        assert_eq!(held, [Some(false), Some(true), Some(true), Some(false)]);
+        assert_eq!(of(0.04).learned_worst_height_held(), None);
+    }
 }

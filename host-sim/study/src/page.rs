@@ -29,7 +29,8 @@ pub fn page(summary: &Summary, outcomes: &[Outcome]) -> Result<String, Failure> 
         "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Truepath study</title><style>{STYLE}</style>\n\
          <h1>Truepath study</h1>\n<p>Virtual machines with effects the model does not have mill a first part; it is \
          touched in a few places, the program is corrected, and the next part is milled and judged. Factor = largest wall \
-         error before / after, mean over ten heights. <span class=\"first\">First correction</span>, <span \
+         error before / after, mean over ten heights; any height: the same of the largest error at any of the heights, and the \
+         share of parts in which that came out within 2σ of what had been predicted. <span class=\"first\">First correction</span>, <span \
          class=\"learned\">after one more part was touched and learned from</span>. Made by {}; {} cases.</p>\n",
         escaped(&summary.program),
         outcomes.len()
@@ -41,6 +42,10 @@ pub fn page(summary: &Summary, outcomes: &[Outcome]) -> Result<String, Failure> 
         let Some(which) = Axis::ALL.into_iter().find(|a| a.name() == axis.axis) else { continue };
         let _ = write!(text, "<h2>Factor against {}</h2>\n{}", axis.axis, grid(which, outcomes)?);
         text += &table(which.title(), axis.cells.iter().map(|(_, row)| row));
+    }
+    for one in &summary.nuisances {
+        let _ = writeln!(text, "<h2>With nuisances, {} seeds, touches: {}</h2>", one.set.name(), one.touches);
+        text += &table("Nuisance", one.rows.iter());
     }
     text += "<h2>Where it stops working</h2>\n";
     let _ = writeln!(
@@ -66,7 +71,7 @@ fn section(set: &SetSummary, outcomes: &[Outcome]) -> Result<String, Failure> {
     let groups: Vec<Group> = set
         .families
         .iter()
-        .map(|row| group(&row.name, outcomes, |id| id.set() == set.set && id.cell.is_none() && id.family == row.name))
+        .map(|row| group(&row.name, outcomes, |id| id.set() == set.set && id.is_plain() && id.family == row.name))
         .collect();
     let mut text = format!("<h2>{title}</h2>\n{}", by_group(&groups)?);
     text += &table("Family", set.families.iter().chain([&set.all]));
@@ -93,8 +98,8 @@ fn grid(axis: Axis, outcomes: &[Outcome]) -> Result<String, Failure> {
 
 fn table<'a>(first: &str, rows: impl Iterator<Item = &'a Row>) -> String {
     let mut text = format!(
-        "<table><thead><tr><th>{first}<th>cases<th>before, mm<th>median<th>P10<th>worst<th>within 2σ<th>learned<th>P10\
-         <th>worst<th>within 2σ<th>refused<th>worse<th>time, s</tr></thead>\n"
+        "<table><thead><tr><th>{first}<th>cases<th>before, mm<th>median<th>P10<th>worst<th>within 2σ\
+         <th>any height<th>within 2σ<th>learned<th>P10<th>worst<th>within 2σ<th>any height<th>within 2σ<th>refused<th>worse<th>time, s</tr></thead>\n"
     );
     for row in rows {
         let number = |value: Option<f64>, digits: usize| value.map_or_else(|| "–".into(), |v| format!("{v:.digits$}"));
@@ -106,12 +111,16 @@ fn table<'a>(first: &str, rows: impl Iterator<Item = &'a Row>) -> String {
         let (f, l) = (row.first, row.learned);
         let _ = write!(text, "<tr{class}><td title=\"{}\">{}<td>{}", escaped(hint), escaped(&row.name), row.cases);
         let _ = write!(text, "<td>{}", number(row.before_mm, 3));
-        for (spread, coverage) in [(f, row.coverage), (l, row.learned_coverage)] {
+        for (spread, coverage, any, held) in [
+            (f, row.coverage, row.any_height, row.any_height_held),
+            (l, row.learned_coverage, row.learned_any_height, row.learned_any_height_held),
+        ] {
             let values = [spread.map(|s| s.median), spread.map(|s| s.p10), spread.map(|s| s.worst)];
             for value in values {
                 let _ = write!(text, "{}{}", weak(value), number(value, 1));
             }
-            let _ = write!(text, "<td>{}", percent(coverage));
+            let any = number(any.map(|s| s.median), 1);
+            let _ = write!(text, "<td>{}<td>{any}<td>{}", percent(coverage), percent(held));
         }
         let refused = row.failures + row.learn_failures;
         let _ = writeln!(text, "{}{}<td>{}</tr>", count(refused), count(row.worse), number(row.correct_s, 2));

@@ -1,5 +1,10 @@
 //! Where a user touches the part: the middle of straight walls, the thirds of long ones, seldom a corner, four or so places
-//! round a curve. After the first correction three more, where the contour bends most.
+//! round a curve. After the first correction three more, where the contour bends most. Or where `truepath probe` would have them.
+
+use truepath_correction::verification::{Settings, plan};
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::units::float;
+use truepath_job::pass::Pass;
 
 use super::contour::{Contour, Kind, Stretch};
 use super::draw::{Draw, rounded};
@@ -31,6 +36,18 @@ pub fn first(draw: &mut Draw, contour: &Contour, trim: f64) -> Vec<f64> {
         }
     }
     keep(places, contour, trim)
+}
+
+/// The places that a verification program of the job would touch, mm along the contour, and its heights, shares of the depth.
+///
+/// # Errors
+/// A contour that cannot be touched.
+pub fn chosen(pass: &Pass) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+    let plan = plan(pass, &Settings::default(), &mut |_| ())?;
+    let depth = float(pass.core.setup.axial_depth);
+    let heights = plan.places.first().map(|place| place.heights.as_slice()).unwrap_or_default();
+    let levels = heights.iter().map(|height| height.above_tip_mm / depth).collect();
+    Ok((plan.places.iter().map(|place| place.s_mm).collect(), levels))
 }
 
 /// `count` places spread evenly over the contour.

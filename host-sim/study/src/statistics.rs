@@ -46,6 +46,12 @@ impl Spread {
     }
 }
 
+/// The share of what holds; `None` of nothing.
+pub fn share(holds: impl Iterator<Item = bool>) -> Option<f64> {
+    let values: Vec<f64> = holds.map(f64::from).collect();
+    mean(&values)
+}
+
 /// Mean; `None` of no values.
 pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)

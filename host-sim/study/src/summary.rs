@@ -1,12 +1,15 @@
 //! The study in numbers: per family and over all, per cell of a grid, and where the method stops working.
 
+use std::collections::BTreeSet;
+
 use serde::Serialize;
 
 use super::families::FAMILIES;
-use super::id::{Axis, CaseId};
+use super::id::{Axis, CaseId, Touches};
+use super::nuisance::Nuisance;
 use super::outcome::Outcome;
 use super::seeds::Set;
-use super::statistics::Spread;
+use super::statistics::{Spread, share};
 
 /// Below this factor the method is said not to work.
 pub const WORKS: f64 = 4.0;
@@ -34,6 +37,14 @@ pub struct Row {
     pub coverage: Option<f64>,
     /// The same after one more part.
     pub learned_coverage: Option<f64>,
+    /// Factor of the largest error at any height, the profile error, after the first correction.
+    pub any_height: Option<Spread>,
+    /// The share of cases in which that came out within 2 sigma of what had been expected.
+    pub any_height_held: Option<f64>,
+    /// Its factor after one more part.
+    pub learned_any_height: Option<Spread>,
+    /// The share of cases in which that came out within 2 sigma of what had been expected.
+    pub learned_any_height_held: Option<f64>,
     /// Median time of the first correction, s.
     pub correct_s: Option<f64>,
 }
@@ -60,6 +71,17 @@ pub struct AxisSummary {
     pub cells: Vec<(f64, Row)>,
 }
 
+/// Cases with nuisances of one set of seeds and one way to touch.
+#[derive(Clone, Debug, Serialize)]
+pub struct NuisanceSummary {
+    /// Which seeds.
+    pub set: Set,
+    /// Where the parts are touched.
+    pub touches: &'static str,
+    /// One row a nuisance, the first the same cases without any.
+    pub rows: Vec<Row>,
+}
+
 /// A case that failed, came out worse or below the factor at which the method works.
 #[derive(Clone, Debug, Serialize)]
 pub struct Trouble {
@@ -80,6 +102,8 @@ pub struct Summary {
     pub sets: Vec<SetSummary>,
     /// One entry a grid.
     pub axes: Vec<AxisSummary>,
+    /// One entry a set of seeds and a way to touch, where there are cases with nuisances.
+    pub nuisances: Vec<NuisanceSummary>,
     /// Sentences: where the method stops working.
     pub limits: Vec<String>,
     /// Failures.
@@ -96,10 +120,14 @@ pub fn summary(program: &str, outcomes: &[Outcome]) -> Summary {
     let sets: Vec<SetSummary> = [Set::Tuning, Set::Test, Set::Random]
         .into_iter()
         .filter_map(|set| {
-            set_summary(set, &cases.iter().filter(|(id, _)| id.set() == set && id.cell.is_none()).collect::<Vec<_>>())
+            set_summary(set, &cases.iter().filter(|(id, _)| id.set() == set && id.is_plain()).collect::<Vec<_>>())
         })
         .collect();
     let axes: Vec<AxisSummary> = Axis::ALL.into_iter().filter_map(|axis| axis_summary(axis, &cases)).collect();
+    let nuisances = [Set::Tuning, Set::Test, Set::Random].into_iter().flat_map(|set| {
+        let of = |touches| nuisance_summary(set, touches, &cases);
+        [Touches::Family, Touches::Chosen].into_iter().filter_map(of).collect::<Vec<_>>()
+    });
     let trouble = |what: &dyn Fn(&Outcome) -> Option<String>| -> Vec<Trouble> {
         let each = outcomes.iter().filter_map(|o| Some(Trouble { case: o.case.clone(), what: what(o)? }));
         each.collect()
@@ -113,9 +141,12 @@ pub fn summary(program: &str, outcomes: &[Outcome]) -> Summary {
         limits: limits(&sets, &axes),
         sets,
         axes,
+        nuisances: nuisances.collect(),
         failures,
         worse: trouble(&|o| o.worse().then(|| numbers(o))),
-        weak: trouble(&|o| (o.cell().is_none() && o.factor.is_some_and(|f| f < WORKS)).then(|| numbers(o))),
+        weak: trouble(&|o| {
+            (o.id().is_some_and(|id| id.is_plain()) && o.factor.is_some_and(|f| f < WORKS)).then(|| numbers(o))
+        }),
     }
 }
 
@@ -177,6 +208,26 @@ fn axis_summary(axis: Axis, cases: &[(CaseId, &Outcome)]) -> Option<AxisSummary>
     (!cells.is_empty()).then_some(AxisSummary { axis: axis.name(), cells })
 }
 
+fn nuisance_summary(set: Set, touches: Touches, cases: &[(CaseId, &Outcome)]) -> Option<NuisanceSummary> {
+    let these: Vec<&(CaseId, &Outcome)> =
+        cases.iter().filter(|(id, _)| id.set() == set && id.touches == touches && id.cell.is_none()).collect();
+    let disturbed: BTreeSet<(&str, u64)> =
+        these.iter().filter(|(id, _)| id.nuisance.is_some()).map(|(id, _)| (id.family.as_str(), id.seed)).collect();
+    // The families as they are have tables of their own.
+    if disturbed.is_empty() && touches == Touches::Family {
+        return None;
+    }
+    let compared = |id: &CaseId| disturbed.is_empty() || disturbed.contains(&(id.family.as_str(), id.seed));
+    let rows = std::iter::once(None).chain(Nuisance::EACH.map(Some)).chain([Some(Nuisance::All)]);
+    let rows = rows.filter_map(|nuisance| {
+        let of = these.iter().filter(|(id, _)| id.nuisance == nuisance && compared(id));
+        let outcomes: Vec<&Outcome> = of.map(|(_, o)| *o).collect();
+        (!outcomes.is_empty()).then(|| row(nuisance.map_or("none", Nuisance::name), &outcomes))
+    });
+    let rows: Vec<Row> = rows.collect();
+    (!rows.is_empty()).then_some(NuisanceSummary { set, touches: touches.name(), rows })
+}
+
 fn row(name: &str, outcomes: &[&Outcome]) -> Row {
     let values = |of: fn(&Outcome) -> Option<f64>| -> Vec<f64> { outcomes.iter().filter_map(|o| of(o)).collect() };
     let weighted = |of: fn(&Outcome) -> Option<f64>| {
@@ -196,6 +247,10 @@ fn row(name: &str, outcomes: &[&Outcome]) -> Row {
         learn_failures: outcomes.iter().filter(|o| !o.learn_failure.is_empty()).count(),
         coverage: weighted(|o| o.coverage),
         learned_coverage: weighted(|o| o.learned_coverage),
+        any_height: Spread::of(&values(|o| o.worst_height_factor)),
+        any_height_held: share(outcomes.iter().filter_map(|o| o.worst_height_held())),
+        learned_any_height: Spread::of(&values(|o| o.learned_worst_height_factor)),
+        learned_any_height_held: share(outcomes.iter().filter_map(|o| o.learned_worst_height_held())),
         correct_s: median(|o| o.correct_s),
     }
 }
@@ -233,4 +288,38 @@ fn limits(sets: &[SetSummary], axes: &[AxisSummary]) -> Vec<String> {
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nuisances_have_a_table_of_their_own_beside_the_same_cases_without_any() {
+        let outcome = |case: &str, factor| Outcome {
+            case: case.to_owned(),
+            before_mm: Some(0.1),
+            factor: Some(factor),
+            ..Outcome::default()
+        };
+        let outcomes = [
+            outcome("bore/1001", 20.0),
+            outcome("boss/1001", 30.0),
+            outcome("bore/1001/all", 3.0),
+            outcome("bore/1001/stock-wave", 9.0),
+            outcome("bore/7001/all/chosen", 2.0),
+        ];
+        let summary = summary("# program", &outcomes);
+        // The families as they are stay what they were.
+        assert_eq!(summary.sets.len(), 1);
+        assert_eq!(summary.sets[0].all.cases, 2);
+        let rows: Vec<_> = summary
+            .nuisances
+            .iter()
+            .map(|one| (one.set, one.touches, one.rows.iter().map(|row| (row.name.as_str(), row.cases)).collect()))
+            .collect();
+        let family = vec![("none", 1), ("stock-wave", 1), ("all", 1)];
+        assert_eq!(rows, [(Set::Tuning, "family", family), (Set::Test, "chosen", vec![("all", 1)])]);
+        assert!(summary.weak.is_empty(), "a factor of 3 with all nuisances is no weakness of the family");
+    }
 }

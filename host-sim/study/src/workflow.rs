@@ -15,7 +15,6 @@ use truepath_trial::virtual_mill;
 use super::case::Case;
 use super::id::CaseId;
 use super::outcome::{Outcome, one_line};
-use super::places::together;
 
 /// A corrected part.
 #[derive(Clone, Debug)]
@@ -86,7 +85,7 @@ pub fn described(case: &Case) -> Outcome {
 /// # Errors
 /// What probing or the correction refuse.
 pub fn first(case: &Case, outcome: &mut Outcome) -> Result<FirstPart, Failure> {
-    let probe = case.probe(1, &case.first, &case.places_mm)?;
+    let probe = case.probe(1, &case.first, &case.places_of(1))?;
     let measurement = measured(case, "probe.txt", &probe)?;
     let begun = Instant::now();
     let corrected = correct_pass(&case.pass, &measurement, &[], &[Route::Program], &mut |_| ())?;
@@ -106,6 +105,9 @@ pub fn first(case: &Case, outcome: &mut Outcome) -> Result<FirstPart, Failure> {
     outcome.rms_after_mm = some(score.rms_error_mm);
     outcome.gouge_mm = some(score.gouge_mm);
     outcome.worst_height_mm = some(score.worst_height_mm);
+    outcome.worst_height_factor = some(case.before.score.worst_height_mm / score.worst_height_mm.max(1e-6));
+    outcome.worst_height_predicted_mm = some(summary.surface.after.profile.profile_mm);
+    outcome.worst_height_sigma_mm = some(summary.surface.after.profile.sigma_mm);
     outcome.axial_form_mm = some(score.axial_form_mm);
     outcome.coverage = coverage(&after, &corrected.rows);
     Ok(FirstPart { probe, measurement, corrected, milled, after })
@@ -116,8 +118,7 @@ pub fn first(case: &Case, outcome: &mut Outcome) -> Result<FirstPart, Failure> {
 /// # Errors
 /// What probing or learning refuse.
 pub fn second(case: &Case, first_part: &FirstPart, outcome: &mut Outcome) -> Result<SecondPart, Failure> {
-    let places = together(&case.places_mm, &case.more_mm);
-    let probe = case.probe(2, &first_part.milled, &places)?;
+    let probe = case.probe(2, &first_part.milled, &case.places_of(2))?;
     let measurement = measured(case, "probe-2.txt", &probe)?;
     let history = History::first(&case.pass, &first_part.measurement, &first_part.corrected)?;
     let begun = Instant::now();
@@ -128,6 +129,11 @@ pub fn second(case: &Case, first_part: &FirstPart, outcome: &mut Outcome) -> Res
     let after = cut(case, 3, &learned.corrected)?.judge();
     outcome.learned_mm = some(after.score.max_error_mm);
     outcome.learned_factor = some(case.before.score.max_error_mm / after.score.max_error_mm.max(1e-6));
+    let (worst, expected) = (after.score.worst_height_mm, &learned.corrected.summary.surface.after.profile);
+    outcome.learned_worst_height_mm = some(worst);
+    outcome.learned_worst_height_factor = some(case.before.score.worst_height_mm / worst.max(1e-6));
+    outcome.learned_worst_height_predicted_mm = some(expected.profile_mm);
+    outcome.learned_worst_height_sigma_mm = some(expected.sigma_mm);
     outcome.learned_gouge_mm = some(after.score.gouge_mm);
     outcome.learned_coverage = coverage(&after, &learned.corrected.rows);
     Ok(SecondPart { probe, learned, after })

@@ -3,6 +3,7 @@
 
 pub mod codes;
 pub mod compare;
+pub mod dynamometer;
 pub mod probing;
 pub mod process;
 pub mod recorded;

@@ -28,7 +28,7 @@ pub fn cut(pass: &Pass, machine: &plant::Machine, program: &Source) -> Result<pl
     let mut tips: Vec<f64> = levels::alike(pass)?.into_iter().map(|above| tip + mm(above)).collect();
     tips.push(tip);
     let runs = runs(pass, program)?;
-    let (path, set_up) = virtual_mill::path_and_cut(pass)?;
+    let (path, set_up) = virtual_mill::path_and_cut(pass, machine)?;
     let stock = mm(pass.core.setup.allowance);
     let along: Vec<&plant::Run> = runs.iter().filter(|run| plant::laps_along(&path, run, stock) > 0).collect();
     if along.is_empty() {
@@ -54,7 +54,7 @@ pub fn cut(pass: &Pass, machine: &plant::Machine, program: &Source) -> Result<pl
 /// # Errors
 /// Whatever is wrong with the program.
 pub fn laps(pass: &Pass, program: &Source) -> Result<usize, Failure> {
-    let (path, _) = virtual_mill::path_and_cut(pass)?;
+    let path = virtual_mill::nominal(pass)?;
     let stock = mm(pass.core.setup.allowance);
     let runs = runs(pass, program)?;
     Ok(runs.iter().map(|run| plant::laps_along(&path, run, stock)).sum())

@@ -9,7 +9,7 @@ use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::units::{float, mm};
 use truepath_job::feature::Survey;
 use truepath_job::levels;
-use truepath_job::pass::Pass;
+use truepath_job::pass::{Pass, PathBuffer};
 use truepath_plant as plant;
 use truepath_plant::{Milled, PlantError};
 
@@ -49,12 +49,18 @@ fn path(pass: &Pass) -> Result<plant::Path, PlantError> {
     plant::Path::new(&segments, side, 0.1)
 }
 
-/// The cut of a pass for the plant.
-fn cut(pass: &Pass, path: &plant::Path) -> plant::Cut {
+/// The cut of a pass for the plant. Stock that was touched is its stock where the machine says nothing of how that is uneven:
+/// otherwise the machine's is the truth, and touches are what is known of it.
+fn cut(pass: &Pass, path: &plant::Path, machine: &plant::Machine) -> Result<plant::Cut, Failure> {
+    let surface = match (&pass.surface, &pass.stock) {
+        (Some(surface), _) => Some(surface.points().to_vec()),
+        (None, Some(_)) if machine.has_even_stock() => Some(stock_line(pass)?),
+        (None, _) => None,
+    };
     let setup = &pass.core.setup;
     let first = pass.blocks.first().map_or(0.0, |b| float(b.feed));
     let changes = pass.blocks.windows(2).filter(|w| w[0].feed != w[1].feed);
-    plant::Cut {
+    Ok(plant::Cut {
         radius_mm: mm(setup.radius),
         teeth: setup.teeth.into(),
         helix_deg: float(setup.helix_deg),
@@ -69,17 +75,30 @@ fn cut(pass: &Pass, path: &plant::Path) -> plant::Cut {
             Spindle::CounterClockwise => plant::Spindle::CounterClockwise,
             Spindle::Clockwise | Spindle::Stopped => plant::Spindle::Clockwise,
         },
-        surface: pass.surface.as_ref().map(|surface| surface.points().to_vec()),
+        surface,
         // A path that runs on into itself is cut as if it had no beginning.
         memory_mm: path.runs_on().then_some(3.0),
-    }
+    })
+}
+
+/// The stock of a pass along its contour.
+fn stock_line(pass: &Pass) -> Result<Vec<plant::Point>, Failure> {
+    let mut buffer = PathBuffer::default();
+    let path = pass.sample(&mut buffer)?;
+    let contour = &path.samples()[path.first()..path.first() + path.count()];
+    Ok(contour.iter().filter(|sample| sample.on_surface).map(|sample| coordinates(sample.stock)).collect())
 }
 
 /// The nominal path and the cut of a pass for the plant.
-pub(crate) fn path_and_cut(pass: &Pass) -> Result<(plant::Path, plant::Cut), Failure> {
-    let path = path(pass).map_err(|e| refused(&e))?;
-    let cut = cut(pass, &path);
+pub(crate) fn path_and_cut(pass: &Pass, machine: &plant::Machine) -> Result<(plant::Path, plant::Cut), Failure> {
+    let path = nominal(pass)?;
+    let cut = cut(pass, &path, machine)?;
     Ok((path, cut))
+}
+
+/// The nominal path of a pass for the plant.
+pub(crate) fn nominal(pass: &Pass) -> Result<plant::Path, Failure> {
+    path(pass).map_err(|e| refused(&e))
 }
 
 /// Who made a wall.
@@ -96,8 +115,8 @@ pub enum Made {
 /// # Errors
 /// What the plant refuses.
 pub fn mill(pass: &Pass, machine: &plant::Machine, commanded: Option<&[plant::Point]>) -> Result<Milled, Failure> {
-    let path = path(pass).map_err(|e| refused(&e))?;
-    plant::mill(&path, &cut(pass, &path), machine, commanded).map_err(|e| refused(&e))
+    let (path, cut) = path_and_cut(pass, machine)?;
+    plant::mill(&path, &cut, machine, commanded).map_err(|e| refused(&e))
 }
 
 /// Mills a pass with a corrected program: along its path and at its feeds.
@@ -106,8 +125,7 @@ pub fn mill(pass: &Pass, machine: &plant::Machine, commanded: Option<&[plant::Po
 /// What the plant refuses, and whatever is wrong with the program.
 pub fn mill_program(pass: &Pass, machine: &plant::Machine, text: &[u8]) -> Result<Milled, Failure> {
     let blocks = contour(pass, text)?;
-    let path = path(pass).map_err(|e| refused(&e))?;
-    let mut cut = cut(pass, &path);
+    let (path, mut cut) = path_and_cut(pass, machine)?;
     if pass.job.numbers.cut.feed_mm_per_min.is_none() {
         (cut.feed_mm_per_min, cut.feed_changes) = feeds(&path, &blocks);
     }
@@ -124,8 +142,7 @@ pub fn mill_recorded(
     setpoints: &Setpoints,
     placement: &Placement,
 ) -> Result<(Milled, recorded::Facts), Failure> {
-    let path = path(pass).map_err(|e| refused(&e))?;
-    let mut cut = cut(pass, &path);
+    let (path, mut cut) = path_and_cut(pass, machine)?;
     let z_mm = pass.core.contour.z.nm() as f64 / 1e6;
     let found = recorded::cut_path(setpoints, placement, &path, &cut, z_mm)?;
     (cut.feed_mm_per_min, cut.feed_changes) = (found.feed_mm_per_min, found.feed_changes);
@@ -197,10 +214,6 @@ const fn row(point: Point, z_nm: i64) -> Row {
 /// # Errors
 /// `L004` for a program that cannot be executed, or that drives the ball into a wall.
 pub fn touch(walls: &[(&Pass, &Made)], program: &Source) -> Result<String, Failure> {
-    let Some((any, _)) = walls.first() else { return Err(Failure::Internal("no wall to be touched".to_owned())) };
-    let probe = any.job.require_probe()?;
-    let ball = 0.5 * mm(probe.ball_diameter);
-    let centre_above = if probe.z_reference == ZReference::Tip { ball } else { 0.0 };
     let (mut felt, mut levels) = (Vec::new(), Vec::new());
     for (pass, made) in walls {
         match made {
@@ -219,6 +232,34 @@ pub fn touch(walls: &[(&Pass, &Made)], program: &Source) -> Result<String, Failu
             }
         }
     }
+    let Some((any, _)) = walls.first() else { return Err(Failure::Internal("no wall to be touched".to_owned())) };
+    executed(any, felt, levels, program)
+}
+
+/// Touches the stock of a part before any of its passes, as [`touch`] does its walls.
+///
+/// # Errors
+/// As [`touch`].
+pub fn touch_stock(walls: &[Pass], machine: &plant::Machine, program: &Source) -> Result<String, Failure> {
+    let Some(any) = walls.first() else { return Err(Failure::Internal("no stock to be touched".to_owned())) };
+    let (mut stocks, mut levels) = (Vec::new(), Vec::new());
+    for pass in walls {
+        let (path, cut) = path_and_cut(pass, machine)?;
+        stocks.push(plant::RawStock::new(&path, &cut, machine));
+        let tips = pass.plan.iter().flat_map(|plan| &plan.passes).filter_map(|depth| depth.z);
+        let tips: Vec<f64> = tips.chain([pass.core.contour.z]).map(|z| z.nm() as f64 / 1e6).collect();
+        let bottom = tips.iter().copied().fold(f64::INFINITY, f64::min);
+        let top = tips.iter().copied().fold(f64::NEG_INFINITY, f64::max) + cut.axial_depth_mm;
+        levels.push(Levels { tips: vec![bottom], depth: top - bottom });
+    }
+    executed(any, stocks.iter().map(plant::Felt::of_stock).collect(), levels, program)
+}
+
+/// Executes a probing program beside walls.
+fn executed(any: &Pass, felt: Vec<plant::Felt<'_>>, levels: Vec<Levels>, program: &Source) -> Result<String, Failure> {
+    let probe = any.job.require_probe()?;
+    let ball = 0.5 * mm(probe.ball_diameter);
+    let centre_above = if probe.z_reference == ZReference::Tip { ball } else { 0.0 };
     let mut beside = Beside { felt, levels, centre_above };
     let text = String::from_utf8_lossy(program.bytes());
     let printed = Control::new(&mut beside, ball).run(&text);
@@ -278,8 +319,8 @@ impl Wall for Beside<'_> {
         let walls = self.felt.iter_mut().zip(&self.levels);
         walls.map(|(felt, levels)| felt.distance_mm(levels.milled(z), point)).fold(f64::INFINITY, f64::min)
     }
-    fn noise(&mut self) -> f64 {
-        self.felt.first_mut().map_or(0.0, plant::Felt::noise_mm)
+    fn off(&mut self, at: [f64; 3], way: Xy) -> f64 {
+        self.felt.first_mut().map_or(0.0, |felt| felt.off_mm(at, way))
     }
 }
 

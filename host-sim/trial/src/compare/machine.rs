@@ -2,7 +2,9 @@
 
 use truepath_core::correct::{Band, Design, Node, Profile, Target};
 use truepath_core::cut::{Loop, Path};
-use truepath_correction::correction::walls;
+use truepath_correction::correction::{Identification, walls};
+use truepath_correction::discrepancy::Along;
+use truepath_correction::surface::predicted::{COUNT, Surface, errors};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
@@ -15,7 +17,7 @@ use crate::virtual_mill;
 const HEIGHTS: usize = 10;
 
 /// The walls that the identified machine leaves with a correction, as the core predicts them.
-pub fn identified(machine: &Loop, wanted: &Design, nodes: &[Node]) -> Walls {
+pub fn identified(machine: &Loop, known: &Identification, wanted: &Design, nodes: &[Node]) -> Walls {
     let (inside, _) = walls(machine, wanted.band, nodes, &[]);
     let whole = if wanted.band == Band::WHOLE { inside.clone() } else { walls(machine, Band::WHOLE, nodes, &[]).0 };
     let samples = machine.path.samples().iter().skip(machine.path.first());
@@ -25,7 +27,13 @@ pub fn identified(machine: &Loop, wanted: &Design, nodes: &[Node]) -> Walls {
         lowest_mm: mm(whole.lowest.min(whole.tip)),
         highest_mm: mm(whole.highest.max(whole.tip)),
     };
-    Walls { places: samples.zip(&inside).zip(&whole).map(place).collect() }
+    let indices: Vec<usize> = (machine.path.first()..).take(machine.path.count()).collect();
+    let all = errors(machine, nodes, &[], &indices);
+    Walls {
+        places: samples.zip(&inside).zip(&whole).map(place).collect(),
+        over_height_mm: all.chunks(COUNT).map(<[f64]>::to_vec).collect(),
+        worst_height_sigma_mm: Some(Surface::predicted(machine, known, &Along::NONE, nodes).profile.sigma_mm),
+    }
 }
 
 /// The walls that a virtual machine leaves when the program's centres are displaced by a correction.
@@ -63,7 +71,9 @@ pub fn virtual_machine(
         let [low, high] = range(&whole, i);
         Place { s_mm: *s, error_mm: aim(&inside, i, wanted.target), lowest_mm: low, highest_mm: high }
     });
-    Ok(Walls { places: places.collect() })
+    let column = |i: usize| whole.iter().map(|row| row.get(i).copied().unwrap_or(f64::NAN)).collect();
+    let over_height_mm = (0..milled.path.s_mm.len()).map(column).collect();
+    Ok(Walls { places: places.collect(), over_height_mm, worst_height_sigma_mm: None })
 }
 
 fn finite(rows: &[Vec<f64>], i: usize) -> impl Iterator<Item = f64> {

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use truepath_core::units::Offset;
+use truepath_correction::surface::wall::p95;
 use truepath_ground::units::mm;
 
 use super::Candidate;
@@ -25,6 +26,10 @@ pub struct Place {
 pub struct Walls {
     /// In the order of the contour.
     pub places: Vec<Place>,
+    /// The errors over the height of every place, mm; not a number where no wall stands.
+    pub over_height_mm: Vec<Vec<f64>>,
+    /// What the points leave open of the largest error at any height, one standard deviation, mm; absent on a virtual machine.
+    pub worst_height_sigma_mm: Option<f64>,
 }
 
 /// One line of the comparison.
@@ -48,6 +53,10 @@ pub struct Row {
     pub max_correction_mm: f64,
     /// Whether that is beyond the clamp of the job: `correct` would refuse it.
     pub beyond_clamp: bool,
+    /// 95 of 100 places of the wall, at any height, are nearer to the nominal wall than this, mm.
+    pub p95_mm: Option<f64>,
+    /// What the points leave open of the largest error at any height, one standard deviation, mm; absent on a virtual machine.
+    pub worst_height_sigma_mm: Option<f64>,
     /// What is to be known about it.
     pub remark: String,
 }
@@ -57,6 +66,14 @@ impl Walls {
     pub fn judged(&self, trim_mm: f64) -> impl Iterator<Item = &Place> {
         let stretch = judged(self.places.last().map_or(0.0, |p| p.s_mm), trim_mm);
         self.places.iter().filter(move |p| stretch.contains(&p.s_mm) && p.error_mm.is_finite())
+    }
+    /// 95 of 100 of the errors at every height of the places that are judged are at most this, the sign aside, mm.
+    fn p95_mm(&self, trim_mm: f64) -> f64 {
+        let stretch = judged(self.places.last().map_or(0.0, |p| p.s_mm), trim_mm);
+        let stands = |place: &Place| stretch.contains(&place.s_mm) && place.error_mm.is_finite();
+        let places = self.places.iter().zip(&self.over_height_mm).filter(|(place, _)| stands(place));
+        let errors = places.flat_map(|(_, errors)| errors).filter(|error| error.is_finite());
+        p95(&mut errors.map(|error| error.abs()).collect::<Vec<f64>>())
     }
 }
 
@@ -91,6 +108,8 @@ pub fn row(
         factor: None,
         max_correction_mm: mm(largest),
         beyond_clamp,
+        p95_mm: None,
+        worst_height_sigma_mm: None,
         remark: String::new(),
     };
     match walls {
@@ -105,6 +124,8 @@ pub fn row(
                 row.rms_error_mm = Some((squares / f64::from(count)).sqrt());
                 row.worst_height_mm = Some(most(|p| p.lowest_mm.abs().max(p.highest_mm.abs())));
                 row.gouge_mm = Some(most(|p| -p.lowest_mm));
+                row.p95_mm = Some(walls.p95_mm(trim_mm));
+                row.worst_height_sigma_mm = walls.worst_height_sigma_mm;
                 row.factor = Some(none_mm.unwrap_or(max) / max.max(1e-6));
             }
         }

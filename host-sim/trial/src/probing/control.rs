@@ -14,8 +14,8 @@ pub trait Wall {
     fn meets(&mut self, z: f64, from: Xy, to: Xy, radius: f64) -> Option<f64>;
     /// Distance of a point from it at a height, mm.
     fn distance(&mut self, z: f64, point: Xy) -> f64;
-    /// What a reading is off along the way of the ball, mm.
-    fn noise(&mut self) -> f64 {
+    /// What a reading of the ball that stopped at `at` is off along its way, mm; `way` is its direction in the plane.
+    fn off(&mut self, _at: [f64; 3], _way: Xy) -> f64 {
         0.0
     }
 }
@@ -187,10 +187,12 @@ impl<'w, W: Wall> Control<'w, W> {
         Ok(())
     }
 
-    /// A reading off by so much along the way from `start` to where the ball is now, x, y and z.
-    fn noise(&self, start: [f64; 3], off: f64) -> [f64; 3] {
+    /// What a reading is off after the way from `start` to where the ball is now, x, y and z.
+    fn off(&mut self, start: [f64; 3]) -> [f64; 3] {
         let way: [f64; 3] = std::array::from_fn(|k| self.at[k] - start[k]);
         let length = way.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let [x, y, _] = way.map(|v| if length > 0.0 { v / length } else { 0.0 });
+        let off = self.wall.off(self.at, [x, y]);
         way.map(|v| if length > 0.0 { v / length * off } else { 0.0 })
     }
 
@@ -212,8 +214,7 @@ impl<'w, W: Wall> Control<'w, W> {
             }
         }
         let hit = f64::from(u8::from(meets.is_some()));
-        let noise = if meets.is_some() { self.wall.noise() } else { 0.0 };
-        let off = self.noise(start, noise);
+        let off = if meets.is_some() { self.off(start) } else { [0.0; 3] };
         let read = [0, 1, 2].map(|k| self.at[k] + off[k]);
         self.trip = [read[0], read[1], read[2], hit];
         self.out.touches += usize::from(meets.is_some());
@@ -246,7 +247,8 @@ impl<'w, W: Wall> Control<'w, W> {
         let end = [at[0] + direction[0] * way, at[1] + direction[1] * way];
         let t = self.wall.meets(at[2], [at[0], at[1]], end, self.ball).ok_or("alarm: no surface found")?;
         self.out.touches += 1;
-        let reached = way * t + self.ball + self.wall.noise();
+        let stopped = [at[0] + direction[0] * way * t, at[1] + direction[1] * way * t, at[2]];
+        let reached = way * t + self.ball + self.wall.off(stopped, direction);
         self.surface = [0, 1].map(|k| at[k] + direction[k] * reached);
         if number == 9811 {
             // Only the axis that moved has a result.

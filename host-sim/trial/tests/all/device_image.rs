@@ -56,7 +56,10 @@ fn milled(name: &str, pass: Pass, places_mm: &[f64], levels: &[f64]) -> Part {
 /// As the command line does it.
 fn on_the_host(part: &Part) -> Result<Vec<u8>, Failure> {
     let measurement = Measurement::read(&part.pass, &part.probe)?;
-    let corrected = correct_pass(&part.pass, &measurement, &[], &[Route::Coprocessor], &mut |_| ())?;
+    // The device fits machine and material alone.
+    let mut pass = part.pass.clone();
+    pass.job.discrepancy = false;
+    let corrected = correct_pass(&pass, &measurement, &[], &[Route::Coprocessor], &mut |_| ())?;
     Ok(corrected.image.expect("the route of the coprocessor"))
 }
 

@@ -3,5 +3,6 @@
 mod compensated_program;
 mod device_image;
 mod feed;
+mod probed_stock;
 mod shrinkage;
 mod two_threads;
