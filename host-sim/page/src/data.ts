@@ -190,6 +190,8 @@ export interface Outcome {
   before_mm?: number;
   measured_mm?: number;
   after_mm?: number;
+  /** Largest error at any height of the wall that the page is about. */
+  profile_mm?: number;
   /** Standard deviation where the error with the correction is largest. */
   sigma_mm?: number;
   /** Deepest cut below the wall, positive. */
@@ -229,6 +231,8 @@ export interface Report {
   points?: ProbePoint[];
   outcome?: Outcome;
   parameters?: Parameter[];
+  /** How the wall comes out, in a sentence. */
+  told?: string;
   results?: Result[];
   tolerance_mm?: number;
   /** In place of `tolerance_mm`, for limits that need not lie evenly. */

@@ -21,7 +21,7 @@ export interface Entry {
   closed: boolean;
 }
 
-type Size = "before_mm" | "measured_mm" | "after_mm" | "sigma_mm" | "gouge_mm";
+type Size = "before_mm" | "measured_mm" | "after_mm" | "profile_mm" | "sigma_mm" | "gouge_mm";
 
 /** A figure of every contour: head of its column, name among the head figures. */
 export interface Figure { key: Size; head: string; name: string }
@@ -40,6 +40,7 @@ const FIGURES: Record<Report["kind"], Figure[]> = {
   inspect: [{ key: "measured_mm", head: "measured mm", name: "largest deviation" }],
 };
 const OTHERS: Figure[] = [
+  { key: "profile_mm", head: "any height mm", name: "worst at any height" },
   { key: "sigma_mm", head: "σ mm", name: "standard deviation there" },
   { key: "gouge_mm", head: "deepest cut mm", name: "deepest cut" },
 ];

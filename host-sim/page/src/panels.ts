@@ -28,14 +28,14 @@ export function warnings(list: string[]): HTMLElement {
 }
 
 export function results(report: Report): HTMLElement | null {
-  const { verdict, results: list = [], limits: given } = report;
+  const { told, verdict, results: list = [], limits: given } = report;
   const limits = limitsOf(report);
   const entries = list.map((r) => figure(r.name, withUnit(fixed(r.value, r.decimals), r.unit), r.note));
   if (limits) {
     const notes = [limits.uncertainty === undefined ? "" : `uncertainty ±${fixed(limits.uncertainty, limitDecimals(limits))} mm, k = 2`, given?.from ?? ""].filter(Boolean);
     entries.unshift(figure("tolerance", limitsText(limits), notes.join("; ")));
   }
-  return figures(entries, verdict);
+  return figures(entries, verdict, told);
 }
 
 /** A head figure with a word on it. */
@@ -43,13 +43,13 @@ export function figure(name: string, value: string, note?: string | Node): HTMLE
   return el("div", { class: "result" }, el("dt", {}, name), el("dd", {}, value), note ? el("dd", { class: "note" }, note) : null);
 }
 
-/** Head figures, after the verdict where there is one. */
-export function figures(entries: HTMLElement[], verdict: Report["verdict"], name = "Results"): HTMLElement | null {
-  if (entries.length === 0 && !verdict) return null;
+/** Head figures, after the verdict where there is one; above them how the wall comes out, in a sentence. */
+export function figures(entries: HTMLElement[], verdict: Report["verdict"], told?: string, name = "Results"): HTMLElement | null {
+  if (entries.length === 0 && !verdict && !told) return null;
   const words = { pass: "within tolerance", fail: "out of tolerance", open: "not decided" };
   const stamp = verdict ? el("p", { class: `verdict ${verdict.state}` }, el("strong", {}, words[verdict.state]),
     el("span", {}, verdict.text)) : null;
-  return el("section", { class: "results", "aria-label": name }, stamp, el("dl", {}, ...entries));
+  return el("section", { class: "results", "aria-label": name }, told ? el("p", { class: "told" }, told) : null, stamp, el("dl", {}, ...entries));
 }
 
 export function job(report: Report): HTMLElement | null {

@@ -146,7 +146,7 @@ class Contours {
     const tolerances = new Set(this.entries.map(({ report }) => { const limits = limitsOf(report); return limits ? limitsText(limits) : ""; }));
     const [tolerance] = tolerances;
     if (tolerances.size === 1 && tolerance) entries.unshift(figure("tolerance", tolerance));
-    return figures(entries, this.verdict(), "The worst of all contours");
+    return figures(entries, this.verdict(), undefined, "The worst of all contours");
   }
 
   /** The worst verdict, and whose it is. */

@@ -13,4 +13,5 @@ import "./page.test.mjs";
 import "./partial.test.mjs";
 import "./inspection.test.mjs";
 import "./odd.test.mjs";
+import "./plan.test.mjs";
 import "./picture.test.mjs";

@@ -11,8 +11,8 @@ const KINDS = ["simulate", "correct", "learn", "inspect"];
 /** The figure that a kind is ranked by, and all that it has. */
 const RANKED = { simulate: "before_mm", correct: "after_mm", learn: "after_mm", inspect: "measured_mm" };
 const FIGURES = {
-  simulate: ["before_mm"], correct: ["before_mm", "after_mm", "sigma_mm", "gouge_mm"],
-  learn: ["before_mm", "measured_mm", "after_mm", "sigma_mm", "gouge_mm"], inspect: ["measured_mm", "gouge_mm"],
+  simulate: ["before_mm"], correct: ["before_mm", "after_mm", "profile_mm", "sigma_mm", "gouge_mm"],
+  learn: ["before_mm", "measured_mm", "after_mm", "profile_mm", "sigma_mm", "gouge_mm"], inspect: ["measured_mm", "gouge_mm"],
 };
 
 const file = async (kind) => write(`several-${kind}`, await plate(kind));

@@ -3,6 +3,7 @@
 use truepath_core::checksum::crc32;
 use truepath_core::probe::Contact;
 use truepath_correction::inspection::{Count, Coverage, Judgement, Verdict};
+use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::units::mm;
 use truepath_job::feature::FeatureSummary;
 use truepath_job::job::Assumed;
@@ -37,6 +38,9 @@ pub struct InspectSummary {
     pub rms_error_mm: f64,
     /// Largest spread over the heights of one place, mm.
     pub spread_over_height_mm: f64,
+    /// The largest deviation at any touched height with its standard deviation, beside the largest mean over the touched heights of a
+    /// place; all of it measured, nothing predicted.
+    pub surface: TouchedSurface,
     /// Limits of the wall error; null where none are given.
     pub tolerance: Option<ToleranceSummary>,
     /// Expanded uncertainty (k = 2) of a deviation, mm; null where none is given.
@@ -83,6 +87,7 @@ impl InspectSummary {
             min_error_mm: -most(|one| -one.min_error_mm),
             rms_error_mm: mean(|one| one.rms_error_mm.powi(2)).sqrt(),
             spread_over_height_mm: most(|one| one.spread_over_height_mm),
+            surface: TouchedSurface::worst(contours.iter().map(|one| one.surface))?,
             verdict: judgement.verdict.clone(),
             points_by_verdict: judgement.count,
             statements: judgement.statements.clone(),
@@ -126,6 +131,7 @@ pub fn inspect_summary(
     let part = &pass.job.part;
     let errors: Vec<f64> = contacts.iter().map(|c| mm(c.error)).collect();
     let n = errors.len().max(1) as f64;
+    let surface = TouchedSurface::of_measurement(pass, measurement);
     let feature = pass.feature(&[]);
     let beyond = feature.as_ref().and_then(FeatureSummary::not_judged);
     InspectSummary {
@@ -141,11 +147,12 @@ pub fn inspect_summary(
         min_error_mm: errors.iter().copied().fold(f64::MAX, f64::min),
         rms_error_mm: (errors.iter().map(|e| e * e).sum::<f64>() / n).sqrt(),
         spread_over_height_mm: spread_over_height(contacts),
+        surface,
         tolerance: part.tolerance.map(ToleranceSummary::from),
         uncertainty_mm: part.uncertainty.map(mm),
         verdict: judgement.verdict.clone(),
         points_by_verdict: judgement.count,
-        statements: judgement.statements.iter().cloned().chain(beyond).collect(),
+        statements: judgement.statements.iter().cloned().chain([between_touches(&surface)]).chain(beyond).collect(),
         coverage: Some(coverage),
         contour: None,
         feature,
@@ -153,6 +160,17 @@ pub fn inspect_summary(
         warnings,
         contours: Vec::new(),
     }
+}
+
+/// What the measurement leaves open of the whole wall.
+fn between_touches(surface: &TouchedSurface) -> String {
+    let heights = match surface.heights {
+        1 => "at one height of a place, so that nothing is known of its error over the height".to_owned(),
+        most => format!("at up to {most} heights of a place"),
+    };
+    format!(
+        "The wall was touched {heights}. Between the touches nothing is measured, and no model says anything here: what is to be expected of the whole wall, at every height, truepath correct and truepath learn predict."
+    )
 }
 
 /// Largest spread over the heights of one place, mm.

@@ -15,7 +15,7 @@ mod tables;
 mod wall;
 
 pub use inspection::{InspectSummary, ToleranceSummary, inspect_summary};
-pub use planned::{planned_map_csv, planned_page};
+pub use planned::{PlannedWall, planned_map_csv, planned_page};
 pub use points::{judged_points_csv, points_csv};
 pub use reading::{LawPlaces, PointRow, read_correction, read_points, read_trace, read_wall, read_walls};
 pub use summary::{SimulateSummary, simulate_summary};

@@ -4,7 +4,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use truepath_correction::plan::choice::{Choice, Plan};
-use truepath_correction::plan::wall::WallMap;
+use truepath_correction::surface::wall::WallMap;
 use truepath_ground::diagnostics::Failure;
 
 use truepath_ground::table::table;
@@ -25,12 +25,62 @@ const CLASSES: [&str; 7] = [
     "more left than the tolerance",
 ];
 
-/// The page of a plan for a program.
-pub fn planned_page(plan: &Plan, program: &str) -> String {
-    let picked = plan.recommended.unwrap_or(plan.choices.len()).max(1);
-    let shown: String = (1..=plan.choices.len())
-        .map(|k| format!("#c{k}:checked ~ main .w{k} {{ display: block; }} #c{k}:checked ~ main .r{k} {{ font-weight: 600; }} #c{k}:focus-visible ~ main .r{k} {{ outline: 2px solid var(--c1); }} "))
-        .collect();
+/// A wall with its plan.
+#[derive(Clone, Debug)]
+pub struct PlannedWall<'a> {
+    /// Its name, of several walls of a program.
+    pub name: Option<String>,
+    /// The plan.
+    pub plan: &'a Plan,
+}
+
+/// What of a page belongs to one wall: the number of the wall is part of every name.
+#[derive(Clone, Copy)]
+struct Section<'a> {
+    wall: &'a PlannedWall<'a>,
+    /// From 1.
+    number: usize,
+}
+
+impl Section<'_> {
+    /// Name of a choice, from 1.
+    fn choice(&self, k: usize) -> String {
+        format!("c{}-{k}", self.number)
+    }
+    /// The choice that is shown first.
+    fn picked(&self) -> usize {
+        self.wall.plan.recommended.unwrap_or(self.wall.plan.choices.len()).max(1)
+    }
+    /// A heading below that of the wall, or of the page where it has one wall.
+    fn heading(&self, text: &str) -> Markup {
+        html! { @if self.wall.name.is_some() { h3 { (text) } } @else { h2 { (text) } } }
+    }
+    /// Something that may be wider than a small screen.
+    fn scroll(&self, label: &str, content: Markup) -> Markup {
+        let of = self.wall.name.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
+        html! { div.scroll tabindex="0" role="region" aria-label={ (label) (of) } { (content) } }
+    }
+    /// A choice in words.
+    fn named(&self, k: usize) -> String {
+        let of = self.wall.name.as_ref().map_or_else(String::new, |name| format!(" for {name}"));
+        format!("Choice {k}{of}")
+    }
+    /// What the choice picked shows and marks.
+    fn rules(&self) -> String {
+        let rule = |k: usize| {
+            let name = self.choice(k);
+            format!(
+                "main:has(#{name}:checked) .w{name} {{ display: block; }} main:has(#{name}:checked) .r{name} {{ font-weight: 600; }} "
+            )
+        };
+        (1..=self.wall.plan.choices.len()).map(rule).collect()
+    }
+}
+
+/// The page of the plans of a program, wall by wall.
+pub fn planned_page(walls: &[PlannedWall<'_>], program: &str) -> String {
+    let sections: Vec<Section> = walls.iter().zip(1..).map(|(wall, number)| Section { wall, number }).collect();
+    let shown: String = sections.iter().map(Section::rules).collect();
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -41,27 +91,11 @@ pub fn planned_page(plan: &Plan, program: &str) -> String {
                 style { (PreEscaped(STYLE)) (PreEscaped(shown)) }
             }
             body {
-                @for k in 1..=plan.choices.len() {
-                    input type="radio" name="choice" id={ "c" (k) } checked[k == picked] aria-label={ "Choice " (k) };
-                }
                 main {
                     h1 { "Finishing plan: " (program) }
-                    p.verdict { (verdict(plan)) }
-                    p.soft {
-                        "As programmed, one uncorrected pass: " (um(plan.as_programmed.profile_mm)) " µm at the worst place of the wall, mean over the height "
-                        (um(plan.as_programmed.mean_mm)) " µm, " (format!("{:.2}", plan.minutes)) " min along the contour."
-                    }
-                    h2 { "Time against error" }
-                    (front(plan))
-                    div.scroll tabindex="0" role="region" aria-label="Choices" { (choices(plan)) }
-                    h2 { "The wall, unrolled" }
-                    (legend(plan))
-                    figure { (wall(&plan.map, plan.tolerance_mm)) figcaption { "as programmed" } }
-                    @for (k, choice) in plan.choices.iter().enumerate() {
-                        figure class={ "choice w" (k + 1) } {
-                            (wall(&choice.map, plan.tolerance_mm))
-                            figcaption { "choice " (k + 1) ": " (choice.process) }
-                        }
+                    @for section in &sections {
+                        @if let Some(name) = &section.wall.name { h2.contour { (name) } }
+                        (of_wall(section))
                     }
                     p.soft {
                         "Predicted by the machine that was identified from the points; the deviations in the table hold what they leave open and a few percent that a model lacks. "
@@ -72,6 +106,33 @@ pub fn planned_page(plan: &Plan, program: &str) -> String {
         }
     }
     .into_string()
+}
+
+/// What is told of one wall.
+fn of_wall(section: &Section<'_>) -> Markup {
+    let plan = section.wall.plan;
+    html! {
+        p.verdict { (verdict(plan)) }
+        p.soft {
+            "As programmed, one uncorrected pass: " (um(plan.as_programmed.profile_mm)) " µm at the worst place of the wall, mean over the height "
+            (um(plan.as_programmed.mean_mm)) " µm, " (format!("{:.2}", plan.minutes)) " min along the contour."
+        }
+        (section.heading("Time against error"))
+        (section.scroll("Time against error", front(plan)))
+        (section.scroll("Choices", choices(section)))
+        (section.heading("The wall, unrolled"))
+        (legend(plan))
+        figure {
+            (section.scroll("The wall as programmed", wall(&plan.map, plan.tolerance_mm)))
+            figcaption { "as programmed" }
+        }
+        @for (k, choice) in plan.choices.iter().enumerate() {
+            figure class={ "choice w" (section.choice(k + 1)) } {
+                (section.scroll(&format!("The wall of choice {}", k + 1), wall(&choice.map, plan.tolerance_mm)))
+                figcaption { "choice " (k + 1) ": " (choice.process) }
+            }
+        }
+    }
 }
 
 fn um(mm: f64) -> String {
@@ -98,23 +159,30 @@ fn verdict(plan: &Plan) -> String {
     }
 }
 
-fn choices(plan: &Plan) -> Markup {
+fn choices(section: &Section<'_>) -> Markup {
+    let plan = section.wall.plan;
     html! {
         table {
             thead { tr {
-                th { "" } th { "time" } th { "worst error, µm" } th { "± 2 sigma" } th { "within" } th { "force, N" } th { "passes" }
+                th { "choice" } th { "time" } th { "worst error, µm" } th { "± 2 sigma" } th { "within" } th { "force, N" } th { "passes" }
             } }
             tbody {
                 @for (k, choice) in plan.choices.iter().enumerate() {
                     @let holds = choice.within_tolerance >= plan.confidence;
-                    tr class={ "r" (k + 1) } {
-                        td { label for={ "c" (k + 1) } { (k + 1) @if plan.recommended == Some(k + 1) { " ★" } } }
+                    tr class={ "r" (section.choice(k + 1)) } {
+                        td {
+                            label {
+                                input type="radio" name={ "choice-" (section.number) } id=(section.choice(k + 1)) checked[k + 1 == section.picked()]
+                                    aria-label=(section.named(k + 1));
+                                (k + 1) @if plan.recommended == Some(k + 1) { " ★" }
+                            }
+                        }
                         td { (format!("{:.2} ×", choice.time_ratio)) }
                         td { (um(choice.predicted.profile_mm)) }
                         td { (um(2.0 * choice.predicted.sigma_mm)) }
-                        td class=(if holds { "yes" } else { "no" }) { (format!("{:.0} %", 100.0 * choice.within_tolerance)) }
+                        td class=(if holds { "yes" } else { "no" }) { (format!("{:.0} %", 100.0 * choice.within_tolerance)) @if holds { " ✓" } @else { " ✗" } }
                         td { (format!("{:.0}", choice.force_n)) }
-                        td { label for={ "c" (k + 1) } { (choice.process) } span.soft { " most of it: " (choice.limited_by) } }
+                        td { label for=(section.choice(k + 1)) { (choice.process) } span.soft { " most of it: " (choice.limited_by) } }
                     }
                 }
             }

@@ -153,6 +153,8 @@ pub fn compare_csv(laws: &[Row]) -> Result<Vec<u8>, Failure> {
         max_error_mm: short(row.max_error_mm),
         rms_error_mm: short(row.rms_error_mm),
         worst_height_mm: short(row.worst_height_mm),
+        p95_mm: short(row.p95_mm),
+        worst_height_sigma_mm: short(row.worst_height_sigma_mm),
         gouge_mm: short(row.gouge_mm),
         factor: row.factor.map(|f| rounded(f, 2)),
         ..row.clone()

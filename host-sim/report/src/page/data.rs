@@ -57,6 +57,9 @@ pub struct Page {
     /// The contour in a line, for a page of several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcome: Option<Outcome>,
+    /// How the wall comes out, in a sentence: mean over the height, and the worst at any height.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub told: Option<String>,
     /// Head figures.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub results: Vec<Figure>,
@@ -93,6 +96,7 @@ impl Page {
             points: Vec::new(),
             parameters: Vec::new(),
             outcome: None,
+            told: None,
             results: Vec::new(),
             tolerance_mm: None,
             limits: None,

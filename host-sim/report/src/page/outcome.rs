@@ -24,6 +24,9 @@ pub struct Outcome {
     /// With the correction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after_mm: Option<f64>,
+    /// Largest error at any height of the wall that the page is about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile_mm: Option<f64>,
     /// Standard deviation of the error where that is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sigma_mm: Option<f64>,

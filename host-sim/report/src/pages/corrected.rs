@@ -4,6 +4,7 @@ use truepath_core::correct::{Band, Target};
 use truepath_core::cut::Loop;
 use truepath_correction::correct::CorrectedPass;
 use truepath_correction::summary::CorrectSummary;
+use truepath_correction::surface::predicted::Surfaces;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::float;
 use truepath_job::measurement::Measurement;
@@ -37,7 +38,7 @@ pub fn corrected(pass: &Pass, measurement: &Measurement, done: &CorrectedPass, o
         milled: None,
         after: words("with the correction"),
         correction: &done.correction,
-        residual: &done.residual,
+        residual: &done.beside.mean,
     };
     of_correction(pass, measurement, done, of, |machine| predicted(machine, &passes))
 }
@@ -69,9 +70,11 @@ pub(super) fn of_correction(
     if let Some(outcome) = &mut page.outcome {
         outcome.before_mm = known(done.summary.max_error_before_mm);
         outcome.after_mm = known(done.summary.max_error_after_mm);
+        outcome.profile_mm = known(done.summary.profile_error_after_mm);
         outcome.sigma_mm = known(done.summary.sigma_at_max_error_mm);
         outcome.gouge_mm = known(done.summary.worst_gouge_mm);
     }
+    page.told = Some(format!("expected: {} (2 sigma)", done.summary.surface.words()));
     page.results = figures(&done.summary, &["largest error without correction", "largest error with it"]);
     page.warnings = page_warnings(
         pass,
@@ -97,11 +100,15 @@ pub(super) fn figures(s: &CorrectSummary, largest: &[impl AsRef<str>; 2]) -> Vec
     let used =
         format!("{} points used, {} outlying, {} set aside", s.points_used, s.points_outlying, s.points_rejected);
     let at = format!("at s = {:.1} mm", s.max_error_after_s_mm);
+    let after = &s.surface.after;
+    let worst = format!("expected, ± {:.4} (2 sigma)", 2.0 * after.profile.sigma_mm);
     let figures = [
         Figure::mm(without, s.max_error_before_mm).map(|f| f.noted("predicted")),
         Figure::mm(with, s.max_error_after_mm).map(|f| f.noted(format!("predicted, {at}"))),
         Figure::mm("standard deviation there", s.sigma_at_max_error_mm),
-        Figure::mm("largest standard deviation", s.max_sigma_mm).map(|f| f.noted("what the points leave open")),
+        Figure::mm("largest standard deviation", s.max_sigma_mm)
+            .map(|f| f.noted(format!("{:.4} by the points", s.max_sigma_by_points_mm))),
+        Figure::mm("worst at any height", after.profile.profile_mm).map(|f| f.noted(worst)),
         Figure::mm("left over the height", s.axial_form_error_mm).map(|f| f.noted("no X Y shift cures it")),
         Figure::mm("deepest cut at any height", s.worst_gouge_mm).map(|f| f.noted("predicted")),
         Figure::mm("largest correction", s.max_correction_mm).map(|f| f.noted("along an axis")),
@@ -116,6 +123,7 @@ fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
         Fact::new("law", format!("{}; the wall follows the {} force", s.law, s.wall_law)),
         Fact::new("error shown", shown(wanted.target, wanted.band, float(pass.core.setup.axial_depth))),
     ];
+    facts.extend(at_every_height(&s.surface));
     let route = match (&done.program, &done.image) {
         (Some(_), Some(_)) => "program and coprocessor",
         (None, Some(_)) => "coprocessor: the program stays as it is",
@@ -143,6 +151,20 @@ fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
         facts.push(Fact::new("depths corrected", format!("{corrected}, all with this correction")));
     }
     facts
+}
+
+/// What is expected of the whole wall, and what makes the error at its worst place.
+fn at_every_height(surface: &Surfaces) -> [Fact; 2] {
+    let after = &surface.after;
+    let all = format!(
+        "95 % of the wall within {:.4} ± {:.4} mm (2 sigma), {:.4} mm without the correction",
+        after.p95_mm,
+        2.0 * after.p95_sigma_mm,
+        surface.before.p95_mm
+    );
+    let place =
+        format!("at s = {:.1} mm, {:.1} mm above the tip: {}", after.s_mm, after.height_mm, after.causes.words());
+    [Fact::new("at every height", all), Fact::new("what makes the worst", place)]
 }
 
 /// What the error along the contour is of.

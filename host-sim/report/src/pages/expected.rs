@@ -85,6 +85,7 @@ mod tests {
             unguarded: Vec::new(),
             predicted: walls.iter().map(wall).collect(),
             sigma: vec![um(1); walls.len()],
+            sigma_by_points: vec![um(1); walls.len()],
             damped: None,
             used_again: false,
             wanted,

@@ -4,6 +4,7 @@ use truepath_correction::as_milled::AsMilled;
 use truepath_correction::correct::CorrectedPass;
 use truepath_correction::learn::LearnSummary;
 use truepath_correction::learning::Verdict;
+use truepath_correction::surface::predicted::Surfaces;
 use truepath_ground::diagnostics::Failure;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -31,7 +32,7 @@ pub fn learned(
         milled: Some((cut, &milled.correction)),
         after: next,
         correction: &done.correction,
-        residual: &done.residual,
+        residual: &done.beside.mean,
     };
     let points = Points::Corrected(verdict.part);
     let mut page = of_correction(pass, measurement, done, points, |machine| predicted(machine, &passes))?;
@@ -41,6 +42,7 @@ pub fn learned(
         page.verdict.map(|v| page::Verdict { text: format!("part {}, {}", next_part(verdict), v.text), ..v });
     page.title =
         format!("{}: part {} measured, correction of part {}", subject(pass), verdict.part, next_part(verdict));
+    page.told = Some(told(summary));
     page.results = came_out(summary).into_iter().chain(figures(&done.summary, &names(verdict))).collect();
     if let Some(outcome) = &mut page.outcome {
         outcome.measured_mm = known(verdict.measured_error_mm.max_mm);
@@ -49,6 +51,13 @@ pub fn learned(
         job.facts.extend(verdict.used_again.map(|again| Fact::new("next part", again.words())));
     }
     Ok(page)
+}
+
+/// From the part that was measured, as the model of all parts has its whole wall, to the next one.
+fn told(summary: &LearnSummary) -> String {
+    let surfaces = Surfaces { before: summary.whole_surface, after: summary.correct.surface.after };
+    let part = summary.verdict.part;
+    format!("part {part} to part {}, expected: {} (2 sigma)", next_part(&summary.verdict), surfaces.words())
 }
 
 const fn next_part(verdict: &Verdict) -> u32 {
@@ -88,9 +97,12 @@ fn came_out(summary: &LearnSummary) -> Vec<Figure> {
     let places = format!("at {} places, rms {:.4} mm", now.places, now.rms_mm);
     let along = format!("by the model, at s = {:.1} mm, σ {:.4} mm", whole.s_mm, whole.sigma_mm);
     let earlier = format!("at the same places, rms {:.4} mm", before.rms_mm);
+    let worst = format!("at a touched height, ± {:.4} (2 sigma)", 2.0 * summary.measured_surface.sigma_mm);
     let promised = format!("{} of {} places within 2σ", promise.within_two_sigma, promise.places);
     let figures = [
         Figure::mm(format!("part {} measured, largest error", now.part), now.max_mm).map(|f| f.noted(places)),
+        Figure::mm(format!("part {} measured, worst height", now.part), summary.measured_surface.profile_mm)
+            .map(|f| f.noted(worst)),
         Figure::mm(format!("part {}, whole contour", now.part), whole.max_mm).map(|f| f.noted(along)),
         Figure::mm(format!("part {}, largest error", before.part), before.max_mm).map(|f| f.noted(earlier)),
         Figure::mm(format!("promised for part {}", now.part), promise.max_mm).map(|f| f.noted(promised)),

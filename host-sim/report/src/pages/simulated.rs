@@ -13,6 +13,7 @@ pub fn simulated(pass: &Pass, along: Along, summary: &SimulateSummary) -> Page {
     page.heights = along.heights;
     if let Some(outcome) = &mut page.outcome {
         outcome.before_mm = known(summary.max_error_mm);
+        outcome.profile_mm = summary.surface.as_ref().and_then(|surface| known(surface.profile_mm));
     }
     page.results = figures(summary);
     page.warnings = page_warnings(pass, None, summary.warnings.iter().cloned().chain(along.note));
