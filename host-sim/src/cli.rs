@@ -12,8 +12,8 @@ use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::interruption;
 
 use crate::command::{
-    bore, canon, compare, correct, demo, device, hil, image, init, inspect, learn, multiaxis, plan, plot, pocket,
-    probe, replay, simulate, split, study,
+    bore, canon, compare, correct, demo, device, forces, hil, image, init, inspect, learn, multiaxis, plan, plot,
+    pocket, probe, replay, simulate, split, study,
 };
 use crate::terminal::Terminal;
 
@@ -76,6 +76,8 @@ enum Command {
     Device(device::Options),
     /// Waviness, roughness and roundness of a bore milled by a circling cutter.
     Bore(bore::Options),
+    /// Force coefficients from records of a dynamometer, or of the power of the spindle.
+    Forces(forces::Options),
     /// Canonical moves of a program, in the text format of LinuxCNC's `rs274 -g`.
     Canon(canon::Options),
 }
@@ -123,6 +125,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Hil(arguments) => hil::main(&arguments, terminal),
         Command::Device(options) => device::main(&options, terminal),
         Command::Bore(options) => bore::main(&options, terminal),
+        Command::Forces(options) => forces::main(&options, terminal),
         Command::Canon(options) => canon::main(&options, terminal),
     }
 }

@@ -73,6 +73,21 @@ fn words(s: &CompareSummary) -> String {
         );
     }
     text.push('\n');
+    if let [before, .., after] = &s.laws[..] {
+        let sigma = after.worst_height_sigma_mm.map_or_else(String::new, |sigma| format!(" ± {:.3}", 2.0 * sigma));
+        let short = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.3}"));
+        text += &format!(
+            "{}: {} {} -> {} mm; worst at any height {} -> {}{sigma} mm; 95 % of the wall within {} -> {} mm\n\n",
+            after.title,
+            if s.target == "mean" { "mean over the height" } else { "target" },
+            short(before.max_error_mm),
+            short(after.max_error_mm),
+            short(before.worst_height_mm),
+            short(after.worst_height_mm),
+            short(before.p95_mm),
+            short(after.p95_mm),
+        );
+    }
     for row in s.laws.iter().filter(|row| !row.remark.is_empty()) {
         text += &format!("{}: {}\n", row.title, row.remark);
     }
@@ -123,7 +138,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CompareSu
     let mut left: Vec<Result<Walls, String>> = Vec::new();
     for candidate in &candidates {
         left.push(match &plant {
-            None => Ok(by_model(&machine, &wanted, &candidate.nodes)),
+            None => Ok(by_model(&machine, &identified, &wanted, &candidate.nodes)),
             Some(plant) => virtual_machine(&pass, &path, plant, &wanted, &candidate.nodes).map_err(|e| e.to_string()),
         });
         progress(0.7 + 0.3 * left.len() as f64 / candidates.len() as f64);

@@ -5,12 +5,14 @@ use std::path::Path as FilePath;
 
 use truepath_core::checksum::crc32;
 use truepath_correction::codes::{Q001, Q004};
-use truepath_correction::learning::{History, Part, refuse_corrected};
+use truepath_correction::learning::{History, Part, WrittenFile, refuse_corrected};
+use truepath_correction::plan::history::PlanHistory;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
-use super::correction_files::HISTORY;
+use super::correction_files::{CONTOURS, HISTORY};
+use super::plan_files::{FIRST_IMAGE, PLAN_HISTORY, PROGRAM};
 
 /// Reads the history of a folder, and makes sure that the correction beside it, or in the folder `base` of all contours, is
 /// the one it tells of.
@@ -22,8 +24,43 @@ pub(super) fn history_in(folder: &FilePath, base: &FilePath) -> Result<History, 
         return Err(InputError::new(Q001, found, "a folder with a correction and its history", help).in_file(folder));
     }
     let history = History::read(&Source::read(&place)?)?;
+    refuse_changed(&history.next.files, HISTORY, folder, base)?;
+    Ok(history)
+}
+
+/// Reads the history of planned parts of a folder, and makes sure that the program beside it is the one it tells of.
+pub(super) fn plan_history_in(folder: &FilePath) -> Result<PlanHistory, InputError> {
+    let history = PlanHistory::read(&Source::read(&folder.join(PLAN_HISTORY))?)?;
+    refuse_changed(&history.next.files, PLAN_HISTORY, folder, folder)?;
+    Ok(history)
+}
+
+/// Refuses a folder whose planned passes cannot be learned from, because no history of them was written.
+///
+/// # Errors
+/// `Q001` with what kind of passes they are.
+pub(super) fn refuse_unlearned(folder: &FilePath) -> Result<(), InputError> {
+    let holds = |name: &str| folder.join(name).exists();
+    if holds(PLAN_HISTORY) || !holds(PROGRAM) {
+        return Ok(());
+    }
+    let passes = if holds(FIRST_IMAGE) {
+        "planned passes for the coprocessor"
+    } else if holds(CONTOURS) {
+        "planned passes of several contours"
+    } else {
+        "planned passes"
+    };
+    let found = format!("{} holds {passes} and no {PLAN_HISTORY}", folder.display());
+    let expected = "planned passes of one contour, in the program, with their history";
+    let help = "plan one contour (--feature ID) with truepath plan --write --route program and learn from its part; truepath inspect judges this one";
+    Err(InputError::new(Q001, found, expected, help).in_file(folder))
+}
+
+/// Makes sure that the files that a history tells of lie in its folder or in the folder `base` of all contours, unchanged.
+fn refuse_changed(files: &[WrittenFile], history: &str, folder: &FilePath, base: &FilePath) -> Result<(), InputError> {
     let mut held = 0;
-    for file in &history.next.files {
+    for file in files {
         let places = [folder.join(&file.name), base.join(&file.name)];
         let Some((place, bytes)) = places.into_iter().find_map(|p| std::fs::read(&p).ok().map(|bytes| (p, bytes)))
         else {
@@ -33,17 +70,17 @@ pub(super) fn history_in(folder: &FilePath, base: &FilePath) -> Result<History, 
         let crc = format!("{:08x}", crc32(&bytes));
         if crc != file.crc32 {
             let found = format!("{} has the CRC-32 {crc}", place.display());
-            let expected = format!("{}, as {HISTORY} says of the correction it was cut with", file.crc32);
+            let expected = format!("{}, as {history} says of the correction it was cut with", file.crc32);
             return Err(Q004.error(found, expected).in_file(&place));
         }
     }
     if held == 0 {
-        let names: Vec<&str> = history.next.files.iter().map(|file| file.name.as_str()).collect();
+        let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
         let found = format!("{} does not hold the correction", folder.display());
-        let help = "name the folder as truepath correct or truepath learn left it";
+        let help = "name the folder as truepath wrote it";
         return Err(InputError::new(Q004, found, names.join(" or "), help).in_file(folder));
     }
-    Ok(history)
+    Ok(())
 }
 
 /// Refuses points that lie where the correction in the output folder leaves the wall.

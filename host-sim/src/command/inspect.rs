@@ -126,6 +126,14 @@ fn words(inspection: &Inspection) -> String {
         s.spread_over_height_mm,
         d = inspection.decimals
     );
+    let wall = &s.surface;
+    text += &format!(
+        "{} (2 sigma)\nthe worst at s = {:.1} mm, {:.1} mm above the tip; 95 % of the points within {:.4} mm\n",
+        wall.words(),
+        wall.s_mm,
+        wall.height_mm,
+        wall.p95_mm
+    );
     text += &s.statements.join("\n");
     text + &format!("\nverdict: {}\n", s.verdict.text)
 }

@@ -3,32 +3,31 @@
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::mpsc::channel;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use truepath_core::checksum::crc32;
 use truepath_correction::plan::choice::{Plan, Planner, Wanted};
-use truepath_correction::plan::wall::WallFigures;
-use truepath_correction::planned::PlannedDepth;
+use truepath_correction::plan::history::{NextPart, PlanHistory, Process};
+use truepath_correction::plan::written::{Chosen, WrittenPlan, write};
+use truepath_correction::planned::{PlannedDepth, can_arm};
+use truepath_correction::remarks::said_of_every;
 use truepath_correction::summary::name_with;
+use truepath_correction::surface::wall::WallFigures;
+use truepath_correction::verification::{self, ProbeDialect, Settings, plan_every};
 use truepath_ground::codes::{C001, J004, J008};
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::limits::Limits;
 use truepath_ground::output::{OutputFolder, json};
-use truepath_job::job::{JobFile, ProbeFlags, Which};
+use truepath_job::job::{JobFile, ProbeFlags, ROUTES, Route, Which, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
-use truepath_report::{planned_map_csv, planned_page};
+use truepath_report::{PlannedWall, planned_map_csv, planned_page};
 
+use super::correction_files::{contour_folder, contour_name};
+use super::plan_files::{FILES, MAP, PLAN_HISTORY, PROBED, PROGRAM, REPORT, VERIFY};
+use super::probe::log_name;
 use crate::terminal::Terminal;
 
-/// Files this command may write.
-const FILES: &[&str] = &["summary.json", REPORT, PROGRAM, "difference.txt", "wall-map.csv", NAMED];
-/// The written program, beside the one of its own name.
-const PROGRAM: &str = "planned.nc";
-/// Stands for that name when the folder is claimed.
-const NAMED: &str = "*.planned*";
-/// The page.
-const REPORT: &str = "report.html";
 /// Half the width of a tolerance.
 const TOLERANCE: Limits = Limits::within("0.0001", "10", "mm");
 /// Share of parts that have to be within it.
@@ -51,9 +50,13 @@ pub struct Options {
     /// Folder for the summary, the page and the program.
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Write the program of a choice, by its number in the table, or of the one recommended.
+    /// Write the program of a choice, by its number in the table, or of the one recommended; of several contours one number for all, or
+    /// one for each, as in 2,1.
     #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "recommended", requires = "output")]
     pub write: Option<String>,
+    /// Displace the passes in the program text or in the coprocessor; the job says it otherwise.
+    #[arg(long, value_parser = one_of(&ROUTES), requires = "write")]
+    pub route: Option<Route>,
     /// Replace the files of an earlier run.
     #[arg(long, requires = "output")]
     pub force: bool,
@@ -65,33 +68,90 @@ pub struct Options {
     pub which: Which,
 }
 
-/// A plan, and what the user should know.
+/// What is planned for a part, and what the user should know.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct PlanSummary {
     /// Version of this file.
     pub version: u32,
-    /// The plan.
+    /// The plan, where one contour is planned.
     #[serde(flatten)]
-    pub plan: Plan,
-    /// The choice whose program was written.
+    pub plan: Option<Plan>,
+    /// The plans of several contours, in the order of the program.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contours: Vec<ContourPlan>,
+    /// The choices whose program was written.
     pub written: Option<Written>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
 
+/// The plan of one of several contours.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct ContourPlan {
+    /// Its name.
+    pub contour: String,
+    /// Its lines in the program.
+    pub lines: [u32; 2],
+    /// How many depths are cut alike, each in the time of the plan.
+    pub depths: usize,
+    /// The plan.
+    #[serde(flatten)]
+    pub plan: Plan,
+}
+
 /// A written program.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Written {
-    /// Number of the choice.
-    pub choice: usize,
     /// The file to load at the machine.
     pub program: PathBuf,
+    /// The program that touches its wall, for the control of the part's program; `None` where that is not known.
+    pub verify: Option<PathBuf>,
+    /// Images of the passes in the order of cutting, for the coprocessor.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub images: Vec<WrittenImage>,
+    /// The choice, where one contour is planned.
+    #[serde(flatten)]
+    pub choice: Option<WrittenChoice>,
+    /// The choices of several contours.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contours: Vec<WrittenChoice>,
+    /// Whether learn can go on from there.
+    #[serde(skip)]
+    pub learns: bool,
+    /// Where the passes stand.
+    pub depths: Vec<PlannedDepth>,
+}
+
+impl Written {
+    /// Passes along the contours, at all depths.
+    pub(super) fn passes(&self) -> usize {
+        self.depths.iter().map(|depth| depth.passes.len()).sum()
+    }
+}
+
+/// The image of a pass.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct WrittenImage {
+    /// Its file.
+    pub image: PathBuf,
+    /// The feature, as `M160` names it.
+    pub feature: u32,
+    /// The pass of that feature.
+    pub pass: u32,
+}
+
+/// What was written for a contour.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct WrittenChoice {
+    /// Its name, of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contour: Option<String>,
+    /// Number of the choice.
+    pub choice: usize,
     /// The wall that it leaves, as the identified machine cuts it.
     pub wall: WallFigures,
     /// Largest distance of a commanded place from the programmed path, mm.
     pub largest_correction_mm: f64,
-    /// Where the passes stand.
-    pub depths: Vec<PlannedDepth>,
 }
 
 /// Plans and prints the choices.
@@ -102,7 +162,49 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 }
 
 fn words(summary: &PlanSummary) -> String {
-    let plan = &summary.plan;
+    let mut text = summary.plan.iter().map(table).collect::<String>();
+    for one in &summary.contours {
+        let depths = if one.depths > 1 { format!(", {} depths", one.depths) } else { String::new() };
+        text += &format!("{} (lines {}-{}{depths})\n{}\n", one.contour, one.lines[0], one.lines[1], table(&one.plan));
+    }
+    text += &together(&summary.contours);
+    match &summary.written {
+        Some(written) => {
+            let numbers: Vec<String> =
+                written.choice.iter().chain(&written.contours).map(|one| one.choice.to_string()).collect();
+            text += &format!(
+                "\nchoice {} written: {}, {} passes\n",
+                numbers.join(", "),
+                written.program.display(),
+                written.passes()
+            );
+            if let Some(last) = written.images.last() {
+                let folder = last.image.parent().unwrap_or(FilePath::new("")).display();
+                text += &format!("images of {} passes in {folder}: each is armed by M160\n", written.images.len());
+            }
+            let with = written.verify.as_ref().map_or_else(String::new, |verify| format!(" with {}", verify.display()));
+            let then = if written.learns {
+                "give the points to truepath learn --from the folder"
+            } else {
+                "see what truepath inspect says"
+            };
+            text += &format!("next: mill a new part with it, touch its wall{with}, and {then}\n");
+        }
+        None if summary
+            .plan
+            .iter()
+            .chain(summary.contours.iter().map(|one| &one.plan))
+            .any(|p| !p.choices.is_empty()) =>
+        {
+            text += "next: --write N -o DIR writes the program of a choice\n";
+        }
+        None => {}
+    }
+    text
+}
+
+/// The choices for a contour.
+fn table(plan: &Plan) -> String {
     let um = |mm: f64| mm * 1e3;
     let mut text = format!(
         "as programmed: {:.1} um at the worst place of the wall (mean over the height {:.1} um), {:.2} min\n\
@@ -128,7 +230,7 @@ fn words(summary: &PlanSummary) -> String {
             choice.limited_by,
         );
     }
-    text += &match (plan.recommended, plan.choices.last()) {
+    text + &match (plan.recommended, plan.choices.last()) {
         (Some(k), _) => format!("\n* choice {k} is the fastest that holds the tolerance\n"),
         (None, Some(best)) => {
             let needed = best.predicted.profile_mm + 2.0 * best.predicted.sigma_mm;
@@ -139,23 +241,32 @@ fn words(summary: &PlanSummary) -> String {
             )
         }
         (None, None) => "\nno process keeps the limits of [plan]\n".to_owned(),
-    };
-    match &summary.written {
-        Some(written) => {
-            let name = written.program.display();
-            text += &format!(
-                "\nchoice {} written: {name}, {} passes\nnext: mill a new part with it, touch its wall, and see what truepath inspect says\n",
-                written.choice,
-                written.depths.iter().map(|depth| depth.passes.len()).sum::<usize>()
-            );
-        }
-        None if !plan.choices.is_empty() => text += "next: --write N -o DIR writes the program of a choice\n",
-        None => {}
     }
-    text
 }
 
-/// Plans, and writes summary and table where a folder is named. `progress` is told the share done, 0…1.
+/// The time of all contours, with the fastest choices that hold the tolerance, or the best ones where none does.
+fn together(contours: &[ContourPlan]) -> String {
+    if contours.is_empty() {
+        return String::new();
+    }
+    let chosen = |plan: &Plan| plan.recommended.unwrap_or(plan.choices.len());
+    let of = |one: &ContourPlan| {
+        let choice = chosen(&one.plan).checked_sub(1).and_then(|k| one.plan.choices.get(k));
+        choice.map_or(one.plan.minutes, |choice| choice.minutes) * one.depths as f64
+    };
+    let before: f64 = contours.iter().map(|one| one.plan.minutes * one.depths as f64).sum();
+    let after: f64 = contours.iter().map(of).sum();
+    let missed: Vec<&str> =
+        contours.iter().filter(|one| one.plan.recommended.is_none()).map(|one| one.contour.as_str()).collect();
+    let with = match missed.len() {
+        0 => "the fastest choices that hold the tolerance".to_owned(),
+        all if all == contours.len() => "the most accurate choices".to_owned(),
+        _ => format!("the fastest choices that hold the tolerance, the most accurate one for {}", missed.join(", ")),
+    };
+    format!("all contours: {before:.2} min as programmed, {after:.2} min with {with} ({:.2} times)\n", after / before)
+}
+
+/// Plans, and writes summary, page and program where a folder is named. `progress` is told the share done, 0…1.
 ///
 /// # Errors
 /// Whatever is wrong with job, program, probe file or options, and outputs that cannot be written.
@@ -164,75 +275,257 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
     job.override_probe(&options.probe_flags)?;
     job.which = options.which.clone();
     let wanted = wanted(options, &job)?;
-    let pass = Pass::read(job)?;
-    if pass.surface.is_some() {
-        let found = "stock.surface is given: the allowance is not even";
-        let help = "plan the job of the whole, even allowance";
-        let error = InputError::new(J008, found, "a job with stock.allowance_mm", help);
-        return Err(error.at(pass.job.source(), pass.job.span("stock.surface")).into());
-    }
     let file = Source::read(&options.probe)?;
-    let (pass, measurement) = Measurement::of_one(pass, &file)?;
-    let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
-    let planner = Planner::new(&pass, &measurement, |share| progress(0.1 * share))?;
-    let (limits, said) = planner.possible(wanted.limits);
-    let wanted = Wanted { limits, ..wanted };
-    // The search uses all cores; the bar belongs to this thread.
-    let (tell, told) = channel();
-    let searching = &planner;
-    let plan = std::thread::scope(|scope| {
-        let work = scope.spawn(move || {
-            searching.plan(&wanted, &move |share| {
-                let _ = tell.send(share);
-            })
-        });
-        told.iter().for_each(|share| progress(0.1 + 0.8 * share));
-        work.join().unwrap_or_else(|_| Err(Failure::Internal("the search for a plan broke off".to_owned())))
-    })?;
-    let mut warnings = pass.warnings.clone();
-    warnings.extend(measurement.remarks(&file));
-    warnings.extend(said);
-    let chosen = options.write.as_deref().map(|text| chosen(text, &plan)).transpose()?;
-    let mut summary = PlanSummary { version: 1, plan, written: None, warnings };
-    let Some(folder) = folder else { return Ok(summary) };
-    if let Some(number) = chosen {
-        let cuts = &summary.plan.choices[number - 1].cuts;
-        let written = planner.write(cuts, crc32(file.bytes()), &mut |share| progress(0.9 + 0.1 * share))?;
-        let name = name_with(pass.program.name(), "planned");
-        for file in [PROGRAM, &name] {
-            folder.write(file, &written.program.text)?;
-        }
-        folder.write("difference.txt", written.program.report.as_bytes())?;
-        folder.write("wall-map.csv", &planned_map_csv(&written.map)?)?;
-        summary.warnings.extend(written.program.warnings);
-        summary.written = Some(Written {
-            choice: number,
-            program: options.output.clone().unwrap_or_default().join(name),
-            wall: written.wall,
-            largest_correction_mm: written.largest_correction_mm,
-            depths: written.program.depths,
-        });
+    let walls = Pass::every(job)?;
+    let measured = walls.first().and_then(|pass| Some((pass, pass.job.measured_stock()?)));
+    if let Some((pass, key)) = measured {
+        let found = format!("{key} is given: the allowance is not even");
+        let help = "plan the job of the whole, even allowance";
+        let error = InputError::new(J008, found, "a job with stock.allowance_mm alone", help);
+        return Err(error.at(pass.job.source(), pass.job.span(key)).into());
     }
+    let (measured, untouched) = match <[Pass; 1]>::try_from(walls) {
+        Ok([only]) => (vec![Measurement::of_one(only, &file)?], Vec::new()),
+        Err(walls) => {
+            Measurement::of_every(walls, &file)?.into_iter().partition(|(_, points)| !points.contacts.is_empty())
+        }
+    };
+    let route = options.route.or(measured.first().map(|(pass, _)| pass.job.route)).unwrap_or_default();
+    if options.write.is_some() && route == Route::Coprocessor {
+        measured.iter().try_for_each(|(pass, _)| can_arm(pass))?;
+    }
+    let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
+    let walls: Vec<(&Pass, &Measurement)> = measured.iter().map(|(pass, points)| (pass, points)).collect();
+    let planners = Planner::every(&walls, |share| progress(0.1 * share))?;
+    let (mut plans, mut said) = (Vec::new(), Vec::new());
+    for (k, (planner, (pass, points))) in planners.iter().zip(&measured).enumerate() {
+        let (limits, own) = planner.possible(wanted.limits);
+        let share = 0.8 / planners.len() as f64;
+        let plan =
+            search(planner, &Wanted { limits, ..wanted }, &mut |done| progress(0.1 + (k as f64 + done) * share))?;
+        let beyond = beyond_what_shows(&plan, pass).into_iter().collect();
+        said.push([pass.warnings.clone(), points.remarks(&file), own, beyond].concat());
+        plans.push(plan);
+    }
+    let mut warnings = match &said[..] {
+        [only] => only.clone(),
+        several => {
+            let names: Vec<String> = measured.iter().map(|(pass, _)| contour_name(pass)).collect();
+            said_of_every(names.iter().map(String::as_str).zip(several.iter().map(Vec::as_slice)))
+        }
+    };
+    for (pass, points) in &untouched {
+        let lines = pass.core.contour.lines;
+        warnings.push(format!(
+            "{} (lines {}-{}) is not planned: no point of the probe file is on its wall. Touch it with the program of truepath probe",
+            contour_name(pass),
+            lines.first,
+            lines.last
+        ));
+        warnings.extend(points.remarks(&file));
+    }
+    let several = measured.len() > 1 || !untouched.is_empty();
+    let chosen = options.write.as_deref().map(|text| chosen(text, &measured, &plans)).transpose()?;
+    let Some((folder, out)) = folder.zip(options.output.as_ref()) else {
+        return Ok(summary(several, &measured, plans, None, warnings));
+    };
+    let mut written = None;
+    if let Some(numbers) = chosen {
+        let all = planners.iter().zip(&plans).zip(&numbers);
+        let all: Vec<Chosen> = all
+            .map(|((planner, plan), k)| {
+                let choice = &plan.choices[k - 1];
+                Chosen { planner, cuts: &choice.cuts, cutter: choice.cutter }
+            })
+            .collect();
+        let done = write(&all, route, crc32(file.bytes()), &mut |share| progress(0.9 + 0.1 * share))?;
+        let passes: Vec<Pass> = measured.iter().map(|(pass, _)| pass.clone()).collect();
+        // Learning knows one contour, whose passes are in the program.
+        let mut learns = false;
+        if let ([(pass, points)], [plan], [number], [wall], false, Route::Program) =
+            (&measured[..], &plans[..], &numbers[..], &done.walls[..], several, route)
+        {
+            let choice = &plan.choices[number - 1];
+            let names = [PROGRAM, &planned_name(&passes)];
+            let asked = (wanted.tolerance_mm, wanted.confidence);
+            let process = Process::of(&choice.cuts, &wall.passes);
+            let next = NextPart::of(process, asked, choice.predicted, (&done.program.text, &names));
+            folder.write(PLAN_HISTORY, &PlanHistory::first(pass, points, next)?.text()?)?;
+            folder.write(PROBED, file.bytes())?;
+            learns = true;
+        }
+        let all = write_files((&folder, out), &passes, several, &numbers, done, &mut warnings)?;
+        written = Some(Written { learns, ..all });
+    }
+    let name = measured.first().map(|(pass, _)| program_name(pass)).unwrap_or_default();
+    let shown: Vec<PlannedWall> = measured
+        .iter()
+        .zip(&plans)
+        .map(|((pass, _), plan)| PlannedWall { name: several.then(|| contour_name(pass)), plan })
+        .collect();
+    folder.write(REPORT, planned_page(&shown, &name).as_bytes())?;
+    let summary = summary(several, &measured, plans, written, warnings);
     folder.write("summary.json", &json(&summary)?)?;
-    folder.write(REPORT, planned_page(&summary.plan, &program_name(&pass)).as_bytes())?;
     folder.commit()?;
     Ok(summary)
 }
 
-/// The number of the choice that is to be written.
-fn chosen(text: &str, plan: &Plan) -> Result<usize, Failure> {
-    let number = if text == "recommended" { plan.recommended } else { text.parse().ok() };
-    number.filter(|n| (1..=plan.choices.len()).contains(n)).ok_or_else(|| {
-        let found = match text {
-            "recommended" => "--write without a number, and no choice holds the tolerance".to_owned(),
-            text => format!("--write on the command line is {text:?}"),
+/// What is said of a tolerance narrower than what the probe can show, or than what is known of the machine.
+fn beyond_what_shows(plan: &Plan, pass: &Pass) -> Option<String> {
+    let touch = 2.0 * truepath_ground::units::mm(pass.job.numbers.probe?.noise);
+    let machine = plan.choices.iter().map(|choice| 2.0 * choice.predicted.sigma_mm).fold(f64::INFINITY, f64::min);
+    let floor = if machine.is_finite() { touch.max(machine) } else { touch };
+    (plan.tolerance_mm < floor).then(|| {
+        let known = if machine.is_finite() {
+            format!(", and what the points leave open of the machine is {machine:.4} mm at best")
+        } else {
+            String::new()
         };
-        let expected = format!("the number of a choice, 1 to {}", plan.choices.len());
-        InputError::new(C001, found, expected, "look at the table without --write, and write its number").into()
+        format!(
+            "±{} mm is less than can be shown: one touch is known to {touch:.4} mm (2 sigma, probe.noise_mm){known}; plan for ±{floor:.4} mm \
+             or more, or touch more places with a better probe",
+            plan.tolerance_mm
+        )
     })
 }
 
-fn program_name(pass: &Pass) -> String {
+/// The search uses all cores; `progress` belongs to this thread.
+fn search(planner: &Planner<'_>, wanted: &Wanted, progress: &mut dyn FnMut(f64)) -> Result<Plan, Failure> {
+    let (tell, told) = channel();
+    std::thread::scope(|scope| {
+        let work = scope.spawn(move || {
+            planner.plan(wanted, &move |share| {
+                let _ = tell.send(share);
+            })
+        });
+        told.iter().for_each(progress);
+        work.join().unwrap_or_else(|_| Err(Failure::Internal("the search for a plan broke off".to_owned())))
+    })
+}
+
+fn summary(
+    several: bool,
+    measured: &[(Pass, Measurement)],
+    mut plans: Vec<Plan>,
+    written: Option<Written>,
+    warnings: Vec<String>,
+) -> PlanSummary {
+    let plan = if several { None } else { plans.pop() };
+    let of = |((pass, _), plan): (&(Pass, Measurement), Plan)| ContourPlan {
+        contour: contour_name(pass),
+        lines: [pass.core.contour.lines.first, pass.core.contour.lines.last],
+        depths: pass.plan.as_ref().map_or(1, |plan| plan.levels().len()),
+        plan,
+    };
+    PlanSummary { version: 1, plan, contours: measured.iter().zip(plans).map(of).collect(), written, warnings }
+}
+
+/// The program's own name beside [`PROGRAM`].
+pub(super) fn planned_name(passes: &[Pass]) -> String {
+    name_with(passes.first().map_or("", |pass| pass.program.name()), "planned")
+}
+
+/// Writes the program with all that belongs to it, and the one that touches its walls, to `out` in the end.
+pub(super) fn write_files(
+    (folder, out): (&OutputFolder, &FilePath),
+    passes: &[Pass],
+    several: bool,
+    numbers: &[usize],
+    done: WrittenPlan,
+    warnings: &mut Vec<String>,
+) -> Result<Written, Failure> {
+    let verify = write_verification(folder, passes, warnings)?;
+    let name = planned_name(passes);
+    for file in [PROGRAM, &name] {
+        folder.write(file, &done.program.text)?;
+    }
+    folder.write("difference.txt", done.program.report.as_bytes())?;
+    let mut images = Vec::new();
+    for (k, image) in done.program.images.iter().enumerate() {
+        let file = format!("planned-{}.tpi", k + 1);
+        folder.write(&file, &image.bytes)?;
+        images.push(WrittenImage { image: out.join(file), feature: image.feature, pass: image.pass });
+    }
+    let mut choices = Vec::new();
+    for ((pass, wall), &choice) in passes.iter().zip(&done.walls).zip(numbers) {
+        let place = if several { contour_folder(pass) } else { String::new() };
+        folder.write(&format!("{place}{MAP}"), &planned_map_csv(&wall.map)?)?;
+        choices.push(WrittenChoice {
+            contour: several.then(|| contour_name(pass)),
+            choice,
+            wall: wall.figures,
+            largest_correction_mm: wall.largest_correction_mm,
+        });
+    }
+    warnings.extend(done.program.warnings);
+    let choice = if several { None } else { choices.pop() };
+    Ok(Written {
+        program: out.join(name),
+        verify: verify.then(|| out.join(VERIFY)),
+        images,
+        choice,
+        contours: choices,
+        learns: false,
+        depths: done.program.depths,
+    })
+}
+
+/// Writes the program that touches the walls as `truepath probe` does, for the control of the part's program; whether that is known
+/// and the walls can be touched.
+fn write_verification(folder: &OutputFolder, passes: &[Pass], warnings: &mut Vec<String>) -> Result<bool, Failure> {
+    let control = passes.first().and_then(|pass| pass.job.probe_control);
+    let Some(dialect) = control.and_then(|name| ProbeDialect::from_str(name, true).ok()) else {
+        let help = "job and program name no control that a verification program is written for: truepath probe writes it with --dialect, or lists the places";
+        warnings.push(help.to_owned());
+        return Ok(false);
+    };
+    let text = plan_every(passes, &Settings::default(), &mut |_| ())
+        .and_then(|plan| Ok((verification::write(&plan, dialect, &log_name(FilePath::new(VERIFY)))?, plan.warnings)));
+    match text {
+        Ok((text, said)) => {
+            warnings.extend(said.into_iter().filter(|text| !warnings.contains(text)).collect::<Vec<_>>());
+            folder.write(VERIFY, text.as_bytes())?;
+            Ok(true)
+        }
+        Err(Failure::Input(error)) => {
+            warnings.push(format!("no verification program was written: {}: {}", error.code(), error.found()));
+            Ok(false)
+        }
+        Err(failure) => Err(failure),
+    }
+}
+
+/// The numbers of the choices that are to be written, one for each contour.
+fn chosen(text: &str, measured: &[(Pass, Measurement)], plans: &[Plan]) -> Result<Vec<usize>, Failure> {
+    let refused = |found: String, expected: String| {
+        Failure::from(InputError::new(C001, found, expected, "look at the table without --write, and write its number"))
+    };
+    let of = |k: usize| match plans.len() {
+        1 => String::new(),
+        _ => format!(" for {}", contour_name(&measured[k].0)),
+    };
+    let choices = |k: usize| format!("the number of a choice{}, 1 to {}", of(k), plans[k].choices.len());
+    if text == "recommended" {
+        let each = plans.iter().enumerate().map(|(k, plan)| {
+            let found = format!("--write without a number, and no choice holds the tolerance{}", of(k));
+            plan.recommended.ok_or_else(|| refused(found, choices(k)))
+        });
+        return each.collect();
+    }
+    let words: Vec<&str> = text.split(',').collect();
+    if words.len() != 1 && words.len() != plans.len() {
+        let found = format!("--write on the command line is {text:?}");
+        return Err(refused(found, format!("one number, or one for each of the {} contours", plans.len())));
+    }
+    let number = |(k, plan): (usize, &Plan)| {
+        let word = words.get(k).or(words.first()).copied().unwrap_or_default();
+        let number = word.trim().parse().ok().filter(|n| (1..=plan.choices.len()).contains(n));
+        number.ok_or_else(|| refused(format!("--write on the command line is {text:?}"), choices(k)))
+    };
+    plans.iter().enumerate().map(number).collect()
+}
+
+pub(super) fn program_name(pass: &Pass) -> String {
     let name = FilePath::new(pass.program.name()).file_name();
     name.map_or_else(|| pass.program.name().to_owned(), |name| name.to_string_lossy().into_owned())
 }

@@ -31,13 +31,29 @@ use super::placement::PlacementOptions;
 use crate::terminal::Terminal;
 
 /// Files this command may write.
-const FILES: &[&str] = &["trace.csv", "wall.csv", MAP, PROBED, TOUCHED, "summary.json", "trace.svg", REPORT, CONTOURS];
+const FILES: &[&str] = &[
+    "trace.csv",
+    "wall.csv",
+    MAP,
+    PROBED,
+    TOUCHED,
+    TOUCHED_STOCK,
+    "summary.json",
+    "trace.svg",
+    REPORT,
+    CONTOURS,
+    DYNAMOMETER,
+];
 /// The wall unrolled.
 const MAP: &str = "wall-map.csv";
 /// The wall as cut, at several heights.
 const PROBED: &str = "probed-wall.csv";
+/// Records of a dynamometer, and what was cut.
+const DYNAMOMETER: &str = "dynamometer/";
 /// What the machine writes while it runs the probing program.
 const TOUCHED: &str = "probe.txt";
+/// The same while the stock is touched, before the pass.
+const TOUCHED_STOCK: &str = "stock.txt";
 /// The corrected program in the folder of a correction.
 const CORRECTED: &str = "corrected.nc";
 /// Heights of probed-wall.csv, over the whole depth.
@@ -71,12 +87,19 @@ pub struct Options {
     /// have written.
     #[arg(long, value_name = "FILE", requires = "plant")]
     pub touch: Option<PathBuf>,
+    /// Touch the stock before the pass instead, with the program written by truepath probe --stock, and write stock.txt.
+    #[arg(long, requires = "touch")]
+    pub stock: bool,
     /// Where the program stood in the machine.
     #[command(flatten)]
     pub placement: PlacementOptions,
     /// Also write probed-wall.csv: the wall as cut at several heights, for a simulated probe.
     #[arg(long, requires = "plant")]
     pub probed_wall: bool,
+    /// Also write the folder dynamometer: cuts.toml for truepath forces and a record a feed, as a dynamometer under the
+    /// workpiece would have written it.
+    #[arg(long, requires = "plant")]
+    pub dynamometer: bool,
     /// Folder for trace.csv, trace.svg, report.html and summary.json.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
@@ -161,6 +184,10 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
     let recording = options.setpoints.as_deref().map(|file| recording(file, &options.placement)).transpose()?;
     let mut job = JobFile::read(&options.job)?;
     job.which = options.which.clone();
+    if options.stock {
+        // It is what the touches are to find.
+        job.stock_probe = None;
+    }
     let walls = Pass::every(job)?;
     let source = |file: &FilePath| Source::read(file);
     let corrected = options.from.as_ref().map(|dir| source(&dir.join(CORRECTED))).transpose()?;
@@ -220,9 +247,16 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
         milled.extend(done.made.map(|made| (pass, made)));
         all.push(summary);
     }
-    if let Some(program) = probing.as_ref().filter(|_| !milled.is_empty()) {
+    if let (Some(program), Some(machine), true) = (&probing, &machine, options.stock) {
+        folder.write(TOUCHED_STOCK, virtual_mill::touch_stock(&walls, machine, program)?.as_bytes())?;
+    } else if let Some(program) = probing.as_ref().filter(|_| !milled.is_empty()) {
         let milled: Vec<(&Pass, &Made)> = milled.iter().map(|(pass, made)| (*pass, made)).collect();
         folder.write(TOUCHED, virtual_mill::touch(&milled, program)?.as_bytes())?;
+    }
+    if let (true, Some(machine), Some(pass)) = (options.dynamometer, &machine, walls.first()) {
+        for (name, bytes) in truepath_trial::dynamometer::records(pass, machine)? {
+            folder.write(&format!("{DYNAMOMETER}{name}"), &bytes)?;
+        }
     }
     let summary = SimulateSummary::of_every(all).ok_or_else(|| Failure::Internal("no contour".to_owned()))?;
     folder.write("summary.json", &json(&summary)?)?;

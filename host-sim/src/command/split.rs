@@ -87,11 +87,11 @@ pub fn run(options: &Options) -> Result<Split, Failure> {
     let mut job = JobFile::read(&options.job)?;
     job.which.feature = options.feature.clone();
     let pass = Pass::read(job)?;
-    if pass.surface.is_some() {
+    if let Some(key) = pass.job.measured_stock() {
         let help = "split the job of the whole, even allowance";
-        let found = "stock.surface is given: part of the allowance has been cut";
-        let error = InputError::new(J008, found, "a job with stock.allowance_mm", help);
-        return Err(error.at(pass.job.source(), pass.job.span("stock.surface")).into());
+        let found = format!("{key} is given: the allowance is not even");
+        let error = InputError::new(J008, found, "a job with stock.allowance_mm alone", help);
+        return Err(error.at(pass.job.source(), pass.job.span(key)).into());
     }
     let half = Offset::from_nm(pass.job.numbers.allowance.nm() / 2);
     let edits = first_pass::edits(&pass, half)?;

@@ -13,8 +13,9 @@ const PLAN: &str = "plan job.toml --probe first/probe.txt";
 /// A soft machine that the job does not state, its first part and the points of it.
 fn measured() -> Workplace {
     let plant = plant("[[0.0016, 0.00004], [0.00004, 0.0013]]");
-    let desk = Workplace::with(&[("part.nc", POCKET), ("job.toml", &pocket_job(12.0, 900)), ("plant.toml", &plant)]);
-    desk.call("probe job.toml --dialect linuxcnc -o verify.nc");
+    let job = format!("dialect = \"linuxcnc\"\n{}", pocket_job(12.0, 900));
+    let desk = Workplace::with(&[("part.nc", POCKET), ("job.toml", &job), ("plant.toml", &plant)]);
+    desk.call("probe job.toml -o verify.nc");
     desk.call("simulate job.toml --plant plant.toml --touch verify.nc -o first");
     desk
 }
@@ -53,8 +54,11 @@ fn a_planned_program_holds_at_every_height_what_one_pass_does_not() {
     );
     assert!(desk.read("plan/wall-map.csv").starts_with("s_mm,height_mm,error_mm\n"));
 
-    // The wall is the same: its probing program serves, and the points say what the map says.
-    desk.call("simulate job.toml --plant plant.toml --program plan/planned.nc --touch verify.nc -o touched");
+    // The wall is the same, and so is the program that touches it: it is written beside the plan, and the points say what the map says.
+    assert_eq!(done["written"]["verify"].as_str(), Some("plan/verify.nc"));
+    let touches = |program: &str| program.lines().filter(|line| !line.contains("CRC")).count();
+    assert_eq!(touches(&desk.read("plan/verify.nc")), touches(&desk.read("verify.nc")));
+    desk.call("simulate job.toml --plant plant.toml --program plan/planned.nc --touch plan/verify.nc -o touched");
     let seen = desk.call("inspect job.toml --probe touched/probe.txt -o seen");
     assert!(number(&seen, &["summary", "max_error_mm"]) < tolerance + 0.004);
 }
@@ -80,10 +84,71 @@ fn limits_of_the_job_are_kept() {
 }
 
 #[test]
+fn a_tolerance_below_what_the_probe_shows_is_told_what_can_be_shown() {
+    let desk = measured();
+    let warned = |plan: &Value| {
+        let warnings = plan["warnings"].as_array().expect("warnings");
+        warnings.iter().any(|w| w.as_str().is_some_and(|w| w.contains("less than can be shown")))
+    };
+    let narrow = desk.call(&format!("{PLAN} --tolerance 0.0005"));
+    assert!(narrow["recommended"].is_null() && warned(&narrow), "{}", narrow["warnings"]);
+    assert!(!warned(&desk.call(&format!("{PLAN} --tolerance 0.05"))));
+}
+
+#[test]
+fn other_cutters_are_tried_and_one_that_does_not_fit_is_left_out_by_name() {
+    let desk = measured();
+    let job = desk.read("job.toml");
+    let plan = |cutters: &str| {
+        desk.write("job.toml", format!("{job}[plan]\nmax_cuts = 1\nmax_levels = 1\n{cutters}"));
+        desk.run(&format!("{PLAN} --tolerance 0.0001"))
+    };
+    // The corners of the path have a radius of 6 mm: a cutter 12 mm wider has no room, one twice as stiff bends half as much.
+    let list = "[[plan.cutter]]\nnumber = 7\ndiameter_mm = 20\nhelix_deg = 40\n\
+        [[plan.cutter]]\nnumber = 8\nhelix_deg = 35\nstiffness_factor = 2\n";
+    let done = plan(list).expect("a plan");
+    let said = done["warnings"].to_string();
+    assert!(said.contains("T7 (diameter 20 mm) is left out") && said.contains("line 8"), "{said}");
+    let choices = done["choices"].as_array().expect("choices");
+    let with = |cutter: Option<u64>| choices.iter().filter(move |choice| choice["cutter"].as_u64() == cutter);
+    assert_eq!(with(Some(7)).count(), 0);
+    assert!(with(Some(8)).count() > 0, "the stiffer cutter leaves less: {choices:?}");
+    desk.write("job.toml", format!("{job}[plan]\nmax_cuts = 1\nmax_levels = 1\n"));
+    let own = desk.call(&format!("{PLAN} --tolerance 0.0001"));
+    let own = own["choices"].as_array().expect("choices").iter().map(|c| number(c, &["profile_mm"]));
+    let best = with(Some(8)).map(|c| number(c, &["profile_mm"])).fold(f64::INFINITY, f64::min);
+    assert!(best < own.fold(f64::INFINITY, f64::min), "{best}");
+
+    // Its program is not written: it is said by name, and nothing is left behind.
+    let at = choices.iter().position(|choice| choice["cutter"].as_u64() == Some(8)).expect("a choice") + 1;
+    desk.write("job.toml", format!("{job}[plan]\nmax_cuts = 1\nmax_levels = 1\n{list}"));
+    let refused = desk.run(&format!("{PLAN} --tolerance 0.0001 --write {at} -o plan")).expect_err("another cutter");
+    assert!(refused.contains("K007") && refused.contains("T8"), "{refused}");
+    assert!(!desk.path().join("plan").exists());
+
+    for (wrong, code, said) in [
+        ("[[plan.cutter]]\nhelix_deg = 40\n", "J004", "cutter.number is missing"),
+        ("[[plan.cutter]]\nnumber = 7\nhelix_deg = 70\n", "J006", "0 to 60 degrees"),
+        (
+            "[[plan.cutter]]\nnumber = 7\nhelix_deg = 30\n[[plan.cutter]]\nnumber = 7\nhelix_deg = 40\n",
+            "J006",
+            "a number of its own",
+        ),
+        ("[[plan.cutter]]\nnumber = 7\nhelix_deg = 30\nstickout_mm = 40\n", "J008", "that of the job's cutter is not"),
+        ("[[plan.cutter]]\nnumber = 7\nhelix_deg = 30\nlength = 40\n", "J003", "plan.cutter"),
+    ] {
+        let answer = plan(wrong).expect_err(wrong);
+        assert!(answer.contains(code) && answer.contains(said), "{wrong}: {answer}");
+    }
+}
+
+#[test]
 fn what_cannot_be_planned_is_said_and_nothing_is_written() {
     let desk = measured();
     for (arguments, code, said) in [
         ("--tolerance 0", "C001", "0.0001 to 10 mm"),
+        ("--tolerance -0.02", "C001", "0.0001 to 10 mm"),
+        ("--tolerance NaN", "C001", "0.0001 to 10 mm"),
         ("--tolerance much", "C001", "--tolerance"),
         ("", "J004", "no tolerance to plan for"),
         ("--tolerance 0.02 --confidence 100", "C001", "50 to 99.9 %"),
@@ -94,4 +159,108 @@ fn what_cannot_be_planned_is_said_and_nothing_is_written() {
         assert!(answer.contains(code) && answer.contains(said), "{arguments}: {answer}");
         assert!(!desk.path().join("plan").exists(), "{arguments}");
     }
+    desk.write("job.toml", desk.read("job.toml").replace("dialect = \"linuxcnc\"", "dialect = \"haas\""));
+    let answer = desk.run(&format!("{PLAN} --tolerance 0.5 --route coprocessor --write 1 -o plan")).expect_err("haas");
+    assert!(answer.contains("P022") && answer.contains("haas") && !desk.path().join("plan").exists(), "{answer}");
+}
+
+/// A pocket at one depth and another at two, with roughing before neither.
+fn two_pockets() -> String {
+    let pocket = |x: i32, z: i32| {
+        format!(
+            "G0 X{} Y6\nG0 Z2\nG1 Z{z} F300\nG3 X{} Y4 I2 J0 F700\nG1 X{}\nG3 X{} Y10 I0 J6\nG1 Y26\nG3 X{} Y32 I-6 J0\nG1 X{}\n\
+             G3 X{} Y26 I0 J-6\nG1 Y10\nG3 X{} Y4 I6 J0\nG1 X{}\nG3 X{} Y6 I0 J2\nG0 Z10\n",
+            x + 18,
+            x + 20,
+            x + 30,
+            x + 36,
+            x + 30,
+            x + 10,
+            x + 4,
+            x + 10,
+            x + 20,
+            x + 22
+        )
+    };
+    format!("G21 G90 G17\nT2 M6\nS9000 M3\nG0 Z10\n{}{}{}M30\n", pocket(0, -8), pocket(80, -8), pocket(80, -16))
+}
+
+/// Two pockets measured, with a search of few candidates.
+fn two_measured() -> Workplace {
+    let plant = plant("[[0.0016, 0.00004], [0.00004, 0.0013]]");
+    let job = "dialect = \"linuxcnc\"\n".to_owned()
+        + &pocket_job(8.0, 900).replace("[tool]\n", "[tool]\nnumber = 2\n")
+        + "[plan]\nmax_cuts = 2\nmax_levels = 1\nmax_percent = 100\nreverse = \"no\"\n";
+    let desk = Workplace::with(&[("part.nc", &two_pockets()), ("job.toml", &job), ("plant.toml", &plant)]);
+    desk.call("probe job.toml -o verify.nc");
+    desk.call("simulate job.toml --plant plant.toml --touch verify.nc -o first");
+    desk
+}
+
+#[test]
+fn every_contour_has_a_plan_and_one_program_holds_them_all() {
+    let desk = two_measured();
+    let done = desk.call(&format!("{PLAN} --tolerance 0.02 --write 2,1 -o plan"));
+    let contours = done["contours"].as_array().expect("contours");
+    assert_eq!(contours.iter().map(|one| one["depths"].as_u64()).collect::<Vec<_>>(), [Some(1), Some(2)]);
+    let chosen: Vec<_> = done["written"]["contours"].as_array().expect("choices").clone();
+    assert_eq!(chosen.iter().map(|one| one["choice"].as_u64()).collect::<Vec<_>>(), [Some(2), Some(1)]);
+    // One machine: both pockets have one shape and are expected to come out alike.
+    let expected = |k: usize| number(&contours[k]["as_programmed"], &["profile_mm"]);
+    assert!((expected(0) - expected(1)).abs() < 0.002, "{} and {}", expected(0), expected(1));
+    // Both depths of the second pocket are cut anew, with the passes of its choice each.
+    let depths = done["written"]["depths"].as_array().expect("depths");
+    let passes = |k: usize, choice: usize| number(&contours[k]["choices"][choice - 1], &["passes"]) as usize;
+    let found: Vec<_> = depths.iter().map(|d| (d["wall"].as_u64(), d["passes"].as_array().map(Vec::len))).collect();
+    let wanted = [(0, passes(0, 2)), (1, passes(1, 1)), (1, passes(1, 1))];
+    let wanted = wanted.map(|(wall, count)| (Some(wall), Some(count)));
+    assert_eq!(found, wanted);
+    for contour in contours {
+        let name = contour["contour"].as_str().expect("a name");
+        assert!(desk.read(&format!("plan/contours/{name}/wall-map.csv")).starts_with("s_mm,"));
+        assert!(desk.read("plan/report.html").contains(&format!("<h2 class=\"contour\">{name}</h2>")));
+    }
+    // Nothing is learned from several.
+    let said = desk.run("learn job.toml --probe first/probe.txt --from plan -o out").expect_err("several contours");
+    assert!(said.contains("Q001") && said.contains("of several contours") && said.contains("--feature"), "{said}");
+    assert!(!desk.path().join("out").exists());
+    // Every line beside the contours and the ways to them is the program's.
+    let (old, new) = (two_pockets(), desk.read("plan/planned.nc"));
+    let outside = |line: &&str| !line.contains(['X', 'Y']);
+    assert!(old.lines().filter(outside).all(|line| new.lines().any(|other| other == line)), "{new}");
+    desk.call("simulate job.toml --plant plant.toml --program plan/planned.nc --touch plan/verify.nc -o touched");
+    let seen = desk.call("inspect job.toml --probe touched/probe.txt -o seen");
+    let before = desk.call("inspect job.toml --probe first/probe.txt -o before");
+    let worst = |of: &Value| number(of, &["summary", "max_error_mm"]).abs();
+    assert!(worst(&seen) < 0.5 * worst(&before), "{} became {}", worst(&before), worst(&seen));
+
+    for (write, said) in [("3,1,1", "one for each of the 2 contours"), ("1,99", "contour-2, 1 to"), ("0", "1 to")] {
+        let answer = desk.run(&format!("{PLAN} --tolerance 0.02 --write {write} -o none")).expect_err(write);
+        assert!(answer.contains("C001") && answer.contains(said), "{write}: {answer}");
+    }
+    assert!(!desk.path().join("none").exists());
+}
+
+#[test]
+fn the_coprocessor_gets_an_image_for_every_pass_of_every_contour() {
+    let desk = two_measured();
+    let done = desk.call(&format!("{PLAN} --tolerance 0.02 --route coprocessor --write 2 -o plan"));
+    let images = done["written"]["images"].as_array().expect("images");
+    let named: Vec<_> = images.iter().map(|i| (i["feature"].as_u64().unwrap(), i["pass"].as_u64().unwrap())).collect();
+    let program = desk.read("plan/planned.nc");
+    let armed: Vec<String> = named.iter().map(|(feature, pass)| format!("M160 P{feature}.{pass}")).collect();
+    assert_eq!(program.lines().filter(|line| line.starts_with("M160")).collect::<Vec<_>>(), armed);
+    assert!(named.iter().filter(|(feature, _)| *feature == named[0].0).count() < named.len(), "{named:?}");
+    for (k, (feature, pass)) in named.iter().enumerate() {
+        let told = desk.call(&format!("image plan/planned-{}.tpi", k + 1));
+        let of = |key: &str| told[key].as_u64();
+        assert_eq!((of("feature"), of("pass"), of("tool")), (Some(*feature), Some(*pass), Some(2)), "{told}");
+    }
+    for with in ["", " --replan"] {
+        let learn = format!("learn job.toml --probe first/probe.txt --from plan -o out{with}");
+        let said = desk.run(&learn).expect_err("the passes are images");
+        assert!(said.contains("Q001") && said.contains("for the coprocessor"), "{said}");
+    }
+    // The program is not corrected: it can be measured and planned again, and it is not the one of the other route.
+    assert!(!program.contains("TRUEPATH CORRECTED") && desk.read("plan/difference.txt").contains("planned-1.tpi"));
 }

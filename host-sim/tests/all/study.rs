@@ -7,6 +7,7 @@ use truepath_study::case::Case;
 use truepath_study::case_table::NAME;
 use truepath_study::families::FAMILIES;
 use truepath_study::id::{Axis, CaseId};
+use truepath_study::nuisance::Nuisance;
 use truepath_study::seeds::Set;
 
 #[derive(Parser)]
@@ -53,7 +54,7 @@ fn two_cases_go_the_whole_way_and_an_interrupted_study_goes_on() {
 #[ignore = "slow: cargo xtask test --all"]
 fn every_family_draws_cases_that_can_be_milled_and_touched() {
     for family in FAMILIES {
-        let id = CaseId { family: family.name.to_owned(), seed: Set::Tuning.seeds().start, cell: None };
+        let id: CaseId = format!("{}/{}", family.name, Set::Tuning.seeds().start).parse().expect("an id");
         let case = Case::draw(&id).unwrap_or_else(|e| panic!("{id}: {e}"));
         let error = case.before.score.max_error_mm;
         assert!((0.03..0.75).contains(&error), "{id}: {error} mm before");
@@ -81,4 +82,40 @@ fn no_two_sets_share_a_case_and_every_family_is_in_each() {
     assert!(FAMILIES.iter().all(|family| random.iter().any(|name| name.starts_with(family.name))));
     let grid = Options { axis: Some(Axis::Noise), ..options(&["nowhere"]) };
     assert_eq!(cases(&grid).expect("cases").len(), FAMILIES.len() * Axis::Noise.values().len());
+}
+
+#[test]
+fn every_nuisance_is_a_case_of_its_own_beside_none_and_all() {
+    let names = |words: &[&str]| -> Vec<String> {
+        let asked = options(&[&["nowhere", "--families", "bore"], words].concat());
+        cases(&asked).expect("cases").iter().map(ToString::to_string).collect()
+    };
+    let each = names(&["--nuisance", "each"]);
+    assert_eq!(each.len(), Nuisance::EACH.len() + 2);
+    assert_eq!((each[0].as_str(), each[each.len() - 1].as_str()), ("bore/1001", "bore/1001/all"));
+    for nuisance in Nuisance::EACH {
+        assert_eq!(names(&["--nuisance", nuisance.name()]), [format!("bore/1001/{}", nuisance.name())]);
+    }
+    let chosen = names(&["--nuisance", "all,none,all", "--touches", "chosen"]);
+    assert_eq!(chosen, ["bore/1001/chosen", "bore/1001/all/chosen"]);
+}
+
+#[test]
+#[ignore = "slow: cargo xtask test --all"]
+fn a_nuisance_leaves_the_case_beneath_as_it_is() {
+    let draw = |id: &str| Case::draw(&id.parse().expect("an id")).unwrap_or_else(|e| panic!("{id}: {e}"));
+    let plain = draw("pocket-climb/1001");
+    for (id, differs) in [("pocket-climb/1001/stock-step", true), ("pocket-climb/1001/wild", false)] {
+        let case = draw(id);
+        assert_eq!((&case.job, &case.program, &case.machine), (&plain.job, &plain.program, &plain.machine));
+        assert_eq!(case.places_mm, plain.places_mm);
+        assert_eq!(case.before != plain.before, differs, "{id}");
+        let touched = |case: &Case| case.probe(1, &case.first, &case.places_of(1)).expect("a wall");
+        let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
+        let apart = lines(&touched(&case)).iter().zip(lines(&touched(&plain))).filter(|(a, b)| **a != *b).count();
+        // One wild touch; a step moves what lies behind it, and a little before it.
+        assert!(if differs { apart > 2 } else { apart == 1 }, "{id}: {apart}");
+    }
+    let chosen = draw("pocket-climb/1001/chosen");
+    assert_eq!((chosen.places_of(2).len(), chosen.levels.len()), (8, 3));
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use truepath_ground::codes::Row;
 
 /// The rooms of the host with their rows, in the order of the document; those of the core follow.
-const CATALOGUES: [(&str, &[Row]); 12] = [
+const CATALOGUES: [(&str, &[Row]); 13] = [
     ("Files, tables and the command line", truepath_ground::codes::CATALOGUE),
     ("The job and its features", truepath_job::codes::CATALOGUE),
     ("Programs and machine tables", truepath_program::codes::CATALOGUE),
@@ -18,6 +18,7 @@ const CATALOGUES: [(&str, &[Row]); 12] = [
     ("Bench and board", truepath_bench::codes::CATALOGUE),
     ("Studies", truepath_study::codes::CATALOGUE),
     ("Bores", truepath_bore::codes::CATALOGUE),
+    ("Measured forces", truepath_forces::codes::CATALOGUE),
     ("Five-axis programs", truepath_multiaxis::codes::CATALOGUE),
     ("Pockets", truepath_pocket::codes::CATALOGUE),
 ];

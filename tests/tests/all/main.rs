@@ -2,6 +2,7 @@
 
 mod conformance_small;
 mod corners;
+mod discrepancy;
 mod errors;
 mod hil_client;
 mod hil_clock;
@@ -14,6 +15,7 @@ mod hil_support;
 mod learning;
 mod learning_support;
 mod noise;
+mod planned_device;
 mod second_pass;
 mod story;
 mod taken_back;

@@ -1,8 +1,8 @@
 //! The pages that are tried: each written by the program, of the kind a user has.
 //!
 //! The demonstration; a pass predicted and one cut by the virtual machine; an island with its wall on the left, cut
-//! conventionally, corrected, learnt from and inspected; a plate with five contours, touched by the virtual machine, corrected,
-//! learnt from and inspected together; and a contour of ten metres with 100,000 samples.
+//! conventionally, corrected, learnt from, inspected and planned; a plate with five contours, touched by the virtual machine, corrected,
+//! learnt from, inspected and planned together; and a contour of ten metres with 100,000 samples.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -40,6 +40,9 @@ stiffness_x_n_per_mm = 1200
 stiffness_y_n_per_mm = 2400
 ";
 
+/// Limits under which a search is short.
+const FEW: &str = "\n[plan]\nmax_cuts = 2\nmax_levels = 1\nmax_percent = 100\n";
+
 /// Has the program write all pages into `page` of the target directory; returns that folder.
 ///
 /// # Errors
@@ -68,6 +71,8 @@ pub fn write() -> Result<PathBuf, Failure> {
     truepath(&[word("inspect"), force, job, word("--probe"), first], "inspect")?;
     truepath(&[word("correct"), force, job, word("--probe"), first], "correct")?;
     truepath(&[word("learn"), force, job, word("--probe"), second, word("--from"), &pages.join("correct")], "learn")?;
+    let tolerance = [word("--tolerance"), word("0.02"), word("--write")];
+    truepath(&[&[word("plan"), force, job, word("--probe"), first][..], &tolerance].concat(), "plan")?;
     plate(&pages.join("plate"), &truepath)?;
     let long = pages.join("long");
     long_job(&long).map_err(|e| Failure::found(format!("{}: {e}", long.display())))?;
@@ -94,7 +99,14 @@ fn plate(folder: &Path, truepath: &impl Fn(&[&Path], &str) -> Result<(), Failure
     run("inspect", &[word("--probe"), &touched("first")], "inspect")?;
     run("correct", &[word("--probe"), &touched("first")], "correct")?;
     run("simulate", &[&cut[..], &[word("--from"), &corrected]].concat(), "second")?;
-    run("learn", &[word("--probe"), &touched("second"), word("--from"), &corrected], "learn")
+    run("learn", &[word("--probe"), &touched("second"), word("--from"), &corrected], "learn")?;
+    // Five contours, each with what two passes can do.
+    let text = fs::read_to_string(&job).map_err(|e| Failure::found(format!("{}: {e}", job.display())))?;
+    let program = format!("program = {:?}", file("program.nc").display().to_string());
+    let planned = folder.join("planned.toml");
+    fs::write(&planned, text.replace("program = \"program.nc\"", &program) + FEW)
+        .map_err(|e| Failure::found(format!("{}: {e}", planned.display())))?;
+    truepath(&[word("plan"), word("--force"), &planned, word("--probe"), &touched("first")], "plate/plan")
 }
 
 /// Program and job of the long contour.

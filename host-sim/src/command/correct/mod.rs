@@ -13,7 +13,7 @@ use truepath_correction::warnings::misread;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::OutputFolder;
 use truepath_job::feature::listing;
-use truepath_job::job::{ROUTES, Route, Said, one_of};
+use truepath_job::job::{PartFlags, ROUTES, Route, Said, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_program::first_pass_of;
@@ -46,6 +46,10 @@ pub struct Options {
     /// The probe file is of the first of two passes, with this job (written by truepath split).
     #[arg(long, value_name = "FIRST-PASS.toml")]
     pub first_pass: Option<PathBuf>,
+    /// Half the width of the tolerance of the wall at every height, mm, in place of the limits of the job: says whether one pass
+    /// holds it.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, conflicts_with = "no_probe")]
+    pub tolerance: Option<String>,
     /// Replace the files of an earlier run.
     #[arg(long)]
     pub force: bool,
@@ -67,6 +71,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 }
 
 pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
+    let (before, after) = (&s.surface.before, &s.surface.after);
     let factor = s.max_error_before_mm / s.max_error_after_mm.max(1e-6);
     let mut text = s.feature.as_ref().map(listing).unwrap_or_default();
     if !s.contours.is_empty() {
@@ -77,10 +82,16 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
          \n\
          largest wall error without correction  {:>8.4} mm\n\
          with correction, as the model sees it  {:>8.4} mm  ({factor:.0} times less)\n\
-         what the points leave open (1 sigma)   {:>8.4} mm\n\
+         on the next part, 1 sigma              {:>8.4} mm\n\
+         \x20 of it by what the points leave open  {:>8.4} mm\n\
          \x20 where the largest error is expected  {:>8.4} mm\n\
          left over the height, beyond X and Y   {:>8.4} mm\n\
-         at any height: without, with correction {:>7.4}, {:.4} mm\n\
+         \n\
+         at every height, with what the points leave open (± 2 sigma)\n\
+         \x20 without correction: the worst          {:>8.4} ± {:.4} mm, 95 % within {:.4} mm, mean over the height {:.4} mm\n\
+         \x20 with it: the worst                     {:>8.4} ± {:.4} mm, 95 % within {:.4} mm, mean over the height {:.4} mm\n\
+         \x20 at s = {:.1} mm, {:.1} mm above the tip: {}\n\
+         \n\
          deepest cut at any height              {:>8.4} mm\n\
          largest correction                     {:>8.4} mm\n\
          \n\
@@ -92,10 +103,20 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
         s.max_error_before_mm,
         s.max_error_after_mm,
         s.max_sigma_mm,
+        s.max_sigma_by_points_mm,
         s.sigma_at_max_error_mm,
         s.axial_form_error_mm,
-        s.profile_error_before_mm,
-        s.profile_error_after_mm,
+        before.profile.profile_mm,
+        2.0 * before.profile.sigma_mm,
+        before.p95_mm,
+        before.mean_mm,
+        after.profile.profile_mm,
+        2.0 * after.profile.sigma_mm,
+        after.p95_mm,
+        after.mean_mm,
+        after.s_mm,
+        after.height_mm,
+        after.causes.words(),
         s.worst_gouge_mm,
         s.max_correction_mm,
     );
@@ -117,7 +138,8 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
 /// # Errors
 /// As [`correct_pass`], and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSummary, Failure> {
-    let job = options.said.read(&options.job)?;
+    let mut job = options.said.read(&options.job)?;
+    job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
     // clap has seen to it that there is one.
     let probe = options.probe.as_deref().unwrap_or(FilePath::new(""));
     let file = Source::read(probe)?;

@@ -89,7 +89,9 @@ pub fn on_board(
     progress: &mut dyn FnMut(&str),
 ) -> Result<OnBoard, Failure> {
     let probe = Source::read(probe)?;
-    let pass = Pass::read(JobFile::read(job)?)?.of_file(&probe)?;
+    let mut pass = Pass::read(JobFile::read(job)?)?.of_file(&probe)?;
+    // The device fits machine and material alone.
+    pass.job.discrepancy = false;
     let program = pass.program.clone();
     let compact = levels::compact(&pass)?;
     let measurement = Measurement::read(&pass, &probe)?;

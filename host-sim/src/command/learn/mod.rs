@@ -1,5 +1,7 @@
-//! `learn`: from the probe file of a part that was cut with a correction to the correction of the next part.
+//! `learn`: from the probe file of a part that was cut with a correction to the correction of the next part; of one that was cut with
+//! planned passes, to the planned program of the next.
 
+mod planned;
 mod several;
 
 use std::path::PathBuf;
@@ -8,9 +10,12 @@ use clap::Args;
 use truepath_correction::as_milled::AsMilled;
 use truepath_correction::codes::{Q002, Q003, Q005, Q007};
 use truepath_correction::learn::{LearnSummary, learn};
+use truepath_correction::surface::touched::TouchedSurface;
+use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::OutputFolder;
-use truepath_job::job::{ROUTES, Route, Said, one_of};
+use truepath_ground::units::mm;
+use truepath_job::job::{PartFlags, ROUTES, Route, Said, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::correction_csv;
@@ -19,7 +24,8 @@ use truepath_report::pages::learned;
 
 use super::correct::words as correction;
 use super::correction_files::{FILES, HISTORY, MILLED, commit, write_contour, write_program};
-use super::history::history_in;
+use super::history::{history_in, refuse_unlearned};
+use super::plan_files::PLAN_HISTORY;
 use crate::terminal::Terminal;
 
 /// What is learned from.
@@ -30,7 +36,7 @@ pub struct Options {
     /// What the probe measured on the part cut with the correction in --from.
     #[arg(long, value_name = "FILE")]
     pub probe: PathBuf,
-    /// Folder that truepath correct, or truepath learn, wrote that correction into.
+    /// Folder that truepath correct, truepath plan or truepath learn wrote that correction into.
     #[arg(long, value_name = "DIR")]
     pub from: PathBuf,
     /// Folder for the correction of the next part; another one than --from.
@@ -39,6 +45,13 @@ pub struct Options {
     /// Correct in the program text or in the coprocessor; the job says it otherwise.
     #[arg(long, value_parser = one_of(&ROUTES))]
     pub route: Option<Route>,
+    /// Half the width of the tolerance of the wall at every height, mm, in place of the limits of the job: says whether one pass
+    /// holds it; of planned passes in place of that of the plan.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub tolerance: Option<String>,
+    /// Of a part cut with planned passes: search for passes anew, instead of designing the same ones anew.
+    #[arg(long)]
+    pub replan: bool,
     /// Replace the files of an earlier run.
     #[arg(long)]
     pub force: bool,
@@ -49,6 +62,27 @@ pub struct Options {
 
 /// Learns and prints what was learned.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    if options.from.join(PLAN_HISTORY).exists() {
+        refuse_same_folder(options)?;
+        if options.route == Some(Route::Coprocessor) {
+            let found = "--route coprocessor, and the planned passes are in the program";
+            let help = "leave --route out, or plan anew with truepath plan --write --route coprocessor";
+            return Err(InputError::new(C001, found, "the route of the plan, program", help).into());
+        }
+        let mut job = options.said.read(&options.job)?;
+        job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
+        let tolerance = options.tolerance.as_ref().and(job.part.tolerance);
+        let tolerance_mm = tolerance.map(|tolerance| mm(tolerance.upper).min(-mm(tolerance.lower)));
+        let to = (options.output.as_path(), options.force);
+        let wish = planned::Wish { replan: options.replan, tolerance_mm };
+        return planned::main(job, (&options.probe, &options.from), to, wish, terminal);
+    }
+    refuse_unlearned(&options.from)?;
+    if options.replan {
+        let found = format!("--replan, and {} holds no {PLAN_HISTORY}", options.from.display());
+        let help = "leave --replan out, or name a folder of truepath plan --write with --from";
+        return Err(InputError::new(C001, found, "a folder of planned passes", help).into());
+    }
     let summary = terminal.watch("learning", |progress| run(options, progress))?;
     terminal.warn_all(&summary.correct.warnings);
     terminal.tell(&summary, || words(&summary) + &correction(&summary.correct, &options.output))
@@ -56,6 +90,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 
 fn words(s: &LearnSummary) -> String {
     let (v, whole) = (&s.verdict, &s.whole_contour_error_mm);
+    let (measured, surface) = (&s.measured_surface, &s.whole_surface);
     if !s.contours.is_empty() {
         return several::table(&s.contours);
     }
@@ -64,7 +99,10 @@ fn words(s: &LearnSummary) -> String {
          \x20 measured                           {:>12.4} {:>8.4} mm\n\
          \x20 part {} there                       {:>12.4} {:>8.4} mm\n\
          \x20 promised                           {:>12.4}          mm, {} of {} places within 2 sigma\n\
-         \x20 whole contour, by the model        {:>12.4}          mm, at s = {:.1} mm, sigma {:.4} mm\n",
+         \x20 whole contour, by the model        {:>12.4}          mm, at s = {:.1} mm, sigma {:.4} mm\n\
+         at any height\n\
+         \x20 measured, at the touched heights   {:>12.4} ± {:.4} mm, 95 % within {:.4} mm\n\
+         \x20 whole wall, by the model           {:>12.4} ± {:.4} mm, 95 % within {:.4} mm\n",
         v.part,
         v.measured_error_mm.places,
         v.measured_error_mm.max_mm,
@@ -78,6 +116,12 @@ fn words(s: &LearnSummary) -> String {
         whole.max_mm,
         whole.s_mm,
         whole.sigma_mm,
+        measured.profile_mm,
+        2.0 * measured.sigma_mm,
+        measured.p95_mm,
+        surface.profile.profile_mm,
+        2.0 * surface.profile.sigma_mm,
+        surface.p95_mm,
     );
     if let Some(held) = &v.holdout_residual_mm {
         text += &format!(
@@ -99,7 +143,9 @@ fn words(s: &LearnSummary) -> String {
 /// As [`learn`], a folder without a history or with another corrected program, and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSummary, Failure> {
     refuse_same_folder(options)?;
-    let pass = match <[Pass; 1]>::try_from(Pass::every(options.said.read(&options.job)?)?) {
+    let mut job = options.said.read(&options.job)?;
+    job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
+    let pass = match <[Pass; 1]>::try_from(Pass::every(job)?) {
         Ok([only]) => only,
         Err(walls) => {
             let to = (options.output.as_path(), options.force, options.route);
@@ -126,6 +172,8 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
         correct: done.corrected.summary.clone(),
         verdict: done.verdict,
         whole_contour_error_mm: milled.whole_contour(),
+        whole_surface: milled.surface,
+        measured_surface: TouchedSurface::of_measurement(&pass, &measurement),
         contours: Vec::new(),
     };
     write_program(&folder, &pass, &done.corrected)?;

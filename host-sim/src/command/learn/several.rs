@@ -7,6 +7,7 @@ use truepath_correction::as_milled::AsMilled;
 use truepath_correction::codes::Q010;
 use truepath_correction::learn::{ContourLearned, CorrectedWall, LearnSummary, learn_every};
 use truepath_correction::remarks::said_of_every;
+use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::Route;
@@ -72,6 +73,8 @@ pub(super) fn run(
             correct: done.corrected.summary.clone(),
             verdict: done.verdict.clone(),
             whole_contour_error_mm: milled.whole_contour(),
+            whole_surface: milled.surface,
+            measured_surface: TouchedSurface::of_measurement(wall.pass, wall.measurement),
             contours: Vec::new(),
         };
         pages.push((name.clone(), learned(wall.pass, wall.measurement, &done.corrected, &milled, &summary)?));

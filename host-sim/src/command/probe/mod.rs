@@ -9,7 +9,9 @@ use std::io::Write;
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::{ArgGroup, Args, ValueEnum};
-use truepath_correction::verification::{Gained, KeptOff, Plan, ProbeDialect, Settings, Unknown, plan_every, write};
+use truepath_correction::verification::{
+    Gained, KeptOff, Plan, ProbeDialect, STOCK_HEIGHTS, Settings, Unknown, plan_every, plan_stock, write,
+};
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFile;
@@ -33,10 +35,16 @@ pub struct Options {
     /// Further places, given what was measured: those after which the worst place of the corrected wall is most certain.
     #[arg(long, requires = "measured")]
     pub next: bool,
+    /// Touch the stock, before the finishing pass: the results are for stock.probe of the job.
+    #[arg(long, conflicts_with_all = ["next", "probe", "from"])]
+    pub stock: bool,
+    /// How far the stock may be from the allowance of the job, mm [default: half of the allowance, at least 0.3].
+    #[arg(long, value_name = "MM", requires = "stock")]
+    pub stock_margin: Option<f64>,
     /// What was measured on the part that will be touched again: cut by the job's program, or with the correction in DIR.
     #[arg(long, value_name = "FILE", requires = "next", group = "measured")]
     pub probe: Option<PathBuf>,
-    /// Folder of correct or learn: touched is the part cut with the correction in it, its history is known.
+    /// Folder of correct, plan or learn: touched is the part cut with the correction in it, its history is known.
     #[arg(long, value_name = "DIR", requires = "next", group = "measured")]
     pub from: Option<PathBuf>,
     /// Replace the file if it exists.
@@ -46,7 +54,7 @@ pub struct Options {
     #[command(flatten)]
     pub which: Which,
     /// Places along the contour, on several together, with two at least on each; each place is touched at every height
-    /// [default: 8; with --next at most 4].
+    /// [default: 8; with --next at most 4; with --stock by the length of the contour].
     #[arg(long, value_name = "N")]
     pub points: Option<u32>,
     /// Choices about the program.
@@ -98,7 +106,12 @@ fn words(report: &Report) -> String {
             p.id, p.s_mm, p.x_mm, p.y_mm, p.z_mm, p.why_height
         );
     }
-    text += "\nuncertainty left of what the job states:";
+    if let Some(why) = &report.heights_why {
+        let _ = writeln!(text, "\n{why}");
+    }
+    if !report.unknowns.is_empty() {
+        text += "\nuncertainty left of what the job states:";
+    }
     for u in &report.unknowns {
         let _ = write!(text, " {} {:.0} %;", u.words, 100.0 * u.remaining);
     }
@@ -107,11 +120,11 @@ fn words(report: &Report) -> String {
     } else {
         "predicted wall"
     };
-    let _ = writeln!(
-        text,
-        "\n{wall}, one sigma: {:.4} mm before the touches, {:.4} mm after",
-        report.wall_sigma_before_mm, report.wall_sigma_after_mm
-    );
+    if let (Some(before), Some(after)) = (report.wall_sigma_before_mm, report.wall_sigma_after_mm) {
+        let _ = writeln!(text, "\n{wall}, one sigma: {before:.4} mm before the touches, {after:.4} mm after");
+    } else {
+        text += "\nthe stock is touched, before the finishing pass: name the results in stock.probe of the job\n";
+    }
     for kept in &report.kept_off {
         let _ = writeln!(text, "kept off {} places {}", kept.places, kept.words);
     }
@@ -182,6 +195,9 @@ pub struct Report {
     pub probe_format: Option<&'static str>,
     /// Every touch, in the order of the program.
     pub points: Vec<Point>,
+    /// Why the heights are what they are; absent where they are spread evenly.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heights_why: Option<String>,
     /// Height between places, mm.
     pub safe_z_mm: f64,
     /// Distance of the ball's surface from the wall at the stand-off, mm.
@@ -189,10 +205,12 @@ pub struct Report {
     /// What the touches leave of every unknown.
     pub unknowns: Vec<Unknown>,
     /// Standard deviation of the wall before the touches, mm: of the predicted wall, root mean square, or, of further
-    /// places, the largest of the corrected wall.
-    pub wall_sigma_before_mm: f64,
+    /// places, the largest of the corrected wall; absent where the stock is touched.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wall_sigma_before_mm: Option<f64>,
     /// The same after them.
-    pub wall_sigma_after_mm: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wall_sigma_after_mm: Option<f64>,
     /// Where the plan keeps off.
     pub kept_off: Vec<Kept>,
     /// What the job does not say and was taken from the program or a default.
@@ -210,7 +228,8 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failu
     // A target that may not be written is refused before the work.
     let file = options.output.as_ref().map(|out| OutputFile::create(out, options.force)).transpose()?;
     let usual = if options.next { FURTHER } else { options.settings.places };
-    let settings = Settings { places: options.points.unwrap_or(usual), ..options.settings.clone() };
+    let heights = options.settings.heights.or(options.stock.then_some(STOCK_HEIGHTS));
+    let settings = Settings { places: options.points.unwrap_or(usual), heights, ..options.settings.clone() };
     let mut job = JobFile::read(&options.job)?;
     job.which = options.which.clone();
     let dialect = match options.dialect {
@@ -220,6 +239,10 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failu
     let plan = if options.next {
         job.override_probe(&options.probe_flags)?;
         next::of_files(Pass::read(job)?, (options.probe.as_deref(), options.from.as_deref()), &settings, progress)?
+    } else if options.stock {
+        // It is what the touches are to find.
+        job.stock_probe = None;
+        plan_stock(&Pass::every(job)?, &settings, (options.points, options.stock_margin))?
     } else {
         plan_every(&Pass::every(job)?, &settings, progress)?
     };
@@ -265,15 +288,17 @@ pub fn report(plan: &Plan, dialect: Option<ProbeDialect>) -> Report {
         rank: touch.place.rank,
         gain: touch.place.gain,
     });
+    let sigma = plan.wall_sigma_mm.map(|sigma| (!plan.before_the_pass).then_some(sigma));
     Report {
         dialect,
         probe_format: dialect.map(ProbeDialect::probe_format),
         points: points.collect(),
+        heights_why: plan.heights_why.clone(),
         safe_z_mm: plan.safe_z_mm,
         clearance_mm: plan.settings.clearance,
         unknowns: plan.unknowns.clone(),
-        wall_sigma_before_mm: plan.wall_sigma_mm[0],
-        wall_sigma_after_mm: plan.wall_sigma_mm[1],
+        wall_sigma_before_mm: sigma[0],
+        wall_sigma_after_mm: sigma[1],
         kept_off: plan
             .kept_off
             .iter()
@@ -285,7 +310,7 @@ pub fn report(plan: &Plan, dialect: Option<ProbeDialect>) -> Report {
 }
 
 /// Name of the file of results beside the program, in letters that no control stumbles over.
-fn log_name(out: &FilePath) -> String {
+pub(super) fn log_name(out: &FilePath) -> String {
     let stem = out.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let stem: String = stem.chars().filter(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')).collect();
     let stem = if stem.is_empty() { "verification" } else { &stem };

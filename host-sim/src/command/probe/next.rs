@@ -5,6 +5,7 @@
 //! | a probe file | the part it is of, which no correction was cut with | that file |
 //! | a folder of `correct` or `learn` | the next part, cut with the correction in it | the parts of its history |
 //! | both | the part cut with that correction, once more | the parts of its history, and that file |
+//! | a folder of `plan`, or of `learn` from there | the next part, cut with the planned program in it | the job |
 
 use std::path::Path as FilePath;
 
@@ -15,8 +16,8 @@ use truepath_correction::codes::{Q002, Q003, Q007};
 use truepath_correction::correction::{DesignRequest, Identification, design_correction, identify};
 use truepath_correction::feeds;
 use truepath_correction::learn::refuse_feeds;
-use truepath_correction::learning::{History, Part, PartPoints, Residual, joint, refuse_uncorrected};
-use truepath_correction::verification::{Measured, Plan, Settings, WallSensitivity, plan_next};
+use truepath_correction::learning::{History, Part, PartPoints, joint, refuse_uncorrected};
+use truepath_correction::verification::{Measured, Plan, Settings, WallSensitivity, plan, plan_next};
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
@@ -24,7 +25,8 @@ use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
-use crate::command::history::history_in;
+use crate::command::history::{history_in, plan_history_in, refuse_unlearned};
+use crate::command::plan_files::PLAN_HISTORY;
 
 /// Plans further touches from files. `progress` is told the share done, 0…1.
 ///
@@ -47,6 +49,10 @@ pub(super) fn of_files(
         plan.warnings.extend(measurement.remarks(&file));
         return Ok(plan);
     };
+    if folder.join(PLAN_HISTORY).exists() {
+        return planned_part(pass, folder, settings, progress);
+    }
+    refuse_unlearned(folder)?;
     let history = history_in(folder, folder)?;
     let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
@@ -61,6 +67,22 @@ pub(super) fn of_files(
     })?;
     plan.warnings.extend(measurement.iter().zip(&file).flat_map(|(m, file)| m.remarks(file)));
     Ok(plan)
+}
+
+/// Plans touches of the part cut with the planned program of a folder: at heights that tell its profile, since every height counts.
+fn planned_part(
+    pass: Pass,
+    folder: &FilePath,
+    settings: &Settings,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Plan, Failure> {
+    let history = plan_history_in(folder)?;
+    let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
+    let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass);
+    history.facts.agree(&pass)?;
+    let tolerance = settings.tolerance.or(Some(history.next.tolerance_mm));
+    let plan = plan(&pass, &Settings { tolerance, ..settings.clone() }, progress)?;
+    Ok(Plan { correction: history.program(), ..plan })
 }
 
 /// Plans further touches of an uncorrected part that was measured, in memory. `progress` is told the share done, 0…1.
@@ -122,7 +144,7 @@ pub fn next_part(
     let (Some(points), Some(nodes)) = (points, nodes) else { return Err(other_contour(&sampled).into()) };
     if let (true, Some((newest, earlier @ [_, ..]))) = (measurement.is_some(), points.split_last()) {
         let before = joint(pass, &sampled, earlier, &[], None, &mut |share| progress(0.2 * share));
-        refuse_uncorrected(&sampled, newest, &before, Residual::of(&sampled, earlier, &before).as_ref())?;
+        refuse_uncorrected(&sampled, newest, &before)?;
     }
     let joint = joint(pass, &sampled, &points, &[], None, &mut |share| progress(0.2 + 0.3 * share));
     let observations: Vec<_> = joint.observations.into_iter().flatten().collect();

@@ -31,7 +31,7 @@ fn the_ball_keeps_its_margin_from_every_wall_until_the_last_approach() {
 fn the_ball_stays_above_the_floor_and_inside_the_engaged_depth() {
     for (change, lift) in [("z_reference = \"centre\"", 0.0), ("z_reference = \"tip\"", 2.0)] {
         let pass = pass(POCKET, &[("z_reference = \"centre\"", change)]);
-        let plan = planned(&pass, &Settings { heights: 5, ..Settings::default() });
+        let plan = planned(&pass, &Settings { heights: Some(5), ..Settings::default() });
         let heights = &plan.places[0].heights;
         assert_eq!(heights.len(), 5);
         for height in heights {

@@ -73,7 +73,7 @@ fn a_probe_in_the_tool_table_is_called_and_else_the_operator_is_asked() {
 fn the_documentation_shows_the_programs_as_they_are() {
     let page = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/verification.md");
     let mut text = std::fs::read_to_string(&page).unwrap();
-    let plan = planned(&pass(POCKET, &[]), &Settings { places: 1, heights: 1, ..Settings::default() });
+    let plan = planned(&pass(POCKET, &[]), &Settings { places: 1, heights: Some(1), ..Settings::default() });
     for dialect in ALL {
         let name = format!("{dialect:?}").to_lowercase();
         let (begin, end) = (format!("<!-- {name} begin -->\n"), format!("<!-- {name} end -->"));

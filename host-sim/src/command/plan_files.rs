@@ -1,0 +1,34 @@
+//! The files of planned passes: what `plan`, and `learn` from a part cut with them, may write.
+
+use super::correction_files::CONTOURS;
+
+/// Files that these commands may write.
+pub(super) const FILES: &[&str] = &[
+    "summary.json",
+    REPORT,
+    PROGRAM,
+    "difference.txt",
+    MAP,
+    NAMED,
+    VERIFY,
+    PLAN_HISTORY,
+    PROBED,
+    "planned-#.tpi",
+    CONTOURS,
+];
+/// The written program, beside the one of its own name.
+pub(super) const PROGRAM: &str = "planned.nc";
+/// Stands for that name when the folder is claimed.
+const NAMED: &str = "*.planned*";
+/// What touches its wall.
+pub(super) const VERIFY: &str = "verify.nc";
+/// The wall unrolled as it is expected.
+pub(super) const MAP: &str = "wall-map.csv";
+/// The page.
+pub(super) const REPORT: &str = "report.html";
+/// The parts so far; see [`truepath_correction::plan::history`].
+pub(super) const PLAN_HISTORY: &str = "plan-history.json";
+/// The image of the first pass, where the passes are for the coprocessor.
+pub(super) const FIRST_IMAGE: &str = "planned-1.tpi";
+/// The points it was made from.
+pub(super) const PROBED: &str = "probe-raw.txt";
