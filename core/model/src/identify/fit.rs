@@ -74,7 +74,24 @@ pub fn identify(
     workspace: &mut PredictionWorkspace,
     observe: &mut dyn FnMut(u16),
 ) -> Fit {
-    Task { cuts, prior, commanded }.fit(earlier, observations, workspace, observe)
+    for part in earlier.iter_mut() {
+        *part = EarlierPart::new(part.points);
+    }
+    Task { cuts, prior, commanded }.fit([Real::ZERO; COUNT], earlier, observations, workspace, observe)
+}
+
+/// As [`identify`], from the prior and a fit to much the same points, whose datums `earlier` hold: it settles where
+/// [`identify`] does, in fewer steps.
+pub fn identify_again(
+    cuts: &[Cut],
+    (prior, known): (&Prior, &Fit),
+    earlier: &mut [EarlierPart],
+    observations: &mut [Observation],
+    commanded: impl Fn(usize, usize) -> Vector + Copy,
+    workspace: &mut PredictionWorkspace,
+    observe: &mut dyn FnMut(u16),
+) -> Fit {
+    Task { cuts, prior, commanded }.fit(known.theta, earlier, observations, workspace, observe)
 }
 
 /// Share of the longest possible fit that is done after some steps and parameters of the next linearisation, ‰.
@@ -102,6 +119,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
     #[inline(never)]
     fn fit(
         &self,
+        mut theta: [Real; COUNT],
         earlier: &mut [EarlierPart],
         observations: &mut [Observation],
         workspace: &mut PredictionWorkspace,
@@ -110,10 +128,6 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         let prior = self.prior;
         let mut table = ForceTable::BLANK;
         table.tabulate(prior.mean.coefficients.size_exponent);
-        let mut theta = [Real::ZERO; COUNT];
-        for part in earlier.iter_mut() {
-            *part = EarlierPart::new(part.points);
-        }
         let mut points = Points { earlier, observations, workspace };
         spread::set(points.observations, Real::ONE);
         let (mut information, mut cost, mut steps) =

@@ -57,24 +57,26 @@ pub fn plain(
     progress: &mut dyn FnMut(f64),
 ) -> Found {
     let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
-    fitted(pass, law, cuts, &measured, progress)
+    fitted(pass, law, cuts, (&measured, None), progress)
 }
 
-/// As [`plain()`], to observations in place of those of the cuts.
+/// As [`plain()`], to observations in place of those of the cuts, from a fit to much the same where there is one.
 fn fitted(
     pass: &job::ContourPass,
     law: Option<WallLaw>,
     parts: &[PartCut<'_>],
-    observations: &[Observation],
+    (observations, near): (&[Observation], Option<&Found>),
     progress: &mut dyn FnMut(f64),
 ) -> Found {
     let cuts: Vec<Cut> =
         parts.iter().map(|cut| Cut { path: cut.path, points: cut.observations.len(), part: cut.part }).collect();
     let count = |part: usize| parts.iter().filter(|cut| cut.part == part).map(|cut| cut.observations.len()).sum();
-    let earlier: Vec<EarlierPart> = (0..last_part(parts)).map(|part| EarlierPart::new(count(part))).collect();
+    let blank = || (0..last_part(parts)).map(|part| EarlierPart::new(count(part))).collect();
+    let earlier: Vec<EarlierPart> = near.map_or_else(blank, |near| near.earlier.clone());
+    let near = near.map(|near| &near.core.fit);
     let by_program =
         |cut: usize, sample: usize| parts.get(cut).map_or(Vector::ZERO, |cut| commanded(&cut.path, cut.nodes, sample));
-    found(pass, law, Asked { cuts: &cuts, earlier: &earlier, observations }, by_program, progress)
+    found(pass, law, Asked { cuts: &cuts, earlier: &earlier, observations, near }, by_program, progress)
 }
 
 /// What the parts show beside machine and material, which are fitted again to the points relieved of it; `found` is their
@@ -87,21 +89,30 @@ pub fn relieved(
 ) -> Relieved {
     let last = last_part(cuts);
     let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
+    let alone = found.clone();
     let mut is_any = false;
     let mut before: Vec<f64> = vec![0.0; measured.len()];
+    let mut moved_before = f64::INFINITY;
     for round in 0..ROUNDS {
         let beside = Discrepancy::of(points(cuts, &found, last)).map(|d| d.at_points()).unwrap_or_default();
         let moved = beside.iter().zip(&before).map(|(now, before)| (now - before).abs()).fold(0.0, f64::max);
         if moved < LEAST_MM {
             break;
         }
+        // What does not settle explains nothing: points of another part, or of another datum.
+        if moved > moved_before {
+            (found, is_any) = (alone, false);
+            break;
+        }
+        moved_before = moved;
         is_any = true;
         let mut relieved = measured.clone();
         for (o, mm) in relieved.iter_mut().zip(&beside) {
             o.error -= nm(*mm);
         }
         let share = |share: f64| (f64::from(round) + share) / f64::from(ROUNDS);
-        found = fitted(pass, Some(found.core.law), cuts, &relieved, &mut |done| progress(share(done)));
+        let law = Some(found.core.law);
+        found = fitted(pass, law, cuts, (&relieved, Some(&found)), &mut |done| progress(share(done)));
         for (o, measured) in found.observations.iter_mut().zip(&measured) {
             o.error = measured.error;
         }

@@ -91,13 +91,17 @@ fn touched(pass: &Pass, machine: &Machine, dialect: ProbeDialect) -> String {
 }
 
 /// The largest error, mean over the height, of the part that is cut with the correction of a part touched on its wall; mm.
-fn left(contour: &Contour, pass: &Pass, machine: &Machine) -> f64 {
+/// None where its points are taken for those of another datum: one wall with more stock than the other looks like it.
+fn left(contour: &Contour, pass: &Pass, machine: &Machine) -> Option<f64> {
     let first = virtual_mill::mill(pass, machine, None).unwrap();
     let ball = pass.job.require_probe().unwrap().ball_diameter.nm() as f64 / 1e6;
     let probe = virtual_mill::probe(pass, &first, contour.places, &[0.15, 0.5, 0.85], ball).unwrap();
     let measurement = Measurement::read(pass, &source("probe.txt", &probe)).unwrap();
-    let done = correct_pass(pass, &measurement, &[], &[Route::Program], &mut |_| ()).unwrap();
-    cut(pass, machine, &done)
+    match correct_pass(pass, &measurement, &[], &[Route::Program], &mut |_| ()) {
+        Ok(done) => Some(cut(pass, machine, &done)),
+        Err(Failure::Input(error)) if error.code() == "Q009" && error.found().contains("the datum is shifted") => None,
+        Err(other) => panic!("{other:?}"),
+    }
 }
 
 fn cut(pass: &Pass, machine: &Machine, done: &CorrectedPass) -> f64 {
@@ -106,20 +110,16 @@ fn cut(pass: &Pass, machine: &Machine, done: &CorrectedPass) -> f64 {
 }
 
 /// Largest errors over even stock, over uneven stock that nobody knows, and over the same stock touched beforehand, mm.
-fn thrice(contour: &Contour, stock: &str) -> [f64; 3] {
+fn thrice(contour: &Contour, stock: &str) -> (f64, Option<f64>, f64) {
     let even = over(contour, None).unwrap();
     let (smooth, uneven) = (machine(contour, ""), machine(contour, stock));
     let known = over(contour, Some(&touched(&even, &uneven, ProbeDialect::Linuxcnc))).unwrap();
-    let figures = [left(contour, &even, &smooth), left(contour, &even, &uneven), left(contour, &known, &uneven)];
-    println!(
-        "{} {}: even {:.4}, unknown {:.4}, touched {:.4} mm",
-        contour.name,
-        stock.replace('\n', " "),
-        figures[0],
-        figures[1],
-        figures[2]
-    );
-    figures
+    let unknown = left(contour, &even, &uneven);
+    let [even, known] =
+        [(&even, &smooth), (&known, &uneven)].map(|(pass, machine)| left(contour, pass, machine).unwrap());
+    let what = stock.replace('\n', " ");
+    println!("{} {what}: even {even:.4}, unknown {unknown:.4?}, touched {known:.4} mm", contour.name);
+    (even, unknown, known)
 }
 
 fn waves() -> String {
@@ -132,8 +132,11 @@ fn step(contour: &Contour) -> String {
 
 #[test]
 fn stock_that_was_touched_is_as_good_as_even_stock_in_the_corner() {
-    let [even, unknown, known] = thrice(&CORNER, &waves());
-    assert!(known < 0.7 * unknown && even > 0.8 * known, "{even} {unknown} {known}");
+    // Nothing else infers the stock, as on the device.
+    let job = CORNER.job.replace("[correct]", "[correct]\ndiscrepancy = \"ignore\"");
+    let (even, unknown, known) = thrice(&Contour { job: job.leak(), ..CORNER }, &waves());
+    let unknown = unknown.unwrap();
+    assert!(known < 0.4 * unknown && even > 0.8 * known, "{even} {unknown} {known}");
 }
 
 #[test]
@@ -141,8 +144,14 @@ fn stock_that_was_touched_is_as_good_as_even_stock_in_the_corner() {
 fn waves_and_steps_of_three_contours_are_cut_as_if_the_stock_were_even() {
     for contour in [&CORNER, &POCKET, &OUTSIDE] {
         for stock in [waves(), step(contour)] {
-            let [even, unknown, known] = thrice(contour, &stock);
-            assert!(known <= unknown * 1.05 && even > 0.5 * known, "{}: {even} {unknown} {known}", contour.name);
+            let (even, unknown, known) = thrice(contour, &stock);
+            let unknown = unknown.unwrap_or(even);
+            // What is inferred may come to the same where even stock is no better.
+            assert!(
+                known <= 1.05 * unknown.max(even) && even > 0.5 * known,
+                "{}: {even} {unknown} {known}",
+                contour.name
+            );
         }
     }
 }
