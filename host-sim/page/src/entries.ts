@@ -45,9 +45,10 @@ const OTHERS: Figure[] = [
   { key: "gouge_mm", head: "deepest cut mm", name: "deepest cut" },
 ];
 
-/** The figures that some contour has. */
+/** The figures that some contour has; where the error at any height is known, the deepest cut is part of it. */
 export function figuresOf({ kind }: Several, entries: Entry[]): Figure[] {
-  return [...FIGURES[kind], ...OTHERS].filter(({ key }) => entries.some(({ outcome }) => outcome[key] !== undefined));
+  const has = (key: Size) => entries.some(({ outcome }) => outcome[key] !== undefined);
+  return [...FIGURES[kind], ...OTHERS].filter(({ key }) => has(key) && !(key === "gouge_mm" && has("profile_mm")));
 }
 
 /** The figure that contours are ranked by until the reader chooses another: the error of what the page is about. */

@@ -11,8 +11,8 @@ const KINDS = ["simulate", "correct", "learn", "inspect"];
 /** The figure that a kind is ranked by, and all that it has. */
 const RANKED = { simulate: "before_mm", correct: "after_mm", learn: "after_mm", inspect: "measured_mm" };
 const FIGURES = {
-  simulate: ["before_mm"], correct: ["before_mm", "after_mm", "profile_mm", "sigma_mm", "gouge_mm"],
-  learn: ["before_mm", "measured_mm", "after_mm", "profile_mm", "sigma_mm", "gouge_mm"], inspect: ["measured_mm", "gouge_mm"],
+  simulate: ["before_mm"], correct: ["before_mm", "after_mm", "profile_mm", "sigma_mm"],
+  learn: ["before_mm", "measured_mm", "after_mm", "profile_mm", "sigma_mm"], inspect: ["measured_mm", "gouge_mm"],
 };
 
 const file = async (kind) => write(`several-${kind}`, await plate(kind));
@@ -77,7 +77,9 @@ for (const kind of KINDS) {
       return [`${worst.page.outcome[key].toFixed(4)} mm`, worst.page.outcome[key] > 0 ? worst.name : undefined];
     }));
     const failed = data.contours.filter(({ page: { verdict } }) => verdict?.state === "fail").map(({ name }) => name);
-    if (kind !== "simulate") {
+    // What is not cut yet is decided only where the whole of two standard deviations lies outside.
+    if (kind === "correct") assert.ok(failed.length < PLATE.length && await page.locator(".verdict").first().isVisible());
+    else if (kind !== "simulate") {
       assert.ok(failed.length > 0 && failed.length < PLATE.length, `${failed}`);
       assert.equal(await page.locator(".verdict.fail span").first().textContent(),
         `${kind === "inspect" ? "" : "predicted: "}${failed.length} of 5 contours: ${failed.slice(0, 3).join(", ")}${failed.length > 3 ? ", …" : ""}`);
@@ -402,7 +404,8 @@ test("forty contours are there within a second, another one at once, each can be
     await settled(page);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 360);
     const paper = await page.pdf({ path: `${pictures}several-many.pdf`, preferCSSPageSize: true, printBackground: true });
-    assert.ok(paper.toString("latin1").match(/\/Type \/Page\b/g).length <= 26);
+    const sheets = paper.toString("latin1").match(/\/Type \/Page\b/g).length;
+    assert.ok(sheets <= 26, `${sheets} sheets`);
     assert.deepEqual(complaints, []);
     await close();
     return;

@@ -100,14 +100,11 @@ pub(super) fn figures(s: &CorrectSummary, largest: &[impl AsRef<str>; 2]) -> Vec
     let used =
         format!("{} points used, {} outlying, {} set aside", s.points_used, s.points_outlying, s.points_rejected);
     let at = format!("at s = {:.1} mm", s.max_error_after_s_mm);
-    let after = &s.surface.after;
-    let worst = format!("expected, ± {:.4} (2 sigma)", 2.0 * after.profile.sigma_mm);
-    let sigma = format!("largest {:.4}, {:.4} by the points", s.max_sigma_mm, s.max_sigma_by_points_mm);
+    let sigma = format!("largest {:.4}", s.max_sigma_mm);
     let figures = [
         Figure::mm(without, s.max_error_before_mm).map(|f| f.noted("predicted")),
         Figure::mm(with, s.max_error_after_mm).map(|f| f.noted(format!("predicted, {at}"))),
         Figure::mm("standard deviation there", s.sigma_at_max_error_mm).map(|f| f.noted(sigma)),
-        Figure::mm("worst at any height", after.profile.profile_mm).map(|f| f.noted(worst)),
         Figure::mm("left over the height", s.axial_form_error_mm).map(|f| f.noted("no X Y shift cures it")),
         Figure::mm("deepest cut at any height", s.worst_gouge_mm).map(|f| f.noted("predicted")),
         Figure::mm("largest correction", s.max_correction_mm).map(|f| f.noted("along an axis")),

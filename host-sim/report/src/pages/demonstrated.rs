@@ -36,9 +36,15 @@ pub fn demonstrated(
         // That of the points is of what was foretold.
         outcome.sigma_mm = None;
     }
+    let profile = &done.summary.surface.after.profile;
     page.told = Some(format!(
-        "cut: mean over the height {:.3} -> {:.3} mm; worst at any height {:.3} -> {:.3} mm",
-        before.max_error_mm, after.max_error_mm, before.worst_height_mm, after.worst_height_mm
+        "cut: mean over the height {:.3} -> {:.3} mm; any height {:.3} -> {:.3} mm ({:.3} ± {:.3} expected)",
+        before.max_error_mm,
+        after.max_error_mm,
+        before.worst_height_mm,
+        after.worst_height_mm,
+        profile.profile_mm,
+        2.0 * profile.sigma_mm
     ));
     page.results = figures(before, after, done);
     // What was foretold of a part that has been cut is not its verdict.
@@ -56,14 +62,11 @@ pub fn demonstrated(
 fn figures(before: &Score, after: &Score, done: &CorrectedPass) -> Vec<Figure> {
     let rms = |score: &Score| format!("cut, rms {:.4} mm", score.rms_error_mm);
     let s = &done.summary;
-    let profile = &s.surface.after.profile;
-    let foretold = format!("cut; {:.4} ± {:.4} were expected", profile.profile_mm, 2.0 * profile.sigma_mm);
     let figures = [
         Figure::mm("largest error, first part", before.max_error_mm).map(|f| f.noted(rms(before))),
         Figure::mm("largest error, corrected part", after.max_error_mm).map(|f| f.noted(rms(after))),
         Figure::mm("largest error, predicted", s.max_error_after_mm).map(|f| f.noted("from the points")),
         Figure::mm("standard deviation there", s.sigma_at_max_error_mm),
-        Figure::mm("worst at any height", after.worst_height_mm).map(|f| f.noted(foretold)),
         Figure::mm("left over the height", after.axial_form_mm).map(|f| f.noted("cut; no X Y shift cures it")),
         Figure::mm("deepest cut", after.gouge_mm.max(0.0)).map(|f| f.noted("cut, mean over the height")),
         Figure::mm("largest correction", s.max_correction_mm).map(|f| f.noted("along an axis")),

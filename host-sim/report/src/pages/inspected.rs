@@ -40,7 +40,6 @@ pub fn inspected(
     page.points = points;
     if let Some(outcome) = &mut page.outcome {
         outcome.measured_mm = known(summary.max_error_mm.abs().max(summary.min_error_mm.abs()));
-        outcome.profile_mm = known(summary.surface.profile_mm);
         outcome.gouge_mm = known((-summary.min_error_mm).max(0.0));
     }
     page.told = Some(summary.surface.words() + " (2 sigma)");
