@@ -62,6 +62,7 @@ impl Offset {
         Self(self.0.saturating_abs())
     }
     /// This length times a number, rounded to the nanometre, saturating.
+    #[inline]
     pub const fn scaled(self, factor: Real) -> Self {
         let product = shift_rounded((self.0 as i128).saturating_mul(factor.bits() as i128), Real::FRACTION_BITS);
         Self(saturate(product))
@@ -71,6 +72,7 @@ impl Offset {
         Real::ratio(self.0, other.0)
     }
     /// The sum of two products `self·a + other·b`, rounded once.
+    #[inline]
     pub const fn blend(self, a: Real, other: Self, b: Real) -> Self {
         let p = (self.0 as i128).saturating_mul(a.bits() as i128);
         let q = (other.0 as i128).saturating_mul(b.bits() as i128);

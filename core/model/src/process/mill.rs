@@ -6,7 +6,7 @@ use super::part::{Part, Wall};
 use super::slices::{MAX_SLICES, Slices};
 use crate::cut::{Compliance, Envelope, Loop, Milling, Passage, WallLaw, mixed};
 use truepath_units::geometry::{Direction, Vector};
-use truepath_units::{Offset, Real, sin_cos};
+use truepath_units::{Offset, Real, shift_rounded_i63, sin_cos};
 
 /// How a pass is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +47,11 @@ pub struct Mill<'a> {
 
 /// Residual at which a loop counts as solved.
 const TOLERANCE: Offset = Offset::from_nm(20);
+/// The square of every length that rounds to more than that is at least this, nm².
+const SOLVED: u128 = {
+    let nm = TOLERANCE.nm().unsigned_abs() as u128;
+    nm.saturating_mul(nm).saturating_add(nm).saturating_add(1)
+};
 /// Residual above which a sample is reported as unsettled.
 const UNSETTLED: Offset = Offset::from_nm(500);
 /// Iterations of a loop; from the second number on it is damped.
@@ -68,8 +73,8 @@ struct March<'m> {
     /// How much a force in every slice displaces, over what it would spread over the height: what is pushed farther by a force
     /// pushes farther by the same (reciprocity, Maxwell and Betti).
     lever: [Real; MAX_SLICES],
-    /// Feed, feed per tooth (mm) and the force at it.
-    force: Option<(Real, Real, Cumulative)>,
+    /// Feed, feed per tooth (mm), the force at it, and where it is asked for.
+    force: Option<(Real, Real, Cumulative, Windows)>,
     /// Displacement by the mean force, and at the instant of every slice, at the last place.
     mean: Vector,
     instants: [Vector; MAX_SLICES],
@@ -84,6 +89,31 @@ struct Settled {
     feed_per_tooth: Real,
 }
 
+/// An angle on the grid, and the force up to it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Edge {
+    cell: usize,
+    share: Real,
+    force: Force,
+}
+
+/// The angles that a tooth has in one slice while one passes the wall in another: where they begin (rad; what lies before 0 does not cut),
+/// and their ends.
+#[derive(Clone, Copy, Debug, Default)]
+struct Window {
+    from: Real,
+    begins: Edge,
+    ends: Edge,
+}
+
+/// How many teeth are kept; they lie a pitch apart, and mostly the engaged angles hold no more of them.
+const KEPT: usize = 2;
+/// How many slices one may lie above another or below it.
+const APART: usize = MAX_SLICES.saturating_mul(2);
+
+/// The windows by how many slices (and [`MAX_SLICES`] more) the one slice lies above the other, as the teeth follow each other.
+struct Windows([[Window; KEPT]; APART]);
+
 /// One place of the cutter, with what is around it.
 struct Place<'p> {
     depths: &'p Depths,
@@ -92,6 +122,7 @@ struct Place<'p> {
     normal: Direction,
     heading: Direction,
     force: &'p Cumulative,
+    windows: &'p Windows,
     factor: &'p [Real; MAX_SLICES],
     lever: &'p [Real; MAX_SLICES],
     first: usize,
@@ -254,7 +285,6 @@ impl<'a> Mill<'a> {
     fn instant_force(&self, place: &Place, of: usize, at: Vector) -> (Real, Real) {
         let beside = place.beside(at - place.looked);
         let mut sum = Force::default();
-        let half = self.lag * Real::HALF;
         for k in place.first..self.slices.count() {
             let rows = usize::from(place.rows.get(k).copied().unwrap_or(0));
             if rows == 0 {
@@ -263,22 +293,59 @@ impl<'a> Mill<'a> {
             // In climb milling the tooth at the wall has its upper part still in the stock.
             let above =
                 if place.climb { (k as i64).saturating_sub(of as i64) } else { (of as i64).saturating_sub(k as i64) };
-            let mut from = self.lag * Real::from_int(above as i32) - half;
-            let turns = ((-(from + self.lag)) / self.pitch).floor().saturating_add(1);
-            from += self.pitch * Real::from_int(turns as i32);
             let end = self.grid.angle.get(rows.saturating_sub(1)).copied().unwrap_or(Real::ZERO);
+            let kept = place.windows.of(above);
             let mut own = Force::default();
-            while from < end {
-                own = own.plus(self.stretch(place, k, (from.max(Real::ZERO), (from + self.lag).min(end)), &beside));
-                from += self.pitch;
+            for tooth in 0.. {
+                let next;
+                let window = match kept.get(tooth) {
+                    Some(window) => window,
+                    None => {
+                        next = self.window(place.force, above, tooth);
+                        &next
+                    }
+                };
+                if window.from >= end {
+                    break;
+                }
+                let last = if window.from + self.lag > end { self.edge(place.force, end) } else { window.ends };
+                own = own.plus(self.stretch(place, k, (&window.begins, &last), &beside));
             }
             sum = sum.plus(own.part(place.lever_at(k)));
         }
         sum.scaled(self.machine.path.helix().mm_per_lag)
     }
 
+    /// An angle on the grid.
+    fn edge(&self, force: &Cumulative, angle: Real) -> Edge {
+        let (cell, share) = self.grid.locate(angle);
+        Edge { cell, share, force: force.within(cell, share) }
+    }
+
+    /// The angles of a tooth in a slice that lies so many above that of the wall, in the sense in which the teeth lean.
+    fn window(&self, force: &Cumulative, above: i64, tooth: usize) -> Window {
+        let begins = self.lag * Real::from_int(above as i32) - self.lag * Real::HALF;
+        let turns = ((-(begins + self.lag)) / self.pitch).floor().saturating_add(1).saturating_add(tooth as i64);
+        let from = begins + self.pitch * Real::from_int(turns as i32);
+        Window { from, begins: self.edge(force, from.max(Real::ZERO)), ends: self.edge(force, from + self.lag) }
+    }
+
+    /// All windows at a feed.
+    fn windows(&self, force: &Cumulative) -> Windows {
+        let mut all = [[Window::default(); KEPT]; APART];
+        for (at, teeth) in all.iter_mut().enumerate() {
+            let above = (at as i64).saturating_sub(MAX_SLICES as i64);
+            if above.unsigned_abs() < self.slices.count() as u64 {
+                for (tooth, window) in teeth.iter_mut().enumerate() {
+                    *window = self.window(force, above, tooth);
+                }
+            }
+        }
+        Windows(all)
+    }
+
     /// ∫ of the force density over the engaged part of a stretch of angles in a slice.
-    fn stretch(&self, place: &Place, k: usize, (from, to): (Real, Real), beside: &[i64; ANGLES]) -> Force {
+    fn stretch(&self, place: &Place, k: usize, (from, to): (&Edge, &Edge), beside: &[i64; ANGLES]) -> Force {
         let (Some(depth), Some(factor)) = (place.depths.depth.get(k), place.factor.get(k)) else {
             return Force::default();
         };
@@ -290,14 +357,13 @@ impl<'a> Mill<'a> {
             let (a, b) = (row(cell), row(cell.saturating_add(1)));
             a.saturating_add(part_of(b.saturating_sub(a), share))
         };
-        let (mut cell, share) = self.grid.locate(from);
-        let (last, last_share) = self.grid.locate(to);
-        let (mut d, mut begins) = (within(cell, share), place.force.within(cell, share));
+        let mut cell = from.cell;
+        let (mut d, mut begins) = (within(cell, from.share), from.force);
         let mut sum = Force::default();
         loop {
-            let ends = cell >= last;
+            let ends = cell >= to.cell;
             let (next, up_to) = if ends {
-                (within(cell, last_share), place.force.within(cell, last_share))
+                (within(to.cell, to.share), to.force)
             } else {
                 (row(cell.saturating_add(1)), place.force.at(cell.saturating_add(1)))
             };
@@ -340,9 +406,11 @@ impl<'m> March<'m> {
             let milling = if self.climb { Milling::Climb } else { Milling::Conventional };
             let scale = machine.coefficients.chip_scale(per_tooth);
             let of = (&machine.coefficients, milling);
-            self.force = Some((feed, per_tooth, Cumulative::new(self.mill.grid, machine.table, of, scale)));
+            let force = Cumulative::new(self.mill.grid, machine.table, of, scale);
+            let windows = self.mill.windows(&force);
+            self.force = Some((feed, per_tooth, force, windows));
         }
-        let (_, feed_per_tooth, force) = self.force.as_ref()?;
+        let (_, feed_per_tooth, force, windows) = self.force.as_ref()?;
         let mut iterations = 0u32;
         let mut look = 1;
         let (place, mut residual) = loop {
@@ -356,6 +424,7 @@ impl<'m> March<'m> {
                 normal: frame.normal,
                 heading: if self.order.reversed { frame.heading.reversed() } else { frame.heading },
                 force,
+                windows,
                 factor: &self.factor,
                 lever: &self.lever,
                 first: self.order.first,
@@ -396,14 +465,32 @@ impl Place<'_> {
     /// How much deeper every angle lies when the cutter moves by `by`, nm.
     fn beside(&self, by: Vector) -> [i64; ANGLES] {
         let mut beside = [0; ANGLES];
-        if by != Vector::ZERO {
-            for (slot, normal) in beside.iter_mut().zip(self.depths.normal).take(self.depths.rows) {
-                *slot = by.along(normal).nm();
+        let rows = beside.iter_mut().zip(&self.depths.normal).take(self.depths.rows);
+        let (x, y) = (by.x.nm(), by.y.nm());
+        if x.unsigned_abs().max(y.unsigned_abs()) < NARROW {
+            for (slot, normal) in rows {
+                let product = x.saturating_mul(normal.x.bits()).saturating_add(y.saturating_mul(normal.y.bits()));
+                *slot = shift_rounded_i63(product, Real::FRACTION_BITS);
+            }
+        } else {
+            for (slot, normal) in rows {
+                *slot = by.along(*normal).nm();
             }
         }
         beside
     }
 }
+
+impl Windows {
+    /// Those of a slice so many above that of the wall.
+    fn of(&self, above: i64) -> &[Window] {
+        let at = above.saturating_add(MAX_SLICES as i64).unsigned_abs() as usize;
+        self.0.get(at).map_or(&[], |teeth| teeth)
+    }
+}
+
+/// A component below that, nm, times one of a direction fits 64 bits, and so does the sum of two.
+const NARROW: u64 = 1 << 29;
 
 /// Where between two depths of opposite signs the surface lies, 0…1.
 fn crossing(a: i64, b: i64) -> Real {
@@ -416,15 +503,14 @@ fn equilibrium(guess: Vector, mut push: impl FnMut(Vector) -> Vector) -> (Vector
     let [most, damped] = ITERATIONS;
     let mut at = guess;
     let mut before: Option<(Vector, Vector)> = None;
-    let mut best = (guess, Offset::MAX);
+    let mut best = (guess, Vector { x: Offset::MAX, y: Offset::MAX });
     for turn in 1..=most {
         let residual = push(at) - at;
-        let left = residual.length();
-        if left < best.1 {
-            best = (at + residual, left);
+        if is_shorter(residual, best.1) {
+            best = (at + residual, residual);
         }
-        if left <= TOLERANCE {
-            return (best.0, left, turn);
+        if residual.length_squared() < SOLVED {
+            return (best.0, residual.length(), turn);
         }
         let step = match before {
             Some((x0, r0)) if turn < damped => mixed(residual, residual - r0, at - x0),
@@ -434,5 +520,12 @@ fn equilibrium(guess: Vector, mut push: impl FnMut(Vector) -> Vector) -> (Vector
         before = Some((at, residual));
         at = at + step;
     }
-    (best.0, best.1, most)
+    (best.0, best.1.length(), most)
+}
+
+/// Whether a length is shorter than another, both rounded to whole nanometres.
+fn is_shorter(a: Vector, b: Vector) -> bool {
+    let (square, other) = (a.length_squared(), b.length_squared());
+    // Roots are needed only where the squares are so near to each other that both may round to one.
+    if square.abs_diff(other) > other / 2 && other > 64 { square < other } else { a.length() < b.length() }
 }

@@ -105,10 +105,12 @@ impl Vector {
         p.saturating_sub((self.y.nm() as i128).saturating_mul(other.x.nm() as i128))
     }
     /// Its component along a direction, rounded to the nanometre.
+    #[inline]
     pub fn along(self, direction: Direction) -> Offset {
         self.x.blend(direction.x, self.y, direction.y)
     }
     /// Times a number.
+    #[inline]
     pub fn scaled(self, factor: Real) -> Self {
         Self { x: self.x.scaled(factor), y: self.y.scaled(factor) }
     }
@@ -150,10 +152,12 @@ impl Direction {
         Self { x: -self.x, y: -self.y }
     }
     /// The displacement of the given length along this direction.
+    #[inline]
     pub fn times(self, length: Offset) -> Vector {
         Vector { x: length.scaled(self.x), y: length.scaled(self.y) }
     }
     /// Scalar product, the cosine of the angle between.
+    #[inline]
     pub fn dot(self, other: Self) -> Real {
         Real::dot(self.x, other.x, self.y, other.y)
     }

@@ -110,11 +110,24 @@ impl<'a> Bench<'a> {
     /// The part after one pass of the program as it is, which shows what planning is for.
     pub fn as_programmed(&self) -> Stage {
         let whole = Cut::whole(Aim::Middle);
-        self.run(self.raw(), &whole, |part, order, _, buffers| {
-            let load = self.mill.run(part, &order.order, |_| Vector::ZERO, &mut buffers.depths, &mut buffers.moved);
-            self.mill.walls(&order.order, &buffers.moved, &mut buffers.walls);
-            load
-        })
+        self.run(self.raw(), &whole, |part, order, _, buffers| self.unmoved(part, order, buffers))
+    }
+
+    /// The walls that one pass of the program as it is makes of the raw part: sample by sample of the contour, all slices side by side.
+    pub fn programmed_walls(&self) -> Vec<Wall> {
+        let (mut left, mut buffers) = (self.raw().left, self.buffers());
+        let part = Part::of(self.slices, &mut left);
+        for order in Cut::whole(Aim::Middle).orders(self.slices) {
+            self.unmoved(&part, &order, &mut buffers);
+        }
+        buffers.walls
+    }
+
+    /// A pass along the path of the program, whose walls are in the buffers.
+    fn unmoved(&self, part: &Part, order: &PassOrder, buffers: &mut Buffers) -> Load {
+        let load = self.mill.run(part, &order.order, |_| Vector::ZERO, &mut buffers.depths, &mut buffers.moved);
+        self.mill.walls(&order.order, &buffers.moved, &mut buffers.walls);
+        load
     }
 
     /// The part after one more cut, designed in at most `turns` steps a pass.
@@ -140,8 +153,12 @@ impl<'a> Bench<'a> {
 
     /// What is left when the passes of a process are run by this machine as they were designed, perhaps for another.
     pub fn follow(&self, passes: &[CutPass]) -> Vec<Offset> {
+        self.follow_on(self.raw().left, passes)
+    }
+
+    /// The same from what other passes left.
+    pub fn follow_on(&self, mut left: Vec<Offset>, passes: &[CutPass]) -> Vec<Offset> {
         let path = self.path();
-        let mut left = self.raw().left;
         let mut buffers = self.buffers();
         for pass in passes {
             let mut part = Part::of(self.slices, &mut left);

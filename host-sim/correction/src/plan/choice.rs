@@ -17,7 +17,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::passes::Turn;
 
-use super::bench::Bench;
+use super::bench::{Bench, Stage};
 use super::field::Field;
 use super::mounted::{DIVISIONS, FINE, MIDDLE, Mounted, Resolution};
 use super::process::{Cut, words};
@@ -223,9 +223,8 @@ impl<'a> Planner<'a> {
         let coarse = self.bench(&self.own, (&path, &table), &grid, COARSE);
         let path = self.own.path(MIDDLE, &mut finer)?;
         let bench = self.bench(&self.own, (&path, &table), &grid, MIDDLE);
-        let benches = (&bench, &coarse, &self.open(&bench)[..]);
-        let choice = self.look(&self.own, benches, cuts, (wanted, bench.minutes()));
-        Ok(Plan::of(&bench, vec![choice], wanted))
+        let choices = self.look(&self.own, (&bench, &coarse), &[cuts], (wanted, bench.minutes()), &|_| ());
+        Ok(Plan::of(&bench, choices, wanted))
     }
 
     /// A cutter at work, with what parts have shown beside the machine.
@@ -264,15 +263,9 @@ impl<'a> Planner<'a> {
 
         let path = mounted.path(MIDDLE, &mut finer)?;
         let bench = self.bench(mounted, (&path, &table), grid, MIDDLE);
-        let open = self.open(&bench);
-        let done = AtomicUsize::new(0);
-        let look = |candidate: &Candidate| {
-            let choice = self.look(mounted, (&bench, &coarse, &open), &candidate.cuts, (wanted, minutes));
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress(0.5 + 0.5 * done as f64 / found.len() as f64);
-            choice
-        };
-        Ok(found.par_iter().map(look).collect())
+        let processes: Vec<&[Cut]> = found.iter().map(|candidate| &candidate.cuts[..]).collect();
+        let told = |share: f64| progress(0.5 + 0.5 * share);
+        Ok(self.look(mounted, (&bench, &coarse), &processes, (wanted, minutes), &told))
     }
 
     /// Designs a process of the program's own cutter finely, on a path for which `samples` is room. `progress` is told the share done.
@@ -328,46 +321,68 @@ impl<'a> Planner<'a> {
         (limits, said)
     }
 
-    /// Cuts a candidate anew, and by every machine that the points allow.
+    /// Cuts processes anew, and by every machine that the points allow; `progress` is told the share done.
     fn look(
         &self,
         mounted: &Mounted,
-        (bench, coarse, open): (&Bench, &Bench, &[Vec<f64>]),
-        cuts: &[Cut],
+        (bench, coarse): (&Bench, &Bench),
+        processes: &[&[Cut]],
         (wanted, minutes): (&Wanted, f64),
-    ) -> Choice {
-        const TURNS: u32 = 12;
-        let mut stage = bench.raw();
-        for cut in cuts {
-            stage = bench.cut(stage, cut, TURNS);
-        }
-        let (machine, passes) = (coarse.machine(), coarse.taken_over(&stage.passes, bench));
-        let like = coarse.follow(&passes);
-        let mut table = ForceTable::new(machine.table.size_exponent());
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Vec<Choice> {
+        let others = self.others_than(mounted, coarse);
+        let tables: Vec<ForceTable> = others.iter().map(|other| ForceTable::new(other.exponent())).collect();
+        let machines: Vec<Bench> = others
+            .iter()
+            .zip(&tables)
+            .map(|(other, table)| coarse.of(other.parameters.machine(coarse.path(), table)))
+            .collect();
+        let begun = begun((bench, coarse), &machines, processes, progress);
+        let open = self.open(bench);
+        let choice = |cuts: &&[Cut]| {
+            let begun = begun.iter().find(|begun| begun.cuts == *cuts)?;
+            Some(self.choice(mounted, (bench, coarse), (begun, &others, &open), (wanted, minutes)))
+        };
+        processes.par_iter().filter_map(choice).collect()
+    }
+
+    /// The machines beside the identified one whose walls are other ones.
+    fn others_than(&self, mounted: &Mounted, coarse: &Bench) -> Vec<Other> {
         let known = mounted.known();
         let found = mounted.with(&known.fit().parameters);
-        let mut cut_by = |parameters: Parameters| {
-            if parameters.machine(coarse.path(), &table).cuts_as(machine) {
-                return None;
-            }
-            if parameters.coefficients.size_exponent != table.size_exponent() {
-                table.tabulate(parameters.coefficients.size_exponent);
-            }
-            let other = coarse.of(parameters.machine(coarse.path(), &table)).follow(&passes);
-            Some(bench.changed_like(&stage.left, coarse, (&like, &other)))
-        };
-        let others = neighbours(known.prior(), known.fit());
-        let noise: Vec<_> =
-            others.filter_map(|(other, share)| Some((cut_by(mounted.with(&other))?, float(share)))).collect();
+        let noise = neighbours(known.prior(), known.fit()).map(|(other, share)| (mounted.with(&other), share));
+        let noise = noise.map(|(parameters, share)| Other { parameters, why: Why::Noise(float(share)) });
         let lacking = unmodelled(&found).chain(mounted.unknown(&found)).filter(|_| !self.is_learned);
-        let mut lacking: Vec<_> = lacking.filter_map(&mut cut_by).collect();
+        let lacking = lacking.map(|parameters| Other { parameters, why: Why::Lacking });
+        let stiff = Other { parameters: unbent(&found), why: Why::Unbent };
+        let (machine, path) = (coarse.machine(), coarse.path());
+        let differs = |other: &Other| !other.parameters.machine(path, machine.table).cuts_as(machine);
+        noise.chain(lacking).chain([stiff]).filter(differs).collect()
+    }
+
+    /// A process that was cut by all machines.
+    fn choice(
+        &self,
+        mounted: &Mounted,
+        (bench, coarse): (&Bench, &Bench),
+        (begun, others, open): (&Begun, &[Other], &[Vec<f64>]),
+        (wanted, minutes): (&Wanted, f64),
+    ) -> Choice {
+        let (stage, cuts) = (&begun.stage, begun.cuts);
+        let (mut noise, mut lacking, mut stiff) = (Vec::new(), Vec::new(), None);
+        for (other, left) in others.iter().zip(&begun.others) {
+            let wall = bench.changed_like(&stage.left, coarse, (&begun.like, left));
+            match other.why {
+                Why::Noise(share) => noise.push((wall, share)),
+                Why::Lacking => lacking.push(wall),
+                Why::Unbent => stiff = Some(wall),
+            }
+        }
         lacking.extend(open.iter().map(|column| bench.beside(&stage.left, column)));
-        let stiff = cut_by(unbent(&found));
         let wall = bench.figures(&stage.left);
         let uncertain = Uncertain::of((bench.path(), bench.slices()), &stage.left, &noise, &lacking, stiff.as_deref());
         let draws = uncertain.largest();
         let causes = uncertain.causes_at(wall.worst);
-        let predicted = draws.predicted();
         let cutter = mounted.cutter();
         let with = cutter.map_or_else(String::new, |cutter| {
             format!("T{}, helix {} degrees: ", cutter.number, float(cutter.helix_deg))
@@ -379,7 +394,7 @@ impl<'a> Planner<'a> {
             passes: stage.passes.len(),
             minutes: stage.minutes,
             time_ratio: stage.minutes / minutes,
-            predicted,
+            predicted: draws.predicted(),
             within_tolerance: draws.within(wanted.tolerance_mm),
             limited_by: causes.largest(),
             causes,
@@ -389,6 +404,82 @@ impl<'a> Planner<'a> {
             chip_mm: stage.passes.last().map_or(0.0, |p| float(p.load.chip)),
         }
     }
+}
+
+/// A machine beside the identified one.
+#[derive(Clone, Copy, Debug)]
+struct Other {
+    parameters: Parameters,
+    why: Why,
+}
+
+/// What a machine beside the identified one stands for.
+#[derive(Clone, Copy, Debug)]
+enum Why {
+    /// What the points leave open, with the share of its change.
+    Noise(f64),
+    /// What the model lacks.
+    Lacking,
+    /// A cutter that does not bend.
+    Unbent,
+}
+
+impl Other {
+    const fn exponent(&self) -> Real {
+        self.parameters.coefficients.size_exponent
+    }
+}
+
+/// The first cuts of a process, as all machines have made them.
+struct Begun<'c> {
+    cuts: &'c [Cut],
+    stage: Stage,
+    /// What the identified machine leaves on the coarse bench.
+    like: Vec<Offset>,
+    /// What each of the others leaves there.
+    others: Vec<Vec<Offset>>,
+}
+
+/// Cuts processes finely, and on a coarse bench by the other machines. What several of them begin with is cut once.
+fn begun<'c>(
+    (bench, coarse): (&Bench, &Bench),
+    machines: &[Bench],
+    processes: &[&'c [Cut]],
+    progress: &(dyn Fn(f64) + Sync),
+) -> Vec<Begun<'c>> {
+    const TURNS: u32 = 12;
+    let mut beginnings: Vec<&[Cut]> = Vec::new();
+    for cuts in processes.iter().flat_map(|cuts| (1..=cuts.len()).map(|k| &cuts[..k])) {
+        if !beginnings.contains(&cuts) {
+            beginnings.push(cuts);
+        }
+    }
+    let raw = coarse.raw().left;
+    let others = vec![raw.clone(); machines.len()];
+    let mut begun = vec![Begun { cuts: &[], stage: bench.raw(), like: raw, others }];
+    let done = AtomicUsize::new(0);
+    for count in 1.. {
+        let next: Vec<&[Cut]> = beginnings.iter().copied().filter(|cuts| cuts.len() == count).collect();
+        if next.is_empty() {
+            break;
+        }
+        let go_on = |cuts: &&'c [Cut]| {
+            let (last, before) = cuts.split_last()?;
+            let before = begun.iter().find(|begun| begun.cuts == before)?;
+            let stage = bench.cut(before.stage.clone(), last, TURNS);
+            let own = &stage.passes[before.stage.passes.len()..];
+            let passes = coarse.taken_over(own, bench);
+            let like = coarse.follow_on(before.like.clone(), &passes);
+            let others = machines.par_iter().zip(&before.others);
+            let others = others.map(|(machine, left)| machine.follow_on(left.clone(), &passes)).collect();
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            progress(done as f64 / beginnings.len() as f64);
+            Some(Begun { cuts, stage, like, others })
+        };
+        let next: Vec<Begun> = next.par_iter().filter_map(go_on).collect();
+        begun.extend(next);
+    }
+    begun
 }
 
 impl Plan {

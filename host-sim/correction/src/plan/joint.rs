@@ -9,7 +9,7 @@
 //! | unknown | of which points | believed in beforehand |
 //! |---|---|---|
 //! | machine, cutter, material | all | the priors of the job |
-//! | what a model lacks, in the directions of the parameters | planned parts: three quarters (of the variance) in common, a quarter each its own | [`LACK`] |
+//! | what a model lacks, in the directions of the parameters | planned parts: three quarters (of the variance) in common, a quarter each its own | [`lack`] |
 //! | shift of the datum | each part its own | the priors of the job |
 //! | the field | planned parts | zero, unless the evidence is 7 times larger with one |
 //!
@@ -27,6 +27,8 @@ use truepath_ground::units::{float, mm, nm};
 
 use super::bench::{Bench, CutPass};
 use super::field::{Engagement, Field, Kernel, Place};
+use crate::surface::unmodelled::lack;
+use crate::surface::wall::at_height;
 
 /// A part as it was cut and touched.
 #[derive(Clone, Debug)]
@@ -63,8 +65,6 @@ pub struct Wall<'a> {
 
 /// Parameters that all parts share; the other two are the datum of each.
 const SHARED: usize = COUNT - 2;
-/// What a model lacks, as standard deviations of parameters: of the logarithm for factors, else in their units.
-const LACK: [f64; SHARED] = [0.02, 0.0, 0.0, 0.03, 0.05, 0.0, 0.05, 0.02, 0.002];
 /// Share of its variance that planned parts have in common.
 const LASTING: f64 = 0.75;
 /// How often the walls are linearised at most, and the farthest that the machine moves at a time, prior standard deviations.
@@ -232,13 +232,10 @@ pub fn predicted(wall: Wall<'_>, parameters: &Parameters, parts: &[CutPart]) -> 
 /// What is left at a point, mm: between the samples beside it and the middles of the slices.
 fn read(wall: Wall<'_>, left: &[Offset], point: &Observation) -> Option<f64> {
     let (path, count) = (wall.path, wall.slices.count());
-    let at = (float(point.height) * count as f64 - 0.5).clamp(0.0, (count - 1) as f64);
-    let (below, over) = (at as usize, at.fract());
     let of_sample = |index: usize| {
         let sample = path.samples().get(index).filter(|sample| sample.on_wall)?;
         let column = left.get(index * count..(index + 1) * count)?;
-        let above = (below + 1).min(count - 1);
-        Some((mm(sample.s), mm(column[below]) * (1.0 - over) + mm(column[above]) * over))
+        Some((mm(sample.s), at_height(wall.slices, float(point.height), |k| Some(mm(column[k])))?))
     };
     let before = path.index_at(point.s);
     match (of_sample(before), of_sample(before + 1)) {
@@ -319,7 +316,7 @@ impl<'r> Task<'r> {
         let sigma = prior.sigma.map(float);
         let of = |k: usize| if sigma[k] > 0.0 { 1.0 } else { 0.0 };
         let variance = std::array::from_fn(|k| of(k) / float(precision[k]));
-        let lack = std::array::from_fn(|k| if sigma[k] > 0.0 { (LACK[k] / sigma[k]).powi(2) } else { 0.0 });
+        let lack = std::array::from_fn(|k| if sigma[k] > 0.0 { (lack(Parameter::ALL[k]) / sigma[k]).powi(2) } else { 0.0 });
         let parametric = |a: &Row, b: &Row| {
             let (planned, same) = (a.is_planned && b.is_planned, a.part == b.part);
             let lasting = if planned { LASTING } else { 0.0 };

@@ -7,13 +7,15 @@
 use truepath_core::cut::{Envelope, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{Cut, Observation};
-use truepath_core::process::{Depths, ImmersionGrid, Mill, Order, Part, Slices, Wall};
-use truepath_core::units::{Offset, Real};
+use truepath_core::process::{ImmersionGrid, Mill, Slices};
+use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{float, mm};
 
+use super::bench::Bench;
 use crate::correction::{Identification, MeasuredCut};
 use crate::identification::{Found, Points, found};
+use crate::surface::wall::at_height;
 
 /// How often the machine is identified anew at most.
 const ROUNDS: usize = 6;
@@ -68,30 +70,17 @@ fn yielded(path: &Path, known: &Identification, points: &[Observation]) -> Vec<O
     let (table, grid) = (known.table(), ImmersionGrid::new());
     let machine = known.machine(path, &table);
     let slices = Slices::of(path.setup(), 1);
-    let mill = Mill::new(machine, &grid, slices);
-    let order = Order { first: 0, reversed: false, feed: Real::ONE };
-    let mut left = vec![Offset::ZERO; Part::needed(path, slices)];
-    let Some(part) = Part::raw(path, slices, &mut left) else { return vec![Offset::ZERO; points.len()] };
-    let mut moved = vec![Vector::ZERO; mill.displacements_needed()];
-    let mut walls = vec![Wall::default(); mill.walls_needed()];
-    let mut depths = Box::new(Depths::NONE);
-    mill.run(&part, &order, |_| Vector::ZERO, &mut depths, &mut moved);
-    mill.walls(&order, &moved, &mut walls);
+    let walls = Bench::new(Mill::new(machine, &grid, slices), slices, 0.0).programmed_walls();
 
     let working = path.working();
     let mut states = vec![State::REST; working.len()];
     machine.run(working.start, &mut states, |_| Vector::ZERO);
     let mut displacements = vec![Vector::ZERO; states.len()];
-    let count = slices.count();
     let of_point = |point: &Observation| {
         let index = path.index_at(point.s);
         let own = index.checked_sub(path.first())?;
-        let column = walls.get(own * count..(own + 1) * count)?;
-        // Between the middles of the slices, and beyond the last of them as at it.
-        let at = (float(point.height) * count as f64 - 0.5).clamp(0.0, (count - 1) as f64);
-        let (below, share) = (at as usize, at.fract());
-        let error = |k: usize| column.get(k.min(count - 1))?.error.map(mm);
-        let by_field = error(below)? * (1.0 - share) + error(below + 1)? * share;
+        let column = walls.get(own * slices.count()..(own + 1) * slices.count())?;
+        let by_field = at_height(slices, float(point.height), |k| column[k].error.map(mm))?;
         Envelope::displace(&machine, &states, point.height, &mut displacements);
         let by_mean = Envelope::new(path, working.start, &displacements).error(index, index)?;
         Some(Offset::from_nm((by_field * 1e6).round() as i64) - by_mean.error - machine.undersize)

@@ -58,6 +58,7 @@ pub struct Candidate {
 }
 
 /// An unfinished part and how it came to be.
+#[derive(Clone)]
 struct Branch {
     cuts: Vec<Cut>,
     stage: Stage,
@@ -133,8 +134,8 @@ pub fn search(
     };
 
     // One cut.
-    let raw = [Branch { cuts: Vec::new(), stage: bench.raw(), uneven_mm: 0.0 }];
-    finish(&raw, &last(&every, &[false], &allowed(&SINGLE_FEEDS)), &mut found);
+    let mut begun = vec![Branch { cuts: Vec::new(), stage: bench.raw(), uneven_mm: 0.0 }];
+    finish(&begun, &last(&every, &[false], &allowed(&SINGLE_FEEDS)), &mut found);
     progress(0.15);
     if limits.max_cuts >= 2 {
         // Two cuts.
@@ -145,7 +146,7 @@ pub fn search(
         if let ([_, half], None) = (few.as_slice(), contact) {
             before.push(Cut { levels: *half, ..Cut::whole(leaving(LEFT_FIRST[0])) });
         }
-        let mut first = go_on(&raw, &before);
+        let mut first = go_on(&begun, &before);
         progress(0.25);
         finish(&first, &last(&even[..1], ways, &allowed(&LAST_FEEDS)), &mut found);
         progress(0.5);
@@ -165,24 +166,28 @@ pub fn search(
             second.truncate(KEPT + 1);
             finish(&second, &last(&even[..1], ways, &allowed(&LAST_FEEDS)), &mut found);
             finish(&second, &last(&more, ways, &allowed(&LAST_FEEDS[2..3])), &mut found);
+            begun.extend(second);
         }
+        begun.extend(first);
     }
     progress(0.9);
-    refine(&raw[0], &mut found, limits.max_cuts, &finish, &go_on);
+    refine(&begun, &mut found, limits.max_cuts, &finish, &go_on);
     progress(1.0);
     front(found)
 }
 
 /// Looks at allowances between those that were tried, of the processes on the front of several cuts, and at a spring pass behind the
-/// best of each number of passes.
-fn refine(raw: &Branch, found: &mut Vec<Candidate>, max_cuts: usize, finish: &Finish<'_>, go_on: &GoOn<'_>) {
+/// best of each number of passes. What they begin with is taken from what has `begun`.
+fn refine(begun: &[Branch], found: &mut Vec<Candidate>, max_cuts: usize, finish: &Finish<'_>, go_on: &GoOn<'_>) {
     let best = front(found.clone());
     let several = best.iter().rev().filter(|candidate| candidate.cuts.len() > 1).take(REFINED);
     let between: Vec<Vec<Cut>> = several.flat_map(|candidate| nearby(&candidate.cuts)).collect();
     let one_after_the_other = |cuts: &[Cut]| -> Vec<Candidate> {
         let Some((last, before)) = cuts.split_last() else { return Vec::new() };
-        let raw = Branch { cuts: Vec::new(), stage: raw.stage.clone(), uneven_mm: 0.0 };
-        let so_far = before.iter().fold(vec![raw], |branches, cut| go_on(&branches, &[*cut]));
+        let starts = begun.iter().filter(|branch| before.starts_with(&branch.cuts));
+        let start = starts.max_by_key(|branch| branch.cuts.len()).cloned();
+        let rest = start.as_ref().map_or(before, |start| &before[start.cuts.len()..]);
+        let so_far = rest.iter().fold(Vec::from_iter(start), |branches, cut| go_on(&branches, &[*cut]));
         let mut found = Vec::new();
         finish(&so_far, &[*last], &mut found);
         found

@@ -2,25 +2,51 @@
 //! cutter does not bend.
 
 use truepath_core::cut::Compliance;
-use truepath_core::identify::Parameters;
+use truepath_core::identify::{Parameter, Parameters};
 use truepath_core::units::{Offset, Real};
 
-/// The force differs by 2 %, the radial share by 3 %, the edge by 5 %, the exponent of the chip by 0.02, the bending
-/// by 0.05 and the size of the cutter by 2 um: one standard deviation each.
+/// What a model lacks, one standard deviation each: the compliance, and with it the force, in hundredths, the radial share and the level
+/// of the edge in hundredths, bending and exponent of the chip in hundredths of one, the size of the cutter in um.
+const LACK: [(Parameter, i64); 6] = [
+    (Parameter::Compliance, 2),
+    (Parameter::RadialRatio, 3),
+    (Parameter::EdgeLevel, 5),
+    (Parameter::SizeExponent, 2),
+    (Parameter::Bend, 5),
+    (Parameter::Undersize, 2),
+];
+
+/// What a model lacks of a parameter, one standard deviation: of the logarithm for factors, else in its unit.
+pub fn lack(parameter: Parameter) -> f64 {
+    let steps = LACK.iter().find(|(of, _)| *of == parameter).map_or(0, |(_, steps)| *steps);
+    steps as f64 / if parameter == Parameter::Undersize { 1000.0 } else { 100.0 }
+}
+
+/// Machines beside the one that was found by what a model lacks, each in one parameter.
 pub fn unmodelled(found: &Parameters) -> impl Iterator<Item = Parameters> + use<> {
     let found = *found;
-    let scaled = |value: Real, percent: i64| value + value * Real::ratio(percent, 100);
-    let mut other = [found; 6];
-    other[0].compliance.mean = scaled(found.compliance.mean, 2);
-    other[0].compliance.difference = scaled(found.compliance.difference, 2);
-    other[0].compliance.cross = scaled(found.compliance.cross, 2);
-    other[1].coefficients.krc = scaled(found.coefficients.krc, 3);
-    other[2].coefficients.kte = scaled(found.coefficients.kte, 5);
-    other[2].coefficients.kre = scaled(found.coefficients.kre, 5);
-    other[3].coefficients.size_exponent = found.coefficients.size_exponent + Real::ratio(2, 100);
-    other[4].compliance.bend = found.compliance.bend + Real::ratio(5, 100);
-    other[5].undersize = found.undersize + Offset::from_um(2);
-    other.into_iter()
+    LACK.into_iter().map(move |(parameter, steps)| {
+        let share = Real::ratio(steps, 100);
+        let scaled = |value: Real| value + value * share;
+        let mut other = found;
+        let (compliance, coefficients) = (&mut other.compliance, &mut other.coefficients);
+        match parameter {
+            Parameter::RadialRatio => coefficients.krc = scaled(coefficients.krc),
+            Parameter::EdgeLevel => {
+                coefficients.kte = scaled(coefficients.kte);
+                coefficients.kre = scaled(coefficients.kre);
+            }
+            Parameter::SizeExponent => coefficients.size_exponent += share,
+            Parameter::Bend => compliance.bend += share,
+            Parameter::Undersize => other.undersize += Offset::from_um(steps),
+            _ => {
+                compliance.mean = scaled(compliance.mean);
+                compliance.difference = scaled(compliance.difference);
+                compliance.cross = scaled(compliance.cross);
+            }
+        }
+        other
+    })
 }
 
 /// The same with a cutter that does not bend.

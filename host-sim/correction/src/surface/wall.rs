@@ -41,6 +41,15 @@ pub fn judged(path: &Path) -> impl Iterator<Item = (usize, f64)> {
     })
 }
 
+/// The error at a height, a share of the wall's, mm: between the middles of the slices, and beyond the last of them as at it. `error` is
+/// that of a slice.
+pub fn at_height(slices: Slices, height: f64, error: impl Fn(usize) -> Option<f64>) -> Option<f64> {
+    let last = slices.count() - 1;
+    let at = (height * slices.count() as f64 - 0.5).clamp(0.0, last as f64);
+    let (below, over) = (at as usize, at.fract());
+    Some(error(below)? * (1.0 - over) + error((below + 1).min(last))? * over)
+}
+
 impl WallFigures {
     /// Of what is left, all slices of a sample side by side.
     pub fn of(path: &Path, slices: Slices, left: &[Offset]) -> Self {

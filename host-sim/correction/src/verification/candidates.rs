@@ -6,6 +6,7 @@
 //! machine), and where the ball's way is not proved free.
 
 use std::collections::HashMap;
+use std::ops::RangeInclusive;
 
 use truepath_core::cut::{ForceTable, Path, Sample, State};
 use truepath_core::geometry::{Point, Shape};
@@ -104,11 +105,36 @@ pub(super) fn candidates(
     };
     let largest = (0..samples.len()).map(|k| deflection(path.first() + k).abs()).fold(0.0, f64::max);
     let abrupt = (ABRUPT_SHARE * largest).max(4.0 * noise);
-    let length = mm(path.length());
     let from_ends = radius + ball.radius;
     let (once_from, once_to) = milled_once(samples, Offset::from_nm(4 * path.setup().radius.nm()));
     let (first, last) = (mm(once_from) + from_ends, mm(once_to) - from_ends);
 
+    sorted(pass, path, (&walls, first..=last), |index, normal, wall| {
+        let sample = &path.samples()[index];
+        let (before, after) = (path.index_at(sample.s - ALONG), path.index_at(sample.s + ALONG));
+        let turn = float(state(after).engaged - state(before).engaged).abs().to_degrees();
+        let change = (deflection(after) - deflection(before)).abs();
+        let is_unsteady = turn > ABRUPT_DEG || change > abrupt;
+        if is_unsteady && !unsteady {
+            return Err(KeptOff::Unsteady);
+        }
+        if !ball.is_free(wall, normal, &standing) {
+            return Err(KeptOff::Unproved);
+        }
+        let beside = if is_unsteady { change * BESIDE / (2.0 * mm(ALONG)) } else { 0.0 };
+        Ok((wall, Offset::from_nm((beside * 1e6).round() as i64)))
+    })
+}
+
+/// Looks at places along a contour, within a stretch of its length (mm), and sorts them. `touched` says of a sample with its normal
+/// and the wall beside it where it is touched and how far off for want of a steady load, or why it is not.
+fn sorted(
+    pass: &Pass,
+    path: &Path,
+    (walls, within): (&[Option<Xy>], RangeInclusive<f64>),
+    touched: impl Fn(usize, Xy, Xy) -> Result<(Xy, Offset), KeptOff>,
+) -> (Vec<Site>, Vec<KeptOff>) {
+    let (length, radius) = (mm(path.length()), mm(path.setup().radius));
     let step = (length * SPACING.0).max(SPACING.1);
     let count = (length / step).floor() as u32;
     let (mut sites, mut kept_off) = (Vec::new(), Vec::new());
@@ -116,25 +142,17 @@ pub(super) fn candidates(
         let s = Offset::from_nm((f64::from(k) * step * 1e6) as i64);
         let index = path.index_at(s).clamp(path.first(), path.first() + path.count() - 1);
         let sample = &path.samples()[index];
-        let (before, after) = (path.index_at(sample.s - ALONG), path.index_at(sample.s + ALONG));
-        let turn = float(state(after).engaged - state(before).engaged).abs().to_degrees();
-        let normal = [float(sample.normal.x), float(sample.normal.y)];
-        let change = (deflection(after) - deflection(before)).abs();
-        let is_unsteady = turn > ABRUPT_DEG || change > abrupt;
-        let verdict = match walls[index - path.first()] {
-            _ if mm(sample.s) < first || mm(sample.s) > last => Err(KeptOff::End),
+        let normal = normal_of(sample);
+        let place = match walls[index - path.first()] {
+            _ if !within.contains(&mm(sample.s)) => Err(KeptOff::End),
             None => Err(KeptOff::NoWall),
             Some(_) if sample.near_corner => Err(KeptOff::SharpCorner),
-            Some(_) if is_unsteady && !unsteady => Err(KeptOff::Unsteady),
-            Some(wall) if !ball.is_free(wall, normal, &standing) => Err(KeptOff::Unproved),
-            Some(wall) => Ok(wall),
+            Some(wall) => touched(index, normal, wall),
         };
-        match verdict {
+        match place {
             Err(reason) => kept_off.push(reason),
-            Ok(wall) => {
+            Ok((wall, unsteady)) => {
                 let block = &pass.blocks[sample.block as usize];
-                let beside = if is_unsteady { change * BESIDE / (2.0 * mm(ALONG)) } else { 0.0 };
-                let unsteady = Offset::from_nm((beside * 1e6).round() as i64);
                 let form = form(pass, block, radius);
                 sites.push(Site { s: sample.s, wall, normal, form, line: block.line, unsteady });
             }
@@ -162,34 +180,14 @@ pub(super) fn before_the_pass(pass: &Pass, path: &Path, ball: Ball, stock: Stock
     let samples = &path.samples()[path.first()..path.first() + path.count()];
     let radius = mm(path.setup().radius);
     let walls = final_walls(path, samples, radius);
-    let normal = |sample: &Sample| [float(sample.normal.x), float(sample.normal.y)];
-    let both = walls.iter().zip(samples).filter_map(|(wall, sample)| wall.map(|wall| (wall, normal(sample))));
+    let both = walls.iter().zip(samples).filter_map(|(wall, sample)| wall.map(|wall| (wall, normal_of(sample))));
     let standing: Vec<Xy> = both.map(|(wall, normal)| along(wall, normal, -stock.largest)).collect();
     let (once_from, once_to) = milled_once(samples, Offset::from_nm(4 * path.setup().radius.nm()));
     let (first, last) = (mm(once_from) + ball.radius + FROM_ENDS, mm(once_to) - ball.radius - FROM_ENDS);
-    let length = mm(path.length());
-    let step = (length * SPACING.0).max(SPACING.1);
-    let count = (length / step).floor() as u32;
-    let (mut sites, mut kept_off) = (Vec::new(), Vec::new());
-    for k in 0..=count {
-        let s = Offset::from_nm((f64::from(k) * step * 1e6) as i64);
-        let index = path.index_at(s).clamp(path.first(), path.first() + path.count() - 1);
-        let sample = &path.samples()[index];
-        let normal = normal(sample);
-        let free = |wall| ball.is_free(along(wall, normal, -stock.largest), normal, &standing);
-        match walls[index - path.first()] {
-            _ if mm(sample.s) < first || mm(sample.s) > last => kept_off.push(KeptOff::End),
-            None => kept_off.push(KeptOff::NoWall),
-            Some(_) if sample.near_corner => kept_off.push(KeptOff::SharpCorner),
-            Some(wall) if !free(wall) => kept_off.push(KeptOff::Unproved),
-            Some(wall) => {
-                let block = &pass.blocks[sample.block as usize];
-                let (wall, form) = (along(wall, normal, -stock.expected), form(pass, block, radius));
-                sites.push(Site { s: sample.s, wall, normal, form, line: block.line, unsteady: Offset::ZERO });
-            }
-        }
-    }
-    (sites, kept_off)
+    sorted(pass, path, (&walls, first..=last), |_, normal, wall| {
+        let free = ball.is_free(along(wall, normal, -stock.largest), normal, &standing);
+        if free { Ok((along(wall, normal, -stock.expected), Offset::ZERO)) } else { Err(KeptOff::Unproved) }
+    })
 }
 
 /// The states of the elastic loop along the path, at the estimate of machine and material.
@@ -217,7 +215,7 @@ fn final_walls(path: &Path, samples: &[Sample], radius: f64) -> Vec<Option<Xy>> 
         around.filter_map(|c| cells.get(&c)).flatten().any(|p| distance(*p, wall) < radius - CUT_AWAY)
     };
     let wall = |sample: &Sample| {
-        let wall = along(coordinates(sample.point), [float(sample.normal.x), float(sample.normal.y)], radius);
+        let wall = along(coordinates(sample.point), normal_of(sample), radius);
         (sample.on_wall && !cut_away(wall)).then_some(wall)
     };
     debug_assert_eq!(samples.len(), path.count());
@@ -238,6 +236,11 @@ fn form(pass: &Pass, block: &truepath_core::geometry::Block, radius: f64) -> For
     let towards_wall = turns_left == (pass.core.setup.wall == truepath_core::geometry::Side::Left);
     let path_radius = block.curve.signed_radius().map_or(0.0, |r| mm(r.abs()));
     if towards_wall { Form::OutsideArc(path_radius - radius) } else { Form::InsideArc(path_radius + radius) }
+}
+
+/// Towards the wall.
+fn normal_of(sample: &Sample) -> Xy {
+    [float(sample.normal.x), float(sample.normal.y)]
 }
 
 fn coordinates(p: Point) -> Xy {
