@@ -3,7 +3,7 @@
 truepath_ground::codes! {
     K003 => "the two passes of `truepath split` do not belong together"
         / "give the first-pass.toml that truepath split wrote for this job",
-    K007 => "a planned process of another cutter, which no program can be written for"
+    K007 => "a planned process of a cutter of another diameter, or of another cutter for the coprocessor"
         / "post the program with that cutter and plan its job, or write a choice of the program's cutter; --tolerance and [plan] decide which there are",
     P020 => "an inside corner that the path of the first pass would have to cut across"
         / "give the path an arc there (a lead too meets the wall along it), or leave less stock before this pass",

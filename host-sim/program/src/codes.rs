@@ -21,6 +21,8 @@ truepath_ground::codes! {
         / "give the contour a way down of its own, leads and a way up behind it, with nothing else on its lines",
     P010 => "a pass that cannot run against the direction of the program"
         / "let it run as the program does, or give the contour a straight lead-in and a lead-out that ends off the wall",
+    P011 => "a change of the cutter that cannot be written as the program writes its own"
+        / "post the program with that cutter and plan its job, or write a choice of the program's cutter",
     T001 => "a line of the tool table that cannot be read"
         / "write rows like T1 P1 X0 Z12.98 D3.175 ;comment",
     T002 => "a line of the parameter file that cannot be read"

@@ -158,6 +158,19 @@ impl<'a> Block<'a> {
         let others = self.words().filter(|word| !leads(word) && acts_after_move(word) == behind);
         others.filter_map(|word| self.line.text.get(self.word_range(word))).collect()
     }
+    /// The words of a line that goes up by Z alone, to a place of the machine, whatever was in force before it.
+    pub(super) fn way_up(&self) -> Option<String> {
+        let has = |code: i64| {
+            let is = |word: &&WrittenWord| word.value.and_then(|v| v.exactly_times(1)) == Some(code);
+            self.words().filter(|word| word.letter == b'G').any(|word| is(&word))
+        };
+        let alone = self.words().all(|word| b"NGZ".contains(&word.letter)) && self.word(b'Z').is_some();
+        let certain = (has(91) && (has(28) || has(30))) || (has(53) && has(0));
+        let words = self.words().filter(|word| word.letter != b'N');
+        let words = words.filter_map(|word| self.line.text.get(self.word_range(word)));
+        let words: Vec<_> = words.map(String::from_utf8_lossy).collect();
+        (alone && certain).then(|| words.join(" ").to_ascii_uppercase())
+    }
     /// Whether the line begins with `/`.
     pub(super) fn may_be_skipped(&self) -> bool {
         matches!(self.tokens.first(), Some(Token::BlockDelete { .. }))

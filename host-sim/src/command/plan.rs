@@ -340,10 +340,11 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
             .collect();
         let done = write(&all, route, crc32(file.bytes()), &mut |share| progress(0.9 + 0.1 * share))?;
         let passes: Vec<Pass> = measured.iter().map(|(pass, _)| pass.clone()).collect();
-        // Learning knows one contour, whose passes are in the program.
+        // Learning knows one contour, whose passes are in the program, cut with its own cutter.
         let mut learns = false;
         if let ([(pass, points)], [plan], [number], [wall], false, Route::Program) =
             (&measured[..], &plans[..], &numbers[..], &done.walls[..], several, route)
+            && plan.choices[number - 1].cutter.is_none()
         {
             let choice = &plan.choices[number - 1];
             let names = [PROGRAM, &planned_name(&passes)];

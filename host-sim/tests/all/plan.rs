@@ -119,12 +119,17 @@ fn other_cutters_are_tried_and_one_that_does_not_fit_is_left_out_by_name() {
     let best = with(Some(8)).map(|c| number(c, &["profile_mm"])).fold(f64::INFINITY, f64::min);
     assert!(best < own.fold(f64::INFINITY, f64::min), "{best}");
 
-    // Its program is not written: it is said by name, and nothing is left behind.
+    // The program changes to it before its pass; the coprocessor knows the cutter of the program alone.
     let at = choices.iter().position(|choice| choice["cutter"].as_u64() == Some(8)).expect("a choice") + 1;
     desk.write("job.toml", format!("{job}[plan]\nmax_cuts = 1\nmax_levels = 1\n{list}"));
-    let refused = desk.run(&format!("{PLAN} --tolerance 0.0001 --write {at} -o plan")).expect_err("another cutter");
+    let write = format!("{PLAN} --tolerance 0.0001 --write {at} -o plan");
+    let refused = desk.run(&format!("{write} --route coprocessor")).expect_err("an image of another cutter");
     assert!(refused.contains("K007") && refused.contains("T8"), "{refused}");
     assert!(!desk.path().join("plan").exists());
+    desk.call(&write);
+    let written = desk.read("plan/planned.nc");
+    assert!(written.contains("CUTTER T8") && written.contains("HELIX 35 DEGREES"), "{written}");
+    assert!(!desk.path().join("plan/plan-history.json").exists(), "learning knows the cutter of the program");
 
     for (wrong, code, said) in [
         ("[[plan.cutter]]\nhelix_deg = 40\n", "J004", "cutter.number is missing"),

@@ -12,7 +12,7 @@ use truepath_core::process::{ImmersionGrid, Slices};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::float;
-use truepath_job::job::PlanTable;
+use truepath_job::job::{PlanCutter, PlanTable};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::passes::Turn;
@@ -112,6 +112,8 @@ pub struct Designed<'a> {
     pub path: Path<'a>,
     /// Its passes.
     pub passes: Vec<PlannedPass>,
+    /// The cutter where it is not that of the program.
+    pub cutter: Option<&'a PlanCutter>,
     /// Machine and material that it was designed for.
     pub identified: &'a Identified,
     /// The figures of the wall of the identified machine.
@@ -181,9 +183,14 @@ impl<'a> Planner<'a> {
         Self { pass, own, others: Vec::new(), left_out: Vec::new(), is_learned: true, field }
     }
 
-    /// Number of the cutter of the program, where the job says it.
-    pub const fn tool_number(&self) -> Option<u32> {
-        self.pass.job.numbers.tool.number
+    /// Diameter of the cutter of the program.
+    pub const fn diameter(&self) -> Offset {
+        self.pass.job.numbers.tool.diameter
+    }
+
+    /// Another cutter that is at hand, by its number.
+    pub fn cutter(&self, number: u32) -> Option<&PlanCutter> {
+        self.others.iter().filter_map(Mounted::cutter).find(|cutter| cutter.number == number)
     }
 
     /// Machine and material.
@@ -268,20 +275,23 @@ impl<'a> Planner<'a> {
         Ok(self.look(mounted, (&bench, &coarse), &processes, (wanted, minutes), &told))
     }
 
-    /// Designs a process of the program's own cutter finely, on a path for which `samples` is room. `progress` is told the share done.
+    /// Designs a process of the program's own cutter, or of the one with a number, finely, on a path for which `samples` is room.
+    /// `progress` is told the share done.
     ///
     /// # Errors
     /// A contour that cannot be sampled, and a correction beyond the clamp.
     pub fn design<'p>(
         &'p self,
-        cuts: &[Cut],
+        (cuts, cutter): (&[Cut], Option<u32>),
         samples: &'p mut Vec<Sample>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Designed<'p>, Failure> {
         const TURNS: u32 = 16;
-        let (table, grid) = (self.own.table(), ImmersionGrid::new());
-        let path = self.own.path(FINE, samples)?;
-        let bench = self.bench(&self.own, (&path, &table), &grid, FINE);
+        let of_number = |mounted: &&Mounted| mounted.cutter().is_some_and(|other| Some(other.number) == cutter);
+        let mounted = self.others.iter().find(of_number).unwrap_or(&self.own);
+        let (table, grid) = (mounted.table(), ImmersionGrid::new());
+        let path = mounted.path(FINE, samples)?;
+        let bench = self.bench(mounted, (&path, &table), &grid, FINE);
         let mut stage = bench.raw();
         for (k, cut) in cuts.iter().enumerate() {
             stage = bench.cut(stage, cut, TURNS);
@@ -302,7 +312,8 @@ impl<'a> Planner<'a> {
         for pass in &passes {
             job::check_clamp(&self.pass.job.numbers, &path, &pass.nodes).map_err(|error| self.pass.refused(&error))?;
         }
-        Ok(Designed { pass: self.pass, path, passes, identified: &self.own.known().core, wall, map })
+        let cutter = mounted.cutter();
+        Ok(Designed { pass: self.pass, path, passes, cutter, identified: &self.own.known().core, wall, map })
     }
 
     /// The limits of the job that the program stands, and what is left out: passes can only be added where its leads let them, and run the other way where

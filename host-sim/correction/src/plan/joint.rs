@@ -316,7 +316,8 @@ impl<'r> Task<'r> {
         let sigma = prior.sigma.map(float);
         let of = |k: usize| if sigma[k] > 0.0 { 1.0 } else { 0.0 };
         let variance = std::array::from_fn(|k| of(k) / float(precision[k]));
-        let lack = std::array::from_fn(|k| if sigma[k] > 0.0 { (lack(Parameter::ALL[k]) / sigma[k]).powi(2) } else { 0.0 });
+        let lack =
+            std::array::from_fn(|k| if sigma[k] > 0.0 { (lack(Parameter::ALL[k]) / sigma[k]).powi(2) } else { 0.0 });
         let parametric = |a: &Row, b: &Row| {
             let (planned, same) = (a.is_planned && b.is_planned, a.part == b.part);
             let lasting = if planned { LASTING } else { 0.0 };

@@ -48,32 +48,43 @@ pub struct WrittenWall {
 /// `progress` is told the share done.
 ///
 /// # Errors
-/// `K007` for a choice of another cutter, those of [`Planner::design`], of [`planned::write_every`] and of [`planned::write_armed`].
+/// `K007` for a choice of a cutter of another diameter, or of another cutter for the coprocessor, those of [`Planner::design`], of [`planned::write_every`] and of [`planned::write_armed`].
 pub fn write(
     chosen: &[Chosen<'_>],
     route: Route,
     probe: u32,
     progress: &mut dyn FnMut(f64),
 ) -> Result<WrittenPlan, Failure> {
-    for one in chosen {
-        let Some(number) = one.cutter else { continue };
-        let own = one.planner.tool_number().map_or_else(String::new, |own| format!(", T{own},"));
-        let found =
-            format!("the choice is cut with T{number}, and the program has its own cutter{own} along the contour");
-        return Err(K007.error(found, "a choice of the cutter of the program").into());
+    for (one, cutter) in chosen.iter().filter_map(|one| Some((one, one.planner.cutter(one.cutter?)?))) {
+        let found = if route == Route::Coprocessor {
+            format!("the choice is cut with T{}, and an image is for the cutter of the program", cutter.number)
+        } else if cutter.diameter != one.planner.diameter() {
+            let (other, own) = (mm(cutter.diameter), mm(one.planner.diameter()));
+            format!(
+                "the choice is cut with T{}, whose diameter is {other} mm: its path is another one than that of the program, {own} mm",
+                cutter.number
+            )
+        } else {
+            continue;
+        };
+        return Err(K007
+            .error(found, "a choice of the cutter of the program, or of one as wide by the program route")
+            .into());
     }
     let mut samples: Vec<Vec<Sample>> = chosen.iter().map(|_| Vec::new()).collect();
     let mut designed: Vec<Designed<'_>> = Vec::new();
     for (k, (one, samples)) in chosen.iter().zip(&mut samples).enumerate() {
         let told = &mut |share: f64| progress((k as f64 + share) / chosen.len() as f64);
-        designed.push(one.planner.design(one.cuts, samples, told)?);
+        designed.push(one.planner.design((one.cuts, one.cutter), samples, told)?);
     }
     let largest = |one: &Designed<'_>| {
         let nodes = one.passes.iter().flat_map(|pass| &pass.nodes);
         nodes.map(|node| mm(node.total().length())).fold(0.0, f64::max)
     };
-    let walls: Vec<PlannedWall<'_>> =
-        designed.iter().map(|one| PlannedWall { pass: one.pass, path: &one.path, passes: &one.passes }).collect();
+    let walls: Vec<PlannedWall<'_>> = designed
+        .iter()
+        .map(|one| PlannedWall { pass: one.pass, path: &one.path, passes: &one.passes, cutter: one.cutter })
+        .collect();
     let program = match route {
         Route::Program => planned::write_every(&walls, Some(probe))?,
         Route::Coprocessor => {

@@ -22,10 +22,11 @@ use truepath_core::cut::Path;
 use truepath_core::gcode::{LineRange, program_crc};
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, Source};
+use truepath_job::job::PlanCutter;
 use truepath_job::levels;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::codes::{P002, P003, P005};
-use truepath_program::passes::{Depth, Repeated, RepeatedPass, Turn, can_repeat, repeat_contours};
+use truepath_program::passes::{Cutter, Depth, Repeated, RepeatedPass, Turn, can_repeat, repeat_contours};
 use truepath_program::{BlockEdit, Difference, Origin, RewriteOptions, Rewritten, rewrite_program};
 
 use crate::correct::written_out;
@@ -63,7 +64,7 @@ pub fn write(
     passes: &[PlannedPass],
     probe: Option<u32>,
 ) -> Result<PlannedProgram, Failure> {
-    write_every(&[PlannedWall { pass, path, passes }], probe)
+    write_every(&[PlannedWall { pass, path, passes, cutter: None }], probe)
 }
 
 /// Writes one program with the plans of all walls of a part. A wall whose correction is one pass has a plan of one.
@@ -71,7 +72,7 @@ pub fn write(
 /// # Errors
 /// `P004` for a contour executed several times that cannot be written out, `P006` for feeds that cannot be written,
 /// `P007` for compensation beyond the leads, `P009` for a contour that cannot be cut in several passes, `P010` for a pass that
-/// cannot run the other way, `J008` for a changed feed where the F words are not those of the cut, and whatever
+/// cannot run the other way, `P011` for a change of the cutter that cannot be written, `J008` for a changed feed where the F words are not those of the cut, and whatever
 /// [`rewrite_program`] refuses.
 pub fn write_every(walls: &[PlannedWall<'_>], probe: Option<u32>) -> Result<PlannedProgram, Failure> {
     let (planned, mut warnings) = laid_out(walls, false)?;
@@ -180,7 +181,7 @@ fn in_turn(reversed: &[bool]) -> Vec<Turn> {
 /// As [`write()`].
 pub fn possible(pass: &Pass, turns: &[Turn], announced: bool) -> Result<(), Failure> {
     let tried = |pass: &Pass| {
-        can_repeat(&pass.program, &depth(pass, turns.to_vec(), announced)?, pass.job.numbers.program_options())
+        can_repeat(&pass.program, &depth(pass, turns.to_vec(), announced, None)?, pass.job.numbers.program_options())
     };
     match tried(pass) {
         Err(failure) => {
@@ -225,7 +226,7 @@ struct Planned {
 }
 
 /// One depth as the program writer wants it.
-fn depth(pass: &Pass, turns: Vec<Turn>, announced: bool) -> Result<Depth, Failure> {
+fn depth(pass: &Pass, turns: Vec<Turn>, announced: bool, cutter: Option<&PlanCutter>) -> Result<Depth, Failure> {
     let level = pass.level();
     let springs = pass.plan.iter().flat_map(|plan| &plan.passes).filter(|one| one.spring && one.number == level);
     let springs = springs.map(|one| Ok(pass.along(one, pass.job.numbers.wall)?.blocks));
@@ -235,6 +236,11 @@ fn depth(pass: &Pass, turns: Vec<Turn>, announced: bool) -> Result<Depth, Failur
         allowance: pass.core.setup.allowance,
         turns,
         announced,
+        cutter: cutter.map(|cutter| Cutter {
+            number: cutter.number,
+            own: pass.job.numbers.tool.number,
+            words: report::words_of(cutter),
+        }),
     })
 }
 
@@ -247,7 +253,7 @@ fn repeated(walls: &[PlannedWall<'_>], passes: &[&Pass], announced: bool) -> Res
         let mut buffer = PathBuffer::default();
         let sampled = pass.sample(&mut buffer)?.with_law(wall.path.setup().law);
         let levels = levels::each(pass, &sampled, |level, pass, _| {
-            depths.push(depth(pass, turns.clone(), announced)?);
+            depths.push(depth(pass, turns.clone(), announced, wall.cutter)?);
             places.push((at, level));
             own.push(pass.clone());
             Ok(())

@@ -3,6 +3,7 @@
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
 use truepath_core::units::Offset;
+use truepath_job::job::PlanCutter;
 use truepath_job::pass::Pass;
 use truepath_program::passes::Turn;
 
@@ -35,6 +36,8 @@ pub struct PlannedWall<'a> {
     pub path: &'a Path<'a>,
     /// The passes in its place, in the order of cutting.
     pub passes: &'a [PlannedPass],
+    /// The cutter that cuts them where it is not that of the program; as wide as that.
+    pub cutter: Option<&'a PlanCutter>,
 }
 
 /// The passes of one depth of a wall.

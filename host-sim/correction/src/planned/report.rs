@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use truepath_ground::units::{float, mm};
+use truepath_job::job::PlanCutter;
 use truepath_program::Rewritten;
 
 use super::images::PassImage;
@@ -9,8 +11,17 @@ use super::plan::{PlannedDepth, PlannedPass, PlannedWall};
 
 /// Remarks for the head of the program.
 pub(super) fn notes(walls: &[PlannedWall<'_>]) -> Vec<String> {
-    let note = |wall: &PlannedWall<'_>| format!("planned: {} passes along the finished wall", wall.passes.len());
+    let note = |wall: &PlannedWall<'_>| {
+        let with = wall.cutter.map_or_else(String::new, |cutter| format!(" with T{}", cutter.number));
+        format!("planned: {} passes along the finished wall{with}", wall.passes.len())
+    };
     walls.iter().map(note).collect()
+}
+
+/// What a cutter is, for a comment of the program.
+pub(super) fn words_of(cutter: &PlanCutter) -> String {
+    let (diameter, helix) = (mm(cutter.diameter), float(cutter.helix_deg));
+    format!("DIAMETER {diameter} MM, {} TEETH, HELIX {helix} DEGREES", cutter.teeth)
 }
 
 /// `difference.txt` of passes that were moved in the program.
@@ -45,8 +56,9 @@ fn passes(original: &str, walls: &[PlannedWall<'_>], depths: &[PlannedDepth]) ->
     // Writing to a String cannot fail.
     for depth in depths {
         let [first, last] = depth.replaced;
-        let passes = &walls[depth.wall].passes;
-        let _ = writeln!(text, "lines {first}-{last} of the original became {} passes:", passes.len());
+        let PlannedWall { passes, cutter, .. } = &walls[depth.wall];
+        let with = cutter.map_or_else(String::new, |cutter| format!(" of T{}", cutter.number));
+        let _ = writeln!(text, "lines {first}-{last} of the original became {} passes{with}:", passes.len());
         for (k, (pass, lines)) in passes.iter().zip(&depth.passes).enumerate() {
             let _ = writeln!(
                 text,

@@ -54,7 +54,8 @@ fn programs_of_the_shop_cut_a_plan_on_every_wall_and_depth() {
         let paths: Vec<_> = passes.iter().zip(&mut buffers).map(|(pass, b)| shown(pass.sample(b))).collect();
         let plans: Vec<_> = paths.iter().map(plan).collect();
         let walls = passes.iter().zip(&paths).zip(&plans);
-        let walls: Vec<_> = walls.map(|((pass, path), passes)| PlannedWall { pass, path, passes }).collect();
+        let walls: Vec<_> =
+            walls.map(|((pass, path), passes)| PlannedWall { pass, path, passes, cutter: None }).collect();
         let answers = passes.iter().map(can_reverse).collect::<Result<Vec<()>, _>>();
         if file.ends_with(".h") {
             // A conversational program is corrected, but not cut in several passes.

@@ -13,28 +13,33 @@
 //! | what is asked for | `request` |
 //! | a depth in its program | `section` |
 //! | its lines | `text` |
+//! | the change to another cutter and back | `change` |
 //! | what the control is told before each pass | `announced` |
 //!
 //! Limits: G17, constant height along the contour, feed per minute or per revolution. Where the control compensates by the
 //! radius, the passes are paths of the cutter's centre, without G41. Spring passes behind the contour are replaced with it.
 
 mod announced;
+mod change;
 mod request;
 mod section;
 mod text;
 
-use truepath_core::gcode::{LineRange, Lines, Options, Token, Words};
+use std::ops::Range;
+
+use truepath_core::gcode::{LineRange, Lines, Modal, Options, Token, Words};
 use truepath_core::geometry::Block as Curves;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 use super::line::{Block, Manner};
-use super::proof::{Cut, Replaced, same_beside};
+use super::proof::{Changed, Cut, Replaced, same_beside};
 use super::survey::{Move, survey};
 use crate::codes::{P008, P009};
+use change::{Change, Changes, Customs};
 use section::{Section, Text};
 
 pub use announced::Announced;
-pub use request::{Depth, Turn};
+pub use request::{Cutter, Depth, Turn};
 
 /// A program with its passes written out.
 #[derive(Clone, Debug)]
@@ -117,28 +122,41 @@ fn laid_out(
     let two_digits =
         lines.iter().map(|&l| Block::new(l, Manner::default())).any(|b| b.motion_word().is_some() && b.two_digits());
     let semicolon = comments_begin_with_semicolon(bytes);
-    let mut written = Vec::new();
+    let mut sections = Vec::new();
     for (at, depth) in depths.iter().enumerate() {
-        let section = text.section(depth)?;
-        let lines = text::write(text, depth, &section, two_digits, semicolon)?;
-        written.push((at, section, lines));
+        sections.push((at, text.section(depth)?));
     }
-    written.sort_by_key(|(_, section, _)| section.lines);
-    if let Some(pair) = written.windows(2).find(|pair| pair[0].1.lines[1] >= pair[1].1.lines[0]) {
+    sections.sort_by_key(|(_, section)| section.lines);
+    if let Some(pair) = sections.windows(2).find(|pair| pair[0].1.lines[1] >= pair[1].1.lines[0]) {
         let found = "two depths of the contour share lines of the program";
         let expected = "lines of their own for every depth";
         return Err(text.refusal(P009, pair[1].1.lines[0], [found, expected, P009.remedy]));
     }
+    let mut changes = vec![Changes::default(); sections.len()];
+    if depths.iter().any(|depth| depth.cutter.is_some()) {
+        let all: Vec<_> = sections.iter().map(|(at, section)| (section, depths[*at].cutter.as_ref())).collect();
+        changes = Customs::of(&text, options)?.plan(&text, options, &all)?;
+    }
+    let mut written = Vec::new();
+    for ((at, section), changes) in sections.into_iter().zip(changes) {
+        let lines = text::write(text, &depths[at], &section, &changes, (two_digits, semicolon))?;
+        written.push(Written { depth: at, section, lines, mounted: changes.mounted });
+    }
     Ok(assemble(bytes, &text, depths, &written))
 }
 
+/// A section with what is written in its place.
+struct Written {
+    /// Which of the depths it is.
+    depth: usize,
+    section: Section,
+    lines: text::Lines,
+    /// Tool that the original does not have in the spindle there, on its lines and behind them.
+    mounted: [Option<u32>; 2],
+}
+
 /// Puts the lines of the sections into the program.
-fn assemble(
-    bytes: &[u8],
-    text: &Text<'_>,
-    depths: &[Depth],
-    sections: &[(usize, Section, text::Lines)],
-) -> (Repeated, Vec<Replaced>) {
+fn assemble(bytes: &[u8], text: &Text<'_>, depths: &[Depth], sections: &[Written]) -> (Repeated, Vec<Replaced>) {
     let starts: Vec<usize> = text.lines.iter().map(|l| l.start).chain([bytes.len()]).collect();
     let start = |line: u32| starts[(line as usize - 1).min(starts.len() - 1)];
     let ends = text.lines.iter().zip(starts.iter().skip(1)).map(|(l, &next)| &bytes[l.span().end()..next]);
@@ -147,7 +165,7 @@ fn assemble(
     let (mut from, mut count) = (1u32, 0u32);
     let mut found = vec![None; depths.len()];
     let mut replaced = Vec::new();
-    for (at, section, lines) in sections {
+    for Written { depth: at, section, lines, mounted } in sections {
         let [first, last] = section.lines;
         out.extend_from_slice(&bytes[start(from)..start(first)]);
         count += first - from;
@@ -168,7 +186,10 @@ fn assemble(
                 .iter()
                 .zip(&depth.turns)
                 .flat_map(|(pass, turn)| cuts(text.moves, section, pass, turn))
+                .map(|cut| Cut { modal: Modal { tool: mounted[0].or(cut.modal.tool), ..cut.modal }, ..cut })
                 .collect(),
+            changes: lines.changes.iter().map(|(lines, change)| changed(begin, lines, change)).collect(),
+            mounted: mounted[1],
             clearance: section.clearance,
             lifted: lines.lifted,
             centre_path: section.centre_path,
@@ -205,6 +226,12 @@ fn passes(moves: &[Move], depth: &Depth, section: &Section, lines: &text::Lines,
     lines.passes.iter().enumerate().map(pass).collect()
 }
 
+/// A change of the cutter in a section whose first line is `begin`.
+fn changed(begin: u32, lines: &Range<usize>, change: &Change) -> Changed {
+    let lines = LineRange { first: begin + lines.start as u32, last: begin + lines.end as u32 - 1 };
+    Changed { lines, tool: change.tool, length: change.length }
+}
+
 /// What a pass has to cut, in the order of cutting.
 fn cuts(moves: &[Move], section: &Section, pass: &RepeatedPass, turn: &Turn) -> Vec<Cut> {
     let programmed = section.parts.iter().flatten();
@@ -234,6 +261,11 @@ fn comments_begin_with_semicolon(program: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::RangeInclusive;
+    use std::process::{Command, Stdio};
+
+    use crate::codes::P011;
+    use truepath_core::gcode::Dialect;
     use truepath_core::units::Offset;
 
     use super::*;
@@ -241,9 +273,16 @@ mod tests {
     const ORIGINAL: &str = "%\nG21 G90\nM3 S1500\nG0 X0 Y-8 Z10\nG1 Z-5 F300\nN10 G1 X0 Y0 (in)\nN20 G1 X20 F250\nG3 X25 Y5 I0 J5\nN30 G1 Y30\nG0 Z10\nG0 X50 Y50\nM30\n%\n";
 
     fn depth(turns: &[(f64, bool, f64)]) -> Depth {
-        let source = Source::new("p.nc", ORIGINAL.as_bytes().to_vec());
-        let moves = survey(source.bytes(), Options::default()).expect("readable");
-        let contour = moves.iter().filter(|m| (7..=9).contains(&m.line));
+        depth_of((ORIGINAL, Options::default()), 7..=9, turns)
+    }
+
+    fn depth_of(
+        (text, options): (&str, Options<'static>),
+        lines: RangeInclusive<u32>,
+        turns: &[(f64, bool, f64)],
+    ) -> Depth {
+        let moves = survey(text.as_bytes(), options).expect("readable");
+        let contour = moves.iter().filter(|m| lines.contains(&m.line));
         let block = |m: &Move| Some(Curves { curve: m.curve()?, line: m.line, ..Curves::BLANK });
         let turn = |&(raise, reversed, feed): &(f64, bool, f64)| Turn {
             raise: Offset::from_nm((raise * 1e6) as i64),
@@ -256,6 +295,7 @@ mod tests {
             allowance: Offset::from_um(500),
             turns: turns.iter().map(turn).collect(),
             announced: false,
+            cutter: None,
         }
     }
 
@@ -307,6 +347,102 @@ mod tests {
             replaced[0].written.last = replaced[0].written.last + lines(&tampered) - lines(&text);
             let verdict = same_beside(ORIGINAL.as_bytes(), tampered.as_bytes(), &replaced, Options::default());
             assert!(verdict.is_err(), "{what} -> {with} was not noticed");
+        }
+    }
+
+    const CONTOUR: &str = "G1 X0 Y0\nG1 X20 F250\nG3 X25 Y5 I0 J5\nG1 Y30\nG0 Z10\n";
+
+    /// A program with its contour from a line on, cut in one pass by T5.
+    fn with_t5(text: &str, dialect: Dialect, from: u32) -> Result<(String, Vec<Replaced>, Options<'static>), Failure> {
+        let options = Options { dialect, ..Options::default() };
+        let cutter = Cutter { number: 5, own: None, words: "HELIX 45 DEGREES".to_owned() };
+        let depth = Depth { cutter: Some(cutter), ..depth_of((text, options), from..=from + 2, &[(0.0, false, 1.0)]) };
+        let source = Source::new("p.nc", text.as_bytes().to_vec());
+        let (repeated, replaced) = laid_out(&source, &[depth], options)?;
+        let written = String::from_utf8(repeated.text).expect("ASCII");
+        assert_eq!(same_beside(text.as_bytes(), written.as_bytes(), &replaced, options), Ok(()), "{written}");
+        Ok((written, replaced, options))
+    }
+
+    fn linuxcnc() -> String {
+        format!(
+            "%\nG21 G90 G40 G49\nT4 M6\nS1500 M3\nG0 X0 Y-8\nG43 H4 Z10 M8\nG1 Z-5 F300\n{CONTOUR}G0 X50 Y50\nG1 Z-3\nG1 X60\nG0 Z10\nM9\nM30\n%\n"
+        )
+    }
+
+    /// Whether LinuxCNC's interpreter reads a program without a message; nothing is asked where it is not installed.
+    fn linuxcnc_accepts(text: &str) {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("p.ngc"), text).unwrap();
+        std::fs::write(folder.path().join("tool.tbl"), "T4 P4 Z50 D10\nT5 P5 Z60 D10\n").unwrap();
+        let mut command = Command::new("rs274");
+        command.env("HOME", folder.path()).args(["-t", "tool.tbl", "-g", "p.ngc"]).current_dir(folder.path());
+        match command.stdin(Stdio::null()).output() {
+            Ok(output) => assert_eq!(String::from_utf8_lossy(&output.stderr).trim(), "executing", "{text}"),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => eprintln!("skipped: no rs274"),
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    #[test]
+    fn another_cutter_is_changed_to_as_the_program_changes_and_back_where_its_own_goes_on() {
+        let (text, replaced, options) = with_t5(&linuxcnc(), Dialect::Linuxcnc, 9).expect("written");
+        let change =
+            |tool: &str, place: &str| format!("M9\nM5\nT{tool} M6\nS1500 M3\nG0 {place}\nG0 G43 Z10. H{tool}\nM8\n");
+        let there = format!("(TRUEPATH CUTTER T5, HELIX 45 DEGREES)\n{}(TRUEPATH PASS 1", change("5", "X0. Y-8."));
+        let back = format!("(TRUEPATH CUTTER T4, THE CUTTER OF THE PROGRAM)\n{}G0 Z10\n", change("4", "X25. Y30."));
+        assert!(text.contains(&there) && text.contains(&back), "{text}");
+        linuxcnc_accepts(&text);
+        for (what, with) in [
+            ("T5 M6", "T6 M6"),
+            ("H5", "H6"),
+            ("H5\nM8\n", "H5\n"),
+            ("T5 M6\nS1500 M3", "T5 M6\nS1400 M3"),
+            ("T5 M6", "T5 M6 G4 P1"),
+            ("G0 X0. Y-8.\nG0 G43 Z10.", "G0 X0. Y-8.\nG0 G43 Z-4."),
+            ("G0 G43 Z10. H5\n", "G0 Z10. \n"),
+            ("T4 M6\nS1500 M3\nG0 X25. Y30.", "T5 M6\nS1500 M3\nG0 X25. Y30."),
+        ] {
+            let tampered = text.replacen(what, with, 1);
+            assert_ne!(tampered, text, "{what}");
+            let verdict = same_beside(linuxcnc().as_bytes(), tampered.as_bytes(), &replaced, options);
+            assert!(verdict.is_err(), "{what} -> {with} was not noticed");
+        }
+    }
+
+    #[test]
+    fn a_fanuc_program_goes_to_its_reference_point_calls_t_before_m06_and_keeps_the_cutter_to_its_end() {
+        let text = "%\nO0001\nN10 G21 G90 G17 G40 G80\nN20 T04\nN30 M06\nN40 S2500 M03\nN50 G00 X0. Y-8.\nN60 G43 H04 Z10.\n\
+            N70 G01 Z-5. F300.\nN80 G01 X0. Y0.\nN90 G01 X20. F250.\nN100 G03 X25. Y5. I0. J5.\nN110 G01 Y30.\nN120 G00 Z10.\n\
+            N130 M05\nN140 G91 G28 Z0.\nN150 M30\n%\n";
+        let (written, ..) = with_t5(text, Dialect::Fanuc, 11).expect("written");
+        let there = "M05\nG91 G28 Z0.\nG90\nT05\nM06\nS2500 M03\nG00 X0. Y-8.\nG00 G43 Z10. H05\n(TRUEPATH PASS 1";
+        assert!(written.contains(there) && !written.contains("CUTTER OF THE PROGRAM"), "{written}");
+    }
+
+    #[test]
+    fn where_the_program_changes_no_tool_it_stops_and_says_what_to_mount() {
+        let text = format!("G21 G90\nM3 S12000\nG0 X0 Y-8 Z10\nG1 Z-5 F300\n{CONTOUR}G0 X50 Y50\nM5\nM30\n");
+        let (written, replaced, options) = with_t5(&text, Dialect::Linuxcnc, 6).expect("written");
+        let there = "(TRUEPATH CUTTER T5, HELIX 45 DEGREES)\nM5\n(MOUNT T5 WITH ITS TIP WHERE THAT OF THE LAST ONE WAS)\nM0\n\
+            S12000 M3\nG0 X0. Y-8.\nG0 Z10.\n(TRUEPATH PASS 1";
+        assert!(written.contains(there), "{written}");
+        linuxcnc_accepts(&written);
+        let unstopped = written.replacen("M0\n", "(M0)\n", 1);
+        assert!(same_beside(text.as_bytes(), unstopped.as_bytes(), &replaced, options).is_err());
+    }
+
+    #[test]
+    fn a_change_that_has_no_model_in_the_program_is_refused_by_name() {
+        for (what, with, said) in [
+            ("G43 H4", "G43 H14", "H14"),
+            ("G43 H4", "G43.1 Z-50\nG0", "G43.1"),
+            ("G1 X0 Y0\n", "G41 D4 G1 X0 Y0\n", "G41"),
+        ] {
+            let line = if with.contains('\n') && !with.ends_with('\n') { 10 } else { 9 };
+            let refused = with_t5(&linuxcnc().replacen(what, with, 1), Dialect::Linuxcnc, line).err();
+            let Some(Failure::Input(error)) = refused else { panic!("{with} was written") };
+            assert!(error.code() == P011.code && error.found().contains(said), "{}", error.found());
         }
     }
 }

@@ -16,6 +16,19 @@ pub struct Depth {
     pub turns: Vec<Turn>,
     /// Whether something has to be said to the control before the way down to every pass, the first one included.
     pub announced: bool,
+    /// The cutter of the passes where it is not that of the program.
+    pub cutter: Option<Cutter>,
+}
+
+/// A cutter in place of the program's own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Cutter {
+    /// Its number at the machine.
+    pub number: u32,
+    /// Number of the program's own, where the program does not say it and the job does.
+    pub own: Option<u32>,
+    /// What it is, for a comment.
+    pub words: String,
 }
 
 /// One pass along a contour.

@@ -156,13 +156,16 @@ impl<'a> Text<'a> {
         let end = self.end(depth, run.end)?;
         let (height, descent, first_down) = self.way_down(run.start, z);
         let as_programmed = |turn: &Turn| !turn.reversed && turn.raise == Offset::ZERO;
-        let plain = !depth.announced && depth.turns.first().is_some_and(as_programmed);
+        let told = depth.announced || depth.cutter.is_some();
+        let plain = !told && depth.turns.first().is_some_and(as_programmed);
         let start = match first_down.filter(|_| !plain) {
             Some(first) => first,
             None if plain => run.start,
             None => {
                 let found = "the cutter comes to the contour along a ramp, or at its depth";
-                let expected = if depth.announced {
+                let expected = if depth.cutter.is_some() {
+                    "a move down where it stands, before which the cutter can be changed"
+                } else if depth.announced {
                     "a move down where it stands, before which the control can be told of the pass"
                 } else {
                     "a first pass in the direction and at the depth of the program, or a move down where it stands"

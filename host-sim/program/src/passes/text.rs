@@ -3,6 +3,8 @@
 //! Everything is written out, in absolute places: motion, both coordinates, height and feed, so that no pass depends on
 //! what was in force before it. Behind the last pass the feed, G91 and the place of the program are there again.
 
+use std::ops::Range;
+
 use truepath_core::gcode::{Modal, Motion};
 use truepath_core::geometry::{Shape as CurveShape, Side};
 use truepath_core::units::{Offset, Position};
@@ -13,6 +15,7 @@ use super::super::fit::Shape;
 use super::super::line::Block;
 use super::super::pen::{Pen, place};
 use super::super::survey::Move;
+use super::change::{Change, Changes, Order};
 use super::request::{Depth, Turn};
 use super::section::{Section, Step, Text};
 use crate::codes::{P006, P009, P010};
@@ -23,6 +26,8 @@ pub(super) struct Lines {
     pub(super) text: Vec<Vec<u8>>,
     /// The passes, in the order of cutting.
     pub(super) passes: Vec<PassLines>,
+    /// The lines of changes of the cutter, counted from 0.
+    pub(super) changes: Vec<(Range<usize>, Change)>,
     /// Whether the cutter stands higher than in the program when the section is over.
     pub(super) lifted: bool,
 }
@@ -44,6 +49,8 @@ struct Typist<'a> {
     /// How the lines are spelt.
     style: Block<'a>,
     two_digits: bool,
+    /// Whether comments begin with `;`.
+    semicolon: bool,
     lines: Vec<Vec<u8>>,
     /// The feed that was written last.
     feed: Option<String>,
@@ -58,18 +65,21 @@ pub(super) fn write(
     text: Text<'_>,
     depth: &Depth,
     section: &Section,
-    two_digits: bool,
-    semicolon: bool,
+    changes: &Changes,
+    (two_digits, semicolon): (bool, bool),
 ) -> Result<Lines, Failure> {
-    let mut typist = Typist::new(text, section, two_digits)?;
+    let mut typist = Typist::new(text, section, (two_digits, semicolon))?;
     typist.front(depth)?;
     let mut lines = Lines::default();
     let ends = typist.ends()?;
     for (k, turn) in depth.turns.iter().enumerate() {
         typist.check_start(depth, k, ends)?;
-        let first = typist.lines.len();
-        typist.comment(&remark(depth, k, &typist.z_text(section.height_of(turn.raise))), semicolon);
         let [from, _] = if turn.reversed { [ends[1], ends[0]] } else { ends };
+        if let Some(change) = changes.before.as_ref().filter(|_| k == 0) {
+            lines.changes.push((typist.change(change, from), change.clone()));
+        }
+        let first = typist.lines.len();
+        typist.comment(&remark(depth, k, &typist.z_text(section.height_of(turn.raise))));
         let elsewhere = k == 0 && !section.keeps_descent && from != ends[0];
         if k > 0 {
             typist.rise(from);
@@ -86,7 +96,7 @@ pub(super) fn write(
         let cuts = typist.pass(turn, k == 0)?;
         lines.passes.push(PassLines { first, down, cuts });
     }
-    lines.lifted = typist.back()?;
+    lines.lifted = typist.back(changes.behind.as_ref(), &mut lines.changes)?;
     lines.text = typist.lines;
     Ok(lines)
 }
@@ -104,7 +114,7 @@ fn remark(depth: &Depth, k: usize, z: &str) -> String {
 }
 
 impl<'a> Typist<'a> {
-    fn new(text: Text<'a>, section: &'a Section, two_digits: bool) -> Result<Self, Failure> {
+    fn new(text: Text<'a>, section: &'a Section, (two_digits, semicolon): (bool, bool)) -> Result<Self, Failure> {
         let moves = text.moves;
         let run = section.parts.iter().flatten().next().copied().unwrap_or(section.moves.start);
         let before = section.moves.start.checked_sub(1).map(|i| &moves[i]);
@@ -126,6 +136,7 @@ impl<'a> Typist<'a> {
             text,
             section,
             two_digits: two_digits || style.two_digits(),
+            semicolon,
             style,
             lines: Vec::new(),
             feed: None,
@@ -147,8 +158,8 @@ impl<'a> Typist<'a> {
         self.lines.push(self.style.alone(words));
     }
 
-    fn comment(&mut self, text: &str, semicolon: bool) {
-        let text = if semicolon { format!("; {text}") } else { format!("({text})") };
+    fn comment(&mut self, text: &str) {
+        let text = if self.semicolon { format!("; {text}") } else { format!("({text})") };
         self.lines.push(text.into_bytes());
     }
 
@@ -241,6 +252,47 @@ impl<'a> Typist<'a> {
     fn lift_to(&mut self, z: Position) {
         if self.z.is_none_or(|now| now < z) {
             self.step(&Step { rapid: true, z, like: self.section.moves.start });
+        }
+    }
+
+    /// Changes the cutter and goes to a place; the lines on which that is written.
+    fn change(&mut self, change: &Change, to: [i64; 2]) -> Range<usize> {
+        let first = self.lines.len();
+        let height = self.z.filter(|z| *z > self.section.clearance).unwrap_or(self.section.clearance);
+        for order in &change.orders {
+            match order {
+                Order::Words(words) => {
+                    let spelt: Vec<String> = words.split(' ').map(|word| self.spelt(word)).collect();
+                    self.line(&spelt.join(" "));
+                }
+                Order::Comment(text) => self.comment(text),
+                Order::Up(top) => self.lift_to(top.map_or(height, |top| top.max(height))),
+                Order::Lost => self.z = None,
+                Order::There => {
+                    // Where a changer has left the cutter is not in the program.
+                    let mut pen = self.pen();
+                    let words = pen.draw(pen.nearest(to), &Shape::Line);
+                    let code = self.code(0);
+                    self.line(&format!("{code} {words}"));
+                    self.at = to;
+                }
+                Order::Down([front, behind]) => {
+                    let words = format!("{}{front} {}{behind}", self.code(0), self.z_text(height));
+                    self.line(&words);
+                    self.z = Some(height);
+                }
+            }
+        }
+        first..self.lines.len()
+    }
+
+    /// A code as the program spells its own.
+    fn spelt(&self, word: &str) -> String {
+        match word.as_bytes() {
+            [letter @ (b'G' | b'M'), digit] if self.two_digits => {
+                format!("{}0{}", char::from(*letter), char::from(*digit))
+            }
+            _ => word.to_owned(),
         }
     }
 
@@ -409,17 +461,20 @@ impl<'a> Typist<'a> {
     }
 
     /// Puts back place, feed, G91 and what acts behind the contour; whether the cutter stands higher than in the program.
-    fn back(&mut self) -> Result<bool, Failure> {
+    fn back(&mut self, change: Option<&Change>, changes: &mut Vec<(Range<usize>, Change)>) -> Result<bool, Failure> {
         let (section, moves) = (self.section, self.text.moves);
         let last = &moves[section.moves.end - 1];
         let home = place(last.to).ok_or_else(|| Failure::Internal("a contour to an unknown place".to_owned()))?;
         let mut lifted = false;
-        if self.at != home {
+        if self.at != home || change.is_some() {
             self.rise(home);
+            if let Some(change) = change {
+                changes.push((self.change(change, home), change.clone()));
+            }
             self.travel(home);
             lifted = section.rises;
             if !lifted && section.end_free == Offset::ZERO {
-                let found = "the program goes on at the end of the contour at its depth, where the last pass has begun";
+                let found = "the program goes on at the end of the contour at its depth, where the last pass has begun, or with another cutter";
                 let expected = "a move up behind the contour, or a last pass in the direction of the program";
                 return Err(self.text.refusal(P010, last.line, [found, expected, P010.remedy]));
             }

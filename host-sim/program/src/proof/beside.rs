@@ -1,6 +1,6 @@
 //! A program whose contours are cut in several passes: beside them it does the same, and every pass cuts what it has to.
 
-use truepath_core::gcode::{Canon, LineRange, Modal, Options};
+use truepath_core::gcode::{Canon, Coolant, LineRange, Modal, Options, ToolLength};
 use truepath_core::geometry::{Curve, Shape};
 use truepath_core::units::Position;
 use truepath_ground::units::float;
@@ -24,6 +24,21 @@ pub(in super::super) struct Replaced {
     pub(in super::super) lifted: bool,
     /// Whether compensation by the radius was taken out of them.
     pub(in super::super) centre_path: bool,
+    /// Where the cutter is changed, beside what the original does.
+    pub(in super::super) changes: Vec<Changed>,
+    /// The tool that stays in the spindle behind them until the original changes its own.
+    pub(in super::super) mounted: Option<u32>,
+}
+
+/// A change of the cutter.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Changed {
+    /// Its lines in the written program.
+    pub(in super::super) lines: LineRange,
+    /// The tool; `None` where it is mounted by hand.
+    pub(in super::super) tool: Option<u32>,
+    /// Whether its length offset is switched on.
+    pub(in super::super) length: bool,
 }
 
 /// A move of a pass.
@@ -53,15 +68,71 @@ pub(in super::super) fn same_beside(
         |text: &[u8]| facts(text, options, centre_path).map_err(|e| format!("line {} cannot be read: {e}", e.line));
     let (old, new) = (read(original)?, read(written)?);
     let (mut a, mut b) = (&old[..], &new[..]);
-    let mut lifted = false;
+    let (mut lifted, mut mounted) = (false, None);
     for range in replaced {
         let (beside, inside, rest) = apart(a, range.original);
         let (beside_new, inside_new, rest_new) = apart(b, range.written);
-        same(beside, beside_new, lifted)?;
+        same(beside, beside_new, (lifted, mounted))?;
         passes(inside, inside_new, range)?;
-        (a, b, lifted) = (rest, rest_new, range.lifted);
+        for changed in &range.changes {
+            let own = new.iter().filter(|fact| changed.lines.contains(fact.line));
+            let before = new.iter().take_while(|fact| !changed.lines.contains(fact.line));
+            change(before, own.collect(), changed, range.clearance)
+                .map_err(|what| format!("{what} of the change of the cutter on line {}", changed.lines.first))?;
+        }
+        (a, b, lifted, mounted) = (rest, rest_new, range.lifted, range.mounted);
     }
-    same(a, b, lifted)
+    same(a, b, (lifted, mounted))
+}
+
+/// On the lines of a change of the cutter: one change, or one stop, to the tool that is asked for with its own length; rapid ways alone, above
+/// the clearance or where only the machine knows the height; behind it spindle and coolant as they were.
+fn change<'f>(
+    before: impl Iterator<Item = &'f Fact>,
+    own: Vec<&'f Fact>,
+    changed: &Changed,
+    clearance: Position,
+) -> Result<(), &'static str> {
+    let (mut coolant, mut turning) = (Coolant::Off, None);
+    for fact in before {
+        if let What::Other(Canon::Coolant(now)) = fact.what {
+            coolant = now;
+        }
+        turning = Some((fact.modal.spindle, fact.modal.speed));
+    }
+    let (mut last, mut tools, mut stops, mut lengths) = (coolant, Vec::new(), 0, Vec::new());
+    for fact in &own {
+        match fact.what {
+            What::Comment(_) => {}
+            What::Straight { rapid: true, from, to } => {
+                let low = |z: Option<Position>| z.is_some_and(|z| z < clearance);
+                let begun_low = low(from.z) && !fact.stands_still();
+                if begun_low || low(to.z) || (to.z.is_none() && from.z.is_some()) {
+                    return Err("the height");
+                }
+            }
+            What::Other(Canon::Coolant(now)) => last = now,
+            What::Other(Canon::ChangeTool(tool)) => tools.push(tool),
+            What::Other(Canon::Stop { optional: false }) => stops += 1,
+            What::Other(Canon::ToolLength(length)) => lengths.push(length),
+            What::Other(Canon::Reference { axes: [false, false, true], .. }) => {}
+            What::Other(Canon::MachineMove { to, rapid: true }) if to.point().is_none() => {}
+            What::Other(Canon::SelectTool(_) | Canon::Spindle(_) | Canon::SpindleSpeed(_)) => {}
+            _ => return Err("a step"),
+        }
+    }
+    let behind = own.last().map(|fact| (fact.modal.spindle, fact.modal.speed));
+    if last != coolant || behind != turning {
+        return Err("spindle or coolant behind");
+    }
+    let of_tool = |length: &ToolLength| matches!(length, ToolLength::Table(of) if of.is_none() || *of == changed.tool);
+    let (asked, by_hand) = (changed.tool.map(Some), changed.tool.is_none());
+    if !tools.iter().copied().eq(asked) || lengths.len() != usize::from(changed.length) || !lengths.iter().all(of_tool)
+    {
+        return Err("tool or length");
+    }
+    let stopped = by_hand || !changed.length;
+    if stops == usize::from(stopped) { Ok(()) } else { Err("the stop") }
 }
 
 /// The steps before some lines, on them, and behind.
@@ -71,15 +142,26 @@ fn apart(facts: &[Fact], lines: LineRange) -> (&[Fact], &[Fact], &[Fact]) {
     (&facts[..first], &facts[first..behind], &facts[behind..])
 }
 
-/// Compares steps one by one; `lifted` is whether the first move begins higher than in the original.
-fn same(old: &[Fact], new: &[Fact], mut lifted: bool) -> Result<(), String> {
+/// Compares steps one by one; `lifted` is whether the first move begins higher than in the original, `mounted` the tool that is in the
+/// spindle until the original changes its own.
+fn same(old: &[Fact], new: &[Fact], (mut lifted, mut mounted): (bool, Option<u32>)) -> Result<(), String> {
     if old.len() != new.len() {
         return Err(format!("{} steps beside the passes have become {}", old.len(), new.len()));
     }
     for (old, new) in old.iter().zip(new) {
         let equal = old.what == new.what || (lifted && lifted_same(&old.what, &new.what));
         lifted &= !matches!(old.what, What::Straight { .. } | What::Arc { .. } | What::Other(Canon::Reference { .. }));
-        if !equal || old.modal != new.modal || old.number != new.number || old.block_delete != new.block_delete {
+        if matches!(old.what, What::Other(Canon::ChangeTool(_))) {
+            mounted = None;
+        }
+        let own = |modal: Modal| match mounted {
+            Some(tool) if modal.tool == Some(tool) => {
+                let selected = if modal.selected == Some(tool) { old.modal.selected } else { modal.selected };
+                Modal { tool: old.modal.tool, selected, ..modal }
+            }
+            _ => modal,
+        };
+        if !equal || old.modal != own(new.modal) || old.number != new.number || old.block_delete != new.block_delete {
             return Err(format!("a step of line {} has changed (line {} as written)", old.line, new.line));
         }
     }
@@ -111,7 +193,9 @@ fn passes(original: &[Fact], written: &[Fact], replaced: &Replaced) -> Result<()
         };
         facts.iter().filter_map(function).collect()
     };
-    if functions(original) != functions(written) {
+    let is_change = |fact: &Fact| replaced.changes.iter().any(|change| change.lines.contains(fact.line));
+    let written: Vec<Fact> = written.iter().filter(|fact| !is_change(fact)).cloned().collect();
+    if functions(original) != functions(&written) {
         return Err(format!(
             "the functions on lines {}-{} have changed",
             replaced.original.first, replaced.original.last
@@ -119,7 +203,7 @@ fn passes(original: &[Fact], written: &[Fact], replaced: &Replaced) -> Result<()
     }
     let mut wanted = replaced.cuts.iter();
     let lowest = replaced.cuts.iter().map(|cut| cut.z_nm).min();
-    for fact in written {
+    for fact in &written {
         let Some((from, to)) = fact.ends() else { continue };
         let fail = |what: &str| format!("{what} of line {} (as written)", fact.line);
         if fact.stands_still() {

@@ -26,7 +26,7 @@ use truepath_core::gcode::{Lines, Options};
 use super::edit::BlockEdit;
 use super::stretch::is_near;
 
-pub(super) use beside::{Cut, Replaced, same_beside};
+pub(super) use beside::{Changed, Cut, Replaced, same_beside};
 pub(super) use kink::Kink;
 
 /// What is compared.
