@@ -47,6 +47,8 @@ impl Writer<'_> {
             let named = [0, 1].map(|axis| block.names_axis(axis));
             match step.kind {
                 Kind::Traverse | Kind::Feed if !step.in_cycle() && !block.has_corner() => {}
+                // Up to change the cutter: the place in the plane stays.
+                Kind::Away([false, false]) => continue,
                 Kind::Arc(..) if place(step.from).is_some() => {
                     let pen = Pen::new([0.0; 2], &step.modal);
                     self.carry(pen, step, by);

@@ -540,7 +540,7 @@ mod tests {
             prop_assert!((float(found.theta[0]) - level).abs() < 0.05, "{:?} of {level}", found.theta[0]);
             let field = found.field.expect("a field");
             let at = |s| field.at(&Place::new(s, [0.8; 3], 0.5));
-            prop_assert!((at(60.0) - 0.012).abs() < 0.003 && at(20.0).abs() < 0.002, "{} {}", at(60.0), at(20.0));
+            prop_assert!((at(60.0) - 0.012).abs() < 0.004 && at(20.0).abs() < 0.004, "{} {}", at(60.0), at(20.0));
         }
 
         #[test]
