@@ -130,7 +130,7 @@ impl Customs {
             };
             let force = in_force(text, options, section.lines[0])?;
             let before =
-                (stays != Some(cutter.number)).then(|| self.change(text, section, &force, *cutter)).transpose()?;
+                (stays != Some(cutter.number)).then(|| self.change(text, section, &force, cutter)).transpose()?;
             let next = sections.get(at + 1);
             let behind = self.is_needed(text.moves, section, next, cutter.number);
             let own = Cutter {
