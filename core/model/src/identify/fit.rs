@@ -256,8 +256,8 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
             observe(k);
             let direct = |o: &Observation| match parameter {
                 Parameter::Undersize => Some(Real::ONE),
-                Parameter::DatumX => Some(-o.normal.x),
-                Parameter::DatumY => Some(-o.normal.y),
+                Parameter::DatumX => Some(o.by_datum()[0]),
+                Parameter::DatumY => Some(o.by_datum()[1]),
                 _ => None,
             };
             for o in points.observations.iter_mut() {

@@ -1,11 +1,11 @@
 //! What was probed, and what the model says the probe should have found there.
 
 use super::parameters::{COUNT, Parameters};
-use crate::cut::{Envelope, ForceTable, Path, State};
+use crate::cut::{Envelope, ForceTable, Loop, Path, State};
 use truepath_units::geometry::{Direction, Vector};
 use truepath_units::{Offset, Real, hypot_nm};
 
-/// One probe point on the contour.
+/// One reading of the wall: a probe point on the contour, or a width between it and the wall across.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Observation {
     /// Arc length of the contour.
@@ -18,6 +18,9 @@ pub struct Observation {
     pub noise: Offset,
     /// Nominal normal towards the wall.
     pub normal: Direction,
+    /// Arc length of the wall across, whose normal is the opposite one, where the reading is a width: a calliper sees the
+    /// mean of both errors, at one height, and no shift of the datum.
+    pub across: Option<Offset>,
     /// Predicted error of the last evaluation.
     pub predicted: Offset,
     /// Prediction at the point about which a fit differentiates.
@@ -39,12 +42,25 @@ impl Observation {
             error,
             noise,
             normal,
+            across: None,
             predicted: Offset::ZERO,
             base: Offset::ZERO,
             weight: Real::ONE,
             spread: Real::ONE,
             sensitivity: [Real::ZERO; COUNT],
         }
+    }
+
+    /// The same as the mean of the errors here and at the wall across.
+    #[must_use]
+    pub const fn with_across(self, across: Offset) -> Self {
+        Self { across: Some(across), ..self }
+    }
+
+    /// What a shift of the datum by a millimetre along x and along y does to the reading, mm: it makes a wall that it
+    /// brings nearer look cut deeper; of two walls across from each other it takes as much as it gives.
+    pub fn by_datum(&self) -> [Real; 2] {
+        if self.across.is_some() { [Real::ZERO; 2] } else { [-self.normal.x, -self.normal.y] }
     }
 }
 
@@ -127,28 +143,55 @@ pub fn predict(
     workspace: &mut PredictionWorkspace,
 ) {
     let machine = parameters.machine(path, table);
-    let working = path.working();
-    let mut place: Option<(Offset, usize, usize)> = None;
+    let mut here = Neighbourhood::default();
     for observation in observations.iter_mut() {
-        let (from, count) = match place {
-            Some((s, from, count)) if s == observation.s => (from, count),
+        let wall = here.wall(&machine, &commanded, observation.s, observation.height, workspace);
+        // A datum that moved towards the wall makes the wall look cut deeper by its share along the normal.
+        observation.predicted = match observation.across {
+            None => wall + parameters.undersize - parameters.datum.along(observation.normal),
+            Some(across) => {
+                let other = here.wall(&machine, &commanded, across, observation.height, workspace);
+                (wall + other).scaled(Real::HALF) + parameters.undersize
+            }
+        };
+    }
+}
+
+/// The stretch of the path around a place that the elastic loop was run over last.
+#[derive(Default)]
+struct Neighbourhood {
+    place: Option<(Offset, usize, usize)>,
+}
+
+impl Neighbourhood {
+    /// The wall error that a machine leaves at a place and a height; the loop is run where the place is another one.
+    fn wall(
+        &mut self,
+        machine: &Loop,
+        commanded: &impl Fn(usize) -> Vector,
+        s: Offset,
+        height: Real,
+        workspace: &mut PredictionWorkspace,
+    ) -> Offset {
+        let path = machine.path;
+        let (from, count) = match self.place {
+            Some((place, from, count)) if place == s => (from, count),
             _ => {
-                let from = path.index_at(observation.s - reach(path)).max(working.start);
-                let to = path.index_at(observation.s + reach(path)).min(working.end).max(from);
+                let working = path.working();
+                let from = path.index_at(s - reach(path)).max(working.start);
+                let to = path.index_at(s + reach(path)).min(working.end).max(from);
                 let count = to.saturating_sub(from).saturating_add(1).min(workspace.states.len());
                 if let Some(states) = workspace.states.get_mut(..count) {
-                    machine.run(from, states, &commanded);
+                    machine.run(from, states, commanded);
                 }
-                place = Some((observation.s, from, count));
+                self.place = Some((s, from, count));
                 (from, count)
             }
         };
         let states = workspace.states.get(..count).unwrap_or_default();
         let displacements = workspace.displacements.get_mut(..count).unwrap_or_default();
-        Envelope::displace(&machine, states, observation.height, displacements);
-        let wall = wall_at(path, from, displacements, observation.s);
-        // A datum that moved towards the wall makes the wall look cut deeper by its share along the normal.
-        observation.predicted = wall + parameters.undersize - parameters.datum.along(observation.normal);
+        Envelope::displace(machine, states, height, displacements);
+        wall_at(path, from, displacements, s)
     }
 }
 

@@ -87,7 +87,9 @@ fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, 
                 Offset::from_nm(path.samples()[path.first() + path.count() - 1].s.nm() / 13 * (1 + i as i64 / 2 * 2));
             let sample = path.samples()[path.index_at(s)];
             let height = Real::ratio(1 + 2 * (i as i64 % 2), 4);
-            Observation::new(sample.s, height, Offset::from_nm(*e), Offset::from_um(2), sample.normal)
+            let point = Observation::new(sample.s, height, Offset::from_nm(*e), Offset::from_um(2), sample.normal);
+            // Some are widths to another place.
+            if i % 5 == 4 { point.with_across(path.samples()[path.first() + path.count() / 3].s) } else { point }
         })
         .collect();
     let need = PredictionWorkspace::needed(&path);

@@ -8,3 +8,4 @@ mod invariance;
 mod laws;
 mod process;
 mod seam;
+mod widths;
