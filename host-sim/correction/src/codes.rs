@@ -43,4 +43,6 @@ truepath_ground::codes! {
         / "use another --dialect, or cut and probe in one of G54 to G59",
     V006 => "G52 or G92 has shifted the origin when the contour is cut"
         / "put the shift into the work offset",
+    V007 => "no dimension of the cut can be taken by hand"
+        / "touch the wall with a probe, or measure from a face: kind = \"distance\" in a file of your own (docs/dimensions.md)",
 }

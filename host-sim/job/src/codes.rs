@@ -25,6 +25,22 @@ truepath_ground::codes! {
         / "keep every n-th reading of a scan: some places on each wall and in every corner, each at several heights, tell all there is; truepath inspect takes the whole file",
     M042 => "the probe file is of another format than the job says"
         / "write the format that the error names into [probe] of the job, or give it with --format",
+    M043 => "a dimension without its value"
+        / "measure it and type the number, or take the whole [[dimension]] out of the file",
+    M044 => "a dimension along Z"
+        / "take it out of the file: a depth or a step is not of the wall, and nothing here corrects Z",
+    M045 => "no wall of this cut where a dimension was measured"
+        / "look at the coordinate, at along and at the origin: coordinates are those of the program",
+    M046 => "a dimension across a wall that is not square to it"
+        / "measure where the wall is square to X or Y, or touch that wall with a probe",
+    M047 => "a dimension far from what the program leaves"
+        / "look whether value, place and job are of one part, and read the instrument again",
+    M048 => "a dimension above or below the cut"
+        / "give the height at which the jaws touched the wall, in coordinates of the program (z_mm) or above the tip (height_mm)",
+    M049 => "a dimension that fits several places"
+        / "add near_mm, a coordinate along the axis between the two walls that were measured",
+    M050 => "results of a measuring machine without what is asked of them"
+        / "give a Q-DAS file (.dfq) with a characteristic of this name (K2002) or number (K2001), in mm, and a value",
     K004 => "touches of the stock that lie on the finished wall"
         / "touch the stock before the finishing pass, with the program that truepath probe --stock writes, and name that file in stock.probe",
     K005 => "too few touches of the stock"

@@ -16,12 +16,15 @@
 //! | contour, cut and machine as the core takes them | [`pass`], at every depth [`levels`] |
 //! | the format of a probe file, by its contents | `probe_format` |
 //! | the points of a probe file on that contour | [`measurement`], on several of them `sharing` |
+//! | dimensions taken by hand in place of points, or beside them | [`dimension`], `dimensioned` |
 //! | what refuses a job, a program or a point, as an error with its place | [`refusal`] |
 
 pub mod allowance;
 pub mod codes;
 mod cutter;
 mod depth;
+pub mod dimension;
+mod dimensioned;
 pub mod draft;
 mod drawn;
 pub mod feature;

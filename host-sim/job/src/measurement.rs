@@ -1,5 +1,7 @@
 //! A probe file → contacts on the wall, and what was set aside.
 
+use std::ops::Range;
+
 use truepath_core::checksum::crc32;
 use truepath_core::geometry::Direction;
 use truepath_core::identify::Observation;
@@ -9,6 +11,7 @@ use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, Source};
 
 use crate::codes::M040;
+use crate::dimension::{Dimensions, Placed};
 use crate::levels;
 use crate::otherwise::otherwise;
 use crate::pass::Pass;
@@ -53,6 +56,8 @@ pub struct Measurement {
     pub file: String,
     /// What is said of its format, where it is not that of the job.
     pub read_as: Option<String>,
+    /// The dimensions among the contacts.
+    pub dimensions: Option<Dimensions>,
 }
 
 /// Lines of readings that have a number in the probing program: every place that it goes to has one, touched or not, and of
@@ -104,6 +109,7 @@ impl Measurement {
             crc,
             file,
             read_as,
+            dimensions: None,
         })
     }
 
@@ -119,8 +125,24 @@ impl Measurement {
         self.numbered.partition_point(|numbered| *numbered < line) + 1
     }
 
-    /// A point as messages name it: its line in the file and its number in the probing program.
+    /// The dimension that a contact of this line is.
+    pub fn dimension(&self, line: u32) -> Option<&Placed> {
+        self.dimensions.as_ref().and_then(|dimensions| dimensions.of_line(line))
+    }
+
+    /// File and place of a line.
+    pub fn place_of(&self, line: u32) -> (&Source, Range<usize>) {
+        match (&self.dimensions, self.dimension(line)) {
+            (Some(dimensions), Some(placed)) => (&dimensions.source, placed.span()),
+            _ => (&self.source, self.source.line_span(line)),
+        }
+    }
+
+    /// A point as messages name it: its line in the file and its number in the probing program; a dimension by its name.
     pub fn name_of(&self, line: u32) -> String {
+        if let (Some(dimensions), Some(placed)) = (&self.dimensions, self.dimension(line)) {
+            return placed.words(dimensions.source.name());
+        }
         format!("line {line} (point {})", self.number(line))
     }
 
@@ -167,15 +189,27 @@ impl Measurement {
         let mut observations = vec![blank; self.contacts.len()];
         job::observations(&self.contacts, self.noise, &mut observations)
             .map_err(|error| Failure::Internal(error.to_string()))?;
+        for (observation, contact) in observations.iter_mut().zip(&self.contacts) {
+            let Some(placed) = self.dimension(contact.line) else { continue };
+            observation.noise = placed.noise;
+            observation.across = placed.across.map(|across| across.s);
+        }
         Ok(observations)
     }
 
-    /// One sentence for every reading set aside.
+    /// One sentence for every reading set aside, and one for widths.
     pub fn remarks(&self, file: &Source) -> Vec<String> {
         let aside = self.rejected.iter().map(|aside| {
             let number = self.number(aside.line);
             format!("{}:{}: point {number} set aside: {}", file.name(), aside.line, why(&aside.reason))
         });
-        self.read_as.iter().cloned().chain(aside).collect()
+        let placed = self.dimensions.iter().flat_map(|dimensions| &dimensions.placed);
+        let widths = placed.filter(|placed| placed.across.is_some()).count();
+        let of_two = (widths > 0).then(|| {
+            format!(
+                "{widths} readings are dimensions between two walls: each stands at the first of them, with the mean error of both"
+            )
+        });
+        self.read_as.iter().cloned().chain(aside).chain(of_two).collect()
     }
 }

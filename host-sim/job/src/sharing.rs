@@ -91,6 +91,7 @@ impl Measurement {
                 file: file.name().to_owned(),
                 // Said once, of the first wall.
                 read_as: read_as.clone().filter(|_| wall == 0),
+                dimensions: None,
             };
             all.push((pass.clone(), measurement));
         }

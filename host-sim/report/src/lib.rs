@@ -2,6 +2,7 @@
 //!
 //! Nothing is computed here that decides a correction.
 
+mod aqdef;
 pub mod codes;
 mod inspection;
 pub mod page;
@@ -14,6 +15,7 @@ mod summary;
 mod tables;
 mod wall;
 
+pub use aqdef::aqdef;
 pub use inspection::{InspectSummary, ToleranceSummary, inspect_summary};
 pub use planned::{PlannedWall, planned_map_csv, planned_page};
 pub use points::{judged_points_csv, points_csv};

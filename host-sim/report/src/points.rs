@@ -29,8 +29,23 @@ pub(super) struct Row {
 /// Weight below which a point counts as outlying.
 const OUTLYING: Real = Real::ratio(3, 10);
 
+/// A contact of a measurement, with what the fit made of it.
+pub(super) fn row_of(measurement: &Measurement, c: &Contact, fitted: Option<&Observation>) -> Row {
+    let row = row_used(c, fitted);
+    let Some(placed) = measurement.dimension(c.line) else { return row };
+    let of_two = if placed.across.is_some() { ", mean error of both walls" } else { "" };
+    let what = format!(
+        "{} {:.4} mm, nominal {:.4}{of_two}",
+        placed.dimension.name,
+        mm(placed.dimension.value),
+        placed.nominal_mm
+    );
+    let reason = if row.reason.is_empty() { what } else { format!("{what}; {}", row.reason) };
+    Row { line: placed.file_line, reason, ..row }
+}
+
 /// A contact, with what the fit made of it.
-pub(super) fn row_used(c: &Contact, fitted: Option<&Observation>) -> Row {
+fn row_used(c: &Contact, fitted: Option<&Observation>) -> Row {
     let (status, reason) = match fitted.filter(|o| o.weight < OUTLYING) {
         None => ("used", String::new()),
         Some(o) => ("outlying", format!("the model expects {:.4} mm here", mm(o.predicted))),
@@ -72,7 +87,7 @@ pub(super) fn row_aside(aside: &Aside) -> Row {
 /// # Errors
 /// Internal, when memory cannot be written.
 pub fn points_csv(measurement: &Measurement, observations: &[Observation]) -> Result<Vec<u8>, Failure> {
-    let used = measurement.contacts.iter().enumerate().map(|(at, c)| row_used(c, observations.get(at)));
+    let used = measurement.contacts.iter().enumerate().map(|(at, c)| row_of(measurement, c, observations.get(at)));
     table(used.chain(measurement.rejected.iter().map(row_aside)))
 }
 
@@ -89,6 +104,6 @@ struct Judged {
 /// Internal, when memory cannot be written.
 pub fn judged_points_csv(measurement: &Measurement, verdicts: &[PointVerdict]) -> Result<Vec<u8>, Failure> {
     let contacts = measurement.contacts.iter().zip(verdicts);
-    let used = contacts.map(|(c, verdict)| (row_used(c, None), Judged { verdict: Some(*verdict) }));
+    let used = contacts.map(|(c, verdict)| (row_of(measurement, c, None), Judged { verdict: Some(*verdict) }));
     table(used.chain(measurement.rejected.iter().map(|aside| (row_aside(aside), Judged { verdict: None }))))
 }

@@ -5,13 +5,15 @@ use truepath_chart::view::View;
 use truepath_correction::correct::CorrectedPass;
 use truepath_correction::learning::History;
 use truepath_correction::summary::corrected_name;
-use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::pages::REPORT;
 use truepath_report::plot::predicted_error;
 use truepath_report::{correction_csv, points_csv, wall_csv};
+
+use super::readings::{DIMENSIONS, PROBE, Readings};
 
 /// The parts so far; see [`learning`](truepath_correction::learning).
 pub(super) const HISTORY: &str = "history.json";
@@ -31,7 +33,8 @@ pub(super) const FILES: &[&str] = &[
     "summary.json",
     "correction.svg",
     REPORT,
-    "probe-raw.txt",
+    PROBE,
+    DIMENSIONS,
     "first-pass-surface.csv",
     "correction-pass-#.tpi",
     CONTOURS,
@@ -80,11 +83,11 @@ pub(super) fn write_contour(
 /// Writes what the outputs hold once, whatever the number of contours, and puts all of them in their place.
 pub(super) fn commit(
     folder: OutputFolder,
-    probe: &Source,
+    readings: &Readings,
     summary: &impl Serialize,
     report: &[u8],
 ) -> Result<(), Failure> {
-    folder.write("probe-raw.txt", probe.bytes())?;
+    readings.keep(&folder)?;
     folder.write("summary.json", &json(summary)?)?;
     folder.write(REPORT, report)?;
     folder.commit()?;

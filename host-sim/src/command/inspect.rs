@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use truepath_core::probe::{Contact, CutWith};
 use truepath_core::units::Offset;
 use truepath_correction::inspection::{
@@ -11,8 +11,8 @@ use truepath_correction::inspection::{
 use truepath_correction::misfit::noticed;
 use truepath_correction::remarks::said_of_every;
 use truepath_correction::warnings::misread;
-use truepath_ground::diagnostics::{Failure, Source};
-use truepath_ground::output::{OutputFolder, json};
+use truepath_ground::diagnostics::Failure;
+use truepath_ground::output::{OutputFolder, json, write_file};
 use truepath_ground::units::mm;
 use truepath_job::feature::listing;
 use truepath_job::job::{PartFlags, Said};
@@ -20,9 +20,10 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::page::render_all;
 use truepath_report::pages::{self, REPORT};
-use truepath_report::{InspectSummary, inspect_summary, judged_points_csv, points_csv};
+use truepath_report::{InspectSummary, aqdef, inspect_summary, judged_points_csv, points_csv};
 
 use super::correction_files::{CONTOURS, contour_folder, contour_name};
+use super::readings::{DIMENSIONS, PROBE, Readings};
 use crate::terminal::Terminal;
 
 /// One contact, for the list that is printed.
@@ -61,21 +62,28 @@ pub struct Inspection {
 }
 
 /// Files this command may write.
-const FILES: &[&str] = &["points.csv", "summary.json", "probe-raw.txt", REPORT, CONTOURS];
+const FILES: &[&str] = &["points.csv", "summary.json", PROBE, DIMENSIONS, REPORT, CONTOURS];
 
 /// What is inspected.
 #[derive(Clone, Debug, Default, Args)]
+#[command(group = ArgGroup::new("written").multiple(true))]
 pub struct Options {
     /// The job.
     pub job: PathBuf,
     /// The probe file.
-    #[arg(long, value_name = "FILE")]
-    pub probe: PathBuf,
+    #[arg(long, value_name = "FILE", required_unless_present = "dimensions")]
+    pub probe: Option<PathBuf>,
+    /// Widths, diameters and distances measured on the part, beside the probe file or in its place.
+    #[arg(long, value_name = "FILE.toml")]
+    pub dimensions: Option<PathBuf>,
     /// Folder for report.html, the points as a table, the summary and the probe file as it is.
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", group = "written")]
     pub output: Option<PathBuf>,
+    /// File for the readings in Q-DAS ASCII transfer format (AQDEF), for a shop's statistics.
+    #[arg(long, value_name = "FILE.dfq", group = "written")]
+    pub aqdef: Option<PathBuf>,
     /// Replace the files of an earlier run.
-    #[arg(long, requires = "output")]
+    #[arg(long, requires = "written")]
     pub force: bool,
     /// What is said of the part in place of the job.
     #[command(flatten)]
@@ -156,13 +164,13 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     job.override_part(&options.part)?;
     // What a part was cut with does not matter for how far its wall is off.
     let walls: Vec<Pass> = Pass::every(job)?.into_iter().map(|pass| pass.cut_with(CutWith::Anything)).collect();
-    let file = Source::read(&options.probe)?;
+    let readings = Readings::read(options.probe.as_deref(), options.dimensions.as_deref())?;
     let several = walls.len() > 1;
-    let measured = Measurement::of_every(walls, &file)?;
+    let measured = readings.of_every(walls)?;
     let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
     let mut inspected = Vec::new();
     for (pass, measurement) in measured.iter().filter(|(_, measurement)| !measurement.contacts.is_empty()) {
-        inspected.push(one(pass, measurement, &file, several)?);
+        inspected.push(one(pass, measurement, several)?);
     }
     if let Some(folder) = &folder {
         for wall in &inspected {
@@ -176,14 +184,20 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
                 folder.write(&format!("{place}summary.json"), &json(&wall.summary)?)?;
             }
         }
-        folder.write("probe-raw.txt", file.bytes())?;
+        readings.keep(folder)?;
+    }
+    if let Some(target) = &options.aqdef {
+        let names: Vec<String> = inspected.iter().map(|wall| contour_name(wall.pass)).collect();
+        let named = inspected.iter().zip(&names);
+        let walls = named.map(|(wall, name)| (several.then_some(name.as_str()), wall.pass, wall.measurement));
+        write_file(target, options.force, aqdef(&walls.collect::<Vec<_>>()).as_bytes())?;
     }
     let mut pages = Vec::new();
     for wall in &inspected {
         let page = pages::inspected(wall.pass, wall.measurement, &wall.judgement, &wall.summary, &wall.told)?;
         pages.push((contour_name(wall.pass), page));
     }
-    let inspection = together(inspected, &measured, &file)?;
+    let inspection = together(inspected, &measured)?;
     if let Some(folder) = folder {
         folder.write("summary.json", &json(&inspection.summary)?)?;
         folder.write(REPORT, &render_all(&pages)?)?;
@@ -205,16 +219,11 @@ struct Inspected<'a> {
     contacts: Vec<Point>,
 }
 
-fn one<'a>(
-    pass: &'a Pass,
-    measurement: &'a Measurement,
-    file: &Source,
-    several: bool,
-) -> Result<Inspected<'a>, Failure> {
+fn one<'a>(pass: &'a Pass, measurement: &'a Measurement, several: bool) -> Result<Inspected<'a>, Failure> {
     let mut misreadings = misread(pass, false, &measurement.contacts);
     misreadings.extend(noticed(pass, measurement).filter(|_| !measurement.taken_as_is));
     let told: Vec<String> = pass.warnings.iter().chain(&misreadings).cloned().collect();
-    let warnings = [pass.warnings.clone(), measurement.remarks(file), misreadings].concat();
+    let warnings = [pass.warnings.clone(), measurement.remarks(&measurement.source), misreadings].concat();
     let (part, contour) = (&pass.job.part, pass.path_contour());
     let rule = part.tolerance.map(|tolerance| Rule { tolerance, uncertainty: part.uncertainty });
     let depth = pass.job.numbers.cut.axial_depth;
@@ -248,11 +257,7 @@ fn one<'a>(
 }
 
 /// The report on all walls of a part.
-fn together(
-    inspected: Vec<Inspected<'_>>,
-    measured: &[(Pass, Measurement)],
-    file: &Source,
-) -> Result<Inspection, Failure> {
+fn together(inspected: Vec<Inspected<'_>>, measured: &[(Pass, Measurement)]) -> Result<Inspection, Failure> {
     let nothing = || Failure::Internal("no wall was inspected".to_owned());
     if let ([one], [_]) = (&inspected[..], measured) {
         let (summary, contacts) = (one.summary.clone(), one.contacts.clone());
@@ -272,7 +277,7 @@ fn together(
             aside = aside.and(SetAside::of(reasons, pass.job.numbers.tool.diameter));
             warnings.push(format!("{name} was not touched: nothing is said of it"));
         }
-        let said = own.map_or_else(|| measurement.remarks(file), |wall| wall.summary.warnings.clone());
+        let said = own.map_or_else(|| measurement.remarks(&measurement.source), |wall| wall.summary.warnings.clone());
         all_said.push((name.clone(), said));
         walls.push((name, own.and_then(|wall| wall.summary.coverage.as_ref())));
     }

@@ -25,6 +25,7 @@ mod plan_study;
 pub mod plot;
 pub mod pocket;
 pub mod probe;
+mod readings;
 pub mod replay;
 pub mod simulate;
 pub mod split;

@@ -264,7 +264,7 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
     let (job, probe) = (at("pocket.toml"), at("probe.txt"));
     let options = inspect::Options {
         job: job.clone(),
-        probe: probe.clone(),
+        probe: Some(probe.clone()),
         output: Some(at("inspected")),
         ..inspect::Options::default()
     };

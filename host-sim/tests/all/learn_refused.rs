@@ -66,7 +66,7 @@ fn edit(file: &Path, from: &str, to: &str) {
 fn run(folder: &Path, probe: &str, from: &str, out: &str) -> Result<LearnSummary, Failure> {
     let options = learn::Options {
         job: folder.join("job.toml"),
-        probe: folder.join(probe),
+        probe: Some(folder.join(probe)),
         from: folder.join(from),
         output: folder.join(out),
         ..learn::Options::default()

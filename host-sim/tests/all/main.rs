@@ -3,6 +3,7 @@
 mod bore_command;
 mod command_line;
 mod depths;
+mod dimensions;
 mod features;
 mod forces_command;
 mod init;

@@ -172,7 +172,7 @@ impl Discrepancy {
     pub fn at(&self, place: &Feature) -> f64 {
         self.mean_over(|factored| {
             let covariance: Vec<f64> =
-                self.rows().map(|row| factored.kernel.lasting(&self.points.extents, &row.feature, place)).collect();
+                self.rows().map(|row| row.lasting(&factored.kernel, &self.points.extents, place)).collect();
             factored.mean(&covariance)
         })
     }
@@ -240,7 +240,7 @@ impl Discrepancy {
                 .map(|row| {
                     let of_parameters = |k: usize| row.sensitivity[k] * sensitivity[k] / self.points.precision[k];
                     let parametric: f64 = (0..SHARED).map(of_parameters).sum();
-                    parametric + kernel.lasting(&self.points.extents, &row.feature, place)
+                    parametric + row.lasting(kernel, &self.points.extents, place)
                 })
                 .collect();
             let own = kernel.lasting(&self.points.extents, place, place);

@@ -93,7 +93,9 @@ pub(super) fn variance(kernel: &Kernel, row: &Row) -> f64 {
 
 /// Covariance of two rows by the discrepancy, mm².
 pub(super) fn discrepancy(points: &Points, kernel: &Kernel, a: &Row, b: &Row) -> f64 {
-    let lasting = kernel.lasting(&points.extents, &a.feature, &b.feature);
+    let with = |place| a.lasting(kernel, &points.extents, place);
+    let here = with(&b.feature);
+    let lasting = b.across.as_ref().map_or(here, |across| 0.5 * (here + with(across)));
     lasting + kernel.between_parts(&a.feature, &b.feature, [a.parts_ago, b.parts_ago])
 }
 

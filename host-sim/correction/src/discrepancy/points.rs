@@ -8,7 +8,7 @@ use truepath_core::job;
 use truepath_ground::units::{float, mm};
 
 use super::feature::{Engagement, Feature, Sensitivity};
-use super::kernel::Extent;
+use super::kernel::{Extent, Kernel};
 use super::nominal::moved_stock;
 
 /// Points that are looked at one by one; of more the mean over the heights of a place is.
@@ -41,6 +41,8 @@ pub struct CutPoints<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Row {
     pub(super) feature: Feature,
+    /// The wall across, where the point is a width: the mean of both.
+    pub(super) across: Option<Feature>,
     pub(super) parts_ago: usize,
     /// Measured − predicted where no parameter is known better than before, mm: the residual of the fit and what the fitted
     /// parameters have explained.
@@ -53,6 +55,15 @@ pub(super) struct Row {
     pub(super) sensitivity: [f64; COUNT],
     /// The places of the points among those given.
     pub(super) points: std::ops::Range<usize>,
+}
+
+impl Row {
+    /// Covariance with a place, as far as it repeats on the next part, mm².
+    pub(super) fn lasting(&self, kernel: &Kernel, extents: &[Extent], place: &Feature) -> f64 {
+        let here = kernel.lasting(extents, &self.feature, place);
+        let Some(across) = &self.across else { return here };
+        0.5 * (here + kernel.lasting(extents, across, place))
+    }
 }
 
 /// Points of all parts.
@@ -97,7 +108,7 @@ impl Points {
             let engagement = Engagement::of(&path, cut.contour, working.start, &states);
             let stock = stock_sensitivities(&path, cut, core);
             let mut at = 0;
-            let same = |a: &Observation, b: &Observation| many && a.s == b.s;
+            let same = |a: &Observation, b: &Observation| many && a.s == b.s && a.across == b.across;
             for group in cut.observations.chunk_by(same) {
                 let stock = &stock[at..at + group.len()];
                 at += group.len();
@@ -136,7 +147,9 @@ fn row(
     let stated = mean(&|o| (mm(o.deviation()) / float(o.spread)).powi(2));
     let of_load = Sensitivity { load: sensitivity[0] / level, stock: stock.iter().sum::<f64>() / count };
     let feature = engagement.at(group[0].s, group[0].normal, of_load);
-    Row { feature, parts_ago: cut.parts_ago, unexplained, noise: stated, count, sensitivity, points: 0..0 }
+    // Each of two walls bears as much of the load as both do in the mean.
+    let across = group[0].across.map(|s| engagement.at(s, group[0].normal.reversed(), of_load));
+    Row { feature, across, parts_ago: cut.parts_ago, unexplained, noise: stated, count, sensitivity, points: 0..0 }
 }
 
 /// Change of the error at the points of a cut per allowance, mm per mm.

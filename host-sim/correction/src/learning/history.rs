@@ -189,7 +189,7 @@ impl Part {
             number,
             probe_crc32: format!("{:08x}", measurement.crc),
             noise_mm: mm(measurement.noise),
-            points: measurement.observations()?.iter().map(Point::of).collect(),
+            points: measurement.observations()?.iter().map(|o| Point::of(o, measurement.noise)).collect(),
             correction,
             set_aside: false,
         })

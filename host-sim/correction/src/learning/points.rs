@@ -17,23 +17,33 @@ pub struct Point {
     pub error_mm: f64,
     /// Nominal normal towards the wall.
     pub normal: [f64; 2],
+    /// Arc length of the wall across, mm, where the error is the mean of two walls: half of what a width shows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub across_s_mm: Option<f64>,
+    /// Standard deviation of its measurement, mm, where it is not that of the points of its part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_mm: Option<f64>,
 }
 
 impl Point {
-    /// Of an observation.
-    pub fn of(o: &Observation) -> Self {
+    /// Of an observation; `noise` is the standard deviation of the points of its part.
+    pub fn of(o: &Observation, noise: Offset) -> Self {
         Self {
             s_mm: mm(o.s),
             height: float(o.height),
             error_mm: mm(o.error),
             normal: [float(o.normal.x), float(o.normal.y)],
+            across_s_mm: o.across.map(mm),
+            noise_mm: (o.noise != noise).then(|| mm(o.noise)),
         }
     }
 
-    /// As an observation again, with the standard deviation of its measurement.
+    /// As an observation again; `noise` is the standard deviation of the points of its part.
     pub fn observation(&self, noise: Offset) -> Observation {
         let [x, y] = self.normal.map(real);
-        Observation::new(nm(self.s_mm), real(self.height), nm(self.error_mm), noise, Direction { x, y })
+        let noise = self.noise_mm.map_or(noise, nm);
+        let point = Observation::new(nm(self.s_mm), real(self.height), nm(self.error_mm), noise, Direction { x, y });
+        self.across_s_mm.map_or(point, |across| point.with_across(nm(across)))
     }
 
     /// Whether it can be one: on a contour, within the engaged depth, with a normal of one.
@@ -43,6 +53,8 @@ impl Point {
             && (-0.5..=1.5).contains(&self.height)
             && self.error_mm.abs() <= 100.0
             && (0.9..=1.1).contains(&x.hypot(y))
+            && self.across_s_mm.is_none_or(|across| (-1e5..=1e7).contains(&across))
+            && self.noise_mm.is_none_or(|noise| noise > 0.0 && noise <= 1.0)
     }
 }
 
@@ -59,11 +71,14 @@ mod tests {
     proptest! {
         #[test]
         fn a_point_comes_back_from_its_text(s in -1_000_000_000i64..10_000_000_000, e in -900_000i64..900_000,
-                                           h in 0i64..(1 << 32), x in -(1i64 << 32)..(1 << 32)) {
+                                           h in 0i64..(1 << 32), x in -(1i64 << 32)..(1 << 32),
+                                           across in prop::option::of(-1_000_000_000i64..10_000_000_000),
+                                           its_noise in 1_000i64..4_000) {
             let normal = Direction { x: Real::from_bits(x), y: Real::from_bits(-h) };
-            let noise = Offset::from_nm(2000);
-            let o = Observation::new(Offset::from_nm(s), Real::from_bits(h), Offset::from_nm(e), noise, normal);
-            let text = serde_json::to_string(&Point::of(&o)).unwrap();
+            let (noise, its_noise) = (Offset::from_nm(2000), Offset::from_nm(its_noise));
+            let o = Observation::new(Offset::from_nm(s), Real::from_bits(h), Offset::from_nm(e), its_noise, normal);
+            let o = across.map_or(o, |across| o.with_across(Offset::from_nm(across)));
+            let text = serde_json::to_string(&Point::of(&o, noise)).unwrap();
             let point: Point = serde_json::from_str(&text).unwrap();
             prop_assert_eq!(point.observation(noise), o);
         }

@@ -107,8 +107,8 @@ impl Fitting<'_> {
             }
             let direct = |o: &Observation| match parameter {
                 Parameter::Undersize => Some(1.0),
-                Parameter::DatumX => Some(-truepath_ground::units::float(o.normal.x)),
-                Parameter::DatumY => Some(-truepath_ground::units::float(o.normal.y)),
+                Parameter::DatumX => Some(truepath_ground::units::float(o.by_datum()[0])),
+                Parameter::DatumY => Some(truepath_ground::units::float(o.by_datum()[1])),
                 _ => None,
             };
             if self.observations.iter().any(|o| direct(o).is_some()) {

@@ -55,6 +55,12 @@ pub fn judged(
         return None;
     }
     let reason = look.reason();
+    // Of a width neither a shift nor a mirrored axis makes another one: there is nothing to try.
+    if measurement.dimensions.is_some() {
+        let lines = measurement.contacts.iter().map(|contact| contact.line).collect();
+        let stated = Trial::as_fitted(look.score, observations, lines);
+        return reason.map(|_| Misfit { look, reason, stated, causes: Vec::new() });
+    }
     let stated = Trial::of(Cause::Nothing, pass, measurement, core.law)?;
     if stated.score.points + stated.score.lost < LEAST_POINTS {
         return reason.map(|_| Misfit { look, reason, stated, causes: Vec::new() });

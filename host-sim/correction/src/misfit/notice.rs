@@ -13,6 +13,10 @@ use crate::identification::asked;
 /// A datum or a size that explains the points by far better, both where the machine deflects as the job says and where a
 /// correction has cancelled that; `None` where there is none.
 pub fn noticed(pass: &Pass, measurement: &Measurement) -> Option<String> {
+    // A width sees no shift of the datum.
+    if measurement.dimensions.is_some() {
+        return None;
+    }
     let law = asked(pass.core.job.force.model).unwrap_or(WallLaw::Helical);
     let deflected = Trial::of(Cause::Nothing, pass, measurement, law)?;
     let mut corrected = deflected.observations.clone();

@@ -37,7 +37,8 @@ impl Rigid {
             .iter()
             .map(|o| {
                 let e = expected_mm(o);
-                ([-float(o.normal.x) / e, -float(o.normal.y) / e, 1.0 / e], residual_mm(o) / e)
+                let [x, y] = o.by_datum().map(float);
+                ([x / e, y / e, 1.0 / e], residual_mm(o) / e)
             })
             .collect();
         let off = |x: &[f64; 3], (row, r): &([f64; 3], f64)| r - row.iter().zip(x).map(|(a, b)| a * b).sum::<f64>();

@@ -22,7 +22,7 @@ impl Misfit {
         let found = format!("{}; {}{}", self.what(), self.why(pass, measurement), self.worst(measurement));
         let help = self.causes.first().map_or_else(
             || {
-                "touch the points named once more; look whether program, part and probe file belong together and what the job says of tool, stock and probe".to_owned()
+                "measure what is named once more; look whether program, part and file belong together and what the job says of tool, stock and probe".to_owned()
             },
             |trial| trial.cause.help(pass, measurement),
         );
@@ -35,10 +35,12 @@ impl Misfit {
         };
         let help = format!("{help}{corrected}; --force-data goes on with the points as they are");
         let error = InputError::new(Q009, found, "points of a part that this job has cut", help);
-        let file = &measurement.source;
         match self.stated.worst().first() {
-            Some(k) => error.at(file, file.line_span(self.stated.lines[*k])),
-            None => error.at(file, 0..0),
+            Some(k) => {
+                let (file, span) = measurement.place_of(self.stated.lines[*k]);
+                error.at(file, span)
+            }
+            None => error.at(&measurement.source, 0..0),
         }
     }
 

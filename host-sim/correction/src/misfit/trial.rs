@@ -39,6 +39,11 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// The job as stated, as a fit has left its points.
+    pub fn as_fitted(score: Score, observations: &[Observation], lines: Vec<u32>) -> Self {
+        Self { cause: Cause::Nothing, score, observations: observations.to_vec(), lines }
+    }
+
     /// Fits under a cause; `None` where nothing can be fitted. A free datum is found in several rounds: points beyond the
     /// reach of the wall, and places along it, come right once most of the shift is known.
     pub fn of(cause: Cause, pass: &Pass, measurement: &Measurement, law: WallLaw) -> Option<Self> {

@@ -11,6 +11,8 @@
 //! | the plan: touches in order, every coordinate | `probing_setup`, `plan` |
 //! | places where the stock is touched, before the pass | `stock` |
 //! | further places, given what was measured: the corrected wall is to become certain | `wall_sensitivity`, `choice_next`, `next` |
+//! | widths that leave two walls apart, and what would tell them | `unseparated` |
+//! | dimensions to be taken by hand, a sheet for them and the file to type them into | `dimensions`, `dimension_text` |
 //! | the program of a control | `dialect`, `text`, `walk`, `linuxcnc`, `grbl`, `fanuc`, `haas`, `dprnt` |
 //!
 //! A verification program never changes an offset, a parameter of the control or the part: it moves, touches and
@@ -25,6 +27,8 @@ mod choice;
 mod choice_next;
 mod covariance;
 mod dialect;
+mod dimension_text;
+mod dimensions;
 mod dprnt;
 mod estimate;
 mod fanuc;
@@ -43,11 +47,14 @@ mod sensitivity;
 mod settings;
 mod stock;
 mod text;
+mod unseparated;
 mod walk;
 mod wall_sensitivity;
 
 pub use candidates::KeptOff;
 pub use dialect::{ProbeDialect, write};
+pub use dimension_text::{sheet, table};
+pub use dimensions::{DimensionPlan, PlannedDimension, USUAL_DIMENSIONS, plan_dimensions};
 pub use heights::Height;
 pub use next::{Measured, plan_next};
 pub use part_program::PartProgram;
@@ -55,4 +62,5 @@ pub use plan::{Gained, Place, Plan, Touch, plan, plan_every};
 pub use reason::Unknown;
 pub use settings::Settings;
 pub use stock::{STOCK_HEIGHTS, plan_stock};
+pub use unseparated::unseparated;
 pub use wall_sensitivity::WallSensitivity;

@@ -36,9 +36,6 @@ pub(super) fn sensitivities(
     noise: Offset,
     progress: &mut dyn FnMut(f64),
 ) -> Vec<Sensitivity> {
-    let needed = PredictionWorkspace::needed(path);
-    let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
-    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
     let blank = |site: &Site, height: &Height| {
         let height = Real::from_bits((height.fraction * 4_294_967_296.0) as i64);
         let normal = Direction { x: real(site.normal[0]), y: real(site.normal[1]) };
@@ -46,13 +43,33 @@ pub(super) fn sensitivities(
     };
     let mut touches: Vec<Observation> =
         sites.iter().flat_map(|site| heights.iter().map(move |height| blank(site, height))).collect();
+    let rows = rows(path, estimate, &mut touches, progress);
+    let deviations: Vec<f64> = touches.iter().map(|o| mm(o.deviation())).collect();
+    let sensitivity = |(rows, deviations): (&[Row], &[f64])| {
+        let wall = rows.iter().zip(deviations).map(|(row, deviation)| wall_row(row, *deviation)).collect();
+        Sensitivity { rows: rows.to_vec(), wall }
+    };
+    rows.chunks(heights.len()).zip(deviations.chunks(heights.len())).map(sensitivity).collect()
+}
+
+/// The sensitivities of readings, which then hold what is expected of them as their error: change per prior standard
+/// deviation, in standard deviations of the reading. `progress` is told the share done, 0…1.
+pub(super) fn rows(
+    path: &Path,
+    estimate: &Estimate,
+    touches: &mut [Observation],
+    progress: &mut dyn FnMut(f64),
+) -> Vec<Row> {
+    let needed = PredictionWorkspace::needed(path);
+    let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
+    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
     let mut readings = |touches: &mut [Observation], parameters: &_, table: &ForceTable| {
         predict(path, table, parameters, |i| estimate.commanded(path, i), touches, &mut workspace);
         touches.iter().map(|o| o.predicted).collect::<Vec<_>>()
     };
     let parameters = estimate.parameters();
     let table = ForceTable::new(parameters.coefficients.size_exponent);
-    let expected = readings(&mut touches, &parameters, &table);
+    let expected = readings(touches, &parameters, &table);
     for (touch, expected) in touches.iter_mut().zip(&expected) {
         touch.error = *expected;
     }
@@ -65,7 +82,7 @@ pub(super) fn sensitivities(
             continue;
         }
         if of_measurement(parameter) {
-            for ((row, touch), deviation) in rows.iter_mut().zip(&touches).zip(&deviations) {
+            for ((row, touch), deviation) in rows.iter_mut().zip(&*touches).zip(&deviations) {
                 row[k] = sigma / deviation * direct(parameter, touch);
             }
             continue;
@@ -74,34 +91,30 @@ pub(super) fn sensitivities(
             let moved = estimate.displaced(k, by);
             let exponent = moved.coefficients.size_exponent;
             let other = (exponent != table.size_exponent()).then(|| ForceTable::new(exponent));
-            readings(&mut touches, &moved, other.as_ref().unwrap_or(&table))
+            readings(touches, &moved, other.as_ref().unwrap_or(&table))
         };
         let (above, below) = (at(DIFFERENCE), at(-DIFFERENCE));
         for (((row, a), b), deviation) in rows.iter_mut().zip(&above).zip(&below).zip(&deviations) {
             row[k] = mm(*a - *b) / (2.0 * float(DIFFERENCE)) / deviation;
         }
     }
-    let sensitivity = |(rows, deviations): (&[Row], &[f64])| {
-        let wall = rows.iter().zip(deviations).map(|(row, deviation)| wall_row(row, *deviation)).collect();
-        Sensitivity { rows: rows.to_vec(), wall }
-    };
-    rows.chunks(heights.len()).zip(deviations.chunks(heights.len())).map(sensitivity).collect()
+    rows
 }
 
 /// What a unit of an unknown of the measurement does to a reading.
 fn direct(parameter: Parameter, touch: &Observation) -> f64 {
     match parameter {
-        Parameter::DatumX => -float(touch.normal.x),
-        Parameter::DatumY => -float(touch.normal.y),
+        Parameter::DatumX => float(touch.by_datum()[0]),
+        Parameter::DatumY => float(touch.by_datum()[1]),
         _ => 1.0,
     }
 }
 
-fn real(value: f64) -> Real {
+pub(super) fn real(value: f64) -> Real {
     Real::from_bits((value * 4_294_967_296.0).round() as i64)
 }
 
 /// Change of the wall: in mm, without what acts on the measurement alone.
-fn wall_row(row: &Row, deviation: f64) -> Row {
+pub(super) fn wall_row(row: &Row, deviation: f64) -> Row {
     std::array::from_fn(|k| if of_measurement(Parameter::ALL[k]) { 0.0 } else { row[k] * deviation })
 }

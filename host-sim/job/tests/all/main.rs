@@ -1,6 +1,7 @@
 //! Jobs, programs and probe files: what is read, and what is refused with its place.
 
 mod cut_with;
+mod dimensions;
 mod job_errors;
 mod keys;
 mod measurement;

@@ -8,7 +8,7 @@ use truepath_ground::units::{float, rounded};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
-use crate::points::{Row, row_aside, row_used};
+use crate::points::{Row, row_aside, row_of};
 
 /// Contacts on a page at most, and as many readings set aside: a table that a reader and a browser can still take.
 pub const MOST_SHOWN: usize = 2_000;
@@ -62,7 +62,7 @@ pub struct Point {
 ///
 /// `observations` are those of the fit, one for each contact; empty when nothing was fitted.
 pub fn points(pass: &Pass, measurement: &Measurement, observations: &[Observation]) -> (Vec<Point>, Option<String>) {
-    shown(pass, measurement, |at, c| (row_used(c, observations.get(at)), None))
+    shown(pass, measurement, |at, c| (row_of(measurement, c, observations.get(at)), None))
 }
 
 /// The same of a judged part, with the verdict of each contact; empty when there is no tolerance. Of neighbours the one shown is
@@ -72,7 +72,7 @@ pub fn judged_points(
     measurement: &Measurement,
     verdicts: &[PointVerdict],
 ) -> (Vec<Point>, Option<String>) {
-    shown(pass, measurement, |at, c| (row_used(c, None), verdicts.get(at).copied()))
+    shown(pass, measurement, |at, c| (row_of(measurement, c, None), verdicts.get(at).copied()))
 }
 
 fn shown(

@@ -10,11 +10,10 @@ use truepath_correction::learning::History;
 use truepath_correction::second_pass;
 use truepath_correction::summary::CorrectSummary;
 use truepath_correction::warnings::misread;
-use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::OutputFolder;
 use truepath_job::feature::listing;
 use truepath_job::job::{PartFlags, ROUTES, Route, Said, one_of};
-use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_program::first_pass_of;
 use truepath_report::page::render;
@@ -24,6 +23,7 @@ use truepath_report::pages::{Points, REPORT};
 use super::correction_files::{FILES, HISTORY, commit, write_contour, write_program};
 use super::history::refuse_replacing;
 use super::pocket;
+use super::readings::{Readings, apart};
 use crate::terminal::Terminal;
 
 /// What is corrected.
@@ -32,10 +32,13 @@ pub struct Options {
     /// The job.
     pub job: PathBuf,
     /// What the probe measured on the part cut by the job's program.
-    #[arg(long, value_name = "FILE", required_unless_present = "no_probe")]
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["no_probe", "dimensions"])]
     pub probe: Option<PathBuf>,
+    /// Widths, diameters and distances measured on that part, beside the probe file or in its place.
+    #[arg(long, value_name = "FILE.toml", conflicts_with = "first_pass")]
+    pub dimensions: Option<PathBuf>,
     /// From tool and material data alone: the same as truepath pocket.
-    #[arg(long, conflicts_with_all = ["probe", "route", "first_pass"])]
+    #[arg(long, conflicts_with_all = ["probe", "dimensions", "route", "first_pass"])]
     pub no_probe: bool,
     /// Folder for the corrected program (or image), tables, summary, report and picture.
     #[arg(short, long, value_name = "DIR")]
@@ -140,9 +143,8 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSummary, Failure> {
     let mut job = options.said.read(&options.job)?;
     job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
-    // clap has seen to it that there is one.
-    let probe = options.probe.as_deref().unwrap_or(FilePath::new(""));
-    let file = Source::read(probe)?;
+    // clap has seen to it that there is one of them.
+    let readings = Readings::read(options.probe.as_deref(), options.dimensions.as_deref())?;
     let first = options.first_pass.as_deref().map(|first| Pass::read(options.said.read(first)?)).transpose()?;
     let pass = match first {
         Some(_) => Pass::read(job)?,
@@ -152,28 +154,28 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
                 Ok([only]) => only,
                 Err(walls) => {
                     let to = (options.output.as_path(), options.force, options.route);
-                    return several::run(walls, (probe, &file), to, progress);
+                    return several::run(walls, &readings, to, progress);
                 }
             }
         }
     };
     let (pass, first, measurement) = match first {
         None => {
-            let (pass, measurement) = Measurement::of_one(pass, &file)?;
+            let (pass, measurement) = readings.of_one(pass)?;
             (pass, None, measurement)
         }
         Some(first) => {
-            let (first, measurement) = Measurement::of_any_depth(first, &file)?;
+            let (first, measurement) = readings.of_any_depth(first)?;
             let pass = if pass.plan.is_some() { pass.at_level(first.level())? } else { pass };
             (pass, Some(first), measurement)
         }
     };
     let folder = OutputFolder::create(&options.output, options.force, FILES)?;
     if first.is_none() {
-        refuse_replacing(&options.output.join(HISTORY), probe, &pass, &measurement)?;
+        refuse_replacing(&options.output.join(HISTORY), readings.path(), &pass, &measurement)?;
     }
     let route = options.route.unwrap_or(pass.job.route);
-    let mut remarks = measurement.remarks(&file);
+    let mut remarks = measurement.remarks(&measurement.source);
     if first.is_none() && first_pass_of(pass.program.bytes()).is_some() {
         remarks.push(
             "this job is that of a first pass: the corrected program leaves the stock of the second pass, on the next part. For the second pass of this part correct the job that was split, with --first-pass"
@@ -181,7 +183,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
         );
     }
     remarks.extend(misread(first.as_ref().unwrap_or(&pass), first.is_some(), &measurement.contacts));
-    let (pass, done, points) = match &first {
+    let (pass, mut done, points) = match &first {
         None => {
             let done = correct_pass(&pass, &measurement, &remarks, &[route], progress)?;
             (pass, done, Points::ThisPass)
@@ -193,11 +195,12 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
             (pass.over(surface)?, done, Points::FirstPass)
         }
     };
+    done.summary.warnings.extend(apart(&pass, &measurement, &done.identified)?);
     // A second pass has no next part.
     let history = if first.is_none() { Some(History::first(&pass, &measurement, &done)?) } else { None };
     write_program(&folder, &pass, &done)?;
     write_contour(&folder, "", &measurement, &done, history.as_ref())?;
     let page = pages::corrected(&pass, &measurement, &done, points)?;
-    commit(folder, &file, &done.summary, &render(&page)?)?;
+    commit(folder, &readings, &done.summary, &render(&page)?)?;
     Ok(done.summary)
 }

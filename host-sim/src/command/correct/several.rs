@@ -8,10 +8,9 @@ use truepath_correction::learning::History;
 use truepath_correction::remarks::said_of_every;
 use truepath_correction::summary::{ContourSummary, CorrectSummary};
 use truepath_correction::warnings::misread;
-use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::Route;
-use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::page::render_all;
 use truepath_report::pages::{self, Points};
@@ -20,22 +19,23 @@ use super::super::correction_files::{
     FILES, HISTORY, commit, contour_folder, contour_name, write_contour, write_program,
 };
 use super::super::history::refuse_replacing;
+use super::super::readings::{Readings, apart};
 
 /// Corrects the walls that were touched, and leaves the others as they are.
 pub(super) fn run(
     walls: Vec<Pass>,
-    (probe, file): (&FilePath, &Source),
+    readings: &Readings,
     (output, force, route): (&FilePath, bool, Option<Route>),
     progress: &mut dyn FnMut(f64),
 ) -> Result<CorrectSummary, Failure> {
-    let measured = Measurement::of_every(walls, file)?;
+    let measured = readings.of_every(walls)?;
     let folder = OutputFolder::create(output, force, FILES)?;
     let (touched, untouched): (Vec<_>, Vec<_>) = measured.iter().partition(|(_, m)| !m.contacts.is_empty());
     let mut remarks = Vec::new();
     for (pass, measurement) in touched.iter().copied() {
         let history = output.join(contour_folder(pass)).join(HISTORY);
-        refuse_replacing(&history, probe, pass, measurement)?;
-        let mut said = measurement.remarks(file);
+        refuse_replacing(&history, readings.path(), pass, measurement)?;
+        let mut said = measurement.remarks(&measurement.source);
         said.extend(misread(pass, false, &measurement.contacts));
         remarks.push(said);
     }
@@ -45,7 +45,10 @@ pub(super) fn run(
         .map(|((pass, measurement), remarks)| MeasuredWall { pass, measurement, remarks })
         .collect();
     let routes = [route.or(touched.first().map(|(pass, _)| pass.job.route)).unwrap_or_default()];
-    let corrected = correct_every(&walls, &routes, progress)?;
+    let mut corrected = correct_every(&walls, &routes, progress)?;
+    for (wall, done) in walls.iter().zip(&mut corrected) {
+        done.summary.warnings.extend(apart(wall.pass, wall.measurement, &done.identified)?);
+    }
 
     let mut warnings = Vec::new();
     let mut pages = Vec::new();
@@ -54,10 +57,10 @@ pub(super) fn run(
         let name = contour_name(pass);
         let lines = pass.core.contour.lines;
         warnings.push(format!(
-            "{name} (lines {}-{}) stays as it is: no point of the probe file is on its wall. Touch it with the program of truepath probe, or correct it alone with --feature",
+            "{name} (lines {}-{}) stays as it is: nothing was measured on its wall. Touch it with the program of truepath probe, or correct it alone with --feature",
             lines.first, lines.last
         ));
-        warnings.extend(measurement.remarks(file));
+        warnings.extend(measurement.remarks(&measurement.source));
         contours.push(ContourSummary {
             contour: name,
             corrected: false,
@@ -82,7 +85,7 @@ pub(super) fn run(
     if let (Some((pass, _)), Some(done)) = (touched.first(), corrected.first()) {
         write_program(&folder, pass, done)?;
     }
-    commit(folder, file, &summary, &render_all(&pages)?)?;
+    commit(folder, readings, &summary, &render_all(&pages)?)?;
     Ok(summary)
 }
 

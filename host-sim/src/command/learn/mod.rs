@@ -12,11 +12,10 @@ use truepath_correction::codes::{Q002, Q003, Q005, Q007};
 use truepath_correction::learn::{LearnSummary, learn};
 use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::codes::C001;
-use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFolder;
 use truepath_ground::units::mm;
 use truepath_job::job::{PartFlags, ROUTES, Route, Said, one_of};
-use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::correction_csv;
 use truepath_report::page::render;
@@ -26,6 +25,7 @@ use super::correct::words as correction;
 use super::correction_files::{FILES, HISTORY, MILLED, commit, write_contour, write_program};
 use super::history::{history_in, refuse_unlearned};
 use super::plan_files::PLAN_HISTORY;
+use super::readings::Readings;
 use crate::terminal::Terminal;
 
 /// What is learned from.
@@ -34,8 +34,11 @@ pub struct Options {
     /// The job.
     pub job: PathBuf,
     /// What the probe measured on the part cut with the correction in --from.
-    #[arg(long, value_name = "FILE")]
-    pub probe: PathBuf,
+    #[arg(long, value_name = "FILE", required_unless_present = "dimensions")]
+    pub probe: Option<PathBuf>,
+    /// Widths, diameters and distances measured on that part, beside the probe file or in its place.
+    #[arg(long, value_name = "FILE.toml")]
+    pub dimensions: Option<PathBuf>,
     /// Folder that truepath correct, truepath plan or truepath learn wrote that correction into.
     #[arg(long, value_name = "DIR")]
     pub from: PathBuf,
@@ -75,7 +78,12 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
         let tolerance_mm = tolerance.map(|tolerance| mm(tolerance.upper).min(-mm(tolerance.lower)));
         let to = (options.output.as_path(), options.force);
         let wish = planned::Wish { replan: options.replan, tolerance_mm };
-        return planned::main(job, (&options.probe, &options.from), to, wish, terminal);
+        let Some(probe) = options.probe.as_deref().filter(|_| options.dimensions.is_none()) else {
+            let found = "--dimensions of a part that was cut with planned passes";
+            let help = "touch it with a probe: planned passes are learned from points at several heights";
+            return Err(InputError::new(C001, found, "--probe", help).into());
+        };
+        return planned::main(job, (probe, &options.from), to, wish, terminal);
     }
     refuse_unlearned(&options.from)?;
     if options.replan {
@@ -145,23 +153,25 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
     refuse_same_folder(options)?;
     let mut job = options.said.read(&options.job)?;
     job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
+    let readings = Readings::read(options.probe.as_deref(), options.dimensions.as_deref())?;
     let pass = match <[Pass; 1]>::try_from(Pass::every(job)?) {
         Ok([only]) => only,
         Err(walls) => {
             let to = (options.output.as_path(), options.force, options.route);
-            return several::run(walls, (&options.probe, &options.from), to, progress);
+            return several::run(walls, (&readings, &options.from), to, progress);
         }
     };
     let history = history_in(&options.from, &options.from)?;
     let level = history.facts.level().filter(|_| options.said.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
-    let file = Source::read(&options.probe)?;
-    let measurement = Measurement::read(&pass, &file)?;
+    let measurement = readings.of_corrected(&pass)?;
     let folder = OutputFolder::create(&options.output, options.force, FILES)?;
-    let remarks = measurement.remarks(&file);
+    let remarks = measurement.remarks(&measurement.source);
     let routes = [options.route.unwrap_or(pass.job.route)];
     let done = learn(&pass, &history, &measurement, &remarks, &routes, progress).map_err(|failure| match failure {
-        Failure::Input(error) if [Q003.code, Q007.code].contains(&error.code()) => error.in_file(&options.probe).into(),
+        Failure::Input(error) if [Q003.code, Q007.code].contains(&error.code()) => {
+            error.in_file(readings.path()).into()
+        }
         Failure::Input(error) if error.code() == Q002.code && error.line_column().is_none() => {
             error.in_file(&options.from.join(HISTORY)).into()
         }
@@ -180,7 +190,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
     write_contour(&folder, "", &measurement, &done.corrected, Some(&done.history))?;
     folder.write(MILLED, &correction_csv(&milled.rows)?)?;
     let page = learned(&pass, &measurement, &done.corrected, &milled, &summary)?;
-    commit(folder, &file, &summary, &render(&page)?)?;
+    commit(folder, &readings, &summary, &render(&page)?)?;
     Ok(summary)
 }
 

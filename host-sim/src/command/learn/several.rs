@@ -8,10 +8,9 @@ use truepath_correction::codes::Q010;
 use truepath_correction::learn::{ContourLearned, CorrectedWall, LearnSummary, learn_every};
 use truepath_correction::remarks::said_of_every;
 use truepath_correction::surface::touched::TouchedSurface;
-use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::diagnostics::Failure;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::Route;
-use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::correction_csv;
 use truepath_report::page::render_all;
@@ -21,11 +20,12 @@ use super::super::correction_files::{
     FILES, HISTORY, MILLED, commit, contour_folder, contour_name, write_contour, write_program,
 };
 use super::super::history::history_in;
+use super::super::readings::Readings;
 
 /// Learns from every contour that has a history.
 pub(super) fn run(
     walls: Vec<Pass>,
-    (probe, from): (&FilePath, &FilePath),
+    (readings, from): (&Readings, &FilePath),
     (output, force, route): (&FilePath, bool, Option<Route>),
     progress: &mut dyn FnMut(f64),
 ) -> Result<LearnSummary, Failure> {
@@ -46,14 +46,14 @@ pub(super) fn run(
         // Says which folder is expected.
         history_in(from, from)?;
     }
-    let file = Source::read(probe)?;
-    let measured = Measurement::of_every(passes, &file)?;
+    let measured = readings.of_every(passes)?;
     if let Some((pass, _)) = measured.iter().find(|(_, measurement)| measurement.contacts.is_empty()) {
         let found = format!("no point is on the wall of {}, which was cut with a correction", contour_name(pass));
-        return Err(Q010.error(found, "points on every corrected contour").in_file(probe).into());
+        return Err(Q010.error(found, "points on every corrected contour").in_file(readings.path()).into());
     }
     let folder = OutputFolder::create(output, force, FILES)?;
-    let remarks: Vec<Vec<String>> = measured.iter().map(|(_, measurement)| measurement.remarks(&file)).collect();
+    let remarks: Vec<Vec<String>> =
+        measured.iter().map(|(_, measurement)| measurement.remarks(&measurement.source)).collect();
     let walls: Vec<CorrectedWall> = measured
         .iter()
         .zip(&histories)
@@ -90,7 +90,7 @@ pub(super) fn run(
     warnings.extend(said_of_every(said));
     let summary = LearnSummary::of_every(contours, warnings);
     let summary = summary.ok_or_else(|| Failure::Internal("no contour was learned from".to_owned()))?;
-    commit(folder, &file, &summary, &render_all(&pages)?)?;
+    commit(folder, readings, &summary, &render_all(&pages)?)?;
     Ok(summary)
 }
 

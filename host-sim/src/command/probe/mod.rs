@@ -1,5 +1,6 @@
 //! `probe`: the verification program of a job.
 
+mod dimensions;
 mod next;
 
 pub use next::{next, next_part};
@@ -15,7 +16,8 @@ use truepath_correction::verification::{
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFile;
-use truepath_job::job::{Assumed, JobFile, ProbeFlags, Which};
+use truepath_job::dimension::{INSTRUMENTS, Instrument};
+use truepath_job::job::{Assumed, JobFile, ProbeFlags, Which, one_of};
 use truepath_job::pass::Pass;
 
 use crate::terminal::Terminal;
@@ -38,6 +40,16 @@ pub struct Options {
     /// Touch the stock, before the finishing pass: the results are for stock.probe of the job.
     #[arg(long, conflicts_with_all = ["next", "probe", "from"])]
     pub stock: bool,
+    /// Instead of a program: the dimensions that tell most with a calliper, as a sheet to print (FILE.html) and the file that its
+    /// numbers are typed into (FILE.toml), for correct --dimensions.
+    #[arg(long, conflicts_with_all = ["next", "stock", "dialect"], requires = "output")]
+    pub dimensions: bool,
+    /// What the dimensions are taken with.
+    #[arg(long, value_name = "NAME", requires = "dimensions", value_parser = one_of(&INSTRUMENTS), default_value = "calliper")]
+    pub instrument: Instrument,
+    /// What a reading of it stays within, ±, mm [default: that of the instrument].
+    #[arg(long, value_name = "MM", requires = "dimensions")]
+    pub uncertainty: Option<f64>,
     /// How far the stock may be from the allowance of the job, mm [default: half of the allowance, at least 0.3].
     #[arg(long, value_name = "MM", requires = "stock")]
     pub stock_margin: Option<f64>,
@@ -53,7 +65,7 @@ pub struct Options {
     /// Which cut of the program.
     #[command(flatten)]
     pub which: Which,
-    /// Places along the contour, on several together, with two at least on each; each place is touched at every height
+    /// Places along the contour, on several together, with two at least on each; each place is touched at every height; how many dimensions
     /// [default: 8; with --next at most 4; with --stock by the length of the contour].
     #[arg(long, value_name = "N")]
     pub points: Option<u32>,
@@ -70,6 +82,12 @@ const FURTHER: u32 = 4;
 
 /// Plans, and prints the places.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    if let (true, Some(output)) = (options.dimensions, &options.output) {
+        let Options { job, which, force, points, instrument, uncertainty, .. } = options;
+        let (force, count, instrument, uncertainty) = (*force, *points, *instrument, *uncertainty);
+        let request = dimensions::Request { job, which, output, force, count, instrument, uncertainty };
+        return dimensions::main(&request, terminal);
+    }
     let report = terminal.watch("choosing places", |progress| run(options, progress))?;
     terminal.warn_all(&report.warnings);
     let written = options.output.as_ref().map(|out| format!("written to {}\n", out.display()));

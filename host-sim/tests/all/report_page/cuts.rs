@@ -99,7 +99,7 @@ fn a_correction_tells_which_depths_got_it_and_an_inspection_which_it_judged() {
 
     let told = shown(inspect::run(&inspect::Options {
         job,
-        probe: at("probe.txt"),
+        probe: Some(at("probe.txt")),
         output: Some(at("inspected")),
         ..inspect::Options::default()
     }));

@@ -85,7 +85,7 @@ impl Part {
     pub fn learn(&self, probe: &str, from: &str, out: &str) {
         let options = learn::Options {
             job: self.at("job.toml"),
-            probe: self.at(probe),
+            probe: Some(self.at(probe)),
             from: self.at(from),
             output: self.at(out),
             ..learn::Options::default()

@@ -2,6 +2,7 @@
 
 mod compensated_program;
 mod device_image;
+mod dimensions;
 mod feed;
 mod probed_stock;
 mod shrinkage;

@@ -1,0 +1,129 @@
+//! A plan of dimensions as a sheet to print and as the file that its numbers are typed into.
+
+use std::fmt::Write;
+
+use super::dimensions::{DimensionPlan, PlannedDimension};
+
+/// The file of dimensions with its values to be typed in. `sheet` names the printed sheet.
+pub fn table(plan: &DimensionPlan, sheet: &str) -> String {
+    let mut text = format!(
+        "# Dimensions of the milled part, in the order of {sheet}: type what was read between the quotation marks.\n\
+         # A dimension that cannot be taken: delete it, from [[dimension]] to its value_mm.\n\
+         version = 1\n"
+    );
+    for (k, d) in plan.dimensions.iter().enumerate() {
+        let across = if d.along == "x" { "y_mm" } else { "x_mm" };
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "\n[[dimension]]  # {}: {}; nominal {:.3}\nname = \"{}\"\nkind = \"{}\"\nalong = \"{}\"\n{across} = {}\nnear_mm = {:.3}\nz_mm = {:.3}\ninstrument = \"{}\"\nuncertainty_mm = {}\nvalue_mm = \"\"\n",
+            k + 1,
+            d.words(),
+            d.nominal_mm,
+            k + 1,
+            d.kind,
+            d.along,
+            d.across_mm,
+            middle(d),
+            d.z_mm,
+            plan.instrument,
+            plan.uncertainty_mm,
+        );
+    }
+    text
+}
+
+fn middle(d: &PlannedDimension) -> f64 {
+    0.5 * (d.walls_mm[0] + d.walls_mm[1])
+}
+
+/// The sheet: what to measure where, with room for the numbers, in HTML that needs nothing else. `table` names the file that they
+/// are typed into.
+pub fn sheet(plan: &DimensionPlan, title: &str, table: &str) -> String {
+    let mut rows = String::new();
+    for (k, d) in plan.dimensions.iter().enumerate() {
+        let contour = d.contour.as_ref().map_or_else(String::new, |name| format!("{}: ", escaped(name)));
+        let _ = writeln!(
+            rows,
+            "<tr><td>{}</td><td>{contour}{}<br><small>{}</small></td><td>{:.2}</td><td>{:.3}</td><td class=room></td></tr>",
+            k + 1,
+            escaped(&d.words()),
+            escaped(&d.why),
+            d.z_mm,
+            d.nominal_mm
+        );
+    }
+    let title = escaped(title);
+    let [before, after] = plan.wall_sigma_mm;
+    format!(
+        "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>{title}: dimensions</title>\n<style>{STYLE}</style>\n\
+         <h1>{title}: dimensions to measure</h1>\n\
+         <p>Take them on the part as it was milled, cleaned and cold, with the same instrument ({}, ± {} mm). Coordinates are those of the program. Half a millimetre beside the line does not matter. Let only the tips of the jaws touch, at the Z given; read each dimension twice and write down the mean.</p>\n\
+         {}\n<table><thead><tr><th>No.</th><th>what</th><th>Z mm</th><th>nominal mm</th><th>read mm</th></tr></thead>\n<tbody>\n{rows}</tbody></table>\n\
+         <p>Type the numbers into {}. They leave the predicted wall uncertain by {after:.3} mm (one standard deviation); {before:.3} mm without them.</p>\n\
+         <p class=sign>part ................................ instrument ................................ date and name ................................</p>\n</html>\n",
+        plan.instrument.replace('_', " "),
+        plan.uncertainty_mm,
+        drawing(plan),
+        escaped(table)
+    )
+}
+
+const STYLE: &str = "body{font:11pt/1.4 sans-serif;max-width:190mm;margin:8mm auto;color:#000;background:#fff}\
+    h1{font-size:15pt}table{border-collapse:collapse;width:100%}th,td{border:1px solid #777;padding:2mm;text-align:left;vertical-align:top}\
+    td.room{width:35mm}small{color:#444}svg{display:block;width:100%;max-height:95mm}.sign{margin-top:12mm}\
+    tr{break-inside:avoid}";
+
+/// The walls to scale with a numbered line for each dimension.
+fn drawing(plan: &DimensionPlan) -> String {
+    let all = || plan.outlines.iter().flatten();
+    let bound = |axis: usize, start: f64, of: fn(f64, f64) -> f64| all().map(|p| p[axis]).fold(start, of);
+    let [left, bottom] = [0, 1].map(|axis| bound(axis, f64::INFINITY, f64::min));
+    let [right, top] = [0, 1].map(|axis| bound(axis, f64::NEG_INFINITY, f64::max));
+    let size = (right - left).max(top - bottom).max(1.0);
+    let room = 0.06 * size;
+    let mut text = format!(
+        "<svg viewBox=\"{:.3} {:.3} {:.3} {:.3}\" fill=\"none\" stroke=\"#000\" stroke-width=\"{:.3}\" font-size=\"{:.3}\">",
+        left - room,
+        -top - room,
+        right - left + 2.0 * room,
+        top - bottom + 2.0 * room,
+        0.004 * size,
+        0.04 * size
+    );
+    for outline in &plan.outlines {
+        let every = outline.len().div_ceil(800).max(1);
+        let points: Vec<String> =
+            outline.iter().step_by(every).chain(outline.last()).map(|[x, y]| format!("{x:.3},{:.3}", -y)).collect();
+        let _ = write!(text, "<polyline points=\"{}\"/>", points.join(" "));
+    }
+    let mut lines: Vec<(&PlannedDimension, Vec<usize>)> = Vec::new();
+    for (k, d) in plan.dimensions.iter().enumerate() {
+        let same = |other: &&mut (&PlannedDimension, Vec<usize>)| {
+            (other.0.along, other.0.across_mm, other.0.walls_mm) == (d.along, d.across_mm, d.walls_mm)
+        };
+        match lines.iter_mut().find(same) {
+            Some((_, numbers)) => numbers.push(k + 1),
+            None => lines.push((d, vec![k + 1])),
+        }
+    }
+    for (nth, (d, numbers)) in lines.iter().enumerate() {
+        let point = |along: f64| if d.along == "x" { [along, -d.across_mm] } else { [d.across_mm, -along] };
+        let [[x1, y1], [x2, y2]] = d.walls_mm.map(point);
+        // Numbers of crossing lines stand apart.
+        let share = 0.25 + 0.5 * (nth as f64 * 0.37).fract();
+        let [x, y] = [x1 + share * (x2 - x1), y1 + share * (y2 - y1)];
+        let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+        let _ = write!(
+            text,
+            "<path stroke=\"#06c\" d=\"M{x1:.3} {y1:.3}L{x2:.3} {y2:.3}\"/><text stroke=\"none\" fill=\"#06c\" x=\"{x:.3}\" y=\"{:.3}\">{}</text>",
+            y - 0.01 * size,
+            numbers.join(", ")
+        );
+    }
+    text + "</svg>"
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

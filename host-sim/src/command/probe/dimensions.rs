@@ -1,0 +1,104 @@
+//! `probe --dimensions`: what to measure by hand, a sheet to print and the file that the numbers are typed into.
+
+use std::fmt::Write as _;
+use std::path::{Path as FilePath, PathBuf};
+
+use truepath_correction::verification::{DimensionPlan, USUAL_DIMENSIONS, plan_dimensions, sheet, table};
+use truepath_ground::codes::C001;
+use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::output::OutputFile;
+use truepath_ground::units::nm;
+use truepath_job::dimension::Instrument;
+use truepath_job::job::{JobFile, Which};
+use truepath_job::pass::Pass;
+
+use crate::terminal::Terminal;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Request<'a> {
+    /// The job.
+    pub(super) job: &'a FilePath,
+    /// Which cut of the program.
+    pub(super) which: &'a Which,
+    /// Name of the sheet, and with another extension of the file to type into.
+    pub(super) output: &'a FilePath,
+    /// Replace them.
+    pub(super) force: bool,
+    /// How many dimensions.
+    pub(super) count: Option<u32>,
+    /// What they are taken with.
+    pub(super) instrument: Instrument,
+    /// What a reading of it stays within, ±, mm; otherwise that of the instrument.
+    pub(super) uncertainty: Option<f64>,
+}
+
+/// Most dimensions of a sheet.
+const MOST: u32 = 64;
+
+/// Plans, writes both files and prints the dimensions.
+pub(super) fn main(request: &Request<'_>, terminal: &Terminal) -> Result<(), Failure> {
+    let plan = terminal.watch("choosing dimensions", |progress| run(request, progress))?;
+    terminal.tell(&plan, || words(&plan, request))
+}
+
+fn words(plan: &DimensionPlan, request: &Request<'_>) -> String {
+    let mut text = String::from(" no.                                        Z mm  nominal mm\n");
+    for (k, d) in plan.dimensions.iter().enumerate() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{:>4}  {:<34} {:>8.2} {:>11.3}  {}", k + 1, d.words(), d.z_mm, d.nominal_mm, d.why);
+    }
+    text += "\nuncertainty left of what the job states:";
+    for unknown in &plan.unknowns {
+        let _ = write!(text, " {} {:.0} %;", unknown.words, 100.0 * unknown.remaining);
+    }
+    let [before, after] = plan.wall_sigma_mm;
+    let _ = writeln!(text, "\npredicted wall, one sigma: {before:.4} mm before the dimensions, {after:.4} mm after");
+    for path in files(request) {
+        let _ = writeln!(text, "written to {}", path.display());
+    }
+    text
+}
+
+/// The sheet and the file to type into, beside each other.
+fn files(request: &Request<'_>) -> [PathBuf; 2] {
+    ["html", "toml"].map(|extension| request.output.with_extension(extension))
+}
+
+fn run(request: &Request<'_>, progress: &mut dyn FnMut(f64)) -> Result<DimensionPlan, Failure> {
+    let count = request.count.unwrap_or(USUAL_DIMENSIONS);
+    if !(1..=MOST).contains(&count) {
+        let found = format!("--points is {count}");
+        return Err(
+            InputError::new(C001, found, format!("1 to {MOST} dimensions"), "give --points such a number").into()
+        );
+    }
+    let uncertainty = match request.uncertainty {
+        None => request.instrument.uncertainty(),
+        Some(mm) if mm > 0.0 && mm <= 1.0 => nm(mm),
+        Some(mm) => {
+            let found = format!("--uncertainty is {mm}");
+            let help = "give what a reading stays within, in millimetres: 0.03 for a calliper";
+            return Err(InputError::new(C001, found, "above 0, up to 1 mm", help).into());
+        }
+    };
+    let paths = files(request);
+    // Targets that may not be written are refused before the work.
+    let [mut page, mut typed] = {
+        let [page, typed] = paths.each_ref().map(|path| OutputFile::create(path, request.force));
+        [page?, typed?]
+    };
+    let mut job = JobFile::read(request.job)?;
+    job.which = request.which.clone();
+    let passes = Pass::every(job)?;
+    let plan = plan_dimensions(&passes, (count, request.instrument, uncertainty), progress)?;
+    let title = passes.first().map_or("", |pass| pass.program.name());
+    let [html, toml] = paths.each_ref().map(|path| path.file_name().unwrap_or_default().to_string_lossy().into_owned());
+    let both = [(&mut page, sheet(&plan, title, &toml), &paths[0]), (&mut typed, table(&plan, &html), &paths[1])];
+    for (file, text, path) in both {
+        std::io::Write::write_all(file, text.as_bytes()).map_err(|e| InputError::unwritable(path, &e))?;
+    }
+    page.commit()?;
+    typed.commit()?;
+    Ok(plan)
+}
