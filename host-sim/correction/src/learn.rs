@@ -158,8 +158,10 @@ pub fn learn_every(
     }
     let later = &mut |share| progress(0.5 + 0.5 * share);
     let corrected = correct_identified(identified, routes, later)?;
-    let done = walls.iter().zip(parts).zip(corrected).zip(taught);
-    let done = done.map(|(((wall, part), corrected), (update, _))| {
+    let done = walls.iter().zip(parts).zip(corrected).zip(taught).zip(&points);
+    let done = done.map(|((((wall, part), corrected), (update, _)), points)| {
+        let floor = corrected.summary.floor.shown_by(points, &update.joint.observations);
+        let corrected = CorrectedPass { summary: corrected.summary.with_floor(floor), ..corrected };
         let history = wall.history.with(part, &corrected);
         Learned { corrected, history, verdict: update.verdict }
     });

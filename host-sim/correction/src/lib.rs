@@ -7,6 +7,7 @@
 //! | what parts show beside machine and material | [`discrepancy`] |
 //! | the error of the whole wall, at every height | [`surface`] |
 //! | points that are not of this job | [`misfit`] |
+//! | what no correction brings a part below | [`floor`] |
 //! | a whole correction with its programs, images and figures | [`correct`], [`summary`] |
 //! | the second of two passes | [`first_pass`], [`second_pass`] |
 //! | passes that hold the wall at every height | [`plan`] |
@@ -24,6 +25,7 @@ pub mod discrepancy;
 pub mod edits;
 pub mod feeds;
 pub mod first_pass;
+pub mod floor;
 pub mod guard;
 pub mod identification;
 pub mod inspection;

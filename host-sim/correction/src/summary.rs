@@ -14,6 +14,7 @@ use truepath_program::Difference;
 
 use crate::correction::{Correction, Identification};
 use crate::damped::{DampedSummary, damped_summary};
+use crate::floor::Floor;
 use crate::guard::{GuardSummary, guard_summary};
 use crate::surface::predicted::Surfaces;
 
@@ -53,6 +54,10 @@ pub struct CorrectSummary {
     pub max_sigma_by_points_mm: f64,
     /// What no XY correction can remove: the largest deviation from the target over the heights of the band, mm.
     pub axial_form_error_mm: f64,
+    /// What the mean over the height is not brought below, one standard deviation, mm.
+    pub floor_mm: f64,
+    /// Its parts, and what is left over the height besides.
+    pub floor: Floor,
     /// Largest error at any height of the wall without correction, the sign aside, mm: its profile error, as it is expected with what
     /// the points leave open.
     pub profile_error_before_mm: f64,
@@ -129,6 +134,7 @@ impl CorrectSummary {
         let all: Vec<&Self> = contours.iter().filter_map(|contour| contour.summary.as_ref()).collect();
         let worst = *all.iter().max_by(|a, b| a.max_error_after_mm.total_cmp(&b.max_error_after_mm))?;
         let largest = |of: fn(&Self) -> f64| all.iter().map(|one| of(one)).fold(0.0, f64::max);
+        let floor = Floor::highest(all.iter().map(|one| one.floor));
         let sum = |of: fn(&Self) -> usize| all.iter().map(|one| of(one)).sum::<usize>();
         let used = sum(|s| s.points_used);
         let squares: f64 = all.iter().map(|s| s.fit_residual_mm.powi(2) * s.points_used as f64).sum();
@@ -137,6 +143,8 @@ impl CorrectSummary {
             max_sigma_mm: largest(|s| s.max_sigma_mm),
             max_sigma_by_points_mm: largest(|s| s.max_sigma_by_points_mm),
             axial_form_error_mm: largest(|s| s.axial_form_error_mm),
+            floor_mm: floor.mm(),
+            floor,
             profile_error_before_mm: largest(|s| s.profile_error_before_mm),
             profile_error_after_mm: largest(|s| s.profile_error_after_mm),
             surface: Surfaces::worst(all.iter().map(|one| one.surface)),
@@ -155,6 +163,12 @@ impl CorrectSummary {
             ..worst.clone()
         })
         .map(|joint| Self { contours, ..joint })
+    }
+
+    /// The same for a machine that repeats as this floor says.
+    #[must_use]
+    pub fn with_floor(self, floor: Floor) -> Self {
+        Self { floor_mm: floor.mm(), floor, ..self }
     }
 
     /// `difference.txt`, for a program of this name; empty when no program was written.
@@ -213,18 +227,23 @@ pub fn correct_summary(
     let errors = predicted.iter().map(|p| p.after.aim(target, None).abs());
     let at = errors.enumerate().max_by_key(|(_, error)| *error).map(|(at, _)| at);
     let sample = at.and_then(|at| path.samples().get(path.first() + at));
+    let noise = pass.job.numbers.probe.map_or(0.0, |probe| mm(probe.noise));
+    let before_mm = largest(predicted.iter().map(|p| p.before.aim(target, None).abs()));
+    let floor = Floor::of(pass.job.repeatability.map(mm), noise, observations, before_mm, axial_form_error_mm);
     CorrectSummary {
         version: 1,
         profile_error_before_mm: surface.before.profile.profile_mm,
         profile_error_after_mm: surface.after.profile.profile_mm,
         surface,
-        max_error_before_mm: largest(predicted.iter().map(|p| p.before.aim(target, None).abs())),
+        max_error_before_mm: before_mm,
         max_error_after_mm,
         max_error_after_s_mm: sample.map_or(0.0, |sample| mm(sample.s)),
         sigma_at_max_error_mm: at.and_then(|at| correction.sigma.get(at)).map_or(0.0, |sigma| mm(*sigma)),
         max_sigma_mm,
         max_sigma_by_points_mm: largest(correction.sigma_by_points.iter().copied()),
         axial_form_error_mm,
+        floor_mm: floor.mm(),
+        floor,
         worst_gouge_mm: largest(predicted.iter().map(|p| -p.after.deepest())).max(0.0),
         guard: guard_summary(path, correction),
         damped: damped_summary(path, correction),

@@ -57,19 +57,18 @@ fn words(s: &CompareSummary) -> String {
     };
     let mut text = format!(
         "{on}\nerror of the target ({}, heights {:.1} to {:.1} mm) and at any height, without {:.1} mm at either end\n\n\
-         law                     largest       rms  any height     gouge   factor   mm\n",
+         law                     largest       rms  any height     gouge   mm\n",
         s.target, s.band_mm[0], s.band_mm[1], s.trim_mm
     );
     let number = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.4}"));
     for row in &s.laws {
         text += &format!(
-            "{:<20} {:>10} {:>9} {:>11} {:>9} {:>8}\n",
+            "{:<20} {:>10} {:>9} {:>11} {:>9}\n",
             row.title,
             number(row.max_error_mm),
             number(row.rms_error_mm),
             number(row.worst_height_mm),
             number(row.gouge_mm),
-            row.factor.map_or_else(|| "-".to_owned(), |f| format!("{f:.1}")),
         );
     }
     text.push('\n');

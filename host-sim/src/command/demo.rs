@@ -47,12 +47,12 @@ fn words(outcomes: &[Outcome]) -> String {
     let mut text = String::from(
         "Each part was milled on a virtual machine, touched with a probe, corrected, and milled again.\n\
          Largest error of the wall (mean over the height):\n\n\
-         part                                                          points   before mm   after mm   times less\n",
+         part                                                          points   before mm     after mm\n",
     );
     for o in outcomes {
-        text +=
-            &format!("{:<62}{:>6}{:>12.4}{:>11.4}{:>11.1}x\n", o.title, o.points, o.before_mm, o.after_mm, o.factor);
+        text += &format!("{:<62}{:>6}{:>12.4} ->{:>10.4}\n", o.title, o.points, o.before_mm, o.after_mm);
     }
+    text += "\nA virtual machine repeats exactly; on a real one add what it does not repeat (the floor, in docs/learning.md).\n";
     text += "\nLook at the reports (open them in a browser):\n";
     for o in outcomes {
         text += &format!("  {}\n", o.folder.join(REPORT).display());

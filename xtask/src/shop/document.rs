@@ -22,15 +22,15 @@ type Results<'a> = [(&'a Program, &'a Way)];
 /// A line for every program.
 pub fn table(results: &Results) -> String {
     let mut out = format!(
-        "{:<44}{:<22}{:<22}{:>10}{:>9}{:>8}{:>7}\n",
-        "program", "bare job", "lines named", "before mm", "after mm", "times", "s"
+        "{:<44}{:<22}{:<22}{:>10}{:>9}{:>7}\n",
+        "program", "bare job", "lines named", "before mm", "after mm", "s"
     );
     for (program, way) in results {
         let named = way.named.as_ref().map(|run| run.end.word()).unwrap_or_default();
-        let (before, after, times) = numbers(way);
+        let [before, after] = numbers(way);
         let _ = writeln!(
             out,
-            "{:<44}{:<22}{named:<22}{before:>10}{after:>9}{times:>8}{:>7.1}",
+            "{:<44}{:<22}{named:<22}{before:>10}{after:>9}{:>7.1}",
             program.file,
             way.bare.end.word(),
             way.bare.seconds
@@ -39,10 +39,10 @@ pub fn table(results: &Results) -> String {
     out + &counts(results)
 }
 
-fn numbers(way: &Way) -> (String, String, String) {
+fn numbers(way: &Way) -> [String; 2] {
     let run = [Some(&way.bare), way.named.as_ref()].into_iter().flatten().find(|run| run.errors_mm.is_some());
-    let Some([before, after]) = run.and_then(|run| run.errors_mm) else { return Default::default() };
-    (format!("{before:.4}"), format!("{after:.4}"), format!("{:.1}", before / after.max(1e-9)))
+    let errors = run.and_then(|run| run.errors_mm);
+    errors.map(|errors| errors.map(|error| format!("{error:.4}"))).unwrap_or_default()
 }
 
 /// How many go through.
@@ -87,16 +87,16 @@ pub fn document(results: &Results) -> String {
          that shares no physics with the model and knows the wall from the table, `truepath correct`, and `truepath simulate \
          --from`. *Lines named*: the same with the lines of the wall in `[[feature]]`, where the bare job did not go through.\n\n\
          {JUDGED}\n\n\
-         {}\n| program | in the manner of | bare job | lines named | before mm | after mm | times less |\n\
-         |---|---|---|---|--:|--:|--:|\n",
+         {}\n| program | in the manner of | bare job | lines named | before mm | after mm |\n\
+         |---|---|---|---|--:|--:|\n",
         counts(results)
     );
     for (program, way) in results {
         let named = way.named.as_ref().map(|run| run.end.word()).unwrap_or_default();
-        let (before, after, times) = numbers(way);
+        let [before, after] = numbers(way);
         let _ = writeln!(
             out,
-            "| {} | {} | {} | {named} | {before} | {after} | {times} |",
+            "| {} | {} | {} | {named} | {before} | {after} |",
             program.file,
             program.manner,
             way.bare.end.word()

@@ -55,6 +55,12 @@ const YIELDS_OVER: f64 = 2.5;
 /// Share of a contour over which the datum drifts.
 const DRIFTS_OVER: f64 = 1.0 / 3.0;
 
+/// Standard deviation from one part to the next of a wall that yields so much, mm, where force and cutter change as little as any
+/// kernel allows.
+pub fn least_change(deflection_mm: f64) -> f64 {
+    (deflection_mm * Kernel::EVEN.wear.hypot(BLANK)).hypot(SIZE)
+}
+
 /// The contours of a part, as far as the kernel must know them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {

@@ -29,6 +29,6 @@ mod relieved;
 
 pub use average::{Along, Discrepancy, Sizes};
 pub use feature::{Engagement, Feature, Sensitivity};
-pub use kernel::Kernel;
+pub use kernel::{Kernel, least_change};
 pub use points::{CutPoints, Points, stock_sensitivities};
 pub use relieved::{PartCut, Relieved, datums, odds_of_a_shift, plain, relieved};

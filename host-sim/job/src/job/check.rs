@@ -110,11 +110,11 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     };
     let read = root.section("probe")?.map(|section| probe(&source, &section, &mut assumed)).transpose()?;
     let (probe, format_stated) = read.map_or((None, false), |(probe, stated)| (Some(probe), stated));
-    let (machine, backlash) = match root.section("machine")? {
+    let (machine, play) = match root.section("machine")? {
         // Without a probe a pocket may be compensated for the cutter alone.
-        None if pocket.is_some() && probe.is_none() => (RIGID, [Offset::ZERO; 2]),
+        None if pocket.is_some() && probe.is_none() => (RIGID, Play::default()),
         Some(section) => machine(&section, &mut assumed)?,
-        None => (usual_machine(&mut assumed), [Offset::ZERO; 2]),
+        None => (usual_machine(&mut assumed), Play::default()),
     };
     let depth = deep.then_some(cut.axial_depth);
     let (correct, writing) = correct(&source, root.section("correct")?.as_ref(), depth)?;
@@ -142,7 +142,8 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
             correct,
             part: None,
         },
-        backlash,
+        backlash: play.backlash,
+        repeatability: play.repeatability,
         tolerance: writing.tolerance,
         max_arc_radius: writing.max_arc_radius,
         max_kink_deg: writing.max_kink_deg,
@@ -258,8 +259,17 @@ fn measured(job: &Source, place: Range<usize>, path: &Path, model: ForceModel) -
     coefficients(&root.required_section("force", "the four coefficients, as truepath forces writes them")?, model)
 }
 
-/// Stiffness, and the backlash of both axes.
-fn machine(section: &Section<'_>, assumed: &mut Vec<Assumed>) -> Result<(Machine, [Offset; 2]), InputError> {
+/// What a machine does beside yielding.
+#[derive(Clone, Copy, Debug, Default)]
+struct Play {
+    /// Of x and y.
+    backlash: [Offset; 2],
+    /// From part to part, where it is stated.
+    repeatability: Option<Offset>,
+}
+
+/// Stiffness, the backlash of both axes, and what it repeats to.
+fn machine(section: &Section<'_>, assumed: &mut Vec<Assumed>) -> Result<(Machine, Play), InputError> {
     const KEYS: [&str; 2] = ["stiffness_x_n_per_mm", "stiffness_y_n_per_mm"];
     let stiffness = Limits::within("10", "1000000", "N/mm");
     let machine = if KEYS.iter().all(|key| section.value(key).is_none()) {
@@ -276,6 +286,7 @@ fn machine(section: &Section<'_>, assumed: &mut Vec<Assumed>) -> Result<(Machine
         Ok::<_, InputError>(number.map_or(Offset::ZERO, Decimal::as_mm))
     };
     let backlash = [backlash("backlash_x_mm")?, backlash("backlash_y_mm")?];
+    let repeatability = section.number("repeatability_mm", Limits::within("0.0001", "0.5", "mm"))?.map(Decimal::as_mm);
     section.close()?;
-    Ok((machine, backlash))
+    Ok((machine, Play { backlash, repeatability }))
 }

@@ -55,6 +55,9 @@ pub struct JobFile {
     pub numbers: truepath_core::job::Job,
     /// Backlash of the x and the y axis, 0…1 mm.
     pub backlash: [Offset; 2],
+    /// What the machine repeats to, standard deviation of one dimension from part to part, 0.0001…0.5 mm; `None` where the job
+    /// does not state it.
+    pub repeatability: Option<Offset>,
     /// How far the written path may leave the computed one, 0.0001…0.1 mm.
     pub tolerance: Offset,
     /// Arcs of a larger radius are written as lines, 10…100,000 mm.

@@ -93,6 +93,11 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("machine.stiffness_y_n_per_mm", "4000, with a wide prior", "stiffness along Y"),
     ("machine.backlash_x_mm", "0", "backlash of X, for a warning"),
     ("machine.backlash_y_mm", "0", "backlash of Y, for a warning"),
+    (
+        "machine.repeatability_mm",
+        "as parts show, else 0.010",
+        "standard deviation of one dimension from part to part: the [floor](learning.md#the-floor) of what is promised",
+    ),
     ("probe", "none", "how the part is probed; needed by every command that plans or reads touches"),
     ("probe.ball_diameter_mm", "none", "diameter of the ball: every point is shifted by half of it"),
     ("probe.format", "what the file shows", "format of the probe file: [probe files](probe-formats.md)"),

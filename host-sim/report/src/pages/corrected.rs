@@ -74,7 +74,7 @@ pub(super) fn of_correction(
         outcome.sigma_mm = known(done.summary.sigma_at_max_error_mm);
         outcome.gouge_mm = known(done.summary.worst_gouge_mm);
     }
-    page.told = Some(format!("expected: {} (2 sigma)", done.summary.surface.words()));
+    page.told = Some(done.summary.floor.promise(&done.summary.surface.after));
     page.results = figures(&done.summary, &["largest error without correction", "largest error with it"]);
     page.warnings = page_warnings(
         pass,
@@ -119,7 +119,9 @@ fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
         Fact::new("law", format!("{}; the wall follows the {} force", s.law, s.wall_law)),
         Fact::new("error shown", shown(wanted.target, wanted.band, float(pass.core.setup.axial_depth))),
     ];
+    facts.push(Fact::new("expected", format!("{} (2 sigma)", s.surface.words())));
     facts.extend(at_every_height(&s.surface));
+    facts.push(Fact::new("floor", s.floor.words()));
     let route = match (&done.program, &done.image) {
         (Some(_), Some(_)) => "program and coprocessor",
         (None, Some(_)) => "coprocessor: the program stays as it is",

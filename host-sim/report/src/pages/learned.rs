@@ -42,19 +42,21 @@ pub fn learned(
         page.verdict.map(|v| page::Verdict { text: format!("part {}, {}", next_part(verdict), v.text), ..v });
     page.title =
         format!("{}: part {} measured, correction of part {}", subject(pass), verdict.part, next_part(verdict));
-    page.told = Some(told(summary));
+    let promise = summary.correct.floor.promise(&summary.correct.surface.after);
+    page.told = Some(format!("Part {}: {promise}", next_part(verdict)));
     page.results = came_out(summary).into_iter().chain(figures(&done.summary, &names(verdict))).collect();
     if let Some(outcome) = &mut page.outcome {
         outcome.measured_mm = known(verdict.measured_error_mm.max_mm);
     }
     if let Some(job) = &mut page.job {
+        job.facts.push(Fact::new("from part to part", from_part_to_part(summary)));
         job.facts.extend(verdict.used_again.map(|again| Fact::new("next part", again.words())));
     }
     Ok(page)
 }
 
 /// From the part that was measured, as the model of all parts has its whole wall, to the next one.
-fn told(summary: &LearnSummary) -> String {
+fn from_part_to_part(summary: &LearnSummary) -> String {
     let surfaces = Surfaces { before: summary.whole_surface, after: summary.correct.surface.after };
     let part = summary.verdict.part;
     format!("part {part} to part {}, expected: {} (2 sigma)", next_part(&summary.verdict), surfaces.words())

@@ -75,7 +75,6 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 
 pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
     let (before, after) = (&s.surface.before, &s.surface.after);
-    let factor = s.max_error_before_mm / s.max_error_after_mm.max(1e-6);
     let mut text = s.feature.as_ref().map(listing).unwrap_or_default();
     if !s.contours.is_empty() {
         text += &several::table(&s.contours);
@@ -83,12 +82,14 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
     text += &format!(
         "{} points used, {} set aside; wall follows the {} force, {} milling\n\
          \n\
-         largest wall error without correction  {:>8.4} mm\n\
-         with correction, as the model sees it  {:>8.4} mm  ({factor:.0} times less)\n\
+         {}\n\
+         \n\
+         largest wall error, by the model       {:>8}\n\
          on the next part, 1 sigma              {:>8.4} mm\n\
          \x20 of it by what the points leave open  {:>8.4} mm\n\
          \x20 where the largest error is expected  {:>8.4} mm\n\
          left over the height, beyond X and Y   {:>8.4} mm\n\
+         floor {}\n\
          \n\
          at every height, with what the points leave open (± 2 sigma)\n\
          \x20 without correction: the worst          {:>8.4} ± {:.4} mm, 95 % within {:.4} mm, mean over the height {:.4} mm\n\
@@ -103,12 +104,13 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
         s.points_rejected + s.points_outlying,
         s.wall_law,
         s.milling,
-        s.max_error_before_mm,
-        s.max_error_after_mm,
+        s.floor.promise(after),
+        s.floor.fall(s.max_error_before_mm, s.max_error_after_mm),
         s.max_sigma_mm,
         s.max_sigma_by_points_mm,
         s.sigma_at_max_error_mm,
         s.axial_form_error_mm,
+        s.floor.words(),
         before.profile.profile_mm,
         2.0 * before.profile.sigma_mm,
         before.p95_mm,

@@ -106,7 +106,7 @@ fn words(s: &LearnSummary) -> String {
         "part {} at {} places, error of the target      largest      rms\n\
          \x20 measured                           {:>12.4} {:>8.4} mm\n\
          \x20 part {} there                       {:>12.4} {:>8.4} mm\n\
-         \x20 promised                           {:>12.4}          mm, {} of {} places within 2 sigma\n\
+         \x20 promised{}                    {:>12.4}          mm, {} of {} places within 2 sigma\n\
          \x20 whole contour, by the model        {:>12.4}          mm, at s = {:.1} mm, sigma {:.4} mm\n\
          at any height\n\
          \x20 measured, at the touched heights   {:>12.4} ± {:.4} mm, 95 % within {:.4} mm\n\
@@ -118,7 +118,8 @@ fn words(s: &LearnSummary) -> String {
         v.previous_error_mm.part,
         v.previous_error_mm.max_mm,
         v.previous_error_mm.rms_mm,
-        v.promise.max_mm,
+        if v.promise.max_mm < s.correct.floor_mm { ": floor" } else { "       " },
+        s.correct.floor.or(v.promise.max_mm),
         v.promise.within_two_sigma,
         v.promise.places,
         whole.max_mm,

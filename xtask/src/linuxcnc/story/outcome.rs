@@ -95,8 +95,8 @@ pub fn tell(truepath: &Path, parts: &[Part], folder: &Path, write: bool) -> Resu
 
 fn table(parts: &[Part]) -> String {
     let mut text = String::from(
-        "| part | largest wall error, uncorrected mm | corrected mm | times less | rms mm | rms corrected mm \
-         | path off the program's mm | least feed |\n|---|---:|---:|---:|---:|---:|---:|---:|\n",
+        "| part | largest wall error, uncorrected mm | corrected mm | rms mm | rms corrected mm \
+         | path off the program's mm | least feed |\n|---|---:|---:|---:|---:|---:|---:|\n",
     );
     for part in parts {
         let (before, after) = (part.before, part.after);
@@ -105,13 +105,8 @@ fn table(parts: &[Part]) -> String {
             let off = if path == 0 { format!("{:.4}", before.off_mm) } else { String::new() };
             let least = if path == 0 { format!("{:.0} %", 100.0 * before.least_feed) } else { String::new() };
             format!(
-                "| {}, {kind} | {:.4} | {:.4} | {:.1} | {:.4} | {:.4} | {off} | {least} |",
-                part.name,
-                before.largest_mm[path],
-                after.largest_mm[path],
-                part.factor(path),
-                before.rms_mm[path],
-                after.rms_mm[path],
+                "| {}, {kind} | {:.4} | {:.4} | {:.4} | {:.4} | {off} | {least} |",
+                part.name, before.largest_mm[path], after.largest_mm[path], before.rms_mm[path], after.rms_mm[path],
             )
         });
         let _ = writeln!(text, "{first}\n{second}");
