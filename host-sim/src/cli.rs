@@ -12,7 +12,7 @@ use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::interruption;
 
 use crate::command::{
-    bore, canon, compare, correct, demo, device, forces, hil, image, init, inspect, learn, multiaxis, plan, plot,
+    bore, canon, compare, correct, demo, device, forces, hil, image, init, inspect, learn, multiaxis, pack, plan, plot,
     pocket, probe, replay, simulate, split, study,
 };
 use crate::terminal::Terminal;
@@ -56,6 +56,10 @@ enum Command {
     Plan(plan::Options),
     /// From the probe file of a corrected part to the correction of the next one.
     Learn(learn::Options),
+    /// One file of a real part's story: job, program, probe files, corrections; to keep, to send, to run again.
+    Pack(pack::Options),
+    /// The files of such a story as a folder.
+    Unpack(pack::UnpackOptions),
     /// For a single part: a program that cuts half of the allowance, to be probed before the second half.
     Split(split::Options),
     /// A whole pocket, finishing pass or slot, compensated from tool and material data alone, section by section.
@@ -115,6 +119,8 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Correct(options) => correct::main(&options, terminal),
         Command::Plan(options) => plan::main(&options, terminal),
         Command::Learn(options) => learn::main(&options, terminal),
+        Command::Pack(options) => pack::main(&options, terminal),
+        Command::Unpack(options) => pack::unpack(&options, terminal),
         Command::Split(options) => split::main(&options, terminal),
         Command::Pocket(options) => pocket::main(&options, terminal),
         Command::Plot(options) => plot::main(&options, terminal),

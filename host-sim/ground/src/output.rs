@@ -94,6 +94,9 @@ impl Write for OutputFile {
     }
 }
 
+/// Stands for files of any name.
+const EVERY: &str = "**";
+
 /// An output folder on its way.
 #[derive(Debug)]
 pub struct OutputFolder {
@@ -175,6 +178,18 @@ impl OutputFolder {
         })
     }
 
+    /// Opens a folder that is not there yet, for files of any name in it and below it.
+    ///
+    /// # Errors
+    /// `F003` when the target exists, else as [`OutputFolder::create`].
+    pub fn new(target: &Path) -> Result<Self, InputError> {
+        if target.exists() {
+            let found = format!("{} exists", target.display());
+            return Err(InputError::new(F003, found, "the name of a new folder", "name another folder").in_file(target));
+        }
+        Self::create(target, false, &[EVERY])
+    }
+
     /// Writes one of the owned files.
     ///
     /// # Errors
@@ -194,6 +209,9 @@ impl OutputFolder {
 
     /// Whether a name is one of the owned ones, or begins with the owned folder it lies in.
     fn owns(&self, name: &str) -> bool {
+        if self.owned == [EVERY] {
+            return !name.split('/').any(|part| matches!(part, "" | "." | ".."));
+        }
         let folder = name.split_once('/').map(|(folder, _)| folder);
         if let Some(folder) = folder {
             return self.owns_folder(folder) && !name.split('/').any(|part| matches!(part, "" | "." | ".."));

@@ -18,6 +18,7 @@ pub mod init;
 pub mod inspect;
 pub mod learn;
 pub mod multiaxis;
+pub mod pack;
 pub mod placement;
 pub mod plan;
 mod plan_files;

@@ -23,6 +23,8 @@ use truepath_study::seeds::Set;
 use truepath_study::summary::{Row, Summary, summary};
 use truepath_study::{export, parallel, workflow};
 
+use super::pack;
+use super::pack::again::again;
 use super::plan_study::{self, PlanStudy};
 use crate::terminal::Terminal;
 
@@ -67,11 +69,14 @@ const fn each() -> [Option<Nuisance>; Nuisance::EACH.len() + 2] {
 #[derive(Clone, Debug, Args)]
 pub struct Options {
     /// Folder of the results; an interrupted study goes on there.
-    #[arg(short, long, value_name = "DIR", required_unless_present = "case")]
+    #[arg(short, long, value_name = "DIR", required_unless_present_any = ["case", "pack"])]
     pub output: Option<PathBuf>,
     /// One case in detail instead, by its id.
     #[arg(long, value_name = "ID", conflicts_with_all = ["output", "set", "families", "seeds", "axis", "random", "nuisance", "touches"])]
     pub case: Option<CaseId>,
+    /// The story of a real part instead, as truepath pack wrote it: made again, beside what was written and measured then.
+    #[arg(long, value_name = "STORY.tpk", conflicts_with_all = ["output", "case", "set", "families", "seeds", "axis", "random", "nuisance", "touches", "reference", "first", "plan", "write"])]
+    pub pack: Option<PathBuf>,
     /// Write program, job, machine, probe file and corrected program of that case.
     #[arg(long, value_name = "DIR", requires = "case")]
     pub export: Option<PathBuf>,
@@ -142,6 +147,11 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
             export::export(&detail, folder, options.force)?;
         }
         return terminal.tell(&detail.outcome, || export::words(&detail));
+    }
+    if let Some(file) = &options.pack {
+        let story = pack::read(file)?;
+        let made = terminal.watch("making it again", |progress| again(&story, progress))?;
+        return terminal.tell(&made, || made.words());
     }
     let mut bar = terminal.progress("studying", 1000);
     let progress = &mut |done, all: u64| bar.reached(done * 1000 / all.max(1));

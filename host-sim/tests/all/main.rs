@@ -16,6 +16,7 @@ mod multiaxis_modes;
 mod multiaxis_program;
 mod multiaxis_rewritten;
 mod multiaxis_support;
+mod pack;
 mod plan;
 mod plan_learn;
 mod plot;
