@@ -117,33 +117,35 @@ impl Floor {
         format!("{before_mm:.4} -> {floor:.4} mm, the floor (the model alone: {predicted_mm:.4})")
     }
 
-    /// What the next part will be, with what it is held to, in a sentence.
-    pub fn promise(&self, after: &Surface) -> String {
-        let floor = self.mm();
+    /// What the next part will be, and what the machine repeats to, in a line.
+    pub fn line(&self, after: &Surface) -> String {
         // The drift is part of the predicted deviation.
         let sigma = after.mean_sigma_mm.hypot(self.machine_mm).hypot(self.probe_mm);
-        // The largest of what many places do not repeat is some two deviations.
-        let held = 2.0 * floor;
-        let next = if after.mean_mm <= held {
-            "a second correction cannot improve that".to_owned()
-        } else {
-            format!("a second correction can come down to about {held:.3}")
+        let machine = match self.machine_from {
+            KnownFrom::Job | KnownFrom::Parts => "your machine repeats",
+            KnownFrom::Prior => "machines repeat",
         };
         format!(
-            "Will be {:.3} ± {sigma:.3} mm (mean over the height, 1 sigma), {:.3} at the worst height; {}: {next}.",
+            "Will be {:.3} ± {sigma:.3} mm (mean, 1 sigma), {:.3} at the worst height; {machine} to about {:.3}",
             self.or(after.mean_mm),
             self.or(after.profile.profile_mm),
-            self.machine()
+            self.machine_mm
         )
     }
 
-    /// What the machine repeats to, and how that is known.
-    fn machine(&self) -> String {
-        let mm = self.machine_mm;
-        match self.machine_from {
-            KnownFrom::Job => format!("your machine repeats to about {mm:.3}"),
-            KnownFrom::Parts => format!("your machine repeats to about {mm:.3}, as its parts show"),
-            KnownFrom::Prior => format!("machines repeat to about {mm:.3}, yours is not known yet"),
+    /// The same with what a second correction can do.
+    pub fn promise(&self, after: &Surface) -> String {
+        format!("{}: {}.", self.line(after), self.next(after))
+    }
+
+    /// What a second correction can do.
+    pub fn next(&self, after: &Surface) -> String {
+        // The largest of what many places do not repeat is some two deviations.
+        let held = 2.0 * self.mm();
+        if after.mean_mm <= held {
+            "a second correction cannot improve that".to_owned()
+        } else {
+            format!("a second correction can come down to about {held:.3}")
         }
     }
 
@@ -249,7 +251,7 @@ mod tests {
         let wall = Surface { profile, mean_mm: 0.0005, mean_sigma_mm: 0.003, ..Surface::default() };
         assert_eq!(
             floor.promise(&wall),
-            "Will be 0.005 ± 0.006 mm (mean over the height, 1 sigma), 0.035 at the worst height; your machine repeats to about 0.005: a second correction cannot improve that."
+            "Will be 0.005 ± 0.006 mm (mean, 1 sigma), 0.035 at the worst height; your machine repeats to about 0.005: a second correction cannot improve that."
         );
         let more = floor.promise(&Surface { mean_mm: 0.012, ..wall });
         assert!(more.contains("Will be 0.012") && more.ends_with("a second correction can come down to about 0.010."));

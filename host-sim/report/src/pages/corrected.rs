@@ -74,7 +74,7 @@ pub(super) fn of_correction(
         outcome.sigma_mm = known(done.summary.sigma_at_max_error_mm);
         outcome.gouge_mm = known(done.summary.worst_gouge_mm);
     }
-    page.told = Some(done.summary.floor.promise(&done.summary.surface.after));
+    page.told = Some(done.summary.floor.line(&done.summary.surface.after));
     page.results = figures(&done.summary, &["largest error without correction", "largest error with it"]);
     page.warnings = page_warnings(
         pass,
@@ -121,7 +121,7 @@ fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
     ];
     facts.push(Fact::new("expected", format!("{} (2 sigma)", s.surface.words())));
     facts.extend(at_every_height(&s.surface));
-    facts.push(Fact::new("floor", s.floor.words()));
+    facts.push(Fact::new("floor", format!("{}; {}", s.floor.words(), s.floor.next(&s.surface.after))));
     let route = match (&done.program, &done.image) {
         (Some(_), Some(_)) => "program and coprocessor",
         (None, Some(_)) => "coprocessor: the program stays as it is",

@@ -42,7 +42,7 @@ pub fn learned(
         page.verdict.map(|v| page::Verdict { text: format!("part {}, {}", next_part(verdict), v.text), ..v });
     page.title =
         format!("{}: part {} measured, correction of part {}", subject(pass), verdict.part, next_part(verdict));
-    let promise = summary.correct.floor.promise(&summary.correct.surface.after);
+    let promise = summary.correct.floor.line(&summary.correct.surface.after);
     page.told = Some(format!("Part {}: {promise}", next_part(verdict)));
     page.results = came_out(summary).into_iter().chain(figures(&done.summary, &names(verdict))).collect();
     if let Some(outcome) = &mut page.outcome {
