@@ -24,6 +24,16 @@ pub fn forces_toml(analysis: &Analysis) -> String {
     }
     let rows = linear.correlation.iter().map(|row| format!("[{}]", row.map(|r| format!("{r:.4}")).join(", ")));
     let _ = writeln!(text, "correlation = [{}]", rows.collect::<Vec<_>>().join(", "));
+    let believed = analysis.cuts.iter().filter_map(|cut| cut.shape.as_ref().filter(|shape| shape.believed));
+    let mut runouts: Vec<[f64; 2]> = believed.map(|shape| [shape.runout_mm, shape.runout_sigma_mm]).collect();
+    runouts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    if let Some([offset, sigma]) = runouts.get(runouts.len() / 2) {
+        let _ = write!(
+            text,
+            "\n[runout]                # of the cutter as it was clamped, the middle of the records; the coefficients are without it\n\
+             offset_mm = {offset:.5}\nsigma_mm = {sigma:.5}\n"
+        );
+    }
     for fitted in analysis.laws.iter().filter(|f| f.weight > 0.005) {
         let [tangential, radial] = fitted.model.laws;
         let list = |values: &[f64]| values.iter().map(|v| format!("{v:.5}")).collect::<Vec<_>>().join(", ");
