@@ -112,9 +112,8 @@ struct Raw<'d> {
 
 /// Rounds in which coefficients and what runout adds to the means settle: each leaves some tenth of what was wrong.
 const ROUNDS: usize = 4;
-/// By how much what runout adds to a mean is unsure, as a share of it: edges are known to some 6 %, runout and the angles at which
-/// teeth lift off to some 5 % each.
-const UNSURE: f64 = 0.1;
+/// How often an error in the coefficients comes back before it is nothing: each time it is a third at most.
+const RETURNS: usize = 12;
 /// A scatter between harmonics above this share of all is told.
 const CHATTER: f64 = 0.15;
 /// A share on harmonics that are not of the teeth above which runout is told.
@@ -176,9 +175,14 @@ impl Analysis {
             let Some(next) = linear(&fitted(&true_running), &mut Vec::new()) else { break };
             coefficients = next.coefficients;
         }
-        let fitted = fitted(&true_running);
-        let laws = fit_every(&fitted);
-        let linear = linear(&fitted, &mut warnings).filter(|_| !laws.is_empty()).ok_or_else(untold)?;
+        let next = |values: [f64; 4]| {
+            let found = linear(&fitted(&running_true(&measured, &cuts, values)), &mut Vec::new());
+            found.map(|linear| linear.coefficients.map(|c| c.value))
+        };
+        let own = fitted(&true_running);
+        let laws = fit_every(&own);
+        let linear = linear(&own, &mut warnings).filter(|_| !laws.is_empty()).ok_or_else(untold)?.settled(next);
+        let fitted = own;
         let model = linear.model();
         for (cut, own) in cuts.iter_mut().zip(&true_running) {
             let compared = |mean: &Mean| {
@@ -201,6 +205,37 @@ impl Analysis {
 }
 
 impl Linear {
+    /// The same with the uncertainty that comes from taking off what runout adds, which follows from the coefficients: an error in them
+    /// comes back as `next` makes of it, again and again.
+    fn settled(self, next: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> Self {
+        type Square = [[f64; 4]; 4];
+        let of = |entry: &dyn Fn(usize, usize) -> f64| -> Square {
+            std::array::from_fn(|i| std::array::from_fn(|k| entry(i, k)))
+        };
+        let times = |a: &Square, b: &Square| of(&|i, k| (0..4).map(|j| a[i][j] * b[j][k]).sum());
+        let (values, sigma) = (self.coefficients.map(|c| c.value), self.coefficients.map(|c| c.sigma));
+        let moved = |k: usize| next(std::array::from_fn(|j| values[j] + if j == k { sigma[k] } else { 0.0 }));
+        let (Some(base), [Some(a), Some(b), Some(c), Some(d)]) = (next(values), [0, 1, 2, 3].map(moved)) else {
+            return self;
+        };
+        let found = [a, b, c, d];
+        let back = of(&|i, k| if sigma[k] > 0.0 { (found[k][i] - base[i]) / sigma[k] } else { 0.0 });
+        let mut all = of(&|i, k| f64::from(u8::from(i == k)));
+        for _ in 0..RETURNS {
+            let again = times(&back, &all);
+            all = of(&|i, k| f64::from(u8::from(i == k)) + again[i][k]);
+        }
+        let fit = of(&|i, k| self.correlation[i][k] * sigma[i] * sigma[k]);
+        let whole = times(&times(&all, &fit), &of(&|i, k| all[k][i]));
+        let spread: [f64; 4] = std::array::from_fn(|k| whole[k][k].max(0.0).sqrt());
+        let correlation = of(&|i, k| {
+            let both = spread[i] * spread[k];
+            if both > 0.0 { whole[i][k] / both } else { self.correlation[i][k] }
+        });
+        let coefficients = std::array::from_fn(|k| Coefficient { value: values[k], sigma: spread[k] });
+        Self { coefficients, correlation, ..self }
+    }
+
     /// As a model.
     pub fn model(&self) -> crate::fit::Model {
         let [ktc, krc, kte, kre] = self.coefficients.map(|c| c.value);
@@ -572,9 +607,7 @@ fn running_true(measured: &[Measured], cuts: &[CutResult], coefficients: [f64; 4
         let Some(shape) = cut.shape.as_ref().filter(|s| s.believed) else { continue };
         let beyond = lifted(&own.cut, coefficients, shape);
         for mean in &mut own.means {
-            let added = beyond[usize::from(mean.along == Along::Across)];
-            mean.value -= added;
-            mean.sigma = mean.sigma.hypot(UNSURE * added);
+            mean.value -= beyond[usize::from(mean.along == Along::Across)];
         }
     }
     all
