@@ -16,7 +16,6 @@ use truepath_core::identify::Observation;
 use truepath_ground::units::{float, mm};
 
 use crate::discrepancy::least_change;
-use crate::learning::PartPoints;
 use crate::surface::predicted::Surface;
 
 /// Repeatability of a machine of which nothing is known, mm: the geometric middle of [`PRIOR_RANGE_MM`].
@@ -76,13 +75,11 @@ impl Floor {
         }
     }
 
-    /// The same where parts show what the machine repeats to and the job does not state it. `residuals` are their points as
-    /// one fit left them, part by part.
+    /// The same where parts show what the machine repeats to and the job does not state it: the points of those that were cut with a
+    /// correction, in their order, as one fit left them.
     #[must_use]
-    pub fn shown_by(self, parts: &[PartPoints], residuals: &[Vec<Observation>]) -> Self {
-        let corrected = parts.iter().zip(residuals).filter(|(part, _)| !part.nodes.is_empty());
-        let corrected: Vec<&[Observation]> = corrected.map(|(_, residuals)| residuals.as_slice()).collect();
-        match scatter(&corrected) {
+    pub fn shown_by(self, corrected: &[&[Observation]]) -> Self {
+        match scatter(corrected) {
             Some(scatter) if self.machine_from != KnownFrom::Job => {
                 let machine_mm = (scatter * scatter - self.probe_mm * self.probe_mm).max(0.0).sqrt();
                 Self { machine_mm, machine_from: KnownFrom::Parts, drift_mm: 0.0, ..self }
@@ -203,7 +200,6 @@ fn deviation(differences: impl Iterator<Item = f64>) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use truepath_core::correct::Node;
     use truepath_core::geometry::Direction;
     use truepath_core::units::{Offset, Real};
 
@@ -215,24 +211,20 @@ mod tests {
         Observation::new(s, Real::ratio(1, 2), error, noise, Direction::X)
     }
 
-    fn part(nodes: usize) -> PartPoints {
-        PartPoints { number: 1, observations: Vec::new(), nodes: vec![Node::default(); nodes], noise: Offset::ZERO }
-    }
-
     #[test]
-    fn corrected_parts_show_what_their_machine_repeats_to_and_the_first_part_does_not_count() {
+    fn corrected_parts_show_what_their_machine_repeats_to() {
         // Differences of ±10 um are a deviation of 7.07 um; the probe's 5 um are taken out: 5 um remain.
-        let parts = [part(0), part(1), part(1)];
         let row = |sign: i64| (0..6).map(|k| point(10 * k, sign * (5 - 10 * (k % 2)))).collect::<Vec<_>>();
-        let residuals = [(0..6).map(|k| point(10 * k, 300)).collect(), row(1), row(-1)];
+        let parts = [row(1), row(-1)];
+        let parts: Vec<&[Observation]> = parts.iter().map(Vec::as_slice).collect();
         let before = Floor { probe_mm: 0.005, drift_mm: 0.003, machine_mm: PRIOR_MM, ..Floor::default() };
-        let shown = before.shown_by(&parts, &residuals);
+        let shown = before.shown_by(&parts);
         assert!((shown.machine_mm - 0.005).abs() < 1e-9 && shown.machine_from == KnownFrom::Parts, "{shown:?}");
         assert!((shown.mm() - 0.005 * 2f64.sqrt()).abs() < 1e-9, "what parts show holds the drift");
         // One corrected part shows nothing, and the job's word stands.
-        assert_eq!(before.shown_by(&parts[..2], &residuals[..2]), before);
+        assert_eq!(before.shown_by(&parts[..1]), before);
         let stated = Floor { machine_from: KnownFrom::Job, ..before };
-        assert_eq!(stated.shown_by(&parts, &residuals), stated);
+        assert_eq!(stated.shown_by(&parts), stated);
     }
 
     #[test]

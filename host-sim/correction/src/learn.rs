@@ -2,6 +2,7 @@
 
 use truepath_core::correct::Law;
 use truepath_core::cut::Path;
+use truepath_core::identify::Observation;
 use truepath_core::job::LawName;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_job::job::Route;
@@ -160,7 +161,10 @@ pub fn learn_every(
     let corrected = correct_identified(identified, routes, later)?;
     let done = walls.iter().zip(parts).zip(corrected).zip(taught).zip(&points);
     let done = done.map(|((((wall, part), corrected), (update, _)), points)| {
-        let floor = corrected.summary.floor.shown_by(points, &update.joint.observations);
+        // The first part was cut without a correction: it yielded otherwise.
+        let left = points.iter().zip(&update.joint.observations).filter(|(part, _)| !part.nodes.is_empty());
+        let left: Vec<&[Observation]> = left.map(|(_, left)| left.as_slice()).collect();
+        let floor = corrected.summary.floor.shown_by(&left);
         let corrected = CorrectedPass { summary: corrected.summary.with_floor(floor), ..corrected };
         let history = wall.history.with(part, &corrected);
         Learned { corrected, history, verdict: update.verdict }

@@ -1,6 +1,7 @@
 //! Coefficients and runout of a virtual machine from what its dynamometer records.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use truepath_forces::analysis::Analysis;
 use truepath_forces::description::Description;
@@ -47,11 +48,15 @@ pub fn cut(feed_per_tooth_mm: f64) -> Cut {
     }
 }
 
+/// Tells folders of tests apart that run side by side.
+static NUMBER: AtomicU64 = AtomicU64::new(0);
+
 const FEEDS: [f64; 5] = [0.04, 0.06, 0.08, 0.1, 0.12];
 
 impl Records {
     pub fn new(seed: u64, dynamometer: &Dynamometer) -> Self {
-        let folder = std::env::temp_dir().join(format!("truepath-forces-{}-{seed}", std::process::id()));
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let folder = std::env::temp_dir().join(format!("truepath-forces-{}-{number}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");
         for (k, feed) in FEEDS.iter().enumerate() {
             let samples = dynamometer.record(&cut(*feed), &machine(seed), true, k as u64);
