@@ -231,7 +231,7 @@ impl Place {
             let output = self.0.path().join(format!("{to}-{number}"));
             let which = Which { feature: step.feature.clone(), pass: None };
             let said = Said { which, ..Said::default() };
-            let (job, probe) = (then.join(&step.job), then.join(&step.probe));
+            let (job, probe) = (then.join(&step.job), Some(then.join(&step.probe)));
             match (step.command, &step.from) {
                 (Command::Learn, Some(from)) => {
                     let from = then.join(from);
@@ -240,7 +240,6 @@ impl Place {
                     made.came_out = Some(CameOut::of(&learn::run(&options, progress)?));
                 }
                 _ => {
-                    let probe = Some(probe);
                     let options =
                         correct::Options { job, probe, output: output.clone(), route, said, ..Default::default() };
                     correct::run(&options, progress)?;
