@@ -192,7 +192,9 @@ impl Measurement {
         for (observation, contact) in observations.iter_mut().zip(&self.contacts) {
             let Some(placed) = self.dimension(contact.line) else { continue };
             observation.noise = placed.noise;
-            observation.across = placed.across.map(|across| across.s);
+            if let Some(across) = placed.across {
+                *observation = observation.with_across(across.s);
+            }
         }
         Ok(observations)
     }

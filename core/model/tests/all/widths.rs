@@ -55,7 +55,7 @@ fn widths_alone_find_how_stiff_the_machine_is() {
     let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
     let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
     let mut widths: Vec<Observation> =
-        left(&path, &stiff.mean, &mut workspace).into_iter().filter(|reading| reading.across.is_some()).collect();
+        left(&path, &stiff.mean, &mut workspace).into_iter().filter(|reading| reading.across().is_some()).collect();
     for width in &mut widths {
         width.error = width.predicted;
     }

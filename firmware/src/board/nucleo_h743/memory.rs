@@ -20,7 +20,7 @@ const PROBE_BYTES: usize = 16 << 10;
 
 /// Buffers of the on-board correction: blocks of a contour, samples of a path, states, nodes, probe points: 286 KiB,
 /// for a contour of 70 mm and a cutter of up to 20 mm. Longer ones are for the host.
-pub type CorrectionBuffers = Buffers<64, 1_260, 804, 700, 48>;
+pub type CorrectionBuffers = Buffers<64, 1_256, 804, 700, 48>;
 
 /// Bytes taken from the ring at once; on SPI the longest answer passes through it.
 const RECEIVED: usize = 96;

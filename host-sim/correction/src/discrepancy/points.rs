@@ -108,7 +108,7 @@ impl Points {
             let engagement = Engagement::of(&path, cut.contour, working.start, &states);
             let stock = stock_sensitivities(&path, cut, core);
             let mut at = 0;
-            let same = |a: &Observation, b: &Observation| many && a.s == b.s && a.across == b.across;
+            let same = |a: &Observation, b: &Observation| many && a.s == b.s && a.across() == b.across();
             for group in cut.observations.chunk_by(same) {
                 let stock = &stock[at..at + group.len()];
                 at += group.len();
@@ -148,7 +148,7 @@ fn row(
     let of_load = Sensitivity { load: sensitivity[0] / level, stock: stock.iter().sum::<f64>() / count };
     let feature = engagement.at(group[0].s, group[0].normal, of_load);
     // Each of two walls bears as much of the load as both do in the mean.
-    let across = group[0].across.map(|s| engagement.at(s, group[0].normal.reversed(), of_load));
+    let across = group[0].across().map(|s| engagement.at(s, group[0].normal.reversed(), of_load));
     Row { feature, across, parts_ago: cut.parts_ago, unexplained, noise: stated, count, sensitivity, points: 0..0 }
 }
 

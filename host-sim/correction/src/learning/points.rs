@@ -33,7 +33,7 @@ impl Point {
             height: float(o.height),
             error_mm: mm(o.error),
             normal: [float(o.normal.x), float(o.normal.y)],
-            across_s_mm: o.across.map(mm),
+            across_s_mm: o.across().map(mm),
             noise_mm: (o.noise != noise).then(|| mm(o.noise)),
         }
     }

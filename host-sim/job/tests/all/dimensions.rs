@@ -43,7 +43,7 @@ fn only(program: &str, dimensions: &str) -> (i64, i64, i64, bool) {
     assert_eq!((observations.len(), measurement.contacts.len()), (1, 1));
     let (o, contact) = (observations[0], measurement.contacts[0]);
     assert_eq!(o.error, contact.error);
-    (o.error.nm(), contact.point.x.nm(), o.noise.nm(), o.across.is_some())
+    (o.error.nm(), contact.point.x.nm(), o.noise.nm(), o.across().is_some())
 }
 
 #[test]
