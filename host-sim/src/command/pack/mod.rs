@@ -133,7 +133,7 @@ pub(crate) fn unpack(options: &UnpackOptions, terminal: &Terminal) -> Result<(),
 /// Unpacks into a new folder, whole or not at all.
 ///
 /// # Errors
-/// As [`read`], a folder that is there already, and files that cannot be written.
+/// As when it is read, a folder that is there already, and files that cannot be written.
 pub fn run_unpack(options: &UnpackOptions) -> Result<UnpackSummary, Failure> {
     let story = read(&options.pack)?;
     let place = options.output.clone();
