@@ -94,7 +94,7 @@ pub fn identify_together(
         observations.extend(own);
     }
     let law = asked(first.pass.core.job.force.model);
-    let points = Points { cuts: &points, earlier: &[], observations: &observations, near: None };
+    let points = Points { cuts: &points, earlier: &[], observations: &observations };
     let uncorrected = |_, _| Vector::ZERO;
     let Found { core, observations, .. } = found(&first.pass.core, law, points, uncorrected, &mut progress);
     let mut rest = observations.into_iter();

@@ -5,9 +5,7 @@
 
 use truepath_core::cut::{State, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{
-    Cut, EarlierPart, Fit, Observation, PredictionWorkspace, identify, identify_again, speaks_for_mean,
-};
+use truepath_core::identify::{Cut, EarlierPart, Observation, PredictionWorkspace, identify, speaks_for_mean};
 use truepath_core::job::{self, ForceModel};
 
 /// What a fit has found, with the points as it left them.
@@ -30,8 +28,6 @@ pub struct Points<'a> {
     pub earlier: &'a [EarlierPart],
     /// The points, one cut behind the other.
     pub observations: &'a [Observation],
-    /// A fit to much the same points, whose datums `earlier` hold: it is begun from there.
-    pub near: Option<&'a Fit>,
 }
 
 /// The wall law that a job asks for; `None` leaves it to the points.
@@ -60,11 +56,7 @@ pub fn found(
         let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
         let prior = pass.prior(law);
         let mut observe = |permille| progress(f64::from(permille) / 1000.0);
-        let (parts, seen, at) = (&mut earlier, &mut observations, &mut workspace);
-        let fit = match points.near {
-            Some(known) => identify_again(&cuts, (&prior, known), parts, seen, commanded, at, &mut observe),
-            None => identify(&cuts, &prior, parts, seen, commanded, at, &mut observe),
-        };
+        let fit = identify(&cuts, &prior, &mut earlier, &mut observations, commanded, &mut workspace, &mut observe);
         Found { core: job::Identified { law, prior, fit }, earlier, observations }
     };
     if let Some(law) = law {

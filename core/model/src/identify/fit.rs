@@ -80,20 +80,6 @@ pub fn identify(
     Task { cuts, prior, commanded }.fit([Real::ZERO; COUNT], earlier, observations, workspace, observe)
 }
 
-/// As [`identify`], from the prior and a fit to much the same points, whose datums `earlier` hold: it settles where
-/// [`identify`] does, in fewer steps.
-pub fn identify_again(
-    cuts: &[Cut],
-    (prior, known): (&Prior, &Fit),
-    earlier: &mut [EarlierPart],
-    observations: &mut [Observation],
-    commanded: impl Fn(usize, usize) -> Vector + Copy,
-    workspace: &mut PredictionWorkspace,
-    observe: &mut dyn FnMut(u16),
-) -> Fit {
-    Task { cuts, prior, commanded }.fit(known.theta, earlier, observations, workspace, observe)
-}
-
 /// Share of the longest possible fit that is done after some steps and parameters of the next linearisation, ‰.
 fn permille(steps: u32, parameters: usize) -> u16 {
     let done = steps.saturating_mul(COUNT as u32).saturating_add(parameters as u32).saturating_mul(1000);

@@ -70,7 +70,7 @@ mod solve;
 mod spread;
 mod tails;
 
-pub use fit::{Cut, Fit, identify, identify_again};
+pub use fit::{Cut, Fit, identify};
 pub use law::{identify_law, speaks_for_mean};
 pub use neighbours::neighbours;
 pub use observation::{Observation, PredictionWorkspace, predict};

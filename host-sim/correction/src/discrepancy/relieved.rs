@@ -57,26 +57,24 @@ pub fn plain(
     progress: &mut dyn FnMut(f64),
 ) -> Found {
     let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
-    fitted(pass, law, cuts, (&measured, None), progress)
+    fitted(pass, law, cuts, &measured, progress)
 }
 
-/// As [`plain()`], to observations in place of those of the cuts, from a fit to much the same where there is one.
+/// As [`plain()`], to observations in place of those of the cuts.
 fn fitted(
     pass: &job::ContourPass,
     law: Option<WallLaw>,
     parts: &[PartCut<'_>],
-    (observations, near): (&[Observation], Option<&Found>),
+    observations: &[Observation],
     progress: &mut dyn FnMut(f64),
 ) -> Found {
     let cuts: Vec<Cut> =
         parts.iter().map(|cut| Cut { path: cut.path, points: cut.observations.len(), part: cut.part }).collect();
     let count = |part: usize| parts.iter().filter(|cut| cut.part == part).map(|cut| cut.observations.len()).sum();
-    let blank = || (0..last_part(parts)).map(|part| EarlierPart::new(count(part))).collect();
-    let earlier: Vec<EarlierPart> = near.map_or_else(blank, |near| near.earlier.clone());
-    let near = near.map(|near| &near.core.fit);
+    let earlier: Vec<EarlierPart> = (0..last_part(parts)).map(|part| EarlierPart::new(count(part))).collect();
     let by_program =
         |cut: usize, sample: usize| parts.get(cut).map_or(Vector::ZERO, |cut| commanded(&cut.path, cut.nodes, sample));
-    found(pass, law, Asked { cuts: &cuts, earlier: &earlier, observations, near }, by_program, progress)
+    found(pass, law, Asked { cuts: &cuts, earlier: &earlier, observations }, by_program, progress)
 }
 
 /// What the parts show beside machine and material, which are fitted again to the points relieved of it; `found` is their
@@ -112,7 +110,8 @@ pub fn relieved(
         }
         let share = |share: f64| (f64::from(round) + share) / f64::from(ROUNDS);
         let law = Some(found.core.law);
-        found = fitted(pass, law, cuts, (&relieved, Some(&found)), &mut |done| progress(share(done)));
+        // From the prior again: from the last fit it may stay with points of something else.
+        found = fitted(pass, law, cuts, &relieved, &mut |done| progress(share(done)));
         for (o, measured) in found.observations.iter_mut().zip(&measured) {
             o.error = measured.error;
         }

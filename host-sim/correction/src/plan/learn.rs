@@ -183,7 +183,7 @@ fn uncorrected(pass: &Pass, history: &PlanHistory) -> Result<Found, Failure> {
     let path = pass.sample(&mut buffer)?;
     let points: Vec<Observation> = history.parts.first().map(|part| observations(&part.measured)).unwrap_or_default();
     let cuts = [CutPoints { path, points: points.len(), part: 0 }];
-    let points = Points { cuts: &cuts, earlier: &[], observations: &points, near: None };
+    let points = Points { cuts: &cuts, earlier: &[], observations: &points };
     Ok(found(&pass.core, asked(pass.core.job.force.model), points, |_, _| Vector::ZERO, &mut |_| ()))
 }
 
