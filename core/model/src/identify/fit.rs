@@ -74,10 +74,7 @@ pub fn identify(
     workspace: &mut PredictionWorkspace,
     observe: &mut dyn FnMut(u16),
 ) -> Fit {
-    for part in earlier.iter_mut() {
-        *part = EarlierPart::new(part.points);
-    }
-    Task { cuts, prior, commanded }.fit([Real::ZERO; COUNT], earlier, observations, workspace, observe)
+    Task { cuts, prior, commanded }.fit(earlier, observations, workspace, observe)
 }
 
 /// Share of the longest possible fit that is done after some steps and parameters of the next linearisation, ‰.
@@ -105,7 +102,6 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
     #[inline(never)]
     fn fit(
         &self,
-        mut theta: [Real; COUNT],
         earlier: &mut [EarlierPart],
         observations: &mut [Observation],
         workspace: &mut PredictionWorkspace,
@@ -114,6 +110,10 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         let prior = self.prior;
         let mut table = ForceTable::BLANK;
         table.tabulate(prior.mean.coefficients.size_exponent);
+        let mut theta = [Real::ZERO; COUNT];
+        for part in earlier.iter_mut() {
+            *part = EarlierPart::new(part.points);
+        }
         let mut points = Points { earlier, observations, workspace };
         spread::set(points.observations, Real::ONE);
         let (mut information, mut cost, mut steps) =

@@ -87,19 +87,21 @@ pub fn relieved(
 ) -> Relieved {
     let last = last_part(cuts);
     let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
-    let alone = found.clone();
+    let mut discrepancy = Discrepancy::of(points(cuts, &found, last));
+    let alone = (found.clone(), discrepancy.clone());
     let mut is_any = false;
     let mut before: Vec<f64> = vec![0.0; measured.len()];
     let mut moved_before = f64::INFINITY;
     for round in 0..ROUNDS {
-        let beside = Discrepancy::of(points(cuts, &found, last)).map(|d| d.at_points()).unwrap_or_default();
+        let beside = discrepancy.as_ref().map(Discrepancy::at_points).unwrap_or_default();
         let moved = beside.iter().zip(&before).map(|(now, before)| (now - before).abs()).fold(0.0, f64::max);
         if moved < LEAST_MM {
             break;
         }
         // What does not settle explains nothing: points of another part, or of another datum.
         if moved > moved_before {
-            (found, is_any) = (alone, false);
+            (found, discrepancy) = alone;
+            is_any = false;
             break;
         }
         moved_before = moved;
@@ -116,8 +118,8 @@ pub fn relieved(
             o.error = measured.error;
         }
         before = beside;
+        discrepancy = Discrepancy::of(points(cuts, &found, last));
     }
-    let discrepancy = Discrepancy::of(points(cuts, &found, last));
     progress(1.0);
     Relieved { datums: datums(&found, last + 1), found, discrepancy, is_any }
 }
