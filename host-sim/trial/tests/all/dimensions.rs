@@ -1,5 +1,6 @@
 //! A pocket corrected from widths that a calliper or a micrometer took, in place of probe points.
 
+use rayon::prelude::*;
 use std::path::Path;
 
 use truepath_core::units::Offset;
@@ -118,7 +119,7 @@ fn eight_widths_correct_a_pocket_nearly_as_well_as_fifteen_points() {
 #[ignore = "slow: cargo xtask test --all"]
 fn over_fifty_seeds_eight_widths_are_within_twice_the_points() {
     for sigma_mm in [0.010, 0.005] {
-        let mut all: Vec<[f64; 3]> = (1..=50).map(|seed| compared(seed, sigma_mm)).collect();
+        let mut all: Vec<[f64; 3]> = (1..=50).into_par_iter().map(|seed| compared(seed, sigma_mm)).collect();
         let within = all.iter().filter(|[_, points, widths]| *widths <= 2.0 * points).count();
         let mut median = |k: usize| {
             all.sort_by(|a, b| a[k].total_cmp(&b[k]));

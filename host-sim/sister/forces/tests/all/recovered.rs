@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use rayon::prelude::*;
 use truepath_forces::analysis::Analysis;
 use truepath_forces::description::Description;
 use truepath_ground::diagnostics::Source;
@@ -92,19 +93,21 @@ pub const RECORD: &str =
 /// Share of coefficients of so many records that lie within two standard deviations, and of runouts.
 fn within(seeds: std::ops::Range<u64>) -> ([f64; 4], f64) {
     let truth = [958.86, 250.863, 15.758, 19.434];
-    let (mut hits, mut runouts, records) = ([0u32; 4], 0u32, (seeds.end - seeds.start) as f64);
-    for seed in seeds {
-        let analysis = {
-            let files = Records::new(seed, &Dynamometer::default());
-            files.analysis(&files.described(RECORD, 5)).expect("an analysis")
+    let records = (seeds.end - seeds.start) as f64;
+    let of_one = |seed| {
+        let files = Records::new(seed, &Dynamometer::default());
+        let analysis = files.analysis(&files.described(RECORD, 5)).expect("an analysis");
+        let coefficient = |k: usize| {
+            let found = &analysis.linear.coefficients[k];
+            u32::from((found.value - truth[k]).abs() <= 2.0 * found.sigma)
         };
-        for (hit, (found, truth)) in hits.iter_mut().zip(analysis.linear.coefficients.iter().zip(truth)) {
-            *hit += u32::from((found.value - truth).abs() <= 2.0 * found.sigma);
-        }
         let shape = analysis.cuts[2].shape.as_ref().expect("a shape");
         assert!(shape.believed, "{shape:?}");
-        runouts += u32::from((shape.runout_mm - 0.006).abs() <= 2.0 * shape.runout_sigma_mm.max(0.0003));
-    }
+        let runout = u32::from((shape.runout_mm - 0.006).abs() <= 2.0 * shape.runout_sigma_mm.max(0.0003));
+        ([0, 1, 2, 3].map(coefficient), runout)
+    };
+    let sum = |a: ([u32; 4], u32), b: ([u32; 4], u32)| ([0, 1, 2, 3].map(|k| a.0[k] + b.0[k]), a.1 + b.1);
+    let (hits, runouts) = seeds.into_par_iter().map(of_one).reduce(|| ([0; 4], 0), sum);
     (hits.map(|h| f64::from(h) / records), f64::from(runouts) / records)
 }
 
