@@ -294,6 +294,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
     if options.write.is_some() && route == Route::Coprocessor {
         measured.iter().try_for_each(|(pass, _)| can_arm(pass))?;
     }
+    let to_write = options.write.as_deref().map(|text| ToWrite::parse(text, measured.len())).transpose()?;
     let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
     let walls: Vec<(&Pass, &Measurement)> = measured.iter().map(|(pass, points)| (pass, points)).collect();
     let planners = Planner::every(&walls, |share| progress(0.1 * share))?;
@@ -325,7 +326,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
         warnings.extend(points.remarks(&file));
     }
     let several = measured.len() > 1 || !untouched.is_empty();
-    let chosen = options.write.as_deref().map(|text| chosen(text, &measured, &plans)).transpose()?;
+    let chosen = to_write.map(|which| which.chosen(&measured, &plans)).transpose()?;
     let Some((folder, out)) = folder.zip(options.output.as_ref()) else {
         return Ok(summary(several, &measured, plans, None, warnings));
     };
@@ -496,34 +497,53 @@ fn write_verification(folder: &OutputFolder, passes: &[Pass], warnings: &mut Vec
     }
 }
 
-/// The numbers of the choices that are to be written, one for each contour.
-fn chosen(text: &str, measured: &[(Pass, Measurement)], plans: &[Plan]) -> Result<Vec<usize>, Failure> {
-    let refused = |found: String, expected: String| {
-        Failure::from(InputError::new(C001, found, expected, "look at the table without --write, and write its number"))
-    };
-    let of = |k: usize| match plans.len() {
-        1 => String::new(),
-        _ => format!(" for {}", contour_name(&measured[k].0)),
-    };
-    let choices = |k: usize| format!("the number of a choice{}, 1 to {}", of(k), plans[k].choices.len());
-    if text == "recommended" {
-        let each = plans.iter().enumerate().map(|(k, plan)| {
-            let found = format!("--write without a number, and no choice holds the tolerance{}", of(k));
-            plan.recommended.ok_or_else(|| refused(found, choices(k)))
+/// Which choices `--write` names; what is wrong with it whatever the plans are is known before they are searched.
+enum ToWrite {
+    /// The recommended one of every contour.
+    Recommended,
+    /// One for every contour, from 1.
+    Numbers(Vec<usize>),
+}
+
+const LOOK: &str = "look at the table without --write, and write its number";
+
+impl ToWrite {
+    /// `contours` is how many are planned.
+    fn parse(text: &str, contours: usize) -> Result<Self, Failure> {
+        if text == "recommended" {
+            return Ok(Self::Recommended);
+        }
+        let refused = |expected: String| {
+            let found = format!("--write on the command line is {text:?}");
+            Failure::from(InputError::new(C001, found, expected, LOOK))
+        };
+        let number = |word: &str| {
+            let number = word.trim().parse().ok().filter(|n| *n > 0);
+            number.ok_or_else(|| refused("the number of a choice, from 1 on".to_owned()))
+        };
+        match text.split(',').map(number).collect::<Result<Vec<usize>, _>>()? {
+            one if one.len() == 1 => Ok(Self::Numbers(vec![one[0]; contours])),
+            each if each.len() == contours => Ok(Self::Numbers(each)),
+            _ => Err(refused(format!("one number, or one for each of the {contours} contours"))),
+        }
+    }
+
+    /// The numbers of the choices, one for each contour.
+    fn chosen(&self, measured: &[(Pass, Measurement)], plans: &[Plan]) -> Result<Vec<usize>, Failure> {
+        let each = plans.iter().zip(measured).enumerate().map(|(k, (plan, (pass, _)))| {
+            let of = if plans.len() == 1 { String::new() } else { format!(" for {}", contour_name(pass)) };
+            let (number, found) = match self {
+                Self::Recommended => {
+                    (plan.recommended, format!("--write without a number, and no choice holds the tolerance{of}"))
+                }
+                Self::Numbers(numbers) => (Some(numbers[k]), format!("--write asks for choice {}{of}", numbers[k])),
+            };
+            let expected = format!("the number of a choice{of}, 1 to {}", plan.choices.len());
+            let number = number.filter(|n| (1..=plan.choices.len()).contains(n));
+            number.ok_or_else(|| InputError::new(C001, found, expected, LOOK).into())
         });
-        return each.collect();
+        each.collect()
     }
-    let words: Vec<&str> = text.split(',').collect();
-    if words.len() != 1 && words.len() != plans.len() {
-        let found = format!("--write on the command line is {text:?}");
-        return Err(refused(found, format!("one number, or one for each of the {} contours", plans.len())));
-    }
-    let number = |(k, plan): (usize, &Plan)| {
-        let word = words.get(k).or(words.first()).copied().unwrap_or_default();
-        let number = word.trim().parse().ok().filter(|n| (1..=plan.choices.len()).contains(n));
-        number.ok_or_else(|| refused(format!("--write on the command line is {text:?}"), choices(k)))
-    };
-    plans.iter().enumerate().map(number).collect()
 }
 
 pub(super) fn program_name(pass: &Pass) -> String {

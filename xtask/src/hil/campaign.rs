@@ -54,9 +54,9 @@ const SHORT: u64 = 20_000;
 const UART: u64 = 2_000;
 const DOCUMENT: &str = "docs/campaign.md";
 
-/// The short campaign.
-pub fn short(bench: &Bench) -> Result<(), Failure> {
-    print!("{}", table(bench, "bulk", |_| SHORT)?);
+/// The short campaign, or a part of it.
+pub fn short(bench: &Bench, part: u64) -> Result<(), Failure> {
+    print!("{}", table(bench, "bulk", |_| SHORT / part)?);
     Ok(())
 }
 
