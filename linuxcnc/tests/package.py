@@ -6,4 +6,4 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from truepath_config import arming, configuration, frame, identity, image, permission, requests, words  # noqa: E402, F401
+from truepath_config import arming, configuration, frame, identity, image, parts, permission, requests, words  # noqa: E402, F401

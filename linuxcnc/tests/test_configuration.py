@@ -77,10 +77,14 @@ class ConfigurationTest(unittest.TestCase):
         self.assertIn("JOINT_2", problems[0])
 
     def test_what_truepath_config_cannot_run_without_is_said(self):
-        for key, value in (("COORDINATES", "XY"), ("COORDINATES", "XYQ"), ("IMAGES", ""), ("IMAGE", ""), ("SETUP", "0")):
+        for key, value in (("COORDINATES", "XY"), ("COORDINATES", "XYQ"), ("IMAGES", ""), ("IMAGE", ""), ("SETUP", "0"), ("SEVERAL_IMAGES", "newest")):
             with self.assertRaises(module.Wrong) as caught:
                 load(sample().set("TRUEPATH", key, value))
             self.assertIn(key, str(caught.exception))
+
+    def test_the_latest_of_several_images_wins_where_that_is_said(self):
+        self.assertFalse(load(sample()).latest_wins)
+        self.assertTrue(load(sample().set("TRUEPATH", "SEVERAL_IMAGES", "latest-wins")).latest_wins)
 
     def test_the_setup_is_a_number_or_that_of_the_work_offset(self):
         self.assertEqual(load(sample().set("TRUEPATH", "SETUP", "3")).setup, 3)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The image that belongs to a program, a feature, a pass and a tool is found, and copied whole."""
 
+import os
 import struct
 import tempfile
 import unittest
@@ -26,8 +27,9 @@ class ImageTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def choose(self, program=1, feature=None, pass_number=None, tool=1):
-        return module.choose(module.folder(self.folder), program, feature, pass_number, tool)
+    def choose(self, program=1, feature=None, pass_number=None, tool=1, latest_wins=False):
+        images = module.folder(self.folder)
+        return module.choose(images, program, feature, pass_number, tool, self.folder, latest_wins)
 
     def refused(self, **asked):
         with self.assertRaises(module.NoImage) as caught:
@@ -71,6 +73,23 @@ class ImageTest(unittest.TestCase):
         self.assertEqual(self.choose(tool=7).tool, 1)
         write(self.folder / "b.tpi", tool=2)
         self.assertEqual(self.choose(tool=2).tool, 2)
+
+    def test_several_for_one_program_are_named_with_their_folders_and_the_latest_wins_where_that_is_wanted(self):
+        paths = [self.folder / part / "correction.tpi" for part in ("part-1", "part-2", "part-0")]
+        for k, path in enumerate(paths):
+            path.parent.mkdir()
+            data = bytearray(write(path).read_bytes())
+            data[-4] ^= k  # another crc: another correction of the same pass
+            path.write_bytes(data)
+            os.utime(path, ns=(0, 10 + (k == 1)))
+        said = self.refused()
+        self.assertTrue(all("part-%d/correction.tpi" % k in said for k in range(3)), said)
+        self.assertIn("SEVERAL_IMAGES", said)
+        self.assertEqual(self.choose(latest_wins=True).path, paths[1])
+        # Another pass is none of several alternatives, whatever its age.
+        write(self.folder / "b.tpi", pass_number=2)
+        self.assertIn("name feature and pass", self.refused(latest_wins=True))
+        self.assertEqual(self.choose(latest_wins=True, pass_number=1).path, paths[1])
 
     def test_two_copies_of_one_image_count_once(self):
         write(self.folder / "a.tpi")

@@ -11,7 +11,7 @@ from package import arming, configuration, requests, words
 from test_arming import SITUATION, Component
 from test_image import write
 
-BUTTONS = ("arm-button", "disarm-button", "reload-button")
+BUTTONS = ("arm-button", "disarm-button", "reload-button", "new-part-button")
 
 
 class RequestsTest(unittest.TestCase):
@@ -26,7 +26,7 @@ class RequestsTest(unittest.TestCase):
         self.pins |= {"mcode-result": 0, "serial-wanted": 7.0, "feature-wanted": 0.0, "enable-switch": True}
         self.said = []
         operator = SimpleNamespace(warn=self.said.append, tell=self.said.append)
-        read = configuration.Configuration("XYZ", self.folder, self.folder / "in-use", None, "", "", 921600, "truepath")
+        read = configuration.Configuration("XYZ", self.folder, self.folder / "in-use", None, "", "", 921600, "truepath", self.folder / "part")
         self.situation, self.changeable = SITUATION, True
         self.requests = requests.Requests(self.pins, self.component, operator, read)
 
@@ -124,6 +124,57 @@ class RequestsTest(unittest.TestCase):
         self.rounds()
         self.assertEqual(self.requests.image_crc, self.component.pins["image-crc"])
         self.assertEqual(self.said, [])
+
+    def test_a_new_part_counts_up_after_the_one_before_was_armed_and_a_program_run_again_does_not(self):
+        self.pins["serial-wanted"] = 0.0
+        self.assertEqual(self.mcode(160), arming.SERIAL)
+        self.press("new-part-button")
+        self.press("new-part-button")
+        self.assertEqual(self.said[1:], ["part 1", "part 1 is not milled yet: it keeps its number"])
+        self.assertEqual((self.mcode(160), self.component.pins["part-serial"]), (0, 1))
+        self.component.pins["state"] = words.BYPASS
+        self.assertEqual((self.requests.part, self.mcode(160)), (1, 0))
+        self.component.pins["state"] = words.BYPASS
+        self.press("new-part-button")
+        self.assertEqual((self.requests.part, self.mcode(160), self.component.pins["part-serial"]), (2, 0, 2))
+
+    def test_no_number_is_counted_while_something_is_armed(self):
+        self.pins["serial-wanted"] = 0.0
+        self.changeable = False
+        self.press("new-part-button")
+        self.assertEqual((self.requests.part, self.said), (0, ["a correction is armed or on: disarm first"]))
+
+    def test_a_number_of_another_panel_is_taken_and_counted_on_from(self):
+        self.press("arm-button")
+        self.component.pins["state"] = words.BYPASS
+        self.pins["serial-wanted"] = 0.0
+        self.press("new-part-button")
+        self.assertEqual(self.requests.part, 8)
+
+    def test_a_part_that_the_ledger_knows_already_has_its_number_behind_it(self):
+        self.pins["serial-wanted"] = 0.0
+        self.press("new-part-button")
+        self.component.refuses = 4
+        self.assertEqual(self.mcode(160), 4)
+        self.press("new-part-button")
+        self.assertEqual(self.requests.part, 2)
+
+    def test_why_there_is_no_image_is_shown_and_several_are_named_before_anyone_arms(self):
+        self.situation = replace(SITUATION, program_crc=3)
+        self.requests.program_changed()
+        self.rounds()
+        self.assertEqual((self.requests.image_state, self.said), ("image-missing", []))
+        (self.folder / "later").mkdir()
+        write(self.folder / "later" / "b.tpi", program=1, feature=1, pass_number=2)
+        self.situation = SITUATION
+        self.requests.program_changed()
+        self.rounds()
+        self.assertEqual(self.requests.image_state, "image-several")
+        self.assertTrue(len(self.said) == 1 and "later/b.tpi" in self.said[0], self.said)
+        (self.folder / "a.tpi").unlink()
+        self.requests.program_changed()
+        self.rounds()
+        self.assertEqual((self.requests.image_state, self.requests.image_crc != 0), ("", True))
 
     def test_reload_says_what_came_of_it(self):
         self.press("reload-button")

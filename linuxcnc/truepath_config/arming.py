@@ -73,8 +73,9 @@ Clock = Callable[[], float]
 
 def choose(configuration: Configuration, situation: Situation, feature: int | None, pass_number: int | None) -> Image:
     """The image for what is loaded. Raises NoImage."""
-    images = image.folder(configuration.images)
-    return image.choose(images, situation.program_crc, feature, pass_number, situation.tool)
+    root = configuration.images
+    wanted = (situation.program_crc, feature, pass_number, situation.tool)
+    return image.choose(image.folder(root), *wanted, root, configuration.latest_wins)
 
 
 def hand_over(component: Component, clock: Clock, configuration: Configuration, chosen: Image) -> Steps:
@@ -114,7 +115,7 @@ def forbidden(configuration: Configuration, situation: Situation, request: Reque
     if situation.tool_offset < 0:
         return Result(TOOL_OFFSET, "the number of the tool offset in force cannot be told: use G43 H or G49")
     if not 1 <= request.serial <= MOST_SERIAL:
-        return Result(SERIAL, "the serial number of the part is missing: 1 to %d, counting up" % MOST_SERIAL)
+        return Result(SERIAL, "no part has a number: press New part on the panel when the stock is clamped")
     return None
 
 

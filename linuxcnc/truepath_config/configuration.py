@@ -31,6 +31,10 @@ class Configuration:
     config_port: str
     config_baud: int
     truepath: str
+    # Keeps the number of the part over restarts.
+    part: Path = Path("truepath.part")
+    # Among several images for the same feature, pass and tool the file written last is taken.
+    latest_wins: bool = False
     problems: list[str] = field(default_factory=list)
 
 
@@ -51,6 +55,8 @@ def load(ini: Ini, folder: Path) -> Configuration:
         config_port=ini.find("TRUEPATH", "CONFIG_PORT") or "",
         config_baud=int(_number(ini, "TRUEPATH", "CONFIG_BAUD", 921600)),
         truepath=ini.find("TRUEPATH", "TRUEPATH") or "truepath",
+        part=folder / (ini.find("TRUEPATH", "PART") or "truepath.part"),
+        latest_wins=_latest_wins(ini),
         problems=kinematics(ini, coordinates) + headroom(ini, coordinates) + board(ini),
     )
 
@@ -112,6 +118,13 @@ def _setup(ini: Ini) -> int | None:
     if text.isdecimal() and 1 <= int(text) <= 99_999:
         return int(text)
     raise Wrong("[TRUEPATH]SETUP = %s: work-offset, or a number from 1 to 99999 is expected" % text)
+
+
+def _latest_wins(ini: Ini) -> bool:
+    text = ini.find("TRUEPATH", "SEVERAL_IMAGES") or "refused"
+    if text in ("refused", "latest-wins"):
+        return text == "latest-wins"
+    raise Wrong("[TRUEPATH]SEVERAL_IMAGES = %s: refused or latest-wins is expected" % text)
 
 
 def _text(ini: Ini, key: str) -> str:

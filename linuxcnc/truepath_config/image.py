@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import os
 import struct
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+
+from .files import replace
 
 SUFFIX = ".tpi"
 HEADER_BYTES = 288
@@ -33,16 +34,22 @@ class Image:
     setup: int
     clamp_nm: int
     slew_nm_per_s: int
+    modified_ns: int
 
 
 class NoImage(Exception):
-    """Why none of the images fits; the text is for the operator."""
+    """Why none of the images fits; the text is for the operator. `several`: because more than one does."""
+
+    def __init__(self, text: str, several: bool = False) -> None:
+        super().__init__(text)
+        self.several = several
 
 
 def read(path: Path) -> Image | None:
     """The head of an image, or None when the file is none or cannot be read."""
     try:
-        size = path.stat().st_size
+        found = path.stat()
+        size = found.st_size
         if not HEADER_BYTES + 4 <= size <= MOST_BYTES:
             return None
         with path.open("rb") as file:
@@ -60,7 +67,7 @@ def read(path: Path) -> Image | None:
     (clamp,) = struct.unpack_from("<q", head, 72)
     (slew,) = struct.unpack_from("<I", head, 96)
     (crc,) = struct.unpack("<I", tail)
-    return Image(path, crc, *binding, clamp, slew)
+    return Image(path, crc, *binding, clamp, slew, found.st_mtime_ns)
 
 
 def folder(path: Path) -> list[Image]:
@@ -69,11 +76,25 @@ def folder(path: Path) -> list[Image]:
     return [image for image in found if image]
 
 
-def choose(images: list[Image], program_crc: int, feature: int | None, pass_number: int | None, tool: int) -> Image:
-    """The image for a program, a feature and pass if they are asked for, and a tool. Copies of one image count once.
+def name(image: Image, root: Path) -> str:
+    """Its path below the folder of all images."""
+    return image.path.relative_to(root).as_posix() if image.path.is_relative_to(root) else str(image.path)
 
-    Raises NoImage when none fits, or more than one. An image for another tool is given when it is the only one: the
-    component then says which tool it wants.
+
+def choose(
+    images: list[Image],
+    program_crc: int,
+    feature: int | None,
+    pass_number: int | None,
+    tool: int,
+    root: Path = Path(),
+    latest_wins: bool = False,
+) -> Image:
+    """The image for a program, a feature and pass if they are asked for, and a tool. Copies of one image count once.
+    With `latest_wins` the file written last is taken among several for the same feature, pass and tool.
+
+    Raises NoImage when none fits, or more than one; their names count from `root`. An image for another tool is given when it is
+    the only one: the component then says which tool it wants.
     """
     fit = [i for i in images if i.program_crc == program_crc]
     if not fit:
@@ -89,21 +110,17 @@ def choose(images: list[Image], program_crc: int, feature: int | None, pass_numb
     if len({i.crc for i in fit}) > 1:
         fit = [i for i in fit if i.tool == tool] or fit
     if len({i.crc for i in fit}) > 1:
-        what = ", ".join("%s: feature %d pass %d tool %d" % (i.path.name, i.feature, i.pass_number, i.tool) for i in fit)
-        raise NoImage("more than one image fits (%s): name feature and pass, or keep one of them" % what)
+        if len({(i.feature, i.pass_number, i.tool) for i in fit}) > 1:
+            what = ", ".join("%s: feature %d pass %d tool %d" % (name(i, root), i.feature, i.pass_number, i.tool) for i in fit)
+            raise NoImage("more than one image fits (%s): name feature and pass" % what, several=True)
+        if not latest_wins:
+            what = ", ".join(name(i, root) for i in fit)
+            help = "move all but one out of %s, or let the latest win: [TRUEPATH]SEVERAL_IMAGES" % root
+            raise NoImage("more than one image fits (%s): %s" % (what, help), several=True)
+        return max(fit, key=lambda i: i.modified_ns)
     return fit[0]
 
 
 def hand_over(image: Image, to: Path) -> None:
     """Copies it to the component's file, so that a reader sees the old file or the new one whole."""
-    data = image.path.read_bytes()
-    handle, name = tempfile.mkstemp(dir=to.parent, prefix=to.name + ".")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(name, to)
-    except BaseException:
-        os.unlink(name)
-        raise
+    replace(to, image.path.read_bytes())

@@ -54,6 +54,13 @@ class Panel:
         pins["permitted"] = permitted
         self._say(state, operator)
 
+    def show_part(self, part: int, image_state: str) -> None:
+        """The number of the part that is clamped, and why the image is none: one of IMAGE_STATES, or empty."""
+        pins = self._pins
+        pins["part"] = part
+        for name in words.IMAGE_STATES:
+            pins[name] = name == image_state
+
     def _say(self, state: int, operator: Operator) -> None:
         before, self._state = self._state, state
         was_on = before in (words.ARMED, words.ACTIVE, words.HOLD)

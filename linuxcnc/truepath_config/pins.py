@@ -20,13 +20,14 @@ BITS_OUT = (
 # For the panel.
 PANEL_BITS_OUT = (
     "is-off", "is-bypass", "is-armed", "is-active", "is-hold", "is-fault", "image-fits", "permitted",
+    "image-missing", "image-several", "image-not-taken",  # why the image does not fit
     "ended-not", "ended-as-planned", "ended-by-stop", "ended-by-change", "ended-off-path", "ended-at-limit",
 )  # fmt: skip
 PANEL_FLOATS_OUT = ("correction-x-um", "correction-y-um", "peak-um")
-PANEL_UNSIGNED_OUT = ("reason", "refusal", "armed-serial")
+PANEL_UNSIGNED_OUT = ("reason", "refusal", "armed-serial", "part")
 
-# From the panel, or buttons of the machine: the three first act on a rising edge.
-BITS_IN = ("arm-button", "disarm-button", "reload-button", "enable-switch", "enabled")
+# From the panel, or buttons of the machine: buttons act on a rising edge. `serial-wanted` 0: the part that is counted here.
+BITS_IN = ("arm-button", "disarm-button", "reload-button", "new-part-button", "enable-switch", "enabled")
 FLOATS_IN = ("serial-wanted", "feature-wanted")
 
 # From M160 and M161: a request is a new number; the answer repeats it, with 0 or the code of the refusal.

@@ -11,10 +11,14 @@ from . import arming
 from .arming import Component, Request, Result, Situation, Steps
 from .configuration import Configuration
 from .identity import feature_and_pass
+from .image import name
 from .panel import Edge
+from .parts import Parts
 from .status import Operator
 
 ARM, DISARM = 160, 161
+# The component's refusal of a part that it has armed before.
+SPENT = 4
 
 
 class Requests:
@@ -24,7 +28,10 @@ class Requests:
         self._pins, self._component = pins, component
         self._operator, self._configuration = operator, configuration
         self._arm, self._disarm = Edge(pins, "arm-button"), Edge(pins, "disarm-button")
-        self._reload = Edge(pins, "reload-button")
+        self._reload, self._new_part = Edge(pins, "reload-button"), Edge(pins, "new-part-button")
+        self._parts = Parts(configuration.part)
+        if self._parts.trouble:
+            operator.warn(self._parts.trouble)
         self._answered = int(pins["mcode-request"])
         self._steps: Steps | None = None
         self._for_mcode = False
@@ -33,8 +40,15 @@ class Requests:
         self._ending = False
         self._look_for_image = False
         self.image_crc = 0
+        # Why there is no image for the loaded program: one of words.IMAGE_STATES; empty while it is not known, or there is one.
+        self.image_state = ""
         # Of the last arming that was asked for, the component's or this program's; 0: none.
         self.refusal = 0
+
+    @property
+    def part(self) -> int:
+        """The number of the part that is clamped; 0 before the first."""
+        return self._parts.number
 
     @property
     def busy(self) -> bool:
@@ -43,7 +57,7 @@ class Requests:
 
     def program_changed(self) -> None:
         """Another program is loaded: its image is looked for as soon as nothing else is done."""
-        self.image_crc = 0
+        self.image_crc, self.image_state = 0, ""
         self._look_for_image = True
 
     def end(self, why: str) -> None:
@@ -59,6 +73,8 @@ class Requests:
         asked = int(self._pins["mcode-request"])
         disarm = self._disarm.pressed()
         arm, reload = self._arm.pressed(), self._reload.pressed()
+        if self._new_part.pressed():
+            self._operator.tell(self._parts.next() if changeable else "a correction is armed or on: disarm first")
         aborted = self._for_mcode and self._ran and not situation.running
         self._ran = situation.running
         if disarm or aborted:
@@ -69,8 +85,7 @@ class Requests:
             self._mcode(situation)
         elif self._steps is None and arm:
             feature, pass_number = feature_and_pass(self._pins["feature-wanted"])
-            serial = _whole(self._pins["serial-wanted"])
-            self._begin(self._armed(situation, Request(feature, pass_number, serial)))
+            self._begin(self._armed(situation, Request(feature, pass_number, self._serial())))
         elif self._steps is None and (reload or self._look_for_image and changeable):
             self._look_for_image = False
             self._begin(self._image(situation), quiet=not reload)
@@ -89,15 +104,22 @@ class Requests:
             return
         feature, pass_number = feature_and_pass(self._pins["mcode-p"])
         serial = self._pins["mcode-q"]
-        serial = _whole(serial if serial >= 0 else self._pins["serial-wanted"])
+        serial = _whole(serial) if serial >= 0 else self._serial()
         self._begin(self._armed(situation, Request(feature, pass_number, serial)), mcode=True)
+
+    def _serial(self) -> int:
+        """Of the part that is clamped; another panel may give it a number of its own."""
+        given = self._pins["serial-wanted"]
+        return _whole(given) if given else self._parts.number
 
     def _armed(self, situation: Situation, request: Request) -> Steps:
         self.refusal = 0
         result = yield from arming.arm(self._component, time.monotonic, self._configuration, situation, request)
         self.refusal = result.code
         if result.code == 0:
-            self.image_crc = self._component.get("image-crc")
+            self.image_crc, self.image_state = self._component.get("image-crc"), ""
+        if result.code in (0, SPENT) and (trouble := self._parts.armed(request.serial)):
+            self._operator.warn(trouble)
         return result
 
     def _image(self, situation: Situation) -> Steps:
@@ -106,11 +128,18 @@ class Requests:
         try:
             chosen = arming.choose(self._configuration, situation, feature, pass_number)
         except arming.NoImage as error:
+            self.image_state = "image-several" if error.several else "image-missing"
+            if error.several and self._quiet:
+                # The program was meant to be corrected: said before anyone arms.
+                self._operator.tell(str(error))
             return Result(arming.NO_IMAGE, str(error))
         result = yield from arming.hand_over(self._component, time.monotonic, self._configuration, chosen)
         if result.code == 0:
-            self.image_crc = chosen.crc
-            return Result(0, "image of %s" % chosen.path.name)
+            self.image_crc, self.image_state = chosen.crc, ""
+            return Result(0, "image of %s" % name(chosen, self._configuration.images))
+        self.image_state = "image-not-taken"
+        if self._quiet:
+            self._operator.tell(result.text)
         return result
 
     def _begin(self, steps: Steps, mcode: bool = False, quiet: bool = False) -> None:

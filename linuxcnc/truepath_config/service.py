@@ -75,7 +75,9 @@ class Service:
             self._selected = selected
             self._requests.program_changed()
         self._requests.update(self._situation(status, permitted), state in (words.OFF, words.BYPASS))
-        self._panel.show(self._requests.image_crc, self._requests.refusal, permitted, self._operator)
+        requests = self._requests
+        self._panel.show(requests.image_crc, requests.refusal, permitted, self._operator)
+        self._panel.show_part(requests.part, requests.image_state)
 
     def _publish(self, status: Status) -> None:
         pins, frame = self._pins, status.frame

@@ -7,6 +7,9 @@ from __future__ import annotations
 OFF, BYPASS, ARMED, ACTIVE, HOLD, FAULT = range(6)
 STATES = ("off", "bypass", "armed", "active", "hold", "fault")
 
+# Why the image for the loaded program is none: pins of the panel. While it is looked for, none of them is on.
+IMAGE_STATES = ("image-missing", "image-several", "image-not-taken")
+
 FIRST_FAULT = 16
 REASONS = {
     0: "nothing happened",
@@ -47,7 +50,7 @@ REFUSALS = {
     1: "not possible in this state: home, switch on, end what is armed",
     2: "there is no image in the component",
     3: "the drives are still enabled",
-    4: "this part was armed for this pass before, and a second correction would gouge: set the serial number of the next part",
+    4: "this part was armed for this pass before, and a second correction would gouge: press New part when the next stock is clamped",
     5: "the frame is damaged",
     6: "the turn of the work offset is damaged",
     7: "X, Y and Z are not three different joints: check COORDINATES",

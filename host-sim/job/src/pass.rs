@@ -5,7 +5,8 @@
 
 use truepath_core::cut::{Milling, Path, Sample};
 use truepath_core::gcode::{
-    ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, HostMemory, Options, Program, Spindle, read_contour,
+    ContourOptions, ContourProgram, Dialect, GcodeError, GcodeErrorKind, HostMemory, Options, Program, Spindle,
+    WarningKind, read_contour,
 };
 use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::job::{self, Compensation, JobError};
@@ -162,7 +163,8 @@ impl Pass {
         let (mut blocks, core) = with_enough_blocks(read, too_long)
             .map_err(|error| Inputs { job: &job, program: &program, probe: None }.refused(&error))?;
         blocks.truncate(core.contour.blocks);
-        let warnings = core.contour.summary.warnings.as_slice().iter();
+        let dialect = job.numbers.dialect;
+        let warnings = core.contour.summary.warnings.as_slice().iter().filter(|w| !arms_truepath(w.kind, dialect));
         let mut warnings: Vec<String> = warnings.map(|w| format!("{}: {w}", program.name())).collect();
         warnings.extend(job.assumed.iter().map(Assumed::text));
         if core.contour.spindle == Spindle::Stopped {
@@ -460,4 +462,9 @@ pub const fn milling_name(milling: Milling) -> &'static str {
         Milling::Climb => "climb",
         Milling::Conventional => "conventional",
     }
+}
+
+/// Whether a warning is of M160 or M161 of LinuxCNC, with which a program arms and disarms Truepath itself: they move no axis.
+const fn arms_truepath(kind: WarningKind, dialect: Dialect) -> bool {
+    matches!((kind, dialect), (WarningKind::UnknownM { m: 160 | 161 }, Dialect::Linuxcnc))
 }

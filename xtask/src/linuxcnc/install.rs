@@ -49,6 +49,28 @@ pub fn install(component_only: bool) -> Outcome {
     Ok(Passed::Done)
 }
 
+/// Takes away what [`install`] put there, and says what. Images, ledger and configuration of a machine stay.
+pub fn uninstall() -> Outcome {
+    let modules = component::MODULES.iter().map(|(name, _)| Path::new(MODULES).join(name));
+    let files =
+        FILES.iter().map(|(file, folder, _)| Path::new(folder).join(Path::new(file).file_name().unwrap_or_default()));
+    let whole = [PACKAGE, M_CODES].map(PathBuf::from);
+    let all = modules.chain([Path::new(PROGRAMS).join("truepath")]).chain(files).chain(whole);
+    let there: Vec<PathBuf> = all.filter(|path| path.symlink_metadata().is_ok()).collect();
+    if there.is_empty() {
+        return Ok(Passed::Skipped("nothing of Truepath is installed".to_owned()));
+    }
+    run(with_rights("rm").args(["-r", "-f", "--"]).args(&there))?;
+    for path in &there {
+        println!("removed {}", path.display());
+    }
+    // The folder that held both, where it is empty now.
+    if let Some(shared) = Path::new(PACKAGE).parent().filter(|folder| folder.is_dir()) {
+        run(with_rights("rmdir").arg("--ignore-fail-on-non-empty").arg(shared))?;
+    }
+    Ok(Passed::Done)
+}
+
 /// Builds the component, and installs it where it is not the one that is installed.
 ///
 /// # Errors

@@ -29,6 +29,8 @@ pub enum Task {
         #[arg(long)]
         component_only: bool,
     },
+    /// Takes away what install put there; images, ledger and configuration of a machine stay.
+    Uninstall,
     /// Route B: mills through the virtual board, and stops, delays and resets it in the cut.
     Board,
     /// Mills two parts on the sample machine, touches them, corrects, mills again, and tells how much better the walls are.
@@ -47,5 +49,6 @@ pub fn run(task: Option<Task>, scenario: Option<&str>, write: bool) -> Outcome {
         Some(Task::Story) => story::run(write),
         Some(Task::Build) => component::build().map(|_| crate::step::Passed::Done),
         Some(Task::Install { component_only }) => install::install(component_only),
+        Some(Task::Uninstall) => install::uninstall(),
     }
 }

@@ -46,7 +46,7 @@ impl Parts {
         let made = self.folder.join(part);
         let mut command = program(&self.truepath);
         command.arg("correct").arg(programs.join(format!("{part}.toml"))).arg("--probe");
-        command.arg(programs.join(format!("{part}-probe.txt")));
+        command.arg(programs.join(format!("{part}-probe-log.txt")));
         command.args(["--route", "coprocessor", "--force", "-o"]).arg(&made);
         read(&mut command)?;
         let to = programs.join(format!("{part}.tpi"));

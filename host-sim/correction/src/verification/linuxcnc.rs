@@ -43,7 +43,7 @@ pub(super) fn write(plan: &Plan, log: &str) -> Result<String, InputError> {
     let count = plan.count();
     let s = &plan.settings;
     let mut page = Page::default();
-    page.header(plan, "LinuxCNC", "results go into a log file, format linuxcnc-log");
+    page.header(plan, "LinuxCNC", "results go into a log in the folder of the INI file, format linuxcnc-log");
     page.line(format!("{} G17 G40 G80 G90 G94 G61", n.unit_code()));
     page.line(work_offset(plan, MoreOffsets::Points)?);
     page.line("M5 M9");
@@ -70,6 +70,10 @@ pub(super) fn write(plan: &Plan, log: &str) -> Result<String, InputError> {
     page.line(format!("(LOG,# end {count})"));
     page.line("(LOGCLOSE)");
     page.comment(&format!("end of {count}"));
+    if s.probe_tool.is_some() {
+        // The length that was called is the probe's; no tool is left with it.
+        page.line("G49");
+    }
     page.line("M2");
     Ok(page.finish())
 }

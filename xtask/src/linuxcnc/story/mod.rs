@@ -141,7 +141,7 @@ impl Story {
             })?;
         let out = self.folder.join(format!("{part}-correction"));
         let mut command = program(&self.truepath);
-        command.arg("correct").arg(self.job(part)).arg("--probe").arg(log).args(["--format", "linuxcnc-log"]);
+        command.arg("correct").arg(self.job(part)).arg("--probe").arg(log);
         command.args(["--route", "coprocessor", "--force", "-o"]).arg(&out);
         read(&mut command)?;
         self.copy(&out.join("correction.tpi"), &self.programs().join(format!("{part}.tpi")))
