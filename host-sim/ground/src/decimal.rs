@@ -51,6 +51,10 @@ impl Decimal {
         Some(Self(if negative { -magnitude } else { magnitude }))
     }
 
+    /// Of a length in inches that in millimetres, exactly as far as the resolution goes; beyond the range it is held at its end.
+    pub fn of_inches(self) -> Self {
+        Self(div_rounded(self.0.saturating_mul(254), 10).clamp(-LIMIT, LIMIT))
+    }
     /// As millimetres: whole nanometres, rounded to nearest.
     pub fn as_mm(self) -> Offset {
         Offset::from_nm(div_rounded(self.0, 10i128.pow(12)) as i64)
@@ -97,6 +101,14 @@ mod tests {
         ] {
             assert_eq!(nm(text), expected, "{text}");
         }
+    }
+
+    #[test]
+    fn inches_are_exact_and_stay_in_range() {
+        let mm = |text| Decimal::parse(text).expect(text).of_inches();
+        assert_eq!(mm("0.5"), Decimal::parse("12.7").expect("a number"));
+        assert_eq!(mm("-0.000_01").as_mm().nm(), -254);
+        assert_eq!(mm("1e9"), Decimal::parse("1e9").expect("a number"));
     }
 
     #[test]

@@ -86,6 +86,32 @@ pub struct Value<'d> {
     pub span: Range<usize>,
     /// As it was read.
     pub raw: &'d DeValue<'d>,
+    /// Whether it stands under the key in inches, [`in_inches`].
+    pub inches: bool,
+}
+
+impl Value<'_> {
+    /// Millimetres of a number that stands in it.
+    pub fn mm(&self, number: Decimal) -> Decimal {
+        if self.inches { number.of_inches() } else { number }
+    }
+}
+
+/// The key of a length in inches for one in millimetres: `allowance_in` beside `allowance_mm`, `feed_in_per_min`. `None` for what is no
+/// length alone, as a force per millimetre.
+pub fn in_inches(key: &str) -> Option<String> {
+    other_unit(key, "_mm", "_in")
+}
+
+/// The key in millimetres of one in inches: the other way.
+pub fn in_millimetres(key: &str) -> Option<String> {
+    other_unit(key, "_in", "_mm")
+}
+
+fn other_unit(key: &str, unit: &str, other: &str) -> Option<String> {
+    let at = key.rfind(unit).filter(|&at| !key[..at].ends_with("_per"))?;
+    let behind = &key[at + unit.len()..];
+    matches!(behind, "" | "_per_min" | "_per_tooth" | "_per_s").then(|| format!("{}{other}{behind}", &key[..at]))
 }
 
 impl<'d> Section<'d> {
@@ -98,14 +124,19 @@ impl<'d> Section<'d> {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
 
-    /// The value of a key, if it is there.
+    /// The value of a key, if it is there; a length may stand under its key in inches.
     pub fn value(&self, key: &'static str) -> Option<Value<'d>> {
         self.asked.borrow_mut().push(key);
         note(|| self.path(key), || Kind::Any);
-        let value = self.table.get(key)?;
-        let path = self.path(key);
-        self.spans.borrow_mut().insert(path.clone(), value.span());
-        Some(Value { path, span: value.span(), raw: value.get_ref() })
+        let inch_key = || in_inches(key).filter(|key| self.table.contains_key(key.as_str()));
+        let (path, value, inches) = match (self.table.get(key), inch_key()) {
+            (Some(value), _) => (self.path(key), value, false),
+            (None, Some(key)) => (self.path(&key), self.table.get(key.as_str())?, true),
+            (None, None) => return None,
+        };
+        // Layers above know it by its name in millimetres.
+        self.spans.borrow_mut().insert(self.path(key), value.span());
+        Some(Value { path, span: value.span(), raw: value.get_ref(), inches })
     }
 
     /// A sub-table, if it is there.
@@ -191,9 +222,14 @@ impl<'d> Section<'d> {
                 return Err(self.wrong_type(value, &format!("a number, {}", limits.phrase()), help));
             }
         };
-        let number = Decimal::parse(&text);
+        let number = Decimal::parse(&text).map(|n| value.mm(n));
         match number {
             Some(n) if limits.admits(n) => Ok(n),
+            Some(n) if value.inches => {
+                let found = format!("{} is {text}, which is {} mm", value.path, n.as_f64());
+                let help = "check the value and its unit: the key's name carries it";
+                Err(InputError::new(J006, found, limits.phrase(), help).at(self.source, value.span.clone()))
+            }
             Some(_) => Err(self.out_of_range(
                 value,
                 &limits.phrase(),
@@ -303,11 +339,20 @@ impl<'d> Section<'d> {
     /// Ends the reading of this table.
     ///
     /// # Errors
-    /// `J003` at the first key nobody asked for.
+    /// `J003` at the first key nobody asked for, `J008` at a length that is given in both units.
     pub fn close(&self) -> Result<(), InputError> {
         let asked = self.asked.borrow();
-        let unknown =
-            self.table.keys().filter(|key| !asked.contains(&key.get_ref().as_ref())).min_by_key(|key| key.span().start);
+        for key in asked.iter() {
+            let inches = in_inches(key).and_then(|inch_key| self.table.get_key_value(inch_key.as_str()));
+            if let (Some((inch_key, _)), true) = (inches, self.table.contains_key(*key)) {
+                let found = format!("{} is given as well as {key}", self.path(inch_key.get_ref()));
+                let error = InputError::new(J008, found, "the length in one unit", "take one of the two lines out");
+                return Err(error.at(self.source, inch_key.span()));
+            }
+        }
+        let is_known =
+            |name: &str| asked.iter().any(|key| *key == name || in_inches(key).is_some_and(|key| key == name));
+        let unknown = self.table.keys().filter(|key| !is_known(key.get_ref())).min_by_key(|key| key.span().start);
         let Some(key) = unknown else { return Ok(()) };
         let (name, place) = (
             key.get_ref(),

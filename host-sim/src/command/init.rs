@@ -6,8 +6,11 @@ use std::path::{Component, Path as FilePath, PathBuf};
 
 use clap::Args;
 use truepath_ground::codes::C001;
+use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{Failure, InputError, Source, visible};
+use truepath_ground::document;
 use truepath_ground::output::OutputFile;
+use truepath_ground::units::mm;
 use truepath_job::codes::J042;
 use truepath_job::draft::{ContourNote, Draft, Entry, Origin};
 use truepath_job::job::JobFile;
@@ -155,9 +158,22 @@ fn given(set: &[String]) -> Result<BTreeMap<String, String>, InputError> {
                 return Err(wrong(format!("--set {text} names no key"), help));
             }
         };
-        given.extend(keys.into_iter().map(|key| (key, value.clone())));
+        given.extend(keys.into_iter().map(|key| in_millimetres(key, &value)));
     }
     Ok(given)
+}
+
+/// A length that was said in inches (`allowance=0.02in`, `tool.diameter_in=0.5`) in millimetres, as the draft reckons.
+fn in_millimetres(key: String, value: &str) -> (String, String) {
+    let number = ["inch", "in", "\""].iter().find_map(|unit| value.strip_suffix(unit));
+    let (key, number) = match (document::in_millimetres(&key), number.filter(|_| document::in_inches(&key).is_some())) {
+        (Some(key), number) => (key, number.or(Some(value))),
+        (None, number) => (key, number),
+    };
+    match number.and_then(|number| Decimal::parse(number.trim())) {
+        Some(inches) => (key, mm(inches.of_inches().as_mm()).to_string()),
+        None => (key, value.to_owned()),
+    }
 }
 
 /// The short name of a key.
@@ -226,7 +242,7 @@ fn answered(program: &Source, given: &mut BTreeMap<String, String>) -> Result<Dr
             continue;
         };
         let mut tried = given.clone();
-        tried.extend(question.keys.iter().map(|key| (key.clone(), answer.clone())));
+        tried.extend(question.keys.iter().map(|key| in_millimetres(key.clone(), &answer)));
         // A wrong answer is asked again, with what is wrong about it.
         match Draft::of(program, &tried).and_then(|draft| draft.check().map(|()| draft)) {
             Ok(made) => {

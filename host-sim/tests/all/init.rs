@@ -54,6 +54,25 @@ fn key<'a>(report: &'a Value, name: &str) -> &'a Value {
 }
 
 #[test]
+fn a_program_in_inches_gets_a_job_in_inches_and_is_the_one_in_millimetres() {
+    let program = "fusion-haas-inch-cover.nc";
+    let desk = desk(program);
+    let job = |set: [&str; 2], to: &str| {
+        let words = ["--json", "init", program, "--yes", "--set", set[0], "--set", set[1], "-o", to];
+        answer(&truepath(&words, desk.path()));
+        let text = fs::read_to_string(desk.path().join(to)).expect("a job");
+        let read = truepath_ground::diagnostics::Source::new(to, text.clone().into_bytes());
+        (text, truepath_job::job::JobFile::parse(read, Path::new("")).expect("a job").numbers)
+    };
+    let (inches, one) = job(["allowance=0.02in", "probe.ball_diameter_in=0.25"], "inch.toml");
+    for line in ["allowance_in = 0.02", "diameter_in = 0.5", "axial_depth_in = 0.375", "ball_diameter_in = 0.25"] {
+        assert!(inches.lines().any(|said| said.starts_with(line)), "{line}: {inches}");
+    }
+    let (_, other) = job(["allowance=0.508", "probe.ball_diameter_mm=6.35"], "mm.toml");
+    assert_eq!(one, other);
+}
+
+#[test]
 fn everything_a_post_says_is_in_the_job_with_the_line_it_stands_on() {
     let desk = desk("fusion-haas-block.nc");
     let said = answer(&truepath(&["--json", "init", "fusion-haas-block.nc", "--yes"], desk.path()));

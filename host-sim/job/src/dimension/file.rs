@@ -334,9 +334,9 @@ fn value(
     if text.is_empty() {
         return Err(not_filled_in("value_mm", name).at(source, value.span));
     }
-    match Decimal::parse(&text.replace(',', ".")) {
+    match Decimal::parse(&text.replace(',', ".")).map(|number| value.mm(number)) {
         Some(number) if VALUE.admits(number) => Ok((number.as_mm(), value.span)),
-        Some(_) => Err(section.out_of_range(&value, &VALUE.phrase(), "type what was measured, in millimetres")),
+        Some(_) => Err(section.out_of_range(&value, &VALUE.phrase(), "type what was measured, in the unit of the key")),
         None => Err(section.wrong_type(&value, &format!("a number, {}", VALUE.phrase()), "type the number alone")),
     }
 }

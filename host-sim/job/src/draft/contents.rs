@@ -125,6 +125,8 @@ impl ContourNote {
 /// What a program asks for.
 #[derive(Clone, Debug)]
 pub struct Draft {
+    /// Whether the program is in inches: what is round in them stands in the job file so.
+    pub inches: bool,
     /// Keys of the job, in the order of the file.
     pub entries: Vec<Entry>,
     /// Finishing contours.

@@ -145,6 +145,7 @@ impl<'a> Drafting<'a> {
         let probe_control =
             self.job_as_said().and_then(|job| job.probe_control).or_else(|| self.post.control.as_ref()?.probe);
         Ok(Draft {
+            inches: self.post.unit.inch,
             entries: self.entries,
             chosen: alone.then_some(candidate.note.number),
             contours,

@@ -2,11 +2,15 @@
 
 use std::fmt::Write as _;
 
+use truepath_ground::decimal::Decimal;
+use truepath_ground::document::in_inches;
+
 use super::contents::{Draft, Entry, Origin};
 
 /// Tables in the order of the file.
 const TABLES: [&str; 11] =
     ["", "stock", "tool", "cut", "force", "machine", "probe", "correct", "feed", "part", "pocket"];
+const MM_PER_INCH: f64 = 25.4;
 /// Where comments begin.
 const COMMENT: usize = 36;
 
@@ -45,19 +49,36 @@ pub(super) fn text(draft: &Draft, program: &str) -> String {
             }
         }
         for entry in entries {
-            let (_, key) = entry.place();
+            let (key, value) = in_unit_of(draft, entry);
             match entry.origin {
                 Origin::Fixed if key == "program" => {
                     let name = toml::Value::String(program.to_owned()).to_string();
                     line(&mut out, &format!("{key} = {name}"), "relative to this file");
                 }
-                Origin::Left | Origin::Open => line(&mut out, &format!("# {key} = {}", entry.value), &entry.reason()),
-                _ => line(&mut out, &format!("{key} = {}", entry.value), &entry.reason()),
+                Origin::Left | Origin::Open => line(&mut out, &format!("# {key} = {value}"), &entry.reason()),
+                _ => line(&mut out, &format!("{key} = {value}"), &entry.reason()),
             }
         }
     }
     features(&mut out, draft);
     out
+}
+
+/// Decimals of an inch at which a length counts as round.
+const ROUND: i32 = 4;
+
+/// Key and value, in inches where the program is and the length is round in them: then it was meant so.
+fn in_unit_of(draft: &Draft, entry: &Entry) -> (String, String) {
+    let (_, key) = entry.place();
+    let inches = || {
+        let key = in_inches(key).filter(|_| draft.inches)?;
+        let mm = Decimal::parse(&entry.value)?;
+        let rounded = (mm.as_f64() / MM_PER_INCH * 10f64.powi(ROUND)).round() / 10f64.powi(ROUND);
+        let value = rounded.to_string();
+        let same = Decimal::parse(&value)?.of_inches().as_mm() == mm.as_mm() && rounded != 0.0;
+        same.then_some((key, value))
+    };
+    inches().unwrap_or_else(|| (key.to_owned(), entry.value.clone()))
 }
 
 /// The contours, where there are several: the chosen one in force, the others in comments.

@@ -96,7 +96,7 @@ fn band(source: &Source, section: &Section<'_>, depth: Option<Offset>) -> Result
     let height = |entry: &toml::Spanned<toml::de::DeValue<'_>>| {
         let text = source.excerpt(entry.span());
         if entry.get_ref().is_integer() || entry.get_ref().is_float() {
-            Decimal::parse(&text).map(Decimal::as_mm)
+            Decimal::parse(&text).map(|height| value.mm(height).as_mm())
         } else {
             None
         }

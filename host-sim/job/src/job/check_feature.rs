@@ -172,7 +172,7 @@ fn heights(section: &Section<'_>) -> Result<Option<Vec<Position>>, InputError> {
     let entries = value.raw.as_array().filter(|list| !list.is_empty());
     let entries = entries.ok_or_else(|| section.wrong_type(&value, expected, help))?;
     let reach = Offset::from_um(4_000_000);
-    let height = |entry| number(section, entry).map(Decimal::as_mm).filter(|z| z.abs() <= reach);
+    let height = |entry| number(section, entry).map(|z| value.mm(z).as_mm()).filter(|z| z.abs() <= reach);
     let list: Option<Vec<Position>> = entries.iter().map(|e| height(e).map(|z| Position::from_nm(z.nm()))).collect();
     list.map(Some).ok_or_else(|| section.out_of_range(&value, expected, help))
 }

@@ -254,7 +254,7 @@ fn work_offset(
     let length = |entry: &toml::Spanned<toml::de::DeValue<'_>>| {
         let number = entry.get_ref().is_integer() || entry.get_ref().is_float();
         let decimal = number.then(|| Decimal::parse(&source.excerpt(entry.span()))).flatten();
-        decimal.filter(|d| Limits::within("-10000", "10000", "mm").admits(*d)).map(Decimal::as_mm)
+        decimal.map(|d| value.mm(d)).filter(|d| Limits::within("-10000", "10000", "mm").admits(*d)).map(Decimal::as_mm)
     };
     match (length(x), length(y), length(z)) {
         (Some(x), Some(y), Some(z)) => Ok(Some([x, y, z])),

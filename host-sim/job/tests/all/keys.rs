@@ -237,7 +237,8 @@ fn page() -> String {
     let mut text = "# The job file\n\n\
         Every key of a job with its range and default, written by `cargo xtask job --write` from what the readers ask for. \
         `truepath init program.nc` writes a job with all that the program says. Every key carries its unit; an unknown key is an \
-        error.\n\n\
+        error. Every length may be written in inches under a key of its own, `allowance_in` in place of `allowance_mm`, \
+        `feed_in_per_min`.\n\n\
         A key whose default is read from the program or wide is *assumed* where it is left out: every command prints what it took \
         and why, and summaries list it (`assumed`). What would make a wrong part when guessed has no default.\n"
         .to_owned();

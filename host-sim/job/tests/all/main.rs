@@ -2,6 +2,7 @@
 
 mod cut_with;
 mod dimensions;
+mod inches;
 mod job_errors;
 mod keys;
 mod measurement;

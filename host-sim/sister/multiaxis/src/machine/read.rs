@@ -207,6 +207,6 @@ fn entry_number(
     entry: &Spanned<DeValue<'_>>,
     limits: Limits,
 ) -> Result<f64, InputError> {
-    let value = Value { path: list.path.clone(), span: entry.span(), raw: entry.get_ref() };
+    let value = Value { path: list.path.clone(), span: entry.span(), raw: entry.get_ref(), inches: list.inches };
     section.number_in(&value, limits).map(Decimal::as_f64)
 }
