@@ -26,6 +26,38 @@
 //! | | [`errors`] | the code and the sentences of every error |
 //!
 //! `truepath-wire` needs `truepath-units` alone: it is all that a servo cycle has to trust.
+//!
+//! The engagement of a 20 mm cutter that takes 3 mm off a straight wall, from geometry, as the core computes it:
+//!
+//! ```rust
+//! use truepath_core::cut::{CutSetup, Milling, Path, Sample, WallLaw};
+//! use truepath_core::geometry::{Block, Contour, Curve, Point, Side, Vector};
+//! use truepath_core::units::{Offset, Real};
+//!
+//! let setup = CutSetup {
+//!     radius: Offset::from_um(10_000),
+//!     teeth: 6,
+//!     helix_deg: Real::from_int(30),
+//!     axial_depth: Real::from_int(10),
+//!     allowance: Offset::from_um(3_000),
+//!     spindle_rpm: Real::from_int(1500),
+//!     wall: Side::Right,
+//!     milling: Milling::of(Side::Right, true),
+//!     law: WallLaw::Helical,
+//! };
+//! let curve = Curve::line(Point::from_nm(0, 0), Point::from_nm(40_000_000, 0)).unwrap();
+//! let blocks = [Block { curve, s: Offset::ZERO, feed: Real::from_int(400), line: 1 }];
+//! let contour = Contour::new(&blocks).unwrap();
+//!
+//! let step = Offset::from_um(100);
+//! let mut buffer = vec![Sample::BLANK; Path::samples_needed(&contour, &setup, step)];
+//! let path = Path::sample(&contour, &setup, step, &mut buffer, |_| ()).unwrap();
+//! let index = path.index_at(Offset::from_um(20_000));
+//! let frame = path.frame(index, Vector::ZERO).unwrap();
+//! let degrees = path.engagement(index, Vector::ZERO, &frame) * Real::from_int(180) / Real::PI;
+//! // acos(1 − h/r) = 45.573°
+//! assert!((degrees - Real::ratio(45_573, 1000)).abs() < Real::ratio(1, 100));
+//! ```
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]

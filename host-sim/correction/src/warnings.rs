@@ -4,7 +4,7 @@ use truepath_core::cut::Loop;
 use truepath_core::identify::Parameter;
 use truepath_core::probe::Contact;
 use truepath_core::units::Offset;
-use truepath_ground::units::mm;
+use truepath_ground::units::{float, mm};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_program::Difference;
@@ -12,6 +12,7 @@ use truepath_program::Difference;
 use crate::correction::{Correction, Identification};
 use crate::damped::damped_summary;
 use crate::guard::guard_summary;
+use crate::misfit::said;
 use crate::remarks::{MeasuredPart, Remarks};
 use crate::surface::predicted::Surface;
 
@@ -83,13 +84,16 @@ pub fn model_warnings(
             ));
         }
     }
-    let far =
-        identified.fit().theta.iter().zip(Parameter::ALL).filter(|(t, _)| truepath_ground::units::float(t.abs()) > 2.5);
+    let far = identified.fit().theta.iter().zip(Parameter::ALL).filter(|(t, _)| float(t.abs()) > 2.5);
+    let (values, believed) = (identified.fit().parameters.values(), identified.prior().mean.values());
     for (theta, parameter) in far {
+        let [value, prior] = [values, believed].map(|all| float(all[parameter as usize]));
+        let unit = if parameter.unit() == "1" { String::new() } else { format!(" {}", parameter.unit()) };
         out.push(format!(
-            "{} came out {:.1} standard deviations from what the job says: check the job, or probe more places",
-            parameter.name(),
-            truepath_ground::units::float(theta.abs())
+            "{} came out at {value:.4}{unit}, {:.1} standard deviations from the {prior:.4}{unit} of the job: {}; the correction follows the points",
+            said(parameter),
+            float(theta.abs()),
+            cause(parameter)
         ));
     }
     let peak = correction.predicted.iter().map(|p| p.before.mean.abs()).max().unwrap_or_default();
@@ -106,6 +110,35 @@ pub fn model_warnings(
         out.push(reversal);
     }
     out
+}
+
+/// What is likely to have moved a parameter away from the job, and the keys to look at.
+const fn cause(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::Compliance => {
+            "the machine is softer or stiffer, or the cut heavier or lighter, than stiffness_x_n_per_mm and stiffness_y_n_per_mm of [machine], [force] and allowance_mm say"
+        }
+        Parameter::ComplianceDifference => {
+            "X and Y give way in another ratio than stiffness_x_n_per_mm and stiffness_y_n_per_mm of [machine]"
+        }
+        Parameter::ComplianceCross => {
+            "a push along X moves the machine along Y, as a column or table that twists does; a shifted datum looks alike"
+        }
+        Parameter::RadialRatio => "another material than [force] says, or a worn cutter",
+        Parameter::EdgeLevel | Parameter::EdgeRatio => {
+            "a worn cutter, or another material than [force] says (kte_n_per_mm, kre_n_per_mm)"
+        }
+        Parameter::Bend => {
+            "the cutter sticks out farther or less than stickout_mm of [tool] says, or is of another material"
+        }
+        Parameter::SizeExponent => "another material than [force] says, or a chip thinner than the edge is round",
+        Parameter::Undersize => {
+            "the cutter is worn, ground or runs out: measure it, and write measured_diameter_mm in [tool]"
+        }
+        Parameter::DatumX | Parameter::DatumY => {
+            "the part was touched with another zero than it was cut with: the same clamping and work offset for both"
+        }
+    }
 }
 
 /// What to say of a wall that one pass cannot hold within the tolerance at every height: what leaves it, and what to type.

@@ -15,6 +15,7 @@ use truepath_report::plot::{Compared, LawWall};
 use truepath_report::{compare_csv, plot, walls_csv};
 use truepath_trial::compare::{Row, Walls, candidates, identified as by_model, row, virtual_machine};
 
+use super::going_on::correct;
 use super::simulate::read_machine;
 use crate::terminal::Terminal;
 
@@ -47,7 +48,7 @@ pub struct Options {
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     let summary = terminal.watch("comparing", |progress| run(options, progress))?;
     terminal.warn_all(&summary.warnings);
-    terminal.tell(&summary, || words(&summary))
+    terminal.tell(&summary, || words(&summary) + "\n" + &correct(&options.job, Some(&options.probe), None))
 }
 
 fn words(s: &CompareSummary) -> String {

@@ -40,7 +40,12 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     folder.write("summary.json", &json(&analysis)?)?;
     folder.commit()?;
     terminal.warn_all(&analysis.warnings);
-    terminal.tell(&analysis, || format!("{}written to {}\n", words(&analysis), options.output.display()))
+    terminal.tell(&analysis, || {
+        let file = options.output.join("forces.toml");
+        let next =
+            format!("next: in a job, [force] with from = \"{}\" in place of material or coefficients", file.display());
+        format!("{}written to {}\n{next}\n", words(&analysis), options.output.display())
+    })
 }
 
 fn words(analysis: &Analysis) -> String {

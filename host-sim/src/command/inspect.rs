@@ -23,6 +23,7 @@ use truepath_report::pages::{self, REPORT};
 use truepath_report::{InspectSummary, aqdef, inspect_summary, judged_points_csv, points_csv};
 
 use super::correction_files::{CONTOURS, contour_folder, contour_name};
+use super::going_on::correct;
 use super::readings::{DIMENSIONS, PROBE, Readings};
 use crate::terminal::Terminal;
 
@@ -97,7 +98,8 @@ pub struct Options {
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     let inspection = run(options)?;
     terminal.warn_all(&inspection.summary.warnings);
-    terminal.tell(&inspection, || words(&inspection))
+    let Options { job, probe, dimensions, .. } = options;
+    terminal.tell(&inspection, || words(&inspection) + &correct(job, probe.as_deref(), dimensions.as_deref()))
 }
 
 fn words(inspection: &Inspection) -> String {

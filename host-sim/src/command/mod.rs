@@ -11,6 +11,7 @@ mod correction_files;
 pub mod demo;
 pub mod device;
 pub mod forces;
+mod going_on;
 pub mod hil;
 mod history;
 pub mod image;

@@ -28,6 +28,7 @@ pub use notice::noticed;
 pub use rigid::Rigid;
 pub use score::{Score, expected_mm, residual_mm};
 pub use shift::Shift;
+pub(crate) use text::said;
 pub use trial::Trial;
 
 use truepath_core::identify::Observation;

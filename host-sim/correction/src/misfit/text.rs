@@ -107,7 +107,7 @@ fn figures(trial: &Trial) -> String {
 }
 
 /// A parameter as a machinist says it.
-const fn said(parameter: Parameter) -> &'static str {
+pub(crate) const fn said(parameter: Parameter) -> &'static str {
     match parameter {
         Parameter::Compliance => "the stiffness of the machine",
         Parameter::ComplianceDifference => "the difference of its stiffness in x and y",

@@ -21,6 +21,7 @@ use truepath_report::pages;
 use truepath_report::pages::{Points, REPORT};
 
 use super::correction_files::{FILES, HISTORY, commit, write_contour, write_program};
+use super::going_on::after_correction;
 use super::history::refuse_replacing;
 use super::pocket;
 use super::readings::{Readings, apart};
@@ -70,7 +71,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     }
     let summary = terminal.watch("correcting", |progress| run(options, progress))?;
     terminal.warn_all(&summary.warnings);
-    terminal.tell(&summary, || words(&summary, output))
+    terminal.tell(&summary, || words(&summary, output) + &after_correction(&summary, job, output))
 }
 
 pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {

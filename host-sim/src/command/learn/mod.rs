@@ -23,6 +23,7 @@ use truepath_report::pages::learned;
 
 use super::correct::words as correction;
 use super::correction_files::{FILES, HISTORY, MILLED, commit, write_contour, write_program};
+use super::going_on::after_correction;
 use super::history::{history_in, refuse_unlearned};
 use super::plan_files::PLAN_HISTORY;
 use super::readings::Readings;
@@ -93,7 +94,10 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     }
     let summary = terminal.watch("learning", |progress| run(options, progress))?;
     terminal.warn_all(&summary.correct.warnings);
-    terminal.tell(&summary, || words(&summary) + &correction(&summary.correct, &options.output))
+    let (job, output) = (&options.job, &options.output);
+    terminal.tell(&summary, || {
+        words(&summary) + &correction(&summary.correct, output) + &after_correction(&summary.correct, job, output)
+    })
 }
 
 fn words(s: &LearnSummary) -> String {

@@ -20,6 +20,7 @@ use truepath_job::dimension::{INSTRUMENTS, Instrument};
 use truepath_job::job::{Assumed, JobFile, ProbeFlags, Which, one_of};
 use truepath_job::pass::Pass;
 
+use super::going_on::{after_verification, shown};
 use crate::terminal::Terminal;
 
 /// What is asked for.
@@ -90,7 +91,21 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     }
     let report = terminal.watch("choosing places", |progress| run(options, progress))?;
     terminal.warn_all(&report.warnings);
-    let written = options.output.as_ref().map(|out| format!("written to {}\n", out.display()));
+    let written = options.output.as_ref().map(|out| {
+        let next = match (options.stock, &options.from) {
+            (true, _) => {
+                "next: run it before the finishing pass, and name its results in the job: [stock] probe = \"FILE\"\n"
+                    .to_owned()
+            }
+            (false, Some(from)) => format!(
+                "next: give its results to truepath learn {} --probe FILE --from {} -o DIR\n",
+                shown(&options.job),
+                shown(from)
+            ),
+            (false, None) => after_verification(&options.job, out),
+        };
+        format!("written to {}\n{next}", out.display())
+    });
     terminal.tell(&report, || words(&report) + &written.unwrap_or_default())
 }
 
