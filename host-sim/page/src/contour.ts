@@ -5,18 +5,20 @@ import { fittingFactor, legend, sceneBar, transport, type Layer } from "./contro
 import { decode } from "./decode";
 import type { Report } from "./data";
 import { el } from "./dom";
-import { fixed } from "./format";
+import { fixed, LENGTH } from "./format";
 import { part, signature, statements } from "./inspection";
 import { limitsOf } from "./limits";
-import { Model } from "./model";
+import { Model, type PassName } from "./model";
 import { palette } from "./palette";
 import { job, parameters, points, program, results } from "./panels";
 import { Player } from "./player";
 import { placeText, Readout } from "./readout";
 import { Stage } from "./stage";
-import { Store, type Shown } from "./state";
+import { Store, type Shown, type State } from "./state";
 import { stretched, turned } from "./stretch";
 import { Traces } from "./traces";
+import { Unrolled } from "./unrolled";
+import { worstList } from "./worst";
 
 export interface ContourView {
   /** What to put on the page. */
@@ -47,6 +49,12 @@ export function checked(report: Report): Report {
   return { ...report, warnings: [...(report.warnings ?? []), "a contour of fewer than two samples is not drawn"] };
 }
 
+/** Pixels of a canvas for one of the style sheet, on paper. */
+const PAPER = 3;
+/** Pixels of a folded trace, and of an open one at most. */
+const FOLDED = 28;
+const TALLEST = 360;
+
 function largest(values: ArrayLike<number> | undefined): number {
   let most = 0;
   for (let i = 0; values && i < values.length; i++) if (Math.abs(values[i]) > most) most = Math.abs(values[i]);
@@ -57,11 +65,13 @@ function layersOf(report: Report, model: Model | null): Layer[] {
   const passes = model?.passes ?? [];
   const errors: [string, string][] = [["left", "material left"], ["gouge", "cut too deep"]];
   if (limitsOf(report)) errors.push(["within", "within tolerance"]);
-  const paths = passes.flatMap((pass): [string, string][] => (model && pass.across ? [[model.colour(pass), model.of("actual path", pass)]] : []));
+  const paths = passes.flatMap((pass): Layer["keys"] => (model && pass.across ? [[model.colour(pass), model.of("actual path", pass), pass.name]] : []));
+  const corrected = passes.filter((pass) => pass.correction);
+  const commanded: Layer["keys"] = corrected.map((pass) => ["commanded", corrected.length > 1 ? model?.of("commanded path", pass) ?? "" : "commanded path", pass.name]);
   const all: [Layer, unknown][] = [
     [{ id: "band", keys: errors }, passes.length],
     [{ id: "nominal", keys: [["nominal", "nominal path"]] }, model],
-    [{ id: "commanded", keys: [["commanded", "commanded path"]] }, passes.some((pass) => pass.correction) || undefined],
+    [{ id: "commanded", keys: commanded }, commanded.length],
     [{ id: "actual", keys: paths }, paths.length],
     [{ id: "stock", keys: [["stock", "stock"]] }, report.job?.stock?.allowance_mm ?? report.outlines?.stock],
     [{ id: "points", keys: [["points", "probe point, normal, deviation mm"]] }, report.points?.length],
@@ -105,12 +115,14 @@ export function contourView(report: Report, among?: Among): ContourView {
     },
     hover: (index) => { stage.mark(index); readout?.show(index ?? Math.round(store.state.place), index !== null); },
     pick: (index) => store.set({ place: index, playing: false }),
+    folded: () => { traces?.rebuild(store.state, colours, traceHeight()); traces?.resize(traceHeight()); traces?.place(store.state.place); },
   }) : null;
 
   const recolour = () => {
     colours = palette();
     stage.recolour(colours);
     chart?.draw();
+    unrolled?.draw(document.documentElement.dataset.printing === undefined ? undefined : PAPER);
     traces?.rebuild(store.state, colours, traceHeight());
   };
 
@@ -122,7 +134,13 @@ export function contourView(report: Report, among?: Among): ContourView {
   });
   const seen = model || report.points?.length || report.outlines?.wall?.length || report.outlines?.stock?.length;
   const picture = el("section", { class: "picture", "aria-label": "Contour" }, bar, stage.element,
-    legend(store, layersOf(report, model)), player && model ? transport(model, store, player, (index) => stage.reveal(index)) : null);
+    legend(store, layersOf(report, model), () => seenPasses(model, store.state.shown)), player && model ? transport(model, store, player, (index) => stage.showPlace(index)) : null,
+    player && model && !brief ? worstList(model, store, ({ index, height }) => {
+      store.set({ place: index, height, playing: false });
+      stage.showPlace(index);
+      picture.scrollIntoView({ block: "nearest" });
+    }) : null);
+  const unrolled = brief ? null : Unrolled.of(report, model, store, stage.touched, () => colours);
   const chart = Chart.of(report);
   const rests = statements(report);
   const facts = brief ? null : job(report);
@@ -141,13 +159,15 @@ export function contourView(report: Report, among?: Among): ContourView {
   // Nothing is said of keys for what is not there.
   if (!brief && cutterKeys && !model) cutterKeys.remove();
   else if (!brief && cutterKeys) document.getElementById("keys")?.append(cutterKeys);
-  const figures = results(report);
+  const figures = results(report, model, brief);
   // Part and signature are those of the whole page.
   const [named, signed] = among ? [null, null] : [part(report), signature(report)];
 
+  // Those that are open share the room beside the picture; below it they have a height of their own.
   const traceHeight = () => {
-    const room = work.clientWidth > 900 ? (picture.clientHeight - 47) / Math.max(1, traces?.count || expected(model)) - 20 : 84;
-    return Math.max(52, Math.min(window.innerHeight > 1300 ? 240 : 150, Math.floor(room)));
+    const beside = picture.clientHeight - 47 - FOLDED * (traces?.folded ?? 0);
+    const room = work.clientWidth > 900 ? beside / Math.max(1, traces?.open || 1) - 20 : 110;
+    return Math.max(72, Math.min(TALLEST, Math.floor(room)));
   };
   let written = 0;
   tracesBox.addEventListener("keydown", (event) => {
@@ -159,6 +179,7 @@ export function contourView(report: Report, among?: Among): ContourView {
   stage.onToggle = () => player?.toggle();
   store.onChange((changed) => {
     if (changed.has("shown")) {
+      readout?.only(seenPasses(model, store.state.shown));
       const chosen = store.state.magnify !== fitting;
       fitting = factor(store.state.shown);
       if (!chosen) store.set({ magnify: fitting });
@@ -176,20 +197,23 @@ export function contourView(report: Report, among?: Among): ContourView {
       stage.moving();
       if (figures) readout?.show(Math.round(store.state.place));
     }
-    if (model && (changed.has("place") || changed.has("playing")) && !store.state.playing) announce(model, store.state.place);
+    if (model && (changed.has("place") || changed.has("playing")) && !store.state.playing) announce(model, store.state);
   });
   let width = 0;
   const seenWidth = new ResizeObserver(() => {
     if (document.documentElement.dataset.printing || Math.abs(work.clientWidth - width) < 1) return;
     width = work.clientWidth;
     stage.layout();
+    unrolled?.draw();
     traces?.resize(traceHeight());
     traces?.place(store.state.place);
   });
   const begin = () => {
     chart?.draw();
     stage.layout();
+    unrolled?.draw();
     traces?.rebuild(store.state, colours, traceHeight());
+    readout?.only(seenPasses(model, store.state.shown));
     readout?.show(0);
     seenWidth.observe(work);
   };
@@ -199,17 +223,16 @@ export function contourView(report: Report, among?: Among): ContourView {
     chart?.close();
     traces?.close();
   };
-  const nodes = [figures, named, work, below, signed].filter((node) => node !== null);
+  const nodes = [...figures, named, work, unrolled?.element ?? null, below, signed].filter((node) => node !== null);
   return { nodes, stage, store, traces, several: passes.length > 1, begin, recolour, close };
 }
 
-const cutterKeys = document.getElementById("keys-cutter");
-
-/** Panels that a model will have, before they are built. */
-function expected(model: Model | null): number {
-  const series = model?.passes[0]?.series ?? {};
-  return (model?.correction ? 1 : 0) + ["error_mm", "dx_mm", "force_n", "arc_deg", "chip_area_mm2", "feed_mm_per_min"].filter((q) => q in series).length;
+/** The passes that are to be seen: one, or both that are compared. */
+export function seenPasses(model: Model | null, shown: Shown): PassName[] {
+  return shown === "both" ? model?.compared.map((pass) => pass.name) ?? [] : [shown];
 }
+
+const cutterKeys = document.getElementById("keys-cutter");
 
 let pending = 0;
 
@@ -219,12 +242,12 @@ export function tell(text: () => string): void {
   pending = window.setTimeout(() => { (document.getElementById("live") as HTMLElement).textContent = text(); }, 400);
 }
 
-function announce(model: Model, place: number): void {
+function announce(model: Model, { place, shown }: State): void {
   tell(() => {
     const index = Math.round(place);
-    const errors = model.passes.flatMap((pass) => {
+    const errors = model.passes.filter((pass) => seenPasses(model, shown).includes(pass.name)).flatMap((pass) => {
       const error = pass.series.error_mm;
-      return error ? [`${model.of("error", pass)} ${fixed(error.values[index], 4)} mm`] : [];
+      return error ? [`${model.of("error", pass)} ${fixed(error.values[index], LENGTH)} mm`] : [];
     });
     return [placeText(model, index), ...errors].join("; ");
   });

@@ -4,6 +4,7 @@ import { el } from "./dom";
 import { fixed } from "./format";
 import type { Model } from "./model";
 import type { Player } from "./player";
+import type { PassName } from "./model";
 import type { Shown, State, Store } from "./state";
 import { placeText } from "./readout";
 
@@ -19,8 +20,8 @@ export function fittingFactor(largest: number, size: number): number {
 
 export interface SceneActions { zoomIn(): void; zoomOut(): void; whole(): void; fragment(): void }
 
-/** A layer with the signs that belong to it: class of the key, name. */
-export interface Layer { id: string; keys: [string, string][] }
+/** A layer with the signs that belong to it: class of the key, name, the pass it is of where it is not of all. */
+export interface Layer { id: string; keys: [string, string, PassName?][] }
 
 export function sceneBar(model: Model | null, store: Store, actions: SceneActions): HTMLElement {
   const bar = el("div", { class: "bar", role: "group", "aria-label": "Picture" });
@@ -48,7 +49,7 @@ export function sceneBar(model: Model | null, store: Store, actions: SceneAction
 }
 
 /** What the lines and colours are; each can be hidden. */
-export function legend(store: Store, layers: Layer[]): HTMLElement {
+export function legend(store: Store, layers: Layer[], seen: () => PassName[]): HTMLElement {
   const list = el("div", { class: "legend", role: "group", "aria-label": "Layers of the picture" });
   for (const { id, keys } of layers) {
     const box = el("input", { type: "checkbox", id: `layer-${id}` });
@@ -59,7 +60,20 @@ export function legend(store: Store, layers: Layer[]): HTMLElement {
       else hidden.add(id);
       store.set({ hidden });
     });
-    list.append(el("label", {}, box, ...keys.flatMap(([key, name]) => [el("i", { class: `key ${key}` }), el("span", {}, name)])));
+    const signs = keys.map(([key, name, pass]) => ({ pass, nodes: [el("i", { class: `key ${key}` }), el("span", {}, name)] }));
+    const label = el("label", {}, box, ...signs.flatMap(({ nodes }) => nodes));
+    // Of a pass that is not shown there is no sign.
+    const follow = () => {
+      const here = signs.filter(({ pass, nodes }) => {
+        const shown = pass === undefined || seen().includes(pass);
+        for (const node of nodes) node.hidden = !shown;
+        return shown;
+      });
+      label.hidden = here.length === 0;
+    };
+    store.onChange((changed) => { if (changed.has("shown")) follow(); });
+    follow();
+    list.append(label);
   }
   return list;
 }

@@ -143,6 +143,24 @@ export interface Parameter {
   observable: boolean;
 }
 
+/** A wall in figures: largest mean over the height, largest error at any height, each with its standard deviation; the sign aside. */
+export interface WallFigures {
+  mean_mm?: number;
+  mean_sigma_mm?: number;
+  worst_mm?: number;
+  worst_sigma_mm?: number;
+}
+
+/** The wall without the correction, of the measured part or of the only pass; and with the correction. */
+export interface Outlook {
+  now: WallFigures;
+  next?: WallFigures;
+  /** What machine and probe repeat to, below which no correction brings the mean: one standard deviation. */
+  floor_mm?: number;
+  /** Both were cut; otherwise they are predicted. */
+  cut?: boolean;
+}
+
 export interface Result {
   name: string;
   value: number;
@@ -231,6 +249,9 @@ export interface Report {
   points?: ProbePoint[];
   outcome?: Outcome;
   parameters?: Parameter[];
+  outlook?: Outlook;
+  /** What to do next: words up to the command, and the command. */
+  next?: { what: string; command: string };
   /** How the wall comes out, in a sentence. */
   told?: string;
   results?: Result[];

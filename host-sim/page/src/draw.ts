@@ -176,6 +176,9 @@ const RANK = { aside: 0, plain: 1, within: 1, open: 2, left: 3, gouge: 3 };
 
 /** More points than this are a crowd. */
 const CROWD = 60;
+/** Places that are tried for the deviation of a point, and pixels from which on a line leads to it. */
+const FARTHER = 16;
+const FAR = 30;
 
 function points(c: Context, view: View, picture: Picture, colours: Palette): void {
   const seen = picture.points.flatMap((point, index) => {
@@ -202,28 +205,60 @@ function points(c: Context, view: View, picture: Picture, colours: Palette): voi
     c.lineWidth = index === picture.picked ? 3 : 1.5;
     drawMark(c, where, x, y, 4);
   }
-  const boxes: [number, number, number, number][] = [];
+  const labels: Label[] = [];
   const decimals = decimalsTelling(picture.points, picture.limits, 3);
-  for (const { point, nx, ny, wall } of seen.reverse()) {
+  c.font = `11px ${colours.font}`;
+  for (const { point, wall } of seen.reverse()) {
+    if (point.error_mm === undefined) continue;
     const text = signed(point.error_mm, decimals);
-    if (point.error_mm !== undefined) label(c, view, boxes, wall.x + nx * (outward + 4), wall.y - ny * (outward + 4), text, point, colours);
+    const wide = c.measureText(text).width;
+    // Beside the stroke; where there is no room, farther out along it, then on the other side of the wall.
+    for (let k = 0; k < (seen.length > CROWD ? 1 : FARTHER); k++) {
+      const away = k % 2 ? -(outward + 10 + 7 * k) : outward + 4 + 7 * k;
+      const label = labelAt(point, text, wide, wall, away);
+      if (!free(view, labels, label)) continue;
+      labels.push(label);
+      break;
+    }
   }
+  write(c, labels, colours);
 }
 
-function label(c: Context, view: View, boxes: [number, number, number, number][], x: number, y: number, text: string, point: ProbePoint, colours: Palette): void {
-  c.font = `11px ${colours.font}`;
-  const wide = c.measureText(text).width;
+/** A deviation beside its point: its box, the place of the wall, and how far from that it stands. */
+interface Label { text: string; used: boolean; left: number; top: number; wide: number; wall: { x: number; y: number }; at: { x: number; y: number }; away: number }
+
+function labelAt(point: ProbePoint, text: string, wide: number, wall: { x: number; y: number }, away: number): Label {
   const { nx = 0, ny = 0 } = point;
-  const left = Math.abs(nx) < 0.5 ? x - wide / 2 : nx > 0 ? x : x - wide;
-  const top = Math.abs(nx) < 0.5 ? (ny > 0 ? y - 12 : y) : y - 6;
-  if (left < 2 || top < 2 || left + wide > view.width - 2 || top + 12 > view.height - 2) return;
-  if (boxes.some(([l, t, w]) => left < l + w + 3 && l < left + wide + 3 && top < t + 12 && t < top + 12)) return;
-  boxes.push([left, top, wide, 12]);
+  const at = { x: wall.x + nx * away, y: wall.y - ny * away };
+  const [right, up] = [nx * Math.sign(away), ny * Math.sign(away)];
+  const left = Math.abs(nx) < 0.5 ? at.x - wide / 2 : right > 0 ? at.x : at.x - wide;
+  const top = Math.abs(nx) < 0.5 ? (up > 0 ? at.y - 12 : at.y) : at.y - 6;
+  return { text, used: point.status === "used", left, top, wide, wall, at, away };
+}
+
+function free(view: View, labels: Label[], { left, top, wide }: Label): boolean {
+  if (left < 2 || top < 2 || left + wide > view.width - 2 || top + 12 > view.height - 2) return false;
+  return !labels.some((l) => left < l.left + l.wide + 3 && l.left < left + wide + 3 && top < l.top + 12 && l.top < top + 12);
+}
+
+/** The lines to what stands far from its point lie below all labels. */
+function write(c: Context, labels: Label[], colours: Palette): void {
+  c.strokeStyle = colours.quiet;
+  c.lineWidth = 0.6;
+  c.beginPath();
+  for (const { wall, at, away } of labels) {
+    if (Math.abs(away) <= FAR) continue;
+    c.moveTo(wall.x, wall.y);
+    c.lineTo(at.x, at.y);
+  }
+  c.stroke();
   c.fillStyle = colours.ground;
   c.globalAlpha = 0.85;
-  c.fillRect(left - 2, top - 1, wide + 4, 14);
+  for (const { left, top, wide } of labels) c.fillRect(left - 2, top - 1, wide + 4, 14);
   c.globalAlpha = 1;
-  c.fillStyle = point.status === "used" ? colours.ink : colours.quiet;
   c.textBaseline = "top";
-  c.fillText(text, left, top + 1);
+  for (const { text, used, left, top } of labels) {
+    c.fillStyle = used ? colours.ink : colours.quiet;
+    c.fillText(text, left, top + 1);
+  }
 }

@@ -1,6 +1,7 @@
 /** The contours of a page of several: their names, where they lie, how they came out, and which is the worst. */
 
 import { checked, drawn } from "./contour";
+import { LENGTH } from "./format";
 import type { Outcome, Report, Several } from "./data";
 import { decimalsTelling, limitsOf } from "./limits";
 import { Path } from "./model";
@@ -51,9 +52,10 @@ export function figuresOf({ kind }: Several, entries: Entry[]): Figure[] {
   return [...FIGURES[kind], ...OTHERS].filter(({ key }) => has(key) && !(key === "gouge_mm" && has("profile_mm")));
 }
 
-/** The figure that contours are ranked by until the reader chooses another: the error of what the page is about. */
-export function ranking(kind: Report["kind"]): Figure {
-  return FIGURES[kind][FIGURES[kind].length - 1];
+/** The figure that contours are ranked by until the reader chooses another: the worst at any height of what the page is about, or its largest error. */
+export function ranking({ kind }: Several, entries: Entry[]): Figure {
+  const any = OTHERS[0];
+  return kind !== "inspect" && entries.some(({ outcome }) => outcome[any.key] !== undefined) ? any : FIGURES[kind][FIGURES[kind].length - 1];
 }
 
 export function entriesOf(several: Several): Entry[] {
@@ -84,18 +86,14 @@ export function worstFirst(entries: Entry[], { key }: Figure): Entry[] {
 
 /** Decimals that tell every deviation from the limits it is held against. */
 export function decimalsOf(entries: Entry[]): number {
-  return Math.max(4, ...entries.filter(({ report }) => report.kind === "inspect").map(({ report }) => decimalsTelling(report.points ?? [], limitsOf(report), 4)));
+  return Math.max(LENGTH, ...entries.filter(({ report }) => report.kind === "inspect").map(({ report }) => decimalsTelling(report.points ?? [], limitsOf(report), LENGTH)));
 }
-
-/** How near to its start a path ends that is closed: mm, or as a share of the radius of the cutter. */
-const CLOSED = 0.01;
 
 function lines(report: Report): Pick<Entry, "wall" | "path" | "closed"> {
   const given = outline(report.outlines?.wall, "wall") ?? [];
   if (!report.contour || !drawn(report)) return { wall: given, path: [], closed: false };
   const path = new Path(report, report.contour);
   const [x, y] = [path.x.values, path.y.values];
-  const last = path.count - 1;
   const wall = trimmed(path, offsetOf(path, path.radius), path.radius);
-  return { wall: [wall], path: [{ x, y }], closed: Math.hypot(x[last] - x[0], y[last] - y[0]) < Math.max(CLOSED, path.radius * CLOSED) };
+  return { wall: [wall], path: [{ x, y }], closed: path.closed };
 }

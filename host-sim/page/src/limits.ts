@@ -1,7 +1,7 @@
 /** Limits of the wall error, and where a deviation lies among them. */
 
 import type { ProbePoint, Report } from "./data";
-import { fixed, signed } from "./format";
+import { fixed, LENGTH, signed } from "./format";
 
 export interface Limits { lower: number; upper: number; uncertainty: number | undefined }
 
@@ -14,10 +14,13 @@ export function limitsOf(report: Report): Limits | undefined {
   return half === undefined ? undefined : { lower: -half, upper: half, uncertainty: undefined };
 }
 
-/** Decimals that tell limits and uncertainty with all of their digits, four at least. */
+/** Decimals of a length at most. */
+const MOST = 5;
+
+/** Decimals that tell limits and uncertainty with all of their digits: a micrometre, or up to two more. */
 export function limitDecimals({ lower, upper, uncertainty = 0 }: Limits): number {
   const exact = (decimals: number) => [lower, upper, uncertainty].every((v) => Math.abs(v - Number(v.toFixed(decimals))) < 1e-9);
-  return [4, 5].find(exact) ?? 6;
+  return [LENGTH, LENGTH + 1].find(exact) ?? MOST;
 }
 
 export function limitsText(limits: Limits): string {
@@ -26,7 +29,7 @@ export function limitsText(limits: Limits): string {
   return lower === -upper ? `±${fixed(upper, decimals)} mm` : `${signed(lower, decimals)} … ${signed(upper, decimals)} mm`;
 }
 
-/** As many decimals as it takes, so that no deviation is rounded to the other side of a limit: `least`, or more up to nanometres. */
+/** As many decimals as it takes, so that no deviation is rounded to the other side of a limit: `least`, or up to a hundredth of a micrometre. */
 export function decimalsTelling(points: ProbePoint[], limits: Limits | undefined, least: number): number {
   if (!limits) return least;
   const nm = (mm: number) => Math.round(mm * 1e6);
@@ -35,7 +38,7 @@ export function decimalsTelling(points: ProbePoint[], limits: Limits | undefined
   const errors = points.flatMap((p) => (p.error_mm === undefined ? [] : [p.error_mm]));
   const holds = (decimals: number) => errors.every((e) => side(nm(e)) === side(nm(Number(e.toFixed(decimals)))));
   let decimals = least;
-  while (decimals < 6 && !holds(decimals)) decimals++;
+  while (decimals < MOST && !holds(decimals)) decimals++;
   return decimals;
 }
 

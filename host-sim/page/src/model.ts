@@ -47,6 +47,9 @@ export class Pass {
   }
 }
 
+/** How near to its start a path ends that is closed: mm, or as a share of the radius of the cutter. */
+const CLOSED = 0.01;
+
 type Normals = [Float64Array, Float64Array];
 
 /** The part of a vector towards the wall. What lies along the path moves no wall. */
@@ -81,6 +84,13 @@ export class Path {
     } else {
       [this.nx, this.ny] = this.normals();
     }
+  }
+
+  /** Whether the path ends where it starts. */
+  get closed(): boolean {
+    const last = this.count - 1;
+    const [x, y] = [this.x.values, this.y.values];
+    return Math.hypot(x[last] - x[0], y[last] - y[0]) < Math.max(CLOSED, this.radius * CLOSED);
   }
 
   get length(): number {

@@ -1,11 +1,13 @@
 /** The blocks in words and figures: head, results, job, parameters, probe points, warnings. */
 
-import type { Parameter, ProbePoint, Program, Report, Several } from "./data";
+import type { Parameter, ProbePoint, Program, Report, Result, Several } from "./data";
 import { card, el, table } from "./dom";
-import { decimalsFor, fixed, NO_VALUE, signed, withUnit } from "./format";
-import { decimalsTelling, limitDecimals, limitsOf, limitsText, standing, verdictWord, type Limits } from "./limits";
+import { decimalsFor, fixed, LENGTH, NO_VALUE, sigmaText, signed, withUnit } from "./format";
+import { nextStep, sentence, three, type Told } from "./headline";
+import { decimalsTelling, limitsOf, limitsText, standing, verdictWord, type Limits } from "./limits";
 import { MEANING } from "./glossary";
 import { SIGNS } from "./marks";
+import type { Model } from "./model";
 
 const KINDS = { simulate: "simulated pass", correct: "correction", learn: "correction of the next part", inspect: "inspection" };
 
@@ -27,15 +29,24 @@ export function warnings(list: string[]): HTMLElement {
     el("ul", {}, ...list.map((text) => el("li", {}, text))));
 }
 
-export function results(report: Report): HTMLElement | null {
-  const { told, verdict, results: list = [], limits: given } = report;
+/** The verdict in a sentence, three figures and the next step; the rest is folded, and open on a sheet of its own. */
+export function results(report: Report, model: Model | null, open: boolean): HTMLElement[] {
+  const { told, verdict, results: list = [] } = report;
   const limits = limitsOf(report);
-  const entries = list.map((r) => figure(r.name, withUnit(fixed(r.value, r.decimals), r.unit), r.note));
-  if (limits) {
-    const notes = [limits.uncertainty === undefined ? "" : `uncertainty ±${fixed(limits.uncertainty, limitDecimals(limits))} mm, k = 2`, given?.from ?? ""].filter(Boolean);
-    entries.unshift(figure("tolerance", limitsText(limits), notes.join("; ")));
-  }
-  return figures(entries, verdict, told);
+  const read = (r: Result): Told => ({ name: r.name, value: withUnit(fixed(r.value, decimalsShown(r, report, limits)), r.unit), note: r.note });
+  const shown = three(report, model, list, read);
+  const rest = list.map(read).filter(({ name }) => !shown.some((one) => one.name === name));
+  const line = sentence(report, model);
+  return figures({
+    told: line, verdict, entries: shown.map((t) => figure(t.name, t.value, t.note)), next: nextStep(report),
+    rest: rest.map((t) => figure(t.name, t.value, t.note)), more: told === line ? undefined : told, open,
+  });
+}
+
+/** A length to a micrometre, a deviation as far as its verdict can be read from it; an angle to a tenth of a degree. */
+function decimalsShown({ unit, decimals }: Result, { kind, points = [] }: Report, limits: Limits | undefined): number {
+  if (unit === "mm") return Math.min(decimals, kind === "inspect" ? decimalsTelling(points, limits, LENGTH) : LENGTH);
+  return unit === "mm²" ? Math.min(decimals, LENGTH) : Math.min(decimals, 1);
 }
 
 /** A head figure with a word on it. */
@@ -43,13 +54,31 @@ export function figure(name: string, value: string, note?: string | Node): HTMLE
   return el("div", { class: "result" }, el("dt", {}, name), el("dd", {}, value), note ? el("dd", { class: "note" }, note) : null);
 }
 
-/** Head figures, after the verdict where there is one; above them how the wall comes out, in a sentence. */
-export function figures(entries: HTMLElement[], verdict: Report["verdict"], told?: string, name = "Results"): HTMLElement | null {
-  if (entries.length === 0 && !verdict && !told) return null;
+/** What stands on top of a page or of a contour. */
+export interface Head {
+  /** How the wall comes out, in a sentence; and more of it. */
+  told?: string;
+  more?: string;
+  verdict: Report["verdict"];
+  entries: HTMLElement[];
+  next?: HTMLElement | null;
+  /** What is folded, and whether it is open. */
+  rest?: HTMLElement[];
+  open?: boolean;
+  name?: string;
+}
+
+/** The sentence, and the block of figures below it. */
+export function figures({ told, more, verdict, entries, next = null, rest = [], open = false, name = "Results" }: Head): HTMLElement[] {
   const words = { pass: "within tolerance", fail: "out of tolerance", open: "not decided" };
   const stamp = verdict ? el("p", { class: `verdict ${verdict.state}` }, el("strong", {}, words[verdict.state]),
     el("span", {}, verdict.text)) : null;
-  return el("section", { class: "results", "aria-label": name }, told ? el("p", { class: "told" }, told) : null, stamp, el("dl", {}, ...entries));
+  const all = rest.length === 0 ? null : el("details", { class: "all" }, el("summary", {}, `All figures: ${rest.length} more`),
+    more ? el("p", { class: "more" }, more) : null, el("dl", {}, ...rest));
+  if (all) all.open = open;
+  const headline = told ? [el("p", { class: "told" }, told)] : [];
+  if (entries.length === 0 && !verdict) return headline;
+  return [...headline, el("section", { class: "results", "aria-label": name }, stamp, el("dl", {}, ...entries), next, all)];
 }
 
 export function job(report: Report): HTMLElement | null {
@@ -94,7 +123,7 @@ export function parameters(list: Parameter[]): HTMLElement {
   const rows = list.map((p) => {
     const decimals = decimalsFor(p.sigma);
     const prior = p.prior === undefined ? NO_VALUE : `${fixed(p.prior, decimals)} ± ${fixed(p.prior_sigma, decimals)}`;
-    return [p.name.replaceAll("_", " "), fixed(p.value, decimals), `± ${fixed(p.sigma, decimals)}`, prior,
+    return [p.name.replaceAll("_", " "), fixed(p.value, decimals), `± ${sigmaText(p.sigma, decimals)}`, prior,
       p.unit === "1" ? NO_VALUE : p.unit.replace("um", "µm"),
       el("span", { class: p.observable ? "yes" : "no" }, p.observable ? "yes" : "no")];
   });
@@ -118,13 +147,13 @@ export function points(report: Report, show: (index: number) => void): HTMLEleme
   const limits: Limits | undefined = limitsOf(report);
   const judged = list.some((p) => p.verdict);
   const used = list.filter((p) => p.status === "used").length;
-  const decimals = decimalsTelling(list, limits, 4);
+  const decimals = decimalsTelling(list, limits, LENGTH);
   const rows = list.map((p, index) => {
     const button = el("button", { type: "button", class: "link", "aria-label": `Show probe point ${p.line ?? index + 1} in the picture` }, String(p.line ?? index + 1));
     button.addEventListener("click", () => show(index));
     const where = standing(p, limits);
     const word = judged ? el("span", { class: `standing ${where}` }, `${SIGNS[where]} ${verdictWord(p, limits)}`) : PLACES[where];
-    return [button, fixed(p.s_mm, 3), fixed(p.x_mm, 4), fixed(p.y_mm, 4), fixed(p.z_mm, 2), fixed(p.nx, 3), fixed(p.ny, 3),
+    return [button, fixed(p.s_mm, 3), fixed(p.x_mm, LENGTH), fixed(p.y_mm, LENGTH), fixed(p.z_mm, 2), fixed(p.nx, 3), fixed(p.ny, 3),
       signed(p.error_mm, decimals), ...(limits ? [word] : []), statusOf(p)];
   });
   const column = limits ? [judged ? "verdict" : `in ${limitsText(limits)}`] : [];

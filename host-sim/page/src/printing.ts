@@ -43,7 +43,7 @@ function pictureHeight(stage: Stage): number {
 export function onPaper(): () => void {
   const root = document.documentElement;
   const { theme } = root.dataset;
-  const opened = [...document.querySelectorAll<HTMLDetailsElement>("details.warnings:not([open])")];
+  const opened = [...document.querySelectorAll<HTMLDetailsElement>("details:is(.warnings, .all):not([open])")];
   root.dataset.theme = "light";
   root.dataset.printing = "yes";
   for (const details of opened) details.open = true;

@@ -1,8 +1,8 @@
 /** The figures at one sample of the contour: the table beside the scene and the flag at the pointer. */
 
 import { el } from "./dom";
-import { fixed, NO_VALUE, signed } from "./format";
-import type { Model, Quantity } from "./model";
+import { decimalsOf, fixed, LENGTH, NO_VALUE, sigmaText, signed } from "./format";
+import type { Model, Pass, PassName, Quantity } from "./model";
 
 const ROWS: [Quantity, string, string][] = [
   ["error_mm", "wall error", "mm"], ["sigma_mm", "σ of it", "mm"], ["arc_deg", "engagement arc", "°"], ["chip_area_mm2", "chip area", "mm²"],
@@ -11,15 +11,17 @@ const ROWS: [Quantity, string, string][] = [
 ];
 
 function row(quantity: Quantity, values: (number | undefined)[], decimals: number): string[] {
-  const write = quantity === "sigma_mm" || quantity === "force_n" || quantity.startsWith("arc") || quantity.startsWith("chip") || quantity.startsWith("feed") ? fixed : signed;
-  return values.map((value) => write(value, decimals));
+  if (quantity === "sigma_mm") return values.map((value) => sigmaText(value));
+  const write = quantity === "force_n" || quantity.startsWith("arc") || quantity.startsWith("chip") || quantity.startsWith("feed") ? fixed : signed;
+  return values.map((value) => write(value, decimalsOf(quantity, decimals)));
 }
 
 export class Readout {
   readonly element: HTMLElement;
   private readonly place: HTMLElement;
+  private readonly heads: HTMLElement[];
   private readonly title = el("h2", { id: "readout-title" }, "At the cutter");
-  private readonly cells: [Quantity | "cx" | "cy", HTMLElement[]][] = [];
+  private readonly cells: [Quantity | "cx" | "cy", HTMLTableCellElement[]][] = [];
 
   constructor(private readonly model: Model) {
     const { passes } = model;
@@ -43,11 +45,25 @@ export class Readout {
       add("cy", "correction y", "mm", own);
     }
     this.place = el("p", { class: "at" });
-    const heads = [el("th", { scope: "col", class: "text" }, "quantity"), ...passes.map((pass) => el("th", { scope: "col", class: "number" }, passes.length > 1 ? pass.title : "value")),
+    this.heads = passes.map((pass) => el("th", { scope: "col", class: "number" }, passes.length > 1 ? pass.title : "value"));
+    const heads = [el("th", { scope: "col", class: "text" }, "quantity"), ...this.heads,
       ...(narrow ? [] : [el("th", { scope: "col", class: "text" }, "unit")])];
     this.element = el("section", { class: narrow ? "card narrow" : "card", id: "readout", "aria-labelledby": "readout-title" },
       this.title, this.place,
       el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Figures at the cutter" }, el("table", {}, el("thead", {}, el("tr", {}, ...heads)), body)));
+  }
+
+  /** Leaves the columns of the passes that are to be seen, and no correction where none of them has one. */
+  only(names: PassName[]): void {
+    const { passes } = this.model;
+    const seen = passes.map((pass) => names.includes(pass.name));
+    this.heads.forEach((head, k) => { head.hidden = !seen[k]; });
+    for (const [key, cells] of this.cells) {
+      const corrects = passes.map((pass, k) => seen[k] && (pass.correction !== undefined || passes.length === 1));
+      if (key === "cx" || key === "cy") (cells[0].parentElement as HTMLElement).hidden = !corrects.includes(true);
+      if (cells.length === passes.length) cells.forEach((cell, k) => { cell.hidden = !seen[k]; });
+      else cells[0].colSpan = Math.max(1, seen.filter(Boolean).length);
+    }
   }
 
   show(index: number, hovered = false): void {
@@ -60,7 +76,7 @@ export class Readout {
         cells.forEach((cell, k) => {
           const correction = cells.length > 1 ? model.passes[k].correction : model.correction;
           const series = key === "cx" ? correction?.x : correction?.y;
-          cell.textContent = signed(series?.values[index], series?.decimals ?? 0);
+          cell.textContent = signed(series?.values[index], LENGTH);
         });
         continue;
       }
@@ -73,30 +89,30 @@ export class Readout {
 }
 
 export function placeText(model: Model, index: number): string {
-  return `s ${fixed(model.s.values[index], model.s.decimals)} mm, X ${fixed(model.x.values[index], model.x.decimals)} mm, Y ${fixed(model.y.values[index], model.y.decimals)} mm`;
+  return `s ${fixed(model.s.values[index], LENGTH)} mm, X ${fixed(model.x.values[index], LENGTH)} mm, Y ${fixed(model.y.values[index], LENGTH)} mm`;
 }
 
-/** Lines of the flag: name, value with unit. */
-export function flagLines(model: Model, index: number, height: number | null): [string, string][] {
+/** Lines of the flag, of the passes shown: name, value with unit. */
+export function flagLines(model: Model, shown: Pass[], index: number, height: number | null): [string, string][] {
   const lines: [string, string][] = [
-    ["s", `${fixed(model.s.values[index], model.s.decimals)} mm`],
-    ["X, Y", `${fixed(model.x.values[index], model.x.decimals)}, ${fixed(model.y.values[index], model.y.decimals)} mm`],
+    ["s", `${fixed(model.s.values[index], LENGTH)} mm`],
+    ["X, Y", `${fixed(model.x.values[index], LENGTH)}, ${fixed(model.y.values[index], LENGTH)} mm`],
   ];
-  for (const pass of model.passes) {
+  for (const pass of shown) {
     const error = model.error(pass.name, height);
-    if (error) lines.push([model.of("error", pass), Number.isNaN(error[index]) ? NO_VALUE : `${signed(error[index], pass.series.error_mm?.decimals ?? 6)} mm`]);
-    if (!model.compared.includes(pass)) continue;
+    if (error) lines.push([model.of("error", pass), Number.isNaN(error[index]) ? NO_VALUE : `${signed(error[index], LENGTH)} mm`]);
     const { sigma_mm: sigma, force_n: force, arc_deg: arc } = pass.series;
-    if (sigma) lines.push(["± σ", `${fixed(sigma.values[index], sigma.decimals)} mm`]);
-    if (force) lines.push([model.of("force", pass), `${fixed(force.values[index], force.decimals)} N`]);
-    if (arc && pass === model.compared[0]) lines.push(["arc", `${fixed(arc.values[index], arc.decimals)}°`]);
+    if (sigma) lines.push(["± σ", `${sigmaText(sigma.values[index])} mm`]);
+    if (force) lines.push([model.of("force", pass), `${fixed(force.values[index], 1)} N`]);
+    if (arc && pass === shown[0]) lines.push(["arc", `${fixed(arc.values[index], 1)}°`]);
   }
-  const corrected = model.passes.filter((pass) => pass.correction);
-  const corrections = corrected.length > 1 ? corrected.map((pass) => [`correction, ${pass.title}`, pass.correction] as const) : [["correction x, y", model.correction] as const];
+  const corrected = shown.filter((pass) => pass.correction);
+  const several = model.passes.filter((pass) => pass.correction).length > 1;
+  const corrections = corrected.map((pass) => [several ? `correction, ${pass.title}` : "correction x, y", pass.correction] as const);
   for (const [name, correction] of corrections) {
     if (!correction) continue;
     const { x, y } = correction;
-    lines.push([name, `${signed(x.values[index], x.decimals)}, ${signed(y.values[index], y.decimals)} mm`]);
+    lines.push([name, `${signed(x.values[index], LENGTH)}, ${signed(y.values[index], LENGTH)} mm`]);
   }
   return lines;
 }

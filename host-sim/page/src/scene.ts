@@ -97,6 +97,8 @@ export class Scene {
     let dragged = false;
     let back = () => {};
     stage.addEventListener("wheel", (event) => {
+      // A wheel that passes by scrolls the page; a pinch of a touchpad comes with Ctrl.
+      if (!event.ctrlKey && !event.metaKey && document.activeElement !== stage) return;
       event.preventDefault();
       const { x, y } = this.at(event);
       const lines = event.deltaMode === 1 ? 30 : 1;

@@ -8,6 +8,7 @@ import { fixed, NO_VALUE } from "./format";
 import { part, signature } from "./inspection";
 import { limitsOf, limitsText } from "./limits";
 import { Overview, stepped } from "./overview";
+import { nextStep, ofSeveral } from "./headline";
 import { figure, figures, head, sourceOf, warnings } from "./panels";
 import { onPaper, sheets } from "./printing";
 import { tools } from "./theme";
@@ -39,7 +40,7 @@ class Contours {
   constructor(private readonly data: Several, top: HTMLElement, main: HTMLElement) {
     this.entries = entriesOf(data);
     this.columns = figuresOf(data, this.entries);
-    this.rank = ranking(data.kind);
+    this.rank = ranking(data, this.entries);
     this.ranked = worstFirst(this.entries, this.rank);
     this.decimals = decimalsOf(this.entries);
     this.overview = new Overview(this.entries, this.rank, this.decimals, hrefOf, (entry, step) => this.go(entry, step), (entry) => this.point(entry));
@@ -51,7 +52,7 @@ class Contours {
       el("div", { class: "overview-head" }, el("h2", { id: "overview-title" }, `Contours of the part: ${this.entries.length}`), ...this.orders()),
       el("div", { class: "overview-body" }, this.overview.element, this.list));
     document.getElementById("keys")?.prepend("Overview: a click or the arrows choose a contour; its address in the browser leads back to it. ");
-    main.append(...[this.figures(), part(shared), card, this.section, signature(shared)].filter((node) => node !== null));
+    main.append(...[...this.figures(), part(shared), card, this.section, signature(shared)].filter((node) => node !== null));
     this.overview.draw();
     this.chosen = this.named() ?? this.ranked[0];
     this.rows();
@@ -134,7 +135,7 @@ class Contours {
   }
 
   /** The worst of all contours, and of which it is. */
-  private figures(): HTMLElement | null {
+  private figures(): HTMLElement[] {
     const entries = this.columns.map(({ key, name }) => {
       const size = ({ outcome }: Entry) => outcome[key] ?? -1;
       const worst = this.entries.reduce((a, b) => (size(b) > size(a) ? b : a));
@@ -146,7 +147,13 @@ class Contours {
     const tolerances = new Set(this.entries.map(({ report }) => { const limits = limitsOf(report); return limits ? limitsText(limits) : ""; }));
     const [tolerance] = tolerances;
     if (tolerances.size === 1 && tolerance) entries.unshift(figure("tolerance", tolerance));
-    return figures(entries, this.verdict(), undefined, "The worst of all contours");
+    // What the contours are ranked by, then what it is held against or how many they are.
+    const ranked = entries[entries.length - this.columns.length + this.columns.indexOf(this.rank)];
+    const shown = [...new Set([ranked, ...entries])].slice(0, 3);
+    return figures({
+      told: ofSeveral(this.entries), verdict: this.verdict(), entries: shown, next: nextStep(this.entries[0].report),
+      rest: entries.filter((entry) => !shown.includes(entry)), name: "The worst of all contours",
+    });
   }
 
   /** The worst verdict, and whose it is. */

@@ -4,9 +4,9 @@ import { between } from "./cutter";
 import type { ProbePoint, Report } from "./data";
 import { el } from "./dom";
 import type { Picture } from "./draw";
-import { fixed, signed } from "./format";
-import { limitsOf, verdictWord, type Limits } from "./limits";
-import type { Model, PassName } from "./model";
+import { fixed, LENGTH, signed } from "./format";
+import { decimalsTelling, limitsOf, verdictWord, type Limits } from "./limits";
+import type { Model, Pass, PassName } from "./model";
 import { nearestSample } from "./nearest";
 import { boxOf, offsetOf, outline, type Line } from "./outline";
 import type { Palette } from "./palette";
@@ -125,14 +125,15 @@ export class Stage {
     this.moving();
   }
 
-  /** Moves the picture, where it does not show a sample, so that it does. */
-  reveal(index: number): void {
+  /** Shows a place of the wall in the middle of the picture, no smaller than it was: zooming then goes to it. */
+  showPlace(index: number): void {
     if (!this.model || !this.wall) return;
     const { view } = this;
-    const inside = [[view.px(this.model.x.values[index]), view.py(this.model.y.values[index])], [view.px(this.wall.x[index]), view.py(this.wall.y[index])]]
-      .every(([px, py]) => px > 0 && py > 0 && px < view.width && py < view.height);
-    if (inside) return;
-    view.centre(this.wall.x[index], this.wall.y[index]);
+    const [x, y] = [this.wall.x[index], this.wall.y[index]];
+    const half = Math.max(3, this.model.radius * 1.2);
+    const { scale } = view;
+    view.show({ x0: x - half, x1: x + half, y0: y - half, y1: y + half });
+    if (view.scale < scale) view.zoom(scale / view.scale);
     this.still();
   }
 
@@ -170,6 +171,12 @@ export class Stage {
     return `${pass ? this.model?.called(pass) : "wall and probe points"}${z}; errors ${magnify}\u00a0×`;
   }
 
+  /** The passes that are to be seen. */
+  private passesShown(): Pass[] {
+    const seen = this.visible().map(({ name }) => name);
+    return this.model?.passes.filter((pass) => seen.includes(pass.name)) ?? [];
+  }
+
   private picture(name: PassName): Picture {
     const { magnify, height, hidden } = this.store.state;
     return {
@@ -190,8 +197,8 @@ export class Stage {
       const p = this.points[point];
       this.hoverAt(null);
       this.show(scene, px, py, [
-        ["probe point", String(p.line ?? point + 1)], ["deviation", `${signed(p.error_mm, 6)} mm`],
-        ["X, Y", `${fixed(p.x_mm, 6)}, ${fixed(p.y_mm, 6)} mm`], ["normal", `${fixed(p.nx, 3)}, ${fixed(p.ny, 3)}`],
+        ["probe point", String(p.line ?? point + 1)], ["deviation", `${signed(p.error_mm, decimalsTelling(this.points, this.limits, LENGTH))} mm`],
+        ["X, Y", `${fixed(p.x_mm, LENGTH)}, ${fixed(p.y_mm, LENGTH)} mm`], ["normal", `${fixed(p.nx, 3)}, ${fixed(p.ny, 3)}`],
         ...(p.verdict ? [["verdict", verdictWord(p, this.limits)] as [string, string]] : []),
         ...(p.z_mm === undefined ? [] : [["height", `${fixed(p.z_mm, 2)} mm`] as [string, string]]),
         ["status", statusOf(p)],
@@ -200,7 +207,7 @@ export class Stage {
     }
     const index = this.nearest(px, py);
     this.hoverAt(index);
-    if (index !== null && this.model) this.show(scene, px, py, flagLines(this.model, index, this.store.state.height));
+    if (index !== null && this.model) this.show(scene, px, py, flagLines(this.model, this.passesShown(), index, this.store.state.height));
   }
 
   private pointAt(px: number, py: number, scene: Scene): number | null {

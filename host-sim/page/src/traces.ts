@@ -4,22 +4,25 @@ import uPlot from "uplot";
 import { between } from "./cutter";
 import type { Series } from "./decode";
 import { framedByFinger } from "./finger";
-import { fixed } from "./format";
+import { fixed, LENGTH } from "./format";
 import { widest } from "./letters";
 import { limitsOf, type Limits } from "./limits";
 import type { Model, Quantity } from "./model";
 import type { Palette } from "./palette";
 import type { State } from "./state";
 
-interface Curve { name: string; series: Series; colour: string; dash?: number[]; faint?: boolean; width?: number; unscaled?: boolean }
-interface Panel { title: string; unit: string; curves: Curve[]; sigma?: { error: Series; sigma: Series; colour: string }; limits?: Limits }
+interface Curve { name: string; series: Series; colour: string; dash?: number[]; width?: number }
+interface Panel { quantity: string; title: string; unit: string; curves: Curve[]; sigma?: { error: Series; sigma: Series; colour: string }; limits?: Limits }
 
-interface Shown { plot: uPlot; panel: Panel; head: HTMLElement; values: HTMLElement[]; playhead: HTMLElement }
+/** A trace on the page; folded it is a line with its figures. */
+interface Shown { plot: uPlot | null; panel: Panel; values: HTMLElement[]; playhead: HTMLElement | null }
 
 export interface TraceEvents {
   range(range: [number, number] | null): void;
   hover(index: number | null): void;
   pick(index: number): void;
+  /** A trace was opened or folded: they are to be built anew. */
+  folded(): void;
 }
 
 export class Traces {
@@ -28,26 +31,32 @@ export class Traces {
   private axis: HTMLElement | null = null;
   /** The arc length shown, mm. */
   private stretch: [number, number] = [0, 1];
+  /** What of the traces is open, by quantity: the wall error until the reader opens others. */
+  private readonly opened = new Set<string>(["Wall error"]);
 
   constructor(private readonly element: HTMLElement, private readonly model: Model, private readonly events: TraceEvents) {}
 
   /** Builds all panels anew: other colours, another pass, another height. */
   rebuild(state: State, colours: Palette, height: number): void {
-    for (const { plot } of this.shown) plot.destroy();
+    for (const { plot } of this.shown) plot?.destroy();
     this.element.replaceChildren();
     const panels = panelsOf(this.model, state, colours);
-    this.shown = panels.map((panel, index) => this.build(panel, state, colours, height, index === panels.length - 1));
+    const paper = document.documentElement.dataset.printing !== undefined;
+    const open = panels.map(({ quantity }) => paper || this.opened.has(quantity));
+    this.shown = panels.map((panel, index) => this.build(panel, state, colours, height, open[index], index === open.lastIndexOf(true)));
     const axis = document.createElement("p");
     axis.className = "axis";
     axis.textContent = "arc length s, mm";
     this.axis = axis;
-    this.element.append(axis);
+    // Below the last that is open, whose numbers it names.
+    const last = this.element.children[open.lastIndexOf(true)];
+    if (last) last.after(axis);
     this.place(state.place);
   }
 
   resize(height: number): void {
-    const last = this.shown.length - 1;
-    this.shown.forEach(({ plot }, i) => plot.setSize({ width: this.width(), height: height + (i === last ? 26 : 0) }));
+    const last = this.shown.map(({ plot }) => plot !== null).lastIndexOf(true);
+    this.shown.forEach(({ plot }, i) => plot?.setSize({ width: this.width(), height: height + (i === last ? 26 : 0) }));
   }
 
   /** Moves the playheads and the figures beside the titles. */
@@ -59,10 +68,12 @@ export class Traces {
     const [from, to] = this.stretch;
     const share = (s - from) / (to - from);
     for (const { panel, values, playhead } of this.shown) {
-      playhead.style.display = share >= 0 && share <= 1 ? "" : "none";
-      playhead.style.transform = `translateX(${(100 * share).toFixed(3)}%)`;
+      if (playhead) {
+        playhead.style.display = share >= 0 && share <= 1 ? "" : "none";
+        playhead.style.transform = `translateX(${(100 * share).toFixed(3)}%)`;
+      }
       if (figures) panel.curves.forEach((curve, i) => {
-        const text = fixed(curve.series.values[Math.round(place)], curve.series.decimals);
+        const text = fixed(curve.series.values[Math.round(place)], Math.min(curve.series.decimals, /^mm($|²|,)/.test(panel.unit) ? LENGTH : 1));
         if (values[i].textContent !== text) values[i].textContent = text;
       });
     }
@@ -73,31 +84,46 @@ export class Traces {
     const [min, max] = range ?? [s[0], s[s.length - 1]];
     this.stretch = [min, max];
     this.quiet = true;
-    for (const { plot } of this.shown) plot.setScale("x", { min, max });
+    for (const { plot } of this.shown) plot?.setScale("x", { min, max });
     this.quiet = false;
   }
 
   /** Ends what the plots have begun outside of their elements. */
   close(): void {
-    for (const { plot } of this.shown) plot.destroy();
+    for (const { plot } of this.shown) plot?.destroy();
     this.shown = [];
   }
 
-  get count(): number {
-    return this.shown.length;
+  /** How many traces are open, and how many are folded. */
+  get open(): number {
+    return this.shown.filter(({ plot }) => plot).length;
+  }
+
+  get folded(): number {
+    return this.shown.length - this.open;
   }
 
   private width(): number {
     return Math.max(200, this.element.clientWidth);
   }
 
-  private build(panel: Panel, state: State, colours: Palette, height: number, last: boolean): Shown {
+  private build(panel: Panel, state: State, colours: Palette, height: number, open: boolean, last: boolean): Shown {
     const box = document.createElement("div");
     box.className = "trace";
     const head = document.createElement("div");
     head.className = "trace-head";
     const title = document.createElement("h2");
-    title.textContent = panel.title;
+    const fold = document.createElement("button");
+    fold.type = "button";
+    fold.className = "fold";
+    fold.textContent = panel.title;
+    fold.setAttribute("aria-expanded", String(open));
+    fold.addEventListener("click", () => {
+      if (!this.opened.delete(panel.quantity)) this.opened.add(panel.quantity);
+      this.events.folded();
+      [...this.element.querySelectorAll<HTMLElement>(".fold")][this.shown.findIndex((one) => one.panel.quantity === panel.quantity)]?.focus();
+    });
+    title.append(fold);
     const unit = document.createElement("span");
     unit.className = "unit";
     unit.textContent = panel.unit;
@@ -117,6 +143,7 @@ export class Traces {
     });
     box.append(head);
     this.element.append(box);
+    if (!open) return { plot: null, panel, values, playhead: null };
     const plot = new uPlot(this.options(panel, state, colours, height, last), data(this.model, panel), box);
     plot.root.setAttribute("aria-hidden", "true");
     const playhead = document.createElement("div");
@@ -124,7 +151,7 @@ export class Traces {
     plot.over.append(playhead);
     this.pointer(plot);
     framedByFinger(plot, (range) => this.events.range(range));
-    return { plot, panel, head, values, playhead };
+    return { plot, panel, values, playhead };
   }
 
   private pointer(plot: uPlot): void {
@@ -149,8 +176,7 @@ export class Traces {
     const series: uPlot.Series[] = [{}];
     for (const curve of panel.curves) {
       series.push({
-        stroke: curve.colour, width: curve.width ?? 1.5, dash: curve.dash, alpha: curve.faint ? 0.55 : 1,
-        points: { show: false }, auto: !curve.unscaled,
+        stroke: curve.colour, width: curve.width ?? 1.5, dash: curve.dash, points: { show: false },
       });
     }
     const bands: uPlot.Band[] = [];
@@ -239,15 +265,14 @@ function gaps(values: Float64Array): Float64Array | (number | null)[] {
 function panelsOf(model: Model, state: State, colours: Palette): Panel[] {
   const { passes, compared } = model;
   const selected = (state.shown === "both" ? undefined : model.pass(state.shown)) ?? passes.at(-1);
-  // A pass that is not compared would make the others flat; it is there when it is asked for.
-  const drawn = passes.filter((pass) => compared.includes(pass) || pass === selected);
+  const drawn = passes.filter((pass) => (state.shown === "both" ? compared.includes(pass) : pass === selected));
   const both = (quantity: Quantity, height: number | null = null): Curve[] => drawn.flatMap((pass) => {
     const series = pass.series[quantity];
     const error = height === null ? undefined : model.error(pass.name, height);
     if (!series && !error) return [];
     return [{
-      name: passes.length > 1 ? pass.title : "", series: error ? { values: error, decimals: series?.decimals ?? 6 } : (series as Series),
-      colour: colours[model.colour(pass)], faint: state.shown !== "both" && pass !== selected,
+      name: passes.length > 1 ? pass.title : "", series: error ? { values: error, decimals: LENGTH } : (series as Series),
+      colour: colours[model.colour(pass)],
     }];
   });
   const components = (x: Quantity, y: Quantity, names: [string, string]): Curve[] => {
@@ -258,23 +283,21 @@ function panelsOf(model: Model, state: State, colours: Palette): Panel[] {
     ];
   };
   const suffix = passes.length > 1 ? ` (${selected?.title})` : "";
-  // What is left after a correction is a hundredth of what was there before it: the scale is that of the pass chosen.
-  const errors = both("error_mm", state.height).map((curve) => ({ ...curve, unscaled: curve.faint }));
+  const errors = both("error_mm", state.height);
   const bounded = selected?.series.sigma_mm && selected.series.error_mm && state.height === null
     ? { error: selected.series.error_mm, sigma: selected.series.sigma_mm, colour: colours[model.colour(selected)] } : undefined;
-  // Of several corrections that of the pass shown; where a pass has none, that of the report.
   const several = passes.filter((pass) => pass.correction).length > 1;
-  const shown = selected?.correction ?? model.correction;
+  const shown = selected?.correction;
   const correction = shown ? [{ name: "x", series: shown.x, colour: colours.first }, { name: "y", series: shown.y, colour: colours.second }] : [];
   const z = state.height === null ? "" : ` at ${fixed(model.report.heights?.z_mm[state.height], 2)} mm height`;
   const panels: Panel[] = [
-    { title: `Wall error${z}`, unit: bounded ? "mm, ±2σ" : "mm", curves: errors, sigma: bounded, limits: limitsOf(model.report) },
-    { title: `Correction${several ? ` (${(selected?.correction ? selected : passes.at(-1))?.title})` : ""}`, unit: "mm", curves: correction },
-    { title: `Deflection${suffix}`, unit: "mm", curves: components("dx_mm", "dy_mm", ["x", "y"]) },
-    { title: `Force${suffix}`, unit: "N", curves: force(selected?.series.force_n, components("fx_n", "fy_n", ["x", "y"]), colours) },
-    { title: "Engagement arc", unit: "°", curves: both("arc_deg") },
-    { title: "Chip area", unit: "mm²", curves: both("chip_area_mm2") },
-    { title: "Feed", unit: "mm/min", curves: both("feed_mm_per_min") },
+    { quantity: "Wall error", title: `Wall error${z}`, unit: bounded ? "mm, ±2σ" : "mm", curves: errors, sigma: bounded, limits: limitsOf(model.report) },
+    { quantity: "Correction", title: `Correction${several ? ` (${selected?.title})` : ""}`, unit: "mm", curves: correction },
+    { quantity: "Deflection", title: `Deflection${suffix}`, unit: "mm", curves: components("dx_mm", "dy_mm", ["x", "y"]) },
+    { quantity: "Force", title: `Force${suffix}`, unit: "N", curves: force(selected?.series.force_n, components("fx_n", "fy_n", ["x", "y"]), colours) },
+    { quantity: "Engagement arc", title: "Engagement arc", unit: "°", curves: both("arc_deg") },
+    { quantity: "Chip area", title: "Chip area", unit: "mm²", curves: both("chip_area_mm2") },
+    { quantity: "Feed", title: "Feed", unit: "mm/min", curves: both("feed_mm_per_min") },
   ];
   return panels.filter((panel) => panel.curves.length > 0);
 }

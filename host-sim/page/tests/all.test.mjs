@@ -9,6 +9,8 @@ import "./letters.test.mjs";
 import "./cutter.test.mjs";
 import "./learn.test.mjs";
 import "./several.test.mjs";
+import "./first.test.mjs";
+import "./unrolled.test.mjs";
 import "./page.test.mjs";
 import "./partial.test.mjs";
 import "./inspection.test.mjs";

@@ -20,6 +20,7 @@ async function straight() {
 
 /** Turns the wheel over a place of the part until the picture grows no more. */
 async function deepest(page, x, y) {
+  await page.locator(".stage").focus();
   let last = 0;
   for (let scale = 1; scale !== last;) {
     const at = await onPage(page, x, y);
@@ -66,7 +67,7 @@ test("the wall and the rim of the cutter stay where they are at the deepest zoom
 test("between two samples far apart on the screen the pointer is told the nearer one", async () => {
   const { page, close } = await open(await straight());
   await deepest(page, FAR + 3.06, -FAR - RADIUS);
-  for (const [x, s] of [[3.06, "3.100000 mm"], [3.059, "3.100000 mm"]]) {
+  for (const [x, s] of [[3.06, "3.100 mm"], [3.059, "3.100 mm"]]) {
     const at = await onPage(page, FAR + x, -FAR - RADIUS);
     await page.mouse.move(at.x, at.y + 3);
     assert.equal(await page.locator(".flag.shown b").first().textContent(), s);

@@ -29,8 +29,8 @@ test("each point of an inspection has its verdict in words and as a shape, with 
   const shapes = await page.locator("#deviations .chart > svg path.mark").evaluateAll((all) => all.map((mark) => mark.getAttribute("d").replace(/[\d. -]+/g, "")));
   assert.equal(new Set(shapes.slice(0, 2)).size, 2, "a pass is round, a failure is not");
   assert.equal(await page.locator("#deviations rect.unmeasured").evaluateAll((all) => all.filter((r) => r.closest(".chart > svg")).length), 2);
-  assert.deepEqual(await page.locator("#deviations .limit-text").allTextContents(), ["+0.0200", "0.0000"]);
-  assert.match(await page.locator(".results").textContent(), /tolerance0\.0000 … \+0\.0200 mmuncertainty ±0\.0020 mm, k = 2; as asked for on the command line/);
+  assert.deepEqual(await page.locator("#deviations .limit-text").allTextContents(), ["+0.020", "0.000"]);
+  assert.match(await page.locator(".results").textContent(), /tolerance0\.000 … \+0\.020 mmuncertainty ±0\.002 mm, k = 2; as asked for on the command line/);
   assert.deepEqual(await page.locator("#statements li").allTextContents(), made.statements);
   assert.doesNotMatch(await page.locator("#keys").textContent(), /cutter|Traces/, "nothing is said of what is not there");
   assert.deepEqual(await page.locator("#part dd").allTextContents(), ["cover <3>", "17", 'Example "Ltd"', "cover.nc · CRC-32 00c0ffee", "probe.txt · CRC-32 12345678"]);

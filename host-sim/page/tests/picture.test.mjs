@@ -20,7 +20,7 @@ const APART = 0.09;
  * The share of cells that may, of those of the drawn scenes and of all others: in the middle, by factors, between what another
  * rendering of letters changes and what a missing layer does; the last test holds the distance to both.
  */
-const CELLS = { drawn: 0.003, other: 0.004 };
+const CELLS = { drawn: 0.003, other: 0.005 };
 /** What is to be noticed changes so many times as many cells at least, what is not so much less. */
 const NOTICED = 1.5;
 const RENDERED = 1.4;

@@ -9,7 +9,7 @@ import { numbers } from "./columns.mjs";
 
 const KINDS = ["simulate", "correct", "learn", "inspect"];
 /** The figure that a kind is ranked by, and all that it has. */
-const RANKED = { simulate: "before_mm", correct: "after_mm", learn: "after_mm", inspect: "measured_mm" };
+const RANKED = { simulate: "before_mm", correct: "profile_mm", learn: "profile_mm", inspect: "measured_mm" };
 const FIGURES = {
   simulate: ["before_mm"], correct: ["before_mm", "after_mm", "profile_mm", "sigma_mm"],
   learn: ["before_mm", "measured_mm", "after_mm", "profile_mm", "sigma_mm"], inspect: ["measured_mm", "gouge_mm"],
@@ -67,15 +67,15 @@ for (const kind of KINDS) {
     for (const [k, name] of expected.entries()) {
       const { outcome, verdict, warnings = [] } = data.contours.find((c) => c.name === name).page;
       const cells = await page.locator(`.list tbody tr:nth-child(${k + 1}) td`).allTextContents();
-      assert.deepEqual(cells, [...FIGURES[kind].map((key) => outcome[key].toFixed(4)), ...(verdict ? [verdict.state] : []),
+      assert.deepEqual(cells, [...FIGURES[kind].map((key) => outcome[key].toFixed(3)), ...(verdict ? [verdict.state] : []),
         outcome.lines.join("–"), outcome.z_mm.toFixed(3).replace("-", "−"), outcome.length_mm.toFixed(1), String(warnings.length)], name);
     }
     const head = await page.locator(".results").first().locator(".result").evaluateAll((all) => all.map((e) => [...e.children].map((c) => c.textContent)));
     const told = head.filter(([name]) => !["contours", "tolerance"].includes(name));
-    assert.deepEqual(told.map(([, value, of]) => [value, of]), FIGURES[kind].map((key) => {
+    assert.deepEqual(told.map(([, value, of]) => [value, of]).sort(), FIGURES[kind].map((key) => {
       const worst = data.contours.reduce((a, b) => (b.page.outcome[key] > a.page.outcome[key] ? b : a));
-      return [`${worst.page.outcome[key].toFixed(4)} mm`, worst.page.outcome[key] > 0 ? worst.name : undefined];
-    }));
+      return [`${worst.page.outcome[key].toFixed(3)} mm`, worst.page.outcome[key] > 0 ? worst.name : undefined];
+    }).sort());
     const failed = data.contours.filter(({ page: { verdict } }) => verdict?.state === "fail").map(({ name }) => name);
     // What is not cut yet is decided only where the whole of two standard deviations lies outside.
     if (kind === "correct") assert.ok(failed.length < PLATE.length && await page.locator(".verdict").first().isVisible());
@@ -140,7 +140,7 @@ test("the overview is at true scale: every wall lies where path, normals and rad
   // The largest error has the most weight.
   const weights = await page.locator(".map .wall").evaluateAll((all) => all.map((path) => [path.closest("a").getAttribute("href").split("=")[1], Number(path.getAttribute("stroke-width"))]));
   const heaviest = weights.reduce((a, b) => (b[1] > a[1] ? b : a))[0];
-  assert.equal(heaviest, worstFirst(contours, "after_mm")[0]);
+  assert.equal(heaviest, worstFirst(contours, "profile_mm")[0]);
   await page.selectOption("#rank", "before_mm");
   assert.deepEqual(await order(page), worstFirst(contours, "before_mm"));
   const again = await page.locator(".map .wall").evaluateAll((all) => all.map((path) => Number(path.getAttribute("stroke-width"))));
@@ -168,7 +168,7 @@ test("a click on a wall or within it chooses the contour, of one within another 
   assert.equal(await chosen(page), "outside");
   // What is pointed at is named.
   await page.mouse.move(...place([-35, 0]));
-  assert.match(await page.locator(".map-frame .flag.shown").textContent(), /^contourislandlines\d+–\d+largest error with it\d\.\d{4} mm$/);
+  assert.match(await page.locator(".map-frame .flag.shown").textContent(), /^contourislandlines\d+–\d+worst at any height\d\.\d{3} mm$/);
   await close();
 });
 
@@ -176,7 +176,7 @@ test("a link leads to its contour, and one to a contour that is not there to the
   const { contours } = await plate("learn");
   const address = pathToFileURL(await file("learn")).href;
   const { page, close } = await open("about:blank");
-  for (const [to, name] of [["#contour=bore", "bore"], ["#contour=nothing", worstFirst(contours, "after_mm")[0]], ["#points", worstFirst(contours, "after_mm")[0]]]) {
+  for (const [to, name] of [["#contour=bore", "bore"], ["#contour=nothing", worstFirst(contours, "profile_mm")[0]], ["#points", worstFirst(contours, "profile_mm")[0]]]) {
     await page.goto("about:blank");
     await page.goto(address + to);
     await page.waitForFunction(() => document.documentElement.dataset.firstPicture !== undefined);
@@ -200,7 +200,7 @@ test("overview and table are worked with the keyboard: one stop each, arrows cho
   }
   assert.equal(stops.filter((at) => at === "map").length, 1);
   assert.equal(stops.filter((at) => at === "list").length, 1);
-  const first = worstFirst(contours, "after_mm")[0];
+  const first = worstFirst(contours, "profile_mm")[0];
   await page.locator(".map a.chosen").focus();
   for (const [key, by] of [["ArrowRight", 1], ["ArrowDown", 1], ["ArrowLeft", -1]]) {
     const from = PLATE.indexOf(await chosen(page));
@@ -211,7 +211,7 @@ test("overview and table are worked with the keyboard: one stop each, arrows cho
   }
   await page.keyboard.press("End");
   await page.waitForFunction(() => document.querySelector(".contour-head h2").textContent === "outside");
-  await page.waitForFunction(() => /^outside, largest error with it \d\.\d{4} mm$/.test(document.querySelector("#live").textContent));
+  await page.waitForFunction(() => /^outside, worst at any height \d\.\d{3} mm$/.test(document.querySelector("#live").textContent));
   await page.locator(".list tr.chosen a").focus();
   await page.keyboard.press("Home");
   await page.waitForFunction((name) => document.querySelector(".contour-head h2").textContent === name, first);

@@ -5,6 +5,7 @@
 mod aqdef;
 pub mod codes;
 mod inspection;
+pub mod next;
 pub mod page;
 pub mod pages;
 mod planned;

@@ -15,9 +15,9 @@ use truepath_report::plot::{Compared, LawWall};
 use truepath_report::{compare_csv, plot, walls_csv};
 use truepath_trial::compare::{Row, Walls, candidates, identified as by_model, row, virtual_machine};
 
-use super::going_on::correct;
 use super::simulate::read_machine;
 use crate::terminal::Terminal;
+use truepath_report::next::correct;
 
 /// Files this command may write.
 const FILES: &[&str] = &["compare.csv", "walls.csv", "summary.json", "compare.svg"];
@@ -48,7 +48,7 @@ pub struct Options {
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     let summary = terminal.watch("comparing", |progress| run(options, progress))?;
     terminal.warn_all(&summary.warnings);
-    terminal.tell(&summary, || words(&summary) + "\n" + &correct(&options.job, Some(&options.probe), None))
+    terminal.tell(&summary, || words(&summary) + "\n" + &correct(&options.job, Some(&options.probe), None).to_string())
 }
 
 fn words(s: &CompareSummary) -> String {

@@ -23,9 +23,9 @@ use truepath_report::pages::{self, REPORT};
 use truepath_report::{InspectSummary, aqdef, inspect_summary, judged_points_csv, points_csv};
 
 use super::correction_files::{CONTOURS, contour_folder, contour_name};
-use super::going_on::correct;
 use super::readings::{DIMENSIONS, PROBE, Readings};
 use crate::terminal::Terminal;
+use truepath_report::next::correct;
 
 /// One contact, for the list that is printed.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -99,7 +99,8 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     let inspection = run(options)?;
     terminal.warn_all(&inspection.summary.warnings);
     let Options { job, probe, dimensions, .. } = options;
-    terminal.tell(&inspection, || words(&inspection) + &correct(job, probe.as_deref(), dimensions.as_deref()))
+    terminal
+        .tell(&inspection, || words(&inspection) + &correct(job, probe.as_deref(), dimensions.as_deref()).to_string())
 }
 
 fn words(inspection: &Inspection) -> String {

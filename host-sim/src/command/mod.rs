@@ -11,7 +11,6 @@ mod correction_files;
 pub mod demo;
 pub mod device;
 pub mod forces;
-mod going_on;
 pub mod hil;
 mod history;
 pub mod image;

@@ -7,7 +7,8 @@
 
 use serde::Serialize;
 
-use super::{Contour, Heights, Inspected, JobFacts, Limits, Outcome, Outlines, Point, Program};
+use super::{Contour, Heights, Inspected, JobFacts, Limits, Outcome, Outlines, Outlook, Point, Program};
+use crate::next::Next;
 
 /// Which command made the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -57,6 +58,12 @@ pub struct Page {
     /// The contour in a line, for a page of several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outcome: Option<Outcome>,
+    /// How the wall stands and what it will come to, in figures.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outlook: Option<Outlook>,
+    /// What to do next.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<Next>,
     /// How the wall comes out, in a sentence: mean over the height, and the worst at any height.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub told: Option<String>,
@@ -96,6 +103,8 @@ impl Page {
             points: Vec::new(),
             parameters: Vec::new(),
             outcome: None,
+            outlook: None,
+            next: None,
             told: None,
             results: Vec::new(),
             tolerance_mm: None,
@@ -139,9 +148,9 @@ impl Figure {
         value.is_finite().then(|| Self { name: name.into(), value, decimals, unit, note: None })
     }
 
-    /// A length in mm to a tenth of a micrometre.
+    /// A length in mm to a micrometre.
     pub fn mm(name: impl Into<String>, value: f64) -> Option<Self> {
-        Self::of(name, value, 4, "mm")
+        Self::of(name, value, 3, "mm")
     }
 
     /// The same with a word on it.

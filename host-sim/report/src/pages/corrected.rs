@@ -11,9 +11,11 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use super::expected::judge;
-use super::{of_pass, page_warnings};
+use super::{file, of_pass, page_warnings};
+use crate::next::after_correction;
 use crate::page::{
-    Along, Fact, Figure, Kind, Page, Parameter, PredictedPasses, Program, Words, known, points, predicted,
+    Along, Fact, Figure, Kind, Outlook, Page, Parameter, PredictedPasses, Program, WallFigures, Words, known, points,
+    predicted,
 };
 
 /// Which part the probe points are of.
@@ -74,6 +76,13 @@ pub(super) fn of_correction(
         outcome.sigma_mm = known(done.summary.sigma_at_max_error_mm);
         outcome.gouge_mm = known(done.summary.worst_gouge_mm);
     }
+    page.outlook = Some(Outlook {
+        now: WallFigures::from(&done.summary.surface.before),
+        next: Some(WallFigures::from(&done.summary.surface.after)),
+        floor_mm: known(done.summary.floor.mm()),
+        cut: false,
+    });
+    page.next = Some(after_correction(&done.summary, file(pass.job.source().name()), None));
     page.told = Some(done.summary.floor.line(&done.summary.surface.after));
     page.results = figures(&done.summary, &["largest error without correction", "largest error with it"]);
     page.warnings = page_warnings(
@@ -100,7 +109,7 @@ pub(super) fn figures(s: &CorrectSummary, largest: &[impl AsRef<str>; 2]) -> Vec
     let used =
         format!("{} points used, {} outlying, {} set aside", s.points_used, s.points_outlying, s.points_rejected);
     let at = format!("at s = {:.1} mm", s.max_error_after_s_mm);
-    let sigma = format!("largest {:.4}", s.max_sigma_mm);
+    let sigma = format!("largest {:.3}", s.max_sigma_mm);
     let figures = [
         Figure::mm(without, s.max_error_before_mm).map(|f| f.noted("predicted")),
         Figure::mm(with, s.max_error_after_mm).map(|f| f.noted(format!("predicted, {at}"))),
@@ -138,7 +147,7 @@ fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
         }
     }
     if let Some(guard) = &s.guard {
-        facts.push(Fact::new("deepest cut allowed", format!("{:.4} mm", guard.max_gouge_mm)));
+        facts.push(Fact::new("deepest cut allowed", format!("{:.3} mm", guard.max_gouge_mm)));
     }
     if let Some(feed) = s.feed.as_ref().filter(|_| done.schedule.is_some()) {
         let [low, high] = feed.used_percent;
@@ -155,7 +164,7 @@ fn facts(pass: &Pass, done: &CorrectedPass, of: Points) -> Vec<Fact> {
 fn at_every_height(surface: &Surfaces) -> [Fact; 2] {
     let after = &surface.after;
     let all = format!(
-        "95 % of the wall within {:.4} ± {:.4} mm (2 sigma), {:.4} mm without the correction",
+        "95 % of the wall within {:.3} ± {:.3} mm (2 sigma), {:.3} mm without the correction",
         after.p95_mm,
         2.0 * after.p95_sigma_mm,
         surface.before.p95_mm

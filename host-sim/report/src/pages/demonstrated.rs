@@ -7,7 +7,8 @@ use truepath_job::pass::Pass;
 use truepath_plant::{Milled, Score, judged_trim_mm};
 
 use super::corrected::{Points, corrected};
-use crate::page::{Fact, Figure, Page, known, milled_twice};
+use crate::next::after_demonstration;
+use crate::page::{Fact, Figure, Page, WallFigures, known, milled_twice};
 
 /// The page of a part that was cut without and with its correction.
 ///
@@ -36,6 +37,12 @@ pub fn demonstrated(
         // That of the points is of what was foretold.
         outcome.sigma_mm = None;
     }
+    if let Some(outlook) = &mut page.outlook {
+        outlook.now = WallFigures::of(before.max_error_mm, before.worst_height_mm);
+        outlook.next = Some(WallFigures::of(after.max_error_mm, after.worst_height_mm));
+        outlook.cut = true;
+    }
+    page.next = Some(after_demonstration());
     let profile = &done.summary.surface.after.profile;
     page.told = Some(format!(
         "cut: mean over the height {:.3} -> {:.3} mm; any height {:.3} -> {:.3} mm ({:.3} ± {:.3} expected)",
@@ -60,7 +67,7 @@ pub fn demonstrated(
 }
 
 fn figures(before: &Score, after: &Score, done: &CorrectedPass) -> Vec<Figure> {
-    let rms = |score: &Score| format!("cut, rms {:.4} mm", score.rms_error_mm);
+    let rms = |score: &Score| format!("cut, rms {:.3} mm", score.rms_error_mm);
     let s = &done.summary;
     let figures = [
         Figure::mm("largest error, first part", before.max_error_mm).map(|f| f.noted(rms(before))),

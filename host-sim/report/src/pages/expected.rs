@@ -42,7 +42,7 @@ fn verdict(limits: &Tolerance, correction: &Correction) -> Verdict {
         (
             State::Fail,
             format!(
-                "predicted: somewhere the corrected wall is outside {within}, by up to {:.4} mm at some height",
+                "predicted: somewhere the corrected wall is outside {within}, by up to {:.3} mm at some height",
                 mm(worst)
             ),
         )
@@ -133,7 +133,7 @@ mod tests {
     fn a_wall_that_is_outside_with_two_standard_deviations_fails() {
         let verdict = verdict_of(&[(0, 0), (0, 23)]);
         assert_eq!(verdict.state, State::Fail);
-        assert!(verdict.text.contains("by up to 0.0030 mm"), "{}", verdict.text);
+        assert!(verdict.text.contains("by up to 0.003 mm"), "{}", verdict.text);
         assert_eq!(verdict_of(&[(-13, 0)]).state, State::Fail);
     }
 }

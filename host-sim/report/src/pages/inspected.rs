@@ -7,9 +7,10 @@ use truepath_ground::units::mm;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
-use super::{of_pass, page_warnings};
+use super::{file, of_pass, page_warnings};
 use crate::InspectSummary;
-use crate::page::{Figure, InputFile, Inspected, Kind, Limits, Page, State, Verdict, judged_points, known, nominal};
+use crate::next::correct;
+use crate::page::{Figure, InputFile, Inspected, Kind, Limits, Outlook, Page, State, Verdict, WallFigures, judged_points, known, nominal};
 
 /// The page of an inspection. `warnings` are those of the summary without one for every reading set aside: these stand in the
 /// table of points.
@@ -42,6 +43,15 @@ pub fn inspected(
         outcome.measured_mm = known(summary.max_error_mm.abs().max(summary.min_error_mm.abs()));
         outcome.gouge_mm = known((-summary.min_error_mm).max(0.0));
     }
+    let surface = &summary.surface;
+    page.outlook = Some(Outlook {
+        now: WallFigures {
+            worst_sigma_mm: known(surface.sigma_mm),
+            ..WallFigures::of(surface.mean_mm, surface.profile_mm)
+        },
+        ..Outlook::default()
+    });
+    page.next = Some(correct(file(pass.job.source().name()), Some(file(&measurement.file)), None));
     page.told = Some(summary.surface.words() + " (2 sigma)");
     page.results = figures(summary, measurement, judgement.decimals);
     page.verdict = Some(Verdict {

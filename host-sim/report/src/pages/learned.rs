@@ -11,7 +11,7 @@ use truepath_job::pass::Pass;
 
 use super::corrected::{Points, figures, of_correction};
 use crate::page;
-use crate::page::{Fact, Figure, Kind, Page, PredictedPasses, Words, known, predicted, subject};
+use crate::page::{Fact, Figure, Kind, Page, PredictedPasses, WallFigures, Words, known, predicted, subject};
 
 /// The page of what was learned.
 ///
@@ -42,6 +42,9 @@ pub fn learned(
         page.verdict.map(|v| page::Verdict { text: format!("part {}, {}", next_part(verdict), v.text), ..v });
     page.title =
         format!("{}: part {} measured, correction of part {}", subject(pass), verdict.part, next_part(verdict));
+    if let Some(outlook) = &mut page.outlook {
+        outlook.now = WallFigures::from(&summary.whole_surface);
+    }
     let promise = summary.correct.floor.line(&summary.correct.surface.after);
     page.told = Some(format!("Part {}: {promise}", next_part(verdict)));
     page.results = came_out(summary).into_iter().chain(figures(&done.summary, &names(verdict))).collect();
@@ -96,10 +99,10 @@ fn words(verdict: &Verdict, corrected: bool) -> [Words; 3] {
 fn came_out(summary: &LearnSummary) -> Vec<Figure> {
     let (v, whole) = (&summary.verdict, &summary.whole_contour_error_mm);
     let (now, before, promise) = (&v.measured_error_mm, &v.previous_error_mm, &v.promise);
-    let places = format!("at {} places, rms {:.4} mm", now.places, now.rms_mm);
-    let along = format!("by the model, at s = {:.1} mm, σ {:.4} mm", whole.s_mm, whole.sigma_mm);
-    let earlier = format!("at the same places, rms {:.4} mm", before.rms_mm);
-    let worst = format!("at a touched height, ± {:.4} (2 sigma)", 2.0 * summary.measured_surface.sigma_mm);
+    let places = format!("at {} places, rms {:.3} mm", now.places, now.rms_mm);
+    let along = format!("by the model, at s = {:.1} mm, σ {:.3} mm", whole.s_mm, whole.sigma_mm);
+    let earlier = format!("at the same places, rms {:.3} mm", before.rms_mm);
+    let worst = format!("at a touched height, ± {:.3} (2 sigma)", 2.0 * summary.measured_surface.sigma_mm);
     let promised = format!("{} of {} places within 2σ", promise.within_two_sigma, promise.places);
     let figures = [
         Figure::mm(format!("part {} measured, largest error", now.part), now.max_mm).map(|f| f.noted(places)),

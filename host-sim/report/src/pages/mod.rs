@@ -9,6 +9,8 @@ mod inspected;
 mod learned;
 mod simulated;
 
+use std::path::Path as FilePath;
+
 use truepath_job::pass::Pass;
 
 use crate::page::{JobFacts, Kind, Outcome, Outlines, Page, Program, subject};
@@ -30,6 +32,11 @@ fn of_pass(kind: Kind, title: String, pass: &Pass) -> Page {
     page.outlines = Outlines::of(pass);
     page.outcome = Some(Outcome::of(pass));
     page
+}
+
+/// A file without its folder, which is nobody's business who receives the page.
+fn file(name: &str) -> &FilePath {
+    FilePath::new(name.rsplit(['/', '\\']).next().unwrap_or(name))
 }
 
 /// Warnings as the page tells them: files without their folders, which are nobody's business who receives the page.

@@ -21,11 +21,11 @@ use truepath_report::pages;
 use truepath_report::pages::{Points, REPORT};
 
 use super::correction_files::{FILES, HISTORY, commit, write_contour, write_program};
-use super::going_on::after_correction;
 use super::history::refuse_replacing;
 use super::pocket;
 use super::readings::{Readings, apart};
 use crate::terminal::Terminal;
+use truepath_report::next::after_correction;
 
 /// What is corrected.
 #[derive(Clone, Debug, Default, Args)]
@@ -71,7 +71,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     }
     let summary = terminal.watch("correcting", |progress| run(options, progress))?;
     terminal.warn_all(&summary.warnings);
-    terminal.tell(&summary, || words(&summary, output) + &after_correction(&summary, job, output))
+    terminal.tell(&summary, || words(&summary, output) + &after_correction(&summary, job, Some(output)).to_string())
 }
 
 pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {

@@ -23,11 +23,11 @@ use truepath_report::pages::learned;
 
 use super::correct::words as correction;
 use super::correction_files::{FILES, HISTORY, MILLED, commit, write_contour, write_program};
-use super::going_on::after_correction;
 use super::history::{history_in, refuse_unlearned};
 use super::plan_files::PLAN_HISTORY;
 use super::readings::Readings;
 use crate::terminal::Terminal;
+use truepath_report::next::after_correction;
 
 /// What is learned from.
 #[derive(Clone, Debug, Default, Args)]
@@ -96,7 +96,9 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     terminal.warn_all(&summary.correct.warnings);
     let (job, output) = (&options.job, &options.output);
     terminal.tell(&summary, || {
-        words(&summary) + &correction(&summary.correct, output) + &after_correction(&summary.correct, job, output)
+        words(&summary)
+            + &correction(&summary.correct, output)
+            + &after_correction(&summary.correct, job, Some(output)).to_string()
     })
 }
 

@@ -20,8 +20,8 @@ use truepath_job::dimension::{INSTRUMENTS, Instrument};
 use truepath_job::job::{Assumed, JobFile, ProbeFlags, Which, one_of};
 use truepath_job::pass::Pass;
 
-use super::going_on::{after_verification, shown};
 use crate::terminal::Terminal;
+use truepath_report::next::{after_verification, shown};
 
 /// What is asked for.
 #[derive(Clone, Debug, Args)]
@@ -102,7 +102,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
                 shown(&options.job),
                 shown(from)
             ),
-            (false, None) => after_verification(&options.job, out),
+            (false, None) => after_verification(&options.job, out).to_string(),
         };
         format!("written to {}\n{next}", out.display())
     });
