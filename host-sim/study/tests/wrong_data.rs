@@ -51,6 +51,14 @@ impl Shop {
         Some(Self { case, touched })
     }
 
+    /// A case as the study has it, touched where `truepath probe` would.
+    fn of_study(id: &str) -> Self {
+        let case = Case::draw(&format!("{id}/chosen").parse().unwrap()).unwrap();
+        let milled = virtual_mill::mill(&case.pass, &case.machine, None).unwrap();
+        let touched = case.probe(1, &milled, &case.places_mm).unwrap();
+        Self { case, touched }
+    }
+
     fn outcome(&self, job: &str, touched: &str) -> Outcome {
         let refused = |failure: Failure| match failure {
             Failure::Input(error) => Outcome::Refused(error.code().to_owned()),
@@ -281,6 +289,14 @@ fn a_datum_half_a_millimetre_off_is_named_and_the_honest_part_passes() {
         let outcome = shop.wrong(wrong);
         assert!(wrong.is_named(&outcome), "{wrong:?}: {outcome:?}");
     }
+}
+
+#[test]
+fn a_cross_compliance_that_the_stated_mean_law_hardly_expects_stops_nothing() {
+    // The law of the papers describes a machine by two stiffnesses; this one yields across by a third of its mean.
+    let shop = Shop::of_study("corner-papers/100000");
+    assert!(matches!(shop.honest(), Outcome::Passed), "{:?}", shop.honest());
+    assert!(matches!(shop.wrong(Wrong::Datum(0.5)), Outcome::Stopped(_)));
 }
 
 #[test]

@@ -20,6 +20,9 @@ pub(super) const NEAR_MM: f64 = 3.0;
 pub(super) const WORN_MM: f64 = 0.05;
 /// A parameter farther from what the job says than so many prior standard deviations cannot be.
 const FARTHEST: f64 = 10.0;
+/// The least standard deviation, as a share of the compliance, by which a cross term is called far. The mean law expects
+/// hardly any, but that is a belief about the papers' machine and not about what machines have.
+const CROSS_SHARE: f64 = 0.08;
 /// From so many points on a third is more than bad touches.
 const MOST_BAD_TOUCHES: usize = 4;
 /// Points that fit cost less than this each, with what the parameters cost.
@@ -73,7 +76,9 @@ impl Look {
         let index = |p: Parameter| Parameter::ALL.iter().position(|q| *q == p).unwrap_or_default();
         let size = index(Parameter::Undersize);
         let sigma = float(core.prior.sigma[size]) * float(core.fit.remaining(size));
-        let theta = core.fit.theta.map(|t| float(t).abs());
+        let mut theta = core.fit.theta.map(|t| float(t).abs());
+        let cross = index(Parameter::ComplianceCross);
+        theta[cross] *= (float(core.prior.sigma[cross]) / CROSS_SHARE).min(1.0);
         let of_machine = Parameter::ALL.into_iter().zip(theta).take(size);
         let farthest = of_machine.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((Parameter::Compliance, 0.0));
         Self {
