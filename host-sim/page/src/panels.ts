@@ -29,18 +29,17 @@ export function warnings(list: string[]): HTMLElement {
     el("ul", {}, ...list.map((text) => el("li", {}, text))));
 }
 
-/** The verdict in a sentence, three figures and the next step; the rest is folded, and open on a sheet of its own. */
-export function results(report: Report, model: Model | null, open: boolean): HTMLElement[] {
+/** The verdict in a sentence, three figures and the next step; the rest is folded. On a sheet for several contours all figures stand together. */
+export function results(report: Report, model: Model | null, brief: boolean): HTMLElement[] {
   const { told, verdict, results: list = [] } = report;
   const limits = limitsOf(report);
   const read = (r: Result): Told => ({ name: r.name, value: withUnit(fixed(r.value, decimalsShown(r, report, limits)), r.unit), note: r.note });
   const shown = three(report, model, list, read);
   const rest = list.map(read).filter(({ name }) => !shown.some((one) => one.name === name));
   const line = sentence(report, model);
-  return figures({
-    told: line, verdict, entries: shown.map((t) => figure(t.name, t.value, t.note)), next: nextStep(report),
-    rest: rest.map((t) => figure(t.name, t.value, t.note)), more: told === line ? undefined : told, open,
-  });
+  const block = (t: Told) => figure(t.name, t.value, t.note);
+  if (brief) return figures({ told: line, verdict, entries: [...shown.filter(({ name }) => name === "tolerance"), ...list.map(read)].map(block) });
+  return figures({ told: line, verdict, entries: shown.map(block), next: nextStep(report), rest: rest.map(block), more: told === line ? undefined : told });
 }
 
 /** A length to a micrometre, a deviation as far as its verdict can be read from it; an angle to a tenth of a degree. */
@@ -62,20 +61,18 @@ export interface Head {
   verdict: Report["verdict"];
   entries: HTMLElement[];
   next?: HTMLElement | null;
-  /** What is folded, and whether it is open. */
+  /** What is folded. */
   rest?: HTMLElement[];
-  open?: boolean;
   name?: string;
 }
 
 /** The sentence, and the block of figures below it. */
-export function figures({ told, more, verdict, entries, next = null, rest = [], open = false, name = "Results" }: Head): HTMLElement[] {
+export function figures({ told, more, verdict, entries, next = null, rest = [], name = "Results" }: Head): HTMLElement[] {
   const words = { pass: "within tolerance", fail: "out of tolerance", open: "not decided" };
   const stamp = verdict ? el("p", { class: `verdict ${verdict.state}` }, el("strong", {}, words[verdict.state]),
     el("span", {}, verdict.text)) : null;
   const all = rest.length === 0 ? null : el("details", { class: "all" }, el("summary", {}, `All figures: ${rest.length} more`),
     more ? el("p", { class: "more" }, more) : null, el("dl", {}, ...rest));
-  if (all) all.open = open;
   const headline = told ? [el("p", { class: "told" }, told)] : [];
   if (entries.length === 0 && !verdict) return headline;
   return [...headline, el("section", { class: "results", "aria-label": name }, stamp, el("dl", {}, ...entries), next, all)];

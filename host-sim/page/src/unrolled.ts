@@ -34,6 +34,13 @@ export function colourOf(share: number): [number, number, number] {
   return [0, 1, 2].map((c) => Math.round(SCALE[k][c] + (SCALE[k + 1][c] - SCALE[k][c]) * (at - k))) as [number, number, number];
 }
 
+/** Colours from end to end of the scale, as pixels of a little-endian machine; nominal is in their middle. */
+const HALF = 512;
+const TABLE = Uint32Array.from({ length: 2 * HALF + 1 }, (_, k) => {
+  const [r, g, b] = colourOf(k / HALF - 1);
+  return ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
+});
+
 /** Errors of a pass over the face of its wall. */
 export class Face {
   /** Heights in rising order, mm, and the errors at each of them, a value for every sample. */
@@ -89,15 +96,23 @@ export class Face {
 
   /** The error at an arc length and a height; NaN where none is known. */
   at(s: number, z: number): number {
+    return this.column(s, [z])[0];
+  }
+
+  /** The errors at an arc length and each of some heights. */
+  column(s: number, heights: ArrayLike<number>): Float64Array {
     const values = this.model.s.values;
     const i = this.model.indexAt(s);
     const j = Math.min(i + 1, values.length - 1);
     const step = values[j] - values[i];
     const along = step > 0 ? Math.min(1, Math.max(0, (s - values[i]) / step)) : 0;
-    const [k, up] = this.level(z);
-    const row = (r: Float64Array) => (along === 0 ? r[i] : r[i] * (1 - along) + r[j] * along);
-    const low = row(this.rows[k]);
-    return up === 0 ? low : low * (1 - up) + row(this.rows[k + 1]) * up;
+    const here = this.rows.map((r) => (along === 0 ? r[i] : r[i] * (1 - along) + r[j] * along));
+    const errors = new Float64Array(heights.length);
+    for (let n = 0; n < heights.length; n++) {
+      const [k, up] = this.level(heights[n]);
+      errors[n] = up === 0 ? here[k] : here[k] * (1 - up) + here[k + 1] * up;
+    }
+    return errors;
   }
 }
 
@@ -218,14 +233,13 @@ export class Unrolled {
     const { left, top, width, height } = this.box;
     const [wide, high] = [Math.max(1, Math.round(width)), Math.round(height)];
     const image = new ImageData(wide, high);
+    const pixels = new Uint32Array(image.data.buffer);
+    const heights = Float64Array.from({ length: high }, (_, y) => (1 - (y + 0.5) / high) * this.depth);
     for (let x = 0; x < wide; x++) {
-      const s = this.place(left + x + 0.5, 0).s;
-      const face = this.faceAt(s);
+      const s = this.model.s.values[0] + ((x + 0.5) / wide) * this.model.length;
+      const errors = this.faceAt(s).column(s, heights);
       for (let y = 0; y < high; y++) {
-        const e = face.at(s, this.place(0, top + y + 0.5).z);
-        if (Number.isNaN(e)) continue;
-        const [r, g, b] = colourOf(e / this.scale);
-        image.data.set([r, g, b, 255], 4 * (y * wide + x));
+        if (!Number.isNaN(errors[y])) pixels[y * wide + x] = TABLE[Math.round((Math.min(1, Math.max(-1, errors[y] / this.scale)) + 1) * HALF)];
       }
     }
     const map = document.createElement("canvas");
@@ -250,11 +264,9 @@ export class Unrolled {
     const [nx, ny] = [Math.ceil(width / cell), Math.ceil(height / cell)];
     const px = (i: number) => left + (i / nx) * width;
     const py = (k: number) => top + (k / ny) * height;
-    const grid = Array.from({ length: nx + 1 }, (_, i) => {
-      const { s } = this.place(px(i), 0);
-      const face = this.faceAt(s);
-      return Float64Array.from({ length: ny + 1 }, (_, k) => face.at(s, this.place(0, py(k)).z));
-    });
+    const heights = Float64Array.from({ length: ny + 1 }, (_, k) => (1 - k / ny) * this.depth);
+    const along = Array.from({ length: nx + 1 }, (_, i) => this.model.s.values[0] + (i / nx) * this.model.length);
+    const grid = along.map((s) => this.faceAt(s).column(s, heights));
     c.strokeStyle = "#111";
     c.lineWidth = 1.1;
     for (const level of this.levels()) {
@@ -262,7 +274,7 @@ export class Unrolled {
       c.beginPath();
       for (let i = 0; i < nx; i++) {
         // Where one pass ends and the other begins there is no wall between.
-        if (this.faceAt(this.place(px(i), 0).s) !== this.faceAt(this.place(px(i + 1), 0).s)) continue;
+        if (this.faceAt(along[i]) !== this.faceAt(along[i + 1])) continue;
         for (let k = 0; k < ny; k++) {
           const corners: [number, number, number][] = [[i, k, grid[i][k]], [i + 1, k, grid[i + 1][k]], [i + 1, k + 1, grid[i + 1][k + 1]], [i, k + 1, grid[i][k + 1]]];
           const crossed: [number, number][] = [];
