@@ -97,6 +97,9 @@ mod tests {
     #[test]
     fn a_step_in_words_has_its_command_on_a_line_of_its_own() {
         let said = after_verification(FilePath::new("job.toml"), FilePath::new("v.nc")).to_string();
-        assert_eq!(said, "next: run v.nc in single block first, and give its results to\n  truepath correct job.toml --probe FILE -o DIR\n");
+        assert_eq!(
+            said,
+            "next: run v.nc in single block first, and give its results to\n  truepath correct job.toml --probe FILE -o DIR\n"
+        );
     }
 }

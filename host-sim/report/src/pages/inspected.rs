@@ -10,7 +10,10 @@ use truepath_job::pass::{Pass, PathBuffer};
 use super::{file, of_pass, page_warnings};
 use crate::InspectSummary;
 use crate::next::correct;
-use crate::page::{Figure, InputFile, Inspected, Kind, Limits, Outlook, Page, State, Verdict, WallFigures, judged_points, known, nominal};
+use crate::page::{
+    Figure, InputFile, Inspected, Kind, Limits, Outlook, Page, State, Verdict, WallFigures, judged_points, known,
+    nominal,
+};
 
 /// The page of an inspection. `warnings` are those of the summary without one for every reading set aside: these stand in the
 /// table of points.
