@@ -54,7 +54,10 @@ pub fn inspected(
         },
         ..Outlook::default()
     });
-    page.next = Some(correct(file(pass.job.source().name()), Some(file(&measurement.file)), None));
+    let dimensions = measurement.dimensions.as_ref().map(|of| of.source.name());
+    // Dimensions alone are the file that was measured from.
+    let probe = Some(measurement.file.as_str()).filter(|name| dimensions != Some(*name));
+    page.next = Some(correct(file(pass.job.source().name()), probe.map(file), dimensions.map(file)));
     page.told = Some(summary.surface.words() + " (2 sigma)");
     page.results = figures(summary, measurement, judgement.decimals);
     page.verdict = Some(Verdict {
