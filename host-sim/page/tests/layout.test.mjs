@@ -46,11 +46,11 @@ test("no figure of a trace and no control of the cutter is cut off in a narrow c
   }
 });
 
-test("verdict and figures stand in two rows and leave the first screen to the picture", async () => {
+test("verdict and figures stand in one row and leave the first screen to the picture", async () => {
   const { page, close } = await open(await report("correct"));
   const { y, height } = await page.locator(".results").boundingBox();
-  const rows = new Set(await page.locator(".result").evaluateAll((all) => all.map((e) => e.offsetTop)));
-  assert.ok(rows.size <= 2 && y + height < 270, `${rows.size} rows, down to ${y + height}`);
+  const rows = new Set(await page.locator(".results > dl .result").evaluateAll((all) => all.map((e) => e.offsetTop)));
+  assert.ok(rows.size === 1 && y + height < 240, `${rows.size} rows, down to ${y + height}`);
   await close();
 });
 
