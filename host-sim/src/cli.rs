@@ -4,7 +4,6 @@
 //! is wrong (command line included), 2 a fault of the program. `--json` makes both streams readable for machines.
 
 use std::ffi::OsString;
-use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use truepath_ground::codes::C001;
@@ -12,9 +11,12 @@ use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::interruption;
 
 use crate::command::{
-    bore, canon, compare, correct, demo, device, forces, hil, image, init, inspect, learn, multiaxis, pack, plan, plot,
-    pocket, probe, replay, simulate, split, study,
+    bore, canon, compare, correct, demo, forces, image, init, inspect, learn, multiaxis, plan, plot, pocket, probe,
+    replay, simulate, split,
 };
+#[cfg(not(target_family = "wasm"))]
+use crate::command::{device, hil, pack, study};
+use crate::streams;
 use crate::terminal::Terminal;
 
 /// Cut contours as if machine and cutter were rigid.
@@ -57,8 +59,10 @@ enum Command {
     /// From the probe file of a corrected part to the correction of the next one.
     Learn(learn::Options),
     /// One file of a real part's story: job, program, probe files, corrections; to keep, to send, to run again.
+    #[cfg(not(target_family = "wasm"))]
     Pack(pack::Options),
     /// The files of such a story as a folder.
+    #[cfg(not(target_family = "wasm"))]
     Unpack(pack::UnpackOptions),
     /// For a single part: a program that cuts half of the allowance, to be probed before the second half.
     Split(split::Options),
@@ -67,6 +71,7 @@ enum Command {
     /// Pictures (SVG, PNG) of what the commands wrote: traces, correction, wall to scale, laws compared.
     Plot(plot::Options),
     /// How well the method does on virtual machines of all kinds, and where it stops working.
+    #[cfg(not(target_family = "wasm"))]
     Study(study::Options),
     /// The chord error of a five-axis program, and a program in which locations are inserted against it.
     Multiaxis(multiaxis::Options),
@@ -75,8 +80,10 @@ enum Command {
     /// A correction image as text.
     Image(image::Options),
     /// A board under setpoints and faults, every answer compared with the host's own code.
+    #[cfg(not(target_family = "wasm"))]
     Hil(hil::Arguments),
     /// A coprocessor over its configuration link.
+    #[cfg(not(target_family = "wasm"))]
     Device(device::Options),
     /// Waviness, roughness and roundness of a bore milled by a circling cutter.
     Bore(bore::Options),
@@ -86,8 +93,8 @@ enum Command {
     Canon(canon::Options),
 }
 
-/// Runs the program.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+/// Runs the program; gives its exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let json = arguments.iter().any(|a| a == "--json");
     let terminal = Terminal::new(json);
@@ -98,13 +105,16 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(error) if error.use_stderr() => Err(usage_error(&error, json)),
         Err(help) => {
             // Help and version are asked for: data, on standard output.
-            let printed = help.print().map_err(|e| Failure::Internal(e.to_string()));
-            return ExitCode::from(printed.map_or_else(|failure| terminal.fail(&failure), |()| 0));
+            let printed = match cfg!(target_family = "wasm") {
+                true => streams::write_out(help.render().to_string().as_bytes()),
+                false => help.print().map_err(|e| Failure::Internal(e.to_string())),
+            };
+            return printed.map_or_else(|failure| terminal.fail(&failure), |()| 0);
         }
     };
     match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => ExitCode::from(terminal.fail(&failure)),
+        Ok(()) => 0,
+        Err(failure) => terminal.fail(&failure),
     }
 }
 
@@ -119,16 +129,21 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Correct(options) => correct::main(&options, terminal),
         Command::Plan(options) => plan::main(&options, terminal),
         Command::Learn(options) => learn::main(&options, terminal),
+        #[cfg(not(target_family = "wasm"))]
         Command::Pack(options) => pack::main(&options, terminal),
+        #[cfg(not(target_family = "wasm"))]
         Command::Unpack(options) => pack::unpack(&options, terminal),
         Command::Split(options) => split::main(&options, terminal),
         Command::Pocket(options) => pocket::main(&options, terminal),
         Command::Plot(options) => plot::main(&options, terminal),
+        #[cfg(not(target_family = "wasm"))]
         Command::Study(options) => study::main(&options, terminal),
         Command::Multiaxis(options) => multiaxis::main(&options, terminal),
         Command::Replay(options) => replay::main(&options, terminal),
         Command::Image(options) => image::main(&options, terminal),
+        #[cfg(not(target_family = "wasm"))]
         Command::Hil(arguments) => hil::main(&arguments, terminal),
+        #[cfg(not(target_family = "wasm"))]
         Command::Device(options) => device::main(&options, terminal),
         Command::Bore(options) => bore::main(&options, terminal),
         Command::Forces(options) => forces::main(&options, terminal),

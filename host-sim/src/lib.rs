@@ -2,7 +2,10 @@
 
 pub mod cli;
 pub mod command;
+#[cfg(not(target_family = "wasm"))]
 pub mod coprocessor;
+#[cfg(not(target_family = "wasm"))]
 mod monitor;
 pub mod settings;
+pub mod streams;
 mod terminal;

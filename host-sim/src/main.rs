@@ -1,5 +1,5 @@
 //! The command-line program; everything it does is in the library.
 
 fn main() -> std::process::ExitCode {
-    truepath::cli::run(std::env::args_os())
+    truepath::cli::run(std::env::args_os()).into()
 }

@@ -1,12 +1,12 @@
 //! What a command says: its data on standard output; warnings, notes, progress and errors on standard error.
 
-use std::io::{BufWriter, IsTerminal, Write};
-use std::time::Duration;
+use std::io::IsTerminal;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use truepath_ground::diagnostics::{Failure, Form, visible, visible_lines};
 use truepath_ground::output::json;
+
+use crate::streams::{Bar, write_error, write_out};
 
 /// Both and how to write on them.
 #[derive(Clone, Copy, Debug)]
@@ -14,9 +14,6 @@ pub struct Terminal {
     json: bool,
     interactive: bool,
 }
-
-/// How long a task runs before its bar appears.
-const PATIENCE: Duration = Duration::from_secs(1);
 
 impl Terminal {
     /// For people, or with `json` for machines.
@@ -74,38 +71,8 @@ impl Terminal {
         work(&mut |share| bar.reached((share * 100.0) as u64))
     }
     /// A bar for a task of `steps` steps; it shows itself on a terminal when the task takes over a second.
-    pub fn progress(&self, task: &str, steps: u64) -> Progress {
-        let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
-        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {eta}") {
-            bar.set_style(style);
-        }
-        bar.set_message(task.to_owned());
-        Progress { bar, shown: !self.interactive }
-    }
-}
-
-/// A running task.
-#[derive(Debug)]
-pub struct Progress {
-    bar: ProgressBar,
-    /// Whether nothing remains to be decided about showing it.
-    shown: bool,
-}
-
-impl Progress {
-    /// So many steps are done.
-    pub fn reached(&mut self, step: u64) {
-        if !self.shown && self.bar.elapsed() > PATIENCE {
-            self.shown = true;
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        self.bar.set_position(step);
-    }
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
+    pub fn progress(&self, task: &str, steps: u64) -> Bar {
+        Bar::new(task, steps, self.interactive)
     }
 }
 
@@ -117,18 +84,4 @@ pub fn print(text: &[u8]) -> Result<(), Failure> {
 /// Data byte for byte, unless a person looks on.
 pub fn print_data(text: &[u8]) -> Result<(), Failure> {
     if std::io::stdout().is_terminal() { print(text) } else { write_out(text) }
-}
-
-/// Standard output that was closed early (`| head`) is not an error.
-fn write_out(text: &[u8]) -> Result<(), Failure> {
-    let mut out = BufWriter::new(std::io::stdout().lock());
-    match out.write_all(text).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::Internal(error.to_string())),
-        _ => Ok(()),
-    }
-}
-
-/// A closed standard error is no reason to fail.
-fn write_error(text: &str) {
-    let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }

@@ -18,6 +18,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan};
 use truepath_core::gcode::GcodeError;
 
 use crate::codes::{F001, F002, Row, X001};
+use crate::files;
 
 pub use source::Source;
 pub use visible::{visible, visible_lines};
@@ -28,7 +29,7 @@ impl Source {
     /// # Errors
     /// `F001` when it cannot be read.
     pub fn read(path: &Path) -> Result<Self, InputError> {
-        let bytes = std::fs::read(path).map_err(|e| InputError::unreadable(path, &e))?;
+        let bytes = files::read(path).map_err(|e| InputError::unreadable(path, &e))?;
         Ok(Self::new(path.display().to_string(), bytes))
     }
 }

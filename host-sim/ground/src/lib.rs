@@ -8,6 +8,7 @@ pub mod codes;
 pub mod decimal;
 pub mod diagnostics;
 pub mod document;
+pub mod files;
 pub mod interruption;
 pub mod library;
 pub mod limits;

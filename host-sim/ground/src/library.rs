@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use truepath_core::gcode::{Library, LibraryFile};
 
 use crate::diagnostics::Source;
+use crate::files;
 
 /// The largest file that is called.
 pub const LARGEST: u64 = 64 << 20;
@@ -34,8 +35,8 @@ impl Folder {
     /// The folder in which a program lies; empty when it cannot be listed.
     pub fn beside(program: &Path) -> Self {
         let folder = program.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let paths = std::fs::read_dir(folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
-        let mut paths: Vec<PathBuf> = paths.filter(|path| is_program(path)).collect();
+        let mut paths = files::entries(folder).unwrap_or_default();
+        paths.retain(|path| is_program(path));
         paths.sort();
         paths.truncate(usize::from(u16::MAX) - 1);
         let entry = |path: PathBuf| {
@@ -72,7 +73,8 @@ fn is_named(stem: &str, name: &str) -> bool {
 fn is_program(path: &Path) -> bool {
     let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase);
     ending.is_some_and(|e| ENDINGS.contains(&e.as_str()))
-        && std::fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() <= LARGEST)
+        && files::is_file(path)
+        && files::length(path).is_ok_and(|length| length <= LARGEST)
 }
 
 #[cfg(test)]

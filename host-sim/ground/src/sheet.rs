@@ -2,13 +2,13 @@
 //!
 //! The columns may stand in any order, with others between them.
 
-use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
 use crate::codes::{Row, Z006, Z007, Z008, Z010};
 use crate::diagnostics::{InputError, Source};
+use crate::files;
 
 /// Most lines of a table.
 const LINES: usize = 2_000_000;
@@ -24,7 +24,7 @@ const FARTHEST: f64 = 1e9;
 pub fn read_bounded(path: &Path) -> Result<Source, InputError> {
     let unreadable = |e| InputError::unreadable(path, &e);
     let mut bytes = Vec::new();
-    File::open(path).map_err(unreadable)?.take(BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    files::open(path).map_err(unreadable)?.take(BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > BYTES {
         let found = format!("{} has more than {BYTES} bytes", path.display());
         return Err(Z010.error(found, "a table of at most 1 GB").in_file(path));

@@ -9,6 +9,7 @@ use truepath_chart::view::View;
 use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::codes::F003;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::files;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
@@ -199,7 +200,7 @@ impl<'a> Part<'a> {
 
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), InputError> {
         let there = self.place.join(name);
-        if !self.options.force && std::fs::read(&there).is_ok_and(|found| found != bytes) {
+        if !self.options.force && files::read(&there).is_ok_and(|found| found != bytes) {
             let found = format!("{} is not what the demonstration writes", there.display());
             let help =
                 "name another folder with -o, or add --force to replace what was edited or is of another version";

@@ -8,6 +8,7 @@ use truepath_correction::codes::{Q001, Q004};
 use truepath_correction::learning::{History, Part, WrittenFile, refuse_corrected};
 use truepath_correction::plan::history::PlanHistory;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::files;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
@@ -18,7 +19,7 @@ use super::plan_files::{FIRST_IMAGE, PLAN_HISTORY, PROGRAM};
 /// the one it tells of.
 pub(super) fn history_in(folder: &FilePath, base: &FilePath) -> Result<History, InputError> {
     let place = folder.join(HISTORY);
-    if !place.exists() {
+    if !files::exists(&place) {
         let found = format!("{} holds no {HISTORY}", folder.display());
         let help = "name the folder that truepath correct or truepath learn wrote the correction of this part into; a second pass of truepath split has no next part";
         return Err(InputError::new(Q001, found, "a folder with a correction and its history", help).in_file(folder));
@@ -40,7 +41,7 @@ pub(super) fn plan_history_in(folder: &FilePath) -> Result<PlanHistory, InputErr
 /// # Errors
 /// `Q001` with what kind of passes they are.
 pub(super) fn refuse_unlearned(folder: &FilePath) -> Result<(), InputError> {
-    let holds = |name: &str| folder.join(name).exists();
+    let holds = |name: &str| files::exists(&folder.join(name));
     if holds(PLAN_HISTORY) || !holds(PROGRAM) {
         return Ok(());
     }
@@ -62,8 +63,7 @@ fn refuse_changed(files: &[WrittenFile], history: &str, folder: &FilePath, base:
     let mut held = 0;
     for file in files {
         let places = [folder.join(&file.name), base.join(&file.name)];
-        let Some((place, bytes)) = places.into_iter().find_map(|p| std::fs::read(&p).ok().map(|bytes| (p, bytes)))
-        else {
+        let Some((place, bytes)) = places.into_iter().find_map(|p| files::read(&p).ok().map(|bytes| (p, bytes))) else {
             continue;
         };
         held += 1;
@@ -98,7 +98,7 @@ pub(super) fn refuse_replacing(
     pass: &Pass,
     measurement: &Measurement,
 ) -> Result<(), Failure> {
-    if !place.exists() || pass.job.feed.is_some() {
+    if !files::exists(place) || pass.job.feed.is_some() {
         return Ok(());
     }
     // What cannot be read, or is of another cut, says nothing about this part.

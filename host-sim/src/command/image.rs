@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use truepath_core::image::{Image, ImageError, dump};
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::files;
 use truepath_ground::output::write_file;
 
 use crate::terminal::{Terminal, print};
@@ -40,7 +41,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
 
 /// The bytes of an image file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, InputError> {
-    std::fs::read(path).map_err(|e| InputError::unreadable(path, &e))
+    files::read(path).map_err(|e| InputError::unreadable(path, &e))
 }
 
 /// A checked image; `I…` with the core's number for what it refuses.

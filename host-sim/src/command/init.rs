@@ -9,13 +9,15 @@ use truepath_ground::codes::C001;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{Failure, InputError, Source, visible};
 use truepath_ground::document;
+use truepath_ground::files;
 use truepath_ground::output::OutputFile;
 use truepath_ground::units::mm;
 use truepath_job::codes::J042;
 use truepath_job::draft::{ContourNote, Draft, Entry, Origin};
-use truepath_job::job::JobFile;
+use truepath_job::job::{DIALECTS, FORMATS, JobFile, MATERIALS};
 use truepath_job::pass::Pass;
 
+use crate::streams::write_error;
 use crate::terminal::Terminal;
 
 /// What is asked for.
@@ -33,6 +35,9 @@ pub struct Options {
     /// job.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Print what would be asked, and write nothing.
+    #[arg(long, conflicts_with = "yes")]
+    pub questions: bool,
     /// Replace the file if it exists.
     #[arg(long)]
     pub force: bool,
@@ -80,6 +85,7 @@ struct Report {
 }
 
 /// A question.
+#[derive(Clone, Debug, serde::Serialize)]
 struct Question {
     /// Its short name, for `--set`.
     name: String,
@@ -89,13 +95,53 @@ struct Question {
     text: String,
     /// What an empty answer takes; `None` where nothing can be taken.
     proposal: Option<String>,
+    /// The words one can answer with, where there are only some.
+    choices: Vec<&'static str>,
+}
+
+/// The words that some keys take.
+fn choices(name: &str) -> Vec<&'static str> {
+    match name {
+        "wall" => vec!["left", "right"],
+        "compensation" => vec!["centre", "radius"],
+        "dialect" => DIALECTS.iter().map(|(name, _)| *name).collect(),
+        "format" => FORMATS.iter().map(|(name, _)| *name).collect(),
+        "material" => MATERIALS.iter().map(|material| material.name).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// What `--questions` prints.
+#[derive(Clone, Debug, serde::Serialize)]
+struct Asked {
+    /// Each with the name that `--set` takes and what an empty answer stands for.
+    questions: Vec<Question>,
+    /// The contour in words.
+    facts: Vec<String>,
+    /// What the user should know.
+    warnings: Vec<String>,
 }
 
 /// Asks and writes.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
+    if options.questions {
+        let asked = asked(options)?;
+        terminal.warn_all(&asked.warnings);
+        return terminal.tell(&asked, || format!("to be said:{}\n", listed(&asked.questions)));
+    }
     let report = run(options, terminal)?;
     terminal.warn_all(&report.warnings);
     terminal.tell(&report, || words(&report))
+}
+
+/// What is still to be asked, after what `--set` says.
+fn asked(options: &Options) -> Result<Asked, Failure> {
+    let given = given(&options.set)?;
+    let draft = Draft::of(&Source::read(&options.program)?, &given)?;
+    let bare = |proposal: String| proposal.trim_matches('"').to_owned();
+    let questions = questions(&draft, &given).into_iter();
+    let questions = questions.map(|q| Question { proposal: q.proposal.map(bare), ..q }).collect();
+    Ok(Asked { questions, facts: draft.facts, warnings: draft.warnings })
 }
 
 fn run(options: &Options, terminal: &Terminal) -> Result<Report, Failure> {
@@ -190,7 +236,13 @@ fn questions(draft: &Draft, given: &BTreeMap<String, String>) -> Vec<Question> {
         let rows: String = draft.contours.iter().map(one).collect();
         let text = format!("The program makes {} walls. Which one is this job about?{rows}", draft.contours.len());
         let proposal = Some(draft.chosen.map_or_else(|| "all".to_owned(), |number| number.to_string()));
-        list.push(Question { name: "contour".to_owned(), keys: vec!["contour".to_owned()], text, proposal });
+        list.push(Question {
+            name: "contour".to_owned(),
+            keys: vec!["contour".to_owned()],
+            text,
+            proposal,
+            choices: Vec::new(),
+        });
     }
     for entry in &draft.entries {
         let asked = entry.origin == Origin::Open || (entry.origin == Origin::Default && entry.check);
@@ -211,18 +263,24 @@ fn questions(draft: &Draft, given: &BTreeMap<String, String>) -> Vec<Question> {
             Origin::Open => format!("{key}: {} (usual: {})", entry.why, entry.value.trim_matches('"')),
             _ => format!("{key}: {}", entry.why),
         };
-        list.push(Question { name, keys, text, proposal });
+        let choices = choices(&name);
+        list.push(Question { name, keys, text, proposal, choices });
     }
     list
 }
 
-/// The error of questions that nobody is there to answer.
-fn unanswered(open: &[Question], defaults: bool) -> InputError {
+/// Questions, each as the `--set` that answers it.
+fn listed(open: &[Question]) -> String {
     let one = |q: &Question| {
         let usual = q.proposal.as_ref().map_or_else(String::new, |p| format!(" [{}]", p.trim_matches('"')));
         format!("\n  --set {}=…{usual}   {}", q.name, q.text.replace('\n', "\n    "))
     };
-    let list: String = open.iter().map(one).collect();
+    open.iter().map(one).collect()
+}
+
+/// The error of questions that nobody is there to answer.
+fn unanswered(open: &[Question], defaults: bool) -> InputError {
+    let list = listed(open);
     let found = match defaults {
         true => format!("the program does not show:{list}"),
         false => format!("nobody is at a terminal to answer, and the program does not show:{list}"),
@@ -250,7 +308,7 @@ fn answered(program: &Source, given: &mut BTreeMap<String, String>) -> Result<Dr
                 *given = tried;
                 asked.insert(question.name);
             }
-            Err(Failure::Input(error)) => say(&format!("{}\n", visible(&error.to_string())))?,
+            Err(Failure::Input(error)) => write_error(&format!("{}\n", visible(&error.to_string()))),
             Err(failure) => return Err(failure),
         }
     }
@@ -260,7 +318,7 @@ fn answered(program: &Source, given: &mut BTreeMap<String, String>) -> Result<Dr
 fn ask(question: &Question) -> Result<Option<String>, Failure> {
     loop {
         let proposal = question.proposal.as_ref().map_or_else(String::new, |p| format!(" [{}]", p.trim_matches('"')));
-        say(&format!("{}{proposal}: ", visible_text(&question.text)))?;
+        write_error(&format!("{}{proposal}: ", visible_text(&question.text)));
         let mut answer = String::new();
         let read = std::io::stdin().lock().read_line(&mut answer);
         let length = read.map_err(|e| InputError::unreadable(FilePath::new("the terminal"), &e))?;
@@ -270,7 +328,7 @@ fn ask(question: &Question) -> Result<Option<String>, Failure> {
             (true, Some(_)) if length > 0 => return Ok(None),
             // The end of the input answers nothing.
             (true, _) if length == 0 => return Err(unanswered(std::slice::from_ref(question), false).into()),
-            (true, _) => say("this has no default\n")?,
+            (true, _) => write_error("this has no default\n"),
         }
     }
 }
@@ -279,14 +337,9 @@ fn visible_text(text: &str) -> String {
     text.lines().map(|line| visible(line).into_owned()).collect::<Vec<_>>().join("\n")
 }
 
-fn say(text: &str) -> Result<(), Failure> {
-    let mut err = std::io::stderr().lock();
-    err.write_all(text.as_bytes()).and_then(|()| err.flush()).map_err(|e| Failure::Internal(e.to_string()))
-}
-
 /// How a file in the folder of `job` names `program`.
 fn relative(job: &FilePath, program: &FilePath) -> Result<String, InputError> {
-    let whole = |path: &FilePath| path.canonicalize().map_err(|e| InputError::unreadable(path, &e));
+    let whole = |path: &FilePath| files::canonical(path).map_err(|e| InputError::unreadable(path, &e));
     let folder = match job.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => whole(folder)?,
         _ => whole(FilePath::new("."))?,

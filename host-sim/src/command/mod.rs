@@ -1,7 +1,7 @@
 //! The commands: what each is asked is what it takes.
 //!
 //! A command is a module: `Options`, which clap fills; `run`, which does the work and gives a summary; `main`, which runs it
-//! and prints.
+//! and prints. Those that need ports, processes, folders of the system or threads are left out in a browser.
 
 pub mod bore;
 pub mod canon;
@@ -9,8 +9,10 @@ pub mod compare;
 pub mod correct;
 mod correction_files;
 pub mod demo;
+#[cfg(not(target_family = "wasm"))]
 pub mod device;
 pub mod forces;
+#[cfg(not(target_family = "wasm"))]
 pub mod hil;
 mod history;
 pub mod image;
@@ -18,10 +20,12 @@ pub mod init;
 pub mod inspect;
 pub mod learn;
 pub mod multiaxis;
+#[cfg(not(target_family = "wasm"))]
 pub mod pack;
 pub mod placement;
 pub mod plan;
 mod plan_files;
+#[cfg(not(target_family = "wasm"))]
 mod plan_study;
 pub mod plot;
 pub mod pocket;
@@ -30,4 +34,5 @@ mod readings;
 pub mod replay;
 pub mod simulate;
 pub mod split;
+#[cfg(not(target_family = "wasm"))]
 pub mod study;

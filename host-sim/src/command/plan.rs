@@ -1,7 +1,6 @@
 //! `plan`: which passes hold a tolerance at every height of the wall, in least time.
 
 use std::path::{Path as FilePath, PathBuf};
-use std::sync::mpsc::channel;
 
 use clap::{Args, ValueEnum};
 use truepath_core::checksum::crc32;
@@ -391,9 +390,18 @@ fn beyond_what_shows(plan: &Plan, pass: &Pass) -> Option<String> {
     })
 }
 
-/// The search uses all cores; `progress` belongs to this thread.
+/// Where there are no threads nobody looks on while the search runs.
+#[cfg(target_family = "wasm")]
 fn search(planner: &Planner<'_>, wanted: &Wanted, progress: &mut dyn FnMut(f64)) -> Result<Plan, Failure> {
-    let (tell, told) = channel();
+    let plan = planner.plan(wanted, &|_| ())?;
+    progress(1.0);
+    Ok(plan)
+}
+
+/// The search uses all cores; `progress` belongs to this thread.
+#[cfg(not(target_family = "wasm"))]
+fn search(planner: &Planner<'_>, wanted: &Wanted, progress: &mut dyn FnMut(f64)) -> Result<Plan, Failure> {
+    let (tell, told) = std::sync::mpsc::channel();
     std::thread::scope(|scope| {
         let work = scope.spawn(move || {
             planner.plan(wanted, &move |share| {

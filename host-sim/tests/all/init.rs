@@ -363,3 +363,36 @@ fn the_format_of_a_probe_file_shows_itself_and_a_wrong_one_in_the_job_is_named()
     fs::write(desk.path().join("probe.txt"), "Punkt 1 an der Wand\n").expect("a file");
     assert_eq!(refused(&inspect(&without))["code"], "J043");
 }
+
+#[test]
+fn the_questions_can_be_had_without_writing_and_their_answers_make_the_job() {
+    let desk = desk("fusion-haas-block.nc");
+    let program = "fusion-haas-block.nc";
+    let ask = |more: &[&str]| {
+        let words = [&["--json", "init", program, "--questions"], more].concat();
+        answer(&truepath(&words, desk.path()))["questions"].as_array().expect("questions").clone()
+    };
+    let open = ask(&[]);
+    assert!(!open.is_empty() && !desk.path().join("job.toml").exists());
+    let answers: Vec<String> = open
+        .iter()
+        .filter_map(|q| Some((q["name"].as_str()?, q["proposal"].as_str()?)))
+        .filter(|(_, proposal)| *proposal != "unknown")
+        .map(|(name, proposal)| format!("{name}={proposal}"))
+        .collect();
+    assert!(!answers.is_empty(), "{open:?}");
+    let set: Vec<&str> = answers.iter().flat_map(|answer| ["--set", answer]).collect();
+    // What was said is not asked again.
+    let left = ask(&set);
+    assert!(left.iter().all(|q| q["proposal"] == "unknown" || q["proposal"].is_null()), "{left:?}");
+    // The proposals are what --yes takes.
+    answer(&truepath(&["--json", "init", program, "--yes", "-o", "taken.toml"], desk.path()));
+    let words = [&["--json", "init", program, "--yes", "-o", "said.toml"], &set[..]].concat();
+    answer(&truepath(&words, desk.path()));
+    let numbers = |name: &str| {
+        let text = fs::read(desk.path().join(name)).expect("a job");
+        let read = truepath_ground::diagnostics::Source::new(name, text);
+        truepath_job::job::JobFile::parse(read, desk.path()).expect("a job").numbers
+    };
+    assert_eq!(numbers("taken.toml"), numbers("said.toml"));
+}

@@ -27,6 +27,7 @@ use truepath_core::job::Probe;
 use truepath_core::units::Offset;
 use truepath_ground::codes::J004;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::files;
 
 use crate::codes::{J001, J009};
 use crate::post::ToolNote;
@@ -158,7 +159,7 @@ impl JobFile {
     /// # Errors
     /// `J001`, pointing at the key `program`.
     pub fn read_program(&self) -> Result<Source, InputError> {
-        let bytes = std::fs::read(&self.program).map_err(|error| {
+        let bytes = files::read(&self.program).map_err(|error| {
             let reason = InputError::unreadable(&self.program, &error);
             J001.error(reason.found(), "a readable program").at(&self.source, self.span("program"))
         })?;
@@ -171,7 +172,7 @@ impl JobFile {
     /// `J001`, pointing at the key `stock.surface`, and whatever is wrong with the file.
     pub fn read_surface(&self) -> Result<Option<Surface>, InputError> {
         let Some(path) = &self.surface else { return Ok(None) };
-        let bytes = std::fs::read(path).map_err(|error| {
+        let bytes = files::read(path).map_err(|error| {
             let reason = InputError::unreadable(path, &error);
             J001.error(reason.found(), "a readable surface").at(&self.source, self.span("stock.surface"))
         })?;
@@ -184,7 +185,7 @@ impl JobFile {
     /// `J001`, pointing at the key `stock.probe`.
     pub(crate) fn read_stock_probe(&self) -> Result<Option<Source>, InputError> {
         let Some(path) = &self.stock_probe else { return Ok(None) };
-        let bytes = std::fs::read(path).map_err(|error| {
+        let bytes = files::read(path).map_err(|error| {
             let reason = InputError::unreadable(path, &error);
             let help = "correct the name, relative to the job file's folder; truepath probe --stock writes the program that touches the stock, truepath correct without stock.probe takes an even allowance";
             InputError::new(J001, reason.found(), "readable touches of the stock", help)

@@ -11,6 +11,7 @@ use truepath_core::job::{Force, ForceModel, Machine};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::Source;
+use truepath_ground::files;
 
 use super::material::MATERIALS;
 use crate::post::{Post, ToolNote};
@@ -71,7 +72,7 @@ impl Open {
     /// What the program says; `None` when it cannot be read, which is reported where it is needed.
     pub(super) fn post(&self) -> Option<&Post> {
         let read = || {
-            let bytes = std::fs::read(&self.path).ok()?;
+            let bytes = files::read(&self.path).ok()?;
             Some(Post::read(&Source::new(self.path.display().to_string(), bytes)))
         };
         self.post.get_or_init(read).as_ref()

@@ -5,14 +5,15 @@ use std::sync::Arc;
 use truepath_bench::{RunStatus, Watch};
 
 use crate::monitor::{HilView, Step, wanted};
-use crate::terminal::{Progress, Terminal};
+use crate::streams;
+use crate::terminal::Terminal;
 
 /// One of them.
 pub(super) enum Onlooker {
     /// The view.
     View(HilView),
     /// A bar, and the setpoints that make it full.
-    Bar(Progress, u64),
+    Bar(streams::Bar, u64),
 }
 
 /// Steps of the bar.

@@ -13,6 +13,7 @@ use truepath_correction::learn::{LearnSummary, learn};
 use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::files;
 use truepath_ground::output::OutputFolder;
 use truepath_ground::units::mm;
 use truepath_job::job::{PartFlags, ROUTES, Route, Said, one_of};
@@ -66,7 +67,7 @@ pub struct Options {
 
 /// Learns and prints what was learned.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
-    if options.from.join(PLAN_HISTORY).exists() {
+    if files::exists(&options.from.join(PLAN_HISTORY)) {
         refuse_same_folder(options)?;
         if options.route == Some(Route::Coprocessor) {
             let found = "--route coprocessor, and the planned passes are in the program";
@@ -203,7 +204,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
 
 /// The old correction must outlive the new one: it is what the measured part was cut with.
 fn refuse_same_folder(options: &Options) -> Result<(), InputError> {
-    let same = match (options.from.canonicalize(), options.output.canonicalize()) {
+    let same = match (files::canonical(&options.from), files::canonical(&options.output)) {
         (Ok(from), Ok(out)) => from == out,
         _ => options.from == options.output,
     };

@@ -9,6 +9,7 @@ use truepath_correction::learn::{ContourLearned, CorrectedWall, LearnSummary, le
 use truepath_correction::remarks::said_of_every;
 use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::files;
 use truepath_ground::output::{OutputFolder, json};
 use truepath_job::job::Route;
 use truepath_job::pass::Pass;
@@ -32,7 +33,7 @@ pub(super) fn run(
     let (mut passes, mut histories, mut left) = (Vec::new(), Vec::new(), Vec::new());
     for pass in walls {
         let folder = from.join(contour_folder(&pass));
-        if !folder.join(HISTORY).exists() {
+        if !files::exists(&folder.join(HISTORY)) {
             left.push(contour_name(&pass));
             continue;
         }

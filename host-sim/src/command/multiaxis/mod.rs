@@ -2,7 +2,6 @@
 
 mod summary;
 
-use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write};
 use std::path::{Path as FilePath, PathBuf};
 
@@ -11,6 +10,7 @@ use clap::builder::TypedValueParser;
 use summary::{summary, words};
 use truepath_core::gcode::{Dialect, PointlessLength, Units};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::files;
 use truepath_ground::output::{OutputFile, OutputFolder, json};
 use truepath_job::job::{DECIMALS, WORD_DIALECTS, one_of};
 use truepath_multiaxis::ball::Contacts;
@@ -102,7 +102,7 @@ fn normal(text: &str) -> Result<[f64; 3], String> {
 
 /// Rewrites a program and prints its figures.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
-    let bytes = std::fs::metadata(&options.file).map_or(0, |m| m.len());
+    let bytes = files::length(&options.file).unwrap_or_default();
     let mut bar = terminal.progress("dividing", bytes);
     let summary = run(options, &mut |read| bar.reached(read))?;
     drop(bar);
@@ -120,8 +120,8 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(u64)) -> Result<Multiaxis
     let machine = Machine::from_toml(&Source::read(&options.machine)?)?;
     check_normal(options, &machine)?;
     let settings = settings(options, &machine);
-    let file = File::open(&options.file).map_err(|e| InputError::unreadable(&options.file, &e))?;
-    if options.file.is_dir() {
+    let file = files::open(&options.file).map_err(|e| InputError::unreadable(&options.file, &e))?;
+    if files::is_dir(&options.file) {
         let error = io::Error::new(io::ErrorKind::IsADirectory, "is a directory");
         return Err(InputError::unreadable(&options.file, &error).into());
     }
@@ -188,7 +188,7 @@ fn steered(
     line: u32,
     progress: &mut dyn FnMut(u64),
 ) -> Result<MultiaxisSummary, Failure> {
-    let bytes = std::fs::metadata(&options.file).map_or(0, |m| m.len());
+    let bytes = files::length(&options.file).unwrap_or_default();
     if bytes > LARGEST_STEERED {
         let found = format!("line {line} steers the program or computes a place, and the file has {bytes} bytes");
         let expected = format!("at most {LARGEST_STEERED} bytes of such a program");

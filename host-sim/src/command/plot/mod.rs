@@ -18,6 +18,7 @@ use clap::{Args, Subcommand};
 use truepath_chart::raster::png;
 use truepath_chart::view::View;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::files;
 use truepath_ground::output::OutputFile;
 use truepath_ground::sheet::{names as names_of, read_bounded};
 use truepath_job::job::Which;
@@ -247,10 +248,10 @@ fn named_after(table: &FilePath) -> String {
 
 /// A table, or the first of these that lies in a folder.
 fn table_in(path: &FilePath, wanted: &[&str]) -> Result<PathBuf, InputError> {
-    if !path.is_dir() {
+    if !files::is_dir(path) {
         return Ok(path.to_owned());
     }
-    let there = wanted.iter().map(|name| path.join(name)).find(|file| file.is_file());
+    let there = wanted.iter().map(|name| path.join(name)).find(|file| files::is_file(file));
     there.ok_or_else(|| {
         let found = format!("{} holds no {}", path.display(), wanted.join(" and no "));
         let help = "simulate writes trace.csv, correct and learn write correction.csv, compare writes walls.csv";
@@ -265,7 +266,7 @@ fn error(
     job: Option<&OfJob>,
 ) -> Result<Vec<u8>, Failure> {
     let files = tables.iter().map(|t| table_in(t, &["correction.csv", "trace.csv"])).collect::<Result<Vec<_>, _>>()?;
-    let beside = files.first().map(|f| f.with_file_name("points.csv")).filter(|f| f.is_file());
+    let beside = files.first().map(|f| f.with_file_name("points.csv")).filter(|f| files::is_file(f));
     let probed = match points.map(FilePath::to_owned).or(beside) {
         Some(file) => probed(&read_bounded(&file)?)?,
         None => Vec::new(),

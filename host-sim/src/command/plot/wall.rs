@@ -8,6 +8,7 @@ use std::path::Path as FilePath;
 
 use truepath_core::cut::Sample;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::files;
 use truepath_ground::sheet::{each_line, read_bounded};
 use truepath_ground::units::{float, mm};
 use truepath_job::job::{JobFile, Which};
@@ -39,7 +40,7 @@ pub(super) fn wall(table: &FilePath, source: &Source, job: Option<&OfJob>) -> Re
 
 fn beside(table: &FilePath) -> Result<Vec<WallRow>, InputError> {
     let file = table.with_file_name("wall.csv");
-    if !file.is_file() {
+    if !files::is_file(&file) {
         let found = format!("there is no wall.csv beside {}", table.display());
         let help = "the wall to scale needs the wall.csv that simulate, correct and learn write beside their table: name \
                     their folder, or give --job, the job of the table";

@@ -20,6 +20,7 @@ use truepath_correction::learning::{History, Part, PartPoints, joint, refuse_unc
 use truepath_correction::verification::{Measured, Plan, Settings, WallSensitivity, plan, plan_next};
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::files;
 use truepath_ground::units::mm;
 use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
@@ -49,7 +50,7 @@ pub(super) fn of_files(
         plan.warnings.extend(measurement.remarks(&file));
         return Ok(plan);
     };
-    if folder.join(PLAN_HISTORY).exists() {
+    if files::exists(&folder.join(PLAN_HISTORY)) {
         return planned_part(pass, folder, settings, progress);
     }
     refuse_unlearned(folder)?;
