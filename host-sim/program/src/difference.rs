@@ -67,6 +67,11 @@ pub struct Difference {
     pub feeds_scheduled: bool,
 }
 
+/// An angle without the digits in which arc tangents of one system differ from those of another.
+fn shown(degrees: f64) -> f64 {
+    (degrees * 1e9).round() / 1e9
+}
+
 impl Difference {
     pub(super) fn new(
         program: &[u8],
@@ -89,9 +94,9 @@ impl Difference {
             largest_shift: largest_shift(moves, edits),
             largest_deviation_mm: proof.deviation_nm / 1e6,
             tolerance_mm: options.tolerance.nm() as f64 / 1e6,
-            largest_kink_deg: kink.degrees,
+            largest_kink_deg: shown(kink.degrees),
             largest_kink_line: kink.line,
-            largest_kink_beyond_path_deg: proof.kinks.iter().map(|k| k.beyond).fold(0.0, f64::max),
+            largest_kink_beyond_path_deg: shown(proof.kinks.iter().map(|k| k.beyond).fold(0.0, f64::max)),
             max_kink_deg: options.max_kink_deg,
             steps_outside_compared: proof.steps_outside,
             moves_outside_compared: proof.moves_outside,
