@@ -21,6 +21,7 @@ mod rooms;
 mod shop;
 mod step;
 mod toolchain;
+mod web;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -44,7 +45,7 @@ enum Task {
     ///
     /// fmt, rooms, test-only, features, firmware, budget and hil, the same on every repeat. With --all also the slow tests, other
     /// random cases each time, the image of the real board, all setpoints of hil and its release build, lint, doc,
-    /// device, elf, page, conformance, shop, judge, bench, fuzz and linuxcnc.
+    /// device, elf, page, web, conformance, shop, judge, bench, fuzz and linuxcnc.
     Test {
         /// Also what takes long.
         #[arg(long)]
@@ -182,6 +183,12 @@ enum Task {
         #[arg(long)]
         write: bool,
     },
+    /// The whole tool as one web page, target/web/site: builds it, and tries it in a real browser against the command line.
+    Web {
+        /// Only build it.
+        #[arg(long)]
+        no_tests: bool,
+    },
     /// The LinuxCNC component: builds it and tests it on a simulated machine.
     #[command(args_conflicts_with_subcommands = true)]
     Linuxcnc {
@@ -244,6 +251,7 @@ fn main() -> ExitCode {
             report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
         }
         Task::Page { write } => report.run(Step::new("page", || page::check(write))),
+        Task::Web { no_tests } => report.run(Step::new("web", || web::check(!no_tests))),
         Task::Linuxcnc { task, scenario, write } => {
             report.run(Step::new("linuxcnc", || linuxcnc::run(task, scenario.as_deref(), write)));
         }
@@ -268,6 +276,7 @@ fn test(report: &mut Report, all: bool) {
         report.run(Step::new("device", device::check));
         report.run(Step::new("elf", || firmware::elf::check(boards, false)));
         report.run(Step::new("page", || page::check(false)));
+        report.run(Step::new("web", || web::check(true)));
         report.run(Step::new("conformance", || conformance::check(false)));
         report.run(Step::new("shop", || shop::check(None, None, false)));
         report.run(Step::new("judge", || judge::run_all(None)));

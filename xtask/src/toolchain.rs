@@ -1,7 +1,7 @@
-//! A compiler for the microcontroller.
+//! A compiler for the microcontroller, and for WebAssembly.
 //!
 //! In order of preference: the user's own, when the target is installed for it; Debian's, whose package of the
-//! compiler's sources lets cargo build `core` for any target; else a message with both remedies. Nobody's toolchains
+//! compiler's sources lets cargo build `core` and `std` for any target; else a message with both remedies. Nobody's toolchains
 //! are changed: rustup is never called.
 
 use std::ffi::OsString;
@@ -13,6 +13,8 @@ use crate::step::Failure;
 
 /// Cortex-M4F and M7 with the floats in registers.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
+/// A module of WebAssembly that imports only what it says itself.
+pub const WASM: &str = "wasm32-unknown-unknown";
 
 /// Debian's packages, as of the security suite of Debian 12. They move, so no version is named.
 const PACKAGES: [&str; 3] = ["cargo-web", "rustc-web", "rust-web-src"];
@@ -20,22 +22,30 @@ const PACKAGES: [&str; 3] = ["cargo-web", "rustc-web", "rust-web-src"];
 /// The oldest compiler the crates accept (`rust-version` of the workspace).
 const OLDEST_MINOR: u32 = 93;
 
-/// A compiler that can build for the microcontroller.
+/// A compiler that can build for another target.
 #[derive(Debug)]
 pub enum Toolchain {
     /// The one in use, with the target installed.
     Own,
-    /// Debian's, which builds `core` from source.
+    /// Debian's, which builds `core` and what else is needed from source.
     Debian,
 }
 
 impl Toolchain {
-    /// Finds one, installing Debian's packages where that is allowed.
+    /// Finds one for the microcontroller, installing Debian's packages where that is allowed.
     ///
     /// # Errors
     /// [`Failure::Missing`] with the ways to get one.
     pub fn find() -> Result<Self, Failure> {
-        if own_has_target() {
+        Self::find_for(TARGET)
+    }
+
+    /// Finds one for a target.
+    ///
+    /// # Errors
+    /// As [`Toolchain::find`].
+    pub fn find_for(target: &str) -> Result<Self, Failure> {
+        if own_has(target) {
             return Ok(Self::Own);
         }
         if debian_is_complete() {
@@ -45,7 +55,7 @@ impl Toolchain {
             return Ok(Self::Debian);
         }
         Err(Failure::Missing(format!(
-            "no compiler for {TARGET}. Install one of:\n  rustup target add {TARGET}\n  apt-get install \
+            "no compiler for {target}. Install one of:\n  rustup target add {target}\n  apt-get install \
              --no-install-recommends {}   (Debian; compiler 1.{OLDEST_MINOR} or newer)",
             PACKAGES.join(" ")
         )))
@@ -55,7 +65,7 @@ impl Toolchain {
     pub fn describe(&self) -> &'static str {
         match self {
             Self::Own => "the installed target",
-            Self::Debian => "Debian's compiler, core built from source",
+            Self::Debian => "Debian's compiler, the standard library built from source",
         }
     }
 
@@ -73,8 +83,13 @@ impl Toolchain {
         Ok(version.to_owned() + if matches!(self, Self::Debian) { " of Debian" } else { "" })
     }
 
-    /// Its cargo.
+    /// Its cargo, for a target without an operating system.
     pub fn cargo(&self) -> Command {
+        self.cargo_with("core")
+    }
+
+    /// Its cargo; `library` is what it builds of the standard library where that is not installed.
+    pub fn cargo_with(&self, library: &str) -> Command {
         match self {
             Self::Own => cargo(),
             Self::Debian => {
@@ -82,9 +97,9 @@ impl Toolchain {
                 command
                     .env("RUSTC", "/usr/bin/rustc")
                     .env("RUSTDOC", "/usr/bin/rustdoc")
-                    // Lets the stable compiler build `core`; nothing else unstable is used.
+                    // Lets the stable compiler build its library; nothing else unstable is used.
                     .env("RUSTC_BOOTSTRAP", "1")
-                    .env("CARGO_UNSTABLE_BUILD_STD", "core");
+                    .env("CARGO_UNSTABLE_BUILD_STD", library);
                 // What the cargo around this program set would lead back to its own compiler.
                 for name in ["RUSTUP_TOOLCHAIN", "CARGO", "RUSTC_WRAPPER", "LD_LIBRARY_PATH"] {
                     command.env_remove(name);
@@ -95,9 +110,9 @@ impl Toolchain {
     }
 }
 
-fn own_has_target() -> bool {
+fn own_has(target: &str) -> bool {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| OsString::from("rustc"));
-    let Ok(directory) = read(program(rustc).args(["--print", "target-libdir", "--target", TARGET])) else {
+    let Ok(directory) = read(program(rustc).args(["--print", "target-libdir", "--target", target])) else {
         return false;
     };
     let Ok(files) = Path::new(directory.trim()).read_dir() else { return false };

@@ -10,7 +10,8 @@ export function current(): Theme {
   return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 }
 
-function themeButton(changed: () => void): HTMLElement {
+/** The button that switches them. */
+export function themeButton(changed: () => void): HTMLElement {
   const button = el("button", { type: "button", id: "theme" });
   const show = () => { button.textContent = current() === "dark" ? "light" : "dark"; button.setAttribute("aria-label", `Switch to ${button.textContent} colours`); };
   button.addEventListener("click", () => {

@@ -1,4 +1,4 @@
-//! A linker for the firmware: the one that came with the compiler, else Debian's lld under the name rustc looks for.
+//! A linker for the firmware and for WebAssembly: the one that came with the compiler, else Debian's lld under the name rustc looks for.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -47,7 +47,7 @@ fn lld() -> Result<PathBuf, Failure> {
     {
         return Ok(found);
     }
-    Err(Failure::Missing(format!("no linker for the firmware: apt-get install {package}")))
+    Err(Failure::Missing(format!("no linker for this target: apt-get install {package}")))
 }
 
 /// Of files named `lld-NN` the one with the greatest number.

@@ -5,7 +5,7 @@ mod document;
 pub mod elf;
 pub mod emulator;
 mod image;
-mod linker;
+pub mod linker;
 mod rate;
 mod sizes;
 

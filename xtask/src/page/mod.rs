@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use crate::repository::{root, run, target};
 use crate::step::{Failure, Outcome, Passed};
-use tools::Tools;
+pub use tools::Tools;
 
 /// The bundled page, relative to its folder.
 const BUILT: &str = "dist/report.html";
@@ -22,14 +22,7 @@ const BUILT: &str = "dist/report.html";
 /// # Errors
 /// A build that differs from the committed one, a test that fails, a tool that is missing.
 pub fn check(write: bool) -> Outcome {
-    let tools = Tools::find()?;
-    let folder = root().join("host-sim/page");
-    let npm = ["ci", "--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error"];
-    run(tools.npm(&folder).args(npm)).map_err(|_| {
-        Failure::Missing(
-            "npm ci did not succeed (above): are package-lock.json whole and the registry reachable?".into(),
-        )
-    })?;
+    let (tools, folder) = tools()?;
     bundle(&tools, &folder, write)?;
     let pages = parts::write()?;
     let mut tests = tools.node(&folder);
@@ -41,6 +34,22 @@ pub fn check(write: bool) -> Outcome {
     run(&mut tests)?;
     println!("pictures of the pages: {}", pages.join("pictures").display());
     Ok(Passed::Done)
+}
+
+/// Node.js with the packages of the pages, a browser, and the folder of the pages.
+///
+/// # Errors
+/// [`Failure::Missing`] with what is.
+pub fn tools() -> Result<(Tools, PathBuf), Failure> {
+    let tools = Tools::find()?;
+    let folder = root().join("host-sim/page");
+    let npm = ["ci", "--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error"];
+    run(tools.npm(&folder).args(npm)).map_err(|_| {
+        Failure::Missing(
+            "npm ci did not succeed (above): are package-lock.json whole and the registry reachable?".into(),
+        )
+    })?;
+    Ok((tools, folder))
 }
 
 /// Builds the page beside the committed one and compares the two.

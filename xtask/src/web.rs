@@ -1,0 +1,56 @@
+//! The whole tool as one web page: the command line as a module of WebAssembly, in a page that needs no server and no network.
+//!
+//! `target/web/site` holds what is to be handed on or put on a server. The tests open it from disk in Chromium, run its
+//! commands, and compare every file they write with those of the command line, byte for byte.
+
+use std::path::PathBuf;
+use std::process::Stdio;
+
+use crate::firmware::linker;
+use crate::page;
+use crate::repository::{cargo, program, run, target};
+use crate::step::{Failure, Outcome, Passed};
+use crate::toolchain::{Toolchain, WASM};
+
+/// The profile of the module, in Cargo.toml.
+const PROFILE: &str = "web";
+
+/// Builds the page, and with `tests` tries it.
+///
+/// # Errors
+/// What does not build, a test that fails, a tool that is missing.
+pub fn check(tests: bool) -> Outcome {
+    let module = module()?;
+    let (tools, folder) = page::tools()?;
+    // The example is a part of the demonstration, and the tests hold the page against this program.
+    run(cargo().args(["build", "--quiet", "--package", "truepath", "--bin", "truepath"]))?;
+    let command_line = target().join("debug/truepath");
+    let web = target().join("web");
+    let demo = web.join("demo");
+    run(program(&command_line).args(["demo", "--force", "--output"]).arg(&demo).stdout(Stdio::null()))?;
+    let site = web.join("site/index.html");
+    run(tools.node(&folder).args(["node_modules/typescript/bin/tsc", "--noEmit"]))?;
+    run(tools.node(&folder).arg("build-tool.mjs").args([&module, &demo.join("corner"), &site]))?;
+    if tests {
+        let mut test = tools.node(&folder);
+        test.args(["--test", "--test-reporter=spec", "tests/tool.test.mjs"]);
+        test.env("TRUEPATH_PAGES", &web).env("TRUEPATH_PROGRAM", &command_line).env("CHROMIUM", &tools.browser);
+        run(&mut test)?;
+    }
+    println!("the page of the tool: {}", site.display());
+    Ok(Passed::Done)
+}
+
+/// Builds the module; its file.
+fn module() -> Result<PathBuf, Failure> {
+    let toolchain = Toolchain::find_for(WASM)?;
+    println!("compiler for {WASM}: {} ({})", toolchain.version()?, toolchain.describe());
+    // A directory of its own: another compiler would rebuild everything else.
+    let directory = target().join("wasm");
+    let mut command = toolchain.cargo_with("std,panic_abort");
+    command.args(["build", "--package", "truepath-web", "--profile", PROFILE, "--target", WASM, "--target-dir"]);
+    command.arg(&directory);
+    linker::provide(&toolchain, &mut command)?;
+    run(&mut command)?;
+    Ok(directory.join(WASM).join(PROFILE).join("truepath_web.wasm"))
+}
