@@ -30,7 +30,7 @@
 //! The engagement of a 20 mm cutter that takes 3 mm off a straight wall, from geometry, as the core computes it:
 //!
 //! ```rust
-//! use truepath_core::cut::{CutSetup, Milling, Path, Sample, WallLaw};
+//! use truepath_core::cut::{CutSetup, Milling, Path, Runout, Sample, WallLaw};
 //! use truepath_core::geometry::{Block, Contour, Curve, Point, Side, Vector};
 //! use truepath_core::units::{Offset, Real};
 //!
@@ -44,6 +44,7 @@
 //!     wall: Side::Right,
 //!     milling: Milling::of(Side::Right, true),
 //!     law: WallLaw::Helical,
+//!     runout: Runout::NONE,
 //! };
 //! let curve = Curve::line(Point::from_nm(0, 0), Point::from_nm(40_000_000, 0)).unwrap();
 //! let blocks = [Block { curve, s: Offset::ZERO, feed: Real::from_int(400), line: 1 }];

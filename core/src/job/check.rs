@@ -71,6 +71,8 @@ impl Tool {
                 "the measured diameter is not 0.1 to 110 mm and within 10 % of the nominal one",
             )?;
         }
+        require(within(self.runout, Offset::ZERO, um(200)), "the runout is not 0 to 0.2 mm")?;
+        require(whole(self.runout_deg, 0, 360), "the direction of the runout is not 0 to 360 degrees")?;
         require(within(self.teeth, 1, 12), "the number of teeth is not 1 to 12")?;
         require(whole(self.helix_deg, 0, 60), "the helix angle is not 0 to 60 degrees")?;
         let number = self.number.is_none_or(|n| within(n, 1, LARGEST_NUMBER));

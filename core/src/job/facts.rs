@@ -74,6 +74,11 @@ pub struct Tool {
     pub diameter: Offset,
     /// Measured diameter, 0.1…110 mm and within 10 % of the nominal one.
     pub measured_diameter: Option<Offset>,
+    /// Radial offset of its axis from that of the spindle, 0…0.2 mm; 0 runs true.
+    pub runout: Offset,
+    /// Direction of the offset behind a tooth, degrees, 0…360.
+    #[serde(with = "super::wire")]
+    pub runout_deg: Real,
     /// Number of teeth, 1…12.
     pub teeth: u8,
     /// Helix angle, degrees, 0…60.

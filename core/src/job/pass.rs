@@ -1,7 +1,7 @@
 //! One pass of the cutter as job and program describe it: the contour, the cut, the sampled path.
 
 use super::{Buffer, Compensation, ForceModel, Job, JobError, Probe};
-use crate::cut::{Cantilever, Coefficients, Compliance, CutSetup, Milling, Path, PathError, Sample, WallLaw};
+use crate::cut::{Cantilever, Coefficients, Compliance, CutSetup, Milling, Path, PathError, Runout, Sample, WallLaw};
 use crate::gcode::{
     CompensationBy, ContourOptions, ContourProgram, GcodeError, GcodeErrorKind, Memory, Options, Program, RunPart,
     Spindle, Units, is_marked_corrected, program_crc, read_contour,
@@ -211,6 +211,7 @@ fn setup(job: &Job, contour: &ContourProgram) -> Result<CutSetup, JobError> {
             ForceModel::Mean => WallLaw::Mean,
             ForceModel::Helical | ForceModel::Auto => WallLaw::Helical,
         },
+        runout: Runout { offset: job.tool.runout, behind: job.tool.runout_deg * Real::PI / Real::from_int(180) },
     };
     if setup.fits_force_table() { Ok(setup) } else { Err(JobError::Flutes) }
 }

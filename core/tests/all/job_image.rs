@@ -194,6 +194,7 @@ fn a_job_survives_its_compact_form_and_nothing_else_is_one() {
     (largest.dialect, largest.decimal) = (Dialect::Mach, PointlessLength::Least);
     largest.arc_centres = ArcCentres::Absolute;
     largest.tool.measured_diameter = Some(um(20_001));
+    (largest.tool.runout, largest.tool.runout_deg) = (um(200), Real::from_bits((360 << 32) - 1));
     largest.tool.cantilever =
         Some(Stickout { length: Offset::from_nm(499_999_999), material: truepath_core::cut::ToolMaterial::Carbide });
     largest.cut.spindle_rpm = Some(Real::from_bits(200_000 << 32));

@@ -90,7 +90,8 @@ pub fn job(text: &str, renamed: impl Fn(&str) -> String) -> Result<String, toml:
 }
 
 /// Keys of a job that name files, with their tables.
-pub const FILES: [(&str, &str); 4] = [("", "program"), ("stock", "surface"), ("stock", "probe"), ("force", "from")];
+pub const FILES: [(&str, &str); 5] =
+    [("", "program"), ("stock", "surface"), ("stock", "probe"), ("force", "from"), ("tool", "runout_from")];
 
 /// The files that a job names; none where the text is no job.
 pub fn named(text: &str) -> Vec<(&'static str, String)> {

@@ -6,7 +6,7 @@ use super::profile::{Band, Profile, Target, add_residual, deepen};
 use super::reader::{InOrder, WallReader};
 use super::refine::{Update, refine, settle_ends};
 use super::scratch::Scratch;
-use crate::cut::{Loop, Passage, Path, State};
+use crate::cut::{Loop, Passage, Path, State, Teeth};
 use truepath_units::geometry::Vector;
 use truepath_units::{Offset, Real};
 
@@ -203,7 +203,7 @@ fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorr
     let path = machine.path;
     let skipped = path.first().saturating_sub(path.working().start);
     let heights = super::profile::HEIGHTS;
-    let mut chip_scale = (None, Real::ZERO);
+    let (mut chip_scale, mut teeth) = ((None, Real::ZERO), Teeth::BLANK);
     for (i, node) in nodes.iter_mut().enumerate() {
         let index = path.first().saturating_add(i);
         let state = if mirror {
@@ -218,7 +218,7 @@ fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorr
         };
         let (mut chip, mut whole) = (Vector::ZERO, Vector::ZERO);
         for k in 0..heights {
-            let (c, w) = machine.deflection_parts(&state, band.at(k));
+            let (c, w) = machine.deflection_parts(&mut teeth, &state, band.at(k));
             chip = chip + c;
             whole = whole + w;
         }

@@ -6,9 +6,10 @@
 //! left; the iteration is bounded and cannot hang.
 
 use super::compliance::Compliance;
-use super::force::{ForceTable, SplitForce};
+use super::force::{ForceTable, SplitForce, stretches};
 use super::path::Path;
-use super::setup::{Coefficients, WallLaw};
+use super::setup::{Coefficients, Runout, WallLaw};
+use super::teeth::Teeth;
 use truepath_units::geometry::{Direction, Vector};
 use truepath_units::{Offset, Real, div_rounded};
 
@@ -40,8 +41,8 @@ pub struct Loop<'a> {
     pub coefficients: Coefficients,
     /// Compliance of machine and cutter.
     pub compliance: Compliance,
-    /// How much smaller than stated the cutter makes the wall (worn; negative: runout), the same everywhere. It moves the
-    /// wall; engagement and force do not feel it.
+    /// How much smaller than stated the cutter makes the wall (worn; negative: runout that nobody stated), the same
+    /// everywhere. It moves the wall; engagement and force do not feel it.
     pub undersize: Offset,
 }
 
@@ -157,18 +158,41 @@ impl Loop<'_> {
     }
 
     /// Displacement of the cutter from the nominal centre at the instant it makes the wall at a height, given as a
-    /// fraction 0…1 of the engaged depth above the tip.
-    pub fn at_height(&self, state: &State, fraction: Real) -> Vector {
-        let force = self.force_at(state, fraction).total(state.chip_scale);
-        state.commanded + self.displaced(state, fraction, force)
+    /// fraction 0…1 of the engaged depth above the tip. With runout the tooth counts that ends deepest, with its reach.
+    pub fn at_height(&self, teeth: &mut Teeth, state: &State, fraction: Real) -> Vector {
+        let (force, reach) = self.made_by(teeth, state, fraction);
+        state.commanded + self.displaced(state, fraction, force.total(state.chip_scale)) + reach
     }
 
-    /// Deflection at a height: (its chip part, the whole).
-    pub fn deflection_parts(&self, state: &State, fraction: Real) -> (Vector, Vector) {
-        let force = self.force_at(state, fraction);
+    /// Deflection at a height: (its chip part, the whole with the reach of the tooth that makes the wall).
+    pub fn deflection_parts(&self, teeth: &mut Teeth, state: &State, fraction: Real) -> (Vector, Vector) {
+        let (force, reach) = self.made_by(teeth, state, fraction);
         let chip = (force.chip_n * state.chip_scale, force.chip_t * state.chip_scale);
         let whole = force.total(state.chip_scale);
-        (self.displaced(state, fraction, chip), self.displaced(state, fraction, whole))
+        (self.displaced(state, fraction, chip), self.displaced(state, fraction, whole) + reach)
+    }
+
+    /// The force at the instant the wall at a height is made, and how much farther the tooth reaches that makes it.
+    fn made_by(&self, teeth: &mut Teeth, state: &State, fraction: Real) -> (SplitForce, Vector) {
+        let setup = self.path.setup();
+        let alike = self.force_at(state, fraction);
+        if setup.runout == Runout::NONE {
+            return (alike, Vector::ZERO);
+        }
+        let helix = self.path.helix();
+        teeth.set(setup, &self.coefficients, state.chip_scale);
+        if setup.law == WallLaw::Helical && state.chip_scale > Real::ZERO {
+            teeth.immerse(setup, stretches((setup, helix), state.engaged, setup.axial_depth * fraction));
+        }
+        let mut deepest: Option<(Offset, SplitForce, Offset)> = None;
+        for (reach, more) in teeth.makers(setup, &self.coefficients, helix.mm_per_lag) {
+            let force = alike.plus(more);
+            let end = self.displaced(state, fraction, force.total(state.chip_scale)).along(state.normal) + reach;
+            if deepest.is_none_or(|(farthest, ..)| end > farthest) {
+                deepest = Some((end, force, reach));
+            }
+        }
+        deepest.map_or((alike, Vector::ZERO), |(_, force, reach)| (force, state.normal.times(reach)))
     }
 
     /// The force at the instant the wall at a height is made.

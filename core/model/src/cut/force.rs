@@ -7,7 +7,7 @@
 //! * the force at the instant the wall at height z is generated, where a tooth at z stands at φ = 0 and every flute
 //!   is a stretch of φ.
 //!
-//! Limits: rigid tooth spacing (no runout); chip thickness from the circular path; 0 ≤ φ₁ ≤ π.
+//! Limits: teeth that reach equally far, what runout changes is of [`super::Teeth`]; chip thickness from the circular path; 0 ≤ φ₁ ≤ π.
 
 use super::setup::{Coefficients, CutSetup, Helix, MAX_FLUTES, Milling};
 use truepath_units::{Real, pow, sin_cos};
@@ -39,17 +39,37 @@ pub struct ForceTable {
 
 /// σ sin φ, σ cos φ, sin φ and cos φ with σ = sin^(1−m) φ, or their antiderivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Basis {
-    chip_sine: Real,
-    chip_cosine: Real,
-    sine: Real,
-    cosine: Real,
+pub(super) struct Basis {
+    pub(super) chip_sine: Real,
+    pub(super) chip_cosine: Real,
+    pub(super) sine: Real,
+    pub(super) cosine: Real,
+}
+
+/// What of a flute is in the stock while the wall at a height is made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stretch {
+    /// Pitches by which its immersion is ahead of that of the flute which makes the wall.
+    pub(super) flute: i64,
+    /// Least immersion, rad.
+    pub(super) low: Real,
+    /// Largest immersion, rad.
+    pub(super) high: Real,
 }
 
 impl SplitForce {
     /// (normal, tangential) for a chip scale from [`Coefficients::chip_scale`].
     pub fn total(self, chip_scale: Real) -> (Real, Real) {
         (self.chip_n * chip_scale + self.edge_n, self.chip_t * chip_scale + self.edge_t)
+    }
+    /// The sum of two.
+    pub(super) fn plus(self, o: Self) -> Self {
+        Self {
+            chip_n: self.chip_n + o.chip_n,
+            chip_t: self.chip_t + o.chip_t,
+            edge_n: self.edge_n + o.edge_n,
+            edge_t: self.edge_t + o.edge_t,
+        }
     }
 }
 
@@ -68,7 +88,7 @@ impl Basis {
     fn minus(self, other: Self) -> Self {
         self.zip(other, |a, b| a - b)
     }
-    fn scaled(self, factor: Real) -> Self {
+    pub(super) fn scaled(self, factor: Real) -> Self {
         self.zip(self, |a, _| a * factor)
     }
     fn at(size_exponent: Real, angle: Real) -> Self {
@@ -77,7 +97,7 @@ impl Basis {
         Self { chip_sine: chip * sine, chip_cosine: chip * cosine, sine, cosine }
     }
     /// The force in the wall frame on the tool (physics of P23 eq. 3; eq. 1 as printed is the force on the workpiece).
-    fn force(self, milling: Milling, k: &Coefficients) -> SplitForce {
+    pub(super) fn force(self, milling: Milling, k: &Coefficients) -> SplitForce {
         let part = |tangential: Real, radial: Real, sine: Real, cosine: Real| match milling {
             Milling::Climb => {
                 (-Real::dot(tangential, sine, radial, cosine), Real::dot(tangential, cosine, -radial, sine))
@@ -170,30 +190,40 @@ impl ForceTable {
         engaged: Real,
         height: Real,
     ) -> SplitForce {
-        let behind = match setup.milling {
-            Milling::Climb => setup.axial_depth - height,
-            Milling::Conventional => height,
-        };
-        let (lag, pitch) = (helix.lag_per_mm, helix.pitch);
-        let top = behind * lag;
-        let bottom = top - setup.axial_depth * lag;
-        // Flutes whose stretch bottom + k·pitch … top + k·pitch meets 0…φ₁.
-        let first = (top / pitch).floor().saturating_neg();
         let mut sum = Basis::default();
-        for k in first..first.saturating_add(MAX_FLUTES) {
-            let shift = pitch * Real::from_int(k as i32);
-            let (low, high) = ((bottom + shift).max(Real::ZERO), (top + shift).min(engaged));
-            if bottom + shift >= engaged {
-                break;
-            }
-            if high > low {
-                // The antiderivative from 0 to 0 is nothing.
-                let below = if low > Real::ZERO { self.antiderivative(low) } else { Basis::default() };
-                sum = sum.plus(self.antiderivative(high).minus(below));
-            }
+        for Stretch { low, high, .. } in stretches((setup, helix), engaged, height) {
+            // The antiderivative from 0 to 0 is nothing.
+            let below = if low > Real::ZERO { self.antiderivative(low) } else { Basis::default() };
+            sum = sum.plus(self.antiderivative(high).minus(below));
         }
         sum.scaled(helix.mm_per_lag).force(setup.milling, coefficients)
     }
+}
+
+/// The flutes in the stock, 0…φ₁, while the wall at a height is made: the stretches `bottom + k·pitch … top + k·pitch` of
+/// immersion that meet it.
+pub(super) fn stretches(
+    (setup, helix): (&CutSetup, &Helix),
+    engaged: Real,
+    height: Real,
+) -> impl Iterator<Item = Stretch> + use<> {
+    let behind = match setup.milling {
+        Milling::Climb => setup.axial_depth - height,
+        Milling::Conventional => height,
+    };
+    let (lag, pitch) = (helix.lag_per_mm, helix.pitch);
+    let top = behind * lag;
+    let bottom = top - setup.axial_depth * lag;
+    let first = (top / pitch).floor().saturating_neg();
+    let at = move |flute: i64| {
+        let shift = pitch * Real::from_int(flute as i32);
+        Stretch { flute, low: bottom + shift, high: top + shift }
+    };
+    (first..first.saturating_add(MAX_FLUTES))
+        .map(at)
+        .take_while(move |flute| flute.low < engaged)
+        .map(move |s| Stretch { low: s.low.max(Real::ZERO), high: s.high.min(engaged), ..s })
+        .filter(|s| s.high > s.low)
 }
 
 /// Gauss–Legendre quadrature (three points) of the basis over one interval.

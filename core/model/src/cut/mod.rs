@@ -1,7 +1,7 @@
 //! What happens to the cutter: stock → engagement → force → elastic loop → wall.
 //!
 //! ```
-//! use truepath_model::cut::{CutSetup, Milling, Path, Sample, WallLaw};
+//! use truepath_model::cut::{CutSetup, Milling, Path, Runout, Sample, WallLaw};
 //! use truepath_units::geometry::{Block, Contour, Curve, Point, Side, Vector};
 //! use truepath_units::{Offset, Real};
 //!
@@ -15,6 +15,7 @@
 //!     wall: Side::Right,
 //!     milling: Milling::of(Side::Right, true),
 //!     law: WallLaw::Mean,
+//!     runout: Runout::NONE,
 //! };
 //! let curve = Curve::line(Point::from_nm(0, 0), Point::from_nm(40_000_000, 0)).unwrap();
 //! let blocks = [Block { curve, s: Offset::ZERO, feed: Real::from_int(400), line: 1 }];
@@ -39,6 +40,7 @@ mod path;
 mod sample;
 mod seam;
 mod setup;
+mod teeth;
 mod walk;
 mod wall;
 
@@ -50,5 +52,6 @@ pub use engagement::Frame;
 pub use force::{ForceTable, SplitForce, chip_area};
 pub use path::{Path, PathError};
 pub use sample::Sample;
-pub use setup::{Coefficients, CutSetup, Helix, Milling, WallLaw};
+pub use setup::{Coefficients, CutSetup, Helix, Milling, Runout, WallLaw};
+pub use teeth::Teeth;
 pub use wall::{Envelope, WallError};

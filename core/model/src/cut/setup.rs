@@ -36,6 +36,16 @@ pub enum WallLaw {
     Helical,
 }
 
+/// How far the axis of the cutter stands off that of the spindle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Runout {
+    /// Radial offset, at most 1 mm.
+    pub offset: Offset,
+    /// Its direction behind a tooth, rad: at 0 a tooth reaches farther by all of the offset. Teeth are alike: a pitch more is the
+    /// same.
+    pub behind: Real,
+}
+
 /// The cutter, the allowance and the cutting conditions of one pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CutSetup {
@@ -57,6 +67,8 @@ pub struct CutSetup {
     pub milling: Milling,
     /// Which force makes the wall.
     pub law: WallLaw,
+    /// How the cutter runs out; radius is that of its middle tooth, without it.
+    pub runout: Runout,
 }
 
 /// How the edges of a cutter wind, derived once from a [`CutSetup`].
@@ -70,6 +82,8 @@ pub struct Helix {
     pub pitch: Real,
 }
 
+/// Teeth of a cutter.
+pub(super) const MAX_TEETH: usize = 12;
 /// Flutes in the stock at once that the force is summed over: 12 teeth at 60° helix over an axial depth of 15 radii.
 pub(super) const MAX_FLUTES: i64 = 64;
 /// Chip thickness at which the chip coefficients are stated, mm.
@@ -81,6 +95,22 @@ impl Milling {
     /// For a wall on a side of travel and a spindle that turns clockwise (M3) or not (M4).
     pub fn of(wall: Side, spindle_clockwise: bool) -> Self {
         if (wall == Side::Right) == spindle_clockwise { Self::Climb } else { Self::Conventional }
+    }
+}
+
+impl Runout {
+    /// A cutter that runs true.
+    pub const NONE: Self = Self { offset: Offset::ZERO, behind: Real::ZERO };
+
+    /// How much farther than the middle a tooth reaches; teeth are counted in the order in which they pass a place.
+    pub fn reach(&self, tooth: u8, teeth: u8) -> Offset {
+        let turn = Real::TAU * Real::ratio(tooth.into(), teeth.into());
+        self.offset.scaled(sin_cos(turn - self.behind).1)
+    }
+
+    /// How much farther the tooth reaches that does so most: without force it makes the wall alone.
+    pub fn longest(&self, teeth: u8) -> Offset {
+        (0..teeth).map(|tooth| self.reach(tooth, teeth)).max().unwrap_or_default()
     }
 }
 
@@ -111,5 +141,12 @@ impl Coefficients {
             return feed_per_tooth;
         }
         feed_per_tooth * pow(feed_per_tooth / REFERENCE_CHIP, -self.size_exponent)
+    }
+    /// The feed per tooth, mm, of a [chip scale](Self::chip_scale).
+    pub(super) fn feed_of(&self, chip_scale: Real) -> Real {
+        if self.size_exponent == Real::ZERO {
+            return chip_scale;
+        }
+        REFERENCE_CHIP * pow(chip_scale / REFERENCE_CHIP, Real::ONE / (Real::ONE - self.size_exponent))
     }
 }

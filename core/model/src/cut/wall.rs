@@ -7,6 +7,7 @@
 use super::elastic::{Loop, State};
 use super::path::Path;
 use super::sample::Sample;
+use super::teeth::Teeth;
 use truepath_units::geometry::{Direction, Point, Vector};
 use truepath_units::{Offset, Real, isqrt_rounded};
 
@@ -36,8 +37,9 @@ impl<'a> Envelope<'a> {
 
     /// Fills `displacements` with the cutter's displacement at a height (fraction of the engaged depth).
     pub fn displace(machine: &Loop, states: &[State], fraction: Real, displacements: &mut [Vector]) {
+        let mut teeth = Teeth::BLANK;
         for (slot, state) in displacements.iter_mut().zip(states) {
-            *slot = machine.at_height(state, fraction);
+            *slot = machine.at_height(&mut teeth, state, fraction);
         }
     }
 

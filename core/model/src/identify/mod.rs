@@ -6,7 +6,7 @@
 //! same wall, so the compliance carries the scale of both.
 //!
 //! ```
-//! # use truepath_model::cut::{CutSetup, Milling, Path, Sample, WallLaw};
+//! # use truepath_model::cut::{CutSetup, Milling, Path, Runout, Sample, WallLaw};
 //! # use truepath_units::geometry::{Block, Contour, Curve, Point, Side, Vector};
 //! # use truepath_units::{Offset, Real};
 //! #
@@ -20,6 +20,7 @@
 //! #     wall: Side::Right,
 //! #     milling: Milling::of(Side::Right, true),
 //! #     law: WallLaw::Mean,
+//! #     runout: Runout::NONE,
 //! # };
 //! # let curve = Curve::line(Point::from_nm(0, 0), Point::from_nm(40_000_000, 0)).unwrap();
 //! # let blocks = [Block { curve, s: Offset::ZERO, feed: Real::from_int(400), line: 1 }];

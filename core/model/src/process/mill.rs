@@ -218,6 +218,8 @@ impl<'a> Mill<'a> {
         let path = self.machine.path;
         let (working, count) = (path.working(), self.slices.count());
         let length = working.len();
+        // The force here is that of a cutter that runs true; of runout the reach of its longest tooth counts.
+        let smaller = self.machine.undersize - path.setup().runout.longest(path.setup().teeth);
         walls.fill(Wall::default());
         for k in order.first..count {
             let from = k.saturating_mul(length);
@@ -233,7 +235,7 @@ impl<'a> Mill<'a> {
                 guess = wall.made_by.saturating_add(1);
                 let own = wall.made_by.saturating_sub(path.first()).min(path.count().saturating_sub(1));
                 let at = index.saturating_mul(count).saturating_add(k);
-                let beside = self.machine.undersize + self.residual.get(at).copied().unwrap_or_default();
+                let beside = smaller + self.residual.get(at).copied().unwrap_or_default();
                 if let Some(slot) = walls.get_mut(at) {
                     *slot = Wall { error: Some(wall.error + beside), made_by: own as u32 };
                 }

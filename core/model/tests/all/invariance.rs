@@ -75,7 +75,10 @@ fn identified(motion: Motion, blocks: &[Block], wall: Side, prior: &Compliance, 
     let blocks = motion.blocks(blocks);
     // The spindle turns the other way on the mirrored machine, so climb stays climb.
     let milling = Milling::of(wall, true);
-    let setup = CutSetup { wall: motion.wall(wall), milling, ..setup(WallLaw::Helical) };
+    // Every other part with a cutter that runs out.
+    let runs_out = errors.iter().sum::<i64>() % 2 == 0;
+    let runout = if runs_out { Runout { offset: Offset::from_um(8), behind: real(0.3) } } else { Runout::NONE };
+    let setup = CutSetup { wall: motion.wall(wall), milling, runout, ..setup(WallLaw::Helical) };
     let path = path(&blocks, &setup, 500);
     let k = Coefficients { kte: real(12.0), kre: real(16.0), ..coefficients() };
     let prior = Prior::around(k, motion.compliance(*prior), WallLaw::Helical);

@@ -7,5 +7,6 @@ mod guard;
 mod invariance;
 mod laws;
 mod process;
+mod runout;
 mod seam;
 mod widths;

@@ -33,6 +33,8 @@ pub fn corner() -> Part {
         tool: Tool {
             diameter: um(20_000),
             measured_diameter: None,
+            runout: Offset::ZERO,
+            runout_deg: Real::ZERO,
             teeth: 6,
             helix_deg: Real::from_int(30),
             cantilever: None,

@@ -1,7 +1,7 @@
 //! What the parameters do to the wall that a correction has to cancel, beside every sample of a contour.
 
 use truepath_core::correct::Band;
-use truepath_core::cut::{ForceTable, Loop, Path, Sample};
+use truepath_core::cut::{ForceTable, Loop, Path, Sample, Teeth};
 use truepath_core::identify::{COUNT, Parameter, Parameters};
 use truepath_core::job;
 use truepath_core::units::{Offset, Real};
@@ -58,7 +58,7 @@ pub(super) fn moved_stock(path: &Path) -> [(Vec<Sample>, Offset); 2] {
 fn deflections(path: &Path, parameters: &Parameters) -> Vec<Offset> {
     let table = ForceTable::new(parameters.coefficients.size_exponent);
     let machine: Loop = parameters.machine(path, &table);
-    let mut scale = (None, Real::ZERO);
+    let (mut scale, mut teeth) = ((None, Real::ZERO), Teeth::BLANK);
     let wall = |k: usize| {
         let index = path.first() + k;
         let sample = &path.samples()[index];
@@ -67,7 +67,7 @@ fn deflections(path: &Path, parameters: &Parameters) -> Vec<Offset> {
             scale = (Some(sample.feed), machine.coefficients.chip_scale(feed));
         }
         let state = machine.nominal(index, scale.1);
-        let along = |k: i64| machine.deflection_parts(&state, Band::WHOLE.at(k)).1.along(sample.normal);
+        let mut along = |k: i64| machine.deflection_parts(&mut teeth, &state, Band::WHOLE.at(k)).1.along(sample.normal);
         let sum = (0..HEIGHTS).fold(Offset::ZERO, |sum, k| sum + along(k));
         -sum.scaled(Real::ratio(1, HEIGHTS))
     };

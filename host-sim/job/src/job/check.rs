@@ -1,7 +1,6 @@
 //! From tables and keys to a [`JobFile`]: presence, ranges, choices and contradictions.
 
 use std::cell::RefCell;
-use std::ops::Range;
 use std::path::Path;
 
 use toml::de::DeTable;
@@ -26,9 +25,9 @@ use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
 use super::check_tool::{reach, tool};
 use super::material::MATERIALS;
+use super::measured;
 use super::open::{Assumed, DIALECTS, Open, usual_machine};
 use super::{JobFile, Which};
-use crate::codes::J001;
 
 /// The stiffest machine a job can state; where none is stated only the cutter bends.
 const RIGID: Machine =
@@ -88,7 +87,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         None if open.names_mill() => root.section_of("tool", &nothing),
         None => return Err(root.missing_section("tool", "diameter_mm and teeth")),
     };
-    let (tool, shank, cutters) = tool(&source, &tool_section, &open, &mut assumed)?;
+    let (tool, shank, cutters) = tool(&source, &tool_section, folder, &open, &mut assumed)?;
     let features = features(&source, &root, tool.diameter)?;
     let pocket = root.section("pocket")?.map(|section| pocket(&section)).transpose()?;
     let stock = match root.section("stock")? {
@@ -210,7 +209,13 @@ fn force(
             return Err(section.contradiction(&value, &found, "measured coefficients or other ones", help));
         }
         section.close()?;
-        return measured(source, place.span, &folder.join(name), model);
+        let read = |root: &Section<'_>| {
+            coefficients(
+                &root.required_section("force", "the four coefficients, as truepath forces writes them")?,
+                model,
+            )
+        };
+        return measured::read(source, place.span, &folder.join(name), read);
     }
     let materials: Vec<(&str, usize)> = MATERIALS.iter().enumerate().map(|(i, m)| (m.name, i)).collect();
     let Some(index) = section.choice("material", &materials)? else {
@@ -246,17 +251,6 @@ fn coefficients(section: &Section<'_>, model: ForceModel) -> Result<Force, Input
         model,
         stated: true,
     })
-}
-
-/// The coefficients that `truepath forces` has written; its other tables are for people.
-fn measured(job: &Source, place: Range<usize>, path: &Path, model: ForceModel) -> Result<Force, InputError> {
-    let source = Source::read(path)
-        .map_err(|error| J001.error(error.found(), "forces.toml as truepath forces writes it").at(job, place))?;
-    let table = notation::parse(&source, "the file of measured forces")?;
-    let spans = RefCell::new(Spans::new());
-    let root = Section::root(&source, &table, &spans);
-    notation::version(&source, &root)?;
-    coefficients(&root.required_section("force", "the four coefficients, as truepath forces writes them")?, model)
 }
 
 /// What a machine does beside yielding.

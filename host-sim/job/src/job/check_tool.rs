@@ -1,8 +1,10 @@
 //! The `[tool]` table: the cutter, and its shape as a beam.
 
+use std::path::Path;
+
 use truepath_core::cut::ToolMaterial;
 use truepath_core::job::{Compensation, Cut, Stickout, Tool};
-use truepath_core::units::Offset;
+use truepath_core::units::{Offset, Real};
 use truepath_ground::codes::J008;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
@@ -10,6 +12,7 @@ use truepath_ground::document::Section;
 use truepath_ground::limits::Limits;
 use truepath_ground::units::mm;
 
+use super::measured;
 use super::open::{Assumed, Open, USUAL_HELIX};
 use crate::post::ToolNote;
 
@@ -34,6 +37,7 @@ pub struct Shank {
 pub(super) fn tool(
     source: &Source,
     section: &Section<'_>,
+    folder: &Path,
     open: &Open,
     assumed: &mut Vec<Assumed>,
 ) -> Result<(Tool, Shank, Vec<ToolNote>), InputError> {
@@ -113,13 +117,57 @@ pub(super) fn tool(
                 .at(source, place));
         }
     };
+    let (runout, runout_deg) = runout(source, section, folder)?;
     let choices = [("centre", Compensation::Centre), ("radius", Compensation::Radius)];
     let compensation = section.choice("compensation", &choices)?.unwrap_or_default();
     let shank = shank(section)?;
     section.close()?;
-    let tool = Tool { diameter, measured_diameter, teeth, helix_deg, cantilever, number, offset_number, compensation };
+    let tool = Tool {
+        diameter,
+        measured_diameter,
+        runout,
+        runout_deg,
+        teeth,
+        helix_deg,
+        cantilever,
+        number,
+        offset_number,
+        compensation,
+    };
     within_stickout(section, &tool, &shank)?;
     Ok((tool, shank, cutters))
+}
+
+/// The radial offset of the axis and its direction behind a tooth, degrees; nothing for a cutter that runs true.
+fn runout(source: &Source, section: &Section<'_>, folder: &Path) -> Result<(Offset, Real), InputError> {
+    const KEYS: [&str; 2] = ["runout_mm", "runout_deg"];
+    let limits = [Limits::within("0", "0.2", "mm"), Limits::within("0", "360", "degrees")];
+    let read = |section: &Section<'_>, [offset, behind]: [&'static str; 2]| {
+        let behind = section.number(behind, limits[1])?.map_or(Real::ZERO, Decimal::as_real);
+        Ok::<_, InputError>((section.number(offset, limits[0])?.map(Decimal::as_mm), behind))
+    };
+    if let Some((name, place)) = section.text("runout_from")? {
+        if let Some(value) = KEYS.into_iter().find_map(|key| section.value(key)) {
+            let found = format!("{} is given as well as tool.runout_from", value.path);
+            let help = "remove runout_from, or what it takes the place of";
+            return Err(section.contradiction(&value, &found, "the runout of a file or a stated one", help));
+        }
+        return measured::read(source, place.span, &folder.join(name), |root| {
+            let help = "offset_mm, which truepath forces writes where a record shows runout";
+            let section = root.required_section("runout", help)?;
+            match read(&section, ["offset_mm", "behind_deg"])? {
+                (Some(offset), behind) => Ok((offset, behind)),
+                (None, _) => Err(section.missing("offset_mm", help)),
+            }
+        });
+    }
+    match (read(section, KEYS)?, section.value(KEYS[1])) {
+        ((None, _), Some(value)) => {
+            let found = "tool.runout_deg is given without tool.runout_mm";
+            Err(section.contradiction(&value, found, "both, or runout_mm alone", "add runout_mm, or remove this key"))
+        }
+        ((offset, behind), _) => Ok((offset.unwrap_or(Offset::ZERO), behind)),
+    }
 }
 
 /// The cutter must stick out, and have flutes, at least as far as it cuts deep.

@@ -18,6 +18,7 @@ mod check_probe;
 mod check_stock;
 mod check_tool;
 mod material;
+mod measured;
 mod open;
 
 use std::ops::Range;

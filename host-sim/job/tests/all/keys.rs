@@ -45,6 +45,17 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("tool", "", "the cutter"),
     ("tool.diameter_mm", "that of a comment of the program", "nominal diameter"),
     ("tool.measured_diameter_mm", "diameter_mm", "measured diameter, within 10 % of the nominal one"),
+    (
+        "tool.runout_mm",
+        "0",
+        "radial offset of the cutter's axis as it is clamped, half of what a dial indicator swings; the diameter is without it: [runout](forces.md#runout-and-the-wall)",
+    ),
+    (
+        "tool.runout_deg",
+        "0, all of it towards a tooth",
+        "direction of the offset behind a tooth, against the order in which teeth pass",
+    ),
+    ("tool.runout_from", "none", "in place of both: a file that `truepath forces` wrote, relative to this file"),
     ("tool.teeth", "those of a comment of the program", "number of teeth"),
     ("tool.helix_deg", "35", "helix angle"),
     (

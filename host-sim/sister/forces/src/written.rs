@@ -24,14 +24,21 @@ pub fn forces_toml(analysis: &Analysis) -> String {
     }
     let rows = linear.correlation.iter().map(|row| format!("[{}]", row.map(|r| format!("{r:.4}")).join(", ")));
     let _ = writeln!(text, "correlation = [{}]", rows.collect::<Vec<_>>().join(", "));
-    let believed = analysis.cuts.iter().filter_map(|cut| cut.shape.as_ref().filter(|shape| shape.believed));
-    let mut runouts: Vec<[f64; 2]> = believed.map(|shape| [shape.runout_mm, shape.runout_sigma_mm]).collect();
-    runouts.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    if let Some([offset, sigma]) = runouts.get(runouts.len() / 2) {
+    let believed = analysis.cuts.iter().filter_map(|cut| {
+        let shape = cut.shape.as_ref().filter(|shape| shape.believed)?;
+        Some((cut.cut.teeth, shape))
+    });
+    let mut runouts: Vec<_> = believed.collect();
+    runouts.sort_by(|a, b| a.1.runout_mm.total_cmp(&b.1.runout_mm));
+    if let Some((teeth, middle)) = runouts.get(runouts.len() / 2) {
+        // Which tooth a record begins with is not known, and not needed: teeth are alike.
+        let behind = middle.runout_deg.rem_euclid(360.0 / f64::from(*teeth));
+        let (offset, sigma) = (middle.runout_mm, middle.runout_sigma_mm);
         let _ = write!(
             text,
             "\n[runout]                # of the cutter as it was clamped, the middle of the records; the coefficients are without it\n\
-             offset_mm = {offset:.5}\nsigma_mm = {sigma:.5}\n"
+             # In a job: [tool] with runout_from = \"forces.toml\", as long as the cutter stays in its holder.\n\
+             offset_mm = {offset:.5}\nsigma_mm = {sigma:.5}\nbehind_deg = {behind:.2}\n"
         );
     }
     for fitted in analysis.laws.iter().filter(|f| f.weight > 0.005) {

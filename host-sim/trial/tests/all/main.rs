@@ -5,5 +5,6 @@ mod device_image;
 mod dimensions;
 mod feed;
 mod probed_stock;
+mod runout;
 mod shrinkage;
 mod two_threads;

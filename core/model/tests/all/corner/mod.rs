@@ -1,7 +1,7 @@
 //! The corner of P18 and P23 and the machine of the reference numbers, for tests.
 
 use truepath_model::cut::{
-    Coefficients, Compliance, CutSetup, Envelope, ForceTable, Loop, Milling, Path, Sample, State, WallLaw,
+    Coefficients, Compliance, CutSetup, Envelope, ForceTable, Loop, Milling, Path, Runout, Sample, State, WallLaw,
 };
 use truepath_units::geometry::{Block, Contour, Curve, Point, Side, Vector};
 use truepath_units::{Offset, Real};
@@ -49,6 +49,7 @@ pub fn setup(law: WallLaw) -> CutSetup {
         wall: Side::Right,
         milling: Milling::Climb,
         law,
+        runout: Runout::NONE,
     }
 }
 pub fn coefficients() -> Coefficients {

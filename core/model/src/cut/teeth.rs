@@ -1,0 +1,271 @@
+//! Teeth that do not all reach equally far: what each of them cuts, and which of them makes the wall.
+//!
+//! An axis that is offset by ρ towards the angle λ lets tooth j reach `R_j = ρ cos(2πj/N − λ)` farther. It cuts what the
+//! teeth before it have left (Kline & DeVor 1983; Altintas, *Manufacturing Automation*, ch. 2),
+//! `h_j = max(0, min over k = 1…N of (k·f·sin φ + R_j − R_(j−k)))`, and has no edge force where that is nothing. Over sin φ
+//! this is a concave chain of straight pieces, so that its antiderivatives over φ are closed forms. Every tooth passes the
+//! wall at every height with the force of its own instant; the one that ends deepest makes it.
+//!
+//! Limits: the mean over a revolution is that of a cutter that runs true (while all teeth cut, their chips add up to the
+//! same; a tooth that lifts off loses its edge force, which the mean keeps). What runout adds to a chip is weighed by the
+//! chip coefficient at the feed per tooth: for size exponents up to 0.2 that is a tenth off. Of a chain of more than
+//! [`PIECES`] pieces the thinnest chips are left out, where only the longest teeth cut.
+
+use super::force::{Basis, SplitForce, Stretch};
+use super::setup::{Coefficients, CutSetup, MAX_TEETH, Milling};
+use truepath_units::{Offset, Real, atan2, sin_cos};
+
+/// Pieces of a chain that are kept, from the thickest chip down.
+const PIECES: usize = 4;
+
+/// The teeth of a cutter that runs out, at one feed: 1.5 KB, kept where walls are read and not in the elastic loop.
+#[derive(Clone, Debug)]
+pub struct Teeth {
+    /// The chip scale that they are made for; nothing yet.
+    chip_scale: Option<Real>,
+    teeth: [Tooth; MAX_TEETH],
+}
+
+/// A tooth.
+#[derive(Clone, Copy, Debug)]
+struct Tooth {
+    /// How much farther than the middle of the cutter it reaches, nm.
+    reach: i32,
+    /// What it cuts.
+    pieces: [Piece; PIECES],
+    /// What the flutes in the stock cut more than those of a cutter that runs true while this tooth makes the wall.
+    more: More,
+}
+
+/// A stretch of sin φ over which the chip is `f·(times·sin φ + offset)`, from its lower end up to that of the piece before;
+/// `times` = 0 where the chain is over. Numbers are [`Real`]s cut to 32 bits.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    /// Lower end: φ, sin φ and cos φ in units of 2⁻³⁰.
+    angle: i32,
+    sine: i32,
+    cosine: i32,
+    /// In units of 2⁻²⁶; at most 12.
+    offset: i32,
+    times: u8,
+}
+
+/// Antiderivatives of sin², sin·cos, sin and cos at an angle.
+#[derive(Clone, Copy, Debug)]
+struct Primitive {
+    angle: Real,
+    square: Real,
+    product: Real,
+    minus_cosine: Real,
+    sine: Real,
+}
+
+/// Sums over the immersion, of which each pair belongs to a sine and a cosine.
+#[derive(Clone, Copy, Debug)]
+struct More {
+    /// Chip that goes with the feed.
+    chip: (Real, Real),
+    /// Chip that a difference in reach makes, the same at every feed.
+    reach: (Real, Real),
+    /// Edge in contact.
+    edge: (Real, Real),
+}
+
+/// Cuts a number below 2 to 32 bits, and one below 32.
+const fn fine(value: Real) -> i32 {
+    (value.bits() >> 2) as i32
+}
+const fn coarse(value: Real) -> i32 {
+    (value.bits() >> 6) as i32
+}
+const fn from_fine(cut: i32) -> Real {
+    Real::from_bits((cut as i64) << 2)
+}
+
+impl Primitive {
+    fn at(angle: Real) -> Self {
+        let (sine, cosine) = sin_cos(angle);
+        Self::of(angle, sine, cosine)
+    }
+    fn of(angle: Real, sine: Real, cosine: Real) -> Self {
+        let square = Real::dot(angle, Real::HALF, -(sine * Real::HALF), cosine);
+        Self { angle, square, product: sine * sine * Real::HALF, minus_cosine: -cosine, sine }
+    }
+}
+
+impl Piece {
+    const NONE: Self = Self { angle: 0, sine: 0, cosine: 0, offset: 0, times: 0 };
+
+    /// Its lower end on the way in and on the way out.
+    fn ends(&self) -> (Primitive, Primitive) {
+        let (angle, sine, cosine) = (from_fine(self.angle), from_fine(self.sine), from_fine(self.cosine));
+        (Primitive::of(angle, sine, cosine), Primitive::of(Real::PI - angle, sine, -cosine))
+    }
+}
+
+impl More {
+    const NOTHING: Self = {
+        const NONE: (Real, Real) = (Real::ZERO, Real::ZERO);
+        Self { chip: NONE, reach: NONE, edge: NONE }
+    };
+
+    /// Adds what lies between two angles where the chip is `f·(times·sin φ + offset)`; out of contact for 0 `times`.
+    fn add(&mut self, from: &Primitive, to: &Primitive, times: u8, offset: Real) {
+        let more = Real::from_int(i32::from(times).saturating_sub(1));
+        let (sine, cosine) = (to.minus_cosine - from.minus_cosine, to.sine - from.sine);
+        self.chip.0 += (to.square - from.square) * more;
+        self.chip.1 += (to.product - from.product) * more;
+        if times == 0 {
+            self.edge.0 -= sine;
+            self.edge.1 -= cosine;
+        } else {
+            self.reach.0 += sine * offset;
+            self.reach.1 += cosine * offset;
+        }
+    }
+
+    /// The force of it, N for a basis in mm/rad.
+    fn force(
+        &self,
+        milling: Milling,
+        coefficients: &Coefficients,
+        (mm_per_lag, chip_scale): (Real, Real),
+    ) -> SplitForce {
+        let basis = |chip: (Real, Real), edge: (Real, Real)| {
+            let all = Basis { chip_sine: chip.0, chip_cosine: chip.1, sine: edge.0, cosine: edge.1 };
+            all.scaled(mm_per_lag).force(milling, coefficients)
+        };
+        let own = basis(self.chip, self.edge);
+        // What does not grow with the feed counts with the edges.
+        let by_reach = basis(self.reach, (Real::ZERO, Real::ZERO)).total(chip_scale);
+        SplitForce { edge_n: own.edge_n + by_reach.0, edge_t: own.edge_t + by_reach.1, ..own }
+    }
+}
+
+impl Tooth {
+    const BLANK: Self = Self { reach: 0, pieces: [Piece::NONE; PIECES], more: More::NOTHING };
+
+    /// Sets its chain: of `count` chips that the teeth before it leave, over sin φ from 1 down, the least. The k-th has the
+    /// slope k and is `offset(k)` at 0, in feeds per tooth.
+    fn follow(&mut self, count: usize, offset: impl Fn(usize) -> Real) {
+        self.pieces = [Piece::NONE; PIECES];
+        let of = |k: usize| Real::from_int(i32::try_from(k).unwrap_or(i32::MAX));
+        let thickest = |k: usize| (of(k) + offset(k), count.saturating_sub(k));
+        let Some(mut times) = (1..=count).min_by_key(|k| thickest(*k)) else { return };
+        let mut upper = Real::ONE;
+        for (n, piece) in self.pieces.iter_mut().enumerate() {
+            let own = offset(times);
+            let mut lower = (-own / of(times)).max(Real::ZERO);
+            if lower >= upper {
+                return;
+            }
+            let mut next = None;
+            for k in times.saturating_add(1)..=count {
+                // A steeper one that crosses it is the lesser below.
+                let crossing = ((own - offset(k)) / of(k.saturating_sub(times))).min(upper);
+                if n.saturating_add(1) < PIECES && crossing > Real::ZERO && crossing >= lower {
+                    (lower, next) = (crossing, Some(k));
+                }
+            }
+            let cosine = Real::dot(Real::ONE, Real::ONE, -lower, lower).max(Real::ZERO).sqrt();
+            *piece = Piece {
+                angle: fine(atan2(lower.bits(), cosine.bits())),
+                sine: fine(lower),
+                cosine: fine(cosine),
+                offset: coarse(own),
+                times: u8::try_from(times).unwrap_or(u8::MAX),
+            };
+            let Some(k) = next else { return };
+            (upper, times) = (lower, k);
+        }
+    }
+
+    /// Adds to a sum what it cuts more between two angles within 0…π than a tooth of a cutter that runs true.
+    fn cut(&self, low: &Primitive, high: &Primitive, sum: &mut More) {
+        let mut between = |from: &Primitive, to: &Primitive, times: u8, offset: Real| {
+            let from = if low.angle > from.angle { low } else { from };
+            let to = if high.angle < to.angle { high } else { to };
+            if to.angle > from.angle {
+                sum.add(from, to, times, offset);
+            }
+        };
+        // From the middle of the arc outwards on both sides; what is left at the ends is out of contact.
+        let middle = Primitive::of(Real::FRAC_PI_2, Real::ONE, Real::ZERO);
+        let (mut inner, mut outer) = (middle, middle);
+        for piece in self.pieces.iter().take_while(|piece| piece.times > 0) {
+            let (before, behind) = piece.ends();
+            let offset = Real::from_bits(i64::from(piece.offset) << 6);
+            between(&before, &inner, piece.times, offset);
+            between(&outer, &behind, piece.times, offset);
+            (inner, outer) = (before, behind);
+        }
+        between(&Primitive::of(Real::ZERO, Real::ZERO, Real::ONE), &inner, 0, Real::ZERO);
+        between(&outer, &Primitive::of(Real::PI, Real::ZERO, -Real::ONE), 0, Real::ZERO);
+    }
+}
+
+impl Teeth {
+    /// Teeth of no cutter yet.
+    pub const BLANK: Self = Self { chip_scale: None, teeth: [Tooth::BLANK; MAX_TEETH] };
+
+    /// Makes them those of a cutter at a chip scale.
+    #[inline(never)]
+    pub(super) fn set(&mut self, setup: &CutSetup, coefficients: &Coefficients, chip_scale: Real) {
+        if self.chip_scale == Some(chip_scale) {
+            return;
+        }
+        self.chip_scale = Some(chip_scale);
+        let count = usize::from(setup.teeth).min(MAX_TEETH);
+        let mut reaches = [0; MAX_TEETH];
+        for (j, (reach, tooth)) in reaches.iter_mut().zip(&mut self.teeth).enumerate().take(count) {
+            let own = setup.runout.reach(u8::try_from(j).unwrap_or(0), setup.teeth).nm();
+            tooth.reach = i32::try_from(own).unwrap_or(0);
+            *reach = tooth.reach;
+        }
+        let feed = coefficients.feed_of(chip_scale);
+        for (j, tooth) in self.teeth.iter_mut().enumerate().take(count) {
+            let offset = |k: usize| {
+                let before = j.saturating_add(count).saturating_sub(k).checked_rem(count).unwrap_or(0);
+                let [own, other] = [j, before].map(|tooth| reaches.get(tooth).copied().unwrap_or(0));
+                Offset::from_nm(i64::from(own).saturating_sub(other.into())).mm() / feed
+            };
+            tooth.follow(count, offset);
+        }
+    }
+
+    /// What the flutes in the stock, `stretches` with their immersions, cut more while each tooth makes the wall.
+    pub(super) fn immerse(&mut self, setup: &CutSetup, stretches: impl Iterator<Item = Stretch>) {
+        for tooth in &mut self.teeth {
+            tooth.more = More::NOTHING;
+        }
+        let count = i64::from(setup.teeth);
+        for Stretch { flute, low, high } in stretches {
+            let (low, high) = (Primitive::at(low), Primitive::at(high));
+            for maker in 0..count {
+                // In climb milling the flute that stands a pitch further into the stock comes next.
+                let which = match setup.milling {
+                    Milling::Climb => maker.saturating_add(flute),
+                    Milling::Conventional => maker.saturating_sub(flute),
+                };
+                let which = which.checked_rem_euclid(count).and_then(|j| self.teeth.get(j as usize)).copied();
+                if let (Some(cutting), Some(maker)) = (which, self.teeth.get_mut(maker as usize)) {
+                    cutting.cut(&low, &high, &mut maker.more);
+                }
+            }
+        }
+    }
+
+    /// The teeth with how far each reaches and what its wall feels more of force, N.
+    pub(super) fn makers(
+        &self,
+        setup: &CutSetup,
+        coefficients: &Coefficients,
+        mm_per_lag: Real,
+    ) -> impl Iterator<Item = (Offset, SplitForce)> {
+        let scales = (mm_per_lag, self.chip_scale.unwrap_or_default());
+        let teeth = self.teeth.iter().take(setup.teeth.into());
+        teeth.map(move |tooth| {
+            (Offset::from_nm(tooth.reach.into()), tooth.more.force(setup.milling, coefficients, scales))
+        })
+    }
+}
