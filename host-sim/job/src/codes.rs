@@ -41,6 +41,8 @@ truepath_ground::codes! {
         / "add near_mm, a coordinate along the axis between the two walls that were measured",
     M050 => "results of a measuring machine without what is asked of them"
         / "give a Q-DAS file (.dfq) with a characteristic of this name (K2002) or number (K2001), in mm, and a value",
+    M051 => "a dimension between two contours"
+        / "give a distance to each of the two walls in its place, kind = \"distance\" with face_mm, both from the same face",
     K004 => "touches of the stock that lie on the finished wall"
         / "touch the stock before the finishing pass, with the program that truepath probe --stock writes, and name that file in stock.probe",
     K005 => "too few touches of the stock"

@@ -9,7 +9,7 @@ use truepath_ground::units::{mm, nm};
 
 use super::file::{Across, Dimension, Kind, Level};
 use super::walls::{Axis, Crossing, Walls, reading};
-use crate::codes::{M045, M046, M047, M048, M049};
+use crate::codes::{M045, M046, M047, M048, M049, M051};
 
 /// A value farther than this from the nominal one is of something else, mm: twice the reach of a wall.
 const FAR: f64 = 2.0;
@@ -97,7 +97,7 @@ pub(crate) fn placed(
         match wall.crossings(along, across, z) {
             Ok(crossings) => {
                 candidates.extend(among(&crossings, dimension, number, z));
-                seen.extend(crossings);
+                seen.extend(crossings.into_iter().map(|crossing| (number, crossing)));
             }
             Err(Rejected::OffHeight { .. }) => heights.push(wall.heights()),
             Err(_) => {}
@@ -110,7 +110,9 @@ pub(crate) fn placed(
         }
         .into());
     }
-    let chosen = chosen(source, dimension, candidates, &seen)?;
+    let all: Vec<Crossing> = seen.iter().map(|(_, crossing)| *crossing).collect();
+    let chosen = chosen(source, dimension, candidates, &all)
+        .map_err(|refused| between_contours(source, dimension, seen).unwrap_or(refused))?;
     let Some(wall) = walls.get(chosen.wall) else {
         return Err(Failure::Internal("a dimension of no contour".to_owned()));
     };
@@ -119,6 +121,32 @@ pub(crate) fn placed(
     let file_line = u32::try_from(file_line).unwrap_or(u32::MAX);
     let line = lines_before.saturating_add(file_line);
     Ok((chosen.wall, of_walls(wall, dimension.clone(), &chosen, [line, file_line])?))
+}
+
+/// Whether two walls, one behind the other on a line, face each other as a kind wants it.
+fn face(kind: Kind, a: &Crossing, b: &Crossing) -> bool {
+    match kind {
+        Kind::Thickness => a.towards > 0.0 && b.towards < 0.0,
+        Kind::Width => a.towards < 0.0 && b.towards > 0.0,
+        _ => a.towards * b.towards < 0.0 && a.is_round && b.is_round,
+    }
+}
+
+/// Refuses by name what fits the walls of two contours, which are corrected each on its own.
+fn between_contours(source: &Source, dimension: &Dimension, mut seen: Vec<(usize, Crossing)>) -> Option<InputError> {
+    let value = mm(dimension.value);
+    seen.sort_by(|a, b| a.1.at_mm.total_cmp(&b.1.at_mm));
+    let fits = |pair: &&[(usize, Crossing)]| {
+        let [(of_first, first), (of_second, second)] = [pair[0], pair[1]];
+        let nominal = second.at_mm - first.at_mm;
+        of_first != of_second && face(dimension.kind, &first, &second) && (nominal - value).abs() < FAR
+    };
+    let pair = seen.windows(2).find(fits).filter(|_| dimension.face.is_none())?;
+    let along = dimension.along;
+    let [from, to] = [pair[0].1.at_mm, pair[1].1.at_mm];
+    let found = format!("{} lies between two contours, at {along}{from:.3} and {along}{to:.3}", dimension.name);
+    let expected = "both walls of one contour, or a face and a wall";
+    Some(M051.error(found, expected).at(source, dimension.place_span.clone()))
 }
 
 /// The coordinate of the line across its direction, mm.
@@ -138,12 +166,7 @@ fn among(crossings: &[Crossing], dimension: &Dimension, wall: usize, z: Position
             |c: &Crossing| Candidate { wall, z, nominal_mm: (c.at_mm - face).abs(), first: *c, second: None };
         return crossings.iter().filter(solid).map(from_face).collect();
     }
-    let faces = |a: &Crossing, b: &Crossing| match dimension.kind {
-        Kind::Thickness => a.towards > 0.0 && b.towards < 0.0,
-        Kind::Width => a.towards < 0.0 && b.towards > 0.0,
-        _ => a.towards * b.towards < 0.0 && a.is_round && b.is_round,
-    };
-    let pairs = crossings.windows(2).filter(|pair| faces(&pair[0], &pair[1]));
+    let pairs = crossings.windows(2).filter(|pair| face(dimension.kind, &pair[0], &pair[1]));
     let pair = |pair: &[Crossing]| Candidate {
         wall,
         z,

@@ -143,8 +143,8 @@ fn runout(source: &Source, section: &Section<'_>, folder: &Path) -> Result<(Offs
     const KEYS: [&str; 2] = ["runout_mm", "runout_deg"];
     let limits = [Limits::within("0", "0.2", "mm"), Limits::within("0", "360", "degrees")];
     let read = |section: &Section<'_>, [offset, behind]: [&'static str; 2]| {
-        let behind = section.number(behind, limits[1])?.map_or(Real::ZERO, Decimal::as_real);
-        Ok::<_, InputError>((section.number(offset, limits[0])?.map(Decimal::as_mm), behind))
+        let offset = section.number(offset, limits[0])?.map(Decimal::as_mm);
+        Ok::<_, InputError>((offset, section.number(behind, limits[1])?.map_or(Real::ZERO, Decimal::as_real)))
     };
     if let Some((name, place)) = section.text("runout_from")? {
         if let Some(value) = KEYS.into_iter().find_map(|key| section.value(key)) {

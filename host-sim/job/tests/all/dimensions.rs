@@ -149,3 +149,27 @@ fn what_cannot_be_is_refused_with_its_place_and_what_to_do() {
         assert!(text_said.contains(said), "{text}\n{text_said}");
     }
 }
+
+#[test]
+fn the_rib_between_two_pockets_is_refused_by_name() {
+    // A second pocket 80 mm further along X: 10 mm stand between them.
+    let shifted = |word: &str| match word.strip_prefix('X').and_then(|x| x.trim_end_matches('.').parse::<i32>().ok()) {
+        Some(x) => format!("X{}.", x + 80),
+        None => word.to_owned(),
+    };
+    let second: String =
+        POCKET.lines().map(|line| line.split_whitespace().map(shifted).collect::<Vec<_>>().join(" ") + "\n").collect();
+    let read = |dimensions: &str| {
+        let file = Source::new("widths.toml", format!("version = 1\n{dimensions}").into_bytes());
+        Measurement::of_files(vec![pass(POCKET), pass(&second)], None, Some(&file))
+    };
+    let rib = dimension("thickness", "y_mm = 0.0", "10.02");
+    let Err(Failure::Input(refused)) = read(&rib) else { panic!("a rib of two contours is read") };
+    assert_eq!((refused.code(), refused.line_column()), ("M051", Some((5, 8))));
+    let said = refused.to_json().to_string();
+    assert!(said.contains("X35.000 and X45.000") && said.contains("kind = \\\"distance\\\""), "{said}");
+    // What fits a pocket is read as before, and what fits nothing is refused as before.
+    assert!(read(&dimension("width", "y_mm = 0.0\nnear_mm = 80.0", "69.98")).is_ok());
+    let Err(Failure::Input(refused)) = read(&dimension("thickness", "y_mm = 0.0", "14.0")) else { panic!("read") };
+    assert_eq!(refused.code(), "M045");
+}

@@ -9,3 +9,4 @@ mod measurement;
 mod probe_files;
 mod probe_formats;
 mod probe_refused;
+mod runout;
