@@ -37,7 +37,7 @@ pub extern "C" fn hypot(x: f64, y: f64) -> f64 {
     }
     let (a, b) = if x < y { (y, x) } else { (x, y) };
     // The smaller one is lost in the last place, or one of them is no number.
-    if !(b > a * 1e-17) {
+    if a.is_nan() || b.is_nan() || b <= a * 1e-17 {
         return a + b;
     }
     let scale = match a {
