@@ -93,12 +93,16 @@ async function below(folder, root = folder) {
   return found;
 }
 
-/** Files of the page and of the command line are the same, and there are some. */
-function same(here, there) {
+/** A JSON text whose numbers have twelve digits: beyond them the maths libraries of a PC and of the module may differ. */
+const digits = (bytes) => JSON.stringify(JSON.parse(Buffer.from(bytes).toString()), (_, value) => (typeof value === "number" ? Number(value.toPrecision(12)) : value));
+
+/** Files of the page and of the command line are the same, and there are some; those of `rounded` in twelve digits. */
+function same(here, there, rounded = []) {
   assert.deepEqual([...here.keys()].sort(), [...there.keys()].sort());
   assert.ok(here.size > 0);
   for (const [name, bytes] of there) {
-    assert.ok(Buffer.from(here.get(name)).equals(bytes), `${name} differs from that of the command line`);
+    if (rounded.includes(name)) assert.equal(digits(here.get(name)), digits(bytes), name);
+    else assert.ok(Buffer.from(here.get(name)).equals(bytes), `${name} differs from that of the command line`);
   }
 }
 
@@ -183,7 +187,8 @@ test("a part in steel, corrected, inspected and learnt from, comes out as on the
   await run(page, "Make the program of the next part");
   await cp(`${island}probe-2.txt`, join(folder, "second.txt"));
   pc(folder, "learn", "job.toml", "--probe", "second.txt", "--from", "corrected", "-o", "next-part");
-  same(await offered(page, "next", "next-part"), await below(join(folder, "next-part")));
+  // What parts show of a machine is fitted in floating point, with exponentials.
+  same(await offered(page, "next", "next-part"), await below(join(folder, "next-part")), ["summary.json"]);
 });
 
 test("a program alone becomes a job by its questions, and a probing program, as on the command line", async (t) => {
@@ -240,7 +245,7 @@ test("every other command can be typed", async (t) => {
   same(await offered(page, "everything", "traced"), await below(join(folder, "traced")));
 });
 
-/** Program, job and readings of a contour of 10,000 lines: a wave, its wall 0.1 mm too far out. */
+/** Program, job and readings of a contour of 10,000 lines: a wave with a wall 0.03 to 0.05 mm too far out. */
 async function long() {
   const folder = `${pages}long`;
   await mkdir(folder, { recursive: true });
@@ -254,7 +259,7 @@ async function long() {
     if (way >= length) { points.push(at); way = 0; }
   }
   const text = points.map(([x, y]) => `X${x.toFixed(4)} Y${y.toFixed(4)}`);
-  const program = ["%", "G21 G90 G94", "T1 M6", "S4000 M3", `G0 ${text[0]}`, "G0 Z5", "G1 Z-10 F600", ...text.slice(1).map((at) => `G1 ${at}`), "G0 Z5", "M30", "%", ""];
+  const program = ["%", "G21 G90 G94", "T1 M6", "S4000 M3", `G0 ${text[0]}`, "G0 Z5", "G1 Z-10 F200", "F800", ...text.slice(1).map((at) => `G1 ${at}`), "G0 Z5", "M30", "%", ""];
   await writeFile(`${folder}/program.nc`, program.join("\n"));
   await writeFile(`${folder}/job.toml`, `version = 1
 program = "program.nc"
@@ -281,13 +286,17 @@ ball_diameter_mm = 4.0
 format = "linuxcnc"
 z_reference = "centre"
 `);
-  // Centre of the ball beside the wall: path, then to the right by cutter, less ball and error.
+  // Centre of the ball beside the wall, which is on the right.
   const readings = [];
-  for (const k of [800, 2500, 4200, 5800, 7500, 9100]) {
-    const [[ax, ay], [x, y], [bx, by]] = [points[k - 1], points[k], points[k + 1]];
-    const [dx, dy] = [bx - ax, by - ay];
-    const away = (6 - 2 - 0.1) / Math.hypot(dx, dy);
-    for (const z of [-9, -5, -1]) readings.push([x + dy * away, y - dx * away, z, 0, 0, 0, 0, 0, 0].map((v) => v.toFixed(6)).join(" "));
+  for (const share of [0.1, 0.3, 0.5, 0.7, 0.9]) {
+    const k = Math.floor(points.length * share);
+    const [[ax, ay], [bx, by]] = [points[k], points[k + 1]];
+    const span = Math.hypot(bx - ax, by - ay);
+    for (const [z, error] of [[-9, 0.05], [-5, 0.035], [-1, 0.03]]) {
+      const reach = (6 - 2 - error) / span;
+      const at = [(ax + bx) / 2 + (by - ay) * reach, (ay + by) / 2 - (bx - ax) * reach, z];
+      readings.push([...at.map((v) => v.toFixed(6)), 0, 0, 0, 0, 0, 0].join(" "));
+    }
   }
   await writeFile(`${folder}/probe.txt`, `${readings.join("\n")}\n`);
   return ["program.nc", "job.toml", "probe.txt"].map((name) => `${folder}/${name}`);
