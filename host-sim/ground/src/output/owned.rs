@@ -17,12 +17,12 @@ impl Owned {
 
     /// Whether a name is one of them, or begins with the owned folder it lies in.
     pub(super) fn file(&self, name: &str) -> bool {
+        let stays_inside = !name.split('/').any(|part| matches!(part, "" | "." | ".."));
         if self.0 == [EVERY] {
-            return !name.split('/').any(|part| matches!(part, "" | "." | ".."));
+            return stays_inside;
         }
-        let folder = name.split_once('/').map(|(folder, _)| folder);
-        if let Some(folder) = folder {
-            return self.folder(folder) && !name.split('/').any(|part| matches!(part, "" | "." | ".."));
+        if let Some((folder, _)) = name.split_once('/') {
+            return self.folder(folder) && stays_inside;
         }
         self.0.iter().any(|owned| match owned.split_once('#') {
             None if owned.starts_with('*') => name.contains(owned.trim_matches('*')),
