@@ -8,7 +8,7 @@
 //! that ends the process takes the temporary files along (see [`interruption`](crate::interruption)). One run at a time
 //! writes a folder.
 //!
-//! In a browser the target lies in memory ([`files`](crate::files)), and nothing is written before it is complete.
+//! In a browser the target lies in memory ([`crate::files`]), and nothing is written before it is complete.
 
 #[cfg(any(test, target_family = "wasm"))]
 mod in_memory;

@@ -109,7 +109,18 @@ async function shot(page, [, , , shown, place]) {
     const { left, top, right, bottom } = stage.getBoundingClientRect();
     return [left / innerWidth, top / innerHeight, right / innerWidth, bottom / innerHeight];
   }));
-  return { picture: await page.screenshot(), scenes };
+  return { picture: await settled(page), scenes };
+}
+
+/** The page as a picture once it no longer changes: a loaded machine may show a picture whose last tiles are still coarse. */
+async function settled(page) {
+  let before = await page.screenshot();
+  for (let tries = 0; tries < 20; tries++) {
+    const now = await page.screenshot();
+    if (now.equals(before)) return now;
+    before = now;
+  }
+  assert.fail("the page never stands still");
 }
 
 for (const view of VIEWS) {
