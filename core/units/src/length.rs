@@ -5,8 +5,9 @@ use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::round::symmetric;
-use super::{Real, div_rounded, isqrt_rounded, shift_rounded};
+use super::root::rounded_64;
+use super::round::{products_rounded, symmetric, within_64};
+use super::{Real, div_rounded, isqrt_rounded};
 
 /// An absolute coordinate, nanometres, ±9.2 × 10⁹ m (the machine uses ±4 m). Arithmetic saturates at ±(2⁶³ − 1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -22,10 +23,12 @@ impl Position {
     pub const ZERO: Self = Self(0);
 
     /// From whole nanometres, saturating: −2⁶³ becomes −(2⁶³ − 1).
+    #[inline]
     pub const fn from_nm(nm: i64) -> Self {
         Self(symmetric(nm))
     }
     /// Whole nanometres.
+    #[inline]
     pub const fn nm(self) -> i64 {
         self.0
     }
@@ -38,62 +41,63 @@ impl Offset {
     pub const MAX: Self = Self(i64::MAX);
 
     /// From whole nanometres, saturating: −2⁶³ becomes −(2⁶³ − 1).
+    #[inline]
     pub const fn from_nm(nm: i64) -> Self {
         Self(symmetric(nm))
     }
     /// From whole micrometres, saturating.
+    #[inline]
     pub const fn from_um(um: i64) -> Self {
         Self::from_nm(um.saturating_mul(1_000))
     }
     /// Whole nanometres.
+    #[inline]
     pub const fn nm(self) -> i64 {
         self.0
     }
     /// From millimetres, rounded to the nanometre.
+    #[inline]
     pub const fn from_mm(mm: Real) -> Self {
-        Self(shift_rounded((mm.bits() as i128).saturating_mul(1_000_000), Real::FRACTION_BITS) as i64)
+        Self(products_rounded((mm.bits() as i128).wrapping_mul(1_000_000), Real::FRACTION_BITS) as i64)
     }
     /// Millimetres, rounded to 2⁻³² mm; saturates beyond ±2147 km.
+    #[inline]
     pub const fn mm(self) -> Real {
         Real::ratio(self.0, 1_000_000)
     }
     /// The length without its sign.
+    #[inline]
     pub const fn abs(self) -> Self {
         Self(self.0.saturating_abs())
     }
     /// This length times a number, rounded to the nanometre, saturating.
     #[inline]
     pub const fn scaled(self, factor: Real) -> Self {
-        let product = shift_rounded((self.0 as i128).saturating_mul(factor.bits() as i128), Real::FRACTION_BITS);
-        Self(saturate(product))
+        let product = (self.0 as i128).wrapping_mul(factor.bits() as i128);
+        Self(within_64(products_rounded(product, Real::FRACTION_BITS)))
     }
     /// This length over another, as a number; saturates, 0/0 is 0.
+    #[inline]
     pub const fn over(self, other: Self) -> Real {
         Real::ratio(self.0, other.0)
     }
     /// The sum of two products `self·a + other·b`, rounded once.
     #[inline]
     pub const fn blend(self, a: Real, other: Self, b: Real) -> Self {
-        let p = (self.0 as i128).saturating_mul(a.bits() as i128);
-        let q = (other.0 as i128).saturating_mul(b.bits() as i128);
-        Self(saturate(shift_rounded(p.saturating_add(q), Real::FRACTION_BITS)))
-    }
-}
-
-const fn saturate(v: i128) -> i64 {
-    if v > i64::MAX as i128 {
-        i64::MAX
-    } else if v < i64::MAX.saturating_neg() as i128 {
-        i64::MAX.saturating_neg()
-    } else {
-        v as i64
+        let p = (self.0 as i128).wrapping_mul(a.bits() as i128);
+        let q = (other.0 as i128).wrapping_mul(b.bits() as i128);
+        Self(within_64(products_rounded(p.wrapping_add(q), Real::FRACTION_BITS)))
     }
 }
 
 /// The length of (x, y), rounded to the nanometre, saturating.
+#[inline]
 pub const fn hypot_nm(x: Offset, y: Offset) -> Offset {
-    let a = x.nm().unsigned_abs() as u128;
-    let b = y.nm().unsigned_abs() as u128;
+    let (a, b) = (x.nm().unsigned_abs(), y.nm().unsigned_abs());
+    if (a | b) >> 31 == 0 {
+        return Offset::from_nm(rounded_64(a.wrapping_mul(a).wrapping_add(b.wrapping_mul(b))) as i64);
+    }
+    let (a, b) = (a as u128, b as u128);
     let root = isqrt_rounded(a.saturating_mul(a).saturating_add(b.saturating_mul(b)));
     if root > i64::MAX as u128 { Offset::MAX } else { Offset::from_nm(root as i64) }
 }

@@ -3,6 +3,7 @@
 //! Error bounds, tested against double precision: [`log2`] ≤ 0.51 · 2⁻³² for any positive argument; [`exp2`] ≤ 1
 //! step or 2 · 10⁻¹⁸ of its value; [`pow`] carries the error of the logarithm times the exponent.
 
+use super::round::products_rounded;
 use super::{Real, div_rounded, shift_rounded};
 
 const Q: u32 = 60;
@@ -13,7 +14,7 @@ const LN_2: i64 = 799_144_290_325_165_979;
 const FRAC_1_LN_2: i64 = 1_663_314_137_230_540_311;
 
 const fn mul(a: i64, b: i64) -> i64 {
-    shift_rounded((a as i128).saturating_mul(b as i128), Q) as i64
+    products_rounded((a as i128).wrapping_mul(b as i128), Q) as i64
 }
 
 /// The binary logarithm of a positive number; −32 (the logarithm of the smallest one) for anything else.

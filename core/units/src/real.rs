@@ -5,8 +5,8 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use fixed::types::I32F32;
 
-use super::round::symmetric;
-use super::{div_rounded, shift_rounded};
+use super::div_rounded;
+use super::round::{products_rounded, symmetric, within_64};
 
 /// A fixed-point number with 31 integer and 32 fraction bits (Q31.32): range ±2.1 × 10⁹, step 2.3 × 10⁻¹⁰.
 ///
@@ -40,46 +40,49 @@ impl Real {
     pub const TAU: Self = Self::from_bits(26_986_075_409);
 
     /// From raw bits, units of 2⁻³², saturating: −2⁶³ becomes [`MIN`](Self::MIN).
+    #[inline]
     pub const fn from_bits(bits: i64) -> Self {
         Self(I32F32::from_bits(symmetric(bits)))
     }
     /// Raw bits, units of 2⁻³².
+    #[inline]
     pub const fn bits(self) -> i64 {
         self.0.to_bits()
     }
     /// From a whole number, saturating: −2³¹ becomes [`MIN`](Self::MIN).
+    #[inline]
     pub const fn from_int(value: i32) -> Self {
         Self::from_bits((value as i64) << 32)
     }
     /// `numerator / denominator`, rounded once, saturating.
+    #[inline]
     pub const fn ratio(numerator: i64, denominator: i64) -> Self {
         Self::narrow(div_rounded((numerator as i128) << 32, denominator as i128))
     }
     /// Raw bits formed in 128 bits, saturated to the range.
+    #[inline]
     pub const fn narrow(bits: i128) -> Self {
-        if bits > i64::MAX as i128 {
-            Self::MAX
-        } else if bits < Self::MIN.bits() as i128 {
-            Self::MIN
-        } else {
-            Self::from_bits(bits as i64)
-        }
+        Self(I32F32::from_bits(within_64(bits)))
     }
     /// `self · other`, rounded once, saturating.
+    #[inline]
     pub const fn times(self, other: Self) -> Self {
-        Self::narrow(shift_rounded((self.bits() as i128).saturating_mul(other.bits() as i128), 32))
+        Self::narrow(products_rounded((self.bits() as i128).wrapping_mul(other.bits() as i128), 32))
     }
     /// `self / other`, rounded once, saturating; 0/0 = 0.
+    #[inline]
     pub const fn over(self, other: Self) -> Self {
         Self::narrow(div_rounded((self.bits() as i128) << 32, other.bits() as i128))
     }
     /// `a·b + c·d`, rounded once: the sum does not depend on the order of the two products.
+    #[inline]
     pub const fn dot(a: Self, b: Self, c: Self, d: Self) -> Self {
-        let p = (a.bits() as i128).saturating_mul(b.bits() as i128);
-        let q = (c.bits() as i128).saturating_mul(d.bits() as i128);
-        Self::narrow(shift_rounded(p.saturating_add(q), 32))
+        let p = (a.bits() as i128).wrapping_mul(b.bits() as i128);
+        let q = (c.bits() as i128).wrapping_mul(d.bits() as i128);
+        Self::narrow(products_rounded(p.wrapping_add(q), 32))
     }
     /// The magnitude.
+    #[inline]
     pub const fn abs(self) -> Self {
         Self::from_bits(self.bits().saturating_abs())
     }
@@ -91,10 +94,12 @@ impl Real {
         Self::narrow(super::isqrt_rounded((self.bits().unsigned_abs() as u128) << 32) as i128)
     }
     /// The nearest whole number, ties away from zero.
+    #[inline]
     pub const fn round_to_int(self) -> i64 {
         super::shift_rounded_i64(self.bits(), 32)
     }
     /// The whole number at or below.
+    #[inline]
     pub const fn floor(self) -> i64 {
         self.bits() >> 32
     }

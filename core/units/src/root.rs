@@ -5,14 +5,23 @@
 //! wall's envelope. The remainder makes the result exact, so nothing but the time depends on the approximation.
 
 /// The square root of an integer, rounded to nearest (exact: no tie exists). Error ≤ 1/2.
+#[inline]
 pub const fn isqrt_rounded(value: u128) -> u128 {
     if value >> 64 == 0 {
-        let value = value as u64;
-        let root = floor_64(value);
-        // value > (root + 1/2)² exactly when value − root² > root.
-        let up = value.wrapping_sub(root.wrapping_mul(root)) > root;
-        return root.wrapping_add(up as u64) as u128;
+        return rounded_64(value as u64) as u128;
     }
+    rounded_128(value)
+}
+
+/// [`isqrt_rounded`] of 64 bits.
+pub(crate) const fn rounded_64(value: u64) -> u64 {
+    let root = floor_64(value);
+    // value > (root + 1/2)² exactly when value − root² > root.
+    let up = value.wrapping_sub(root.wrapping_mul(root)) > root;
+    root.wrapping_add(up as u64)
+}
+
+const fn rounded_128(value: u128) -> u128 {
     let root = floor_128(value);
     let up = value.wrapping_sub(square(root)) > root as u128;
     (root as u128).wrapping_add(up as u128)

@@ -4,8 +4,22 @@
 //! turned bits. Everything that drops bits goes through one of the widths below.
 
 /// Into ±(2⁶³ − 1): −2⁶³ has no opposite.
+#[inline]
 pub(crate) const fn symmetric(value: i64) -> i64 {
     if value == i64::MIN { i64::MAX.wrapping_neg() } else { value }
+}
+
+/// Saturates to ±(2⁶³ − 1).
+#[inline]
+pub(crate) const fn within_64(value: i128) -> i64 {
+    let low = value as i64;
+    if low as i128 == value {
+        symmetric(low)
+    } else if value < 0 {
+        i64::MAX.wrapping_neg()
+    } else {
+        i64::MAX
+    }
 }
 
 /// `value / 2^bits`, rounded to nearest, ties away from zero. `bits` ≤ 126.
@@ -17,6 +31,15 @@ pub const fn shift_rounded(value: i128, bits: u32) -> i128 {
     let half = 1u128 << bits.saturating_sub(1);
     let magnitude = value.unsigned_abs().saturating_add(half) >> bits;
     signed(magnitude, value < 0)
+}
+
+/// `value / 2^bits` for the sum of at most two products of 64 bits and 1 ≤ `bits` ≤ 63, the same rounding in few
+/// instructions: half is added, less one step where the value is negative, and the shift rounds down. Neither product may
+/// hold −2⁶³, so that the sum is within ±(2¹²⁷ − 2⁶⁴).
+#[inline]
+pub(crate) const fn products_rounded(sum: i128, bits: u32) -> i128 {
+    let half = 1i64 << (bits.wrapping_sub(1) & 63);
+    sum.wrapping_add(half as i128).wrapping_add(sum >> 127) >> (bits & 127)
 }
 
 /// `value / 2^bits` in 64 bits, the same rounding, for the servo cycle. `bits` ≤ 62.
@@ -106,6 +129,18 @@ mod tests {
                 prop_assert_eq!(shift_rounded_i63(v >> 1, bits), shift_rounded_i64(v >> 1, bits));
                 let (v, bits) = ((v as i32) >> 1, bits.min(30));
                 prop_assert_eq!(i64::from(shift_rounded_i31(v, bits)), shift_rounded_i64(v.into(), bits));
+            }
+        }
+
+        #[test]
+        fn sums_of_products_round_like_the_long_way(
+            v in prop::array::uniform4(any::<i64>()), drop in 0u32..63, bits in 1u32..64
+        ) {
+            let [a, b, c, d] = v.map(|v| i128::from(symmetric(v)) >> drop);
+            for sum in [a * b + c * d, a * b, (a << bits.min(62)) + (1 << (bits - 1)), (a << bits.min(62)) - (1 << (bits - 1))] {
+                prop_assert_eq!(products_rounded(sum, bits), shift_rounded(sum, bits));
+                let limits = (-i128::from(i64::MAX), i128::from(i64::MAX));
+                prop_assert_eq!(i128::from(within_64(sum)), sum.clamp(limits.0, limits.1));
             }
         }
 

@@ -6,6 +6,7 @@
 //! Error bounds, tested over the whole range against double precision: [`sin_cos`] ≤ 0.51 · 2⁻³² plus the rounding
 //! of the argument; [`atan2`] ≤ 0.51 · 2⁻³².
 
+use super::round::products_rounded;
 use super::{Real, div_rounded, shift_rounded};
 
 /// Fraction bits of the working numbers of this file.
@@ -17,7 +18,7 @@ const FRAC_PI_2: i64 = 1_811_004_864_519_280_711;
 const FRAC_PI_2_Q91: i128 = 3_889_103_333_003_610_706_726_905_385;
 
 const fn mul(a: i64, b: i64) -> i64 {
-    shift_rounded((a as i128).saturating_mul(b as i128), Q) as i64
+    products_rounded((a as i128).wrapping_mul(b as i128), Q) as i64
 }
 
 /// (sine, cosine) of an angle in radians, any angle a [`Real`] can hold.

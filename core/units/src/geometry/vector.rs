@@ -33,14 +33,17 @@ pub struct Direction {
 
 impl Point {
     /// From nanometres.
+    #[inline]
     pub const fn from_nm(x: i64, y: i64) -> Self {
         Self { x: Position::from_nm(x), y: Position::from_nm(y) }
     }
     /// The displacement from `from` to here.
+    #[inline]
     pub fn from(self, from: Self) -> Vector {
         Vector { x: self.x - from.x, y: self.y - from.y }
     }
     /// The distance to another point, rounded to the nanometre.
+    #[inline]
     pub fn distance(self, other: Self) -> Offset {
         self.from(other).length()
     }
@@ -48,30 +51,35 @@ impl Point {
 
 impl Add<Vector> for Point {
     type Output = Self;
+    #[inline]
     fn add(self, by: Vector) -> Self {
         Self { x: self.x + by.x, y: self.y + by.y }
     }
 }
 impl Sub<Vector> for Point {
     type Output = Self;
+    #[inline]
     fn sub(self, by: Vector) -> Self {
         Self { x: self.x - by.x, y: self.y - by.y }
     }
 }
 impl Add for Vector {
     type Output = Self;
+    #[inline]
     fn add(self, by: Self) -> Self {
         Self { x: self.x + by.x, y: self.y + by.y }
     }
 }
 impl Sub for Vector {
     type Output = Self;
+    #[inline]
     fn sub(self, by: Self) -> Self {
         Self { x: self.x - by.x, y: self.y - by.y }
     }
 }
 impl Neg for Vector {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Self { x: -self.x, y: -self.y }
     }
@@ -82,24 +90,29 @@ impl Vector {
     pub const ZERO: Self = Self { x: Offset::ZERO, y: Offset::ZERO };
 
     /// From nanometres.
+    #[inline]
     pub const fn from_nm(x: i64, y: i64) -> Self {
         Self { x: Offset::from_nm(x), y: Offset::from_nm(y) }
     }
     /// Its length, rounded to the nanometre.
+    #[inline]
     pub fn length(self) -> Offset {
         hypot_nm(self.x, self.y)
     }
     /// The square of its length, nm², exact.
+    #[inline]
     pub const fn length_squared(self) -> u128 {
         let (x, y) = (self.x.nm().unsigned_abs() as u128, self.y.nm().unsigned_abs() as u128);
         x.saturating_mul(x).saturating_add(y.saturating_mul(y))
     }
     /// The scalar product with another displacement, nm², exact.
+    #[inline]
     pub const fn dot(self, other: Self) -> i128 {
         let p = (self.x.nm() as i128).saturating_mul(other.x.nm() as i128);
         p.saturating_add((self.y.nm() as i128).saturating_mul(other.y.nm() as i128))
     }
     /// The vector product (z component) with another displacement, nm², exact.
+    #[inline]
     pub const fn cross(self, other: Self) -> i128 {
         let p = (self.x.nm() as i128).saturating_mul(other.y.nm() as i128);
         p.saturating_sub((self.y.nm() as i128).saturating_mul(other.x.nm() as i128))
@@ -140,14 +153,17 @@ impl Direction {
     pub const X: Self = Self { x: Real::ONE, y: Real::ZERO };
 
     /// A quarter turn counter-clockwise (to the left).
+    #[inline]
     pub fn left(self) -> Self {
         Self { x: -self.y, y: self.x }
     }
     /// A quarter turn clockwise (to the right).
+    #[inline]
     pub fn right(self) -> Self {
         Self { x: self.y, y: -self.x }
     }
     /// The opposite direction.
+    #[inline]
     pub fn reversed(self) -> Self {
         Self { x: -self.x, y: -self.y }
     }
@@ -162,6 +178,7 @@ impl Direction {
         Real::dot(self.x, other.x, self.y, other.y)
     }
     /// Vector product, the sine of the turn from here to `other`.
+    #[inline]
     pub fn cross(self, other: Self) -> Real {
         Real::dot(self.x, other.y, -self.y, other.x)
     }
