@@ -83,7 +83,14 @@ pub const fn div_rounded(numerator: i128, denominator: i128) -> i128 {
     let negative = (numerator < 0) != (denominator < 0);
     let d = denominator.unsigned_abs();
     let n = numerator.unsigned_abs();
-    let Some(quotient) = n.saturating_add(d / 2).checked_div(d) else {
+    let half_more = n.saturating_add(d / 2);
+    if (half_more | d) >> 64 == 0
+        && let Some(quotient) = (half_more as u64).checked_div(d as u64)
+    {
+        // Most: a division of 128 bits is a routine.
+        return signed(quotient as u128, negative);
+    }
+    let Some(quotient) = half_more.checked_div(d) else {
         return if n == 0 { 0 } else { signed(i128::MAX.unsigned_abs(), numerator < 0) };
     };
     signed(quotient, negative)
@@ -145,9 +152,10 @@ mod tests {
         }
 
         #[test]
-        fn rounding_is_to_nearest(v in any::<i64>(), d in 1i64..) {
-            let q = div_rounded(v.into(), d.into());
-            prop_assert!((q * i128::from(d) - i128::from(v)).abs() * 2 <= i128::from(d));
+        fn rounding_is_to_nearest(v in any::<i64>(), d in 1i64.., up in 0u32..60) {
+            let (v, d) = (i128::from(v) << up, i128::from(d));
+            let q = div_rounded(v, d);
+            prop_assert!((q * d - v).abs() * 2 <= d);
         }
     }
 }

@@ -6,7 +6,7 @@
 //! left; the iteration is bounded and cannot hang.
 
 use super::compliance::Compliance;
-use super::force::{ForceTable, SplitForce, stretches};
+use super::force::{Flutes, ForceTable, SplitForce, stretches};
 use super::path::Path;
 use super::setup::{Coefficients, Runout, WallLaw};
 use super::teeth::Teeth;
@@ -80,11 +80,23 @@ impl Loop<'_> {
     /// Solves the loop at a sample for a commanded displacement, from a first guess of the deflection.
     /// Returns the state and the number of iterations.
     pub fn settle(&self, index: usize, commanded: Vector, guess: Vector, chip_scale: Real) -> (State, u32) {
+        self.settle_about(index, commanded, guess, chip_scale, &mut 0)
+    }
+
+    /// The same; `exit` as in [`Path::engagement_about`].
+    fn settle_about(
+        &self,
+        index: usize,
+        commanded: Vector,
+        guess: Vector,
+        chip_scale: Real,
+        exit: &mut usize,
+    ) -> (State, u32) {
         let mut x = guess;
         let mut before: Option<(Vector, Vector)> = None;
         let mut state = State { commanded, chip_scale, ..State::REST };
         for iteration in 1..=MAX_ITERATIONS {
-            let Some((engaged, normal, push)) = self.push(index, commanded + x, chip_scale) else {
+            let Some((engaged, normal, push)) = self.push(index, commanded + x, chip_scale, exit) else {
                 return (state, iteration);
             };
             let residual = push - x;
@@ -113,9 +125,15 @@ impl Loop<'_> {
     }
 
     /// Engagement, normal and mean deflection for a centre displaced from a sample.
-    fn push(&self, index: usize, displacement: Vector, chip_scale: Real) -> Option<(Real, Direction, Vector)> {
+    fn push(
+        &self,
+        index: usize,
+        displacement: Vector,
+        chip_scale: Real,
+        exit: &mut usize,
+    ) -> Option<(Real, Direction, Vector)> {
         let frame = self.path.frame(index, displacement)?;
-        let engaged = self.path.engagement(index, displacement, &frame);
+        let engaged = self.path.engagement_about(index, displacement, &frame, exit);
         let force = self.mean(engaged).total(chip_scale);
         let push = self.compliance.displacement(frame.normal, frame.heading, force);
         Some((engaged, frame.normal, push.scaled(self.compliance.mean_factor())))
@@ -127,6 +145,7 @@ impl Loop<'_> {
         let mut guess = Vector::ZERO;
         let mut feed = None;
         let mut chip_scale = Real::ZERO;
+        let mut exit = 0;
         for (k, slot) in states.iter_mut().enumerate() {
             let index = from.saturating_add(k);
             let Some(sample) = self.path.samples().get(index) else { break };
@@ -134,7 +153,7 @@ impl Loop<'_> {
                 feed = Some(sample.feed);
                 chip_scale = self.coefficients.chip_scale(self.path.setup().feed_per_tooth(sample.feed));
             }
-            let (state, iterations) = self.settle(index, commanded(index), guess, chip_scale);
+            let (state, iterations) = self.settle_about(index, commanded(index), guess, chip_scale, &mut exit);
             guess = state.displacement;
             passage.iterations = passage.iterations.saturating_add(iterations);
             passage.unsettled = passage.unsettled.saturating_add(u32::from(state.residual > UNSETTLED));
@@ -146,7 +165,7 @@ impl Loop<'_> {
 
     /// The state of an undisplaced cutter: the engagement the program intends.
     pub fn nominal(&self, index: usize, chip_scale: Real) -> State {
-        let Some((engaged, normal, displacement)) = self.push(index, Vector::ZERO, chip_scale) else {
+        let Some((engaged, normal, displacement)) = self.push(index, Vector::ZERO, chip_scale, &mut 0) else {
             return State::REST;
         };
         State { engaged, normal, displacement, chip_scale, ..State::REST }
@@ -175,7 +194,7 @@ impl Loop<'_> {
     /// The force at the instant the wall at a height is made, and how much farther the tooth reaches that makes it.
     fn made_by(&self, teeth: &mut Teeth, state: &State, fraction: Real) -> (SplitForce, Vector) {
         let setup = self.path.setup();
-        let alike = self.force_at(state, fraction);
+        let alike = self.force_at(&mut teeth.flutes, state, fraction);
         if setup.runout == Runout::NONE {
             return (alike, Vector::ZERO);
         }
@@ -196,15 +215,16 @@ impl Loop<'_> {
     }
 
     /// The force at the instant the wall at a height is made.
-    fn force_at(&self, state: &State, fraction: Real) -> SplitForce {
+    fn force_at(&self, flutes: &mut Flutes, state: &State, fraction: Real) -> SplitForce {
         let setup = self.path.setup();
         match setup.law {
             WallLaw::Mean => self.mean(state.engaged),
-            WallLaw::Helical => self.table.at_height(
+            WallLaw::Helical => self.table.at_height_again(
                 (setup, self.path.helix()),
                 &self.coefficients,
                 state.engaged,
                 setup.axial_depth * fraction,
+                flutes,
             ),
         }
     }

@@ -72,34 +72,78 @@ impl Path<'_> {
     /// Looks at the stock from the sample to 2.2 radii ahead; stretches that cannot reach the circle are stepped
     /// over, so the cost is bounded by the window and does not depend on the length of the contour.
     pub fn engagement(&self, index: usize, displacement: Vector, frame: &Frame) -> Real {
+        self.engagement_about(index, displacement, frame, &mut 0)
+    }
+
+    /// The same. `exit` is the sample before the place where the circle of the last engagement left the stock: where stock
+    /// stands beside every sample, it is looked for from there, and only where that finds none from the beginning.
+    pub(super) fn engagement_about(&self, index: usize, displacement: Vector, frame: &Frame, exit: &mut usize) -> Real {
         let samples = self.samples();
         let Some(here) = samples.get(index) else { return Real::ZERO };
-        let centre = here.point + displacement;
         let radius = self.setup().radius;
-        let end = here.s + radius + radius + radius.scaled(Real::ratio(1, 5));
-        let stride = self.stock_step().nm().max(1);
-        let mut last_inside: Option<usize> = None;
-        let mut at = frame.index.min(index);
-        while let Some(sample) = samples.get(at) {
-            if sample.s > end {
-                break;
-            }
-            let spoke = sample.stock.from(centre);
-            let depth = radius - spoke.length();
-            if depth > Offset::ZERO && sample.on_surface && spoke.along(frame.heading) > -Offset::from_nm(stride) {
-                last_inside = Some(at);
-            }
-            // The circle is at least |depth| away along the stock: no crossing before that.
-            let skip = depth.abs().nm().checked_div(stride).unwrap_or(0).max(1);
-            at = at.saturating_add(skip.unsigned_abs() as usize);
-        }
-        let Some(inside) = last_inside else { return Real::ZERO };
+        let walk = Walk {
+            centre: here.point + displacement,
+            heading: frame.heading,
+            radius,
+            stride: self.stock_step().nm().max(1),
+            end: here.s + radius + radius + radius.scaled(Real::ratio(1, 5)),
+        };
+        let start = frame.index.min(index);
+        let near = exit.saturating_sub(1);
+        let known = (self.is_stocked() && near > start).then(|| walk.last_ahead(samples, near)).flatten();
+        let Some(inside) = known.or_else(|| walk.last_of_all(samples, start)) else { return Real::ZERO };
+        *exit = inside;
         let (Some(a), Some(b)) = (samples.get(inside), samples.get(inside.saturating_add(1))) else {
             return Real::ZERO;
         };
-        let exit = crossing(a, b, centre, radius).from(centre);
+        let exit = crossing(a, b, walk.centre, walk.radius).from(walk.centre);
         let angle = atan2(exit.along(frame.heading).nm(), exit.along(frame.normal).nm());
         angle.max(Real::ZERO)
+    }
+}
+
+/// A walk along the stock ahead of a cutter.
+struct Walk {
+    centre: Point,
+    heading: Direction,
+    radius: Offset,
+    /// The largest distance between neighbouring samples of the stock, nm.
+    stride: i64,
+    /// Arc length at which it ends.
+    end: Offset,
+}
+
+impl Walk {
+    /// The last sample from `start` on whose stock is inside the circle and not behind the cutter.
+    fn last_of_all(&self, samples: &[Sample], start: usize) -> Option<usize> {
+        self.last_ahead(samples, start).or_else(|| self.last(samples, start, |sample| self.is_ahead(sample)))
+    }
+
+    /// The last sample from `start` on whose stock is inside the circle, unless it is behind the cutter.
+    fn last_ahead(&self, samples: &[Sample], start: usize) -> Option<usize> {
+        self.last(samples, start, |_| true).filter(|at| samples.get(*at).is_some_and(|sample| self.is_ahead(sample)))
+    }
+
+    fn is_ahead(&self, sample: &Sample) -> bool {
+        sample.stock.from(self.centre).along(self.heading) > -Offset::from_nm(self.stride)
+    }
+
+    #[inline]
+    fn last(&self, samples: &[Sample], start: usize, counts: impl Fn(&Sample) -> bool) -> Option<usize> {
+        let (mut last, mut at) = (None, start);
+        while let Some(sample) = samples.get(at) {
+            if sample.s > self.end {
+                break;
+            }
+            let depth = (self.radius - sample.stock.distance(self.centre)).nm();
+            if depth > 0 && sample.on_surface && counts(sample) {
+                last = Some(at);
+            }
+            // The circle is at least |depth| away along the stock: no crossing before that.
+            let skip = depth.saturating_abs().checked_div(self.stride).unwrap_or(0).max(1);
+            at = at.saturating_add(skip.unsigned_abs() as usize);
+        }
+        last
     }
 }
 

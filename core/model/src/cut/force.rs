@@ -57,6 +57,25 @@ pub(super) struct Stretch {
     pub(super) high: Real,
 }
 
+/// The sum over the flutes in the stock while the wall at a height is made: the same but for the flutes that the end of the
+/// arc cuts off, as long as it lies between the same ends of flutes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flutes {
+    height: Real,
+    /// The arc ends above this and at most at that, rad.
+    arc: (Real, Real),
+    /// The sum but for the antiderivative at the end of the arc.
+    whole: Basis,
+    /// How often that counts.
+    cut_off: i32,
+}
+
+impl Flutes {
+    /// Of no height yet.
+    pub(super) const NONE: Self =
+        Self { height: Real::ZERO, arc: (Real::MAX, Real::ZERO), whole: Basis::NOTHING, cut_off: 0 };
+}
+
 impl SplitForce {
     /// (normal, tangential) for a chip scale from [`Coefficients::chip_scale`].
     pub fn total(self, chip_scale: Real) -> (Real, Real) {
@@ -74,6 +93,9 @@ impl SplitForce {
 }
 
 impl Basis {
+    const NOTHING: Self = Self { chip_sine: Real::ZERO, chip_cosine: Real::ZERO, sine: Real::ZERO, cosine: Real::ZERO };
+
+    #[inline]
     fn zip(self, o: Self, f: impl Fn(Real, Real) -> Real) -> Self {
         Self {
             chip_sine: f(self.chip_sine, o.chip_sine),
@@ -82,12 +104,15 @@ impl Basis {
             cosine: f(self.cosine, o.cosine),
         }
     }
+    #[inline]
     fn plus(self, other: Self) -> Self {
         self.zip(other, |a, b| a + b)
     }
+    #[inline]
     fn minus(self, other: Self) -> Self {
         self.zip(other, |a, b| a - b)
     }
+    #[inline]
     pub(super) fn scaled(self, factor: Real) -> Self {
         self.zip(self, |a, _| a * factor)
     }
@@ -114,10 +139,10 @@ impl Basis {
 
 impl ForceTable {
     /// An empty table, to be [tabulated](Self::tabulate) where it lies.
-    pub const BLANK: Self = {
-        const NOTHING: Basis =
-            Basis { chip_sine: Real::ZERO, chip_cosine: Real::ZERO, sine: Real::ZERO, cosine: Real::ZERO };
-        Self { sums: [NOTHING; INTERVALS + 1], density: [NOTHING; INTERVALS + 1], size_exponent: Real::ZERO }
+    pub const BLANK: Self = Self {
+        sums: [Basis::NOTHING; INTERVALS + 1],
+        density: [Basis::NOTHING; INTERVALS + 1],
+        size_exponent: Real::ZERO,
     };
 
     /// Tabulates the antiderivatives for a size exponent (0…0.5).
@@ -185,28 +210,67 @@ impl ForceTable {
     /// away.
     pub fn at_height(
         &self,
-        (setup, helix): (&CutSetup, &Helix),
+        cutter: (&CutSetup, &Helix),
         coefficients: &Coefficients,
         engaged: Real,
         height: Real,
     ) -> SplitForce {
-        let mut sum = Basis::default();
-        for Stretch { low, high, .. } in stretches((setup, helix), engaged, height) {
-            // The antiderivative from 0 to 0 is nothing.
-            let below = if low > Real::ZERO { self.antiderivative(low) } else { Basis::default() };
-            sum = sum.plus(self.antiderivative(high).minus(below));
+        let mut nothing = Flutes::NONE;
+        self.at_height_again(cutter, coefficients, engaged, height, &mut nothing)
+    }
+
+    /// The same, from the sum that was made at the place before; of another table or cutter it is of no use.
+    pub(super) fn at_height_again(
+        &self,
+        cutter: (&CutSetup, &Helix),
+        coefficients: &Coefficients,
+        engaged: Real,
+        height: Real,
+        known: &mut Flutes,
+    ) -> SplitForce {
+        if engaged <= Real::ZERO {
+            return SplitForce::default();
         }
-        sum.scaled(helix.mm_per_lag).force(setup.milling, coefficients)
+        let (above, to) = known.arc;
+        if known.height != height || engaged <= above || engaged > to {
+            *known = self.summed(cutter, engaged, height);
+        }
+        let sum = match known.cut_off {
+            0 => known.whole,
+            1 => known.whole.plus(self.antiderivative(engaged)),
+            // Exact: a whole number of times.
+            times => known.whole.plus(self.antiderivative(engaged).scaled(Real::from_int(times))),
+        };
+        sum.scaled(cutter.1.mm_per_lag).force(cutter.0.milling, coefficients)
+    }
+
+    #[inline(never)]
+    fn summed(&self, cutter: (&CutSetup, &Helix), engaged: Real, height: Real) -> Flutes {
+        let mut sum = Flutes { height, arc: (Real::ZERO, Real::MAX), ..Flutes::NONE };
+        for Stretch { low, high, .. } in flutes(cutter, height) {
+            if low >= engaged {
+                sum.arc.1 = sum.arc.1.min(low);
+                break;
+            }
+            sum.arc.0 = sum.arc.0.max(low);
+            // The antiderivative from 0 to 0 is nothing.
+            let below = if low > Real::ZERO { self.antiderivative(low) } else { Basis::NOTHING };
+            if high > engaged {
+                sum.arc.1 = sum.arc.1.min(high);
+                sum.cut_off = sum.cut_off.saturating_add(1);
+                sum.whole = sum.whole.minus(below);
+            } else if high > low.max(Real::ZERO) {
+                sum.arc.0 = sum.arc.0.max(high);
+                sum.whole = sum.whole.plus(self.antiderivative(high).minus(below));
+            }
+        }
+        sum
     }
 }
 
-/// The flutes in the stock, 0…φ₁, while the wall at a height is made: the stretches `bottom + k·pitch … top + k·pitch` of
-/// immersion that meet it.
-pub(super) fn stretches(
-    (setup, helix): (&CutSetup, &Helix),
-    engaged: Real,
-    height: Real,
-) -> impl Iterator<Item = Stretch> + use<> {
+/// The flutes, from the first that may be in the stock on, while the wall at a height is made: the stretches
+/// `bottom + k·pitch … top + k·pitch` of immersion.
+fn flutes((setup, helix): (&CutSetup, &Helix), height: Real) -> impl Iterator<Item = Stretch> + use<> {
     let behind = match setup.milling {
         Milling::Climb => setup.axial_depth - height,
         Milling::Conventional => height,
@@ -215,12 +279,19 @@ pub(super) fn stretches(
     let top = behind * lag;
     let bottom = top - setup.axial_depth * lag;
     let first = (top / pitch).floor().saturating_neg();
-    let at = move |flute: i64| {
+    (first..first.saturating_add(MAX_FLUTES)).map(move |flute| {
         let shift = pitch * Real::from_int(flute as i32);
         Stretch { flute, low: bottom + shift, high: top + shift }
-    };
-    (first..first.saturating_add(MAX_FLUTES))
-        .map(at)
+    })
+}
+
+/// What of the [`flutes`] is in the stock, 0…φ₁.
+pub(super) fn stretches(
+    cutter: (&CutSetup, &Helix),
+    engaged: Real,
+    height: Real,
+) -> impl Iterator<Item = Stretch> + use<> {
+    flutes(cutter, height)
         .take_while(move |flute| flute.low < engaged)
         .map(move |s| Stretch { low: s.low.max(Real::ZERO), high: s.high.min(engaged), ..s })
         .filter(|s| s.high > s.low)

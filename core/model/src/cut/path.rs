@@ -24,6 +24,8 @@ pub struct Path<'a> {
     stock_step: Offset,
     crowded: bool,
     closed: bool,
+    /// Whether the raw stock stands beside every sample.
+    stocked: bool,
     setup: CutSetup,
     helix: Helix,
 }
@@ -120,7 +122,8 @@ impl<'a> Path<'a> {
         let crowds = |(a, b): (&Sample, &Sample)| a.point.distance(b.point).nm().saturating_mul(8) < step.nm();
         let crowded = samples.iter().zip(samples.iter().skip(1)).any(crowds);
         let (closed, helix) = (closes_smoothly(contour, setup), setup.helix());
-        Ok(Self { samples, first, count, step, stock_step, crowded, closed, setup: *setup, helix })
+        let stocked = samples.iter().all(|s| s.on_surface);
+        Ok(Self { samples, first, count, step, stock_step, crowded, closed, stocked, setup: *setup, helix })
     }
 
     /// The same path with its raw stock moved along the normal of every sample by `shift`, positive towards the wall, in a
@@ -133,9 +136,9 @@ impl<'a> Path<'a> {
         }
         let samples: &'b [Sample] = used;
         let gaps = samples.iter().zip(samples.iter().skip(1)).map(|(a, b)| a.stock.distance(b.stock));
-        let Self { first, count, step, crowded, closed, setup, helix, .. } = *self;
+        let Self { first, count, step, crowded, closed, stocked, setup, helix, .. } = *self;
         let stock_step = gaps.max().unwrap_or_default();
-        Path { samples, first, count, step, stock_step, crowded, closed, setup, helix }
+        Path { samples, first, count, step, stock_step, crowded, closed, stocked, setup, helix }
     }
 
     /// The same path under another wall law.
@@ -176,6 +179,10 @@ impl<'a> Path<'a> {
     pub(super) const fn is_crowded(&self) -> bool {
         self.crowded
     }
+    /// Whether the raw stock stands beside every sample: nowhere ends it at a corner.
+    pub(super) const fn is_stocked(&self) -> bool {
+        self.stocked
+    }
     /// Whether the end of the contour runs on into its start: there is then no seam.
     pub const fn is_closed(&self) -> bool {
         self.closed
@@ -198,7 +205,33 @@ impl<'a> Path<'a> {
     }
     /// Index of the sample nearest to an arc length of the contour.
     pub fn index_at(&self, s: Offset) -> usize {
-        let after = self.samples.partition_point(|x| x.s < s).min(self.samples.len().saturating_sub(1));
+        self.nearest(s, self.samples.partition_point(|x| x.s < s))
+    }
+    /// As [`index_at`](Self::index_at), the sooner found the nearer it is to `about`.
+    pub(super) fn index_near(&self, s: Offset, about: usize) -> usize {
+        let is_before = |i: usize| self.samples.get(i).is_some_and(|x| x.s < s);
+        // The first that is not before s lies in from..=to.
+        let (mut from, mut to) = (about, about);
+        let mut stride = 1usize;
+        while is_before(to) {
+            (from, to) = (to.saturating_add(1), to.saturating_add(stride));
+            stride = stride.saturating_mul(2);
+        }
+        stride = 1;
+        while from > 0 && !is_before(from.saturating_sub(1)) {
+            to = from.saturating_sub(1);
+            from = from.saturating_sub(stride);
+            stride = stride.saturating_mul(2);
+        }
+        while from < to {
+            let middle = from.midpoint(to);
+            if is_before(middle) { from = middle.saturating_add(1) } else { to = middle }
+        }
+        self.nearest(s, from)
+    }
+    /// Of the sample at `after`, the first at or behind an arc length, and the one before it, the nearer one.
+    fn nearest(&self, s: Offset, after: usize) -> usize {
+        let after = after.min(self.samples.len().saturating_sub(1));
         let before = after.saturating_sub(1);
         match (self.samples.get(before), self.samples.get(after)) {
             (Some(a), Some(b)) if (s - a.s) < (b.s - s) => before,

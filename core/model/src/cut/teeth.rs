@@ -11,16 +11,19 @@
 //! chip is that of a little more chip, its slope taken as falling evenly with sin φ. Of a chain of more than
 //! [`PIECES`] pieces the thinnest chips are left out, where only the longest teeth cut.
 
-use super::force::{Basis, SplitForce, Stretch};
+use super::force::{Basis, Flutes, SplitForce, Stretch};
 use super::setup::{Coefficients, CutSetup, MAX_TEETH, Milling};
 use truepath_units::{Offset, Real, atan2, sin_cos};
 
 /// Pieces of a chain that are kept, from the thickest chip down.
 const PIECES: usize = 4;
 
-/// The teeth of a cutter that runs out, at one feed: 1.5 KB, kept where walls are read and not in the elastic loop.
+/// What is kept of a cutter from place to place while walls are read, of one machine: the flutes at one height, and the
+/// teeth, where they reach differently far, at one feed. 1.5 KB, not in the elastic loop.
 #[derive(Clone, Debug)]
 pub struct Teeth {
+    /// The flutes in the stock at a height.
+    pub(super) flutes: Flutes,
     /// The chip scale that they are made for; nothing yet.
     chip_scale: Option<Real>,
     /// What a little more chip adds to the force over what it would without size effect.
@@ -225,7 +228,12 @@ impl Tooth {
 
 impl Teeth {
     /// Teeth of no cutter yet.
-    pub const BLANK: Self = Self { chip_scale: None, weight: Weight::of(Real::ZERO), teeth: [Tooth::BLANK; MAX_TEETH] };
+    pub const BLANK: Self = Self {
+        flutes: Flutes::NONE,
+        chip_scale: None,
+        weight: Weight::of(Real::ZERO),
+        teeth: [Tooth::BLANK; MAX_TEETH],
+    };
 
     /// Makes them those of a cutter at a chip scale.
     #[inline(never)]

@@ -47,83 +47,185 @@ impl<'a> Envelope<'a> {
     /// neighbour. The search is bounded: a coarse look half a radius to both sides, then a descent to the nearest
     /// minimum.
     pub fn error(&self, index: usize, guess: usize) -> Option<WallError> {
-        let sample = self.path.samples().get(index)?;
-        let wall = self.path.wall(sample);
-        let gap = |at: usize| self.gap(at, sample, wall);
-        let mut best = (index, gap(index)?);
-        let lower = |at: usize, best: Offset| self.lower(at, sample, wall, best);
-        let mut consider = |at: usize| {
-            if let Some(g) = lower(at, best.1) {
-                best = (at, g);
-            }
-        };
-        consider(guess);
-        let reach = Offset::from_nm(self.path.setup().radius.nm() / 2);
-        let mut far = reach.nm().checked_div(self.path.step().nm()).unwrap_or(0).unsigned_abs() as usize;
-        if self.path.is_crowded() {
-            // Samples that stand close together hide what lies beyond them: look by arc length.
-            for eighth in 1..=8 {
-                let away = reach.scaled(Real::ratio(eighth, 8));
-                consider(self.path.index_at(sample.s + away));
-                consider(self.path.index_at(sample.s - away));
-            }
-            let (from, to) = (self.path.index_at(sample.s - reach), self.path.index_at(sample.s + reach));
-            far = to.saturating_sub(from) / 2;
-        } else {
-            for eighth in 1..=8usize {
-                let stride = far.saturating_mul(eighth) / 8;
-                consider(index.saturating_add(stride));
-                consider(index.saturating_sub(stride));
-            }
-        }
+        let mut look = Look::beside(self, index, guess)?;
+        let far = if self.path.is_crowded() { look.by_arc_length(index) } else { look.by_samples(index) };
         // Descent with halving strides.
-        let mut stride = (far / 8).max(1);
+        let mut stride = (far / EIGHTHS).max(1);
         while stride > 0 {
-            let from = best.0;
-            for at in [from.saturating_sub(stride), from.saturating_add(stride)] {
-                if let Some(g) = lower(at, best.1) {
-                    best = (at, g);
-                }
-            }
-            if best.0 == from {
+            let from = look.made_by;
+            look.at(from.saturating_sub(stride));
+            look.at(from.saturating_add(stride));
+            if look.made_by == from {
                 stride /= 2;
             }
         }
-        let (at, lowest) = best;
-        let refined = match (gap(at.saturating_sub(1)), gap(at.saturating_add(1))) {
+        let (at, lowest) = (look.made_by, look.lowest);
+        let error = match (look.gap(at.saturating_sub(1)), look.gap(at.saturating_add(1))) {
             (Some(before), Some(after)) => vertex(before, lowest, after),
             _ => lowest,
         };
-        Some(WallError { error: refined, made_by: at })
+        Some(WallError { error, made_by: at })
+    }
+
+    /// Where the cutter is at a sample.
+    fn centre(&self, at: usize) -> Option<Point> {
+        let displacement = self.displacements.get(at.checked_sub(self.from)?)?;
+        Some(self.path.samples().get(at)?.point + *displacement)
+    }
+}
+
+/// Places of the coarse look to either side.
+const EIGHTHS: usize = 8;
+
+/// A look along the path for the cutter position that ends deepest beside a wall point.
+///
+/// Most positions end less deep than the deepest so far, and that is seen from their distance alone: the circle ends
+/// above `lowered`, the wall point less the lowest gap, when its centre is farther from it than the radius, on the far side
+/// of the wall. Where the distance does not leave a few nanometres to spare, what counts are the rounded components along
+/// and across the normal: the shorter way only leaves out what they would.
+struct Look<'e, 'a> {
+    envelope: &'e Envelope<'a>,
+    /// Samples from that of the first displacement on.
+    samples: &'a [Sample],
+    wall: Point,
+    normal: Direction,
+    /// The normal in units of 2⁻³⁰.
+    coarse: [i64; 2],
+    /// The lowest gap so far, and the sample whose cutter position it is of.
+    lowest: Offset,
+    made_by: usize,
+    lowered: Point,
+    /// Square of a distance of the centre that is certainly more than the radius, nm².
+    clear: i64,
+}
+
+impl<'e, 'a> Look<'e, 'a> {
+    /// Begins with the cutter position at the sample beside the wall point and that of a guess; of two that end alike it
+    /// is the first.
+    fn beside(envelope: &'e Envelope<'a>, index: usize, guess: usize) -> Option<Self> {
+        let (path, sample) = (envelope.path, envelope.path.samples().get(index)?);
+        let (wall, normal) = (path.wall(sample), sample.normal);
+        let radius = path.setup().radius.nm();
+        // Rounding of the components and of the place, and a normal that is not quite one long.
+        let beyond = radius.saturating_add(radius >> 20).saturating_add(4);
+        let mut look = Self {
+            envelope,
+            samples: path.samples().get(envelope.from..).unwrap_or_default(),
+            wall,
+            normal,
+            coarse: [normal.x, normal.y].map(|v| v.bits() >> 2),
+            lowest: Offset::MAX,
+            made_by: index,
+            lowered: wall,
+            clear: beyond.saturating_mul(beyond),
+        };
+        let own = envelope.displacements.get(index.checked_sub(envelope.from)?)?;
+        // A circle that passes beside its own wall point makes none; that takes a displacement as large as the radius.
+        let is_near = own.x.abs() + own.y.abs() < path.setup().radius;
+        match look.gap(guess).filter(|_| is_near) {
+            Some(gap) => {
+                look.take(guess, gap);
+                if !look.is_above(index)
+                    && let gap = look.gap(index)?
+                    && gap <= look.lowest
+                {
+                    look.take(index, gap);
+                }
+            }
+            None => {
+                let gap = look.gap(index)?;
+                look.take(index, gap);
+                look.at(guess);
+            }
+        }
+        Some(look)
+    }
+
+    fn take(&mut self, at: usize, gap: Offset) {
+        (self.made_by, self.lowest) = (at, gap);
+        self.lowered = self.wall - self.normal.times(gap);
+    }
+
+    /// Eighths of half a radius to both sides, counted in samples of the longest step; returns how many the whole is.
+    fn by_samples(&mut self, index: usize) -> usize {
+        let path = self.envelope.path;
+        let reach = path.setup().radius.nm() / 2;
+        let far = reach.checked_div(path.step().nm()).unwrap_or(0).unsigned_abs() as usize;
+        for eighth in 1..=EIGHTHS {
+            let stride = far.saturating_mul(eighth) / EIGHTHS;
+            self.at(index.saturating_add(stride));
+            self.at(index.saturating_sub(stride));
+        }
+        far
+    }
+
+    /// The same by arc length: samples that stand close together hide what lies beyond them.
+    fn by_arc_length(&mut self, index: usize) -> usize {
+        let path = self.envelope.path;
+        let Some(sample) = path.samples().get(index) else { return 0 };
+        let reach = Offset::from_nm(path.setup().radius.nm() / 2);
+        let (mut ahead, mut back) = ([index; 2], [index; 2]);
+        for eighth in 1..=EIGHTHS {
+            let away = reach.scaled(Real::ratio(eighth as i64, EIGHTHS as i64));
+            // About as far again as the place before.
+            let next = |[before, last]: [usize; 2], s| {
+                [last, path.index_near(s, last.saturating_add(last).saturating_sub(before))]
+            };
+            ahead = next(ahead, sample.s + away);
+            self.at(ahead[1]);
+            back = next(back, sample.s - away);
+            self.at(back[1]);
+        }
+        ahead[1].saturating_sub(back[1]) / 2
+    }
+
+    /// Takes sample `at` where its circle ends deeper than the deepest so far.
+    #[inline]
+    fn at(&mut self, at: usize) {
+        if !self.is_above(at)
+            && let Some(gap) = self.gap(at)
+            && gap < self.lowest
+        {
+            self.take(at, gap);
+        }
+    }
+
+    /// Whether the circle at sample `at` certainly ends above the lowest gap, or there is none.
+    #[inline]
+    fn is_above(&self, at: usize) -> bool {
+        const WITHIN: i64 = 1 << 31;
+        let slot = at.wrapping_sub(self.envelope.from);
+        let (Some(sample), Some(by)) = (self.samples.get(slot), self.envelope.displacements.get(slot)) else {
+            return true;
+        };
+        // Of places within 4 · 10⁹ m.
+        let spoke = |lowered: i64, point: i64, by: i64| lowered.wrapping_sub(point).wrapping_sub(by);
+        let x = spoke(self.lowered.x.nm(), sample.point.x.nm(), by.x.nm());
+        let y = spoke(self.lowered.y.nm(), sample.point.y.nm(), by.y.nm());
+        if (x.wrapping_add(WITHIN) | y.wrapping_add(WITHIN)) as u64 >> 32 != 0 {
+            return false;
+        }
+        let square = x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y));
+        // Along the normal, in units of 2⁻³⁰ nm; at least 8 nm, more than is cut off.
+        let [normal_x, normal_y] = self.coarse;
+        let ahead = x.wrapping_mul(normal_x).wrapping_add(y.wrapping_mul(normal_y));
+        square >= self.clear && ahead >= 1 << 33
     }
 
     /// How far the circle at sample `at` ends short of the wall point, along the normal; `None` when it passes beside.
-    fn gap(&self, at: usize, sample: &Sample, wall: Point) -> Option<Offset> {
-        self.reach(at, sample, wall).map(|(ahead, square)| ahead - root(square))
+    fn gap(&self, at: usize) -> Option<Offset> {
+        self.envelope.centre(at).and_then(|centre| self.reach(centre)).map(|(ahead, square)| ahead - root(square))
     }
 
-    /// The gap at sample `at` where it is below another. Most are not, and that is seen without a root: with
-    /// q = ahead − best the gap is no less than best when q² ≥ r² − beside².
-    fn lower(&self, at: usize, sample: &Sample, wall: Point, best: Offset) -> Option<Offset> {
-        let (ahead, square) = self.reach(at, sample, wall)?;
-        let q = (ahead - best).nm();
-        if q >= 0 && q.saturating_mul(q) >= square {
-            return None;
-        }
-        Some(ahead - root(square)).filter(|g| *g < best)
-    }
-
-    /// Of the circle at sample `at`: distance of the wall point from its centre along the normal, and r² − beside², nm²;
-    /// `None` when it passes beside.
-    fn reach(&self, at: usize, sample: &Sample, wall: Point) -> Option<(Offset, i64)> {
-        let displacement = *self.displacements.get(at.checked_sub(self.from)?)?;
-        let centre = self.path.samples().get(at)?.point + displacement;
-        let v = wall.from(centre);
-        let normal: Direction = sample.normal;
-        let beside = v.along(self.path.setup().wall.heading(normal)).nm();
-        let r = self.path.setup().radius.nm();
+    /// Of the circle about a centre: distance of the wall point from it along the normal, and r² − beside², nm²; `None`
+    /// when it passes beside.
+    fn reach(&self, centre: Point) -> Option<(Offset, i64)> {
+        let setup = self.envelope.path.setup();
+        let v = self.wall.from(centre);
+        let beside = v.along(setup.wall.heading(self.normal)).nm();
+        let r = setup.radius.nm();
         let square = r.saturating_mul(r).saturating_sub(beside.saturating_mul(beside));
-        (square > 0).then(|| (v.along(normal), square))
+        (square > 0).then(|| (v.along(self.normal), square))
     }
 }
 

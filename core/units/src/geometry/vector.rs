@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Neg, Sub};
 
-use crate::{Offset, Position, Real, div_rounded, hypot_nm, isqrt_rounded, sin_cos};
+use crate::{Offset, Position, Real, div_rounded, hypot_nm, isqrt_rounded, shift_rounded_i63, sin_cos};
 
 /// A place in the plane, nanometres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -29,6 +29,13 @@ pub struct Direction {
     pub x: Real,
     /// Second component, −1…1.
     pub y: Real,
+}
+
+/// Whether a length is below half a metre: two of its products with parts of a direction add up to less than 2⁶² steps of
+/// 2⁻³² nm, which 64 bits hold.
+#[inline]
+const fn is_short(nm: i64) -> bool {
+    nm.wrapping_add(1 << 29) as u64 >> 30 == 0
 }
 
 impl Point {
@@ -120,6 +127,11 @@ impl Vector {
     /// Its component along a direction, rounded to the nanometre.
     #[inline]
     pub fn along(self, direction: Direction) -> Offset {
+        let (x, y) = (self.x.nm(), self.y.nm());
+        if is_short(x) && is_short(y) {
+            let sum = x.wrapping_mul(direction.x.bits()).wrapping_add(y.wrapping_mul(direction.y.bits()));
+            return Offset::from_nm(shift_rounded_i63(sum, Real::FRACTION_BITS));
+        }
         self.x.blend(direction.x, self.y, direction.y)
     }
     /// Times a number.
@@ -170,6 +182,11 @@ impl Direction {
     /// The displacement of the given length along this direction.
     #[inline]
     pub fn times(self, length: Offset) -> Vector {
+        let nm = length.nm();
+        if is_short(nm) {
+            let part = |share: Real| shift_rounded_i63(nm.wrapping_mul(share.bits()), Real::FRACTION_BITS);
+            return Vector::from_nm(part(self.x), part(self.y));
+        }
         Vector { x: length.scaled(self.x), y: length.scaled(self.y) }
     }
     /// Scalar product, the cosine of the angle between.
