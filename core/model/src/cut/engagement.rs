@@ -89,8 +89,13 @@ impl Path<'_> {
             end: here.s + radius + radius + radius.scaled(Real::ratio(1, 5)),
         };
         let start = frame.index.min(index);
-        let near = exit.saturating_sub(1);
-        let known = (self.is_stocked() && near > start).then(|| walk.last_ahead(samples, near)).flatten();
+        // Where stock stands everywhere, the last place inside is the same wherever the walk begins before it.
+        let stocked = || {
+            let near = exit.saturating_sub(1);
+            let from = |start| walk.last_of_stocked(samples, start).filter(|at| walk.is_ahead_of(samples, *at));
+            (near > start).then(|| from(near)).flatten().or_else(|| from(start))
+        };
+        let known = if self.is_stocked() && radius < REACH { stocked() } else { None };
         let Some(inside) = known.or_else(|| walk.last_of_all(samples, start)) else { return Real::ZERO };
         *exit = inside;
         let (Some(a), Some(b)) = (samples.get(inside), samples.get(inside.saturating_add(1))) else {
@@ -101,6 +106,9 @@ impl Path<'_> {
         angle.max(Real::ZERO)
     }
 }
+
+/// Radius and components whose squares add up in 64 bits.
+const REACH: Offset = Offset::from_um(1_000_000);
 
 /// A walk along the stock ahead of a cutter.
 struct Walk {
@@ -116,12 +124,53 @@ struct Walk {
 impl Walk {
     /// The last sample from `start` on whose stock is inside the circle and not behind the cutter.
     fn last_of_all(&self, samples: &[Sample], start: usize) -> Option<usize> {
-        self.last_ahead(samples, start).or_else(|| self.last(samples, start, |sample| self.is_ahead(sample)))
+        // Mostly the last one inside is ahead.
+        let last = self.last(samples, start, |_| true).filter(|at| self.is_ahead_of(samples, *at));
+        last.or_else(|| self.last(samples, start, |sample| self.is_ahead(sample)))
     }
 
-    /// The last sample from `start` on whose stock is inside the circle, unless it is behind the cutter.
-    fn last_ahead(&self, samples: &[Sample], start: usize) -> Option<usize> {
-        self.last(samples, start, |_| true).filter(|at| samples.get(*at).is_some_and(|sample| self.is_ahead(sample)))
+    fn is_ahead_of(&self, samples: &[Sample], at: usize) -> bool {
+        samples.get(at).is_some_and(|sample| self.is_ahead(sample))
+    }
+
+    /// The last sample from `start` on whose stock is inside the circle, where stock stands beside every sample: distances
+    /// are told by their squares, and only so much is stepped over as surely does not reach the circle. Of a radius below
+    /// [`REACH`].
+    fn last_of_stocked(&self, samples: &[Sample], start: usize) -> Option<usize> {
+        let radius = self.radius.nm();
+        let square = radius.wrapping_mul(radius);
+        // As far from the centre as rounds to less than the radius.
+        let inside = square.wrapping_sub(radius);
+        // The largest distance was rounded.
+        let stride = self.stride.saturating_add(1);
+        let (mut last, mut at) = (None, start);
+        while let Some(sample) = samples.get(at) {
+            if sample.s > self.end {
+                break;
+            }
+            let spoke = sample.stock.from(self.centre);
+            let (x, y) = (spoke.x.nm(), spoke.y.nm());
+            // |d − r| = |d² − r²|/(d + r).
+            let away = if x.saturating_abs().max(y.saturating_abs()) >= REACH.nm() {
+                0
+            } else {
+                let distance = x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y));
+                if distance <= inside {
+                    last = Some(at);
+                    square.wrapping_sub(distance).checked_div(radius.wrapping_mul(2)).unwrap_or(0)
+                } else if distance < square.wrapping_mul(2) {
+                    // √2 + 1 radii at most.
+                    distance.wrapping_sub(square).saturating_mul(2).checked_div(radius.wrapping_mul(5)).unwrap_or(0)
+                } else if distance < square.wrapping_mul(4) {
+                    radius.wrapping_mul(2) / 5
+                } else {
+                    radius
+                }
+            };
+            let skip = away.checked_div(stride).unwrap_or(0).max(1);
+            at = at.saturating_add(skip.unsigned_abs() as usize);
+        }
+        last
     }
 
     fn is_ahead(&self, sample: &Sample) -> bool {
