@@ -1,11 +1,19 @@
 //! The command line: arguments, dispatch, exit codes.
 //!
-//! Data goes to standard output or to the files named by `-o`, talk to standard error. Exit codes: 0 done, 1 the input
-//! is wrong (command line included), 2 a fault of the program. `--json` makes both streams readable for machines.
+//! Data goes to standard output or to the files named by `-o`, talk to standard error. `--json` makes both streams readable
+//! for machines, `--quiet` leaves data, warnings and errors.
+//!
+//! | exit code | what |
+//! |---|---|
+//! | 0 | done |
+//! | 1 | what was given is wrong: a file, a value in it, two things that do not go together |
+//! | 2 | a wrong command line, or a fault of the program |
+//! | 3 | refused by judgement: points that do not fit the job (Q009) |
+//! | 128 + n | ended by signal n: 130 after Ctrl-C |
 
 use std::ffi::OsString;
 
-use clap::{Parser, Subcommand};
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::interruption;
@@ -15,7 +23,8 @@ use crate::command::{
     replay, simulate, split,
 };
 #[cfg(not(target_family = "wasm"))]
-use crate::command::{device, hil, pack, study};
+use crate::command::{device, hil, manual, pack, study};
+use crate::help;
 use crate::streams;
 use crate::terminal::Terminal;
 
@@ -34,15 +43,21 @@ struct Arguments {
     /// Print results, warnings and errors as JSON.
     #[arg(long, global = true)]
     json: bool,
+    /// Only data, warnings and errors: no results in words, no notes, no progress.
+    #[arg(short, long, global = true)]
+    quiet: bool,
+    /// Colours in help and errors; `auto` on a terminal that does not set NO_COLOR.
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    color: ColorChoice,
     #[command(subcommand)]
     command: Command,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// The whole story: parts are milled, probed, corrected and milled again on a virtual machine.
+    /// The whole story on a virtual machine: parts milled, probed, corrected, milled again.
     Demo(demo::Options),
-    /// The job of a program: reads what the program says, asks the rest, and writes a commented job file.
+    /// The job of a program: reads what it says, asks the rest, writes a commented file.
     Init(init::Options),
     /// One pass as the model predicts it, or as a virtual machine cuts it.
     Simulate(simulate::Options),
@@ -58,28 +73,28 @@ enum Command {
     Plan(plan::Options),
     /// From the probe file of a corrected part to the correction of the next one.
     Learn(learn::Options),
-    /// One file of a real part's story: job, program, probe files, corrections; to keep, to send, to run again.
+    /// One file of a real part's story: job, program, readings, corrections.
     #[cfg(not(target_family = "wasm"))]
     Pack(pack::Options),
     /// The files of such a story as a folder.
     #[cfg(not(target_family = "wasm"))]
     Unpack(pack::UnpackOptions),
-    /// For a single part: a program that cuts half of the allowance, to be probed before the second half.
+    /// For a single part: a program that cuts half of the allowance, to be probed then.
     Split(split::Options),
-    /// A whole pocket, finishing pass or slot, compensated from tool and material data alone, section by section.
+    /// A pocket or slot compensated from tool and material data alone, without a probe.
     Pocket(pocket::Options),
-    /// Pictures (SVG, PNG) of what the commands wrote: traces, correction, wall to scale, laws compared.
+    /// Pictures (SVG, PNG) of what the commands wrote.
     Plot(plot::Options),
     /// How well the method does on virtual machines of all kinds, and where it stops working.
     #[cfg(not(target_family = "wasm"))]
     Study(study::Options),
-    /// The chord error of a five-axis program, and a program in which locations are inserted against it.
+    /// The chord error of a five-axis program, and locations inserted against it.
     Multiaxis(multiaxis::Options),
     /// Recorded setpoints through the device's own code.
     Replay(replay::Options),
     /// A correction image as text.
     Image(image::Options),
-    /// A board under setpoints and faults, every answer compared with the host's own code.
+    /// A board under setpoints and faults, compared with the host's own code.
     #[cfg(not(target_family = "wasm"))]
     Hil(hil::Arguments),
     /// A coprocessor over its configuration link.
@@ -91,17 +106,29 @@ enum Command {
     Forces(forces::Options),
     /// Canonical moves of a program, in the text format of LinuxCNC's `rs274 -g`.
     Canon(canon::Options),
+    /// What a shell needs to complete command lines, on standard output.
+    #[cfg(not(target_family = "wasm"))]
+    Completions(manual::CompletionsOptions),
+    /// The manual pages, one of each command.
+    #[cfg(not(target_family = "wasm"))]
+    Man(manual::ManOptions),
 }
 
 /// Runs the program; gives its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
+    // A wrong command line is told as the parts of it that are right ask for.
     let json = arguments.iter().any(|a| a == "--json");
-    let terminal = Terminal::new(json);
+    let colour = asked_colour(&arguments);
+    let terminal = Terminal::new(json, false, colour);
     // Where signals cannot be waited for they end the process as ever, and temporary files stay.
     let _ = interruption::listen();
-    let outcome = match Arguments::try_parse_from(&arguments) {
-        Ok(arguments) => guarded(|| dispatch(arguments.command, &terminal)),
+    let parsed = command().color(colour).try_get_matches_from(&arguments);
+    let outcome = match parsed.and_then(|matches| Arguments::from_arg_matches(&matches)) {
+        Ok(Arguments { quiet, command, .. }) => {
+            let terminal = Terminal::new(json, quiet, colour);
+            guarded(|| dispatch(command, &terminal))
+        }
         Err(error) if error.use_stderr() => Err(usage_error(&error, json)),
         Err(help) => {
             // Help and version are asked for: data, on standard output.
@@ -116,6 +143,24 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(()) => 0,
         Err(failure) => terminal.fail(&failure),
     }
+}
+
+/// The command line with its help: commands by what one wants to do, examples below each.
+pub(crate) fn command() -> clap::Command {
+    let mut command = Arguments::command();
+    let template = help::overview(&command);
+    for (name, examples) in help::examples() {
+        command = command.mut_subcommand(name, |sub| sub.after_help(examples));
+    }
+    command.help_template(template)
+}
+
+/// The last `--color` of a command line.
+fn asked_colour(arguments: &[OsString]) -> ColorChoice {
+    let texts = || arguments.iter().map(|argument| argument.to_str().unwrap_or_default());
+    let apart = texts().zip(texts().skip(1)).filter(|(name, _)| *name == "--color").map(|(_, value)| value);
+    let joined = texts().filter_map(|argument| argument.strip_prefix("--color="));
+    apart.chain(joined).last().and_then(|value| value.parse().ok()).unwrap_or_default()
 }
 
 fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
@@ -148,6 +193,10 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Bore(options) => bore::main(&options, terminal),
         Command::Forces(options) => forces::main(&options, terminal),
         Command::Canon(options) => canon::main(&options, terminal),
+        #[cfg(not(target_family = "wasm"))]
+        Command::Completions(options) => manual::completions(&options, self::command()),
+        #[cfg(not(target_family = "wasm"))]
+        Command::Man(options) => manual::pages(&options, self::command()),
     }
 }
 

@@ -4,6 +4,7 @@ pub mod cli;
 pub mod command;
 #[cfg(not(target_family = "wasm"))]
 pub mod coprocessor;
+mod help;
 #[cfg(not(target_family = "wasm"))]
 mod monitor;
 pub mod settings;

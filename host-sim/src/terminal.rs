@@ -2,6 +2,7 @@
 
 use std::io::IsTerminal;
 
+use clap::ColorChoice;
 use serde::Serialize;
 use truepath_ground::diagnostics::{Failure, Form, visible, visible_lines};
 use truepath_ground::output::json;
@@ -12,13 +13,15 @@ use crate::streams::{Bar, write_error, write_out};
 #[derive(Clone, Copy, Debug)]
 pub struct Terminal {
     json: bool,
-    interactive: bool,
+    quiet: bool,
+    colour: ColorChoice,
+    on_terminal: bool,
 }
 
 impl Terminal {
-    /// For people, or with `json` for machines.
-    pub fn new(json: bool) -> Self {
-        Self { json, interactive: !json && std::io::stderr().is_terminal() }
+    /// For people, or with `json` for machines; `quiet` leaves warnings, errors and data.
+    pub fn new(json: bool, quiet: bool, colour: ColorChoice) -> Self {
+        Self { json, quiet, colour, on_terminal: std::io::stderr().is_terminal() }
     }
     /// Whether `--json` was given.
     pub const fn json(&self) -> bool {
@@ -26,7 +29,12 @@ impl Terminal {
     }
     /// How errors are printed.
     pub fn form(&self) -> Form {
-        match (self.json, self.interactive && std::env::var_os("NO_COLOR").is_none()) {
+        let coloured = match self.colour {
+            ColorChoice::Always => true,
+            ColorChoice::Never => false,
+            ColorChoice::Auto => self.on_terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()),
+        };
+        match (self.json, coloured) {
             (true, _) => Form::Json,
             (_, true) => Form::Colour,
             _ => Form::Plain,
@@ -47,7 +55,9 @@ impl Terminal {
     }
     /// Prints a remark.
     pub fn note(&self, text: &str) {
-        self.say("note", text);
+        if !self.quiet {
+            self.say("note", text);
+        }
     }
     fn say(&self, kind: &str, text: &str) {
         let text = visible(text);
@@ -57,9 +67,13 @@ impl Terminal {
             write_error(&format!("{kind}: {text}\n"));
         }
     }
-    /// Prints a result, for machines or in words.
+    /// Prints a result, for machines or in words; in words nothing when quiet.
     pub fn tell(&self, result: &impl Serialize, words: impl FnOnce() -> String) -> Result<(), Failure> {
-        print(&if self.json { json(result)? } else { words().into_bytes() })
+        match (self.json, self.quiet) {
+            (true, _) => print(&json(result)?),
+            (false, true) => Ok(()),
+            (false, false) => print(words().as_bytes()),
+        }
     }
     /// Does a task under a bar, which it tells the share done, 0…1.
     pub fn watch<T>(
@@ -72,7 +86,7 @@ impl Terminal {
     }
     /// A bar for a task of `steps` steps; it shows itself on a terminal when the task takes over a second.
     pub fn progress(&self, task: &str, steps: u64) -> Bar {
-        Bar::new(task, steps, self.interactive)
+        Bar::new(task, steps, self.on_terminal && !self.json && !self.quiet)
     }
 }
 

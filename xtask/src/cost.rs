@@ -30,19 +30,6 @@ impl Meter {
     }
 }
 
-impl std::ops::Add for Cost {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self { wall: self.wall + other.wall, processor: self.processor + other.processor }
-    }
-}
-
-impl std::iter::Sum for Cost {
-    fn sum<I: Iterator<Item = Self>>(costs: I) -> Self {
-        costs.fold(Self::default(), std::ops::Add::add)
-    }
-}
-
 #[cfg(unix)]
 fn processor() -> Duration {
     use nix::sys::resource::{UsageWho, getrusage};

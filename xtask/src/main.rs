@@ -9,6 +9,7 @@ mod checks;
 mod conformance;
 mod cost;
 mod device;
+mod dist;
 mod features;
 mod firmware;
 mod fuzz;
@@ -45,7 +46,7 @@ enum Task {
     ///
     /// fmt, rooms, test-only, features, firmware, budget and hil, the same on every repeat. With --all also the slow tests, other
     /// random cases each time, the image of the real board, all setpoints of hil and its release build, lint, doc,
-    /// device, elf, page, web, conformance, shop, judge, bench, fuzz and linuxcnc.
+    /// device, elf, page, web, dist, conformance, shop, judge, bench, fuzz and linuxcnc.
     Test {
         /// Also what takes long.
         #[arg(long)]
@@ -189,6 +190,12 @@ enum Task {
         #[arg(long)]
         no_tests: bool,
     },
+    /// Packages to install: archive, Debian packages, checksums and a list of all parts, in target/packages.
+    Dist {
+        /// With the program of the tests instead: makes, installs, uses and removes them.
+        #[arg(long)]
+        check: bool,
+    },
     /// The LinuxCNC component: builds it and tests it on a simulated machine.
     #[command(args_conflicts_with_subcommands = true)]
     Linuxcnc {
@@ -252,6 +259,8 @@ fn main() -> ExitCode {
         }
         Task::Page { write } => report.run(Step::new("page", || page::check(write))),
         Task::Web { no_tests } => report.run(Step::new("web", || web::check(!no_tests))),
+        Task::Dist { check: true } => report.run(Step::new("dist", dist::check)),
+        Task::Dist { check: false } => report.run(Step::new("dist", dist::make)),
         Task::Linuxcnc { task, scenario, write } => {
             report.run(Step::new("linuxcnc", || linuxcnc::run(task, scenario.as_deref(), write)));
         }
@@ -277,11 +286,16 @@ fn test(report: &mut Report, all: bool) {
         report.run(Step::new("elf", || firmware::elf::check(boards, false)));
         report.run(Step::new("page", || page::check(false)));
         report.run(Step::new("web", || web::check(true)));
+        report.run(Step::new("dist", dist::check));
         report.run(Step::new("conformance", || conformance::check(false)));
-        report.run(Step::new("shop", || shop::check(None, None, false)));
-        report.run(Step::new("judge", || judge::run_all(None)));
-        report.run(Step::new("bench", || bench::time(true, false, &[])));
-        report.run(Step::new("fuzz", || fuzz::check(None, fuzz::Length::Seconds(15))));
-        report.run(Step::new("linuxcnc", || linuxcnc::run(None, None, false)));
+        // It mills in real time and hardly computes: a tenth of one processor.
+        let mut linuxcnc = repository::itself();
+        report.beside("linuxcnc", linuxcnc.arg("linuxcnc"), |report| {
+            step::stand_back();
+            report.run(Step::new("shop", || shop::check(None, None, false)));
+            report.run(Step::new("judge", || judge::run_all(None)));
+            report.run(Step::new("bench", || bench::time(true, false, &[])));
+            report.run(Step::new("fuzz", || fuzz::check(None, fuzz::Length::Seconds(15))));
+        });
     }
 }

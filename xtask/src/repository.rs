@@ -26,6 +26,11 @@ pub fn cargo() -> Command {
     program(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
+/// This program again.
+pub fn itself() -> Command {
+    program(std::env::current_exe().unwrap_or_else(|_| "xtask".into()))
+}
+
 /// A program, started in the root.
 pub fn program(name: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(name);

@@ -2,9 +2,11 @@
 //!
 //! All steps of a run are done even after one failed, so that one run shows everything; the closing table names them.
 
-use std::process::ExitCode;
+use std::fs::File;
+use std::process::{Child, Command, ExitCode};
 
 use crate::cost::{Cost, Meter};
+use crate::repository::{program, succeeds, target};
 
 /// How a step ended that did not fail.
 #[derive(Debug)]
@@ -48,12 +50,42 @@ impl<'a> Step<'a> {
 }
 
 /// The steps of this run.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Report {
     ended: Vec<(&'static str, Outcome, Cost)>,
+    meter: Meter,
+}
+
+impl Default for Report {
+    fn default() -> Self {
+        Self { ended: Vec::new(), meter: Meter::start() }
+    }
 }
 
 impl Report {
+    /// Does a step in a process of its own, and others meanwhile: one that waits more than it computes, as a machine that
+    /// mills in real time does. What it says comes when it has ended.
+    pub fn beside(&mut self, name: &'static str, command: &mut Command, others: impl FnOnce(&mut Self)) {
+        eprintln!("==> {name}, beside the steps that follow");
+        let clock = Meter::start();
+        let said = target().join(format!("{name}.log"));
+        let begun = begin(command, &said);
+        others(self);
+        // Of a child the time of the processor counts when it is waited for, and nothing else ends meanwhile.
+        let processor = Meter::start();
+        let outcome = begun.and_then(|mut child| {
+            let status = child.wait().map_err(|e| Failure::found(e.to_string()))?;
+            eprintln!("==> {name}\n{}", String::from_utf8_lossy(&std::fs::read(&said).unwrap_or_default()));
+            match status.code() {
+                Some(0) => Ok(Passed::Done),
+                Some(3) => Err(Failure::Missing(format!("see {}", said.display()))),
+                _ => Err(Failure::found(format!("{status}: see {}", said.display()))),
+            }
+        });
+        let cost = Cost { wall: clock.read().wall, processor: processor.read().processor };
+        self.ended.push((name, outcome, cost));
+    }
+
     /// Does a step, announcing its start and its end.
     pub fn run(&mut self, step: Step) {
         eprintln!("==> {}", step.name);
@@ -69,12 +101,12 @@ impl Report {
 
     /// Prints the closing table; the worst step gives the exit code.
     pub fn finish(self) -> ExitCode {
-        eprintln!("\n{}", self.table());
+        eprintln!("\n{}", self.table(self.meter.read()));
         ExitCode::from(self.exit_code())
     }
 
-    /// What became of each step, what it took on the clock and of the processors.
-    fn table(&self) -> String {
+    /// What became of each step, what it took on the clock and of the processors; `all` is what the run took.
+    fn table(&self, all: Cost) -> String {
         let width = self.ended.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
         let row = |name: &str, cost: Cost, said: &str| {
             let (wall, processor) = (cost.wall.as_secs_f64(), cost.processor.as_secs_f64());
@@ -85,7 +117,7 @@ impl Report {
             table += &row(name, *cost, &said(outcome));
         }
         if self.ended.len() > 1 {
-            table += &row("all", self.ended.iter().map(|(.., cost)| *cost).sum(), "");
+            table += &row("all", all, "");
         }
         table.trim_end().to_owned()
     }
@@ -100,6 +132,21 @@ impl Report {
         let codes = || self.ended.iter().map(|(_, outcome, _)| code(outcome));
         if codes().any(|c| c == 1) { 1 } else { codes().max().unwrap_or(0) }
     }
+}
+
+/// Lets other processes go first from now on.
+pub fn stand_back() {
+    if !succeeds(program("renice").args(["-n", "10", "-p", &std::process::id().to_string()])) {
+        eprintln!("    there is no renice: what follows does not stand back");
+    }
+}
+
+/// Starts a command whose output goes into a file.
+fn begin(command: &mut Command, said: &std::path::Path) -> Result<Child, Failure> {
+    let failed = |e: std::io::Error| Failure::found(format!("{}: {e}", said.display()));
+    let file = File::create(said).map_err(failed)?;
+    let both = file.try_clone().map_err(failed)?;
+    command.stdout(file).stderr(both).spawn().map_err(failed)
 }
 
 fn said(outcome: &Outcome) -> String {
@@ -154,7 +201,25 @@ mod tests {
             "judge      0.0 s        0.0 s  skipped: no judge",
             "all       66.0 s      101.5 s",
         ];
-        assert_eq!(Report { ended }.table().lines().collect::<Vec<_>>(), wanted);
+        let report = Report { ended, meter: Meter::start() };
+        assert_eq!(report.table(cost(66, 101_500)).lines().collect::<Vec<_>>(), wanted);
+    }
+
+    #[test]
+    fn a_step_beside_others_ends_as_its_process_did_and_the_others_are_done() {
+        let _ = std::fs::create_dir_all(target());
+        for (code, wanted) in [("0", 0), ("1", 1), ("3", 3)] {
+            let mut report = Report::default();
+            let mut command = Command::new("sh");
+            command.args(["-c", &format!("echo milled; exit {code}")]);
+            report.beside("aside", &mut command, |report| report.run(Step::new("other", || Ok(Passed::Done))));
+            assert_eq!(report.ended.iter().map(|(name, ..)| *name).collect::<Vec<_>>(), ["other", "aside"]);
+            assert_eq!(report.exit_code(), wanted);
+        }
+        assert_eq!(std::fs::read_to_string(target().join("aside.log")).unwrap(), "milled\n");
+        let mut report = Report::default();
+        report.beside("nothing", &mut Command::new("/no/such/program"), |_| {});
+        assert_eq!(report.exit_code(), 1);
     }
 
     #[test]

@@ -17,18 +17,22 @@ use std::{fmt, io};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan};
 use truepath_core::gcode::GcodeError;
 
-use crate::codes::{F001, F002, Row, X001};
+use crate::codes::{C001, F001, F002, Row, X001};
 use crate::files;
 
 pub use source::Source;
 pub use visible::{visible, visible_lines};
 
 impl Source {
-    /// Reads a file.
+    /// Reads a file; `-` is standard input.
     ///
     /// # Errors
     /// `F001` when it cannot be read.
     pub fn read(path: &Path) -> Result<Self, InputError> {
+        if path == Path::new("-") {
+            let bytes = files::standard_input().map_err(|e| InputError::unreadable(path, &e))?;
+            return Ok(Self::new("standard input", bytes));
+        }
         let bytes = files::read(path).map_err(|e| InputError::unreadable(path, &e))?;
         Ok(Self::new(path.display().to_string(), bytes))
     }
@@ -47,6 +51,8 @@ struct Body {
     file: Option<String>,
     place: Option<(Source, Range<usize>)>,
     label: Option<String>,
+    /// The exit code it ends with.
+    exit: u8,
 }
 
 impl Row {
@@ -69,8 +75,11 @@ impl InputError {
         expected: impl Into<String>,
         help: impl Into<String>,
     ) -> Self {
+        let code = code.into();
         Self(Box::new(Body {
-            code: code.into(),
+            // What is wrong with a command line is the same whoever finds it.
+            exit: if code == C001.code { 2 } else { 1 },
+            code,
             found: visible_lines(&found.into()).into_owned(),
             expected: visible(&expected.into()).into_owned(),
             help: visible(&help.into()).into_owned(),
@@ -90,6 +99,12 @@ impl InputError {
     #[must_use]
     pub fn in_file(mut self, path: &Path) -> Self {
         self.0.file = Some(visible(&path.display().to_string()).into_owned());
+        self
+    }
+    /// The same as a refusal by judgement: every file could be read, together they do not do.
+    #[must_use]
+    pub fn by_judgement(mut self) -> Self {
+        self.0.exit = 3;
         self
     }
     /// The words written beside the underlined text.
@@ -173,10 +188,11 @@ impl miette::Diagnostic for InputError {
 /// Why a command did not do its work.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// The user's to mend: exit code 1.
+    /// The user's to mend: exit code 1; 2 where it is the command line, 3 where
+    /// everything could be read and was judged not to do.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// A wrong command line, with the text that explains it: exit code 1.
+    /// A wrong command line, with the text that explains it: exit code 2.
     #[error("{0}")]
     Usage(String),
     /// A fault of the program: exit code 2.
@@ -185,11 +201,11 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// 1 for wrong input, 2 for an internal error.
-    pub const fn exit_code(&self) -> u8 {
+    /// 1 for wrong input, 2 for a wrong command line or an internal error, 3 for a refusal by judgement.
+    pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Input(_) | Self::Usage(_) => 1,
-            Self::Internal(_) => 2,
+            Self::Input(error) => error.0.exit,
+            Self::Usage(_) | Self::Internal(_) => 2,
         }
     }
 

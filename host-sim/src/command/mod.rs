@@ -19,6 +19,8 @@ pub mod image;
 pub mod init;
 pub mod inspect;
 pub mod learn;
+#[cfg(not(target_family = "wasm"))]
+pub mod manual;
 pub mod multiaxis;
 #[cfg(not(target_family = "wasm"))]
 pub mod pack;

@@ -1,6 +1,6 @@
 //! The command: what it prints and writes, its errors, and the example that goes with it.
 
-use crate::workplace::truepath;
+use crate::workplace::{refused, truepath};
 use std::path::Path;
 
 const PAPER: [&str; 11] = [
@@ -136,7 +136,7 @@ fn wrong_numbers_are_errors_with_a_code_and_nothing_is_written() {
         }
         asked.extend(["-o", "out", "--json"]);
         let done = truepath(folder.path(), &asked);
-        assert_eq!(done.status.code(), Some(1), "{change:?}");
+        assert_eq!(done.status.code(), refused(code), "{change:?}");
         assert_eq!(json(&done.stderr)["error"]["code"], code, "{change:?}");
         assert!(!folder.path().join("out").exists(), "{change:?}");
     }
@@ -153,7 +153,7 @@ fn wrong_numbers_are_errors_with_a_code_and_nothing_is_written() {
     ];
     for (extra, code) in more {
         let done = truepath(folder.path(), &[&PAPER[..], extra, &["--json"]].concat());
-        assert_eq!(done.status.code(), Some(1), "{extra:?}");
+        assert_eq!(done.status.code(), refused(code), "{extra:?}");
         assert_eq!(json(&done.stderr)["error"]["code"], code, "{extra:?}");
     }
 }

@@ -1,6 +1,6 @@
 //! The command line from outside: exit codes, streams, errors for people and for machines.
 
-use crate::workplace::{text, truepath};
+use crate::workplace::{Workplace, text, truepath};
 use std::process::Command;
 
 /// A folder with a small program and one that is wrong.
@@ -34,13 +34,13 @@ fn wrong_input_is_exit_code_1_with_its_place() {
 #[test]
 fn errors_are_one_json_object_when_asked_for() {
     let desk = desk();
-    for (arguments, code, place) in [
-        (["canon", "wrong.nc", "--json"], "G001", Some((4, 8))),
-        (["canon", "missing.nc", "--json"], "F001", None),
-        (["canon", "--nonsense", "--json"], "C001", None),
+    for (arguments, exit, code, place) in [
+        (["canon", "wrong.nc", "--json"], 1, "G001", Some((4, 8))),
+        (["canon", "missing.nc", "--json"], 1, "F001", None),
+        (["canon", "--nonsense", "--json"], 2, "C001", None),
     ] {
         let failed = truepath(desk.path(), &arguments);
-        assert_eq!(failed.status.code(), Some(1), "{arguments:?}");
+        assert_eq!(failed.status.code(), Some(exit), "{arguments:?}");
         let json: serde_json::Value = serde_json::from_slice(&failed.stderr).expect("one JSON object");
         let error = &json["error"];
         assert_eq!(error["code"], code, "{json}");
@@ -50,11 +50,11 @@ fn errors_are_one_json_object_when_asked_for() {
 }
 
 #[test]
-fn a_wrong_command_line_is_wrong_input() {
+fn a_wrong_command_line_is_exit_code_2_and_help_is_none() {
     let desk = desk();
     for arguments in [&["no-such-command"][..], &["canon"], &[], &["canon", "part.nc", "--force"]] {
         let failed = truepath(desk.path(), arguments);
-        assert_eq!((failed.status.code(), text(&failed.stdout)), (Some(1), String::new()), "{arguments:?}");
+        assert_eq!((failed.status.code(), text(&failed.stdout)), (Some(2), String::new()), "{arguments:?}");
         assert!(text(&failed.stderr).contains("Usage:"), "{arguments:?}");
     }
     for arguments in [["--help"], ["--version"]] {
@@ -62,6 +62,72 @@ fn a_wrong_command_line_is_wrong_input() {
         assert_eq!((asked.status.code(), text(&asked.stderr)), (Some(0), String::new()), "{arguments:?}");
         assert!(!asked.stdout.is_empty());
     }
+}
+
+#[test]
+fn the_overview_groups_the_commands_and_colours_come_when_asked_for() {
+    let desk = desk();
+    let plain = text(&truepath(desk.path(), &["--help"]).stdout);
+    assert!(plain.contains("\nCorrect a part:\n  init") && !plain.contains('\x1b'), "{plain}");
+    for colour in [&["--color", "always", "--help"][..], &["--color=always", "correct", "--help"]] {
+        let coloured = text(&truepath(desk.path(), colour).stdout);
+        assert!(coloured.contains('\x1b'), "{coloured}");
+    }
+    let failed = truepath(desk.path(), &["--color=always", "canon", "wrong.nc"]);
+    assert!(text(&failed.stderr).contains('\x1b'), "{}", text(&failed.stderr));
+    assert!(
+        text(&truepath(desk.path(), &["correct", "--help"]).stdout).contains("Examples:\n  truepath correct job.toml")
+    );
+}
+
+#[test]
+fn a_dash_is_standard_input() {
+    let desk = desk();
+    let canon = |name: &str, from: &str| {
+        let file = std::fs::File::open(desk.path().join(from)).expect("a file");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_truepath"));
+        command.args(["canon", name]).stdin(file).current_dir(desk.path()).output().expect("it runs")
+    };
+    assert_eq!(canon("-", "part.nc").stdout, canon("part.nc", "part.nc").stdout);
+    let failed = canon("-", "wrong.nc");
+    assert!(
+        failed.status.code() == Some(1) && text(&failed.stderr).contains("standard input:4:8"),
+        "{}",
+        text(&failed.stderr)
+    );
+}
+
+#[test]
+fn quiet_leaves_files_data_warnings_and_errors() {
+    let place = Workplace::demo("corner", &["job.toml", "plant.toml", "program.nc"]);
+    let simulate = |out: &str, quiet: &[&str]| {
+        let words = [&["simulate", "job.toml", "-o", out][..], quiet].concat();
+        truepath(place.path(), &words)
+    };
+    let [loud, quiet, json] =
+        [("a", &[][..]), ("b", &["-q"]), ("c", &["-q", "--json"])].map(|(out, more)| simulate(out, more));
+    let said = text(&quiet.stderr);
+    assert!(!loud.stdout.is_empty() && quiet.stdout.is_empty(), "{}", text(&quiet.stdout));
+    assert!(said.lines().all(|line| line.starts_with("warning: ")), "{said}");
+    assert!(serde_json::from_slice::<serde_json::Value>(&json.stdout).is_ok());
+    assert_eq!(place.read("a/trace.csv"), place.read("b/trace.csv"));
+    assert!(!truepath(place.path(), &["-q", "canon", "program.nc"]).stdout.is_empty(), "data");
+    assert!(!truepath(place.path(), &["-q", "canon", "none.nc"]).stderr.is_empty(), "errors");
+}
+
+#[test]
+fn shells_and_man_get_what_they_need() {
+    let desk = desk();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = text(&truepath(desk.path(), &["completions", shell]).stdout);
+        assert!(script.contains("truepath") && script.contains("multiaxis") && script.contains("tolerance"), "{shell}");
+    }
+    let pages = || std::fs::read_dir(desk.path().join("man1")).expect("a folder").count();
+    let man = |more: &[&str]| truepath(desk.path(), &[&["man", "-o", "man1"][..], more].concat()).status.code();
+    assert_eq!((man(&[]), pages()), (Some(0), 26));
+    assert_eq!((man(&[]), man(&["--force"]), pages()), (Some(1), Some(0), 26));
+    let page = std::fs::read_to_string(desk.path().join("man1/truepath-correct.1")).expect("a page");
+    assert!(page.contains(".TH truepath-correct 1") && page.contains("truepath correct job.toml"), "{page}");
 }
 
 #[test]
@@ -150,7 +216,8 @@ fn control_characters_of_a_file_are_shown_and_never_sent_to_the_terminal() {
             let arguments: Vec<&str> = arguments.iter().copied().chain(json.then_some("--json")).collect();
             let done = truepath(desk.path(), &arguments);
             let what = format!("{arguments:?}");
-            assert_eq!(done.status.code(), Some(1), "{what}: {}", text(&done.stderr));
+            let usage = arguments[0] == STEERING;
+            assert_eq!(done.status.code(), Some(if usage { 2 } else { 1 }), "{what}: {}", text(&done.stderr));
             assert_steers_nothing(&done.stderr, &what);
             assert_steers_nothing(&done.stdout, &what);
         }

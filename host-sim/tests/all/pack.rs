@@ -133,6 +133,7 @@ fn what_is_no_story_is_refused_with_what_to_do() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn the_folder_of_the_demonstration_is_made_again_to_the_same_bytes() {
     let desk = Workplace::with(&[]);
     desk.call("demo -o demo");

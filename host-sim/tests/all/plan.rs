@@ -75,6 +75,7 @@ fn a_planned_program_holds_at_every_height_what_one_pass_does_not() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn limits_of_the_job_are_kept() {
     let desk = measured();
     let job = desk.read("job.toml");
@@ -95,6 +96,7 @@ fn limits_of_the_job_are_kept() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn a_tolerance_below_what_the_probe_shows_is_told_what_can_be_shown() {
     let desk = measured_with(FEW);
     let warned = |plan: &Value| {
@@ -107,6 +109,7 @@ fn a_tolerance_below_what_the_probe_shows_is_told_what_can_be_shown() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn other_cutters_are_tried_and_one_that_does_not_fit_is_left_out_by_name() {
     let desk = measured();
     let job = desk.read("job.toml");
@@ -215,6 +218,7 @@ fn two_measured() -> Workplace {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn every_contour_has_a_plan_and_one_program_holds_them_all() {
     let desk = two_measured();
     let done = desk.call(&format!("{PLAN} --tolerance 0.02 --write 2,1 -o plan"));
@@ -260,6 +264,7 @@ fn every_contour_has_a_plan_and_one_program_holds_them_all() {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn the_coprocessor_gets_an_image_for_every_pass_of_every_contour() {
     let desk = two_measured();
     let done = desk.call(&format!("{PLAN} --tolerance 0.02 --route coprocessor --write 2 -o plan"));

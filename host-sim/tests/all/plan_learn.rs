@@ -65,6 +65,7 @@ fn profile(desk: &Workplace, plant: u32, program: &str) -> f64 {
 }
 
 #[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn what_the_second_part_shows_is_cancelled_on_the_third() {
     let desk = bench();
     let program = desk.read("verify-2.nc");

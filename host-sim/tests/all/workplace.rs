@@ -11,6 +11,11 @@ pub fn truepath(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_truepath")).args(arguments).current_dir(folder).output().expect("the program runs")
 }
 
+/// How a command that was refused has ended, by the code of its error: 2 for the command line itself.
+pub fn refused(code: &str) -> Option<i32> {
+    Some(if code == "C001" { 2 } else { 1 })
+}
+
 /// Bytes as text.
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()

@@ -22,7 +22,7 @@ pub const MODULES: [(&str, &str); 2] =
 /// # Errors
 /// LinuxCNC's development package is missing, or something does not compile.
 pub fn build() -> Result<PathBuf, Failure> {
-    if !succeeds(program("halcompile").arg("--print-modinc")) {
+    if !can_build() {
         return Err(Failure::Missing(format!(
             "halcompile, which builds components of LinuxCNC, cannot be started. Install it:\n  apt-get install {PACKAGE}"
         )));
@@ -50,6 +50,11 @@ pub fn build() -> Result<PathBuf, Failure> {
          division, floats only between pins and nanometres"
     );
     Ok(folder)
+}
+
+/// Whether LinuxCNC's development package is there.
+pub fn can_build() -> bool {
+    succeeds(program("halcompile").arg("--print-modinc"))
 }
 
 /// The core as a static library: whole-program optimised, position independent, a panic has no handler.

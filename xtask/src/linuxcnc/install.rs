@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::component;
+use crate::dist::copy;
 use crate::repository::{cargo, is_root, may_install, program, root, run, target};
 use crate::step::{Failure, Outcome, Passed};
 
@@ -47,6 +48,34 @@ pub fn install(component_only: bool) -> Outcome {
         put(&source, PACKAGE, "644")?;
     }
     Ok(Passed::Done)
+}
+
+/// Builds the component and lays out a tree with it and what belongs to it, as a package of Debian has it; gives the version
+/// of LinuxCNC it is for. `None` where LinuxCNC's development package is missing.
+pub fn packaged(tree: &Path) -> Result<Option<String>, Failure> {
+    let version = program("dpkg-query").args(["--show", "--showformat=${Version}", "linuxcnc-uspace"]).output();
+    let Some(version) = version.ok().filter(|said| said.status.success() && component::can_build()) else {
+        return Ok(None);
+    };
+    let built = component::build()?;
+    let at = |folder: &str, file: &Path| tree.join(folder).join(file.file_name().unwrap_or_default());
+    for (module, _) in component::MODULES {
+        let module = built.join(module);
+        copy(&module, &at("usr/lib/linuxcnc/modules", &module), 0o644)?;
+    }
+    for (file, folder, mode) in FILES {
+        let source = root().join("linuxcnc").join(file);
+        let mode = if mode == "755" { 0o755 } else { 0o644 };
+        copy(&source, &at(folder.trim_start_matches('/').replace("/local", "").as_str(), &source), mode)?;
+    }
+    for source in files_below(&root().join("linuxcnc/truepath_config"))? {
+        copy(&source, &at("usr/share/truepath/truepath_config", &source), 0o644)?;
+    }
+    let papers = "usr/share/doc/truepath-linuxcnc";
+    for file in ["docs/linuxcnc.md", "linuxcnc/COPYING"] {
+        copy(&root().join(file), &at(papers, Path::new(file)), 0o644)?;
+    }
+    Ok(Some(String::from_utf8_lossy(&version.stdout).into_owned()))
 }
 
 /// Takes away what [`install`] put there, and says what. Images, ledger and configuration of a machine stay.

@@ -16,6 +16,8 @@ mod verdict;
 
 use clap::Subcommand;
 
+pub use install::packaged;
+
 use crate::step::Outcome;
 
 /// What is done with the component; without one, everything that tests it.

@@ -34,7 +34,7 @@ impl Misfit {
             ""
         };
         let help = format!("{help}{corrected}; --force-data goes on with the points as they are");
-        let error = InputError::new(Q009, found, "points of a part that this job has cut", help);
+        let error = InputError::new(Q009, found, "points of a part that this job has cut", help).by_judgement();
         match self.stated.worst().first() {
             Some(k) => {
                 let (file, span) = measurement.place_of(self.stated.lines[*k]);

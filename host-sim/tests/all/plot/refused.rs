@@ -3,14 +3,15 @@
 use std::fs;
 
 use super::{runs, truepath};
+use crate::workplace::refused;
 
 fn error(arguments: &str) -> serde_json::Value {
     let out = tempfile::tempdir().unwrap();
     let arguments = arguments.replace("OUT", &out.path().display().to_string());
     let output = truepath(runs(), &format!("--json plot {arguments}"));
-    assert_eq!(output.status.code(), Some(1), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(fs::read_dir(out.path()).unwrap().count(), 0, "{arguments} left something behind");
     let told: serde_json::Value = serde_json::from_slice(&output.stderr).unwrap();
+    assert_eq!(output.status.code(), refused(told["error"]["code"].as_str().unwrap()), "{arguments}: {told}");
     told["error"].clone()
 }
 
