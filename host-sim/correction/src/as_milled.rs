@@ -13,7 +13,7 @@ use crate::correction::{Correction, DesignRequest, evaluate};
 use crate::discrepancy::Along;
 use crate::learning::History;
 use crate::rows::{CorrectionRow, correction_rows};
-use crate::surface::predicted::Surface;
+use crate::surface::expected::Surface;
 
 /// The measured part, along the contour.
 #[derive(Clone, Debug)]

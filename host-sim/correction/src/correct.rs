@@ -25,7 +25,7 @@ use crate::identification::Found;
 use crate::remarks::{MeasuredPart, Remarks};
 use crate::rows::{CorrectionRow, correction_rows};
 use crate::summary::{CorrectSummary, correct_summary, corrected_name};
-use crate::surface::predicted::{Surface, Surfaces};
+use crate::surface::expected::{Surface, Surfaces};
 use crate::warnings::{beyond_tolerance, cut_corrected, kinked, model_warnings};
 
 /// A correction in memory: everything the command writes follows from it.

@@ -16,7 +16,7 @@ use truepath_core::identify::Observation;
 use truepath_ground::units::{float, mm};
 
 use crate::discrepancy::least_change;
-use crate::surface::predicted::Surface;
+use crate::surface::expected::Surface;
 
 /// Repeatability of a machine of which nothing is known, mm: the geometric middle of [`PRIOR_RANGE_MM`].
 pub const PRIOR_MM: f64 = 0.010;

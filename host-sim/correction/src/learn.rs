@@ -16,7 +16,7 @@ use crate::correction::{DesignRequest, Identification};
 use crate::learning::{Companion, History, MOST_PARTS, Part, PartPoints, Verdict, update};
 use crate::remarks::{MeasuredPart, Remarks};
 use crate::summary::{ContourSummary, CorrectSummary};
-use crate::surface::predicted::Surface;
+use crate::surface::expected::Surface;
 use crate::surface::touched::TouchedSurface;
 
 /// The correction of the next part.

@@ -16,7 +16,7 @@ use crate::correction::{Correction, Identification};
 use crate::damped::{DampedSummary, damped_summary};
 use crate::floor::Floor;
 use crate::guard::{GuardSummary, guard_summary};
-use crate::surface::predicted::Surfaces;
+use crate::surface::expected::Surfaces;
 
 /// An identified quantity.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]

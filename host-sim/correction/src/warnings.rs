@@ -14,7 +14,7 @@ use crate::damped::damped_summary;
 use crate::guard::guard_summary;
 use crate::misfit::said;
 use crate::remarks::{MeasuredPart, Remarks};
-use crate::surface::predicted::Surface;
+use crate::surface::expected::Surface;
 
 /// What the user should doubt.
 pub fn model_warnings(

@@ -23,6 +23,8 @@ pub struct Score {
     pub rms_error_mm: f64,
     /// Largest absolute value at any of the ten heights, mm.
     pub worst_height_mm: f64,
+    /// What 95 of 100 errors at the ten heights are within, mm.
+    pub p95_mm: f64,
     /// Deepest cut into the part, of the mean over ten heights, mm; negative when material is left everywhere.
     pub gouge_mm: f64,
     /// Largest difference between two heights at a place, mm: what no correction in X and Y can remove.
@@ -75,10 +77,11 @@ impl Milled {
             max_error_mm: 0.0,
             rms_error_mm: 0.0,
             worst_height_mm: 0.0,
+            p95_mm: 0.0,
             gouge_mm: f64::NEG_INFINITY,
             axial_form_mm: 0.0,
         };
-        let mut mean_mm = Vec::new();
+        let (mut mean_mm, mut all) = (Vec::new(), Vec::new());
         for (i, &m) in mean.iter().enumerate() {
             let s = self.path.s_mm[i];
             if s <= lo || s >= hi || !m.is_finite() {
@@ -90,6 +93,7 @@ impl Milled {
             let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
             for e in errors.iter().map(|row| row[i]).filter(|e| e.is_finite()) {
                 score.worst_height_mm = score.worst_height_mm.max(e.abs());
+                all.push(e.abs());
                 least = least.min(e);
                 most = most.max(e);
             }
@@ -101,12 +105,14 @@ impl Milled {
                 max_error_mm: none,
                 rms_error_mm: none,
                 worst_height_mm: none,
+                p95_mm: none,
                 gouge_mm: none,
                 axial_form_mm: none,
             };
         } else {
             let squares: f64 = mean_mm.iter().map(|(_, m)| m * m).sum();
             score.rms_error_mm = (squares / mean_mm.len() as f64).sqrt();
+            score.p95_mm = p95(&mut all);
         }
         Judged { score, mean_mm }
     }
@@ -120,6 +126,12 @@ impl Milled {
         let before = self.score();
         Ok(Comparison { before, after, factor: before.max_error_mm / after.max_error_mm.max(1e-9) })
     }
+}
+
+/// What 95 of 100 magnitudes are within; not a number of none. Their order is lost.
+pub(crate) fn p95(magnitudes: &mut [f64]) -> f64 {
+    let at = magnitudes.len() * 95 / 100;
+    if magnitudes.is_empty() { f64::NAN } else { *magnitudes.select_nth_unstable_by(at, f64::total_cmp).1 }
 }
 
 /// Mean over the rows, undefined values left out.

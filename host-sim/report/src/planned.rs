@@ -129,7 +129,9 @@ fn of_wall(section: &Section<'_>) -> Markup {
         @for (k, choice) in plan.choices.iter().enumerate() {
             figure class={ "choice w" (section.choice(k + 1)) } {
                 (section.scroll(&format!("The wall of choice {}", k + 1), wall(&choice.map, plan.tolerance_mm)))
-                figcaption { "choice " (k + 1) ": " (choice.process) }
+                figcaption {
+                    "choice " (k + 1) ": " (choice.process) ". What is left, " (choice.surface.worst_words())
+                }
             }
         }
     }
@@ -149,7 +151,7 @@ fn verdict(plan: &Plan) -> String {
             choice.time_ratio, choice.process
         ),
         (None, Some(best)) => {
-            let reach = best.predicted.profile_mm + 2.0 * best.predicted.sigma_mm;
+            let reach = best.surface.profile.profile_mm + 2.0 * best.surface.profile.sigma_mm;
             format!(
                 "No process holds ±{tolerance} µm at every height with {percent}. The best reaches {} µm.",
                 um(reach)
@@ -164,7 +166,7 @@ fn choices(section: &Section<'_>) -> Markup {
     html! {
         table {
             thead { tr {
-                th { "choice" } th { "time" } th { "worst error, µm" } th { "± 2 sigma" } th { "within" } th { "force, N" } th { "passes" }
+                th { "choice" } th { "time" } th { "worst error, µm" } th { "± 2 sigma" } th { "95 % of it, µm" } th { "within" } th { "force, N" } th { "passes" }
             } }
             tbody {
                 @for (k, choice) in plan.choices.iter().enumerate() {
@@ -178,8 +180,9 @@ fn choices(section: &Section<'_>) -> Markup {
                             }
                         }
                         td { (format!("{:.2} ×", choice.time_ratio)) }
-                        td { (um(choice.predicted.profile_mm)) }
-                        td { (um(2.0 * choice.predicted.sigma_mm)) }
+                        td { (um(choice.surface.profile.profile_mm)) }
+                        td { (um(2.0 * choice.surface.profile.sigma_mm)) }
+                        td { (um(choice.surface.p95_mm)) }
                         td class=(if holds { "yes" } else { "no" }) { (format!("{:.0} %", 100.0 * choice.within_tolerance)) @if holds { " ✓" } @else { " ✗" } }
                         td { (format!("{:.0}", choice.force_n)) }
                         td { label for=(section.choice(k + 1)) { (choice.process) } span.soft { " most of it: " (choice.limited_by) } }
@@ -196,7 +199,7 @@ fn front(plan: &Plan) -> Markup {
     const HEIGHT: f64 = 260.0;
     const LEFT: f64 = 56.0;
     const BELOW: f64 = 40.0;
-    let top = |c: &Choice| c.predicted.profile_mm + 2.0 * c.predicted.sigma_mm;
+    let top = |c: &Choice| c.surface.profile.profile_mm + 2.0 * c.surface.profile.sigma_mm;
     let most = plan.choices.iter().map(top).fold(1.3 * plan.tolerance_mm, f64::max) * 1.05;
     let last = plan.choices.iter().map(|c| c.time_ratio).fold(1.0, f64::max).ceil();
     let x = |ratio: f64| LEFT + (ratio - 0.5) / (last - 0.25) * (WIDTH - LEFT - 10.0);
@@ -217,7 +220,7 @@ fn front(plan: &Plan) -> Markup {
             text x="12" y=(at(HEIGHT / 2.0 - 20.0)) text-anchor="middle" transform={ "rotate(-90 12 " (HEIGHT / 2.0 - 20.0) ")" } { "worst error, µm" }
             line.limit x1=(LEFT) x2=(WIDTH - 10.0) y1=(at(y(plan.tolerance_mm))) y2=(at(y(plan.tolerance_mm))) {}
             @for (k, choice) in plan.choices.iter().enumerate() {
-                @let (mean, two) = (choice.predicted.profile_mm, 2.0 * choice.predicted.sigma_mm);
+                @let (mean, two) = (choice.surface.profile.profile_mm, 2.0 * choice.surface.profile.sigma_mm);
                 line.bar x1=(at(x(choice.time_ratio))) x2=(at(x(choice.time_ratio))) y1=(at(y(mean + two))) y2=(at(y((mean - two).max(0.0)))) {}
                 circle class=(if plan.recommended == Some(k + 1) { "mark best" } else { "mark" }) cx=(at(x(choice.time_ratio))) cy=(at(y(mean))) r="5" {}
                 text x=(at(x(choice.time_ratio) + 9.0)) y=(at(y(mean) - 6.0)) { (k + 1) }

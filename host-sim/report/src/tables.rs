@@ -2,6 +2,7 @@
 
 use truepath_core::cut::{Loop, State, chip_area};
 use truepath_correction::rows::{CorrectionRow, wall_mm};
+use truepath_correction::surface::expected;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::table::table;
 use truepath_ground::units::{float, mm, rounded};
@@ -149,16 +150,57 @@ pub fn correction_csv(rows: &[CorrectionRow]) -> Result<Vec<u8>, Failure> {
 /// Internal, when memory cannot be written.
 pub fn compare_csv(laws: &[Row]) -> Result<Vec<u8>, Failure> {
     let short = |v: Option<f64>| v.map(|v| rounded(v, 6));
-    table(laws.iter().map(|row| Row {
-        max_error_mm: short(row.max_error_mm),
-        rms_error_mm: short(row.rms_error_mm),
-        worst_height_mm: short(row.worst_height_mm),
-        p95_mm: short(row.p95_mm),
-        worst_height_sigma_mm: short(row.worst_height_sigma_mm),
-        gouge_mm: short(row.gouge_mm),
-        factor: row.factor.map(|f| rounded(f, 2)),
-        ..row.clone()
+    table(laws.iter().map(|row| {
+        let of = |figure: fn(&expected::Surface) -> f64| short(row.expected.as_ref().map(figure));
+        CompareRow {
+            law: row.law,
+            title: row.title,
+            max_error_mm: short(row.max_error_mm),
+            rms_error_mm: short(row.rms_error_mm),
+            worst_height_mm: short(row.worst_height_mm),
+            gouge_mm: short(row.gouge_mm),
+            factor: row.factor.map(|f| rounded(f, 2)),
+            max_correction_mm: row.max_correction_mm,
+            beyond_clamp: row.beyond_clamp,
+            p95_mm: short(row.p95_mm),
+            expected_mm: of(|wall| wall.profile.profile_mm),
+            expected_sigma_mm: of(|wall| wall.profile.sigma_mm),
+            expected_p95_mm: of(|wall| wall.p95_mm),
+            expected_p95_sigma_mm: of(|wall| wall.p95_sigma_mm),
+            worst_mean_mm: of(|wall| wall.causes.mean_mm).or(short(row.causes.map(|causes| causes.mean_mm))),
+            worst_height_part_mm: of(|wall| wall.causes.height_mm).or(short(row.causes.map(|causes| causes.height_mm))),
+            worst_bending_mm: of(|wall| wall.causes.bending_mm),
+            worst_noise_mm: of(|wall| wall.causes.noise_mm),
+            worst_not_modelled_mm: of(|wall| wall.causes.not_modelled_mm),
+            remark: &row.remark,
+        }
     }))
+}
+
+/// A line of the comparison, flat. What makes the error at the worst place begins with `worst`; on a virtual machine the part of the
+/// height holds that of bending.
+#[derive(serde::Serialize)]
+struct CompareRow<'a> {
+    law: &'a str,
+    title: &'a str,
+    max_error_mm: Option<f64>,
+    rms_error_mm: Option<f64>,
+    worst_height_mm: Option<f64>,
+    gouge_mm: Option<f64>,
+    factor: Option<f64>,
+    max_correction_mm: f64,
+    beyond_clamp: bool,
+    p95_mm: Option<f64>,
+    expected_mm: Option<f64>,
+    expected_sigma_mm: Option<f64>,
+    expected_p95_mm: Option<f64>,
+    expected_p95_sigma_mm: Option<f64>,
+    worst_mean_mm: Option<f64>,
+    worst_height_part_mm: Option<f64>,
+    worst_bending_mm: Option<f64>,
+    worst_noise_mm: Option<f64>,
+    worst_not_modelled_mm: Option<f64>,
+    remark: &'a str,
 }
 
 /// One place of one law. `error_mm` is that of the target quantity, the other two are over the engaged depth.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use truepath_chart::view::View;
 use truepath_correction::correction::identify;
+use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm};
@@ -58,40 +59,58 @@ fn words(s: &CompareSummary) -> String {
     };
     let mut text = format!(
         "{on}\nerror of the target ({}, heights {:.1} to {:.1} mm) and at any height, without {:.1} mm at either end\n\n\
-         law                     largest       rms  any height     gouge   mm\n",
+         law                     largest       rms  any height      95 %     gouge   mm\n",
         s.target, s.band_mm[0], s.band_mm[1], s.trim_mm
     );
     let number = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.4}"));
     for row in &s.laws {
         text += &format!(
-            "{:<20} {:>10} {:>9} {:>11} {:>9}\n",
+            "{:<20} {:>10} {:>9} {:>11} {:>9} {:>9}\n",
             row.title,
             number(row.max_error_mm),
             number(row.rms_error_mm),
             number(row.worst_height_mm),
+            number(row.p95_mm),
             number(row.gouge_mm),
         );
     }
     text.push('\n');
     if let [before, .., after] = &s.laws[..] {
-        let sigma = after.worst_height_sigma_mm.map_or_else(String::new, |sigma| format!(" ± {:.3}", 2.0 * sigma));
-        let short = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.3}"));
-        text += &format!(
-            "{}: {} {} -> {} mm; worst at any height {} -> {}{sigma} mm; 95 % of the wall within {} -> {} mm\n\n",
-            after.title,
-            if s.target == "mean" { "mean over the height" } else { "target" },
-            short(before.max_error_mm),
-            short(after.max_error_mm),
-            short(before.worst_height_mm),
-            short(after.worst_height_mm),
-            short(before.p95_mm),
-            short(after.p95_mm),
-        );
+        text += &whole_wall(before, after, s.target);
     }
     for row in s.laws.iter().filter(|row| !row.remark.is_empty()) {
         text += &format!("{}: {}\n", row.title, row.remark);
     }
     text
+}
+
+/// The whole wall without a correction and with that of the last law, and what makes the worst of the latter.
+fn whole_wall(before: &Row, after: &Row, target: &str) -> String {
+    if let (Some(without), Some(with)) = (before.expected, after.expected) {
+        let (surfaces, within) = (Surfaces { before: without, after: with }, [with.p95_mm, 2.0 * with.p95_sigma_mm]);
+        return format!(
+            "{}, with what the points leave open (± 2 sigma): {}; 95 % of the wall within {:.3} -> {:.3} ± {:.3} mm\n  {}\n\n",
+            after.title,
+            surfaces.words(),
+            without.p95_mm,
+            within[0],
+            within[1],
+            with.worst_words()
+        );
+    }
+    let short = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.3}"));
+    format!(
+        "{}: {} {} -> {} mm; worst at any height {} -> {} mm; 95 % of the wall within {} -> {} mm\n{}\n",
+        after.title,
+        if target == "mean" { "mean over the height" } else { "target" },
+        short(before.max_error_mm),
+        short(after.max_error_mm),
+        short(before.worst_height_mm),
+        short(after.worst_height_mm),
+        short(before.p95_mm),
+        short(after.p95_mm),
+        after.causes.map_or_else(String::new, |causes| format!("  at the worst place: {}\n", causes.words())),
+    )
 }
 
 /// The comparison.

@@ -59,7 +59,7 @@ fn words(outcomes: &[Outcome]) -> String {
     let worst = outcomes.iter().max_by(|a, b| a.left_over_the_height().total_cmp(&b.left_over_the_height()));
     if let Some(o) = worst.filter(|o| o.left_over_the_height() > 0.0) {
         let file = |name: &str| o.folder.join(name).display().to_string();
-        let tolerance = (o.before_mm / 10.0 * 1e3).round() / 1e3;
+        let tolerance = (o.before_mm / 8.0 * 1e3).round() / 1e3;
         text += &format!(
             "\nA helical tooth makes the wall at each height at another instant, which no shift in X and Y cures. What does:\n  \
              truepath plan {} --probe {} --tolerance {tolerance}\n",

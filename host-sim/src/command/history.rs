@@ -13,7 +13,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use super::correction_files::{CONTOURS, HISTORY};
-use super::plan_files::{FIRST_IMAGE, PLAN_HISTORY, PROGRAM};
+use super::plan_files::{PLAN_HISTORY, PROGRAM};
 
 /// Reads the history of a folder, and makes sure that the correction beside it, or in the folder `base` of all contours, is
 /// the one it tells of.
@@ -45,16 +45,10 @@ pub(super) fn refuse_unlearned(folder: &FilePath) -> Result<(), InputError> {
     if holds(PLAN_HISTORY) || !holds(PROGRAM) {
         return Ok(());
     }
-    let passes = if holds(FIRST_IMAGE) {
-        "planned passes for the coprocessor"
-    } else if holds(CONTOURS) {
-        "planned passes of several contours"
-    } else {
-        "planned passes"
-    };
+    let passes = if holds(CONTOURS) { "planned passes of several contours" } else { "planned passes" };
     let found = format!("{} holds {passes} and no {PLAN_HISTORY}", folder.display());
-    let expected = "planned passes of one contour, in the program, with their history";
-    let help = "plan one contour (--feature ID) with truepath plan --write --route program and learn from its part; truepath inspect judges this one";
+    let expected = "planned passes of one contour with their history";
+    let help = "plan one contour (--feature ID) with truepath plan --write and learn from its part; truepath inspect judges this one";
     Err(InputError::new(Q001, found, expected, help).in_file(folder))
 }
 

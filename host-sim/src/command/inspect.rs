@@ -139,11 +139,10 @@ fn words(inspection: &Inspection) -> String {
     );
     let wall = &s.surface;
     text += &format!(
-        "{} (2 sigma)\nthe worst at s = {:.1} mm, {:.1} mm above the tip; 95 % of the points within {:.4} mm\n",
+        "{} (2 sigma); 95 % of the points within {:.4} mm\nthe worst {}\n",
         wall.words(),
-        wall.s_mm,
-        wall.height_mm,
-        wall.p95_mm
+        wall.p95_mm,
+        wall.worst_words()
     );
     text += &s.statements.join("\n");
     text + &format!("\nverdict: {}\n", s.verdict.text)

@@ -7,7 +7,7 @@ use truepath_core::checksum::crc32;
 use truepath_correction::plan::choice::{Plan, Planner, Wanted};
 use truepath_correction::plan::history::{NextPart, PlanHistory, Process};
 use truepath_correction::plan::written::{Chosen, WrittenPlan, write};
-use truepath_correction::planned::{PlannedDepth, can_arm};
+use truepath_correction::planned::{PlannedDepth, can_arm, image_name};
 use truepath_correction::remarks::said_of_every;
 use truepath_correction::summary::name_with;
 use truepath_correction::surface::wall::WallFigures;
@@ -126,6 +126,13 @@ impl Written {
     pub(super) fn passes(&self) -> usize {
         self.depths.iter().map(|depth| depth.passes.len()).sum()
     }
+
+    /// What is said of images, where there are any.
+    pub(super) fn of_images(&self) -> String {
+        let Some(last) = self.images.last() else { return String::new() };
+        let folder = last.image.parent().unwrap_or(FilePath::new("")).display();
+        format!("images of {} passes in {folder}: each is armed by M160\n", self.images.len())
+    }
 }
 
 /// The image of a pass.
@@ -177,10 +184,7 @@ fn words(summary: &PlanSummary) -> String {
                 written.program.display(),
                 written.passes()
             );
-            if let Some(last) = written.images.last() {
-                let folder = last.image.parent().unwrap_or(FilePath::new("")).display();
-                text += &format!("images of {} passes in {folder}: each is armed by M160\n", written.images.len());
-            }
+            text += &written.of_images();
             let with = written.verify.as_ref().map_or_else(String::new, |verify| format!(" with {}", verify.display()));
             let then = if written.learns {
                 "give the points to truepath learn --from the folder"
@@ -208,8 +212,8 @@ fn table(plan: &Plan) -> String {
     let mut text = format!(
         "as programmed: {:.1} um at the worst place of the wall (mean over the height {:.1} um), {:.2} min\n\
          wanted: {:.1} um at every height, with {:.0} %\n\n\
-         \x20      time     profile error   within   passes\n\
-         \x20      ratio    um, 2 sigma\n",
+         \x20      time     profile error   95 % of it   within   passes\n\
+         \x20      ratio    um, 2 sigma     um\n",
         um(plan.as_programmed.profile_mm),
         um(plan.as_programmed.mean_mm),
         plan.minutes,
@@ -219,20 +223,21 @@ fn table(plan: &Plan) -> String {
     for (k, choice) in plan.choices.iter().enumerate() {
         let mark = if plan.recommended == Some(k + 1) { '*' } else { ' ' };
         text += &format!(
-            "{mark} {}  {:>6.2}  {:>7.1} ± {:<6.1} {:>5.0} %   {}; most of it {}\n",
+            "{mark} {}  {:>6.2}  {:>7.1} ± {:<6.1} {:>6.1} {:>10.0} %   {}; most of it {}\n",
             k + 1,
             choice.time_ratio,
-            um(choice.predicted.profile_mm),
-            um(2.0 * choice.predicted.sigma_mm),
+            um(choice.surface.profile.profile_mm),
+            um(2.0 * choice.surface.profile.sigma_mm),
+            um(choice.surface.p95_mm),
             choice.within_tolerance * 100.0,
             choice.process,
             choice.limited_by,
         );
     }
-    text + &match (plan.recommended, plan.choices.last()) {
+    text += &match (plan.recommended, plan.choices.last()) {
         (Some(k), _) => format!("\n* choice {k} is the fastest that holds the tolerance\n"),
         (None, Some(best)) => {
-            let needed = best.predicted.profile_mm + 2.0 * best.predicted.sigma_mm;
+            let needed = best.surface.profile.profile_mm + 2.0 * best.surface.profile.sigma_mm;
             format!(
                 "\nnone holds it: the best is expected within {:.1} um with 2 sigma, {:.1} um beyond the tolerance\n",
                 um(needed),
@@ -240,7 +245,12 @@ fn table(plan: &Plan) -> String {
             )
         }
         (None, None) => "\nno process keeps the limits of [plan]\n".to_owned(),
+    };
+    let number = plan.recommended.unwrap_or(plan.choices.len());
+    if let Some(choice) = plan.choices.get(number.wrapping_sub(1)) {
+        text += &format!("  what is left of choice {number}, {}\n", choice.surface.worst_words());
     }
+    text
 }
 
 /// The time of all contours, with the fastest choices that hold the tolerance, or the best ones where none does.
@@ -303,7 +313,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
         let share = 0.8 / planners.len() as f64;
         let plan =
             search(planner, &Wanted { limits, ..wanted }, &mut |done| progress(0.1 + (k as f64 + done) * share))?;
-        let beyond = beyond_what_shows(&plan, pass).into_iter().collect();
+        let beyond = beyond_what_shows(&plan, pass).into_iter().chain(pushed_far(&plan, pass)).collect();
         said.push([pass.warnings.clone(), points.remarks(&file), own, beyond].concat());
         plans.push(plan);
     }
@@ -340,17 +350,17 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
             .collect();
         let done = write(&all, route, crc32(file.bytes()), &mut |share| progress(0.9 + 0.1 * share))?;
         let passes: Vec<Pass> = measured.iter().map(|(pass, _)| pass.clone()).collect();
-        // Learning knows one contour, whose passes are in the program, cut with its own cutter.
+        // Learning knows one contour, cut with the cutter of the program.
         let mut learns = false;
-        if let ([(pass, points)], [plan], [number], [wall], false, Route::Program) =
-            (&measured[..], &plans[..], &numbers[..], &done.walls[..], several, route)
+        if let ([(pass, points)], [plan], [number], [wall], false) =
+            (&measured[..], &plans[..], &numbers[..], &done.walls[..], several)
             && plan.choices[number - 1].cutter.is_none()
         {
             let choice = &plan.choices[number - 1];
             let names = [PROGRAM, &planned_name(&passes)];
             let asked = (wanted.tolerance_mm, wanted.confidence);
             let process = Process::of(&choice.cuts, &wall.passes);
-            let next = NextPart::of(process, asked, choice.predicted, (&done.program.text, &names));
+            let next = NextPart::of(process, asked, choice.surface.profile, (&done.program, &names));
             folder.write(PLAN_HISTORY, &PlanHistory::first(pass, points, next)?.text()?)?;
             folder.write(PROBED, file.bytes())?;
             learns = true;
@@ -374,7 +384,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
 /// What is said of a tolerance narrower than what the probe can show, or than what is known of the machine.
 fn beyond_what_shows(plan: &Plan, pass: &Pass) -> Option<String> {
     let touch = 2.0 * truepath_ground::units::mm(pass.job.numbers.probe?.noise);
-    let machine = plan.choices.iter().map(|choice| 2.0 * choice.predicted.sigma_mm).fold(f64::INFINITY, f64::min);
+    let machine = plan.choices.iter().map(|choice| 2.0 * choice.surface.profile.sigma_mm).fold(f64::INFINITY, f64::min);
     let floor = if machine.is_finite() { touch.max(machine) } else { touch };
     (plan.tolerance_mm < floor).then(|| {
         let known = if machine.is_finite() {
@@ -386,6 +396,18 @@ fn beyond_what_shows(plan: &Plan, pass: &Pass) -> Option<String> {
             "±{} mm is less than can be shown: one touch is known to {touch:.4} mm (2 sigma, probe.noise_mm){known}; plan for ±{floor:.4} mm \
              or more, or touch more places with a better probe",
             plan.tolerance_mm
+        )
+    })
+}
+
+/// What is said where the cutter is pushed off the wall by more than half of what it is to take: there its engagement hangs on
+/// the push itself, and plans were not tried.
+fn pushed_far(plan: &Plan, pass: &Pass) -> Option<String> {
+    let (pushed, allowance) = (plan.as_programmed.profile_mm, truepath_ground::units::mm(pass.core.setup.allowance));
+    (2.0 * pushed > allowance).then(|| {
+        format!(
+            "as programmed the wall is off by {pushed:.3} mm of an allowance of {allowance} mm: beyond half of it predictions were not tried, and \
+             one there was wrong by more than two standard deviations; rough the part closer to the wall, or judge the first planned part with truepath inspect"
         )
     })
 }
@@ -452,7 +474,7 @@ pub(super) fn write_files(
     folder.write("difference.txt", done.program.report.as_bytes())?;
     let mut images = Vec::new();
     for (k, image) in done.program.images.iter().enumerate() {
-        let file = format!("planned-{}.tpi", k + 1);
+        let file = image_name(k + 1);
         folder.write(&file, &image.bytes)?;
         images.push(WrittenImage { image: out.join(file), feature: image.feature, pass: image.pass });
     }

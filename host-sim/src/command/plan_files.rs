@@ -28,7 +28,5 @@ pub(super) const MAP: &str = "wall-map.csv";
 pub(super) const REPORT: &str = "report.html";
 /// The parts so far; see [`truepath_correction::plan::history`].
 pub(super) const PLAN_HISTORY: &str = "plan-history.json";
-/// The image of the first pass, where the passes are for the coprocessor.
-pub(super) const FIRST_IMAGE: &str = "planned-1.tpi";
 /// The points it was made from.
 pub(super) const PROBED: &str = "probe-raw.txt";

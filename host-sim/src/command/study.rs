@@ -202,6 +202,7 @@ fn words(summary: &Summary, output: &FilePath) -> String {
         for one in set.families.iter().chain([&set.all]) {
             text += &row(one);
         }
+        let _ = writeln!(text, "  {}", set.all.whole_wall.words());
     }
     for axis in &summary.axes {
         let _ = writeln!(text, "{}", axis.axis);

@@ -6,7 +6,7 @@ use truepath_ground::diagnostics::{Failure, Source};
 
 use super::id::Touches;
 use super::reference::Reached;
-use super::summary::{Row, Summary, Trouble, WORKS};
+use super::summary::{Row, Summary, Trouble, WORKS, WholeWall};
 use crate::codes::Y005;
 
 /// Where results begin and end.
@@ -41,6 +41,7 @@ pub fn results(summary: &Summary, reached: &[Reached]) -> String {
     for set in &summary.sets {
         let _ = writeln!(text, "### {} seeds, {} cases\n", set.set.name(), set.all.cases);
         text += &table("family", set.families.iter().chain([&set.all]));
+        text += &whole_walls("family", set.families.iter().chain([&set.all]));
         for (title, rows) in &set.groups {
             text += &table(&title.to_lowercase(), rows.iter());
         }
@@ -86,6 +87,7 @@ pub fn nuisances(summary: &Summary) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "### {seeds} seeds, touched where {touched}\n");
         text += &table("nuisance", one.rows.iter());
+        text += &whole_walls("nuisance", one.rows.iter());
     }
     text
 }
@@ -114,6 +116,18 @@ fn table<'a>(first: &str, rows: impl Iterator<Item = &'a Row>) -> String {
             let _ = write!(text, " {} | {any} | {} |", percent(coverage), percent(held));
         }
         let _ = writeln!(text, " {} | {} |", row.failures + row.learn_failures, row.worse);
+    }
+    text + "\n"
+}
+
+/// What is left at any height, and what makes it.
+fn whole_walls<'a>(first: &str, rows: impl Iterator<Item = &'a Row>) -> String {
+    let columns = WholeWall::COLUMNS;
+    let mut text = "The whole wall, at any height: medians, µm.\n\n".to_owned();
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "| {first} | {} |\n|---|{}", columns.join(" | "), "---:|".repeat(columns.len()));
+    for row in rows {
+        let _ = writeln!(text, "| {} | {} |", row.name, row.whole_wall.cells().join(" | "));
     }
     text + "\n"
 }

@@ -48,6 +48,24 @@ pub struct Outcome {
     pub worst_height_predicted_mm: Option<f64>,
     /// Standard deviation of that.
     pub worst_height_sigma_mm: Option<f64>,
+    /// What 95 of 100 errors at any height are within before.
+    pub p95_before_mm: Option<f64>,
+    /// The same after.
+    pub p95_mm: Option<f64>,
+    /// What was expected of it.
+    pub p95_predicted_mm: Option<f64>,
+    /// Standard deviation of that.
+    pub p95_sigma_mm: Option<f64>,
+    /// What the mean over the height was expected to make of the largest error at any height after.
+    pub cause_mean_mm: Option<f64>,
+    /// What the helix was.
+    pub cause_height_mm: Option<f64>,
+    /// What bending of the cutter was.
+    pub cause_bending_mm: Option<f64>,
+    /// What the points leave open of it, one standard deviation.
+    pub cause_noise_mm: Option<f64>,
+    /// What the model lacks, one standard deviation.
+    pub cause_not_modelled_mm: Option<f64>,
     /// Largest spread over the height after.
     pub axial_form_mm: Option<f64>,
     /// Wall law found.
@@ -72,6 +90,12 @@ pub struct Outcome {
     pub learned_worst_height_predicted_mm: Option<f64>,
     /// Standard deviation of that.
     pub learned_worst_height_sigma_mm: Option<f64>,
+    /// What 95 of 100 errors at any height are within after learning.
+    pub learned_p95_mm: Option<f64>,
+    /// What was expected of it.
+    pub learned_p95_predicted_mm: Option<f64>,
+    /// Standard deviation of that.
+    pub learned_p95_sigma_mm: Option<f64>,
     /// Deepest gouge after learning, of the mean over the heights.
     pub learned_gouge_mm: Option<f64>,
     /// Whether learning went back to an earlier correction.
@@ -99,6 +123,16 @@ impl Outcome {
     /// The same after learning.
     pub fn learned_worst_height_held(&self) -> Option<bool> {
         held(self.learned_worst_height_mm, self.learned_worst_height_predicted_mm, self.learned_worst_height_sigma_mm)
+    }
+
+    /// Whether what 95 of 100 errors at any height are within came out within 2 sigma of what had been expected.
+    pub fn p95_held(&self) -> Option<bool> {
+        held(self.p95_mm, self.p95_predicted_mm, self.p95_sigma_mm)
+    }
+
+    /// The same after learning.
+    pub fn learned_p95_held(&self) -> Option<bool> {
+        held(self.learned_p95_mm, self.learned_p95_predicted_mm, self.learned_p95_sigma_mm)
     }
 
     /// Whether a correction made the part worse.

@@ -9,7 +9,7 @@ use super::id::{Axis, CaseId};
 use super::outcome::Outcome;
 use super::plots::{Group, along, by_group};
 use super::seeds::Set;
-use super::summary::{Row, SetSummary, Summary, Trouble, WORKS};
+use super::summary::{Row, SetSummary, Summary, Trouble, WORKS, WholeWall};
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#222}\
 table{border-collapse:collapse;margin:1rem 0;font-size:14px}th,td{padding:.2rem .6rem;border-bottom:1px solid #ddd;\
@@ -75,6 +75,7 @@ fn section(set: &SetSummary, outcomes: &[Outcome]) -> Result<String, Failure> {
         .collect();
     let mut text = format!("<h2>{title}</h2>\n{}", by_group(&groups)?);
     text += &table("Family", set.families.iter().chain([&set.all]));
+    text += &whole_walls(set.families.iter().chain([&set.all]));
     for (title, rows) in &set.groups {
         text += &table(title, rows.iter());
     }
@@ -124,6 +125,20 @@ fn table<'a>(first: &str, rows: impl Iterator<Item = &'a Row>) -> String {
         }
         let refused = row.failures + row.learn_failures;
         let _ = writeln!(text, "{}{}<td>{}</tr>", count(refused), count(row.worse), number(row.correct_s, 2));
+    }
+    text + "</table>\n"
+}
+
+/// What is left at any height, and what makes it.
+fn whole_walls<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
+    let heads: String = WholeWall::COLUMNS.iter().map(|head| format!("<th>{head}")).collect();
+    let mut text = format!(
+        "<p>The whole wall, at any height: medians, µm.</p>\n<table><thead><tr><th>Family{heads}</tr></thead>\n"
+    );
+    for row in rows {
+        let class = if row.name == "all" { " class=\"all\"" } else { "" };
+        let cells: String = row.whole_wall.cells().iter().map(|cell| format!("<td>{cell}")).collect();
+        let _ = writeln!(text, "<tr{class}><td>{}{cells}</tr>", escaped(&row.name));
     }
     text + "</table>\n"
 }

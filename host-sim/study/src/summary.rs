@@ -9,7 +9,7 @@ use super::id::{Axis, CaseId, Touches};
 use super::nuisance::Nuisance;
 use super::outcome::Outcome;
 use super::seeds::Set;
-use super::statistics::{Spread, share};
+use super::statistics::{Spread, quantile, share};
 
 /// Below this factor the method is said not to work.
 pub const WORKS: f64 = 4.0;
@@ -45,8 +45,112 @@ pub struct Row {
     pub learned_any_height: Option<Spread>,
     /// The share of cases in which that came out within 2 sigma of what had been expected.
     pub learned_any_height_held: Option<f64>,
+    /// What is left at any height.
+    pub whole_wall: WholeWall,
     /// Median time of the first correction, s.
     pub correct_s: Option<f64>,
+}
+
+/// The walls of several cases at every height: medians in mm; what is left is said of the first correction.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct WholeWall {
+    /// Largest error at any height before.
+    pub profile_before_mm: Option<f64>,
+    /// After the first correction.
+    pub profile_mm: Option<f64>,
+    /// After one more part.
+    pub learned_profile_mm: Option<f64>,
+    /// What 95 of 100 errors are within before.
+    pub p95_before_mm: Option<f64>,
+    /// After the first correction.
+    pub p95_mm: Option<f64>,
+    /// The share of cases in which that came out within 2 sigma of what had been expected.
+    pub p95_held: Option<f64>,
+    /// After one more part.
+    pub learned_p95_mm: Option<f64>,
+    /// The share of cases in which that did.
+    pub learned_p95_held: Option<f64>,
+    /// What makes the largest error at any height, the sign aside, as the model splits it: the mean over the height …
+    pub mean_mm: Option<f64>,
+    /// … the helix …
+    pub height_mm: Option<f64>,
+    /// … bending of the cutter …
+    pub bending_mm: Option<f64>,
+    /// … and one standard deviation of what the points leave open …
+    pub noise_mm: Option<f64>,
+    /// … and of what the model lacks.
+    pub not_modelled_mm: Option<f64>,
+}
+
+impl WholeWall {
+    /// Of the outcomes of cases.
+    fn of(outcomes: &[&Outcome]) -> Self {
+        let median = |of: fn(&Outcome) -> Option<f64>| {
+            let values: Vec<f64> = outcomes.iter().filter_map(|o| of(o)).map(f64::abs).collect();
+            quantile(&values, 0.5)
+        };
+        Self {
+            profile_before_mm: median(|o| o.worst_height_before_mm),
+            profile_mm: median(|o| o.worst_height_mm),
+            learned_profile_mm: median(|o| o.learned_worst_height_mm),
+            p95_before_mm: median(|o| o.p95_before_mm),
+            p95_mm: median(|o| o.p95_mm),
+            p95_held: share(outcomes.iter().filter_map(|o| o.p95_held())),
+            learned_p95_mm: median(|o| o.learned_p95_mm),
+            learned_p95_held: share(outcomes.iter().filter_map(|o| o.learned_p95_held())),
+            mean_mm: median(|o| o.cause_mean_mm),
+            height_mm: median(|o| o.cause_height_mm),
+            bending_mm: median(|o| o.cause_bending_mm),
+            noise_mm: median(|o| o.cause_noise_mm),
+            not_modelled_mm: median(|o| o.cause_not_modelled_mm),
+        }
+    }
+
+    /// In a line.
+    pub fn words(&self) -> String {
+        let named = Self::COLUMNS.into_iter().zip(self.cells());
+        let told: Vec<String> = named.map(|(name, cell)| format!("{name} {cell}")).collect();
+        format!("the whole wall, at any height (medians, um): {}", told.join(", "))
+    }
+
+    /// Names of the columns of [`WholeWall::cells`], um where nothing else is said.
+    pub const COLUMNS: [&str; 13] = [
+        "worst before",
+        "after",
+        "learned",
+        "95 % before",
+        "after",
+        "in 2σ",
+        "learned",
+        "in 2σ",
+        "mean",
+        "helix",
+        "bending",
+        "σ of noise",
+        "σ not modelled",
+    ];
+
+    /// The figures of a line of a table.
+    pub fn cells(&self) -> [String; 13] {
+        let um = |mm: Option<f64>| mm.map_or_else(|| "–".to_owned(), |mm| format!("{:.1}", 1e3 * mm));
+        let percent =
+            |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+        [
+            um(self.profile_before_mm),
+            um(self.profile_mm),
+            um(self.learned_profile_mm),
+            um(self.p95_before_mm),
+            um(self.p95_mm),
+            percent(self.p95_held),
+            um(self.learned_p95_mm),
+            percent(self.learned_p95_held),
+            um(self.mean_mm),
+            um(self.height_mm),
+            um(self.bending_mm),
+            um(self.noise_mm),
+            um(self.not_modelled_mm),
+        ]
+    }
 }
 
 /// Results of one set of seeds.
@@ -251,6 +355,7 @@ fn row(name: &str, outcomes: &[&Outcome]) -> Row {
         any_height_held: share(outcomes.iter().filter_map(|o| o.worst_height_held())),
         learned_any_height: Spread::of(&values(|o| o.learned_worst_height_factor)),
         learned_any_height_held: share(outcomes.iter().filter_map(|o| o.learned_worst_height_held())),
+        whole_wall: WholeWall::of(outcomes),
         correct_s: median(|o| o.correct_s),
     }
 }
@@ -293,6 +398,24 @@ fn limits(sets: &[SetSummary], axes: &[AxisSummary]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_whole_wall_is_told_by_medians_in_which_a_sign_does_not_count() {
+        let outcome = |helix, after| Outcome {
+            case: "bore/1001".to_owned(),
+            p95_mm: Some(after),
+            p95_predicted_mm: Some(0.020),
+            p95_sigma_mm: Some(0.002),
+            cause_height_mm: Some(helix),
+            ..Outcome::default()
+        };
+        let outcomes = [outcome(-0.030, 0.021), outcome(0.010, 0.025), outcome(-0.020, 0.017)];
+        let wall = WholeWall::of(&outcomes.iter().collect::<Vec<_>>());
+        assert_eq!((wall.height_mm, wall.p95_mm, wall.learned_p95_mm), (Some(0.020), Some(0.021), None));
+        assert!(wall.p95_held.is_some_and(|held| (held - 2.0 / 3.0).abs() < 1e-9));
+        let cells: Vec<(&str, String)> = WholeWall::COLUMNS.into_iter().zip(wall.cells()).collect();
+        assert!(cells.contains(&("helix", "20.0".to_owned())) && cells.contains(&("in 2σ", "67 %".to_owned())));
+    }
 
     #[test]
     fn nuisances_have_a_table_of_their_own_beside_the_same_cases_without_any() {

@@ -74,6 +74,7 @@ pub fn described(case: &Case) -> Outcome {
         points: Some((case.places_mm.len() * case.levels.len()) as u64),
         stiffness_n_per_mm: some((2.0 / (c[0][0] + c[1][1])).round()),
         worst_height_before_mm: some(score.worst_height_mm),
+        p95_before_mm: some(score.p95_mm),
         before_mm: some(score.max_error_mm),
         rms_before_mm: some(score.rms_error_mm),
         ..Outcome::default()
@@ -106,8 +107,17 @@ pub fn first(case: &Case, outcome: &mut Outcome) -> Result<FirstPart, Failure> {
     outcome.gouge_mm = some(score.gouge_mm);
     outcome.worst_height_mm = some(score.worst_height_mm);
     outcome.worst_height_factor = some(case.before.score.worst_height_mm / score.worst_height_mm.max(1e-6));
-    outcome.worst_height_predicted_mm = some(summary.surface.after.profile.profile_mm);
-    outcome.worst_height_sigma_mm = some(summary.surface.after.profile.sigma_mm);
+    let (expected, causes) = (&summary.surface.after, &summary.surface.after.causes);
+    outcome.worst_height_predicted_mm = some(expected.profile.profile_mm);
+    outcome.worst_height_sigma_mm = some(expected.profile.sigma_mm);
+    outcome.p95_mm = some(score.p95_mm);
+    outcome.p95_predicted_mm = some(expected.p95_mm);
+    outcome.p95_sigma_mm = some(expected.p95_sigma_mm);
+    outcome.cause_mean_mm = some(causes.mean_mm);
+    outcome.cause_height_mm = some(causes.height_mm);
+    outcome.cause_bending_mm = some(causes.bending_mm);
+    outcome.cause_noise_mm = some(causes.noise_mm);
+    outcome.cause_not_modelled_mm = some(causes.not_modelled_mm);
     outcome.axial_form_mm = some(score.axial_form_mm);
     outcome.coverage = coverage(&after, &corrected.rows);
     Ok(FirstPart { probe, measurement, corrected, milled, after })
@@ -129,11 +139,14 @@ pub fn second(case: &Case, first_part: &FirstPart, outcome: &mut Outcome) -> Res
     let after = cut(case, 3, &learned.corrected)?.judge();
     outcome.learned_mm = some(after.score.max_error_mm);
     outcome.learned_factor = some(case.before.score.max_error_mm / after.score.max_error_mm.max(1e-6));
-    let (worst, expected) = (after.score.worst_height_mm, &learned.corrected.summary.surface.after.profile);
+    let (worst, expected) = (after.score.worst_height_mm, &learned.corrected.summary.surface.after);
     outcome.learned_worst_height_mm = some(worst);
     outcome.learned_worst_height_factor = some(case.before.score.worst_height_mm / worst.max(1e-6));
-    outcome.learned_worst_height_predicted_mm = some(expected.profile_mm);
-    outcome.learned_worst_height_sigma_mm = some(expected.sigma_mm);
+    outcome.learned_worst_height_predicted_mm = some(expected.profile.profile_mm);
+    outcome.learned_worst_height_sigma_mm = some(expected.profile.sigma_mm);
+    outcome.learned_p95_mm = some(after.score.p95_mm);
+    outcome.learned_p95_predicted_mm = some(expected.p95_mm);
+    outcome.learned_p95_sigma_mm = some(expected.p95_sigma_mm);
     outcome.learned_gouge_mm = some(after.score.gouge_mm);
     outcome.learned_coverage = coverage(&after, &learned.corrected.rows);
     Ok(SecondPart { probe, learned, after })

@@ -54,14 +54,23 @@ fn a_planned_program_holds_at_every_height_what_one_pass_does_not() {
         desk.call(&format!("simulate job.toml --plant plant.toml --program {program} -o {to}"))
     };
     let before = number(&cut("part.nc", "before"), &["surface", "profile_mm"]);
-    let after = number(&cut("plan/planned.nc", "after"), &["surface", "profile_mm"]);
+    let planned = cut("plan/planned.nc", "after");
+    let after = number(&planned, &["surface", "profile_mm"]);
     assert!(after < tolerance && after < before / 4.0, "{before} became {after}, {tolerance} was asked");
     let (mean, sigma) = (number(choice, &["profile_mm"]), number(choice, &["sigma_mm"]));
     assert!((after - mean).abs() < 3.0 * sigma, "{after}, predicted {mean} +- {sigma}");
+    let within = number(&planned, &["surface", "p95_mm"]);
+    let (mean, sigma) = (number(choice, &["p95_mm"]), number(choice, &["p95_sigma_mm"]));
+    assert!(
+        (within - mean).abs() < 3.0 * sigma && mean < number(choice, &["profile_mm"]),
+        "{within}, {mean} +- {sigma}"
+    );
     assert_eq!(desk.read("plan/planned.nc"), desk.read("plan/part.planned.nc"));
     let page = desk.read("plan/report.html");
     assert!(
-        page.contains("holds ±") && page.matches("<figure").count() == 1 + done["choices"].as_array().unwrap().len()
+        page.contains("holds ±")
+            && page.contains("What is left, at s = ")
+            && page.matches("<figure").count() == 1 + done["choices"].as_array().unwrap().len()
     );
     assert!(desk.read("plan/wall-map.csv").starts_with("s_mm,height_mm,error_mm\n"));
 
@@ -93,6 +102,40 @@ fn limits_of_the_job_are_kept() {
     let none = desk.call(&format!("{PLAN} --tolerance 0.01"));
     assert_eq!(none["choices"].as_array().map(Vec::len), Some(0));
     assert!(none["recommended"].is_null());
+}
+
+#[test]
+#[ignore = "slow: cargo xtask test --all"]
+fn a_cutter_that_is_pushed_off_by_most_of_its_allowance_is_warned_of() {
+    let desk = measured_with(FEW);
+    let warned = |plan: &Value| plan["warnings"].to_string().contains("beyond half of it");
+    assert!(!warned(&desk.call(&format!("{PLAN} --tolerance 0.05"))));
+    desk.write("plant.toml", plant("[[0.011, 0.0002], [0.0002, 0.009]]"));
+    desk.call("simulate job.toml --plant plant.toml --touch verify.nc -o first --force");
+    let plan = desk.call(&format!("{PLAN} --tolerance 0.05 --force-data"));
+    assert!(number(&plan, &["as_programmed", "profile_mm"]) > 0.2 && warned(&plan), "{plan}");
+}
+
+#[test]
+fn where_f_words_are_not_the_feeds_of_the_cut_passes_are_planned_at_these_and_can_be_written() {
+    let desk = Workplace::demo("corner-helix", &["program.nc", "job.toml", "plant.toml"]);
+    desk.write("job.toml", desk.read("job.toml") + FEW);
+    desk.call("probe job.toml --dialect linuxcnc -o verify.nc");
+    desk.call("simulate job.toml --plant plant.toml --touch verify.nc -o first");
+    let done = desk.call(&format!("{PLAN} --tolerance 1 --write -o plan"));
+    assert!(done["warnings"].to_string().contains("at the feed of the cut"), "{}", done["warnings"]);
+    let feeds = |program: &str| {
+        let words = program.split_whitespace().filter(|word| word.starts_with('F') && word.len() > 1);
+        words.map(str::to_owned).collect::<std::collections::BTreeSet<String>>()
+    };
+    assert!(feeds(&desk.read("plan/planned.nc")).is_subset(&feeds(&desk.read("program.nc"))));
+    assert!(
+        done["choices"]
+            .as_array()
+            .expect("choices")
+            .iter()
+            .all(|choice| !choice["process"].to_string().contains("feed"))
+    );
 }
 
 #[test]
@@ -281,8 +324,8 @@ fn the_coprocessor_gets_an_image_for_every_pass_of_every_contour() {
     }
     for with in ["", " --replan"] {
         let learn = format!("learn job.toml --probe first/probe.txt --from plan -o out{with}");
-        let said = desk.run(&learn).expect_err("the passes are images");
-        assert!(said.contains("Q001") && said.contains("for the coprocessor"), "{said}");
+        let said = desk.run(&learn).expect_err("passes of two contours");
+        assert!(said.contains("Q001") && said.contains("of several contours"), "{said}");
     }
     // The program is not corrected: it can be measured and planned again, and it is not the one of the other route.
     assert!(!program.contains("TRUEPATH CORRECTED") && desk.read("plan/difference.txt").contains("planned-1.tpi"));

@@ -24,6 +24,9 @@ fn plant(seed: u32) -> String {
     )
 }
 
+/// The number of the choice that is written.
+static PLAN: std::sync::atomic::AtomicUsize = std::sync::atomic::AtomicUsize::new(0);
+
 /// The first part, the plan, and the second part, cut with it and touched.
 static BENCH: LazyLock<Workplace> = LazyLock::new(|| {
     let desk = Workplace::with(&[("part.nc", CORNER), ("job.toml", JOB)]);
@@ -33,6 +36,7 @@ static BENCH: LazyLock<Workplace> = LazyLock::new(|| {
     desk.call("simulate job.toml --plant plant-1.toml --program part.nc --touch verify.nc -o first");
     let plan = desk.call("plan job.toml --probe first/probe.txt --tolerance 0.02");
     let best = plan["choices"].as_array().expect("choices").len();
+    PLAN.store(best, std::sync::atomic::Ordering::Relaxed);
     desk.call(&format!("plan job.toml --probe first/probe.txt --tolerance 0.02 --write {best} -o plan"));
     desk.call("probe job.toml --next --points 6 --from plan --dialect linuxcnc -o verify-2.nc");
     desk.call("simulate job.toml --plant plant-2.toml --program plan/planned.nc --touch verify-2.nc -o second");
@@ -99,6 +103,37 @@ fn what_the_second_part_shows_is_cancelled_on_the_third() {
     assert_eq!(again["part"].as_u64(), Some(3));
     let known = desk.run("learn job.toml --probe touched/probe.txt --from fourth -o fifth").expect_err("known points");
     assert!(known.contains("Q003") && !desk.path().join("fifth").exists(), "{known}");
+}
+
+#[test]
+fn passes_that_the_coprocessor_displaces_are_learned_from_like_those_of_the_program() {
+    let desk = bench();
+    desk.write("job.toml", format!("dialect = \"linuxcnc\"\n{JOB}"));
+    let plan = "plan job.toml --probe first/probe.txt --tolerance 0.02 --route coprocessor";
+    let best = PLAN.load(std::sync::atomic::Ordering::Relaxed);
+    let armed = desk.call(&format!("{plan} --write {best} -o armed"));
+    // The images displace the passes as the program of the other route does, whose part was touched; the points name no program.
+    desk.call("simulate job.toml --plant plant-2.toml --program plan/planned.nc --touch verify.nc -o touched");
+    let learned = desk.call("learn job.toml --probe touched/probe.txt --from armed -o third");
+    let own = desk.call("learn job.toml --probe touched/probe.txt --from plan -o other");
+    for key in ["promised_mm", "missed_before_mm", "missed_after_mm"] {
+        assert_eq!(learned[key], own[key], "{key}");
+    }
+    assert_eq!(learned["choices"], own["choices"]);
+    let images = |of: &Value| of["written"]["images"].as_array().map(Vec::len);
+    assert!(images(&armed).is_some_and(|count| count > 1) && images(&learned) == images(&armed));
+    assert!(images(&own).is_none() && desk.read("third/planned.nc").contains("M160 P"));
+    let image = |folder: &str| fs::read(desk.path().join(folder).join("planned-1.tpi")).expect("an image");
+    assert_ne!(image("third"), image("armed"), "designed anew");
+    // The history knows the images as it knows the program.
+    let mut changed = image("third");
+    changed[40] ^= 1;
+    desk.write("third/planned-1.tpi", changed);
+    let refused =
+        desk.run("learn job.toml --probe touched/probe.txt --from third -o fourth").expect_err("another image");
+    assert!(refused.contains("Q004") && refused.contains("planned-1.tpi"), "{refused}");
+    let refused = desk.run("learn job.toml --probe touched/probe.txt --from armed --route program -o fourth");
+    assert!(refused.expect_err("another route").contains("C001") && !desk.path().join("fourth").exists());
 }
 
 #[test]

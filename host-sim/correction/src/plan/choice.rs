@@ -11,7 +11,7 @@ use truepath_core::job::{self, Identified};
 use truepath_core::process::{ImmersionGrid, Slices};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::units::float;
+use truepath_ground::units::{float, mm};
 use truepath_job::job::{PlanCutter, PlanTable};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
@@ -21,12 +21,13 @@ use super::bench::{Bench, Stage};
 use super::field::Field;
 use super::mounted::{DIVISIONS, FINE, MIDDLE, Mounted, Resolution};
 use super::process::{Cut, words};
-use super::refit::refit;
+use super::refit::{Refitted, refit};
 use super::search::{Candidate, search};
 use crate::correction::{Identification, MeasuredCut, identify_together};
+use crate::feeds::written_feeds_count;
 use crate::planned::{self, PlannedPass};
-use crate::surface::causes::Causes;
-use crate::surface::draws::{Predicted, Uncertain};
+use crate::surface::draws::Uncertain;
+use crate::surface::expected::Surface;
 use crate::surface::unmodelled::{unbent, unmodelled};
 use crate::surface::wall::{WallFigures, WallMap};
 
@@ -61,9 +62,9 @@ pub struct Choice {
     pub minutes: f64,
     /// Over that of the program's pass.
     pub time_ratio: f64,
-    /// The predicted profile error with its standard deviation.
+    /// What is expected of its wall.
     #[serde(flatten)]
-    pub predicted: Predicted,
+    pub surface: Surface,
     /// The wall as the identified machine cuts it.
     pub wall: WallFigures,
     /// The wall unrolled, as that machine cuts it.
@@ -71,9 +72,7 @@ pub struct Choice {
     pub map: WallMap,
     /// The share of machines that the points allow whose wall is within the tolerance.
     pub within_tolerance: f64,
-    /// What makes the error at its worst place.
-    pub causes: Causes,
-    /// What makes most of it.
+    /// What makes most of the error at its worst place.
     pub limited_by: &'static str,
     /// The largest mean force of a pass, N.
     pub force_n: f64,
@@ -130,6 +129,8 @@ pub struct Planner<'a> {
     others: Vec<Mounted<'a>>,
     /// Why cutters of the job are left out.
     left_out: Vec<String>,
+    /// How far machine and material are from settling at a probed place, where they do not.
+    unsettled: Option<Offset>,
     /// Whether planned parts have told of the machine: then what the model lacks is part of what is known.
     is_learned: bool,
     /// What they have shown beside it.
@@ -162,8 +163,8 @@ impl<'a> Planner<'a> {
             walls.iter().zip(&known).map(|(&(pass, _), known)| Mounted::own(pass, known.clone())).collect();
         let mut samples: Vec<Vec<Sample>> = walls.iter().map(|_| Vec::new()).collect();
         let coarse = own.iter().zip(&mut samples).map(|(own, samples)| own.path(MIDDLE, samples));
-        let refitted = refit(&cuts, &coarse.collect::<Result<Vec<_>, _>>()?, known)?;
-        let mounted = walls.iter().zip(refitted).map(|(&(pass, _), known)| {
+        let Refitted { known, unsettled } = refit(&cuts, &coarse.collect::<Result<Vec<_>, _>>()?, known)?;
+        let mounted = walls.iter().zip(known).map(|(&(pass, _), known)| {
             let own = Mounted::own(pass, known);
             let (mut others, mut left_out) = (Vec::new(), Vec::new());
             for cutter in &pass.job.plan_cutters {
@@ -172,7 +173,7 @@ impl<'a> Planner<'a> {
                     Err(why) => left_out.push(why),
                 }
             }
-            Self { pass, own, others, left_out, is_learned: false, field: None }
+            Self { pass, own, others, left_out, unsettled, is_learned: false, field: None }
         });
         Ok(mounted.collect())
     }
@@ -180,7 +181,7 @@ impl<'a> Planner<'a> {
     /// Of a pass and what planned parts have told of the cutter of its job; they tell nothing of other cutters.
     pub const fn learned(pass: &'a Pass, known: Identification, field: Option<Field>) -> Self {
         let own = Mounted::own(pass, known);
-        Self { pass, own, others: Vec::new(), left_out: Vec::new(), is_learned: true, field }
+        Self { pass, own, others: Vec::new(), left_out: Vec::new(), unsettled: None, is_learned: true, field }
     }
 
     /// Diameter of the cutter of the program.
@@ -213,7 +214,7 @@ impl<'a> Planner<'a> {
             let of_all = |share: f64| progress((k as f64 + share) / cutters.len() as f64);
             choices.extend(self.choices(mounted, &grid, (wanted, bench.minutes()), &of_all)?);
         }
-        let error = |choice: &Choice| choice.predicted.profile_mm;
+        let error = |choice: &Choice| choice.surface.profile.profile_mm;
         choices.sort_by(|a, b| a.minutes.total_cmp(&b.minutes).then(error(a).total_cmp(&error(b))));
         keep_worthwhile(&mut choices, wanted);
         Ok(Plan::of(&bench, choices, wanted))
@@ -317,9 +318,15 @@ impl<'a> Planner<'a> {
     }
 
     /// The limits of the job that the program stands, and what is left out: passes can only be added where its leads let them, and run the other way where
-    /// these can be turned round. What cannot is said.
+    /// these can be turned round, and feeds changed where the F words of the program are those of the cut. What cannot is said.
     pub fn possible(&self, mut limits: PlanTable) -> (PlanTable, Vec<String>) {
         let mut said = self.left_out.clone();
+        said.extend(self.unsettled.map(|by| {
+            format!(
+                "machine and material do not settle: at a probed place what the model of several passes says still changes by {:.3} mm, so that the plan is less sure than it says; touch the part at more heights, or plan for a part that is roughed closer to the wall",
+                mm(by)
+            )
+        }));
         if let Err(failure) = planned::can_repeat_pass(self.pass) {
             (limits.max_cuts, limits.max_levels) = (1, 1);
             said.push(format!("no pass can be added to this program, so that one is all that is planned: {failure}"));
@@ -328,6 +335,12 @@ impl<'a> Planner<'a> {
         {
             limits.reverse = false;
             said.push(format!("no pass of this program can run the other way: {failure}"));
+        }
+        if let Err(failure) = written_feeds_count(self.pass, "a plan changes F words", "plan with the feed as it is") {
+            limits.percent = [100, 100];
+            said.push(format!(
+                "every pass is planned at the feed of the cut, because no other can be written: {failure}"
+            ));
         }
         (limits, said)
     }
@@ -392,8 +405,8 @@ impl<'a> Planner<'a> {
         lacking.extend(open.iter().map(|column| bench.beside(&stage.left, column)));
         let wall = bench.figures(&stage.left);
         let uncertain = Uncertain::of((bench.path(), bench.slices()), &stage.left, &noise, &lacking, stiff.as_deref());
-        let draws = uncertain.largest();
-        let causes = uncertain.causes_at(wall.worst);
+        let height_mm = wall.worst_fraction * float(bench.path().setup().axial_depth);
+        let (surface, draws) = Surface::of(&uncertain, wall.worst, (wall.worst_s_mm, height_mm));
         let cutter = mounted.cutter();
         let with = cutter.map_or_else(String::new, |cutter| {
             format!("T{}, helix {} degrees: ", cutter.number, float(cutter.helix_deg))
@@ -405,10 +418,9 @@ impl<'a> Planner<'a> {
             passes: stage.passes.len(),
             minutes: stage.minutes,
             time_ratio: stage.minutes / minutes,
-            predicted: draws.predicted(),
+            surface,
             within_tolerance: draws.within(wanted.tolerance_mm),
-            limited_by: causes.largest(),
-            causes,
+            limited_by: surface.causes.largest(),
             map: bench.map(&stage.left),
             wall,
             force_n: stage.passes.iter().map(|p| float(p.load.force)).fold(0.0, f64::max),
@@ -565,13 +577,13 @@ fn shortlist(front: Vec<Candidate>, tolerance_mm: f64) -> Vec<Candidate> {
 fn keep_worthwhile(choices: &mut Vec<Choice>, wanted: &Wanted) {
     let mut best = f64::INFINITY;
     choices.retain(|choice| {
-        let better = choice.predicted.profile_mm < best;
-        best = best.min(choice.predicted.profile_mm);
+        let better = choice.surface.profile.profile_mm < best;
+        best = best.min(choice.surface.profile.profile_mm);
         better
     });
     while choices.len() > MOST {
         let holds = choices.iter().position(|c| c.within_tolerance >= wanted.confidence);
-        let gain = |k: usize| choices[k - 1].predicted.profile_mm / choices[k].predicted.profile_mm;
+        let gain = |k: usize| choices[k - 1].surface.profile.profile_mm / choices[k].surface.profile.profile_mm;
         let inner = (1..choices.len() - 1).filter(|k| Some(*k) != holds);
         let Some(least) = inner.min_by(|a, b| gain(*a).total_cmp(&gain(*b))) else { break };
         choices.remove(least);

@@ -10,6 +10,7 @@ use truepath_core::probe::CutWith;
 use truepath_core::process::{Aim, Load, Slices};
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_job::job::Route;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
@@ -17,7 +18,7 @@ use super::bench::CutPass;
 use super::process::{Cut, Levels};
 use crate::codes::{Q001, Q002, Q003};
 use crate::learning::{Facts, Nodes, Part, WrittenFile};
-use crate::planned::PlannedPass;
+use crate::planned::{PlannedPass, PlannedProgram, image_name};
 use crate::seal::{sealed, unsealed};
 use crate::surface::draws::Predicted;
 
@@ -74,7 +75,10 @@ pub struct NextPart {
     pub profile_mm: f64,
     /// Its standard deviation, mm.
     pub sigma_mm: f64,
-    /// The files that the program was written to.
+    /// Whether the coprocessor displaces the passes, each by an image.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub by_images: bool,
+    /// The files that the program was written to, and behind them the images.
     pub files: Vec<WrittenFile>,
 }
 
@@ -170,18 +174,26 @@ impl Process {
 }
 
 impl NextPart {
-    /// Of a process, what was asked and what it promises; `program` are its bytes, in the files of these names.
+    /// Of a process, what was asked and what it promises; `program` is in the files of these names, its images are in those of
+    /// [`image_name`].
     pub fn of(
         process: Process,
         (tolerance_mm, confidence): (f64, f64),
         predicted: Predicted,
-        (program, names): (&[u8], &[&str]),
+        (program, names): (&PlannedProgram, &[&str]),
     ) -> Self {
-        let crc = format!("{:08x}", crc32(program));
-        let file = |name: &&str| WrittenFile { name: (*name).to_owned(), crc32: crc.clone() };
-        let files = names.iter().map(file).collect();
+        let file = |name: String, bytes: &[u8]| WrittenFile { name, crc32: format!("{:08x}", crc32(bytes)) };
+        let texts = names.iter().map(|name| file((*name).to_owned(), &program.text));
+        let images = program.images.iter().zip(1..).map(|(image, number)| file(image_name(number), &image.bytes));
+        let files = texts.chain(images).collect();
         let Predicted { profile_mm, sigma_mm } = predicted;
-        Self { process, tolerance_mm, confidence, profile_mm, sigma_mm, files }
+        let by_images = !program.images.is_empty();
+        Self { process, tolerance_mm, confidence, profile_mm, sigma_mm, by_images, files }
+    }
+
+    /// Where the passes are displaced.
+    pub const fn route(&self) -> Route {
+        if self.by_images { Route::Coprocessor } else { Route::Program }
     }
 }
 

@@ -10,7 +10,7 @@ use truepath_core::units::{Offset, Real};
 use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::units::{float, mm};
-use truepath_job::job::{PlanTable, Route};
+use truepath_job::job::PlanTable;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
@@ -171,9 +171,9 @@ pub fn learn(
     })?;
     let cuts = choice.cuts.clone();
     let next = [Chosen { planner: &planner, cuts: &cuts, cutter: choice.cutter }];
-    let written = write(&next, Route::Program, measurement.crc, &mut |share| progress(0.8 + 0.2 * share))?;
+    let written = write(&next, history.next.route(), measurement.crc, &mut |share| progress(0.8 + 0.2 * share))?;
     let process = Process::of(&cuts, written.walls.first().map_or(&[], |wall| &wall.passes));
-    let next = NextPart::of(process, (tolerance_mm, confidence), choice.predicted, (&written.program.text, names));
+    let next = NextPart::of(process, (tolerance_mm, confidence), choice.surface.profile, (&written.program, names));
     Ok(LearnedPlan { history: history.with(newest, next), chosen: chosen + 1, plan, written, verdict })
 }
 
@@ -272,7 +272,7 @@ mod tests {
     use truepath_core::cut::WallLaw;
     use truepath_core::identify::Fit;
     use truepath_core::job::Identified;
-    use truepath_job::job::JobFile;
+    use truepath_job::job::{JobFile, Route};
 
     use super::super::process::leaving;
     use super::*;

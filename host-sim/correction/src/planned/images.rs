@@ -49,6 +49,11 @@ pub struct PassImage {
     pub bytes: Vec<u8>,
 }
 
+/// File of the image of a pass, counted from 1 in the order of cutting.
+pub fn image_name(number: usize) -> String {
+    format!("planned-{number}.tpi")
+}
+
 /// Where the passes of walls lie: the depths of the program that they were written into.
 pub(super) struct Laid<'a> {
     pub(super) repeated: &'a Repeated,

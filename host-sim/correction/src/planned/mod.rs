@@ -33,7 +33,7 @@ use crate::correct::written_out;
 use crate::feeds::written_feeds_count;
 
 use images::Laid;
-pub use images::{ArmedWall, PassImage};
+pub use images::{ArmedWall, PassImage, image_name};
 use paths::Leads;
 pub use plan::{PlannedDepth, PlannedPass, PlannedWall};
 

@@ -6,7 +6,7 @@ use truepath_ground::units::{float, mm};
 use truepath_job::job::PlanCutter;
 use truepath_program::Rewritten;
 
-use super::images::PassImage;
+use super::images::{PassImage, image_name};
 use super::plan::{PlannedDepth, PlannedPass, PlannedWall};
 
 /// Remarks for the head of the program.
@@ -45,7 +45,7 @@ pub(super) fn armed(
            and byte is the same, and every pass cuts the lines and arcs of the original at its height and feed. The coprocessor\n\
            moves them, each by its image:\n\n";
     for (k, image) in images.iter().enumerate() {
-        let _ = writeln!(text, "  planned-{}.tpi  M160 P{}.{}", k + 1, image.feature, image.pass);
+        let _ = writeln!(text, "  {}  M160 P{}.{}", image_name(k + 1), image.feature, image.pass);
     }
     text
 }

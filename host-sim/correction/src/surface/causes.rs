@@ -61,6 +61,38 @@ impl Causes {
     }
 }
 
+/// The error at the worst place of a wall that was cut, in its parts, mm, material left positive: the first two add up to it. What a
+/// helix makes of the second and what bending, no measurement alone tells apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct MeasuredCauses {
+    /// The mean over the heights that were seen there: what a shift in x and y cures.
+    pub mean_mm: f64,
+    /// What helix and bending make beside it at the worst of these heights.
+    pub height_mm: f64,
+    /// What a reading leaves open: one standard deviation; 0 where a wall is known without readings.
+    pub noise_mm: f64,
+}
+
+impl MeasuredCauses {
+    /// Of the errors over the height of the worst place, at the worst of its heights.
+    pub fn of(column: &[f64], worst: f64, noise_mm: f64) -> Self {
+        let mean_mm = column.iter().sum::<f64>() / column.len().max(1) as f64;
+        Self { mean_mm, height_mm: worst - mean_mm, noise_mm }
+    }
+
+    /// All of them in a line.
+    pub fn words(&self) -> String {
+        let read =
+            if self.noise_mm > 0.0 { format!("; sigma of a reading {:.4}", self.noise_mm) } else { String::new() };
+        format!(
+            "{:+.4} mm = mean {:+.4}, over the height (helix and bending) {:+.4}{read}",
+            self.mean_mm + self.height_mm,
+            self.mean_mm,
+            self.height_mm,
+        )
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -76,5 +108,15 @@ mod tests {
         assert!(near(causes.error_mm(), 0.018), "{causes:?}");
         assert_eq!(causes.largest(), "mean (what one pass can follow)");
         assert_eq!(Causes { noise_mm: 0.007, ..causes }.largest(), "noise and number of the points");
+    }
+
+    #[test]
+    fn a_measured_error_is_its_mean_and_what_the_height_adds() {
+        let causes = MeasuredCauses::of(&[0.040, -0.020], 0.040, 0.002);
+        assert!((causes.mean_mm - 0.010).abs() < 1e-12 && (causes.height_mm - 0.030).abs() < 1e-12, "{causes:?}");
+        assert!(causes.words().ends_with(
+            "+0.0400 mm = mean +0.0100, over the height (helix and bending) +0.0300; sigma of a reading 0.0020"
+        ));
+        assert!(!MeasuredCauses { noise_mm: 0.0, ..causes }.words().contains("sigma"));
     }
 }

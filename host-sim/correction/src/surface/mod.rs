@@ -9,11 +9,13 @@
 //! | [`causes`] | what makes the error at its worst place |
 //! | [`unmodelled`] | machines that no points tell apart, because a model is not the cut, and one that does not bend |
 //! | [`draws`] | how sure the predicted error is |
+//! | [`expected`] | the figures of a predicted wall |
 //! | [`predicted`] | the wall of one pass, as the identified machine cuts it |
 //! | [`touched`] | the same of a measurement, without any model |
 
 pub mod causes;
 pub mod draws;
+pub mod expected;
 pub mod predicted;
 pub mod touched;
 pub mod unmodelled;

@@ -11,10 +11,10 @@ use truepath_core::identify::{Parameters, neighbours};
 use truepath_core::units::Offset;
 use truepath_ground::units::{float, mm};
 
-use super::causes::Causes;
-use super::draws::{Beside, Predicted, Uncertain, largest};
+use super::draws::{Beside, Uncertain, largest};
+use super::expected::Surface;
 use super::unmodelled::{unbent, unmodelled};
-use super::wall::{WallFigures, judged, p95};
+use super::wall::{WallFigures, judged};
 use crate::correction::Identification;
 use crate::discrepancy::Along;
 
@@ -22,61 +22,6 @@ use crate::discrepancy::Along;
 const DRAWN_PLACES: usize = 500;
 /// Heights of a place.
 pub const COUNT: usize = HEIGHTS as usize;
-
-/// The predicted error of a whole wall, at every height, mm. Values are means over the machines that the points allow.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Surface {
-    /// The largest error anywhere, the sign aside: the profile error.
-    #[serde(flatten)]
-    pub profile: Predicted,
-    /// 95 of 100 places are nearer to the nominal wall than this.
-    pub p95_mm: f64,
-    /// Its standard deviation.
-    pub p95_sigma_mm: f64,
-    /// The largest mean over the height.
-    pub mean_mm: f64,
-    /// Its standard deviation.
-    pub mean_sigma_mm: f64,
-    /// Where the identified machine has its largest error, along the contour.
-    pub s_mm: f64,
-    /// Its height above the tip.
-    pub height_mm: f64,
-    /// What makes the error there.
-    pub causes: Causes,
-}
-
-/// The wall of a pass without and with a correction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Surfaces {
-    /// Without it.
-    pub before: Surface,
-    /// With it.
-    pub after: Surface,
-}
-
-impl Surfaces {
-    /// Of several contours: each wall is the worst of all.
-    pub fn worst(all: impl Iterator<Item = Self> + Clone) -> Self {
-        let worst = |of: fn(&Self) -> Surface| {
-            let walls = all.clone().map(|both| of(&both));
-            walls.max_by(|a, b| a.profile.profile_mm.total_cmp(&b.profile.profile_mm)).unwrap_or_default()
-        };
-        Self { before: worst(|both| both.before), after: worst(|both| both.after) }
-    }
-
-    /// Both in a sentence.
-    pub fn words(&self) -> String {
-        let (before, after) = (&self.before, &self.after);
-        format!(
-            "mean over the height {:.3} -> {:.3} mm; worst at any height {:.3} -> {:.3} ± {:.3} mm",
-            before.mean_mm,
-            after.mean_mm,
-            before.profile.profile_mm,
-            after.profile.profile_mm,
-            2.0 * after.profile.sigma_mm
-        )
-    }
-}
 
 impl Surface {
     /// Of the wall that a machine, which was identified, leaves with a correction, empty for none; `beside` is what is beside it.
@@ -132,25 +77,8 @@ impl Surface {
             reach_mm: mm(path.setup().radius),
         });
         let worst = kept.iter().position(|at| *at == figures.worst / COUNT).unwrap_or_default();
-        let causes = uncertain.causes_at(worst * COUNT + figures.worst % COUNT);
-
-        let mut magnitudes = Vec::new();
-        let drawn = uncertain.draws(|wall| {
-            magnitudes.clear();
-            magnitudes.extend(wall.iter().map(|error| error.abs()));
-            [largest(wall), p95(&mut magnitudes), largest_mean(wall)]
-        });
-        let [profile, p95, mean] = drawn.map(|draws| draws.predicted());
-        Self {
-            profile,
-            p95_mm: p95.profile_mm,
-            p95_sigma_mm: p95.sigma_mm,
-            mean_mm: mean.profile_mm,
-            mean_sigma_mm: mean.sigma_mm,
-            s_mm: figures.worst_s_mm,
-            height_mm: figures.worst_fraction * depth_mm,
-            causes,
-        }
+        let place = (figures.worst_s_mm, figures.worst_fraction * depth_mm);
+        Self::of(&uncertain, worst * COUNT + figures.worst % COUNT, place).0
     }
 }
 
@@ -163,12 +91,6 @@ enum Origin {
     Model,
     /// Its cutter does not bend.
     Unbent,
-}
-
-/// The largest mean over the height, the sign aside.
-fn largest_mean(errors: &[f64]) -> f64 {
-    let means = errors.chunks(COUNT).map(|column| column.iter().sum::<f64>() / COUNT as f64);
-    means.fold(0.0, |most, mean| most.max(mean.abs()))
 }
 
 /// The wall errors that a machine leaves with a correction, empty for none, at samples of its path, mm: sample by sample, in each at

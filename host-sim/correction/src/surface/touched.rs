@@ -7,6 +7,7 @@ use truepath_ground::units::{float, mm};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
+use super::causes::MeasuredCauses;
 use super::wall::p95;
 
 /// The largest measured error at any touched height beside the largest mean over the touched heights of a place, mm.
@@ -24,6 +25,8 @@ pub struct TouchedSurface {
     pub s_mm: f64,
     /// Its height above the tip.
     pub height_mm: f64,
+    /// What makes it.
+    pub causes: MeasuredCauses,
     /// Points touched.
     pub points: usize,
     /// Most heights touched at one place.
@@ -57,11 +60,18 @@ impl TouchedSurface {
         )
     }
 
+    /// Where the largest deviation is and what makes it, in a line.
+    pub fn worst_words(&self) -> String {
+        format!("at s = {:.1} mm, {:.1} mm above the tip: {}", self.s_mm, self.height_mm, self.causes.words())
+    }
+
     /// Of contacts in the order of the contour.
     fn of(contacts: &[Contact], depth: Offset, sigma: Offset) -> Self {
         let mut magnitudes: Vec<f64> = contacts.iter().map(|contact| mm(contact.error).abs()).collect();
         let worst = contacts.iter().max_by_key(|contact| contact.error.abs());
         let places: Vec<&[Contact]> = contacts.chunk_by(|a, b| same_place(a.s, b.s)).collect();
+        let of_worst = worst.and_then(|worst| places.iter().find(|place| place.iter().any(|c| std::ptr::eq(c, worst))));
+        let column: Vec<f64> = of_worst.into_iter().flat_map(|place| place.iter().map(|c| mm(c.error))).collect();
         let mean = |place: &&[Contact]| place.iter().map(|c| mm(c.error)).sum::<f64>() / place.len().max(1) as f64;
         Self {
             profile_mm: worst.map_or(0.0, |contact| mm(contact.error).abs()),
@@ -70,6 +80,7 @@ impl TouchedSurface {
             mean_mm: places.iter().map(mean).fold(0.0, |most, mean| most.max(mean.abs())),
             s_mm: worst.map_or(0.0, |contact| mm(contact.s)),
             height_mm: worst.map_or(0.0, |contact| float(contact.height) * mm(depth)),
+            causes: MeasuredCauses::of(&column, worst.map_or(0.0, |contact| mm(contact.error)), mm(sigma)),
             points: contacts.len(),
             heights: places.iter().map(|place| place.len()).max().unwrap_or_default(),
         }

@@ -11,7 +11,7 @@ use crate::error::{PlantError, require};
 use crate::flutes::Flutes;
 use crate::machine::Machine;
 use crate::path::Path;
-use crate::score::{Score, judged_trim_mm};
+use crate::score::{Score, judged_trim_mm, p95};
 use crate::setup::Cut;
 use crate::vector::{Point, along};
 
@@ -181,6 +181,10 @@ impl Part {
             max_error_mm: most(&|i| means[i].abs()),
             rms_error_mm: (squares / places().count() as f64).sqrt(),
             worst_height_mm: most(&|i| errors(i).map(f64::abs).fold(0.0, f64::max)),
+            p95_mm: p95(&mut places()
+                .flat_map(|i| errors(i).map(f64::abs))
+                .filter(|e| e.is_finite())
+                .collect::<Vec<f64>>()),
             gouge_mm: most(&|i| -means[i]),
             axial_form_mm: most(&|i| {
                 let (least, most) =

@@ -1,7 +1,7 @@
 //! How the wall stands and what it will come to, in figures: what the sentence on top of a page is made of.
 
 use serde::Serialize;
-use truepath_correction::surface::predicted::Surface;
+use truepath_correction::surface::expected::Surface;
 
 use super::known;
 

@@ -4,7 +4,7 @@ use truepath_core::correct::{Band, Target};
 use truepath_core::cut::Loop;
 use truepath_correction::correct::CorrectedPass;
 use truepath_correction::summary::CorrectSummary;
-use truepath_correction::surface::predicted::Surfaces;
+use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::float;
 use truepath_job::measurement::Measurement;
@@ -169,9 +169,7 @@ fn at_every_height(surface: &Surfaces) -> [Fact; 2] {
         2.0 * after.p95_sigma_mm,
         surface.before.p95_mm
     );
-    let place =
-        format!("at s = {:.1} mm, {:.1} mm above the tip: {}", after.s_mm, after.height_mm, after.causes.words());
-    [Fact::new("at every height", all), Fact::new("what makes the worst", place)]
+    [Fact::new("at every height", all), Fact::new("what makes the worst", after.worst_words())]
 }
 
 /// What the error along the contour is of.

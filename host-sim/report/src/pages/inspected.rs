@@ -58,7 +58,7 @@ pub fn inspected(
     // Dimensions alone are the file that was measured from.
     let probe = Some(measurement.file.as_str()).filter(|name| dimensions != Some(*name));
     page.next = Some(correct(file(pass.job.source().name()), probe.map(file), dimensions.map(file)));
-    page.told = Some(summary.surface.words() + " (2 sigma)");
+    page.told = Some(surface.words() + " (2 sigma)");
     page.results = figures(summary, measurement, judgement.decimals);
     page.verdict = Some(Verdict {
         state: match summary.verdict.state {
@@ -94,12 +94,16 @@ fn figures(s: &InspectSummary, measurement: &Measurement, decimals: usize) -> Ve
     let between = touched.map(|(from, to)| format!("between s = {:.1} and {:.1} mm", mm(from), mm(to)));
     let count = s.points_by_verdict.unwrap_or_default();
     let judged = s.points_by_verdict.is_some();
+    let causes = &s.surface.causes;
     let figures = [
         Figure::mm("mean", s.mean_error_mm).map(|f| f.noted("a wear offset removes it")),
         told("largest", s.max_error_mm).map(|f| f.noted(most)),
         told("smallest", s.min_error_mm).map(|f| f.noted(least)),
         Figure::mm("root mean square", s.rms_error_mm),
         Figure::mm("spread over the height", s.spread_over_height_mm).map(|f| f.noted("largest of one place")),
+        Figure::mm("95 % of the points", s.surface.p95_mm).map(|f| f.noted("are within")),
+        Figure::mm("worst point: mean of its place", causes.mean_mm).map(|f| f.noted("what x and y cure")),
+        Figure::mm("over the height", causes.height_mm).map(|f| f.noted("beside that mean: helix and bending")),
         points("measured", s.points).map(|f| f.noted(between.unwrap_or_default())),
         points("within", count.pass).filter(|_| judged),
         points("outside", count.fail).filter(|_| judged),

@@ -4,7 +4,7 @@ use truepath_correction::as_milled::AsMilled;
 use truepath_correction::correct::CorrectedPass;
 use truepath_correction::learn::LearnSummary;
 use truepath_correction::learning::Verdict;
-use truepath_correction::surface::predicted::Surfaces;
+use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::Failure;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -53,6 +53,7 @@ pub fn learned(
     }
     if let Some(job) = &mut page.job {
         job.facts.push(Fact::new("from part to part", from_part_to_part(summary)));
+        job.facts.extend(what_made_it(summary));
         job.facts.extend(verdict.used_again.map(|again| Fact::new("next part", again.words())));
     }
     Ok(page)
@@ -63,6 +64,13 @@ fn from_part_to_part(summary: &LearnSummary) -> String {
     let surfaces = Surfaces { before: summary.whole_surface, after: summary.correct.surface.after };
     let part = summary.verdict.part;
     format!("part {part} to part {}, expected: {} (2 sigma)", next_part(&summary.verdict), surfaces.words())
+}
+
+/// What made the worst of the part that was measured: at its touches, and of its whole wall as the model of all parts has it.
+fn what_made_it(summary: &LearnSummary) -> [Fact; 2] {
+    let part = summary.verdict.part;
+    let fact = |of: &str, words: String| Fact::new(format!("worst of part {part}, {of}"), words);
+    [fact("touched", summary.measured_surface.worst_words()), fact("by the model", summary.whole_surface.worst_words())]
 }
 
 const fn next_part(verdict: &Verdict) -> u32 {

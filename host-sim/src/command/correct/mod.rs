@@ -93,9 +93,9 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
          floor {}\n\
          \n\
          at every height, with what the points leave open (± 2 sigma)\n\
-         \x20 without correction: the worst          {:>8.4} ± {:.4} mm, 95 % within {:.4} mm, mean over the height {:.4} mm\n\
-         \x20 with it: the worst                     {:>8.4} ± {:.4} mm, 95 % within {:.4} mm, mean over the height {:.4} mm\n\
-         \x20 at s = {:.1} mm, {:.1} mm above the tip: {}\n\
+         \x20 without correction: the worst          {:>8.4} ± {:.4} mm, 95 % within {:.4} ± {:.4} mm, mean over the height {:.4} mm\n\
+         \x20 with it: the worst                     {:>8.4} ± {:.4} mm, 95 % within {:.4} ± {:.4} mm, mean over the height {:.4} mm\n\
+         \x20 {}\n\
          \n\
          deepest cut at any height              {:>8.4} mm\n\
          largest correction                     {:>8.4} mm\n\
@@ -115,14 +115,14 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
         before.profile.profile_mm,
         2.0 * before.profile.sigma_mm,
         before.p95_mm,
+        2.0 * before.p95_sigma_mm,
         before.mean_mm,
         after.profile.profile_mm,
         2.0 * after.profile.sigma_mm,
         after.p95_mm,
+        2.0 * after.p95_sigma_mm,
         after.mean_mm,
-        after.s_mm,
-        after.height_mm,
-        after.causes.words(),
+        after.worst_words(),
         s.worst_gouge_mm,
         s.max_correction_mm,
     );

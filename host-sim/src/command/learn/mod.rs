@@ -69,17 +69,12 @@ pub struct Options {
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     if files::exists(&options.from.join(PLAN_HISTORY)) {
         refuse_same_folder(options)?;
-        if options.route == Some(Route::Coprocessor) {
-            let found = "--route coprocessor, and the planned passes are in the program";
-            let help = "leave --route out, or plan anew with truepath plan --write --route coprocessor";
-            return Err(InputError::new(C001, found, "the route of the plan, program", help).into());
-        }
         let mut job = options.said.read(&options.job)?;
         job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
         let tolerance = options.tolerance.as_ref().and(job.part.tolerance);
         let tolerance_mm = tolerance.map(|tolerance| mm(tolerance.upper).min(-mm(tolerance.lower)));
         let to = (options.output.as_path(), options.force);
-        let wish = planned::Wish { replan: options.replan, tolerance_mm };
+        let wish = planned::Wish { replan: options.replan, tolerance_mm, route: options.route };
         let Some(probe) = options.probe.as_deref().filter(|_| options.dimensions.is_none()) else {
             let found = "--dimensions of a part that was cut with planned passes";
             let help = "touch it with a probe: planned passes are learned from points at several heights";
@@ -117,7 +112,9 @@ fn words(s: &LearnSummary) -> String {
          \x20 whole contour, by the model        {:>12.4}          mm, at s = {:.1} mm, sigma {:.4} mm\n\
          at any height\n\
          \x20 measured, at the touched heights   {:>12.4} ± {:.4} mm, 95 % within {:.4} mm\n\
-         \x20 whole wall, by the model           {:>12.4} ± {:.4} mm, 95 % within {:.4} mm\n",
+         \x20   {}\n\
+         \x20 whole wall, by the model           {:>12.4} ± {:.4} mm, 95 % within {:.4} ± {:.4} mm\n\
+         \x20   {}\n",
         v.part,
         v.measured_error_mm.places,
         v.measured_error_mm.max_mm,
@@ -135,9 +132,12 @@ fn words(s: &LearnSummary) -> String {
         measured.profile_mm,
         2.0 * measured.sigma_mm,
         measured.p95_mm,
+        measured.worst_words(),
         surface.profile.profile_mm,
         2.0 * surface.profile.sigma_mm,
         surface.p95_mm,
+        2.0 * surface.p95_sigma_mm,
+        surface.worst_words(),
     );
     if let Some(held) = &v.holdout_residual_mm {
         text += &format!(

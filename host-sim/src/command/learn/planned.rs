@@ -5,9 +5,11 @@ use std::path::Path as FilePath;
 use truepath_correction::codes::{Q002, Q003, Q007};
 use truepath_correction::plan::choice::Plan;
 use truepath_correction::plan::learn::{Passes, PlannedVerdict, learn};
-use truepath_ground::diagnostics::{Failure, Source};
+use truepath_correction::surface::touched::TouchedSurface;
+use truepath_ground::codes::C001;
+use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::{OutputFolder, json};
-use truepath_job::job::JobFile;
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::{PlannedWall, planned_page};
@@ -25,6 +27,8 @@ pub struct LearnedPlanSummary {
     /// The part that was touched.
     #[serde(flatten)]
     verdict: PlannedVerdict,
+    /// Its wall at the touched heights.
+    measured_surface: TouchedSurface,
     /// The next part: the process of the part before, designed anew, is the one choice, unless passes were searched for.
     #[serde(flatten)]
     plan: Plan,
@@ -41,6 +45,8 @@ pub(super) struct Wish {
     pub(super) replan: bool,
     /// Half the width of the tolerance at every height, mm, in place of that of the plan.
     pub(super) tolerance_mm: Option<f64>,
+    /// Where its passes are displaced, if that was said.
+    pub(super) route: Option<Route>,
 }
 
 /// Learns from the points in a file of the part that the planned program in a folder has cut, and prints what was learned.
@@ -58,9 +64,10 @@ pub(super) fn main(
 
 fn words(summary: &LearnedPlanSummary) -> String {
     let um = |mm: f64| mm * 1e3;
-    let (verdict, plan) = (&summary.verdict, &summary.plan);
+    let (verdict, plan, measured) = (&summary.verdict, &summary.plan, &summary.measured_surface);
     let mut text = format!(
         "part {} at {} points: largest error {:.1} um, rms {:.1} um; {:.1} ± {:.1} um were predicted for the worst place of the wall\n\
+         {} (2 sigma), 95 % of the points within {:.4} mm\n  {}\n\
          the model of the parts before misses these points by {:.1} um (rms), that of all parts by {:.1} um\n",
         verdict.part,
         verdict.points,
@@ -68,6 +75,9 @@ fn words(summary: &LearnedPlanSummary) -> String {
         um(verdict.measured_rms_mm),
         um(verdict.promised_mm),
         um(2.0 * verdict.promised_sigma_mm),
+        measured.words(),
+        measured.p95_mm,
+        measured.worst_words(),
         um(verdict.missed_before_mm),
         um(verdict.missed_after_mm),
     );
@@ -80,14 +90,16 @@ fn words(summary: &LearnedPlanSummary) -> String {
     }
     if let Some(choice) = summary.written.choice.as_ref().and_then(|one| plan.choices.get(one.choice - 1)) {
         text += &format!(
-            "\npart {}: {}\n  profile error {:.1} ± {:.1} um at every height, mean over the height {:.1} um, {:.0} % within {:.1} um\n",
+            "\npart {}: {}\n  profile error {:.1} ± {:.1} um at every height, 95 % of the wall within {:.1} um, mean over the height {:.1} um, {:.0} % within {:.1} um\n  {}\n",
             verdict.part + 1,
             choice.process,
-            um(choice.predicted.profile_mm),
-            um(2.0 * choice.predicted.sigma_mm),
-            um(choice.wall.mean_mm),
+            um(choice.surface.profile.profile_mm),
+            um(2.0 * choice.surface.profile.sigma_mm),
+            um(choice.surface.p95_mm),
+            um(choice.surface.mean_mm),
             choice.within_tolerance * 100.0,
             um(plan.tolerance_mm),
+            choice.surface.worst_words(),
         );
     }
     if plan.recommended.is_none() {
@@ -95,11 +107,26 @@ fn words(summary: &LearnedPlanSummary) -> String {
             "  these passes do not hold the tolerance with the confidence asked for: truepath plan looks for others\n";
     }
     text + &format!(
-        "\nwritten: {}, {} passes\nnext: mill part {} with it; touch it, and learn from there\n",
+        "\nwritten: {}, {} passes\n{}next: mill part {} with it; touch it, and learn from there\n",
         summary.written.program.display(),
         summary.written.passes(),
+        summary.written.of_images(),
         verdict.part + 1
     )
+}
+
+/// Refuses a route that is not the one of the plan.
+fn refuse_other_route(said: Option<Route>, of_plan: Route) -> Result<(), InputError> {
+    let name = |route: Route| if route == Route::Program { "program" } else { "coprocessor" };
+    match said.filter(|said| *said != of_plan) {
+        None => Ok(()),
+        Some(said) => {
+            let found =
+                format!("--route {}, and the planned passes of --from are for the {}", name(said), name(of_plan));
+            let help = format!("leave --route out, or plan anew with truepath plan --write --route {}", name(said));
+            Err(InputError::new(C001, found, format!("the route of the plan, {}", name(of_plan)), help))
+        }
+    }
 }
 
 /// Learns and writes the outputs.
@@ -111,6 +138,7 @@ fn run(
     progress: &mut dyn FnMut(f64),
 ) -> Result<LearnedPlanSummary, Failure> {
     let mut history = plan_history_in(from)?;
+    refuse_other_route(wish.route, history.next.route())?;
     history.next.tolerance_mm = wish.tolerance_mm.unwrap_or(history.next.tolerance_mm);
     let pass = Pass::read(job)?;
     let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
@@ -147,6 +175,7 @@ fn run(
     let summary = LearnedPlanSummary {
         version: 1,
         verdict: learned.verdict,
+        measured_surface: TouchedSurface::of_measurement(&pass, &measurement),
         plan: learned.plan,
         written: Written { learns: true, ..written },
         warnings,

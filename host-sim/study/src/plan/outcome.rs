@@ -47,6 +47,20 @@ pub struct PlanOutcome {
     pub predicted_mm: Option<f64>,
     /// Its standard deviation.
     pub sigma_mm: Option<f64>,
+    /// What 95 % of the wall were expected to be within.
+    pub p95_predicted_mm: Option<f64>,
+    /// Standard deviation of that.
+    pub p95_sigma_mm: Option<f64>,
+    /// What the mean over the height was expected to make of the largest error.
+    pub cause_mean_mm: Option<f64>,
+    /// What the helix was.
+    pub cause_height_mm: Option<f64>,
+    /// What bending of the cutter was.
+    pub cause_bending_mm: Option<f64>,
+    /// What the points leave open of it, one standard deviation.
+    pub cause_noise_mm: Option<f64>,
+    /// What the model lacks, one standard deviation.
+    pub cause_not_modelled_mm: Option<f64>,
     /// Largest error at any height, as cut.
     pub after_mm: Option<f64>,
     /// What 95 % of the wall are within.

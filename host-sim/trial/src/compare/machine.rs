@@ -4,7 +4,8 @@ use truepath_core::correct::{Band, Design, Node, Profile, Target};
 use truepath_core::cut::{Loop, Path};
 use truepath_correction::correction::{Identification, walls};
 use truepath_correction::discrepancy::Along;
-use truepath_correction::surface::predicted::{COUNT, Surface, errors};
+use truepath_correction::surface::expected::Surface;
+use truepath_correction::surface::predicted::{COUNT, errors};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
@@ -32,7 +33,7 @@ pub fn identified(machine: &Loop, known: &Identification, wanted: &Design, nodes
     Walls {
         places: samples.zip(&inside).zip(&whole).map(place).collect(),
         over_height_mm: all.chunks(COUNT).map(<[f64]>::to_vec).collect(),
-        worst_height_sigma_mm: Some(Surface::predicted(machine, known, &Along::NONE, nodes).profile.sigma_mm),
+        expected: Some(Surface::predicted(machine, known, &Along::NONE, nodes)),
     }
 }
 
@@ -73,7 +74,7 @@ pub fn virtual_machine(
     });
     let column = |i: usize| whole.iter().map(|row| row.get(i).copied().unwrap_or(f64::NAN)).collect();
     let over_height_mm = (0..milled.path.s_mm.len()).map(column).collect();
-    Ok(Walls { places: places.collect(), over_height_mm, worst_height_sigma_mm: None })
+    Ok(Walls { places: places.collect(), over_height_mm, expected: None })
 }
 
 fn finite(rows: &[Vec<f64>], i: usize) -> impl Iterator<Item = f64> {

@@ -3,6 +3,8 @@
 use std::ops::RangeInclusive;
 
 use truepath_core::units::Offset;
+use truepath_correction::surface::causes::MeasuredCauses;
+use truepath_correction::surface::expected::Surface;
 use truepath_correction::surface::wall::p95;
 use truepath_ground::units::mm;
 
@@ -28,8 +30,8 @@ pub struct Walls {
     pub places: Vec<Place>,
     /// The errors over the height of every place, mm; not a number where no wall stands.
     pub over_height_mm: Vec<Vec<f64>>,
-    /// What the points leave open of the largest error at any height, one standard deviation, mm; absent on a virtual machine.
-    pub worst_height_sigma_mm: Option<f64>,
+    /// What is expected of the whole wall, with what the points leave open; absent on a virtual machine.
+    pub expected: Option<Surface>,
 }
 
 /// One line of the comparison.
@@ -55,8 +57,10 @@ pub struct Row {
     pub beyond_clamp: bool,
     /// 95 of 100 places of the wall, at any height, are nearer to the nominal wall than this, mm.
     pub p95_mm: Option<f64>,
-    /// What the points leave open of the largest error at any height, one standard deviation, mm; absent on a virtual machine.
-    pub worst_height_sigma_mm: Option<f64>,
+    /// What is expected of the whole wall, with what the points leave open; absent on a virtual machine.
+    pub expected: Option<Surface>,
+    /// What makes the largest error at any height on a virtual machine; absent on the identified one, of which `expected` says it.
+    pub causes: Option<MeasuredCauses>,
     /// What is to be known about it.
     pub remark: String,
 }
@@ -69,11 +73,20 @@ impl Walls {
     }
     /// 95 of 100 of the errors at every height of the places that are judged are at most this, the sign aside, mm.
     fn p95_mm(&self, trim_mm: f64) -> f64 {
+        p95(&mut self.columns(trim_mm).flatten().map(|error| error.abs()).collect::<Vec<f64>>())
+    }
+    /// What makes the largest error at any height of the places that are judged; `None` where none is.
+    fn causes(&self, trim_mm: f64) -> Option<MeasuredCauses> {
+        let of = |column: Vec<f64>| Some((column.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs()))?, column));
+        let (worst, column) = self.columns(trim_mm).filter_map(of).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
+        Some(MeasuredCauses::of(&column, worst, 0.0))
+    }
+    /// The errors over the height of each place that is judged, mm.
+    fn columns(&self, trim_mm: f64) -> impl Iterator<Item = Vec<f64>> {
         let stretch = judged(self.places.last().map_or(0.0, |p| p.s_mm), trim_mm);
-        let stands = |place: &Place| stretch.contains(&place.s_mm) && place.error_mm.is_finite();
-        let places = self.places.iter().zip(&self.over_height_mm).filter(|(place, _)| stands(place));
-        let errors = places.flat_map(|(_, errors)| errors).filter(|error| error.is_finite());
-        p95(&mut errors.map(|error| error.abs()).collect::<Vec<f64>>())
+        let stands = move |place: &Place| stretch.contains(&place.s_mm) && place.error_mm.is_finite();
+        let places = self.places.iter().zip(&self.over_height_mm).filter(move |(place, _)| stands(place));
+        places.map(|(_, errors)| errors.iter().copied().filter(|error| error.is_finite()).collect())
     }
 }
 
@@ -109,7 +122,8 @@ pub fn row(
         max_correction_mm: mm(largest),
         beyond_clamp,
         p95_mm: None,
-        worst_height_sigma_mm: None,
+        expected: None,
+        causes: None,
         remark: String::new(),
     };
     match walls {
@@ -125,7 +139,8 @@ pub fn row(
                 row.worst_height_mm = Some(most(|p| p.lowest_mm.abs().max(p.highest_mm.abs())));
                 row.gouge_mm = Some(most(|p| -p.lowest_mm));
                 row.p95_mm = Some(walls.p95_mm(trim_mm));
-                row.worst_height_sigma_mm = walls.worst_height_sigma_mm;
+                row.expected = walls.expected;
+                row.causes = walls.causes(trim_mm).filter(|_| walls.expected.is_none());
                 row.factor = Some(none_mm.unwrap_or(max) / max.max(1e-6));
             }
         }
