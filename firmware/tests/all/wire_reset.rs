@@ -2,7 +2,7 @@
 
 use crate::wire_support;
 use truepath_core::link::{Ask, Denial, ResetCause};
-use truepath_core::rewrite::{Flags, Mode, Output, Refusal};
+use truepath_core::rewrite::{Flags, Mode, Output, Reason, Refusal};
 use truepath_fw::config_service::Restart;
 use wire_support::part::{CLEAR, FEED, GATE, PASS, along, straight};
 use wire_support::*;
@@ -60,7 +60,7 @@ fn after_a_reset_in_any_state_nothing_is_forwarded_until_the_drives_are_acknowle
                 assert!(is_uncorrected(&out, &rig));
             }
             assert_eq!(rig.done(Ask::AcknowledgeDrivesDisabled), Err(Denial::Refused(Refusal::DrivesEnabled)));
-            assert_eq!(rig.arm(9), Err(Denial::Refused(Refusal::State(Mode::Off))));
+            assert_eq!(rig.arm(9), Err(Denial::Refused(Refusal::Off { reason: Reason::None })));
             rig.enable();
             for _ in 0..30 {
                 let [x, y, z, ..] = rig.setpoint.axes;

@@ -37,23 +37,56 @@ impl std::str::FromStr for Probability {
 
 /// A sequence of chances.
 #[derive(Clone, Debug)]
-pub struct Chance(ChaCha8Rng);
+pub struct Chance(Drawn);
+
+/// Where a chance comes from.
+#[derive(Clone, Debug)]
+enum Drawn {
+    /// A seed; it never ends.
+    Seed(Box<ChaCha8Rng>),
+    /// Bytes that somebody else chose, and how many of them are used.
+    Tape(Vec<u8>, usize),
+}
 
 impl Chance {
     /// The sequence of a seed; `stream` tells apart what draws from the same seed.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(stream);
-        Self(rng)
+        Self(Drawn::Seed(Box::new(rng)))
+    }
+    /// Chances read off bytes, two or four for each; zeros behind their end.
+    pub fn taped(bytes: &[u8]) -> Self {
+        Self(Drawn::Tape(bytes.to_vec(), 0))
+    }
+    /// Whether the bytes have come to their end.
+    pub const fn is_over(&self) -> bool {
+        match &self.0 {
+            Drawn::Seed(_) => false,
+            Drawn::Tape(bytes, used) => *used >= bytes.len(),
+        }
+    }
+    fn word(&mut self) -> u32 {
+        match &mut self.0 {
+            Drawn::Seed(rng) => rng.next_u32(),
+            Drawn::Tape(bytes, used) => u32::from_le_bytes(taken(bytes, used)),
+        }
+    }
+    fn long_word(&mut self) -> u64 {
+        match &mut self.0 {
+            Drawn::Seed(rng) => rng.next_u64(),
+            // Few bytes for a draw, spread over the range: one byte of the tape decides about much.
+            Drawn::Tape(bytes, used) => u64::from(u16::from_le_bytes(taken(bytes, used))).wrapping_mul(SPREAD),
+        }
     }
     /// Whether something of this probability happens. A probability of 0 draws nothing.
     pub fn happens(&mut self, probability: Probability) -> bool {
-        probability.0 > 0 && u64::from(self.0.next_u32()) < probability.0
+        probability.0 > 0 && u64::from(self.word()) < probability.0
     }
     /// One of 0…n − 1; 0 for n = 0.
     pub fn below(&mut self, n: u64) -> u64 {
         // The bias is below n/2⁶⁴.
-        if n == 0 { 0 } else { self.0.next_u64() % n }
+        if n == 0 { 0 } else { self.long_word() % n }
     }
     /// One time in n.
     pub fn one_in(&mut self, n: u64) -> bool {
@@ -65,8 +98,21 @@ impl Chance {
     }
     /// 64 bits.
     pub fn bits(&mut self) -> u64 {
-        self.0.next_u64()
+        self.long_word()
     }
+}
+
+/// An odd number near 2⁶⁴/φ.
+const SPREAD: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The next bytes of a tape.
+fn taken<const N: usize>(bytes: &[u8], used: &mut usize) -> [u8; N] {
+    let mut word = [0; N];
+    for (to, byte) in word.iter_mut().zip(bytes.iter().skip(*used)) {
+        *to = *byte;
+    }
+    *used = used.saturating_add(N);
+    word
 }
 
 #[cfg(test)]
@@ -86,5 +132,18 @@ mod tests {
         assert!(Probability::new(1.1).is_none() && Probability::new(-0.1).is_none());
         let mut chance = Chance::new(3, 0);
         assert!((0..1000).all(|_| chance.happens(Probability::new(1.0).expect("certain"))));
+    }
+
+    #[test]
+    fn a_tape_gives_the_same_chances_again_and_comes_to_an_end() {
+        let draws = |bytes: &[u8]| {
+            let mut chance = Chance::taped(bytes);
+            let draws: Vec<u64> = (0..3).map(|_| chance.below(1_000)).collect();
+            (draws, chance.is_over())
+        };
+        assert_eq!(draws(&[1, 2, 3, 4, 5, 6]), draws(&[1, 2, 3, 4, 5, 6]));
+        assert_ne!(draws(&[1, 2, 3, 4, 5, 6]).0, draws(&[1, 2, 3, 4, 5, 7]).0);
+        assert!(draws(&[9; 6]).1 && !draws(&[9; 8]).1 && draws(&[]) == (vec![0; 3], true));
+        assert!(!Chance::new(1, 0).is_over());
     }
 }

@@ -1,7 +1,7 @@
 //! What can go wrong between bench and board.
 
 use truepath_core::link::Denial;
-use truepath_core::rewrite::{Mode, Refusal};
+use truepath_core::rewrite::Refusal;
 use truepath_ground::diagnostics::{Failure, InputError};
 
 use crate::codes::{H001, H002, H003, H004, H005, H006, H007, H008};
@@ -77,7 +77,7 @@ impl From<BenchError> for InputError {
 fn remedy(denial: &Denial) -> &'static str {
     match denial {
         Denial::Refused(refusal) => match refusal {
-            Refusal::State(Mode::Off) => "disable the drives, then: truepath device acknowledge",
+            Refusal::Off { .. } => "disable the drives, then: truepath device acknowledge",
             Refusal::State(_) => "bring the device into the mode in which it takes this request",
             Refusal::NoImage => "truepath device upload FILE --activate",
             Refusal::DrivesEnabled => "disable the drives (machine off), then ask again",

@@ -9,10 +9,12 @@
 //! | [`Expectation`] | the host's own endpoint and rewriter, fed with the same bytes |
 //! | [`Judge`] | rules for every answer that know nothing of that code |
 //! | [`Campaign`] | all of it in one run |
+//! | [`mod@attack`] | random images, settings, controllers and cables against the host's own servo, judged by the contract alone |
 //! | [`Watch`], [`RunStatus`] | what somebody who looks on sees of it |
 //!
 //! Frames and messages are those of `truepath_core::link`; nothing here knows their bytes.
 
+pub mod attack;
 mod board;
 mod bulk;
 mod campaign;

@@ -47,7 +47,7 @@ impl Rewriter<'_> {
     /// as it is.
     pub fn arm(&self, state: &mut State, request: &ArmRequest) -> Result<(), Refusal> {
         if state.mode != Mode::Bypass {
-            return Err(Refusal::State(state.mode));
+            return Err(state.refusal());
         }
         let Some(plan) = &self.plan else {
             return Err(Refusal::NoImage);
@@ -97,7 +97,7 @@ impl Rewriter<'_> {
     /// Nothing is armed.
     pub fn disarm(&self, state: &mut State) -> Result<(), Refusal> {
         if !matches!(state.mode, Mode::Armed | Mode::Active | Mode::Hold) || state.is_ending() {
-            return Err(Refusal::State(state.mode));
+            return Err(state.refusal());
         }
         state.end(Reason::Disarmed);
         Ok(())

@@ -4,7 +4,7 @@ use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::Mode;
+use super::{Mode, Reason};
 
 /// Why a command had no effect. A mismatch carries both sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -61,6 +61,11 @@ pub enum Refusal {
         /// Mean interval of the last 32 setpoints, ns; 0 before there were as many.
         interval_ns: u32,
     },
+    /// In `Off`: the drives were dropped, and that they are disabled has not been acknowledged since.
+    Off {
+        /// Why they were dropped: [`Reason::Silence`], [`Reason::ImageChanged`]; [`Reason::None`] at a reset.
+        reason: Reason,
+    },
 }
 
 /// The identity numbers that must agree.
@@ -93,6 +98,7 @@ impl Refusal {
             Self::FrameAxes { .. } => 7,
             Self::NoSetpoints => 8,
             Self::FrameRate { .. } => 9,
+            Self::Off { .. } => 10,
             Self::Identity { what: Identity::Program, .. } => 16,
             Self::Identity { what: Identity::Feature, .. } => 17,
             Self::Identity { what: Identity::Pass, .. } => 18,
@@ -128,6 +134,13 @@ impl fmt::Display for Refusal {
             Self::FrameRate { tick_hz, interval_ns } => {
                 write!(f, "a setpoint comes every {interval_ns} ns, faster than the {tick_hz} Hz of the settings")
             }
+            Self::Off { reason: Reason::None } => f.write_str(
+                "not possible in state Off: nobody has acknowledged since the reset that the drives are disabled",
+            ),
+            Self::Off { reason } => write!(
+                f,
+                "not possible in state Off: the drives were dropped ({reason}), and nobody has acknowledged since that they are disabled"
+            ),
             Self::Identity { what: Identity::Program, image, request } => {
                 write!(f, "the image is for program {image:08x}, the controller runs {request:08x}")
             }

@@ -5,7 +5,7 @@ use super::frame::{Local, Mapping};
 use super::limit::AxisState;
 use super::locate::Place;
 use super::spent::{Spent, SpentList};
-use super::{Mode, Reason, Setpoint};
+use super::{Mode, Reason, Refusal, Setpoint};
 use crate::image::RATIO_ONE;
 
 /// Fraction bits of the fade factor.
@@ -116,6 +116,13 @@ impl State {
             Mode::Armed => Mode::Bypass,
             other => other,
         };
+    }
+    /// The command does not belong to the mode; in `Off` with the cause, which the mode alone does not tell.
+    pub(super) const fn refusal(&self) -> Refusal {
+        match self.mode {
+            Mode::Off => Refusal::Off { reason: self.reason },
+            mode => Refusal::State(mode),
+        }
     }
     /// The setpoint in program coordinates by the frame that was armed.
     #[inline]

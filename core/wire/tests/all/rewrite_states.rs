@@ -5,6 +5,31 @@ use rewrite_support::*;
 use truepath_wire::rewrite::{Flags, Frame, Identity, Mode, Reason, Refusal, Rewriter, Setpoint, Settings, State};
 
 #[test]
+fn what_is_refused_in_off_says_why_the_drives_were_dropped() {
+    let causes = [
+        (Reason::None, "nobody has acknowledged since the reset"),
+        (Reason::Silence, "the drives were dropped (no setpoint came for too long)"),
+        (Reason::ImageChanged, "the drives were dropped (the image changed after arming)"),
+    ];
+    for (cause, words) in causes {
+        let mut m = if cause == Reason::None { Machine::on(straight()) } else { Machine::on(straight()).active() };
+        match cause {
+            Reason::Silence => m.rewriter.power_off(&mut m.state, Reason::Silence),
+            Reason::ImageChanged => {
+                m.forward(300);
+                m.rewriter = Rewriter::new(Settings::at_1_khz(), None).unwrap();
+                m.stay();
+            }
+            _ => {}
+        }
+        let refused = m.rewriter.arm(&mut m.state, &m.request).unwrap_err();
+        assert_eq!((refused, refused.code()), (Refusal::Off { reason: cause }, 10));
+        assert_eq!(m.rewriter.disarm(&mut m.state), Err(refused));
+        assert!(refused.to_string().contains(words), "{refused}");
+    }
+}
+
+#[test]
 fn after_power_up_nothing_goes_out_until_the_drives_are_acknowledged_as_disabled() {
     let mut m = Machine::on(straight());
     for _ in 0..5 {
@@ -22,8 +47,8 @@ fn after_power_up_nothing_goes_out_until_the_drives_are_acknowledged_as_disabled
 #[test]
 fn off_refuses_to_arm() {
     let mut m = Machine::on(straight());
-    assert_eq!(m.rewriter.arm(&mut m.state, &m.request), Err(Refusal::State(Mode::Off)));
-    assert_eq!(m.rewriter.disarm(&mut m.state), Err(Refusal::State(Mode::Off)));
+    assert_eq!(m.rewriter.arm(&mut m.state, &m.request), Err(Refusal::Off { reason: Reason::None }));
+    assert_eq!(m.rewriter.disarm(&mut m.state), Err(Refusal::Off { reason: Reason::None }));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use truepath_core::image::Image;
 
 /// The path of an image with a place on it, program coordinates.
 #[derive(Clone, Debug)]
-pub(super) struct Cursor {
+pub(crate) struct Cursor {
     nodes: Vec<[i64; 2]>,
     lengths: Vec<i64>,
     segment: usize,

@@ -13,6 +13,7 @@ mod recorded;
 use truepath_core::rewrite::{ArmRequest, Mode, Setpoint};
 
 pub use controller::{Controller, ControllerOptions};
+pub(crate) use cursor::Cursor;
 pub use recorded::Recorded;
 
 /// Setpoints with the drives disabled before that is acknowledged. Before it has seen 32 frames at its setpoint rate the

@@ -55,9 +55,17 @@ impl Pace {
         self.took_us = None;
     }
 
+    /// The controller counts anew, perhaps another one: the pace of before says nothing, and a window begins with this
+    /// frame.
+    #[inline]
+    pub fn restart(&mut self, arrived_us: u64) {
+        self.took_us = None;
+        self.begin(arrived_us);
+    }
+
     /// A window begins with this frame.
     #[inline]
-    pub fn begin(&mut self, arrived_us: u64) {
+    fn begin(&mut self, arrived_us: u64) {
         self.since_us = Some(arrived_us);
         self.frames = 0;
     }

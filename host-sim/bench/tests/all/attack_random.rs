@@ -1,0 +1,31 @@
+//! The host's own servo under attack: no rule is broken, and the attack has been everywhere.
+
+use truepath_bench::attack::{Tally, attack, host};
+use truepath_core::rewrite::Reason;
+
+/// So many sessions, without an alarm.
+#[track_caller]
+fn without_alarm(seed: u64, sessions: u64) -> Tally {
+    match attack(seed, &host, &mut |tally| tally.sessions < sessions) {
+        Ok(tally) => tally,
+        Err((alarm, tally)) => panic!("seed {seed}: {alarm}\n{tally:?}"),
+    }
+}
+
+#[test]
+fn no_rule_is_broken_and_every_end_of_a_correction_was_seen() {
+    let tally = without_alarm(1, 150);
+    assert!(tally.modes.iter().all(|&answers| answers > 500), "{:?}", tally.modes);
+    let missing: Vec<Reason> = Reason::ALL.into_iter().filter(|&reason| tally.ended_by(reason) == 0).collect();
+    // A correction that ends by a silence or a reset ends in `Off`, without an answer that says so.
+    assert_eq!(missing, [Reason::None, Reason::Silence]);
+    assert!(tally.settled.iter().all(|&count| count > 0), "{:?}", tally.settled);
+    assert!(tally.used.iter().all(|&share| share > 900), "{:?}", tally.used);
+}
+
+#[test]
+fn the_same_seed_is_the_same_attack() {
+    let digest = |seed| format!("{:?}", without_alarm(seed, 6));
+    assert_eq!(digest(5), digest(5));
+    assert_ne!(digest(5), digest(6));
+}

@@ -1,0 +1,351 @@
+//! Doubles of the servo: the host's own, with one mistake each.
+//!
+//! Where it can be, the mistake is made before the servo: it is told of another image, another setting, another time, or
+//! another setpoint than the one that came, and answers to that. Nothing of the servo itself is changed for it.
+
+use truepath_bench::attack::{HostServo, Servo, Setup};
+use truepath_bench::traffic::Command;
+use truepath_core::checksum::crc32;
+use truepath_core::link::{MAX_SETPOINT_BYTES, SetpointFrame, stuff, unstuff};
+use truepath_core::rewrite::{ArmRequest, Flags, Mode, Output, Reason, Refusal, Setpoint};
+
+/// The mistake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mistake {
+    /// A frame whose checksum is wrong is given the right one.
+    DamagedFrameFollowed,
+    /// A repeated frame is answered again.
+    RepeatedFrameAnswered,
+    /// An answer is given however late it is.
+    LateAnswerGiven,
+    /// A position is a nanometre from setpoint and correction.
+    SumOffByOne,
+    /// A nanometre is on in `Bypass`.
+    CorrectedInBypass,
+    /// The drive enable stays in `Off`.
+    EnabledInOff,
+    /// The drives count as disabled whatever the setpoints say.
+    AcknowledgedWithDrives,
+    /// The timer does nothing.
+    SilenceIgnored,
+    /// What has ended is armed again by itself.
+    ArmsItself,
+    /// The numbers of the request are not compared.
+    BindingIgnored,
+    /// Arming does not ask for `Bypass`.
+    ArmedInFault,
+    /// The list of spent parts is not consulted.
+    SpentListIgnored,
+    /// The gate is not waited for.
+    GateIgnored,
+    /// The correction of X is on the axis of Z.
+    OtherAxis,
+    /// At its end the correction is a nanometre beyond the clamp.
+    ClampOffByOne,
+    /// A gap beyond the limit counts as none.
+    GapFollowed,
+    /// Setpoints that come too fast count as in time.
+    PaceIgnored,
+    /// Another image ends nothing.
+    ImageChangeIgnored,
+    /// The spindle counts as turning.
+    SpindleIgnored,
+    /// The ramp ends with its first tick.
+    RampCutShort,
+    /// The ramp stands still.
+    RampStands,
+    /// A disarming is confirmed, and nothing else.
+    DisarmIgnored,
+    /// What ends a correction for this reason is not seen: the servo is told that the machine stands, undisturbed.
+    Deaf(Reason),
+    /// The image of the servo has a tolerance wider by a fiftieth.
+    WideTolerance,
+    /// Three times the speed.
+    TooFast,
+    /// Eight times the acceleration.
+    TooHard,
+    /// No joint limits.
+    NoJointLimits,
+}
+
+/// A servo with a mistake, for a set-up of the attack.
+pub fn double<'a>(setup: &'a Setup, mistake: Mistake) -> Box<dyn Servo + 'a> {
+    // A set-up of its own lives until the tests end; there are some hundred, of 10 kB each.
+    let own: &Setup = Box::leak(Box::new(mistaken(setup, mistake)));
+    Box::new(Double::new(own, setup, mistake))
+}
+
+/// A set-up as the servo with a mistake has it.
+fn mistaken(setup: &Setup, mistake: Mistake) -> Setup {
+    match mistake {
+        Mistake::WideTolerance => setup.with_image(|image| {
+            let nm = image.window.tolerance.nm();
+            image.window.tolerance = truepath_core::units::Offset::from_nm((nm + nm / 50).min(5_000_000));
+        }),
+        Mistake::TooFast => setup
+            .with_image(|image| {
+                image.limits.slew_nm_per_s = image.limits.slew_nm_per_s.saturating_mul(3).min(4_000_000_000);
+            })
+            .with_settings(|device| {
+                let slew = &mut device.rewriter.correction_slew_nm_per_s;
+                *slew = slew.saturating_mul(3);
+            }),
+        Mistake::TooHard => setup
+            .with_image(|image| {
+                let hard = image.limits.acceleration_nm_per_s2.saturating_mul(8);
+                image.limits.acceleration_nm_per_s2 = hard.min(1_000_000_000_000);
+            })
+            .with_settings(|device| {
+                let hard = &mut device.rewriter.correction_acceleration_nm_per_s2;
+                *hard = hard.saturating_mul(8).min(1_000_000_000_000);
+            }),
+        Mistake::NoJointLimits => {
+            setup.with_settings(|device| device.rewriter.joint_limits_nm = [(i64::MIN, i64::MAX); 6])
+        }
+        _ => setup.clone(),
+    }
+}
+
+/// The servo with a mistake.
+struct Double<'a> {
+    mistake: Mistake,
+    servo: HostServo<'a>,
+    axes: u8,
+    tick_us: u64,
+    clamp_nm: i32,
+    spindle_millirpm: u32,
+    /// Whether the last bytes ended without a delimiter.
+    open: bool,
+    /// Sequence that the servo was told last, and the one that came.
+    told: Option<(u32, u32)>,
+    last: Option<Setpoint>,
+    output: Option<Output>,
+    request: Option<ArmRequest>,
+    /// Time of the servo ahead of the true one, µs.
+    ahead_us: u64,
+    heard_us: u64,
+    /// Mode that is shown instead of the servo's.
+    shown: Option<Mode>,
+}
+
+impl<'a> Double<'a> {
+    fn new(own: &'a Setup, setup: &Setup, mistake: Mistake) -> Self {
+        let [image, _] = setup.images();
+        Self {
+            mistake,
+            servo: HostServo::new(own),
+            axes: setup.settings().axes,
+            tick_us: 1_000_000u64.div_ceil(setup.settings().rewriter.tick_hz.into()),
+            clamp_nm: image.settings().limits.clamp.nm() as i32,
+            spindle_millirpm: image.settings().feed.spindle_millirpm,
+            open: false,
+            told: None,
+            last: None,
+            output: None,
+            request: None,
+            ahead_us: 0,
+            heard_us: 0,
+            shown: None,
+        }
+    }
+
+    /// What is done before the servo gets a setpoint.
+    fn before(&mut self, setpoint: &mut Setpoint, now_us: u64) {
+        match self.mistake {
+            Mistake::AcknowledgedWithDrives if self.servo.mode() == Mode::Off => setpoint.flags = Flags::default(),
+            Mistake::SpindleIgnored => {
+                (setpoint.spindle_millirpm, setpoint.spindle_age_ticks) = (self.spindle_millirpm, 0);
+            }
+            Mistake::GapFollowed => {
+                let most = self.servo.endpoint().settings().rewriter.max_lost_frames;
+                if let Some((told, came)) = self.told {
+                    let ahead = setpoint.sequence.wrapping_sub(came);
+                    let missing = ahead.wrapping_sub(1);
+                    setpoint.sequence = told.wrapping_add(if ahead < 1 << 31 && missing > most { 1 } else { ahead });
+                }
+            }
+            Mistake::PaceIgnored => {
+                let from_last = (now_us + self.ahead_us).saturating_sub(self.heard_us);
+                self.ahead_us += self.tick_us.saturating_sub(from_last);
+            }
+            Mistake::Deaf(reason) => {
+                let mut trial = self.servo.clone();
+                let quiet = trial.endpoint().state().reason() == Reason::None;
+                trial.receive(&packet(setpoint, self.axes), now_us, 0);
+                if let (true, Some(last)) = (quiet && trial.endpoint().state().reason() == reason, self.last) {
+                    *setpoint = Setpoint { sequence: setpoint.sequence, ..last };
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// What is done with the answer.
+    fn after(&mut self, came: &Setpoint, output: &mut Output) {
+        output.sequence = came.sequence;
+        // It answers to what it was told, but for the correction.
+        rebase(came, output);
+        match self.mistake {
+            Mistake::SumOffByOne if output.mode == Mode::Active => output.axes[1] += 1,
+            Mistake::CorrectedInBypass if output.mode == Mode::Bypass => output.correction_nm[0] = 1,
+            Mistake::GateIgnored if output.mode == Mode::Armed && came.flags.has(Flags::DRIVES_ENABLED) => {
+                output.mode = Mode::Active;
+            }
+            Mistake::OtherAxis => {
+                if let Some(request) = &self.request {
+                    let [x, _, z] = request.frame.axes.map(|map| usize::from(map.axis));
+                    output.correction_nm.swap(x, z);
+                }
+            }
+            Mistake::ClampOffByOne => {
+                for nm in &mut output.correction_nm {
+                    *nm += if nm.abs() >= self.clamp_nm { nm.signum() } else { 0 };
+                }
+            }
+            Mistake::RampCutShort if output.mode == Mode::Fault => {
+                (output.mode, output.correction_nm) = (Mode::Bypass, [0; 6]);
+            }
+            Mistake::RampStands if output.mode == Mode::Bypass && is_on(self.output) => {
+                // Its last nanometre never goes.
+                output.mode = Mode::Fault;
+            }
+            _ => {}
+        }
+        if self.mistake != Mistake::SumOffByOne {
+            rebase(came, output);
+        }
+        self.shown = Some(output.mode);
+    }
+}
+
+fn is_on(output: Option<Output>) -> bool {
+    output.is_some_and(|output| matches!(output.mode, Mode::Active | Mode::Hold | Mode::Fault))
+}
+
+fn rebase(came: &Setpoint, output: &mut Output) {
+    for ((to, from), nm) in output.axes.iter_mut().zip(came.axes).zip(output.correction_nm) {
+        *to = from.saturating_add(nm.into());
+    }
+}
+
+fn packet(setpoint: &Setpoint, axes: u8) -> Vec<u8> {
+    let mut packet = [0; MAX_SETPOINT_BYTES + 2];
+    let used = SetpointFrame { axes, setpoint: *setpoint }.encode_packet(&mut packet).unwrap();
+    packet[..used].to_vec()
+}
+
+/// A whole packet with the checksum that its content should have.
+fn mended(bytes: &[u8], axes: u8) -> Option<Vec<u8>> {
+    let mut copy = bytes.strip_suffix(&[0])?.to_vec();
+    let mut raw = unstuff(&mut copy)?.to_vec();
+    let end = raw.len().checked_sub(4)?;
+    let crc = crc32(&raw[..end]).to_le_bytes();
+    raw[end..].copy_from_slice(&crc);
+    SetpointFrame::decode(&raw, axes).ok()?;
+    let mut packet = [&[0], raw.as_slice(), &[0]].concat();
+    stuff(&mut packet);
+    Some(packet)
+}
+
+fn read(bytes: &[u8], axes: u8) -> Option<Setpoint> {
+    let mut copy = bytes.strip_suffix(&[0])?.to_vec();
+    SetpointFrame::decode(unstuff(&mut copy)?, axes).ok()
+}
+
+impl Servo for Double<'_> {
+    fn receive(&mut self, bytes: &[u8], now_us: u64, delay_us: u32) -> Option<Output> {
+        let delay_us = if self.mistake == Mistake::LateAnswerGiven { 0 } else { delay_us };
+        let was_open = std::mem::replace(&mut self.open, bytes.last() != Some(&0));
+        if self.mistake == Mistake::DamagedFrameFollowed
+            && !was_open
+            && let Some(mended) = mended(bytes, self.axes)
+        {
+            return self.servo.receive(&mended, now_us, delay_us);
+        }
+        let Some(came) = read(bytes, self.axes).filter(|_| !was_open) else {
+            return self.servo.receive(bytes, now_us + self.ahead_us, delay_us);
+        };
+        if self.mistake == Mistake::ArmsItself
+            && self.servo.mode() == Mode::Bypass
+            && let Some(request) = &mut self.request
+        {
+            request.part_serial = request.part_serial.wrapping_add(1 << 20);
+            let again = Command::Arm(*request);
+            let _ = self.servo.command(&again, now_us);
+        }
+        let mut told = came;
+        self.before(&mut told, now_us);
+        let at_us = now_us + self.ahead_us;
+        let answer = self.servo.receive(&packet(&told, self.axes), at_us, delay_us);
+        self.heard_us = at_us;
+        let Some(mut output) = answer else {
+            let again = self.output.filter(|output| output.sequence == came.sequence);
+            return again.filter(|_| self.mistake == Mistake::RepeatedFrameAnswered);
+        };
+        self.told = Some((told.sequence, came.sequence));
+        self.last = Some(told);
+        self.after(&came, &mut output);
+        self.output = Some(output);
+        Some(output)
+    }
+
+    fn watch(&mut self, now_us: u64) {
+        if self.mistake != Mistake::SilenceIgnored {
+            self.servo.watch(now_us + self.ahead_us);
+        }
+        if self.servo.mode() == Mode::Off {
+            (self.told, self.shown) = (None, None);
+        }
+    }
+
+    fn command(&mut self, command: &Command, now_us: u64) -> Result<(), Refusal> {
+        let now_us = now_us + self.ahead_us;
+        if self.mistake == Mistake::DisarmIgnored && *command == Command::Disarm {
+            return self.servo.clone().command(command, now_us);
+        }
+        let mut done = self.servo.command(command, now_us);
+        if let Command::Arm(request) = command {
+            let mut request = *request;
+            done = match (self.mistake, done) {
+                (Mistake::SpentListIgnored, Err(Refusal::PartRepeated { .. })) => {
+                    request.part_serial = request.part_serial.wrapping_add(1 << 24);
+                    self.servo.command(&Command::Arm(request), now_us)
+                }
+                (Mistake::BindingIgnored, Err(Refusal::Identity { .. })) => {
+                    let image = self.servo.image().map(|image| image.settings().binding);
+                    request.binding = image.unwrap_or(request.binding);
+                    self.servo.command(&Command::Arm(request), now_us)
+                }
+                (Mistake::ArmedInFault, Err(Refusal::State(Mode::Fault))) => Ok(()),
+                (_, done) => done,
+            };
+            if done.is_ok() {
+                self.request = Some(request);
+            }
+        }
+        if done.is_ok() {
+            self.shown = None;
+        }
+        done
+    }
+
+    fn reset(&mut self) {
+        self.servo.reset();
+        (self.open, self.told, self.last, self.output, self.shown) = (false, None, None, None, None);
+        self.request = None;
+    }
+    fn exchange_image(&mut self, to: Option<bool>) {
+        if self.mistake != Mistake::ImageChangeIgnored {
+            self.servo.exchange_image(to);
+        }
+    }
+    fn mode(&self) -> Mode {
+        match self.shown {
+            Some(mode) if self.servo.mode() != Mode::Off => mode,
+            _ => self.servo.mode(),
+        }
+    }
+    fn drive_enable(&self) -> bool {
+        self.servo.drive_enable() || self.mistake == Mistake::EnabledInOff
+    }
+}
