@@ -18,7 +18,7 @@ struct Target {
     longest: u32,
 }
 
-const TARGETS: [Target; 5] = [
+const TARGETS: [Target; 6] = [
     Target {
         name: "program",
         seeds: &[
@@ -42,6 +42,7 @@ const TARGETS: [Target; 5] = [
         longest: 2_000,
     },
     Target { name: "image", seeds: &[("fuzz/seeds/image", &["tpi"])], longest: 1_000 },
+    Target { name: "servo", seeds: &[("fuzz/seeds/servo", &["bin"])], longest: 16_000 },
 ];
 
 /// Counters for every edge and comparison.

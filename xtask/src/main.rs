@@ -168,7 +168,7 @@ enum Task {
     },
     /// Random bytes, guided by coverage, into everything that reads a file.
     Fuzz {
-        /// Only this target: program, probe, job or image.
+        /// Only this target: program, probe, job, five_axis, image or servo.
         #[arg(long)]
         target: Option<String>,
         /// Inputs for each target, instead of a time.

@@ -9,6 +9,7 @@ mod ledger_records;
 mod ledger_series;
 mod wire_compute;
 mod wire_histories;
+mod wire_longest;
 mod wire_messages;
 mod wire_modes;
 mod wire_power;

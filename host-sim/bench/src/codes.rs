@@ -17,4 +17,6 @@ truepath_ground::codes! {
         / "choose other --rate or --axes, or setpoints in program coordinates",
     H008 => "a run was stopped before its end"
         / "run it again to its end; a shorter run has a smaller --count",
+    H009 => "a rule of the safety contract was broken under attack"
+        / "do not drive axes with this version; report it with the seed",
 }

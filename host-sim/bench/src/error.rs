@@ -4,7 +4,7 @@ use truepath_core::link::Denial;
 use truepath_core::rewrite::Refusal;
 use truepath_ground::diagnostics::{Failure, InputError};
 
-use crate::codes::{H001, H002, H003, H004, H005, H006, H007, H008};
+use crate::codes::{H001, H002, H003, H004, H005, H006, H007, H008, H009};
 
 /// An error between bench and board.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -37,6 +37,9 @@ pub enum BenchError {
     /// Device and host differ.
     #[error("device and host differ: {0}")]
     Differs(String),
+    /// A rule of the safety contract is broken.
+    #[error("{0}")]
+    Alarm(String),
     /// Somebody ended the run.
     #[error("the run was stopped {0}")]
     Stopped(String),
@@ -66,6 +69,7 @@ impl From<BenchError> for InputError {
             BenchError::Denied(denial) => (H004, remedy(denial)),
             BenchError::Foreign(_) => (H005, H005.remedy),
             BenchError::Differs(_) => (H006, H006.remedy),
+            BenchError::Alarm(_) => (H009, H009.remedy),
             BenchError::Stopped(_) => (H008, H008.remedy),
             BenchError::Option { help, .. } => (H007, help.as_str()),
         };

@@ -112,6 +112,7 @@ struct Double<'a> {
     servo: HostServo<'a>,
     axes: u8,
     tick_us: u64,
+    max_step_nm: i64,
     clamp_nm: i32,
     spindle_millirpm: u32,
     /// Whether the last bytes ended without a delimiter.
@@ -119,6 +120,8 @@ struct Double<'a> {
     /// Sequence that the servo was told last, and the one that came.
     told: Option<(u32, u32)>,
     last: Option<Setpoint>,
+    /// The setpoint that came last.
+    came: Option<Setpoint>,
     output: Option<Output>,
     request: Option<ArmRequest>,
     /// Time of the servo ahead of the true one, µs.
@@ -136,11 +139,13 @@ impl<'a> Double<'a> {
             servo: HostServo::new(own),
             axes: setup.settings().axes,
             tick_us: 1_000_000u64.div_ceil(setup.settings().rewriter.tick_hz.into()),
+            max_step_nm: setup.settings().rewriter.max_step.nm(),
             clamp_nm: image.settings().limits.clamp.nm() as i32,
             spindle_millirpm: image.settings().feed.spindle_millirpm,
             open: false,
             told: None,
             last: None,
+            came: None,
             output: None,
             request: None,
             ahead_us: 0,
@@ -171,6 +176,10 @@ impl<'a> Double<'a> {
             Mistake::Deaf(reason) => {
                 let mut trial = self.servo.clone();
                 let quiet = trial.endpoint().state().reason() == Reason::None;
+                if reason != Reason::Jump && self.jumps(setpoint) {
+                    // It is deaf to this one reason only, and stood elsewhere: this must not look like a way back.
+                    setpoint.axes = setpoint.axes.map(|nm| nm.saturating_add(1_000 * self.max_step_nm));
+                }
                 trial.receive(&packet(setpoint, self.axes), now_us, 0);
                 if let (true, Some(last)) = (quiet && trial.endpoint().state().reason() == reason, self.last) {
                     *setpoint = Setpoint { sequence: setpoint.sequence, ..last };
@@ -178,6 +187,16 @@ impl<'a> Double<'a> {
             }
             _ => {}
         }
+    }
+
+    /// Whether a setpoint is farther from the one before than a feed move, in X or Y.
+    fn jumps(&self, setpoint: &Setpoint) -> bool {
+        let (Some(before), Some(request)) = (&self.came, &self.request) else { return false };
+        let [x, y, _] = request.frame.axes.map(|map| usize::from(map.axis));
+        [x, y].iter().any(|&axis| {
+            let (from, to) = (before.axes[axis], setpoint.axes[axis]);
+            from.abs_diff(to) > self.max_step_nm.unsigned_abs()
+        })
     }
 
     /// What is done with the answer.
@@ -275,14 +294,18 @@ impl Servo for Double<'_> {
         }
         let mut told = came;
         self.before(&mut told, now_us);
+        self.came = Some(came);
         let at_us = now_us + self.ahead_us;
+        let accepted = self.servo.endpoint().counters().accepted;
         let answer = self.servo.receive(&packet(&told, self.axes), at_us, delay_us);
         self.heard_us = at_us;
+        if self.servo.endpoint().counters().accepted != accepted {
+            self.told = Some((told.sequence, came.sequence));
+        }
         let Some(mut output) = answer else {
             let again = self.output.filter(|output| output.sequence == came.sequence);
             return again.filter(|_| self.mistake == Mistake::RepeatedFrameAnswered);
         };
-        self.told = Some((told.sequence, came.sequence));
         self.last = Some(told);
         self.after(&came, &mut output);
         self.output = Some(output);
@@ -302,6 +325,9 @@ impl Servo for Double<'_> {
         let now_us = now_us + self.ahead_us;
         if self.mistake == Mistake::DisarmIgnored && *command == Command::Disarm {
             return self.servo.clone().command(command, now_us);
+        }
+        if self.mistake == Mistake::RampStands && self.mode() == Mode::Fault {
+            return Err(Refusal::State(Mode::Fault));
         }
         let mut done = self.servo.command(command, now_us);
         if let Command::Arm(request) = command {
@@ -331,7 +357,8 @@ impl Servo for Double<'_> {
 
     fn reset(&mut self) {
         self.servo.reset();
-        (self.open, self.told, self.last, self.output, self.shown) = (false, None, None, None, None);
+        (self.open, self.told, self.last, self.came) = (false, None, None, None);
+        (self.output, self.shown) = (None, None);
         self.request = None;
     }
     fn exchange_image(&mut self, to: Option<bool>) {

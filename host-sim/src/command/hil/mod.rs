@@ -1,5 +1,6 @@
 //! `truepath hil`: a board under setpoints and faults, compared with the host answer by answer.
 
+mod attack;
 mod on_board;
 mod onlooker;
 mod place;
@@ -8,12 +9,14 @@ mod run;
 
 use std::fmt::Write;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use onlooker::Onlooker;
 use truepath_bench::{BenchError, Faults, RoundTrip};
 use truepath_ground::diagnostics::{Failure, InputError};
 
+pub use attack::{AttackReport, Length};
 pub use on_board::{OnBoard, on_board};
 pub use place::{Kind, open};
 pub use report::{Counts, Report};
@@ -26,7 +29,7 @@ use crate::terminal::Terminal;
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// The correction image.
-    #[arg(required_unless_present = "job")]
+    #[arg(required_unless_present_any = ["job", "attack"])]
     image: Option<PathBuf>,
     /// Have the device make the image of this job first, and compare it with the one made here.
     #[arg(long, value_name = "FILE", requires = "probe", conflicts_with = "image")]
@@ -43,6 +46,15 @@ pub struct Arguments {
     /// So many setpoints along the path with everything that can go wrong, in changing frames.
     #[arg(long, value_name = "N", conflicts_with = "count")]
     random: Option<u64>,
+    /// Attack the host's own servo: random images, settings, controllers and cables, judged by the safety contract alone.
+    #[arg(long, conflicts_with_all = ["image", "job", "setpoints", "random", "count", "link", "rate"])]
+    attack: bool,
+    /// Setpoints of the attack. [default: 1000000]
+    #[arg(long, value_name = "N", requires = "attack", conflicts_with = "seconds")]
+    ticks: Option<u64>,
+    /// Time of the attack, instead of setpoints.
+    #[arg(long, value_name = "S", requires = "attack")]
+    seconds: Option<u64>,
     /// Setpoints in all. [default: 20000, or the file once]
     #[arg(long, value_name = "N")]
     count: Option<u64>,
@@ -106,6 +118,9 @@ enum LinkArgument {
 
 /// Runs and prints what came of it; a difference is an error.
 pub(crate) fn main(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    if arguments.attack {
+        return attacked(arguments, terminal);
+    }
     let options = options(arguments)?;
     let given = arguments.image.as_deref().map(|path| {
         let bytes = image::read(path)?;
@@ -139,6 +154,24 @@ pub(crate) fn main(arguments: &Arguments, terminal: &Terminal) -> Result<(), Fai
         }
         None => Ok(()),
     }
+}
+
+/// The attack; a broken rule is an error.
+fn attacked(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
+    if arguments.board != BoardArgument::Host {
+        let help = "leave --board out: every board is compared with the host byte by byte, by --random";
+        let found = "the attack is on the host's own servo".to_owned();
+        return Err(BenchError::Option { found, help: help.to_owned() }.into());
+    }
+    let length = match arguments.seconds {
+        Some(seconds) => Length::Time(Duration::from_secs(seconds)),
+        None => Length::Setpoints(arguments.ticks.unwrap_or(1_000_000)),
+    };
+    let mut bar = terminal.progress("attack", attack::STEPS);
+    let report = attack::run(arguments.seed, length, &mut bar);
+    drop(bar);
+    terminal.tell(&report, || report.words())?;
+    report.alarm.map_or(Ok(()), |alarm| Err(BenchError::Alarm(alarm).into()))
 }
 
 fn options(arguments: &Arguments) -> Result<Options, Failure> {

@@ -61,6 +61,8 @@ pub(super) struct Link {
     last: Option<(Setpoint, u64)>,
     /// Frames that arrived whole since, and how the newest of them follow each other.
     since: u32,
+    /// Their sequences, but for the one under way.
+    hidden: Vec<u32>,
     run: u32,
     run_sequence: u32,
     /// Whether a frame since the last answer, or its own, said that the drives are disabled.
@@ -90,6 +92,7 @@ impl Link {
             whole: 0,
             last: None,
             since: 0,
+            hidden: vec![],
             run: 0,
             run_sequence: 0,
             disabled: false,
@@ -135,8 +138,9 @@ impl Link {
     }
 
     pub fn unanswered(&mut self) {
-        if self.arrived.take().is_some_and(|arrived| arrived.setpoint.is_some()) {
+        if let Some(Arrived { setpoint: Some(setpoint), .. }) = self.arrived.take() {
             self.answered_us.clear();
+            self.hidden.push(setpoint.sequence);
         }
     }
 
@@ -151,9 +155,11 @@ impl Link {
         self.hid = self.since > 1;
         let ahead = self.last.map(|(before, _)| setpoint.sequence.wrapping_sub(before.sequence));
         if let Some(behind) = ahead.map(u32::wrapping_neg).filter(|&behind| behind <= BEHIND) {
-            // A controller that counts anew is heard after some frames in a row, and so is one after a silence.
+            // A controller that counts anew is heard after some frames in a row, and so is one after a silence. A frame
+            // whose answer was withheld may have been followed: then it counts from there.
             let quiet = self.last.is_some_and(|(_, us)| self.watched_us.saturating_sub(us) >= self.silence_us);
-            hold(self.run >= RESTART_AFTER || quiet, Rule::Old, || {
+            let from_hidden = self.hidden.iter().any(|hidden| hidden.wrapping_sub(setpoint.sequence) > BEHIND);
+            hold(self.run >= RESTART_AFTER || quiet || from_hidden, Rule::Old, || {
                 format!("sequence {} is answered {behind} behind the last one", output.sequence)
             })?;
         }
@@ -171,6 +177,7 @@ impl Link {
         };
         self.last = Some((setpoint, self.arrived_us));
         (self.since, self.run) = (0, 0);
+        self.hidden.clear();
         self.disabled = !setpoint.flags.has(Flags::DRIVES_ENABLED);
         Ok(Some(ticks))
     }
@@ -240,6 +247,7 @@ impl Link {
     fn begin(&mut self) {
         self.last = None;
         (self.whole, self.since, self.run) = (0, 0, 0);
+        self.hidden.clear();
         self.disabled = false;
         self.answered_us.clear();
         self.wholes_us.clear();

@@ -106,10 +106,10 @@ impl Course {
             self.begins(ticks, &at)?;
             (self.cut, self.farthest, self.dead) = (false, 0.0, 0);
         }
-        self.jump(ticks, &at)?;
         let near = self.path.nearest(&at);
         let in_room = [at.x, at.y, at.z].iter().all(|nm| nm.abs() <= ROOM + MARGIN);
         hold(in_room, Rule::OffPath, || format!("on {at:?}, farther than 2.1 m from the first node"))?;
+        self.jump(ticks, &at)?;
         if at.z > high + MARGIN {
             let over = !self.cut && self.is_over_start(&at) && at.z <= self.heights[2] + MARGIN;
             hold(over, Rule::AbovePass, || format!("on {:.0} nm above the pass, {}", at.z, self.cut_before()))?;

@@ -1,0 +1,161 @@
+//! How much a single request makes the device do: the work of every one of them is bounded by the size of a slot, and the
+//! setpoint path stands in front of all of it.
+
+use std::cell::Cell;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use crate::wire_support;
+use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
+use truepath_core::link::{
+    Ask, CHUNK_BYTES, DeviceSettings, Item, PACKET_BYTES, Reply, Request, ResetCause, Response, decode, encode,
+};
+use truepath_fw::computation::ProgressMeter;
+use truepath_fw::config_service::{Board, IMAGE_BYTES, Memory};
+use truepath_fw::device::Device;
+use truepath_fw::flash::{BANK_BYTES, BANK_WORDS, Nor, SECTOR_BYTES, WordState};
+use truepath_fw::slots::SLOT_IMAGE_BYTES;
+use wire_support::*;
+
+/// Bytes read, words programmed, sectors erased.
+type Work = Rc<Cell<[usize; 3]>>;
+
+/// A flash that counts.
+struct Counted(Nor<'static>, Work);
+
+impl Counted {
+    fn count(&self, what: usize, by: usize) {
+        let mut work = self.1.get();
+        work[what] += by;
+        self.1.set(work);
+    }
+}
+
+impl ErrorType for Counted {
+    type Error = <Nor<'static> as ErrorType>::Error;
+}
+
+impl ReadNorFlash for Counted {
+    const READ_SIZE: usize = Nor::READ_SIZE;
+    fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
+        self.count(0, bytes.len());
+        self.0.read(offset, bytes)
+    }
+    fn capacity(&self) -> usize {
+        self.0.capacity()
+    }
+}
+
+impl NorFlash for Counted {
+    const WRITE_SIZE: usize = Nor::WRITE_SIZE;
+    const ERASE_SIZE: usize = Nor::ERASE_SIZE;
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
+        self.count(2, (to - from) as usize / SECTOR_BYTES);
+        self.0.erase(from, to)
+    }
+    fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
+        self.count(1, bytes.len() / Nor::WRITE_SIZE);
+        self.0.write(offset, bytes)
+    }
+}
+
+/// A device that tells what each request cost.
+struct Meter {
+    device: Device<'static, Counted>,
+    work: Work,
+    id: u16,
+    /// Of each kind of request: the most of each work, and of time on this machine.
+    most: Vec<(String, [usize; 3], Duration)>,
+}
+
+impl Meter {
+    fn new() -> Self {
+        fn lent<T: Clone>(blank: T, count: usize) -> &'static mut [T] {
+            vec![blank; count].leak()
+        }
+        let bank = Nor::erased(
+            lent(0xFF, BANK_BYTES).try_into().unwrap(),
+            lent(WordState::Blank, BANK_WORDS).try_into().unwrap(),
+        );
+        let memory = Memory {
+            image: lent(0, IMAGE_BYTES),
+            recording: lent(0, 48_000),
+            program: lent(0, 65_536),
+            job: lent(0, 512),
+            probe: lent(0, 65_536),
+            meter: Box::leak(Box::new(ProgressMeter::new())),
+        };
+        let work = Work::default();
+        let board = Board { name: "test", last_reset: ResetCause::PowerOn };
+        let device = Device::start(Counted(bank, Rc::clone(&work)), memory, board, 0);
+        Self { device, work, id: 0, most: vec![] }
+    }
+
+    fn ask(&mut self, ask: Ask<'_>) {
+        self.id += 1;
+        let mut packet = [0; PACKET_BYTES];
+        let used = encode(&Request { id: self.id, ask }, &mut packet).unwrap();
+        self.work.set([0; 3]);
+        let start = Instant::now();
+        let mut answer = vec![];
+        self.device.config_bytes(&packet[..used], 0, |bytes| answer.extend_from_slice(bytes));
+        let took = start.elapsed();
+        answer.pop();
+        let response: Response<'_> = decode(&mut answer).unwrap();
+        assert!(response.answer.is_ok(), "{:?}", response.answer);
+        let kind = format!("{ask:?}").split([' ', '(']).next().unwrap().to_owned();
+        let work = self.work.get();
+        match self.most.iter_mut().find(|(of, ..)| *of == kind) {
+            Some((_, most, time)) => {
+                (0..3).for_each(|k| most[k] = most[k].max(work[k]));
+                *time = took.max(*time);
+            }
+            None => self.most.push((kind, work, took)),
+        }
+    }
+
+    fn upload(&mut self, item: Item, bytes: &[u8], crc: u32) {
+        self.ask(Ask::Begin { item, length: bytes.len() as u32, crc });
+        for (k, bytes) in bytes.chunks(CHUNK_BYTES).enumerate() {
+            self.ask(Ask::Chunk { offset: (k * CHUNK_BYTES) as u32, bytes });
+        }
+        self.ask(Ask::Commit);
+    }
+}
+
+/// An image of as many nodes as a slot holds, in rounds of 2 m.
+fn largest(first: i64) -> Vec<u8> {
+    let nodes = truepath_core::image::DEVICE_NODES as i64;
+    image_of(
+        (0..nodes).map(|k| (first + k % 5_000 * 100_000 * if k / 5_000 % 2 == 0 { 1 } else { 1 }, k / 5_000)).collect(),
+    )
+}
+
+#[test]
+fn no_request_makes_the_device_do_more_than_a_slot_is_large() {
+    let mut meter = Meter::new();
+    meter.ask(Ask::Configure(DeviceSettings::at_1_khz()));
+    let images = [largest(0), largest(7)];
+    for (slot, image) in images.iter().enumerate() {
+        meter.upload(Item::Image, image, name(image));
+        meter.ask(Ask::Activate { slot: slot as u8, crc: name(image) });
+    }
+    // Once more into a slot that is full, with the other in use.
+    let third = largest(9);
+    meter.upload(Item::Image, &third, name(&third));
+    meter.ask(Ask::Configure(DeviceSettings::at_1_khz()));
+    for (item, bytes) in
+        [(Item::Program, vec![b'('; 65_536]), (Item::Job, vec![1; 512]), (Item::Probe, vec![2; 65_536])]
+    {
+        meter.upload(item, &bytes, truepath_core::checksum::crc32(&bytes));
+    }
+    for ask in
+        [Ask::Hello, Ask::Status, Ask::List, Ask::Settings, Ask::Trace, Ask::Deactivate, Ask::Compute, Ask::Progress]
+    {
+        meter.ask(ask);
+    }
+    for (kind, [read, programmed, erased], time) in &meter.most {
+        println!("{kind}: {read} bytes read, {programmed} words programmed, {erased} sectors erased, {time:?}");
+    }
+    panic!();
+}
