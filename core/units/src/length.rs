@@ -6,7 +6,7 @@ use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::root::rounded_64;
-use super::round::{products_rounded, symmetric, within_64};
+use super::round::{products_to_real, symmetric};
 use super::{Real, div_rounded, isqrt_rounded};
 
 /// An absolute coordinate, nanometres, ±9.2 × 10⁹ m (the machine uses ±4 m). Arithmetic saturates at ±(2⁶³ − 1).
@@ -58,7 +58,7 @@ impl Offset {
     /// From millimetres, rounded to the nanometre.
     #[inline]
     pub const fn from_mm(mm: Real) -> Self {
-        Self(products_rounded((mm.bits() as i128).wrapping_mul(1_000_000), Real::FRACTION_BITS) as i64)
+        Self(products_to_real((mm.bits() as i128).wrapping_mul(1_000_000)))
     }
     /// Millimetres, rounded to 2⁻³² mm; saturates beyond ±2147 km.
     #[inline]
@@ -73,8 +73,7 @@ impl Offset {
     /// This length times a number, rounded to the nanometre, saturating.
     #[inline]
     pub const fn scaled(self, factor: Real) -> Self {
-        let product = (self.0 as i128).wrapping_mul(factor.bits() as i128);
-        Self(within_64(products_rounded(product, Real::FRACTION_BITS)))
+        Self(products_to_real((self.0 as i128).wrapping_mul(factor.bits() as i128)))
     }
     /// This length over another, as a number; saturates, 0/0 is 0.
     #[inline]
@@ -86,7 +85,7 @@ impl Offset {
     pub const fn blend(self, a: Real, other: Self, b: Real) -> Self {
         let p = (self.0 as i128).wrapping_mul(a.bits() as i128);
         let q = (other.0 as i128).wrapping_mul(b.bits() as i128);
-        Self(within_64(products_rounded(p.wrapping_add(q), Real::FRACTION_BITS)))
+        Self(products_to_real(p.wrapping_add(q)))
     }
 }
 

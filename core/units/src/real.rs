@@ -6,7 +6,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 use fixed::types::I32F32;
 
 use super::div_rounded;
-use super::round::{products_rounded, symmetric, within_64};
+use super::round::{products_to_real, symmetric, within_64};
 
 /// A fixed-point number with 31 integer and 32 fraction bits (Q31.32): range ±2.1 × 10⁹, step 2.3 × 10⁻¹⁰.
 ///
@@ -67,7 +67,7 @@ impl Real {
     /// `self · other`, rounded once, saturating.
     #[inline]
     pub const fn times(self, other: Self) -> Self {
-        Self::narrow(products_rounded((self.bits() as i128).wrapping_mul(other.bits() as i128), 32))
+        Self(I32F32::from_bits(products_to_real((self.bits() as i128).wrapping_mul(other.bits() as i128))))
     }
     /// `self / other`, rounded once, saturating; 0/0 = 0.
     #[inline]
@@ -79,7 +79,7 @@ impl Real {
     pub const fn dot(a: Self, b: Self, c: Self, d: Self) -> Self {
         let p = (a.bits() as i128).wrapping_mul(b.bits() as i128);
         let q = (c.bits() as i128).wrapping_mul(d.bits() as i128);
-        Self::narrow(products_rounded(p.wrapping_add(q), 32))
+        Self(I32F32::from_bits(products_to_real(p.wrapping_add(q))))
     }
     /// The magnitude.
     #[inline]

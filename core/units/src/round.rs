@@ -38,8 +38,27 @@ pub const fn shift_rounded(value: i128, bits: u32) -> i128 {
 /// hold −2⁶³, so that the sum is within ±(2¹²⁷ − 2⁶⁴).
 #[inline]
 pub(crate) const fn products_rounded(sum: i128, bits: u32) -> i128 {
+    with_half(sum, bits) >> (bits & 127)
+}
+
+/// The same by 32 bits, saturated to ±(2⁶³ − 1): the product of the model's numbers.
+#[inline]
+pub(crate) const fn products_to_real(sum: i128) -> i64 {
+    let sum = with_half(sum, 32);
+    // Far from the ends of the range, as almost all are, the upper word alone tells that the lower bits hold it.
+    if ((sum >> 64) as i64).wrapping_add(1 << 30) as u64 >> 31 == 0 { (sum >> 32) as i64 } else { to_the_end(sum) }
+}
+
+#[inline]
+const fn with_half(sum: i128, bits: u32) -> i128 {
     let half = 1i64 << (bits.wrapping_sub(1) & 63);
-    sum.wrapping_add(half as i128).wrapping_add(sum >> 127) >> (bits & 127)
+    sum.wrapping_add(half.wrapping_add((sum >> 127) as i64) as u64 as i128)
+}
+
+#[cold]
+#[inline(never)]
+const fn to_the_end(sum: i128) -> i64 {
+    within_64(sum >> 32)
 }
 
 /// `value / 2^bits` in 64 bits, the same rounding, for the servo cycle. `bits` ≤ 62.
@@ -146,6 +165,7 @@ mod tests {
             let [a, b, c, d] = v.map(|v| i128::from(symmetric(v)) >> drop);
             for sum in [a * b + c * d, a * b, (a << bits.min(62)) + (1 << (bits - 1)), (a << bits.min(62)) - (1 << (bits - 1))] {
                 prop_assert_eq!(products_rounded(sum, bits), shift_rounded(sum, bits));
+                prop_assert_eq!(products_to_real(sum), within_64(shift_rounded(sum, 32)));
                 let limits = (-i128::from(i64::MAX), i128::from(i64::MAX));
                 prop_assert_eq!(i128::from(within_64(sum)), sum.clamp(limits.0, limits.1));
             }
