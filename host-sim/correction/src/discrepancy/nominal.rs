@@ -1,7 +1,8 @@
 //! What the parameters do to the wall that a correction has to cancel, beside every sample of a contour.
 
+use rayon::prelude::*;
 use truepath_core::correct::Band;
-use truepath_core::cut::{ForceTable, Loop, Path, Sample, Teeth};
+use truepath_core::cut::{ForceTable, Loop, Path, Sample, State, Teeth};
 use truepath_core::identify::{COUNT, Parameter, Parameters};
 use truepath_core::job;
 use truepath_core::units::{Offset, Real};
@@ -16,24 +17,25 @@ const HEIGHTS: i64 = truepath_core::correct::HEIGHTS;
 /// sample of the contour, mm: what changes of the wall when the machine is another than the correction was made for.
 pub(super) fn sensitivities(path: &Path, core: &job::Identified) -> Vec<[f64; COUNT]> {
     let mut rows = vec![[0.0; COUNT]; path.count()];
-    for (k, parameter) in Parameter::ALL.iter().enumerate() {
-        match parameter {
-            // Another clamping, another datum: it is not on the wall to come.
-            Parameter::DatumX | Parameter::DatumY => continue,
-            Parameter::Undersize => rows.iter_mut().for_each(|row| row[k] = float(core.prior.sigma[k])),
-            _ if core.prior.sigma[k] == Real::ZERO => continue,
-            _ => {
-                let [above, below] = [STEP, -STEP].map(|step| {
-                    let mut theta = core.fit.theta;
-                    theta[k] += step;
-                    deflections(path, &core.prior.at(&theta))
-                });
-                let quotient = 1.0 / (2.0 * float(STEP));
-                for (row, (above, below)) in rows.iter_mut().zip(above.iter().zip(&below)) {
-                    row[k] = mm(*above - *below) * quotient;
-                }
-            }
+    let states = engaged(path, core);
+    let change = |(k, parameter): (usize, &Parameter)| match parameter {
+        // Another clamping, another datum: it is not on the wall to come.
+        Parameter::DatumX | Parameter::DatumY => None,
+        Parameter::Undersize => Some((k, vec![float(core.prior.sigma[k]); path.count()])),
+        _ if core.prior.sigma[k] == Real::ZERO => None,
+        _ => {
+            let [above, below] = [STEP, -STEP].map(|step| {
+                let mut theta = core.fit.theta;
+                theta[k] += step;
+                deflections(path, &states, &core.prior.at(&theta))
+            });
+            let quotient = 1.0 / (2.0 * float(STEP));
+            Some((k, above.iter().zip(&below).map(|(above, below)| mm(*above - *below) * quotient).collect()))
         }
+    };
+    let changes: Vec<(usize, Vec<f64>)> = Parameter::ALL.par_iter().enumerate().filter_map(change).collect();
+    for (k, change) in changes {
+        rows.iter_mut().zip(change).for_each(|(row, change)| row[k] = change);
     }
     rows
 }
@@ -42,7 +44,7 @@ pub(super) fn sensitivities(path: &Path, core: &job::Identified) -> Vec<[f64; CO
 pub(super) fn stock_sensitivities(path: &Path, core: &job::Identified) -> Vec<f64> {
     let [more, less] = moved_stock(path).map(|(mut buffer, shift)| {
         let moved = path.with_stock_moved(&mut buffer, |_| shift);
-        (shift, deflections(&moved, &core.fit.parameters))
+        (shift, deflections(&moved, &engaged(&moved, core), &core.fit.parameters))
     });
     let per = mm(less.0 - more.0);
     more.1.iter().zip(&less.1).map(|(more, less)| if per > 0.0 { mm(*more - *less) / per } else { 0.0 }).collect()
@@ -54,22 +56,33 @@ pub(super) fn moved_stock(path: &Path) -> [(Vec<Sample>, Offset); 2] {
     [-share, share].map(|shift| (vec![Sample::BLANK; path.samples().len()], shift))
 }
 
-/// Wall error by the deflection at the nominal engagement, mean over the height, beside every sample of the contour.
-fn deflections(path: &Path, parameters: &Parameters) -> Vec<Offset> {
+/// The cutter at its nominal place beside every sample of the contour: how far it is engaged there, no machine changes.
+fn engaged(path: &Path, core: &job::Identified) -> Vec<State> {
+    let table = core.table();
+    let machine = core.machine(path, &table);
+    (path.first()..path.first() + path.count()).map(|index| machine.nominal(index, Real::ZERO)).collect()
+}
+
+/// Wall error by the deflection of a machine at the nominal engagement, mean over the height, beside every sample of the contour.
+fn deflections(path: &Path, engaged: &[State], parameters: &Parameters) -> Vec<Offset> {
     let table = ForceTable::new(parameters.coefficients.size_exponent);
     let machine: Loop = parameters.machine(path, &table);
-    let (mut scale, mut teeth) = ((None, Real::ZERO), Teeth::BLANK);
-    let wall = |k: usize| {
-        let index = path.first() + k;
-        let sample = &path.samples()[index];
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    let mut scale = (None, Real::ZERO);
+    let states = engaged.iter().zip(samples).map(|(state, sample)| {
         if scale.0 != Some(sample.feed) {
             let feed = path.setup().feed_per_tooth(sample.feed);
             scale = (Some(sample.feed), machine.coefficients.chip_scale(feed));
         }
-        let state = machine.nominal(index, scale.1);
-        let mut along = |k: i64| machine.deflection_parts(&mut teeth, &state, Band::WHOLE.at(k)).1.along(sample.normal);
-        let sum = (0..HEIGHTS).fold(Offset::ZERO, |sum, k| sum + along(k));
-        -sum.scaled(Real::ratio(1, HEIGHTS))
-    };
-    (0..path.count()).map(wall).collect()
+        State { chip_scale: scale.1, ..*state }
+    });
+    let states: Vec<State> = states.collect();
+    // Height by height: the flutes in the stock are mostly those of the sample before.
+    let (mut sums, mut teeth) = (vec![Offset::ZERO; states.len()], Teeth::BLANK);
+    for height in (0..HEIGHTS).map(|k| Band::WHOLE.at(k)) {
+        for ((sum, state), sample) in sums.iter_mut().zip(&states).zip(samples) {
+            *sum += machine.deflection_parts(&mut teeth, state, height).1.along(sample.normal);
+        }
+    }
+    sums.iter().map(|sum| -sum.scaled(Real::ratio(1, HEIGHTS))).collect()
 }
