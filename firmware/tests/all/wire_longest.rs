@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use crate::wire_support;
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 use truepath_core::link::{
-    Ask, CHUNK_BYTES, DeviceSettings, Item, PACKET_BYTES, Reply, Request, ResetCause, Response, decode, encode,
+    Ask, CHUNK_BYTES, DeviceSettings, Item, PACKET_BYTES, Request, ResetCause, Response, decode, encode,
 };
 use truepath_fw::computation::ProgressMeter;
 use truepath_fw::config_service::{Board, IMAGE_BYTES, Memory};
@@ -123,12 +123,13 @@ impl Meter {
     }
 }
 
-/// An image of as many nodes as a slot holds, in rounds of 2 m.
+/// An image of as many nodes as a slot holds, up and down in rows of half a metre.
 fn largest(first: i64) -> Vec<u8> {
-    let nodes = truepath_core::image::DEVICE_NODES as i64;
-    image_of(
-        (0..nodes).map(|k| (first + k % 5_000 * 100_000 * if k / 5_000 % 2 == 0 { 1 } else { 1 }, k / 5_000)).collect(),
-    )
+    let place = |k: i64| {
+        let (row, along) = (k / 5_000, k % 5_000);
+        (first + if row % 2 == 0 { along } else { 4_999 - along } * 100_000, row * 100_000)
+    };
+    image_of((0..truepath_core::image::DEVICE_NODES as i64).map(place).collect())
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn alarms(mistake: Mistake, sessions: u64, enough: usize) -> (Vec<Rule>, String)
 }
 
 /// Every double, and the rule that it breaks.
-const EXPECTED: &[(Mistake, Rule)] = &[
+pub const EXPECTED: &[(Mistake, Rule)] = &[
     (Mistake::DamagedFrameFollowed, Rule::Damaged),
     (Mistake::RepeatedFrameAnswered, Rule::Old),
     (Mistake::LateAnswerGiven, Rule::Late),

@@ -4,3 +4,4 @@ mod attack_mutants;
 mod attack_random;
 mod attack_settled;
 mod doubles;
+mod requirements;
