@@ -14,13 +14,12 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
 use crate::linuxcnc;
-use crate::repository::{cargo, program, read, root, run, target};
+use crate::repository::{cargo, copy, make_folder, program, read, root, run, target, write};
 use crate::step::{Failure, Outcome, Passed};
 
 /// The triple that the packages are for.
@@ -254,22 +253,6 @@ fn used(usr: &Path) -> Result<(), Failure> {
     run(command.arg("--quiet").arg("--output").arg(&work))?;
     let corrected = fs::metadata(work.join("corrected.nc")).is_ok_and(|data| data.len() > 0);
     if corrected { Ok(()) } else { Err(Failure::found("the installed program corrected nothing")) }
-}
-
-fn make_folder(folder: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(folder).map_err(|e| Failure::found(format!("{}: {e}", folder.display())))
-}
-
-fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    make_folder(file.parent().unwrap_or(file))?;
-    fs::write(file, bytes).map_err(|e| Failure::found(format!("{}: {e}", file.display())))
-}
-
-/// Copies a file and sets its rights.
-pub fn copy(from: &Path, to: &Path, mode: u32) -> Result<(), Failure> {
-    let bytes = fs::read(from).map_err(|e| Failure::found(format!("{}: {e}", from.display())))?;
-    write(to, &bytes)?;
-    fs::set_permissions(to, fs::Permissions::from_mode(mode)).map_err(|e| Failure::found(e.to_string()))
 }
 
 /// What lies in a folder, by name.

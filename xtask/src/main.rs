@@ -290,8 +290,9 @@ fn test(report: &mut Report, all: bool) {
         report.run(Step::new("conformance", || conformance::check(false)));
         // It mills in real time and hardly computes: a tenth of one processor.
         let mut linuxcnc = repository::itself();
-        report.beside("linuxcnc", linuxcnc.arg("linuxcnc"), |report| {
-            step::stand_back();
+        let said = repository::target().join("linuxcnc.log");
+        report.beside("linuxcnc", linuxcnc.arg("linuxcnc"), &said, |report| {
+            repository::stand_back();
             report.run(Step::new("shop", || shop::check(None, None, false)));
             report.run(Step::new("judge", || judge::run_all(None)));
             report.run(Step::new("bench", || bench::time(true, false, &[])));

@@ -1,6 +1,8 @@
 //! Where things are, and programs run from there.
 
 use std::ffi::OsStr;
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
@@ -65,6 +67,40 @@ pub fn read(command: &mut Command) -> Result<String, Failure> {
 /// Whether a command can be started and succeeds, in silence.
 pub fn succeeds(command: &mut Command) -> bool {
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())
+}
+
+/// Lets other processes go first from now on.
+pub fn stand_back() {
+    if !succeeds(program("renice").args(["-n", "10", "-p", &std::process::id().to_string()])) {
+        eprintln!("    there is no renice: what follows does not stand back");
+    }
+}
+
+/// Makes a folder, with those above it.
+///
+/// # Errors
+/// What the system says.
+pub fn make_folder(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder).map_err(|e| Failure::found(format!("{}: {e}", folder.display())))
+}
+
+/// Writes a file, with the folders above it.
+///
+/// # Errors
+/// What the system says.
+pub fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    make_folder(file.parent().unwrap_or(file))?;
+    fs::write(file, bytes).map_err(|e| Failure::found(format!("{}: {e}", file.display())))
+}
+
+/// Copies a file and sets its rights.
+///
+/// # Errors
+/// What the system says.
+pub fn copy(from: &Path, to: &Path, mode: u32) -> Result<(), Failure> {
+    let bytes = fs::read(from).map_err(|e| Failure::found(format!("{}: {e}", from.display())))?;
+    write(to, &bytes)?;
+    fs::set_permissions(to, fs::Permissions::from_mode(mode)).map_err(|e| Failure::found(e.to_string()))
 }
 
 /// Whether missing tools may be installed: by a continuous-integration run, or by a user who is root.

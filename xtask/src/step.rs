@@ -3,10 +3,10 @@
 //! All steps of a run are done even after one failed, so that one run shows everything; the closing table names them.
 
 use std::fs::File;
+use std::path::Path;
 use std::process::{Child, Command, ExitCode};
 
 use crate::cost::{Cost, Meter};
-use crate::repository::{program, succeeds, target};
 
 /// How a step ended that did not fail.
 #[derive(Debug)]
@@ -65,17 +65,17 @@ impl Default for Report {
 impl Report {
     /// Does a step in a process of its own, and others meanwhile: one that waits more than it computes, as a machine that
     /// mills in real time does. What it says comes when it has ended.
-    pub fn beside(&mut self, name: &'static str, command: &mut Command, others: impl FnOnce(&mut Self)) {
+    /// It goes into a file meanwhile.
+    pub fn beside(&mut self, name: &'static str, command: &mut Command, said: &Path, others: impl FnOnce(&mut Self)) {
         eprintln!("==> {name}, beside the steps that follow");
         let clock = Meter::start();
-        let said = target().join(format!("{name}.log"));
-        let begun = begin(command, &said);
+        let begun = begin(command, said);
         others(self);
         // Of a child the time of the processor counts when it is waited for, and nothing else ends meanwhile.
         let processor = Meter::start();
         let outcome = begun.and_then(|mut child| {
             let status = child.wait().map_err(|e| Failure::found(e.to_string()))?;
-            eprintln!("==> {name}\n{}", String::from_utf8_lossy(&std::fs::read(&said).unwrap_or_default()));
+            eprintln!("==> {name}\n{}", String::from_utf8_lossy(&std::fs::read(said).unwrap_or_default()));
             match status.code() {
                 Some(0) => Ok(Passed::Done),
                 Some(3) => Err(Failure::Missing(format!("see {}", said.display()))),
@@ -134,15 +134,8 @@ impl Report {
     }
 }
 
-/// Lets other processes go first from now on.
-pub fn stand_back() {
-    if !succeeds(program("renice").args(["-n", "10", "-p", &std::process::id().to_string()])) {
-        eprintln!("    there is no renice: what follows does not stand back");
-    }
-}
-
 /// Starts a command whose output goes into a file.
-fn begin(command: &mut Command, said: &std::path::Path) -> Result<Child, Failure> {
+fn begin(command: &mut Command, said: &Path) -> Result<Child, Failure> {
     let failed = |e: std::io::Error| Failure::found(format!("{}: {e}", said.display()));
     let file = File::create(said).map_err(failed)?;
     let both = file.try_clone().map_err(failed)?;
@@ -207,18 +200,19 @@ mod tests {
 
     #[test]
     fn a_step_beside_others_ends_as_its_process_did_and_the_others_are_done() {
-        let _ = std::fs::create_dir_all(target());
+        let said = std::env::temp_dir().join(format!("step-{}.log", std::process::id()));
         for (code, wanted) in [("0", 0), ("1", 1), ("3", 3)] {
             let mut report = Report::default();
             let mut command = Command::new("sh");
             command.args(["-c", &format!("echo milled; exit {code}")]);
-            report.beside("aside", &mut command, |report| report.run(Step::new("other", || Ok(Passed::Done))));
+            report.beside("aside", &mut command, &said, |report| report.run(Step::new("other", || Ok(Passed::Done))));
             assert_eq!(report.ended.iter().map(|(name, ..)| *name).collect::<Vec<_>>(), ["other", "aside"]);
             assert_eq!(report.exit_code(), wanted);
         }
-        assert_eq!(std::fs::read_to_string(target().join("aside.log")).unwrap(), "milled\n");
+        assert_eq!(std::fs::read_to_string(&said).unwrap(), "milled\n");
         let mut report = Report::default();
-        report.beside("nothing", &mut Command::new("/no/such/program"), |_| {});
+        report.beside("nothing", &mut Command::new("/no/such/program"), &said, |_| {});
+        std::fs::remove_file(&said).unwrap();
         assert_eq!(report.exit_code(), 1);
     }
 

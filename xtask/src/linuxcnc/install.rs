@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::component;
-use crate::dist::copy;
-use crate::repository::{cargo, is_root, may_install, program, root, run, target};
+use crate::repository::{cargo, copy, is_root, may_install, program, root, run, target};
 use crate::step::{Failure, Outcome, Passed};
 
 /// Programs on the path.

@@ -166,3 +166,12 @@ pub struct Alarm {
     /// Number of the setpoint in the session.
     pub setpoint: u64,
 }
+
+/// Situations in which a stricter rule than the contract would raise an alarm, by the words of that rule.
+pub const SETTLED: [&str; 5] = [
+    "correction on another axis",
+    "on, but",
+    "a damaged frame was followed",
+    "on above the pass away from the start",
+    "began",
+];

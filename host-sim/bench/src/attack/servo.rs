@@ -106,3 +106,6 @@ impl Servo for HostServo<'_> {
         self.endpoint.drive_enable()
     }
 }
+
+/// Makes what is attacked.
+pub type Make<'m> = &'m dyn for<'a> Fn(&'a Setup) -> Box<dyn Servo + 'a>;

@@ -7,7 +7,7 @@ use truepath_core::link::DeviceSettings;
 use truepath_core::rewrite::{ArmRequest, Flags, Frame, Mode, Setpoint};
 
 use super::link::Link;
-use super::{STOPS, Verdict, hold};
+use super::verdict::{STOPS, Verdict, hold};
 use crate::attack::rule::Rule;
 use crate::attack::setup::Setup;
 

@@ -7,7 +7,7 @@ use truepath_core::link::DeviceSettings;
 use truepath_core::rewrite::{AXES, Mode, Output, Reason, Setpoint, Status};
 
 use super::link::{Link, Ticks};
-use super::{Verdict, hold, is_on};
+use super::verdict::{Verdict, hold, is_on};
 use crate::attack::rule::{Alarm, Rule};
 
 /// The limits and what went out last.

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use truepath_core::link::{BEHIND, DeviceSettings, RESTART_AFTER};
 use truepath_core::rewrite::{Flags, Output, Setpoint};
 
-use super::{Verdict, alarm, hold};
+use super::verdict::{Verdict, alarm, hold};
 use crate::attack::rule::{Alarm, Rule};
 
 /// Frames that may still come out of the cable.

@@ -11,6 +11,7 @@ mod arming;
 mod limits;
 mod link;
 mod place;
+mod verdict;
 
 use truepath_core::link::DeviceSettings;
 use truepath_core::rewrite::{AXES, Flags, Limits, Mode, Output, Reason, Setpoint};
@@ -19,33 +20,12 @@ use arming::Arming;
 use limits::Bounds;
 use link::Link;
 use place::Course;
+use verdict::{Verdict, alarm, hold, is_on};
 
-use super::Tally;
-use super::rule::{Alarm, Rule};
+use super::rule::{Rule, SETTLED};
 use super::setup::Setup;
+use super::tally::Tally;
 use crate::traffic::Command;
-
-/// Situations in which a stricter rule than the contract would raise an alarm, by the words of that rule.
-pub const SETTLED: [&str; 5] = [
-    "correction on another axis",
-    "on, but",
-    "a damaged frame was followed",
-    "on above the pass away from the start",
-    "began",
-];
-
-/// What a check gives.
-type Verdict = Result<(), Box<Alarm>>;
-
-/// An alarm; session and setpoint are put in by those who know them.
-fn alarm(rule: Rule, found: impl Into<String>) -> Verdict {
-    Err(Box::new(Alarm { rule, found: found.into(), session: 0, setpoint: 0 }))
-}
-
-/// The rule holds, or its alarm.
-fn hold(holds: bool, rule: Rule, found: impl FnOnce() -> String) -> Verdict {
-    if holds { Ok(()) } else { alarm(rule, found()) }
-}
 
 /// The checker of one session.
 #[derive(Clone, Debug)]
@@ -125,7 +105,7 @@ impl Checker {
     ///
     /// # Errors
     /// The rule that was broken.
-    pub fn watched(&mut self, now_us: u64, mode: Mode) -> Result<(), Box<Alarm>> {
+    pub fn watched(&mut self, now_us: u64, mode: Mode) -> Verdict {
         self.link.watched(now_us);
         hold(!self.link.is_silent(now_us) || mode == Mode::Off, Rule::Silence, || {
             format!("in {mode} {} us after the last frame that arrived whole", self.link.quiet_us(now_us))
@@ -136,7 +116,7 @@ impl Checker {
     ///
     /// # Errors
     /// The rule that was broken.
-    pub fn looked(&mut self, mode: Mode, drive_enable: bool) -> Result<(), Box<Alarm>> {
+    pub fn looked(&mut self, mode: Mode, drive_enable: bool) -> Verdict {
         hold(drive_enable == (mode != Mode::Off), Rule::Enable, || format!("in {mode} the enable is {drive_enable}"))?;
         if mode == Mode::Off {
             if self.mode != Mode::Off {
@@ -153,7 +133,7 @@ impl Checker {
     ///
     /// # Errors
     /// The rule that was broken.
-    pub fn commanded(&mut self, command: &Command, done: bool, before: Mode, now_us: u64) -> Result<(), Box<Alarm>> {
+    pub fn commanded(&mut self, command: &Command, done: bool, before: Mode, now_us: u64) -> Verdict {
         self.commands += 1;
         match command {
             Command::Acknowledge if done => {
@@ -180,7 +160,7 @@ impl Checker {
     ///
     /// # Errors
     /// The rule that was broken.
-    pub fn heard(&mut self, answer: Option<&Output>, at_us: u64) -> Result<(), Box<Alarm>> {
+    pub fn heard(&mut self, answer: Option<&Output>, at_us: u64) -> Verdict {
         let Some(output) = answer else {
             self.link.unanswered();
             return Ok(());
@@ -277,12 +257,4 @@ impl Checker {
             *to += count;
         }
     }
-}
-
-/// Flags that end an arming.
-const STOPS: Flags = Flags::EMERGENCY_STOP.with(Flags::ABORT).with(Flags::TOOL_CHANGE).with(Flags::PROGRAM_END);
-
-/// Whether there may be a correction.
-const fn is_on(mode: Mode) -> bool {
-    matches!(mode, Mode::Active | Mode::Hold | Mode::Fault)
 }

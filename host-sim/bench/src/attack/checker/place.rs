@@ -5,7 +5,7 @@ use truepath_core::link::DeviceSettings;
 use truepath_core::rewrite::{Flags, Frame, Mode, Output, Setpoint};
 
 use super::link::Ticks;
-use super::{Verdict, hold};
+use super::verdict::{Verdict, hold};
 use crate::attack::geometry::{Path, Place};
 use crate::attack::rule::{Alarm, Rule};
 
