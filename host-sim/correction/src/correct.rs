@@ -5,7 +5,7 @@ use truepath_core::cut::Path;
 use truepath_core::gcode::program_crc;
 use truepath_core::identify::Observation;
 use truepath_core::image::{DEVICE_NODES, image_bytes};
-use truepath_core::job::{self, LawName};
+use truepath_core::job;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::units::mm;
 use truepath_job::feature::Plan;
@@ -18,7 +18,7 @@ use truepath_program::codes::P004;
 use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program, unrolled};
 
 use crate::correction::{Correction, DesignRequest, Identification, MeasuredCut, design_correction, identify_together};
-use crate::discrepancy::{Along, PartCut, relieved};
+use crate::discrepancy::{Along, PartCut, is_fitted, relieved};
 use crate::edits::block_edits;
 use crate::feeds;
 use crate::identification::Found;
@@ -117,8 +117,7 @@ fn beside(
     mut progress: impl FnMut(f64),
 ) -> (Vec<Identification>, Vec<Along>) {
     let (Some(cut), Some(known)) = (cuts.first(), identified.first()) else { return (identified, Vec::new()) };
-    // The other laws are kept to be compared with, as they are printed.
-    if !cut.pass.job.discrepancy || cut.pass.job.numbers.correct.law != LawName::Model {
+    if !is_fitted(cut.pass) {
         let none = vec![Along::default(); identified.len()];
         return (identified, none);
     }

@@ -7,15 +7,15 @@ use truepath_core::correct::{
 };
 use truepath_core::cut::{ForceTable, Loop, Passage, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{Cut, Fit, Observation, Prior};
+use truepath_core::identify::{Fit, Observation, Prior};
 use truepath_core::job;
 use truepath_core::units::{Offset, hypot_nm};
 use truepath_ground::diagnostics::Failure;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
-use crate::discrepancy::Along;
-use crate::identification::{Found, Points, asked, found};
+use crate::discrepancy::{Along, PartCut, plain};
+use crate::identification::{Found, asked};
 use crate::misfit::refuse_misfit;
 use crate::parallel_walls::ParallelWalls;
 
@@ -86,20 +86,18 @@ pub fn identify_together(
     mut progress: impl FnMut(f64),
 ) -> Result<Vec<Identification>, Failure> {
     let Some(first) = cuts.first() else { return Ok(Vec::new()) };
-    let mut observations = Vec::new();
-    let mut points = Vec::new();
-    for cut in cuts {
-        let own = cut.measurement.observations()?;
-        points.push(Cut { path: *cut.path, points: own.len(), part: 0 });
-        observations.extend(own);
-    }
+    let measured = cuts.iter().map(|cut| cut.measurement.observations()).collect::<Result<Vec<_>, _>>()?;
     let law = asked(first.pass.core.job.force.model);
-    let points = Points { cuts: &points, earlier: &[], observations: &observations };
-    let uncorrected = |_, _| Vector::ZERO;
-    let Found { core, observations, .. } = found(&first.pass.core, law, points, uncorrected, &mut progress);
+    let parts: Vec<PartCut<'_>> = cuts
+        .iter()
+        .zip(&measured)
+        .enumerate()
+        .map(|(contour, (cut, observations))| PartCut { path: *cut.path, contour, part: 0, nodes: &[], observations })
+        .collect();
+    let Found { core, observations, .. } = plain(first.pass, law, &parts, &mut progress);
     let mut rest = observations.into_iter();
-    let own = |cut: &Cut| Identification { core, observations: rest.by_ref().take(cut.points).collect() };
-    let identified: Vec<Identification> = points.cuts.iter().map(own).collect();
+    let own = |own: &Vec<Observation>| Identification { core, observations: rest.by_ref().take(own.len()).collect() };
+    let identified: Vec<Identification> = measured.iter().map(own).collect();
     for (cut, identified) in cuts.iter().zip(&identified) {
         refuse_misfit(cut.pass, cut.measurement, &core, &identified.observations)?;
     }

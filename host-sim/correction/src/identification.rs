@@ -48,25 +48,42 @@ pub fn found(
     commanded: impl Fn(usize, usize) -> Vector + Copy + Sync,
     progress: &mut dyn FnMut(f64),
 ) -> Found {
-    let under = |law, progress: &mut dyn FnMut(f64)| {
-        let (mut earlier, mut observations) = (points.earlier.to_vec(), points.observations.to_vec());
-        let cuts: Vec<Cut> = points.cuts.iter().map(|cut| Cut { path: cut.path.with_law(law), ..*cut }).collect();
-        let needed = cuts.iter().map(|cut| cut.path.working().len()).max().unwrap_or_default() + 1;
-        let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
-        let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
-        let prior = pass.prior(law);
-        let mut observe = |permille| progress(f64::from(permille) / 1000.0);
-        let fit = identify(&cuts, &prior, &mut earlier, &mut observations, commanded, &mut workspace, &mut observe);
-        Found { core: job::Identified { law, prior, fit }, earlier, observations }
-    };
     if let Some(law) = law {
-        return under(law, progress);
+        return under(law, pass, points, commanded, progress);
     }
+    let (mean, helical) = under_both(pass, points, commanded, progress);
+    if speaks_for_mean(&mean.core.fit, &helical.core.fit) { mean } else { helical }
+}
+
+/// As [`found`], under the mean law and under the helical one.
+pub fn under_both(
+    pass: &job::ContourPass,
+    points: Points<'_>,
+    commanded: impl Fn(usize, usize) -> Vector + Copy + Sync,
+    progress: &mut dyn FnMut(f64),
+) -> (Found, Found) {
     let mut mean = None;
     let helical = rayon::in_place_scope(|threads| {
-        threads.spawn(|_| mean = Some(under(WallLaw::Mean, &mut |_| ())));
-        under(WallLaw::Helical, progress)
+        threads.spawn(|_| mean = Some(under(WallLaw::Mean, pass, points, commanded, &mut |_| ())));
+        under(WallLaw::Helical, pass, points, commanded, progress)
     });
-    let Some(mean) = mean else { return helical };
-    if speaks_for_mean(&mean.core.fit, &helical.core.fit) { mean } else { helical }
+    (mean.unwrap_or_else(|| helical.clone()), helical)
+}
+
+fn under(
+    law: WallLaw,
+    pass: &job::ContourPass,
+    points: Points<'_>,
+    commanded: impl Fn(usize, usize) -> Vector + Copy,
+    progress: &mut dyn FnMut(f64),
+) -> Found {
+    let (mut earlier, mut observations) = (points.earlier.to_vec(), points.observations.to_vec());
+    let cuts: Vec<Cut> = points.cuts.iter().map(|cut| Cut { path: cut.path.with_law(law), ..*cut }).collect();
+    let needed = cuts.iter().map(|cut| cut.path.working().len()).max().unwrap_or_default() + 1;
+    let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
+    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
+    let prior = pass.prior(law);
+    let mut observe = |permille| progress(f64::from(permille) / 1000.0);
+    let fit = identify(&cuts, &prior, &mut earlier, &mut observations, commanded, &mut workspace, &mut observe);
+    Found { core: job::Identified { law, prior, fit }, earlier, observations }
 }

@@ -35,6 +35,7 @@ pub mod misfit;
 mod parallel_walls;
 pub mod plan;
 pub mod planned;
+pub mod plausible;
 pub mod remarks;
 pub mod rows;
 mod seal;

@@ -51,11 +51,10 @@ impl Shop {
         Some(Self { case, touched })
     }
 
-    /// A case as the study has it, touched where `truepath probe` would.
+    /// A case as the study has it.
     fn of_study(id: &str) -> Self {
-        let case = Case::draw(&format!("{id}/chosen").parse().unwrap()).unwrap();
-        let milled = virtual_mill::mill(&case.pass, &case.machine, None).unwrap();
-        let touched = case.probe(1, &milled, &case.places_mm).unwrap();
+        let case = Case::draw(&id.parse().unwrap()).unwrap();
+        let touched = case.probe(1, &case.first, &case.places_mm).unwrap();
         Self { case, touched }
     }
 
@@ -294,9 +293,38 @@ fn a_datum_half_a_millimetre_off_is_named_and_the_honest_part_passes() {
 #[test]
 fn a_cross_compliance_that_the_stated_mean_law_hardly_expects_stops_nothing() {
     // The law of the papers describes a machine by two stiffnesses; this one yields across by a third of its mean.
-    let shop = Shop::of_study("corner-papers/100000");
+    let shop = Shop::of_study("corner-papers/100000/chosen");
     assert!(matches!(shop.honest(), Outcome::Passed), "{:?}", shop.honest());
     assert!(matches!(shop.wrong(Wrong::Datum(0.5)), Outcome::Stopped(_)));
+}
+
+#[test]
+#[ignore = "slow: honest parts that every cause is tried on, half a minute"]
+fn what_shops_have_beside_the_model_stops_nothing() {
+    // A corner with waves and a step in the stock: two teeth less in the cut there, which a cutter of two teeth explains as well. A
+    // boss whose points a larger cutter under the mean law fits a little better than the helical law does.
+    for id in ["corner-far/1001/all/chosen", "boss/1001/all"] {
+        let shop = Shop::of_study(id);
+        assert!(matches!(shop.honest(), Outcome::Passed), "{id}: {:?}", shop.honest());
+    }
+}
+
+#[test]
+#[ignore = "slow: honest parts of shops, minutes"]
+fn honest_parts_with_all_that_shops_add_pass() {
+    let ids = (1001..1005).flat_map(|seed| FAMILIES.iter().map(move |f| format!("{}/{seed}/all/chosen", f.name)));
+    let (mut honest, mut stopped) = (0, Vec::new());
+    for id in ids {
+        let Ok(case) = Case::draw(&id.parse().unwrap()) else { continue };
+        let Ok(touched) = case.probe(1, &case.first, &case.places_mm) else { continue };
+        honest += 1;
+        match (Shop { case, touched }).honest() {
+            Outcome::Passed => {}
+            outcome => stopped.push(format!("{id}: {outcome:?}")),
+        }
+    }
+    println!("{honest} honest parts, stopped:\n{}", stopped.join("\n"));
+    assert!(honest > 100 && stopped.len() * 50 < honest);
 }
 
 #[test]

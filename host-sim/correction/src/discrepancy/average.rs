@@ -141,22 +141,9 @@ pub struct Sizes {
 impl Discrepancy {
     /// Of the points; `None` when there are none.
     pub fn of(points: Points) -> Option<Self> {
-        let mut used: Vec<usize> = (0..points.rows.len()).collect();
-        let mut starts = Kernel::STARTS.to_vec();
-        for round in 0..ROUNDS {
-            let task = Task::of(&points, &used);
-            let climbed = starts.iter().filter_map(|start| ascend(&task, *start));
-            let (best, _) = climbed.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
-            starts = vec![best.kernel, Kernel::EVEN];
-            let strange = strangest(&best, &used);
-            // No more than a quarter may be of something else.
-            let Some(strange) = strange.filter(|_| round + 1 < ROUNDS && used.len() * 4 > points.rows.len() * 3) else {
-                let kernels = averaged(&task, &best);
-                return Some(Self { points, used, kernels });
-            };
-            used.retain(|k| *k != strange);
-        }
-        None
+        let Likeliest { kernel, used, .. } = Likeliest::of(&points)?;
+        let kernels = averaged(&Task::of(&points, &used), &kernel);
+        Some(Self { points, used, kernels })
     }
 
     fn rows(&self) -> impl Iterator<Item = &Row> {
@@ -273,15 +260,46 @@ impl Discrepancy {
     }
 }
 
-/// By how much a shift of the datum that no clamping makes is more probable than any discrepancy without it, natural logarithm.
-pub(super) fn for_a_shift(points: &Points) -> Option<f64> {
-    let used: Vec<usize> = (0..points.rows.len()).collect();
-    let best = |points: &Points| {
-        let task = Task::of(points, &used);
-        let heights = Kernel::STARTS.iter().filter_map(|start| ascend(&task, *start)).map(|(_, height)| height);
-        heights.max_by(f64::total_cmp)
-    };
-    Some(best(&points.with_free_datum())? - best(points)?)
+/// The most probable kernel of some points.
+struct Likeliest {
+    kernel: Factored,
+    /// The rows that are of the wall.
+    used: Vec<usize>,
+    /// Evidence of these rows and belief, natural logarithm.
+    height: f64,
+}
+
+impl Likeliest {
+    /// Points of something else are left out one after the other; `None` when there are none.
+    fn of(points: &Points) -> Option<Self> {
+        let mut used: Vec<usize> = (0..points.rows.len()).collect();
+        let mut starts = Kernel::STARTS.to_vec();
+        for round in 0..ROUNDS {
+            let task = Task::of(points, &used);
+            let climbed = starts.iter().filter_map(|start| ascend(&task, *start));
+            let (kernel, height) = climbed.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+            starts = vec![kernel.kernel, Kernel::EVEN];
+            let strange = strangest(&kernel, &used);
+            // No more than a quarter may be of something else.
+            let Some(strange) = strange.filter(|_| round + 1 < ROUNDS && used.len() * 4 > points.rows.len() * 3) else {
+                return Some(Self { kernel, used, height });
+            };
+            used.retain(|k| *k != strange);
+        }
+        None
+    }
+}
+
+/// How probable points are, machine and discrepancy left open: natural logarithm of a density per mm of each.
+pub(super) fn ln_probability(points: &Points) -> Option<f64> {
+    let Likeliest { used, height, .. } = Likeliest::of(points)?;
+    let strange = points.rows.len() - used.len();
+    Some(height - 0.5 * used.len() as f64 * std::f64::consts::TAU.ln() + strange as f64 * ELSEWHERE.ln())
+}
+
+/// The same of a reading of something else.
+pub fn ln_probability_elsewhere() -> f64 {
+    ELSEWHERE.ln()
 }
 
 /// Uphill from a kernel along one axis after the other, by evidence and belief: what is reached, and how high that is.

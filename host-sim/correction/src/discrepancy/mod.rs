@@ -27,8 +27,8 @@ mod nominal;
 mod points;
 mod relieved;
 
-pub use average::{Along, Discrepancy, Sizes};
+pub use average::{Along, Discrepancy, Sizes, ln_probability_elsewhere};
 pub use feature::{Engagement, Feature, Sensitivity};
 pub use kernel::{Kernel, least_change};
 pub use points::{CutPoints, Points, stock_sensitivities};
-pub use relieved::{PartCut, Relieved, datums, odds_of_a_shift, plain, relieved};
+pub use relieved::{PartCut, Relieved, datums, is_fitted, ln_evidence, plain, relieved};

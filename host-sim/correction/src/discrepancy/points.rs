@@ -15,8 +15,6 @@ use super::nominal::moved_stock;
 const MOST_POINTS: usize = 120;
 /// Places that are looked at, the newest parts first.
 const MOST_PLACES: usize = 160;
-/// A datum that may be anywhere, in standard deviations of that of a clamping: 0.15 mm.
-const ANYWHERE: f64 = 100.0;
 /// Parameters that all parts share; the other two are the datum of each.
 pub(super) const SHARED: usize = COUNT - 2;
 
@@ -78,16 +76,6 @@ pub struct Points {
 }
 
 impl Points {
-    /// The same where the datum may be anywhere.
-    pub(super) fn with_free_datum(&self) -> Self {
-        let mut free = self.clone();
-        for row in &mut free.rows {
-            row.sensitivity[SHARED] *= ANYWHERE;
-            row.sensitivity[SHARED + 1] *= ANYWHERE;
-        }
-        free
-    }
-
     /// Of a fit of the points; every cut's observations hold the predictions and sensitivities it ended with.
     pub fn of(cuts: &[CutPoints<'_>], core: &job::Identified) -> Self {
         let theta: [f64; COUNT] = core.fit.theta.map(float);

@@ -7,13 +7,15 @@
 use truepath_core::correct::{Node, commanded};
 use truepath_core::cut::{Path, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{Cut, EarlierPart, Observation};
-use truepath_core::job;
+use truepath_core::identify::{Cut, EarlierPart, Observation, speaks_for_mean};
+use truepath_core::job::{self, LawName};
 use truepath_ground::units::{float, mm, nm};
+use truepath_job::pass::Pass;
 
-use super::average::{Along, Discrepancy, for_a_shift};
+use super::average::{Along, Discrepancy, ln_probability};
 use super::points::{CutPoints, Points};
-use crate::identification::{Found, Points as Asked, found};
+use crate::identification::{Found, Points as Asked, found, under_both};
+use crate::plausible::is_possible;
 
 /// A discrepancy that is nowhere larger is none: the parameters stay as they are, to the last bit.
 const LEAST_MM: f64 = 0.000_5;
@@ -49,32 +51,55 @@ pub struct Relieved {
     is_any: bool,
 }
 
-/// Fits machine and material to the points of the cuts, without any discrepancy. `progress` is told the share done.
-pub fn plain(
-    pass: &job::ContourPass,
-    law: Option<WallLaw>,
-    cuts: &[PartCut<'_>],
-    progress: &mut dyn FnMut(f64),
-) -> Found {
-    let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
-    fitted(pass, law, cuts, &measured, progress)
+/// By how much the mean law must be more probable than the helical one before it is believed, natural logarithm: 20 : 1.
+const DECISIVE: f64 = 3.0;
+
+/// Whether a job's parts are fitted with what is beside the model: the other laws are kept to be compared with, as they are printed.
+pub fn is_fitted(pass: &Pass) -> bool {
+    pass.job.discrepancy && pass.job.numbers.correct.law == LawName::Model
 }
 
-/// As [`plain()`], to observations in place of those of the cuts.
+/// Fits machine and material to the points of the cuts, without any discrepancy; without a law under the one they speak for.
+/// `progress` is told the share done.
+pub fn plain(pass: &Pass, law: Option<WallLaw>, cuts: &[PartCut<'_>], progress: &mut dyn FnMut(f64)) -> Found {
+    let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
+    if let Some(law) = law {
+        return fitted(&pass.core, law, cuts, &measured, progress);
+    }
+    let by_program = |cut: usize, sample: usize| by_program(cuts, cut, sample);
+    let (mean, helical) = asked(cuts, &measured, |points| under_both(&pass.core, points, by_program, progress));
+    let is_mean = speaks_for_mean(&mean.core.fit, &helical.core.fit)
+        // Points that other stock or another size would explain under the helical law are no reason by themselves.
+        && (!is_fitted(pass)
+            || (is_possible(&mean.core) || !is_possible(&helical.core))
+                && ln_evidence(&mean, cuts) > ln_evidence(&helical, cuts).map(|ln| ln + DECISIVE));
+    if is_mean { mean } else { helical }
+}
+
+/// As [`plain()`], under a law, to observations in place of those of the cuts.
 fn fitted(
     pass: &job::ContourPass,
-    law: Option<WallLaw>,
-    parts: &[PartCut<'_>],
+    law: WallLaw,
+    cuts: &[PartCut<'_>],
     observations: &[Observation],
     progress: &mut dyn FnMut(f64),
 ) -> Found {
+    let by_program = |cut: usize, sample: usize| by_program(cuts, cut, sample);
+    asked(cuts, observations, |points| found(pass, Some(law), points, by_program, progress))
+}
+
+/// The displacement that the program commanded at a sample of a cut.
+fn by_program(cuts: &[PartCut<'_>], cut: usize, sample: usize) -> Vector {
+    cuts.get(cut).map_or(Vector::ZERO, |cut| commanded(&cut.path, cut.nodes, sample))
+}
+
+/// Observations of cuts as a fit takes them.
+fn asked<T>(parts: &[PartCut<'_>], observations: &[Observation], fit: impl FnOnce(Asked<'_>) -> T) -> T {
     let cuts: Vec<Cut> =
         parts.iter().map(|cut| Cut { path: cut.path, points: cut.observations.len(), part: cut.part }).collect();
     let count = |part: usize| parts.iter().filter(|cut| cut.part == part).map(|cut| cut.observations.len()).sum();
     let earlier: Vec<EarlierPart> = (0..last_part(parts)).map(|part| EarlierPart::new(count(part))).collect();
-    let by_program =
-        |cut: usize, sample: usize| parts.get(cut).map_or(Vector::ZERO, |cut| commanded(&cut.path, cut.nodes, sample));
-    found(pass, law, Asked { cuts: &cuts, earlier: &earlier, observations }, by_program, progress)
+    fit(Asked { cuts: &cuts, earlier: &earlier, observations })
 }
 
 /// What the parts show beside machine and material, which are fitted again to the points relieved of it; `found` is their
@@ -111,7 +136,7 @@ pub fn relieved(
             o.error -= nm(*mm);
         }
         let share = |share: f64| (f64::from(round) + share) / f64::from(ROUNDS);
-        let law = Some(found.core.law);
+        let law = found.core.law;
         // From the prior again: from the last fit it may stay with points of something else.
         found = fitted(pass, law, cuts, &relieved, &mut |done| progress(share(done)));
         for (o, measured) in found.observations.iter_mut().zip(&measured) {
@@ -137,10 +162,10 @@ fn last_part(cuts: &[PartCut<'_>]) -> usize {
     cuts.last().map_or(0, |cut| cut.part)
 }
 
-/// By how much a wrong datum explains the points of an uncorrected part better than any discrepancy, natural logarithm of the
-/// odds; `found` is their [`plain()`] fit.
-pub fn odds_of_a_shift(found: &Found, cuts: &[PartCut<'_>]) -> Option<f64> {
-    for_a_shift(&points(cuts, found, last_part(cuts)))
+/// How probable the points of a part are that a job has cut, whatever the machine and what is beside it: natural logarithm, comparable
+/// with that under another job; `found` is their [`plain()`] fit under the job.
+pub fn ln_evidence(found: &Found, cuts: &[PartCut<'_>]) -> Option<f64> {
+    ln_probability(&points(cuts, found, last_part(cuts)))
 }
 
 /// The points as the discrepancy takes them.

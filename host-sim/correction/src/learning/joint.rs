@@ -114,7 +114,7 @@ pub fn joint(
         }
     }
     let law = law.or(asked(pass.core.job.force.model));
-    let found = plain(&pass.core, law, &cuts, &mut |share| progress(0.5 * share));
+    let found = plain(pass, law, &cuts, &mut |share| progress(0.5 * share));
     let (found, datums, beside) = if pass.job.discrepancy {
         let relieved = relieved(&pass.core, found, &cuts, &mut |share| progress(0.5 + 0.5 * share));
         let along = relieved.along(path, 0);

@@ -24,8 +24,12 @@ const DIFFERENCE: f64 = 1.0 / 16.0;
 /// What is fitted.
 pub(super) struct Fitting<'a> {
     pub(super) path: &'a Path<'a>,
+    /// The same with more or less stock, and what that costs a place; none where the stock is even.
+    pub(super) others: &'a [(Path<'a>, f64)],
     pub(super) prior: Prior,
     pub(super) observations: Vec<Observation>,
+    /// Of which of them every place is; empty for the path itself.
+    pub(super) stocks: Vec<usize>,
 }
 
 pub(super) fn real(value: f64) -> Real {
@@ -34,8 +38,8 @@ pub(super) fn real(value: f64) -> Real {
 
 impl Fitting<'_> {
     /// Goes downhill; the observations then hold the predictions there. Returns the parameters in prior standard
-    /// deviations.
-    pub(super) fn settle(&mut self) -> [f64; COUNT] {
+    /// deviations, and the cost.
+    pub(super) fn settle(&mut self) -> ([f64; COUNT], f64) {
         let needed = self.path.working().len() + 1;
         let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
         let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
@@ -45,6 +49,9 @@ impl Fitting<'_> {
         let mut cost = self.cost(&theta, &table, &mut workspace);
         let mut damping = 1e-3;
         for _ in 0..STEPS {
+            if !self.others.is_empty() {
+                cost = self.choose(&theta, &table, &mut workspace);
+            }
             let (mut matrix, mut right) = self.linearised(&theta, &sigma, &table, &mut workspace);
             for (k, t) in theta.iter().enumerate() {
                 let pull = pull(k, *t);
@@ -75,18 +82,50 @@ impl Fitting<'_> {
             }
         }
         self.predict(&theta, &table, &mut workspace);
-        theta
+        (theta, cost)
     }
 
     fn predict(&mut self, theta: &[f64; COUNT], table: &ForceTable, workspace: &mut PredictionWorkspace) {
         let parameters = self.prior.at(&theta.map(real));
         predict(self.path, table, &parameters, |_| Vector::ZERO, &mut self.observations, workspace);
+        if self.stocks.iter().all(|stock| *stock == 0) {
+            return;
+        }
+        for (k, (path, _)) in self.others.iter().enumerate() {
+            let mut other = self.observations.clone();
+            predict(path, table, &parameters, |_| Vector::ZERO, &mut other, workspace);
+            let places = self.observations.chunk_by_mut(same_place).zip(other.chunk_by(same_place));
+            for ((place, other), _) in places.zip(&self.stocks).filter(|(_, stock)| **stock == k + 1) {
+                place.copy_from_slice(other);
+            }
+        }
     }
 
     fn cost(&mut self, theta: &[f64; COUNT], table: &ForceTable, workspace: &mut PredictionWorkspace) -> f64 {
         self.predict(theta, table, workspace);
-        let points: f64 = self.observations.iter().map(|o| loss(residual_mm(o) / expected_mm(o))).sum();
-        points + prior_cost(theta)
+        let stocks = self.stocks.iter().filter_map(|stock| self.others.get(stock.checked_sub(1)?));
+        of_points(&self.observations) + stocks.map(|(_, cost)| cost).sum::<f64>() + prior_cost(theta)
+    }
+
+    /// Gives every place the stock that explains it best at these parameters; returns the cost.
+    fn choose(&mut self, theta: &[f64; COUNT], table: &ForceTable, workspace: &mut PredictionWorkspace) -> f64 {
+        self.stocks.clear();
+        self.predict(theta, table, workspace);
+        let mut best: Vec<(f64, usize)> =
+            self.observations.chunk_by(same_place).map(|place| (of_points(place), 0)).collect();
+        let parameters = self.prior.at(&theta.map(real));
+        for (k, (path, cost)) in self.others.iter().enumerate() {
+            let mut other = self.observations.clone();
+            predict(path, table, &parameters, |_| Vector::ZERO, &mut other, workspace);
+            for (best, place) in best.iter_mut().zip(other.chunk_by(same_place)) {
+                let its = of_points(place) + cost;
+                if its < best.0 {
+                    *best = (its, k + 1);
+                }
+            }
+        }
+        self.stocks = best.iter().map(|(_, stock)| *stock).collect();
+        self.cost(theta, table, workspace)
     }
 
     /// Normal equations of the points at parameters just predicted.
@@ -136,6 +175,16 @@ impl Fitting<'_> {
         }
         (matrix, right)
     }
+}
+
+/// What points cost by their residuals.
+fn of_points(points: &[Observation]) -> f64 {
+    points.iter().map(|o| loss(residual_mm(o) / expected_mm(o))).sum()
+}
+
+/// Whether two points are of one place.
+fn same_place(a: &Observation, b: &Observation) -> bool {
+    a.s == b.s
 }
 
 /// By how much the prior draws a parameter back, per standard deviation of distance.

@@ -4,14 +4,14 @@ use truepath_core::cut::WallLaw;
 use truepath_core::identify::Observation;
 use truepath_core::job;
 use truepath_job::measurement::Measurement;
-use truepath_job::pass::{Pass, PathBuffer};
+use truepath_job::pass::Pass;
 
+use super::beside::explains;
 use super::cause::Cause;
 use super::look::{CLAMPED_MM, Look, Reason};
 use super::score::LOST;
 use super::trial::Trial;
-use crate::discrepancy::{PartCut, odds_of_a_shift};
-use crate::identification::{Found, asked};
+use crate::identification::asked;
 
 /// By how much a cause must lower the cost, its own freedom paid, to be believed.
 const DECISIVE: f64 = 30.0;
@@ -19,8 +19,6 @@ const DECISIVE: f64 = 30.0;
 const BY_FAR: f64 = 1.0 / 3.0;
 /// Causes whose costs differ by less explain the points alike.
 const ALIKE: f64 = 6.0;
-/// Odds, natural logarithm, from which a wrong datum is believed rather than what is beside the model.
-const CLEARLY: f64 = 6.0;
 /// Points that fit cost less than this each.
 const FLAWLESS: f64 = 2.5;
 /// A probe's length is right to this, mm: a smaller change of height is what bending and helix are taken for.
@@ -98,10 +96,6 @@ pub fn judged(
     if !by_far && reason.is_none() {
         return None;
     }
-    // Stock that is uneven, or a wall that yields, moves walls as a datum does.
-    if reason.is_none() && matches!(best.cause, Cause::Datum(_)) && is_explained_beside(pass, core, observations) {
-        return None;
-    }
     // Where something must be wrong, what halves the cost is worth naming. The level is part of the fit as stated: there
     // it has no lower cost to show.
     let named = by_far || left < 0.5 * cost || (reason == Some(Reason::Level) && left < cost);
@@ -113,16 +107,8 @@ pub fn judged(
             causes.push(trial);
         }
     }
-    Some(Misfit { look, reason, stated, causes })
-}
-
-/// Whether a discrepancy explains the points about as well as a wrong datum.
-fn is_explained_beside(pass: &Pass, core: &job::Identified, observations: &[Observation]) -> bool {
-    let mut buffer = PathBuffer::default();
-    let Ok(path) = pass.sample(&mut buffer) else { return false };
-    let found = Found { core: *core, earlier: Vec::new(), observations: observations.to_vec() };
-    let cut = PartCut { path, contour: 0, part: 0, nodes: &[], observations };
-    pass.job.discrepancy && odds_of_a_shift(&found, &[cut]).is_some_and(|odds| odds < CLEARLY)
+    let misfit = Misfit { look, reason, stated, causes };
+    (!explains(&misfit, (pass, measurement), core, observations)).then_some(misfit)
 }
 
 impl Trial {

@@ -9,6 +9,7 @@ use truepath_job::pass::Pass;
 
 use super::score::{LOST, Score, expected_mm, residual_mm};
 use super::shift::Shift;
+use crate::plausible::{FARTHEST, WORN_MM, farthest, level_mm};
 
 /// Residual in expected deviations from which a point does not fit.
 const UNFIT: f64 = 8.0;
@@ -16,13 +17,6 @@ const UNFIT: f64 = 8.0;
 const FITS_MM: f64 = 0.02;
 /// A reading nearer to the wall than this may be of it, mm.
 pub(super) const NEAR_MM: f64 = 3.0;
-/// What a worn cutter is smaller than stated, or one that runs out larger, mm.
-pub(super) const WORN_MM: f64 = 0.05;
-/// A parameter farther from what the job says than so many prior standard deviations cannot be.
-const FARTHEST: f64 = 10.0;
-/// The least standard deviation, as a share of the compliance, by which a cross term is called far. The mean law expects
-/// hardly any, but that is a belief about the papers' machine and not about what machines have.
-const CROSS_SHARE: f64 = 0.08;
 /// From so many points on a third is more than bad touches.
 const MOST_BAD_TOUCHES: usize = 4;
 /// Points that fit cost less than this each, with what the parameters cost.
@@ -73,21 +67,13 @@ impl Look {
             .filter(|k| off(k) > FITS_MM && off(k) > UNFIT * expected_mm(&observations[*k]))
             .collect();
         unfit.sort_by(|a, b| off(b).total_cmp(&off(a)));
-        let index = |p: Parameter| Parameter::ALL.iter().position(|q| *q == p).unwrap_or_default();
-        let size = index(Parameter::Undersize);
-        let sigma = float(core.prior.sigma[size]) * float(core.fit.remaining(size));
-        let mut theta = core.fit.theta.map(|t| float(t).abs());
-        let cross = index(Parameter::ComplianceCross);
-        theta[cross] *= (float(core.prior.sigma[cross]) / CROSS_SHARE).min(1.0);
-        let of_machine = Parameter::ALL.into_iter().zip(theta).take(size);
-        let farthest = of_machine.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((Parameter::Compliance, 0.0));
         Self {
             score: Score::of(&core.fit.theta.map(float), observations, lost),
             unfit,
             off_height,
             shift: Shift::of(&core.prior, &core.fit, observations),
-            level_mm: [mm(core.fit.parameters.undersize), sigma],
-            farthest,
+            level_mm: level_mm(core),
+            farthest: farthest(core),
         }
     }
 

@@ -9,6 +9,7 @@
 //! Limits: what a machine like the one in the job could have done is not noticed. On one straight wall a shift of the
 //! datum is a softer machine; the number of teeth scales all forces alike, as the stiffness does.
 
+mod beside;
 mod cause;
 mod fit;
 mod judge;

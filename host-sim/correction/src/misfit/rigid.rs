@@ -3,8 +3,9 @@
 use truepath_core::identify::Observation;
 use truepath_ground::units::float;
 
-use super::look::{CLAMPED_MM, WORN_MM};
+use super::look::CLAMPED_MM;
 use super::score::{expected_mm, loss, residual_mm, weight};
+use crate::plausible::WORN_MM;
 
 /// Rounds in which the weights of the points settle.
 const ROUNDS: usize = 20;

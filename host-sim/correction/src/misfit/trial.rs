@@ -1,14 +1,14 @@
 //! A fit under a cause.
 
 use rayon::prelude::*;
-use truepath_core::cut::WallLaw;
+use truepath_core::cut::{Sample, WallLaw};
 use truepath_core::geometry::Direction;
 use truepath_core::identify::Observation;
 use truepath_core::job;
 use truepath_core::probe::{Contact, Contacts, Outcome, Rejected};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::units::mm;
+use truepath_ground::units::{mm, nm};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
@@ -16,12 +16,16 @@ use super::cause::{Altered, Cause};
 use super::fit::{Fitting, real};
 use super::look::{NEAR_MM, is_of_one_depth};
 use super::score::{LOST, Score, residual_mm};
+use crate::discrepancy::{PartCut, ln_evidence, ln_probability_elsewhere, plain};
+use crate::identification::asked;
 
 /// Points that a trial takes at most.
 const MOST: usize = 48;
 
 /// Points that are taken out in turn.
 const MOST_STRAYS: usize = 12;
+/// What a number that may be anything costs: about 2 ln (0.5 mm / 5 µm).
+const FREEDOM: f64 = 9.0;
 /// Rounds in which a free datum is found.
 const DATUM_ROUNDS: usize = 8;
 
@@ -66,10 +70,7 @@ impl Trial {
 
     fn once(cause: Cause, pass: &Pass, measurement: &Measurement, law: WallLaw) -> Option<Self> {
         let altered = cause.altered(pass, measurement).ok()?;
-        let (contacts, mut lost) = altered.contacts();
-        if let Cause::Stray(lines) = cause {
-            lost += lines.iter().filter(|line| **line > 0).count();
-        }
+        let (contacts, lost) = altered.contacts(cause);
         altered.fitted(cause, &contacts, lost, measurement, law).ok()?
     }
 
@@ -95,6 +96,48 @@ impl Trial {
         best
     }
 
+    /// What the points cost under the job as stated, where the stock may differ by so much from place to place, as shares of the
+    /// allowance of one `deviation`; with what is lost. `None` where nothing can be fitted.
+    pub(super) fn beside_stock(
+        pass: &Pass,
+        measurement: &Measurement,
+        law: WallLaw,
+        (shares, deviation): (&[f64], f64),
+    ) -> Option<f64> {
+        let altered = Cause::Nothing.altered(pass, measurement).ok()?;
+        let (contacts, lost) = altered.contacts(Cause::Nothing);
+        let observations = altered.observations(&contacts, measurement).ok()?;
+        let mut buffer = PathBuffer::default();
+        let path = pass.sample(&mut buffer).ok()?.with_law(law);
+        let mut buffers: Vec<Vec<Sample>> = shares.iter().map(|_| vec![Sample::BLANK; path.samples().len()]).collect();
+        let allowance = mm(path.setup().allowance);
+        let mut others = Vec::new();
+        for (buffer, share) in buffers.iter_mut().zip(shares) {
+            let path = path.with_stock_moved(buffer, |_| nm(-share * allowance));
+            others.push((path, (share / deviation).powi(2)));
+        }
+        let prior = pass.core.prior(law);
+        let (_, cost) = Fitting { path: &path, others: &others, prior, observations, stocks: Vec::new() }.settle();
+        Some(cost + lost as f64 * LOST)
+    }
+
+    /// How probable the points are under the cause, whatever the machine and what is beside the model: natural logarithm, with the
+    /// freedom of the cause paid. `None` where nothing can be fitted.
+    pub(super) fn ln_evidence(&self, pass: &Pass, measurement: &Measurement) -> Option<f64> {
+        let altered = self.cause.altered(pass, measurement).ok()?;
+        let (contacts, lost) = altered.contacts(self.cause);
+        let mut observations = altered.observations(&contacts, measurement).ok()?;
+        if let Cause::Level(off) = self.cause {
+            observations.iter_mut().for_each(|o| o.error -= nm(off));
+        }
+        let (pass, mut buffer) = (&altered.pass, PathBuffer::default());
+        let path = pass.sample(&mut buffer).ok()?;
+        let cut = PartCut { path, contour: 0, part: 0, nodes: &[], observations: &observations };
+        let found = plain(pass, asked(pass.core.job.force.model), &[cut], &mut |_| ());
+        let elsewhere = lost as f64 * ln_probability_elsewhere();
+        Some(ln_evidence(&found, &[cut])? + elsewhere - 0.5 * FREEDOM * self.cause.freedom())
+    }
+
     /// What the points cost that are some.
     pub fn rest(&self) -> f64 {
         self.score.cost - self.score.lost as f64 * LOST
@@ -117,14 +160,13 @@ impl Trial {
 
     /// The cost with what the freedom of the cause costs.
     pub fn cost(&self) -> f64 {
-        // About 2 ln (0.5 mm / 5 µm) for a number that may be anything.
-        self.score.cost + 9.0 * self.cause.freedom()
+        self.score.cost + FREEDOM * self.cause.freedom()
     }
 }
 
 impl Altered {
-    /// The contacts, thinned, and how many readings near the wall are none.
-    fn contacts(&self) -> (Vec<Contact>, usize) {
+    /// The contacts, thinned, and how many readings near the wall are none or are taken out by the cause.
+    fn contacts(&self, cause: Cause) -> (Vec<Contact>, usize) {
         let on_wall = Contacts::new(self.pass.path_contour(), self.setting);
         let one_depth = is_of_one_depth(&self.pass);
         let (mut contacts, mut lost) = (Vec::new(), 0);
@@ -141,7 +183,23 @@ impl Altered {
         }
         contacts.sort_unstable_by_key(|c| (c.s, c.height, c.error, c.line));
         contacts.dedup_by(|b, a| Contact { line: a.line, ..*b } == *a);
+        if let Cause::Stray(lines) = cause {
+            lost += lines.iter().filter(|line| **line > 0).count();
+        }
         (contacts, lost)
+    }
+
+    /// The contacts as a fit takes them.
+    fn observations(&self, contacts: &[Contact], measurement: &Measurement) -> Result<Vec<Observation>, Failure> {
+        let blank = Observation::new(Offset::ZERO, Real::ZERO, Offset::ZERO, Offset::ZERO, Direction::X);
+        let mut observations = vec![blank; contacts.len()];
+        job::observations(contacts, measurement.noise, &mut observations).map_err(|error| self.pass.refused(&error))?;
+        if self.turned {
+            for o in &mut observations {
+                o.error = -o.error;
+            }
+        }
+        Ok(observations)
     }
 
     fn fitted(
@@ -155,19 +213,12 @@ impl Altered {
         if contacts.is_empty() {
             return Ok(None);
         }
-        let blank = Observation::new(Offset::ZERO, Real::ZERO, Offset::ZERO, Offset::ZERO, Direction::X);
-        let mut observations = vec![blank; contacts.len()];
-        job::observations(contacts, measurement.noise, &mut observations).map_err(|error| self.pass.refused(&error))?;
-        if self.turned {
-            for o in &mut observations {
-                o.error = -o.error;
-            }
-        }
+        let observations = self.observations(contacts, measurement)?;
         let mut buffer = PathBuffer::default();
         let path = self.pass.sample(&mut buffer)?.with_law(law);
         let prior = self.free.of(self.pass.core.prior(law));
-        let mut fitting = Fitting { path: &path, prior, observations };
-        let theta = fitting.settle();
+        let mut fitting = Fitting { path: &path, others: &[], prior, observations, stocks: Vec::new() };
+        let (theta, _) = fitting.settle();
         let p = &prior.at(&theta.map(real));
         let cause = match cause {
             Cause::Datum([x, y]) => Cause::Datum([x + mm(p.datum.x), y + mm(p.datum.y)]),
