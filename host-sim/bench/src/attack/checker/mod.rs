@@ -20,7 +20,7 @@ use arming::Arming;
 use limits::Bounds;
 use link::Link;
 use place::Course;
-use verdict::{Verdict, alarm, hold, is_on};
+use verdict::{STOPS, Verdict, alarm, hold, is_on};
 
 use super::rule::{Rule, SETTLED};
 use super::setup::Setup;
