@@ -39,18 +39,15 @@ pub fn host<'a>(setup: &'a Setup) -> Box<dyn Servo + 'a> {
 }
 
 /// Sessions one after the other while `more` says so; it is told the tally before each. Session `k` of a seed is always the
-/// same.
-///
-/// # Errors
-/// The first alarm, with the session it happened in.
-pub fn attack(seed: u64, make: Make<'_>, more: &mut dyn FnMut(&Tally) -> bool) -> Result<Tally, (Box<Alarm>, Tally)> {
+/// same. Ends with the first alarm, which is given with what was done up to there.
+pub fn attack(seed: u64, make: Make<'_>, more: &mut dyn FnMut(&Tally) -> bool) -> (Tally, Option<Box<Alarm>>) {
     let mut tally = Tally::default();
     while more(&tally) {
         let number = tally.sessions;
         let mut chance = Chance::new(seed, number.wrapping_add(1 << 32));
         if let Err(alarm) = session(&mut chance, make, &mut tally) {
-            return Err((Box::new(Alarm { session: number, ..*alarm }), tally));
+            return (tally, Some(Box::new(Alarm { session: number, ..*alarm })));
         }
     }
-    Ok(tally)
+    (tally, None)
 }

@@ -62,10 +62,7 @@ pub fn run(seed: u64, length: Length, bar: &mut Bar) -> AttackReport {
         bar.reached((share.min(1.0) * STEPS as f64) as u64);
         share < 1.0
     };
-    let (tally, alarm) = match attack(seed, &host, &mut more) {
-        Ok(tally) => (tally, None),
-        Err((alarm, tally)) => (tally, Some(alarm)),
-    };
+    let (tally, alarm) = attack(seed, &host, &mut more);
     report(seed, &tally, alarm.as_deref(), start.elapsed())
 }
 
