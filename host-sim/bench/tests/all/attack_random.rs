@@ -1,6 +1,7 @@
 //! The host's own servo under attack: no rule is broken, and the attack has been everywhere.
 
-use truepath_bench::attack::{Tally, attack, host};
+use truepath_bench::Chance;
+use truepath_bench::attack::{Tally, attack, host, session};
 use truepath_core::rewrite::Reason;
 
 /// So many sessions, without an alarm.
@@ -28,6 +29,18 @@ fn no_rule_is_broken_in_two_million_setpoints() {
     let tally = without_alarm(7, 1_500);
     assert!(tally.setpoints > 2_000_000, "{}", tally.setpoints);
     assert!(tally.settled.iter().all(|&count| count > 500), "{:?}", tally.settled);
+}
+
+#[test]
+fn bytes_of_a_fuzzer_are_an_attack_like_any_other() {
+    let mut tally = Tally::default();
+    for seed in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/servo")).unwrap() {
+        let bytes = std::fs::read(seed.unwrap().path()).unwrap();
+        for length in [0, 1, 100, 400, bytes.len()] {
+            session(&mut Chance::taped(&bytes[..length]), &host, &mut tally).unwrap();
+        }
+    }
+    assert!(tally.setpoints > 1_000 && tally.armed > 0, "{tally:?}");
 }
 
 #[test]
