@@ -170,7 +170,7 @@ impl Endpoint {
             rewriter.break_off(&mut self.state, Reason::SequenceBroken);
         }
         if verdict == Verdict::Jump {
-            self.pace.restart(arrived_us);
+            self.pace.forget();
         } else if self.pace.is_too_fast(arrived_us) {
             rewriter.break_off(&mut self.state, Reason::FrameRate);
         }

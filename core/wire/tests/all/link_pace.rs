@@ -89,7 +89,7 @@ fn a_controller_that_counts_anew_is_measured_anew() {
     wire.lose(10);
     wire.tick_us = 500;
     assert_eq!(wire.stay().verdict, Verdict::Jump);
-    for _ in 0..32 {
+    for _ in 0..33 {
         // The window before was good, but it may have been another controller's.
         assert_eq!(refusal(&wire), Some(Refusal::FrameRate { tick_hz: 1_000, interval_ns: 0 }));
         wire.stay();

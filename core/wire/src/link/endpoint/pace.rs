@@ -48,19 +48,11 @@ impl Pace {
         }
     }
 
-    /// The link is silent: nothing is known any more.
+    /// The link is silent, or the controller counts anew, perhaps another one: nothing is known any more.
     #[inline]
     pub fn forget(&mut self) {
         self.since_us = None;
         self.took_us = None;
-    }
-
-    /// The controller counts anew, perhaps another one: the pace of before says nothing, and a window begins with this
-    /// frame.
-    #[inline]
-    pub fn restart(&mut self, arrived_us: u64) {
-        self.took_us = None;
-        self.begin(arrived_us);
     }
 
     /// A window begins with this frame.
