@@ -12,8 +12,8 @@ use truepath_ground::units::nm;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
-use super::judge::Misfit;
 use super::look::Look;
+use super::stop::Misfit;
 use super::trial::Trial;
 use crate::discrepancy::{PartCut, is_fitted, relieved};
 use crate::identification::Found;

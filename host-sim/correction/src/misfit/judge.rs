@@ -10,6 +10,7 @@ use super::beside::explains;
 use super::cause::Cause;
 use super::look::{CLAMPED_MM, Look, Reason};
 use super::score::LOST;
+use super::stop::Misfit;
 use super::trial::Trial;
 use crate::identification::asked;
 
@@ -27,19 +28,6 @@ const SAME_HEIGHT_MM: f64 = 1.0;
 const LEAST_WITH_STRAYS: usize = 6;
 /// Fewer points cannot tell one cause from another.
 const LEAST_POINTS: usize = 5;
-
-/// Points that must not be used, and why.
-#[derive(Clone, Debug)]
-pub struct Misfit {
-    /// What the fit of the job as stated shows.
-    pub look: Look,
-    /// What forbids to go on by itself; `None` where a cause explains so much more that it must be believed.
-    pub reason: Option<Reason>,
-    /// The fit of the job as stated.
-    pub stated: Trial,
-    /// Causes that explain the points, the best first; none where nothing does.
-    pub causes: Vec<Trial>,
-}
 
 /// Judges the points of a part that was cut as programmed, after a fit; `None` where they fit the job.
 pub fn judged(

@@ -19,16 +19,18 @@ mod rigid;
 mod score;
 mod shift;
 mod solve;
+mod stop;
 mod text;
 mod trial;
 
 pub use cause::Cause;
-pub use judge::{Misfit, judged};
+pub use judge::judged;
 pub use look::{Look, Reason};
 pub use notice::noticed;
 pub use rigid::Rigid;
 pub use score::{Score, expected_mm, residual_mm};
 pub use shift::Shift;
+pub use stop::Misfit;
 pub(crate) use text::said;
 pub use trial::Trial;
 

@@ -8,8 +8,8 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
 use super::cause::Cause;
-use super::judge::Misfit;
 use super::look::Reason;
+use super::stop::Misfit;
 use super::trial::Trial;
 use crate::codes::Q009;
 
