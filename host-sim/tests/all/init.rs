@@ -22,10 +22,12 @@ fn text(bytes: &[u8]) -> String {
 
 /// The error of a command that is refused.
 fn refused(output: &Output) -> Value {
-    assert_eq!(output.status.code(), Some(1), "{}{}", text(&output.stdout), text(&output.stderr));
     let said = text(&output.stderr);
     let last = said.lines().rev().find_map(|line| serde_json::from_str::<Value>(line).ok()?.get("error").cloned());
-    last.unwrap_or_else(|| panic!("no error in {said}"))
+    let error = last.unwrap_or_else(|| panic!("no error in {said}{}", text(&output.stdout)));
+    let code = error["code"].as_str().expect("a code");
+    assert_eq!(output.status.code(), crate::workplace::refused(code), "{said}");
+    error
 }
 
 /// The answer of a command that is not.

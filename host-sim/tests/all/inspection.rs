@@ -117,7 +117,7 @@ fn the_command_line_stands_in_for_the_job_and_its_mistakes_are_its_own() {
         (["--serial", "1\u{200d}7"], "none of them invisible"),
     ] {
         let failed = inspect(desk.path(), &flags);
-        assert_eq!(failed.status.code(), Some(1), "{flags:?}");
+        assert_eq!(failed.status.code(), Some(2), "{flags:?}");
         let said = text(&failed.stderr);
         assert!(said.contains(words) && said.contains("C001"), "{flags:?}: {said}");
     }
