@@ -92,29 +92,32 @@ fn rolls(blocks: &[Block], index: usize, setup: &CutSetup) -> bool {
     if block.curve.length() > window + window {
         return false;
     }
+    let (head, tail) = blocks.split_at_checked(index).unwrap_or_default();
+    let behind = turned(tail.iter().zip(tail.iter().skip(1)), window, sense);
+    let before = turned(head.iter().rev().zip(core::iter::once(block).chain(head.iter().rev())), window, sense);
+    let (way, turn) = (behind.0 + before.0, behind.1 + before.1);
+    turn > LEAST_TURN && way < (setup.radius + ROLLED).scaled(turn)
+}
+
+/// Way over the joints on one side of a block and what the path turns there, up to where it no longer rolls: of facets no longer
+/// than `window`.
+fn turned<'b>(joints: impl Iterator<Item = (&'b Block, &'b Block)>, window: Offset, sense: Real) -> (Offset, Real) {
     let half = |b: &Block| {
         let length = b.curve.length();
         if length > window + window { Offset::ZERO } else { Offset::from_nm(length.nm() / 2) }
     };
-    let side = |joints: &mut dyn Iterator<Item = (&Block, &Block)>| {
-        let (mut way, mut turn) = (Offset::ZERO, Real::ZERO);
-        for (a, b) in joints.take(TURN_LINES) {
-            let (from, to) = (a.curve.end_heading(), b.curve.start_heading());
-            let bend = from.cross(to) * sense;
-            let is_line = |b: &Block| b.curve.signed_radius().is_none();
-            let goes_on = is_line(a) && is_line(b) && bend > Real::ZERO && from.dot(to) >= FACET_TURN_LIMIT;
-            if !goes_on || way >= window {
-                break;
-            }
-            (way, turn) = (way + half(a) + half(b), turn + bend);
+    let (mut way, mut turn) = (Offset::ZERO, Real::ZERO);
+    for (a, b) in joints.take(TURN_LINES) {
+        let (from, to) = (a.curve.end_heading(), b.curve.start_heading());
+        let bend = from.cross(to) * sense;
+        let is_line = |b: &Block| b.curve.signed_radius().is_none();
+        let goes_on = is_line(a) && is_line(b) && bend > Real::ZERO && from.dot(to) >= FACET_TURN_LIMIT;
+        if !goes_on || way >= window {
+            break;
         }
-        (way, turn)
-    };
-    let (head, tail) = blocks.split_at_checked(index).unwrap_or_default();
-    let behind = side(&mut tail.iter().zip(tail.iter().skip(1)));
-    let before = side(&mut head.iter().rev().zip(core::iter::once(block).chain(head.iter().rev())));
-    let (way, turn) = (behind.0 + before.0, behind.1 + before.1);
-    turn > LEAST_TURN && way < (setup.radius + ROLLED).scaled(turn)
+        (way, turn) = (way + half(a) + half(b), turn + bend);
+    }
+    (way, turn)
 }
 
 /// Marks the samples on either side of a corner whose parallel point the other side of it cuts away, from

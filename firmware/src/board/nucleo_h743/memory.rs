@@ -18,6 +18,9 @@ const JOB_BYTES: usize = 512;
 /// Buffer for a probe log.
 const PROBE_BYTES: usize = 16 << 10;
 
+/// Buffer of the configuration link in each direction.
+const CONFIGURATION_BYTES: usize = 2048;
+
 /// Buffers of the on-board correction: blocks of a contour, samples of a path, states, nodes, probe points: 286 KiB,
 /// for a contour of 70 mm and a cutter of up to 20 mm. Longer ones are for the host.
 pub type CorrectionBuffers = Buffers<64, 1_256, 804, 700, 48>;
@@ -93,6 +96,15 @@ pub fn setpoint_buffers() -> &'static mut SetpointBuffers {
 /// Ring of the reception on the UART. Called once, after [`wake`].
 pub fn setpoint_ring() -> &'static mut [u8] {
     lent!(".d2.ring", [u8; 1024], [0; 1024])
+}
+
+/// Bytes of the configuration link on their way to the controller and from it; the processor moves them. Called once, after
+/// [`wake`].
+pub fn configuration_buffers() -> [&'static mut [u8]; 2] {
+    [
+        lent!(".axi.configuration", [u8; CONFIGURATION_BYTES], [0; CONFIGURATION_BYTES]),
+        lent!(".axi.configuration", [u8; CONFIGURATION_BYTES], [0; CONFIGURATION_BYTES]),
+    ]
 }
 
 /// The buffers of the on-board correction. Called once, after [`wake`].

@@ -27,8 +27,6 @@ pub const NAME: &str = "nucleo-h743zi2";
 pub fn run() -> ! {
     static SERVO: StaticCell<Servo<'static>> = StaticCell::new();
     static CONFIGURATION: StaticCell<SharedConfiguration<Bank2>> = StaticCell::new();
-    static TO_CONTROLLER: StaticCell<[u8; 2048]> = StaticCell::new();
-    static FROM_CONTROLLER: StaticCell<[u8; 2048]> = StaticCell::new();
 
     if let Some(mut core) = cortex_m::Peripherals::take() {
         core.SCB.enable_icache();
@@ -73,7 +71,7 @@ pub fn run() -> ! {
     }
     let mut config = usart::Config::default();
     config.baudrate = CONFIG_BAUD;
-    let (to, from) = (TO_CONTROLLER.init([0; 2048]), FROM_CONTROLLER.init([0; 2048]));
+    let [to, from] = memory::configuration_buffers();
     let (sender, receiver) = must(BufferedUart::new(p.USART3, p.PD9, p.PD8, to, from, Lines, config)).split();
     config_executor.spawn(token(config_task(receiver, sender, configuration)));
     setpoint_executor.spawn(token(tick()));
