@@ -46,7 +46,7 @@ for (const [name, count] of PLANS) {
       assert.deepEqual(await shown(), ["1"]);
       const cells = await rows.first().locator("td").allTextContents();
       assert.match(cells[2], new RegExp(`^${(plan.choices[0].profile_mm * 1e3).toFixed(1)}`));
-      assert.match(cells[4], plan.choices[0].within_tolerance >= plan.confidence ? /✓$/ : /✗$/, "said without a colour as well");
+      assert.match(cells[5], plan.choices[0].within_tolerance >= plan.confidence ? /✓$/ : /✗$/, "said without a colour as well");
     }
     assert.deepEqual(await violations(page), []);
     assert.deepEqual(await faults(page), []);
