@@ -45,7 +45,7 @@ enum Task {
     /// What a change has to pass; with --all everything there is.
     ///
     /// fmt, rooms, test-only and features: what needs nothing but Rust, the same on every repeat. With --all also the slow tests,
-    /// other random cases each time, firmware (both boards), budget, hil, lint, doc, device, elf, page, web, dist,
+    /// other random cases each time, firmware (both boards), budget, hil, lint, doc, device, elf, page, web,
     /// conformance, shop, judge, bench, fuzz and linuxcnc.
     Test {
         /// Also what takes long.
@@ -285,7 +285,6 @@ fn test(report: &mut Report, all: bool) {
         report.run(Step::new("elf", || firmware::elf::check(&Board::ALL, false)));
         report.run(Step::new("page", || page::check(false)));
         report.run(Step::new("web", || web::check(true)));
-        report.run(Step::new("dist", dist::check));
         report.run(Step::new("conformance", || conformance::check(false)));
         // It mills in real time and hardly computes: a tenth of one processor.
         let mut linuxcnc = repository::itself();
