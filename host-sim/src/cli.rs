@@ -150,6 +150,10 @@ pub(crate) fn command() -> clap::Command {
     let mut command = Arguments::command();
     let template = help::overview(&command);
     for (name, examples) in help::examples() {
+        // Not every build has every command, and one that is not there cannot be changed.
+        if command.find_subcommand(name).is_none() {
+            continue;
+        }
         command = command.mut_subcommand(name, |sub| sub.after_help(examples));
     }
     command.help_template(template)

@@ -28,9 +28,10 @@ pub fn cargo() -> Command {
     program(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// This program again.
+/// This program again, also where a later build has put another into its place.
 pub fn itself() -> Command {
-    program(std::env::current_exe().unwrap_or_else(|_| "xtask".into()))
+    let link = Path::new("/proc/self/exe");
+    program(if link.exists() { link.into() } else { std::env::current_exe().unwrap_or_else(|_| "xtask".into()) })
 }
 
 /// A program, started in the root.

@@ -139,7 +139,8 @@ fn begin(command: &mut Command, said: &Path) -> Result<Child, Failure> {
     let failed = |e: std::io::Error| Failure::found(format!("{}: {e}", said.display()));
     let file = File::create(said).map_err(failed)?;
     let both = file.try_clone().map_err(failed)?;
-    command.stdout(file).stderr(both).spawn().map_err(failed)
+    let program = command.get_program().to_string_lossy().into_owned();
+    command.stdout(file).stderr(both).spawn().map_err(|e| Failure::found(format!("{program}: {e}")))
 }
 
 fn said(outcome: &Outcome) -> String {

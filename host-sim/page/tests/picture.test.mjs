@@ -158,8 +158,17 @@ test("the pictures are the same to the last pixel whatever fonts the system has"
     await close();
     const tab = await other.newPage({ ...options, colorScheme: "light" });
     await show(tab, file);
-    const there = await shot(tab, view);
-    assert.ok(here.picture.equals(there.picture), `${name} is drawn with fonts of the system`);
+    // A loaded machine may show a tile late: the same picture has to come within a few tries, of another font it never does.
+    let there = await shot(tab, view);
+    for (let tries = 0; tries < 5 && !here.picture.equals(there.picture); tries++) {
+      await show(tab, file);
+      there = await shot(tab, view);
+    }
+    if (here.picture.equals(there.picture)) return;
+    await writeFile(`${pictures}fonts-here.png`, here.picture);
+    await writeFile(`${pictures}fonts-there.png`, there.picture);
+    const share = await changed(await easel(), here, there.picture);
+    assert.fail(`${name} is drawn with fonts of the system: ${percent(share)} differ, see ${pictures}fonts-here.png and fonts-there.png`);
   } finally {
     await other.close();
   }
