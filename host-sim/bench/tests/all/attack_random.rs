@@ -34,8 +34,10 @@ fn no_rule_is_broken_in_two_million_setpoints() {
 #[test]
 fn bytes_of_a_fuzzer_are_an_attack_like_any_other() {
     let mut tally = Tally::default();
-    for seed in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/servo")).unwrap() {
-        let bytes = std::fs::read(seed.unwrap().path()).unwrap();
+    let folder = |name| concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/").to_owned() + name + "/servo";
+    let kept = ["seeds", "regressions"].map(|name| std::fs::read_dir(folder(name)).unwrap());
+    for file in kept.into_iter().flatten() {
+        let bytes = std::fs::read(file.unwrap().path()).unwrap();
         for length in [0, 1, 100, 400, bytes.len()] {
             session(&mut Chance::taped(&bytes[..length]), &host, &mut tally).unwrap();
         }

@@ -69,6 +69,8 @@ impl Course {
     pub const fn arm(&mut self, frame: Frame) {
         self.frame = frame;
         self.since_arming = 0;
+        // Here and not where a correction begins: the answer to its first setpoint may be withheld.
+        (self.cut, self.farthest, self.dead) = (false, 0.0, 0);
     }
 
     fn place(&self, setpoint: &Setpoint) -> Place {
@@ -104,7 +106,6 @@ impl Course {
         self.since_arming = self.since_arming.saturating_add(1);
         if began {
             self.begins(ticks, &at)?;
-            (self.cut, self.farthest, self.dead) = (false, 0.0, 0);
         }
         let near = self.path.nearest(&at);
         let in_room = [at.x, at.y, at.z].iter().all(|nm| nm.abs() <= ROOM + MARGIN);
