@@ -107,7 +107,10 @@ fn binary(build: Build) -> Result<PathBuf, Failure> {
     command.args(["build", "--package", "truepath", "--bin", "truepath"]);
     if build == Build::Dev {
         run(&mut command)?;
-        return Ok(target().join("debug/truepath"));
+        // Packing what debuggers read of it would take longer than all the rest.
+        let stripped = target().join("debug/truepath-stripped");
+        run(program("strip").arg("-o").arg(&stripped).arg(target().join("debug/truepath")))?;
+        return Ok(stripped);
     }
     // With the triple named, build scripts and macros are not linked statically.
     command.args(["--profile", "dist", "--target", TRIPLE]);

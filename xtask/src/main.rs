@@ -46,7 +46,7 @@ enum Task {
     ///
     /// fmt, rooms, test-only and features: what needs nothing but Rust, the same on every repeat. With --all also the slow tests,
     /// other random cases each time, firmware (both boards), budget, hil, lint, doc, device, elf, page, web,
-    /// conformance, shop, judge, bench, fuzz and linuxcnc.
+    /// conformance, dist, shop, judge, bench, fuzz and linuxcnc.
     Test {
         /// Also what takes long.
         #[arg(long)]
@@ -286,6 +286,7 @@ fn test(report: &mut Report, all: bool) {
         report.run(Step::new("page", || page::check(false)));
         report.run(Step::new("web", || web::check(true)));
         report.run(Step::new("conformance", || conformance::check(false)));
+        report.run(Step::new("dist", dist::check));
         // It mills in real time and hardly computes: a tenth of one processor.
         let mut linuxcnc = repository::itself();
         let said = repository::target().join("linuxcnc.log");
