@@ -58,6 +58,7 @@ impl Rewriter<'_> {
             // The image was taken away. Without it there are no limits to ramp by: the drives must stop first.
             state.reason = Reason::ImageChanged;
             state.mode = if state.is_at_rest() { Mode::Bypass } else { Mode::Off };
+            state.drives_seen_enabled = setpoint.flags.has(Flags::DRIVES_ENABLED);
             return None;
         };
         if ending {

@@ -2,7 +2,7 @@
 
 use crate::rewrite_support;
 use rewrite_support::*;
-use truepath_wire::rewrite::{Flags, Mode, Output, Reason, Rewriter, Settings, Status};
+use truepath_wire::rewrite::{Flags, Mode, Output, Reason, Refusal, Rewriter, Settings, Status};
 
 /// Runs to the middle of the path, does something, and expects a fault with a ramp to bypass.
 fn expect(reason: Reason, act: impl FnOnce(&mut Machine) -> Output) {
@@ -170,6 +170,14 @@ fn taking_the_image_away_in_the_cut_drops_the_drives_instead_of_jumping() {
     m.rewriter = Rewriter::new(Settings::at_1_khz(), None).unwrap();
     let out = m.stay();
     assert_eq!((out.mode, out.forward, out.reason), (Mode::Off, false, Reason::ImageChanged));
-    assert!(m.rewriter.acknowledge_drives_disabled(&mut m.state).is_ok());
+    // The drives were enabled by the last setpoint.
+    assert_eq!(m.rewriter.acknowledge_drives_disabled(&mut m.state), Err(Refusal::DrivesEnabled));
+    m.stay();
+    assert_eq!(m.rewriter.acknowledge_drives_disabled(&mut m.state), Err(Refusal::DrivesEnabled));
+    let flags = m.next.flags;
+    m.next.flags = Flags::default();
+    m.stay();
+    assert_eq!(m.rewriter.acknowledge_drives_disabled(&mut m.state), Ok(()));
+    m.next.flags = flags;
     assert!(is_plain(&m.stay(), &m.next.clone()));
 }
