@@ -1,13 +1,14 @@
-//! docs/job.md: every key of a job, from the readers themselves: what they ask for, of which type and range.
+//! docs/job.md and docs/job.schema.json: every key of a job, from the readers themselves: what they ask for, of which type and range.
 //!
 //! Jobs that hold every table are read while the keys asked for are noted. Default and meaning stand here; a key without them, and
-//! one that no reader asks for any more, fail. `cargo xtask job --write` renews the page.
+//! one that no reader asks for any more, fail. `cargo xtask job --write` renews both.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
+use serde_json::{Map, Value, json};
 use truepath_ground::diagnostics::Source;
-use truepath_ground::document::{Asked, Kind, asked_during};
+use truepath_ground::document::{Asked, Kind, asked_during, in_inches};
 use truepath_job::job::JobFile;
 
 /// Tables that do not exclude each other, and those that do in the second and third job.
@@ -250,6 +251,8 @@ fn page() -> String {
         `truepath init program.nc` writes a job with all that the program says. Every key carries its unit; an unknown key is an \
         error. Every length may be written in inches under a key of its own, `allowance_in` in place of `allowance_mm`, \
         `feed_in_per_min`.\n\n\
+        Editors that complete TOML by a schema (Taplo, *Even Better TOML*) take [job.schema.json](job.schema.json): a first line \
+        `#:schema PATH/job.schema.json` in the job, or the `include` of a `[[rule]]` in `taplo.toml`.\n\n\
         A key whose default is read from the program or wide is *assumed* where it is left out: every command prints what it took \
         and why, and summaries list it (`assumed`). What would make a wrong part when guessed has no default.\n"
         .to_owned();
@@ -257,10 +260,6 @@ fn page() -> String {
     let mut tables: Vec<&str> = vec![""];
     tables.extend(keys.iter().filter(|k| matches!(k.kind, Kind::Table | Kind::Tables)).map(|k| k.path.as_str()));
     for table in tables {
-        let meaning = |path: &str| {
-            let found = MEANINGS.iter().find(|(key, ..)| *key == path);
-            found.map(|(_, default, meaning)| (*default, *meaning)).unwrap_or_else(|| panic!("{path} has no meaning"))
-        };
         if table.is_empty() {
             text += "\n## At the top of the file\n\n";
         } else {
@@ -285,18 +284,113 @@ fn page() -> String {
     text
 }
 
+/// Default and meaning of a key.
+fn meaning(path: &str) -> (&'static str, &'static str) {
+    let found = MEANINGS.iter().find(|(key, ..)| *key == path);
+    found.map(|(_, default, meaning)| (*default, *meaning)).unwrap_or_else(|| panic!("{path} has no meaning"))
+}
+
+/// The bounds of a range in words, over a factor: "0.1 to 100 mm", "above 0, up to 500 mm", "at least 0".
+fn bounds(range: &str, factor: f64) -> Map<String, Value> {
+    let rounded = |x: f64| (x / factor * 1e6).round() / 1e6;
+    let number = |word: Option<&str>| word.and_then(|word| word.trim_matches(',').parse().ok()).map(rounded);
+    let words: Vec<&str> = range.split_whitespace().collect();
+    let behind =
+        |name: &str| number(words.iter().position(|word| *word == name).and_then(|at| words.get(at + 1)).copied());
+    let rows =
+        [("minimum", number(words.first().copied())), ("exclusiveMinimum", behind("above")), ("maximum", behind("to"))];
+    rows.into_iter().filter_map(|(key, value)| Some((key.to_owned(), json!(value?)))).collect()
+}
+
+/// What an editor knows of a key.
+fn schema_of(key: &Asked, factor: f64) -> Value {
+    let of = |name: &str, range: &str| {
+        let mut value = bounds(range, factor);
+        value.insert("type".to_owned(), json!(name));
+        Value::Object(value)
+    };
+    let mut value = match &key.kind {
+        Kind::Any => json!({ "type": "array" }),
+        Kind::Text => json!({ "type": "string" }),
+        Kind::Number(range) => of("number", range),
+        Kind::Whole(range) => of("integer", range),
+        Kind::Choice(names) => json!({ "enum": names }),
+        Kind::Table => json!({ "type": "object", "additionalProperties": false, "properties": {} }),
+        Kind::Tables => json!({
+            "type": "array",
+            "items": { "type": "object", "additionalProperties": false, "properties": {} },
+        }),
+    };
+    let (default, about) = meaning(&key.path);
+    // Of a link its text.
+    let mut parts = about.split('[');
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        match part.split_once("](").and_then(|(link, behind)| Some((link, behind.split_once(')')?.1))) {
+            Some((link, rest)) => text.extend([link, rest]),
+            None => text.extend(["[", part]),
+        }
+    }
+    let without = if ["", "none"].contains(&default) { String::new() } else { format!(". Without it: {default}") };
+    value["description"] = json!(text + &without);
+    value
+}
+
+/// The keys as a JSON schema, for editors that know TOML by one.
+fn schema() -> String {
+    let mut whole = json!({
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "Job of Truepath",
+        "type": "object",
+        "required": ["version", "program"],
+        "additionalProperties": false,
+        "properties": {},
+    });
+    for key in keys() {
+        let mut place = &mut whole["properties"];
+        let (tables, name) = key.path.rsplit_once('.').unwrap_or(("", &key.path));
+        for table in tables.split('.').filter(|table| !table.is_empty()) {
+            place = &mut place[table];
+            place =
+                if place["items"].is_object() { &mut place["items"]["properties"] } else { &mut place["properties"] };
+        }
+        place[name] = schema_of(&key, 1.0);
+        if let (Some(inches), Kind::Number(_)) = (in_inches(name), &key.kind) {
+            place[inches] = schema_of(&key, 25.4);
+        }
+    }
+    serde_json::to_string_pretty(&whole).expect("numbers and texts") + "\n"
+}
+
+/// Compares what is committed, or renews it.
+fn compare(name: &str, now: &str) {
+    let place = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name);
+    if std::env::var_os("BLESS").is_some() {
+        std::fs::write(&place, now).expect("a file");
+        return;
+    }
+    let written = std::fs::read_to_string(&place).unwrap_or_default();
+    assert_eq!(written, now, "docs/{name} is not up to date: cargo xtask job --write");
+}
+
 #[test]
 fn the_page_of_all_keys_is_what_the_readers_ask_for() {
     let keys = keys();
     for (path, ..) in MEANINGS {
         assert!(keys.iter().any(|key| key.path == *path), "no reader asks for {path}");
     }
-    let place = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/job.md");
-    let page = page();
-    if std::env::var_os("BLESS").is_some() {
-        std::fs::write(&place, page).expect("a page");
-        return;
-    }
-    let written = std::fs::read_to_string(&place).unwrap_or_default();
-    assert_eq!(written, page, "docs/job.md is not up to date: cargo xtask job --write");
+    compare("job.md", &page());
+}
+
+#[test]
+fn the_schema_of_a_job_is_what_the_readers_ask_for() {
+    compare("job.schema.json", &schema());
+}
+
+#[test]
+fn bounds_are_read_from_words() {
+    let text = |range: &str, factor: f64| Value::Object(bounds(range, factor)).to_string();
+    assert_eq!(text("0.1 to 100 mm", 1.0), r#"{"maximum":100.0,"minimum":0.1}"#);
+    assert_eq!(text("above 0, up to 508 mm", 25.4), r#"{"exclusiveMinimum":0.0,"maximum":20.0}"#);
+    assert_eq!(text("", 1.0), "{}");
 }
