@@ -116,10 +116,13 @@ fn joined(moves: &[survey::Move], edits: &[BlockEdit]) -> Vec<BlockEdit> {
     for at in 1..edits.len() {
         let [before, line] = [edits[at - 1].line, edits[at].line];
         let (Some(&end), Some(&start)) = (edits[at - 1].samples.last(), edits[at].samples.first()) else { continue };
+        if start == end {
+            continue;
+        }
         let last = moves.iter().rposition(|m| m.line == before && m.cuts());
         let between =
             last.map_or(&[][..], |last| &moves[last + 1..]).iter().take_while(|m| m.line != line || !m.cuts());
-        if start != end && between.into_iter().all(survey::Move::stands_still) {
+        if between.into_iter().all(survey::Move::stands_still) {
             edits[at].samples.insert(0, end);
             edits[at].feeds.iter_mut().skip(1).for_each(|from| from.sample += 1);
         }

@@ -1,6 +1,6 @@
 //! What has been written so far of a corrected program, and what every part of the writing asks of it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use truepath_core::gcode::{KlartextBlock, Line, Modal, Motion, Statement};
 use truepath_ground::codes::Row;
@@ -72,10 +72,11 @@ impl<'a> Writer<'a> {
 
     /// A line that the program executes several times, or that stands in another file, cannot be edited in place.
     pub(super) fn refuse_repetition(&self, moves: &[Move], lines: impl Iterator<Item = u32>) -> Result<(), Failure> {
+        let mut first = HashMap::new();
+        let again: HashSet<u32> =
+            moves.iter().filter(|m| *first.entry(m.line).or_insert(m.jumps) != m.jumps).map(|m| m.line).collect();
         for line in lines {
-            let mut times = moves.iter().filter(|m| m.line == line).map(|m| m.jumps);
-            let first = times.next();
-            if line == 0 || times.any(|jumps| Some(jumps) != first) {
+            if line == 0 || again.contains(&line) {
                 let found = if line == 0 {
                     "a line of the contour, or one that leads to or from it, stands in another file"
                 } else {

@@ -15,6 +15,8 @@ pub(super) struct Fact {
     /// `/`.
     pub(super) block_delete: bool,
     pub(super) what: What,
+    /// The line or arc it cuts along in the plane.
+    curve: Option<Curve>,
     /// The modes in force, the motion left out: it may be written on another line.
     pub(super) modal: Modal,
 }
@@ -48,12 +50,8 @@ impl Fact {
         }
     }
     /// The line or arc it cuts along in the plane.
-    pub(super) fn curve(&self) -> Option<Curve> {
-        match self.what {
-            What::Arc { curve, .. } => Some(curve),
-            What::Straight { rapid: false, from, to } => Curve::line(from.point()?, to.point()?),
-            _ => None,
-        }
+    pub(super) const fn curve(&self) -> Option<Curve> {
+        self.curve
     }
     /// Whether it moves in the plane, to wherever.
     pub(super) fn travels(&self) -> bool {
@@ -91,7 +89,15 @@ pub(super) fn facts(program: &[u8], options: Options, centre_path: bool) -> Resu
         if centre_path {
             modal = Modal { wall: None, radius_offset: None, compensated: false, ..modal };
         }
+        let curve = match what {
+            What::Arc { curve, .. } => Some(curve),
+            What::Straight { rapid: false, from, to } => {
+                from.point().zip(to.point()).and_then(|(from, to)| Curve::line(from, to))
+            }
+            _ => None,
+        };
         facts.push(Fact {
+            curve,
             line: if event.source.file == 0 { event.source.line } else { 0 },
             number: event.source.number,
             block_delete: event.source.block_delete,

@@ -3,6 +3,7 @@
 //! One line of the original stands for one stretch of the wanted path and becomes one or more lines and arcs. What
 //! else the line does (comment, feed, coolant, stop) must be there once, before its path is over.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use truepath_core::gcode::Canon;
@@ -213,12 +214,24 @@ fn same_modes(old: &Fact, new: &Fact, first: bool, percent: u16) -> Result<(), &
     Ok(())
 }
 
-/// Whether a step cuts along the contour.
-pub(super) fn is_cut(fact: &Fact, edits: &[BlockEdit]) -> bool {
-    fact.curve().is_some() && edits.iter().any(|edit| edit.line == fact.line)
+/// The lines of a contour, each with the edit it is cut by.
+#[derive(Clone, Debug, Default)]
+pub(super) struct EditLines {
+    last: HashMap<u32, usize>,
+    /// Edits before this one are cut.
+    pub(super) from: usize,
 }
 
-/// Whether a step ends a stretch: a move in the plane that is not part of the contour.
-pub(super) fn ends_stretch(fact: &Fact, edits: &[BlockEdit]) -> bool {
-    (fact.travels() && !is_cut(fact, edits)) || matches!(fact.what, What::Other(Canon::End(_)))
+impl EditLines {
+    pub(super) fn of(edits: &[BlockEdit]) -> Self {
+        Self { last: edits.iter().enumerate().map(|(at, edit)| (edit.line, at)).collect(), from: 0 }
+    }
+    /// Whether a step cuts along the contour.
+    pub(super) fn is_cut(&self, fact: &Fact) -> bool {
+        fact.curve().is_some() && self.last.get(&fact.line).is_some_and(|&at| at >= self.from)
+    }
+    /// Whether a step ends a stretch: a move in the plane that is not part of the contour.
+    pub(super) fn ends_stretch(&self, fact: &Fact) -> bool {
+        (fact.travels() && !self.is_cut(fact)) || matches!(fact.what, What::Other(Canon::End(_)))
+    }
 }

@@ -16,10 +16,10 @@ mod inside;
 mod kink;
 mod outside;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use facts::{Fact, What, facts};
-use inside::{Along, Terms};
+use inside::{Along, EditLines, Terms};
 use outside::Bounds;
 use truepath_core::gcode::{Lines, Options};
 
@@ -82,20 +82,21 @@ pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
     let mut along = Along::default();
     let mut proof = Proof::default();
     let mut edits = claim.edits;
+    let mut lines = EditLines::of(edits);
     let scheduled = edits.iter().any(|edit| !edit.feeds.is_empty());
     let (mut old, mut new, mut before) = (0, 0, None);
     let mut stretches = 0;
     loop {
         stretches += 1;
         let slack = (2.0 + f64::from(stretches)) * claim.step.max(50.0);
-        let begin = original[old..].iter().position(|f| inside::is_cut(f, edits)).map(|at| {
+        let begin = original[old..].iter().position(|f| lines.is_cut(f)).map(|at| {
             // What else its line does belongs to it, but for the way of FMAX to a lead.
             let line = original[old + at].line;
             let before = original[old..old + at].iter().rev();
             old + at - before.take_while(|f| f.line == line && !f.travels()).count()
         });
         let until = begin.unwrap_or(original.len());
-        let end = begin.map(|at| stretch_end(&original, at, edits));
+        let end = begin.map(|at| stretch_end(&original, at, &lines));
         let (mine, rest) = edits.split_at(begin.zip(end).map_or(0, |(a, b)| edits_in(&original[a..b], edits)));
         let ends = begin.zip(end).and_then(|(a, b)| inside::shifts(&original[a..b], mine));
         let bounds = Bounds { before, after: ends.map(|e| e[0]), slack };
@@ -112,6 +113,7 @@ pub(super) fn prove(claim: &Claim<'_>) -> Result<Proof, String> {
         new += inside::compare(&original[begin..end], &written[new..], mine, terms, &mut along)?;
         old = end;
         before = ends.map(|e| e[1]);
+        lines.from += mine.len();
         edits = rest;
     }
     if !edits.is_empty() {
@@ -151,13 +153,13 @@ fn without_ways_from_leads(facts: &mut [Fact], edits: &[BlockEdit]) {
 }
 
 /// Where a stretch that begins at `begin` ends: after its last cutting step.
-fn stretch_end(facts: &[Fact], begin: usize, edits: &[BlockEdit]) -> usize {
+fn stretch_end(facts: &[Fact], begin: usize, lines: &EditLines) -> usize {
     let mut end = begin;
     for (at, fact) in facts.iter().enumerate().skip(begin) {
-        if inside::ends_stretch(fact, edits) {
+        if lines.ends_stretch(fact) {
             break;
         }
-        if inside::is_cut(fact, edits) {
+        if lines.is_cut(fact) {
             end = at + 1;
         }
     }
@@ -166,7 +168,8 @@ fn stretch_end(facts: &[Fact], begin: usize, edits: &[BlockEdit]) -> usize {
 
 /// How many of the edits are cut in a stretch.
 fn edits_in(stretch: &[Fact], edits: &[BlockEdit]) -> usize {
-    edits.iter().take_while(|e| stretch.iter().any(|f| f.curve().is_some() && f.line == e.line)).count()
+    let cut: HashSet<u32> = stretch.iter().filter(|f| f.curve().is_some()).map(|f| f.line).collect();
+    edits.iter().take_while(|e| cut.contains(&e.line)).count()
 }
 
 #[cfg(test)]
