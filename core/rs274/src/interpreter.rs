@@ -80,7 +80,22 @@ impl<'t> Interpreter<'t> {
         self.run_observed(program, memory, sink, |_| ())
     }
 
-    /// The same; every block that is executed is given to `observe`. Statements of control flow and lines that only assign
+    /// The same by dynamic calls, once in the compiled program whoever calls it: each caller of [`Self::run`] has an interpreter of its
+    /// own, which takes seconds to compile.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn read(
+        &self,
+        program: Program<'_>,
+        memory: &mut Memory<'_>,
+        mut sink: &mut dyn FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
+        observe: &mut dyn FnMut(&Executed<'_>),
+    ) -> Result<ProgramSummary, GcodeError> {
+        Interpreter { options: self.options }.run_observed(program, memory, &mut sink, observe)
+    }
+
+    /// The same as [`Self::run`]; every block that is executed is given to `observe`. Statements of control flow and lines that only assign
     /// parameters are none.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! The moves of a program, each with the line it is written on and the modes around it.
 
-use truepath_core::gcode::{Axes, Canon, GcodeError, HostMemory, Interpreter, Modal, Motion, Options};
+use truepath_core::gcode::{Axes, Canon, Event, GcodeError, HostMemory, Interpreter, Modal, Motion, Options};
 use truepath_core::geometry::Curve;
 
 /// One move, or something else that decides where the next one begins.
@@ -67,7 +67,7 @@ pub(super) fn survey(program: &[u8], options: Options) -> Result<Vec<Move>, Gcod
     let mut motion_before = None;
     let mut line = (0, None);
     let mut memory = Box::new(HostMemory::new());
-    Interpreter::new(options).run(program, &mut memory.lend(), &mut |event| {
+    let mut sink = |event: &Event<'_>| {
         if event.source.line != line.0 {
             line = (event.source.line, motion_before);
         }
@@ -98,6 +98,7 @@ pub(super) fn survey(program: &[u8], options: Options) -> Result<Vec<Move>, Gcod
             motion_before: line.1,
         });
         Ok(())
-    })?;
+    };
+    Interpreter::new(options).read(program.into(), &mut memory.lend(), &mut sink, &mut |_| ())?;
     Ok(moves)
 }

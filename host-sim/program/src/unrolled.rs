@@ -34,7 +34,7 @@ pub fn unrolled(program: &[u8], options: Options<'static>) -> Option<Vec<u8>> {
     let (mut count, mut foreign) = (0usize, false);
     let mut written = BTreeSet::new();
     let mut memory = Box::new(HostMemory::new());
-    let read = Interpreter::new(options).run_observed(program, &mut memory.lend(), &mut |_| Ok(()), |block| {
+    let read = Interpreter::new(options).read(program.into(), &mut memory.lend(), &mut |_| Ok(()), &mut |block| {
         count += 1;
         foreign |= block.source.file != 0;
         // The number of a subprogram is none of the program it is written into.
@@ -60,7 +60,7 @@ fn conversational(program: &[u8], options: Options<'static>) -> Option<Vec<u8>> 
         text.extend_from_slice(end);
     };
     let mut memory = Box::new(HostMemory::new());
-    let read = Interpreter::new(options).run_observed(program, &mut memory.lend(), &mut |_| Ok(()), |block| {
+    let read = Interpreter::new(options).read(program.into(), &mut memory.lend(), &mut |_| Ok(()), &mut |block| {
         count += 1;
         if count > LONGEST || block.steers {
             return;

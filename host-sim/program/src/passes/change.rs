@@ -10,7 +10,7 @@
 
 use std::ops::Range;
 
-use truepath_core::gcode::{Canon, Coolant, HostMemory, Interpreter, Options, Spindle, ToolLength};
+use truepath_core::gcode::{Canon, Coolant, Event, HostMemory, Interpreter, Options, Spindle, ToolLength};
 use truepath_core::units::Position;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::units::float;
@@ -253,12 +253,13 @@ impl Customs {
 /// Every step of the program's own lines.
 fn each(text: &Text<'_>, options: Options<'static>, mut step: impl FnMut(u32, Canon)) -> Result<(), Failure> {
     let mut memory = Box::new(HostMemory::new());
-    let run = Interpreter::new(options).run(text.source.bytes(), &mut memory.lend(), &mut |event| {
+    let mut sink = |event: &Event<'_>| {
         if event.source.file == 0 {
             step(event.source.line, event.canon);
         }
         Ok(())
-    });
+    };
+    let run = Interpreter::new(options).read(text.source.bytes().into(), &mut memory.lend(), &mut sink, &mut |_| ());
     run.map(|_| ()).map_err(|error| InputError::of_program(text.source, &error).into())
 }
 

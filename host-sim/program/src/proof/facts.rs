@@ -1,7 +1,7 @@
 //! What a program does, step by step, as the proof compares it.
 
 use truepath_core::gcode::{
-    Axes, Canon, Decimal, GcodeError, HostMemory, Interpreter, KlartextBlock, Line, Modal, Motion, Options,
+    Axes, Canon, Decimal, Event, GcodeError, HostMemory, Interpreter, KlartextBlock, Line, Modal, Motion, Options,
 };
 use truepath_core::geometry::Curve;
 
@@ -72,7 +72,7 @@ impl Fact {
 pub(super) fn facts(program: &[u8], options: Options, centre_path: bool) -> Result<Vec<Fact>, GcodeError> {
     let mut facts = Vec::new();
     let mut memory = Box::new(HostMemory::new());
-    Interpreter::new(options).run(program, &mut memory.lend(), &mut |event| {
+    let mut sink = |event: &Event<'_>| {
         let what = match event.canon {
             // `;` at the end of a line says nothing.
             Canon::Comment(span) if span.len == 0 => return Ok(()),
@@ -105,7 +105,8 @@ pub(super) fn facts(program: &[u8], options: Options, centre_path: bool) -> Resu
             modal,
         });
         Ok(())
-    })?;
+    };
+    Interpreter::new(options).read(program.into(), &mut memory.lend(), &mut sink, &mut |_| ())?;
     Ok(facts)
 }
 
