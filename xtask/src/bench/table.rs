@@ -7,7 +7,9 @@ use crate::step::Failure;
 /// A table in Markdown with numbers on the right.
 pub fn table(head: [&str; 2], rows: impl IntoIterator<Item = (String, String)>) -> String {
     let rows = rows.into_iter().map(|(name, number)| format!("| {name} | {number} |\n"));
-    format!("| {} | {} |\n|---|---:|\n{}", head[0], head[1], rows.collect::<String>())
+    // The second may be several columns.
+    let numbers = "---:|".repeat(head[1].split('|').count());
+    format!("| {} | {} |\n|---|{numbers}\n{}", head[0], head[1], rows.collect::<String>())
 }
 
 /// Puts a text between `<!-- NAME begin -->` and `<!-- NAME end -->` of a document.
