@@ -16,6 +16,7 @@ mod link_stream;
 mod link_support;
 mod link_withdraw;
 mod rewrite_caps;
+mod rewrite_exhaustive;
 mod rewrite_fade;
 mod rewrite_faults;
 mod rewrite_invariance;
