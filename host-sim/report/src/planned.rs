@@ -115,7 +115,7 @@ fn of_wall(section: &Section<'_>) -> Markup {
         p.verdict { (verdict(plan)) }
         p.soft {
             "As programmed, one uncorrected pass: " (um(plan.as_programmed.profile_mm)) " µm at the worst place of the wall, mean over the height "
-            (um(plan.as_programmed.mean_mm)) " µm, " (format!("{:.2}", plan.minutes)) " min along the contour."
+            (um(plan.as_programmed.mean_mm)) " µm, " (format!("{:.2}", plan.minutes)) " min at feed."
         }
         (section.heading("Time against error"))
         (section.scroll("Time against error", front(plan)))

@@ -33,6 +33,42 @@ fn number(of: &Value, keys: &[&str]) -> f64 {
     found.as_f64().unwrap_or_else(|| panic!("{keys:?} in {of}"))
 }
 
+/// Minutes at feed of a program of lines and arcs with I and J, by its F words.
+fn minutes_at_feed(program: &str) -> f64 {
+    let (mut at, mut feed, mut motion, mut minutes) = ([0.0f64; 3], 0.0, 0, 0.0);
+    for line in program.lines().filter(|line| !line.starts_with(['(', '%'])) {
+        let (mut to, mut centre) = (at, [at[0], at[1]]);
+        for word in line.split_whitespace() {
+            let (letter, value) = word.split_at(1);
+            let value: f64 = value.parse().unwrap_or_else(|_| panic!("{line}"));
+            match letter {
+                "G" if value <= 3.0 => motion = value as u8,
+                "X" => to[0] = value,
+                "Y" => to[1] = value,
+                "Z" => to[2] = value,
+                "I" => centre[0] += value,
+                "J" => centre[1] += value,
+                "F" => feed = value,
+                _ => {}
+            }
+        }
+        let angle = |p: [f64; 3]| (p[1] - centre[1]).atan2(p[0] - centre[0]);
+        let across = match motion {
+            0 => 0.0,
+            1 => (to[0] - at[0]).hypot(to[1] - at[1]),
+            way => {
+                let turn = if way == 3 { angle(to) - angle(at) } else { angle(at) - angle(to) };
+                turn.rem_euclid(std::f64::consts::TAU) * (at[0] - centre[0]).hypot(at[1] - centre[1])
+            }
+        };
+        if motion > 0 && to != at {
+            minutes += across.hypot(to[2] - at[2]) / feed;
+        }
+        at = to;
+    }
+    minutes
+}
+
 #[test]
 fn a_planned_program_holds_at_every_height_what_one_pass_does_not() {
     let desk = measured();
@@ -65,6 +101,11 @@ fn a_planned_program_holds_at_every_height_what_one_pass_does_not() {
         (within - mean).abs() < 3.0 * sigma && mean < number(choice, &["profile_mm"]),
         "{within}, {mean} +- {sigma}"
     );
+    // The time is that of all moves at feed, ways down between the passes as well.
+    let [programmed, planned] = [POCKET, &desk.read("plan/planned.nc")].map(minutes_at_feed);
+    let near = |told: f64, counted: f64| assert!((told / counted - 1.0).abs() < 0.01, "{told} told, {counted} counted");
+    near(number(&done, &["minutes"]), programmed);
+    near(number(choice, &["time_ratio"]), planned / programmed);
     assert_eq!(desk.read("plan/planned.nc"), desk.read("plan/part.planned.nc"));
     let page = desk.read("plan/report.html");
     assert!(

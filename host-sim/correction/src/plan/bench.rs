@@ -17,10 +17,8 @@ use crate::surface::wall::{WallFigures, WallMap};
 pub struct Bench<'a> {
     mill: Mill<'a>,
     slices: Slices,
-    /// Minutes that one pass takes at the programmed feed, leads included.
+    /// Minutes along the contour at the programmed feed.
     minutes: f64,
-    /// Of them those of the leads.
-    lead_minutes: f64,
     /// Wall error that parts have shown beside the model, as [`Mill::with_residual`] takes it.
     residual: Arc<[Offset]>,
 }
@@ -43,8 +41,6 @@ pub struct Stage {
     pub left: Vec<Offset>,
     /// The passes so far.
     pub passes: Vec<CutPass>,
-    /// Minutes so far.
-    pub minutes: f64,
 }
 
 /// Buffers of a run, for one thread.
@@ -57,14 +53,13 @@ struct Buffers {
 }
 
 impl<'a> Bench<'a> {
-    /// `lead_mm`: length of the leads of a pass.
-    pub fn new(mill: Mill<'a>, slices: Slices, lead_mm: f64) -> Self {
+    /// Of a machine, at so many slices.
+    pub fn new(mill: Mill<'a>, slices: Slices) -> Self {
         let path = mill.machine().path;
         let samples = &path.samples()[path.first()..path.first() + path.count()];
         let feed = |at: usize| float(samples[at].feed).max(1e-3);
-        let contour: f64 = (1..samples.len()).map(|k| mm(samples[k].s - samples[k - 1].s) / feed(k)).sum();
-        let lead_minutes = lead_mm / feed(0);
-        Self { mill, slices, minutes: contour + lead_minutes, lead_minutes, residual: Arc::default() }
+        let minutes = (1..samples.len()).map(|k| mm(samples[k].s - samples[k - 1].s) / feed(k)).sum();
+        Self { mill, slices, minutes, residual: Arc::default() }
     }
 
     /// The same with what parts have shown beside the model: the walls of the passes to size have it, because it was seen
@@ -86,14 +81,13 @@ impl<'a> Bench<'a> {
     #[must_use]
     pub fn of<'b>(&'b self, machine: truepath_core::cut::Loop<'b>) -> Bench<'b> {
         let mill = self.mill.with(machine);
-        let (minutes, lead_minutes) = (self.minutes, self.lead_minutes);
-        Bench { mill, slices: self.slices, minutes, lead_minutes, residual: Arc::clone(&self.residual) }
+        Bench { mill, slices: self.slices, minutes: self.minutes, residual: Arc::clone(&self.residual) }
     }
     /// The slices of the wall.
     pub const fn slices(&self) -> Slices {
         self.slices
     }
-    /// Minutes of one pass as programmed.
+    /// Minutes of one pass along the contour at the programmed feed, without the ways to it and from it.
     pub const fn minutes(&self) -> f64 {
         self.minutes
     }
@@ -104,7 +98,7 @@ impl<'a> Bench<'a> {
         let mut left = vec![Offset::ZERO; Part::needed(path, self.slices)];
         let raw = Part::raw(path, self.slices, &mut left).is_some();
         debug_assert!(raw, "the buffer is as long as is needed");
-        Stage { left, passes: Vec::new(), minutes: 0.0 }
+        Stage { left, passes: Vec::new() }
     }
 
     /// The part after one pass of the program as it is, which shows what planning is for.
@@ -258,8 +252,6 @@ impl<'a> Bench<'a> {
             let load = design(&part, &order, &mut nodes, &mut buffers);
             part.take(path, &buffers.walls);
             stage.passes.push(CutPass { order, nodes: nodes.clone(), load });
-            let feed = f64::from(cut.feed_percent) / 100.0;
-            stage.minutes += self.lead_minutes + (self.minutes - self.lead_minutes) / feed;
         }
         stage
     }

@@ -1,28 +1,26 @@
 //! The few processes a user chooses from.
 
-use std::collections::HashMap;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use truepath_core::cut::{ForceTable, Path, Sample};
 use truepath_core::identify::{Parameters, neighbours};
 use truepath_core::job::{self, Identified};
-use truepath_core::process::{ImmersionGrid, Slices};
+use truepath_core::process::ImmersionGrid;
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{float, mm};
 use truepath_job::job::{PlanCutter, PlanTable};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
-use truepath_program::passes::Turn;
 
 use super::bench::{Bench, Stage};
 use super::field::Field;
-use super::mounted::{DIVISIONS, FINE, MIDDLE, Mounted, Resolution};
+use super::mounted::{FINE, MIDDLE, Mounted, Resolution};
 use super::process::{Cut, words};
 use super::refit::{Refitted, refit};
 use super::search::{Candidate, search};
+use super::times::Times;
 use crate::correction::{Identification, MeasuredCut, identify_together};
 use crate::feeds::written_feeds_count;
 use crate::planned::{self, PlannedPass};
@@ -58,9 +56,9 @@ pub struct Choice {
     pub cuts: Vec<Cut>,
     /// Passes along the contour.
     pub passes: usize,
-    /// Minutes along the contour, leads included.
+    /// Minutes at feed: contour, leads, ways down and up.
     pub minutes: f64,
-    /// Over that of the program's pass.
+    /// Over those of the program.
     pub time_ratio: f64,
     /// What is expected of its wall.
     #[serde(flatten)]
@@ -88,7 +86,7 @@ pub struct Plan {
     /// That wall unrolled.
     #[serde(skip)]
     pub map: WallMap,
-    /// Minutes of that pass, leads included.
+    /// Minutes of the program at feed: contour, leads, ways down and up, spring passes.
     pub minutes: f64,
     /// The choices, the fastest first.
     pub choices: Vec<Choice>,
@@ -208,16 +206,17 @@ impl<'a> Planner<'a> {
         let mut samples = Vec::new();
         let path = self.own.path(MIDDLE, &mut samples)?;
         let bench = self.bench(&self.own, (&path, &table), &grid, MIDDLE);
+        let times = self.times(&bench, &bench);
         let cutters: Vec<&Mounted> = std::iter::once(&self.own).chain(&self.others).collect();
         let mut choices = Vec::new();
         for (k, mounted) in cutters.iter().enumerate() {
             let of_all = |share: f64| progress((k as f64 + share) / cutters.len() as f64);
-            choices.extend(self.choices(mounted, &grid, (wanted, bench.minutes()), &of_all)?);
+            choices.extend(self.choices(mounted, &grid, (wanted, &bench), &of_all)?);
         }
         let error = |choice: &Choice| choice.surface.profile.profile_mm;
         choices.sort_by(|a, b| a.minutes.total_cmp(&b.minutes).then(error(a).total_cmp(&error(b))));
         keep_worthwhile(&mut choices, wanted);
-        Ok(Plan::of(&bench, choices, wanted))
+        Ok(Plan::of((&bench, times.programmed()), choices, wanted))
     }
 
     /// The plan of one process of the program's own cutter: the same cuts, designed anew.
@@ -231,8 +230,9 @@ impl<'a> Planner<'a> {
         let coarse = self.bench(&self.own, (&path, &table), &grid, COARSE);
         let path = self.own.path(MIDDLE, &mut finer)?;
         let bench = self.bench(&self.own, (&path, &table), &grid, MIDDLE);
-        let choices = self.look(&self.own, (&bench, &coarse), &[cuts], (wanted, bench.minutes()), &|_| ());
-        Ok(Plan::of(&bench, choices, wanted))
+        let times = self.times(&bench, &bench);
+        let choices = self.look(&self.own, (&bench, &coarse), &[cuts], (wanted, &times), &|_| ());
+        Ok(Plan::of((&bench, times.programmed()), choices, wanted))
     }
 
     /// A cutter at work, with what parts have shown beside the machine.
@@ -253,27 +253,31 @@ impl<'a> Planner<'a> {
         self.field.as_ref().map(|field| field.open(bench.machine(), bench.slices())).unwrap_or_default()
     }
 
-    /// What one cutter can do; `minutes` is the time of the program's own pass.
+    /// The times of what is cut on the bench of a cutter; `own` is that of the program's cutter, at the same resolution.
+    fn times(&self, own: &Bench, bench: &Bench) -> Times<'_> {
+        Times::new(self.pass, own.path().setup().axial_depth, [own.minutes(), bench.minutes()])
+    }
+
+    /// What one cutter can do; `own` is the bench of the program's cutter.
     fn choices(
         &self,
         mounted: &Mounted,
         grid: &ImmersionGrid,
-        (wanted, minutes): (&Wanted, f64),
+        (wanted, own): (&Wanted, &Bench),
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Vec<Choice>, Failure> {
         let table = mounted.table();
         let (mut samples, mut finer) = (Vec::new(), Vec::new());
         let path = mounted.path(COARSE, &mut samples)?;
         let coarse = self.bench(mounted, (&path, &table), grid, COARSE);
-        let written = Writable { pass: self.pass, depth: path.setup().axial_depth, known: Mutex::default() };
-        let found = search(&coarse, (&wanted.limits, &|cuts| written.holds(cuts)), &|share| progress(0.5 * share));
+        let middle = mounted.path(MIDDLE, &mut finer)?;
+        let bench = self.bench(mounted, (&middle, &table), grid, MIDDLE);
+        let times = self.times(own, &bench);
+        let found = search(&coarse, (&wanted.limits, &times), &|share| progress(0.5 * share));
         let found = shortlist(found, wanted.tolerance_mm);
-
-        let path = mounted.path(MIDDLE, &mut finer)?;
-        let bench = self.bench(mounted, (&path, &table), grid, MIDDLE);
         let processes: Vec<&[Cut]> = found.iter().map(|candidate| &candidate.cuts[..]).collect();
         let told = |share: f64| progress(0.5 + 0.5 * share);
-        Ok(self.look(mounted, (&bench, &coarse), &processes, (wanted, minutes), &told))
+        Ok(self.look(mounted, (&bench, &coarse), &processes, (wanted, &times), &told))
     }
 
     /// Designs a process of the program's own cutter, or of the one with a number, finely, on a path for which `samples` is room.
@@ -351,7 +355,7 @@ impl<'a> Planner<'a> {
         mounted: &Mounted,
         (bench, coarse): (&Bench, &Bench),
         processes: &[&[Cut]],
-        (wanted, minutes): (&Wanted, f64),
+        (wanted, times): (&Wanted, &Times<'_>),
         progress: &(dyn Fn(f64) + Sync),
     ) -> Vec<Choice> {
         let others = self.others_than(mounted, coarse);
@@ -365,7 +369,7 @@ impl<'a> Planner<'a> {
         let open = self.open(bench);
         let choice = |cuts: &&[Cut]| {
             let begun = begun.iter().find(|begun| begun.cuts == *cuts)?;
-            Some(self.choice(mounted, (bench, coarse), (begun, &others, &open), (wanted, minutes)))
+            Some(self.choice(mounted, (bench, coarse), (begun, &others, &open), (wanted, times)))
         };
         processes.par_iter().filter_map(choice).collect()
     }
@@ -390,9 +394,10 @@ impl<'a> Planner<'a> {
         mounted: &Mounted,
         (bench, coarse): (&Bench, &Bench),
         (begun, others, open): (&Begun, &[Other], &[Vec<f64>]),
-        (wanted, minutes): (&Wanted, f64),
+        (wanted, times): (&Wanted, &Times<'_>),
     ) -> Choice {
         let (stage, cuts) = (&begun.stage, begun.cuts);
+        let minutes = times.of(cuts).unwrap_or_else(|| times.at_least(cuts));
         let (mut noise, mut lacking, mut stiff) = (Vec::new(), Vec::new(), None);
         for (other, left) in others.iter().zip(&begun.others) {
             let wall = bench.changed_like(&stage.left, coarse, (&begun.like, left));
@@ -416,8 +421,8 @@ impl<'a> Planner<'a> {
             cutter: cutter.map(|cutter| cutter.number),
             cuts: cuts.to_vec(),
             passes: stage.passes.len(),
-            minutes: stage.minutes,
-            time_ratio: stage.minutes / minutes,
+            minutes,
+            time_ratio: minutes / times.programmed(),
             surface,
             within_tolerance: draws.within(wanted.tolerance_mm),
             limited_by: surface.causes.largest(),
@@ -507,47 +512,18 @@ fn begun<'c>(
 
 impl Plan {
     /// Of choices, the fastest first.
-    fn of(bench: &Bench, choices: Vec<Choice>, wanted: &Wanted) -> Self {
+    fn of((bench, minutes): (&Bench, f64), choices: Vec<Choice>, wanted: &Wanted) -> Self {
         let holds = |choice: &Choice| choice.within_tolerance >= wanted.confidence;
         let programmed = bench.as_programmed().left;
         Self {
             as_programmed: bench.figures(&programmed),
             map: bench.map(&programmed),
-            minutes: bench.minutes(),
+            minutes,
             recommended: choices.iter().position(holds).map(|at| at + 1),
             choices,
             tolerance_mm: wanted.tolerance_mm,
             confidence: wanted.confidence,
         }
-    }
-}
-
-/// Which processes the program can be written with: leads and heights decide, and the order of directions.
-struct Writable<'a> {
-    pass: &'a Pass,
-    /// Height of the wall, mm.
-    depth: Real,
-    /// What was found out, by raise and direction of the passes.
-    known: Mutex<HashMap<Vec<(Offset, bool)>, bool>>,
-}
-
-impl Writable<'_> {
-    fn holds(&self, cuts: &[Cut]) -> bool {
-        let slices = Slices::new(DIVISIONS);
-        let orders = cuts.iter().flat_map(|cut| cut.orders(slices));
-        let passes: Vec<(Offset, bool)> =
-            orders.map(|pass| (Offset::from_mm(self.depth * pass.raised), pass.order.reversed)).collect();
-        let found = |known: &Mutex<HashMap<_, bool>>| known.lock().ok().and_then(|known| known.get(&passes).copied());
-        found(&self.known).unwrap_or_else(|| {
-            let turn = |&(raise, reversed): &(Offset, bool)| Turn { raise, reversed, feed: 1.0 };
-            let turns: Vec<Turn> = passes.iter().map(turn).collect();
-            let holds = turns == [Turn { raise: Offset::ZERO, reversed: false, feed: 1.0 }]
-                || planned::possible(self.pass, &turns, false).is_ok();
-            if let Ok(mut known) = self.known.lock() {
-                known.insert(passes, holds);
-            }
-            holds
-        })
     }
 }
 

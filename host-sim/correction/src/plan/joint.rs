@@ -221,7 +221,7 @@ fn moved(found: &[Real; COUNT], shared: &[Real; COUNT]) -> [Real; COUNT] {
 pub fn predicted(wall: Wall<'_>, parameters: &Parameters, parts: &[CutPart]) -> Vec<Vec<Option<f64>>> {
     let table = ForceTable::new(parameters.coefficients.size_exponent);
     let machine = parameters.machine(wall.path, &table);
-    let bench = Bench::new(Mill::new(machine, wall.grid, wall.slices), wall.slices, 0.0);
+    let bench = Bench::new(Mill::new(machine, wall.grid, wall.slices), wall.slices);
     let of_part = |part: &CutPart| {
         let left = bench.follow(&part.passes);
         part.points.iter().map(|point| read(wall, &left, point)).collect()

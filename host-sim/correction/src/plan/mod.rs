@@ -10,7 +10,8 @@
 //! | [`mounted`] | the cutters that are at hand: path, machine and engagement of each |
 //! | [`process`] | what a process is: cuts with aim, levels, direction and feed |
 //! | [`mod@bench`] | the identified machine, ready to cut processes at a resolution |
-//! | [`limits`] | what a process has to keep |
+//! | [`times`] | how long a process takes, and whether it can be written |
+//! | [`limits`] | what a pass has to keep |
 //! | [`search`] | candidates, coarse to fine, and the front of time against error |
 //! | [`choice`] | the few processes a user chooses from |
 //! | [`written`] | the program of those that were chosen |
@@ -32,4 +33,5 @@ pub mod mounted;
 pub mod process;
 pub mod refit;
 pub mod search;
+pub mod times;
 pub mod written;

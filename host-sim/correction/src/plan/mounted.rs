@@ -120,9 +120,8 @@ impl<'a> Mounted<'a> {
         resolution: Resolution,
     ) -> Bench<'p> {
         let slices = resolution.slices(path);
-        let leads: f64 = self.pass.leads().iter().flat_map(|l| l.iter()).map(|block| mm(block.curve.length())).sum();
         let machine = self.with(&self.known.fit().parameters).machine(path, table);
-        Bench::new(Mill::new(machine, grid, slices), slices, leads)
+        Bench::new(Mill::new(machine, grid, slices), slices)
     }
 
     /// Machine and material, stated with the cutter of the job, with this one.

@@ -93,7 +93,7 @@ fn yielded(path: &Path, known: &Identification, points: &[Observation]) -> Vec<O
     let (table, grid) = (known.table(), ImmersionGrid::new());
     let machine = known.machine(path, &table);
     let slices = Slices::of(path.setup(), 1);
-    let walls = Bench::new(Mill::new(machine, &grid, slices), slices, 0.0).programmed_walls();
+    let walls = Bench::new(Mill::new(machine, &grid, slices), slices).programmed_walls();
 
     let working = path.working();
     let mut states = vec![State::REST; working.len()];

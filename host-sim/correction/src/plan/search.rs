@@ -19,6 +19,7 @@ use truepath_job::job::PlanTable;
 use super::bench::{Bench, Stage};
 use super::limits::keeps;
 use super::process::{Cut, Levels, leaving};
+use super::times::Times;
 
 /// Design steps of a pass in the search.
 const TURNS: u32 = 7;
@@ -39,8 +40,6 @@ const FINER: [[i64; 2]; 2] = [[1, 2], [7, 4]];
 /// A candidate that takes longer has to be better by this share.
 const WORTH: f64 = 0.96;
 
-/// Whether a program can be written with these cuts.
-pub type CanWrite<'w> = dyn Fn(&[Cut]) -> bool + Sync + 'w;
 /// Adds what last cuts make of unfinished parts.
 type Finish<'w> = dyn Fn(&[Branch], &[Cut], &mut Vec<Candidate>) + Sync + 'w;
 /// What cuts leave of unfinished parts, to be gone on with.
@@ -66,11 +65,11 @@ struct Branch {
     uneven_mm: f64,
 }
 
-/// Searches among what `writable` says a program can be written with; `progress` is told the share done, 0…1. Candidates come in the
+/// Searches among what a program can be written with, as `times` knows; `progress` is told the share done, 0…1. Candidates come in the
 /// order of their time, each better than all before.
 pub fn search(
     bench: &Bench,
-    (limits, writable): (&PlanTable, &CanWrite<'_>),
+    (limits, times): (&PlanTable, &Times<'_>),
     progress: &(dyn Fn(f64) + Sync),
 ) -> Vec<Candidate> {
     let setup = bench.path().setup();
@@ -90,32 +89,30 @@ pub fn search(
         |feeds: &[u16]| -> Vec<u16> { feeds.iter().copied().filter(|f| (slowest..=fastest).contains(f)).collect() };
 
     let mut found: Vec<Candidate> = Vec::new();
-    let fits = |minutes: f64, cut: &Cut| {
-        let more = bench.minutes() * cut.levels.count() as f64 * 100.0 / f64::from(cut.feed_percent);
-        minutes + more <= limits.max_time_ratio * bench.minutes() * 1.02
-    };
+    let all = |branch: &Branch, cut: &Cut| -> Vec<Cut> { branch.cuts.iter().copied().chain([*cut]).collect() };
+    let in_time = |minutes: &f64| times.keeps(limits, *minutes);
     let finish = |from: &[Branch], cuts: &[Cut], found: &mut Vec<Candidate>| {
         let tasks: Vec<(&Branch, &Cut)> = from.iter().flat_map(|b| cuts.iter().map(move |c| (b, c))).collect();
-        let all = |branch: &Branch, cut: &Cut| -> Vec<Cut> { branch.cuts.iter().copied().chain([*cut]).collect() };
-        let possible = |(b, cut): &(&Branch, &Cut)| fits(b.stage.minutes, cut) && writable(&all(b, cut));
-        let tasks: Vec<_> = tasks.into_iter().filter(possible).collect();
-        let cut = |(branch, cut): &(&Branch, &Cut)| {
+        let possible = |(branch, cut): (&'_ Branch, &Cut)| {
+            let cuts = all(branch, cut);
+            in_time(&times.at_least(&cuts)).then(|| times.of(&cuts)).flatten().filter(in_time)
+        };
+        let tasks: Vec<_> = tasks.into_iter().filter_map(|task| Some((task, possible(task)?))).collect();
+        let cut = |((branch, cut), minutes): &((&Branch, &Cut), f64)| {
             let stage = bench.cut(branch.stage.clone(), cut, TURNS);
             let profile_mm = bench.figures(&stage.left).profile_mm;
-            let cuts = all(branch, cut);
-            keeps(limits, bench, &stage).then_some(Candidate { cuts, minutes: stage.minutes, profile_mm })
+            keeps(limits, bench, &stage).then_some(Candidate { cuts: all(branch, cut), minutes: *minutes, profile_mm })
         };
         found.extend(tasks.par_iter().filter_map(cut).collect::<Vec<_>>());
     };
     let go_on = |from: &[Branch], cuts: &[Cut]| -> Vec<Branch> {
         let tasks: Vec<(&Branch, &Cut)> = from.iter().flat_map(|b| cuts.iter().map(move |c| (b, c))).collect();
-        let tasks: Vec<_> = tasks.into_iter().filter(|(b, cut)| fits(b.stage.minutes, cut)).collect();
+        let tasks: Vec<_> = tasks.into_iter().filter(|(b, cut)| in_time(&times.at_least(&all(b, cut)))).collect();
         let cut = |(branch, cut): &(&Branch, &Cut)| {
             let stage = bench.cut(branch.stage.clone(), cut, TURNS);
             let least = if let Aim::Least(least) = cut.aim { mm(least) } else { 0.0 };
             let uneven_mm = bench.figures(&stage.left).left_mm - least;
-            let cuts: Vec<Cut> = branch.cuts.iter().copied().chain([**cut]).collect();
-            keeps(limits, bench, &stage).then_some(Branch { cuts, stage, uneven_mm })
+            keeps(limits, bench, &stage).then_some(Branch { cuts: all(branch, cut), stage, uneven_mm })
         };
         tasks.par_iter().filter_map(cut).collect()
     };

@@ -26,7 +26,7 @@ use truepath_job::job::PlanCutter;
 use truepath_job::levels;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::codes::{P002, P003, P005};
-use truepath_program::passes::{Cutter, Depth, Repeated, RepeatedPass, Turn, can_repeat, repeat_contours};
+use truepath_program::passes::{Cutter, Depth, Repeated, RepeatedPass, Times, Turn, can_repeat, repeat_contours};
 use truepath_program::{BlockEdit, Difference, Origin, RewriteOptions, Rewritten, rewrite_program};
 
 use crate::correct::written_out;
@@ -149,7 +149,7 @@ fn laid_out(walls: &[PlannedWall<'_>], announced: bool) -> Result<(Planned, Vec<
 /// # Errors
 /// As [`write()`].
 pub fn can_repeat_pass(pass: &Pass) -> Result<(), Failure> {
-    possible(pass, &in_turn(&[false, false]), false)
+    times(pass, &in_turn(&[false, false]), false).map(|_| ())
 }
 
 /// Whether the coprocessor can be armed for each of several passes along the contour of a pass.
@@ -158,7 +158,7 @@ pub fn can_repeat_pass(pass: &Pass) -> Result<(), Failure> {
 /// As [`write_armed`].
 pub fn can_arm(pass: &Pass) -> Result<(), Failure> {
     images::check_control(pass)?;
-    possible(pass, &in_turn(&[false, false]), true)
+    times(pass, &in_turn(&[false, false]), true).map(|_| ())
 }
 
 /// Whether a pass along the contour can run against the direction of the program. Where there is no lead-out that ends off the
@@ -167,28 +167,28 @@ pub fn can_arm(pass: &Pass) -> Result<(), Failure> {
 /// # Errors
 /// As [`write()`]; `P010` where the reason is the direction.
 pub fn can_reverse(pass: &Pass) -> Result<(), Failure> {
-    possible(pass, &in_turn(&[false, true]), false)
+    times(pass, &in_turn(&[false, true]), false).map(|_| ())
 }
 
 fn in_turn(reversed: &[bool]) -> Vec<Turn> {
     reversed.iter().map(|&reversed| Turn { raise: Offset::ZERO, reversed, feed: 1.0 }).collect()
 }
 
-/// Whether passes can follow each other in the place of a contour, each `announced` to the coprocessor or not; what they are moved by is
-/// not looked at.
+/// How long passes in the place of a contour take, each `announced` to the coprocessor or not, at the programmed feed; what they are moved
+/// by is not looked at.
 ///
 /// # Errors
-/// As [`write()`].
-pub fn possible(pass: &Pass, turns: &[Turn], announced: bool) -> Result<(), Failure> {
+/// As [`write()`], where they cannot follow each other.
+pub fn times(pass: &Pass, turns: &[Turn], announced: bool) -> Result<Times, Failure> {
     let tried = |pass: &Pass| {
         can_repeat(&pass.program, &depth(pass, turns.to_vec(), announced, None)?, pass.job.numbers.program_options())
     };
     match tried(pass) {
         Err(failure) => {
             let (flat, _) = written_out(&[pass], &failure).ok_or(failure)?;
-            flat.first().map_or(Ok(()), tried)
+            tried(flat.first().unwrap_or(pass))
         }
-        possible => possible,
+        times => times,
     }
 }
 

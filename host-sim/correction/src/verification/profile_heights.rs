@@ -222,7 +222,7 @@ fn columns(pass: &Pass, path: &Path, slices: Slices) -> (Vec<f64>, Columns) {
     let walls = |parameters: &Parameters| -> Vec<Vec<f64>> {
         let table = ForceTable::new(parameters.coefficients.size_exponent);
         let machine = parameters.machine(path, &table);
-        let left = Bench::new(Mill::new(machine, &grid, slices), slices, 0.0).as_programmed().left;
+        let left = Bench::new(Mill::new(machine, &grid, slices), slices).as_programmed().left;
         let column =
             |index: &usize| left[index * slices.count()..(index + 1) * slices.count()].iter().map(|e| mm(*e)).collect();
         sites(path).iter().map(column).collect()

@@ -15,6 +15,7 @@
 //! | its lines | `text` |
 //! | the change to another cutter and back | `change` |
 //! | what the control is told before each pass | `announced` |
+//! | how long that takes | `times` |
 //!
 //! Limits: G17, constant height along the contour, feed per minute or per revolution. Where the control compensates by the
 //! radius, the passes are paths of the cutter's centre, without G41. Spring passes behind the contour are replaced with it.
@@ -24,6 +25,7 @@ mod change;
 mod request;
 mod section;
 mod text;
+mod times;
 
 use std::ops::Range;
 
@@ -40,6 +42,7 @@ use section::{Section, Text};
 
 pub use announced::Announced;
 pub use request::{Cutter, Depth, Turn};
+pub use times::{PassTimes, Times};
 
 /// A program with its passes written out.
 #[derive(Clone, Debug)]
@@ -78,12 +81,16 @@ pub struct RepeatedPass {
     pub z_nm: i64,
 }
 
-/// Whether a depth of a contour can be written as passes, reversed ones among them.
+/// How long a depth of a contour takes as passes, reversed ones among them, which are at the programmed feed; an error where they
+/// cannot be written.
 ///
 /// # Errors
 /// As [`repeat_contours`].
-pub fn can_repeat(source: &Source, depth: &Depth, options: Options<'static>) -> Result<(), Failure> {
-    repeat_contours(source, std::slice::from_ref(depth), options).map(|_| ())
+pub fn can_repeat(source: &Source, depth: &Depth, options: Options<'static>) -> Result<Times, Failure> {
+    let repeated = repeat_contours(source, std::slice::from_ref(depth), options)?;
+    let own = repeated.depths.first().ok_or_else(|| Failure::Internal("a depth that was not written".to_owned()))?;
+    let times = Times::of((source.bytes(), &repeated.text), own, options);
+    times.map_err(|error| InputError::of_program(source, &error).into())
 }
 
 /// Writes the program with the passes of all depths in the places of their contours.
