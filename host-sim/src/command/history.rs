@@ -9,10 +9,11 @@ use truepath_correction::learning::{History, Part, WrittenFile, refuse_corrected
 use truepath_correction::plan::history::PlanHistory;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::files;
+use truepath_job::job::JobFile;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
-use super::correction_files::{CONTOURS, HISTORY};
+use super::correction_files::{HISTORY, contour_folder, contour_name};
 use super::plan_files::{PLAN_HISTORY, PROGRAM};
 
 /// Reads the history of a folder, and makes sure that the correction beside it, or in the folder `base` of all contours, is
@@ -29,27 +30,55 @@ pub(super) fn history_in(folder: &FilePath, base: &FilePath) -> Result<History, 
     Ok(history)
 }
 
-/// Reads the history of planned parts of a folder, and makes sure that the program beside it is the one it tells of.
-pub(super) fn plan_history_in(folder: &FilePath) -> Result<PlanHistory, InputError> {
-    let history = PlanHistory::read(&Source::read(&folder.join(PLAN_HISTORY))?)?;
-    refuse_changed(&history.next.files, PLAN_HISTORY, folder, folder)?;
-    Ok(history)
+/// Whether a folder holds planned passes, of one contour or of several.
+pub(super) fn holds_planned(folder: &FilePath) -> bool {
+    files::exists(&folder.join(PLAN_HISTORY)) || files::exists(&folder.join(PROGRAM))
 }
 
-/// Refuses a folder whose planned passes cannot be learned from, because no history of them was written.
+/// The contours of planned passes.
+pub(super) struct PlannedContours {
+    /// Those with a history.
+    pub(super) cuts: Vec<(Pass, PlanHistory)>,
+    /// Whether there is a folder for each.
+    pub(super) several: bool,
+    /// Names of those that were left as they are.
+    pub(super) left: Vec<String>,
+}
+
+/// Reads the histories of planned parts of a folder, and makes sure that the program beside them is the one they tell of.
 ///
 /// # Errors
-/// `Q001` with what kind of passes they are.
-pub(super) fn refuse_unlearned(folder: &FilePath) -> Result<(), InputError> {
-    let holds = |name: &str| files::exists(&folder.join(name));
-    if holds(PLAN_HISTORY) || !holds(PROGRAM) {
-        return Ok(());
+/// `Q001` where there is none, or `--feature` names one contour of several; `Q004` for another program.
+pub(super) fn planned_in(folder: &FilePath, job: JobFile) -> Result<PlannedContours, Failure> {
+    let several = !files::exists(&folder.join(PLAN_HISTORY));
+    let (mut cuts, mut left) = (Vec::new(), Vec::new());
+    let feature = job.which.feature.clone();
+    for pass in if several { Pass::every(job)? } else { vec![Pass::read(job)?] } {
+        let own = if several { folder.join(contour_folder(&pass)) } else { folder.to_owned() };
+        if !files::exists(&own.join(PLAN_HISTORY)) {
+            left.push(contour_name(&pass));
+            continue;
+        }
+        let history = PlanHistory::read(&Source::read(&own.join(PLAN_HISTORY))?)?;
+        refuse_changed(&history.next.files, PLAN_HISTORY, folder, folder)?;
+        let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
+        let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass);
+        cuts.push((pass.cut_with(history.cut_with()), history));
     }
-    let passes = if holds(CONTOURS) { "planned passes of several contours" } else { "planned passes" };
-    let found = format!("{} holds {passes} and no {PLAN_HISTORY}", folder.display());
-    let expected = "planned passes of one contour with their history";
-    let help = "plan one contour (--feature ID) with truepath plan --write and learn from its part; truepath inspect judges this one";
-    Err(InputError::new(Q001, found, expected, help).in_file(folder))
+    let refused = |found: String, expected: &str, help: &str| {
+        Err(InputError::new(Q001, found, expected, help).in_file(folder).into())
+    };
+    if let Some(feature) = feature.filter(|_| several && !cuts.is_empty()) {
+        let found = format!("--feature {feature}, and {} holds planned passes of several contours", folder.display());
+        let help = "leave --feature out: one program cuts them all, and one machine is learned from the points of all";
+        return refused(found, "all contours of the part", help);
+    }
+    if cuts.is_empty() {
+        let found = format!("{} holds planned passes and no {PLAN_HISTORY}", folder.display());
+        let help = "write a choice of the program's own cutter with truepath plan --write and learn from its part; truepath inspect judges this one";
+        return refused(found, "planned passes of the program's own cutter with their history", help);
+    }
+    Ok(PlannedContours { cuts, several, left })
 }
 
 /// Makes sure that the files that a history tells of lie in its folder or in the folder `base` of all contours, unchanged.

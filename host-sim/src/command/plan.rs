@@ -4,7 +4,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use clap::{Args, ValueEnum};
 use truepath_core::checksum::crc32;
-use truepath_correction::plan::choice::{Plan, Planner, Wanted};
+use truepath_correction::plan::choice::{Choice, Plan, Planner, Wanted};
 use truepath_correction::plan::history::{NextPart, PlanHistory, Process};
 use truepath_correction::plan::written::{Chosen, WrittenPlan, write};
 use truepath_correction::planned::{PlannedDepth, can_arm, image_name};
@@ -350,20 +350,20 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
             .collect();
         let done = write(&all, route, crc32(file.bytes()), &mut |share| progress(0.9 + 0.1 * share))?;
         let passes: Vec<Pass> = measured.iter().map(|(pass, _)| pass.clone()).collect();
-        // Learning knows one contour, cut with the cutter of the program.
-        let mut learns = false;
-        if let ([(pass, points)], [plan], [number], [wall], false) =
-            (&measured[..], &plans[..], &numbers[..], &done.walls[..], several)
-            && plan.choices[number - 1].cutter.is_none()
-        {
-            let choice = &plan.choices[number - 1];
+        let choices: Vec<&Choice> = plans.iter().zip(&numbers).map(|(plan, k)| &plan.choices[k - 1]).collect();
+        // Learning knows the cutter of the program.
+        let learns = choices.iter().all(|choice| choice.cutter.is_none());
+        if learns {
             let names = [PROGRAM, &planned_name(&passes)];
             let asked = (wanted.tolerance_mm, wanted.confidence);
-            let process = Process::of(&choice.cuts, &wall.passes);
-            let next = NextPart::of(process, asked, choice.surface.profile, (&done.program, &names));
-            folder.write(PLAN_HISTORY, &PlanHistory::first(pass, points, next)?.text()?)?;
+            for (((pass, points), choice), wall) in measured.iter().zip(&choices).zip(&done.walls) {
+                let process = Process::of(&choice.cuts, &wall.passes);
+                let next = NextPart::of(process, asked, choice.surface.profile, (&done.program, &names));
+                let place = if several { contour_folder(pass) } else { String::new() };
+                let history = PlanHistory::first(pass, points, next)?.text()?;
+                folder.write(&format!("{place}{PLAN_HISTORY}"), &history)?;
+            }
             folder.write(PROBED, file.bytes())?;
-            learns = true;
         }
         let all = write_files((&folder, out), &passes, several, &numbers, done, &mut warnings)?;
         written = Some(Written { learns, ..all });

@@ -271,6 +271,11 @@ fn what_cannot_be_planned_is_said_and_nothing_is_written() {
 
 /// A pocket at one depth and another at two, with roughing before neither.
 fn two_pockets() -> String {
+    pockets(&[(0, -8), (80, -8), (80, -16)])
+}
+
+/// A program of pockets, each with its place in X and its depth.
+fn pockets(each: &[(i32, i32)]) -> String {
     let pocket = |x: i32, z: i32| {
         format!(
             "G0 X{} Y6\nG0 Z2\nG1 Z{z} F300\nG3 X{} Y4 I2 J0 F700\nG1 X{}\nG3 X{} Y10 I0 J6\nG1 Y26\nG3 X{} Y32 I-6 J0\nG1 X{}\n\
@@ -287,16 +292,22 @@ fn two_pockets() -> String {
             x + 22
         )
     };
-    format!("G21 G90 G17\nT2 M6\nS9000 M3\nG0 Z10\n{}{}{}M30\n", pocket(0, -8), pocket(80, -8), pocket(80, -16))
+    let all: String = each.iter().map(|(x, z)| pocket(*x, *z)).collect();
+    format!("G21 G90 G17\nT2 M6\nS9000 M3\nG0 Z10\n{all}M30\n")
 }
 
 /// Two pockets measured, with a search of few candidates.
 fn two_measured() -> Workplace {
+    measured_pockets(&two_pockets())
+}
+
+/// Pockets measured, with the same search.
+fn measured_pockets(program: &str) -> Workplace {
     let plant = plant("[[0.0016, 0.00004], [0.00004, 0.0013]]");
     let job = "dialect = \"linuxcnc\"\n".to_owned()
         + &pocket_job(8.0, 900).replace("[tool]\n", "[tool]\nnumber = 2\n")
         + "[plan]\nmax_cuts = 2\nmax_levels = 1\nmax_percent = 100\nreverse = \"no\"\n";
-    let desk = Workplace::with(&[("part.nc", &two_pockets()), ("job.toml", &job), ("plant.toml", &plant)]);
+    let desk = Workplace::with(&[("part.nc", program), ("job.toml", &job), ("plant.toml", &plant)]);
     desk.call("probe job.toml -o verify.nc");
     desk.call("simulate job.toml --plant plant.toml --touch verify.nc -o first");
     desk
@@ -326,10 +337,6 @@ fn every_contour_has_a_plan_and_one_program_holds_them_all() {
         assert!(desk.read(&format!("plan/contours/{name}/wall-map.csv")).starts_with("s_mm,"));
         assert!(desk.read("plan/report.html").contains(&format!("<h2 class=\"contour\">{name}</h2>")));
     }
-    // Nothing is learned from several.
-    let said = desk.run("learn job.toml --probe first/probe.txt --from plan -o out").expect_err("several contours");
-    assert!(said.contains("Q001") && said.contains("of several contours") && said.contains("--feature"), "{said}");
-    assert!(!desk.path().join("out").exists());
     // Every line beside the contours and the ways to them is the program's.
     let (old, new) = (two_pockets(), desk.read("plan/planned.nc"));
     let outside = |line: &&str| !line.contains(['X', 'Y']);
@@ -350,6 +357,49 @@ fn every_contour_has_a_plan_and_one_program_holds_them_all() {
 
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
+fn one_machine_is_learned_from_planned_passes_of_several_contours() {
+    let desk = measured_pockets(&pockets(&[(0, -8), (80, -8)]));
+    desk.call(&format!("{PLAN} --tolerance 0.02 --write 2,3 -o plan"));
+    let names = ["contour-1", "contour-2"];
+    let program = desk.call("probe job.toml --next --from plan --points 8 -o verify-2.nc")["points"].to_string();
+    assert!(names.iter().all(|name| program.contains(name)), "{program}");
+    let cut = |program: &str, seed: u32, touch: &str, to: &str| {
+        desk.write("plant.toml", desk.read("plant.toml").replace("seed = 3", &format!("seed = {seed}")));
+        desk.call(&format!("simulate job.toml --plant plant.toml --program {program} --touch {touch} -o {to}"));
+    };
+    cut("plan/planned.nc", 4, "verify-2.nc", "second");
+    let learned = desk.call("learn job.toml --probe second/probe.txt --from plan -o third");
+    let told = learned["contours"].as_array().expect("contours");
+    assert_eq!(told.iter().map(|one| one["contour"].as_str()).collect::<Vec<_>>(), names.map(Some));
+    for (name, one) in names.iter().zip(told) {
+        assert_eq!((one["part"].as_u64(), one["set_aside"].as_bool()), (Some(2), Some(false)));
+        let [before, after] = ["missed_before_mm", "missed_after_mm"].map(|key| number(one, &[key]));
+        assert!(after < before && after < 0.002, "{before} became {after}");
+        assert!(desk.path().join(format!("third/contours/{name}/plan-history.json")).exists());
+    }
+    // The next program holds both, and what it promises is what it leaves; a part follows from there too.
+    let left =
+        desk.call("simulate job.toml --plant plant.toml --program third/planned.nc --touch third/verify.nc -o touched");
+    for (one, of) in told.iter().zip(left["contours"].as_array().expect("contours")) {
+        let [left, promised] = [number(of, &["surface", "profile_mm"]), number(&one["choices"][0], &["profile_mm"])];
+        let sigma = number(&one["choices"][0], &["sigma_mm"]);
+        assert!((left - promised).abs() < 3.0 * sigma + 0.001, "{left}, {promised} +- {sigma} was promised");
+    }
+    let again = desk.call("learn job.toml --probe touched/probe.txt --from third --replan -o fourth");
+    assert_eq!(again["contours"][1]["part"].as_u64(), Some(3));
+
+    desk.call("probe job.toml --feature contour-1 -o one.nc");
+    cut("plan/planned.nc", 4, "one.nc", "half");
+    for (probe, with, code) in [("half", "", "Q010"), ("second", " --feature contour-1", "Q001"), ("first", "", "Q003")]
+    {
+        let learn = format!("learn job.toml --probe {probe}/probe.txt --from plan{with} -o out");
+        let said = desk.run(&learn).expect_err(code);
+        assert!(said.contains(code) && !desk.path().join("out").exists(), "{said}");
+    }
+}
+
+#[test]
+#[ignore = "slow: cargo xtask test --all"]
 fn the_coprocessor_gets_an_image_for_every_pass_of_every_contour() {
     let desk = two_measured();
     let done = desk.call(&format!("{PLAN} --tolerance 0.02 --route coprocessor --write 2 -o plan"));
@@ -364,11 +414,11 @@ fn the_coprocessor_gets_an_image_for_every_pass_of_every_contour() {
         let of = |key: &str| told[key].as_u64();
         assert_eq!((of("feature"), of("pass"), of("tool")), (Some(*feature), Some(*pass), Some(2)), "{told}");
     }
-    for with in ["", " --replan"] {
-        let learn = format!("learn job.toml --probe first/probe.txt --from plan -o out{with}");
-        let said = desk.run(&learn).expect_err("passes of two contours");
-        assert!(said.contains("Q001") && said.contains("of several contours"), "{said}");
-    }
+    // What the images displace, the program of the other route displaces as well: the next part has images of both contours.
+    desk.call(&format!("{PLAN} --tolerance 0.02 --write 2 -o other"));
+    desk.call("simulate job.toml --plant plant.toml --program other/planned.nc --touch verify.nc -o second");
+    let next = desk.call("learn job.toml --probe second/probe.txt --from plan -o third");
+    assert_eq!(next["written"]["images"].as_array().map(Vec::len), Some(named.len()), "{next}");
     // The program is not corrected: it can be measured and planned again, and it is not the one of the other route.
     assert!(!program.contains("TRUEPATH CORRECTED") && desk.read("plan/difference.txt").contains("planned-1.tpi"));
 }

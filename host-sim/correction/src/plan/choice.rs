@@ -131,8 +131,8 @@ pub struct Planner<'a> {
     unsettled: Option<Offset>,
     /// Whether planned parts have told of the machine: then what the model lacks is part of what is known.
     is_learned: bool,
-    /// What they have shown beside it.
-    field: Option<Field>,
+    /// What they have shown beside it, and which of their contours this is.
+    field: Option<(Field, usize)>,
 }
 
 impl<'a> Planner<'a> {
@@ -176,8 +176,9 @@ impl<'a> Planner<'a> {
         Ok(mounted.collect())
     }
 
-    /// Of a pass and what planned parts have told of the cutter of its job; they tell nothing of other cutters.
-    pub const fn learned(pass: &'a Pass, known: Identification, field: Option<Field>) -> Self {
+    /// Of a pass and what planned parts have told of the cutter of its job, with which of their contours it is; they tell nothing of other
+    /// cutters.
+    pub const fn learned(pass: &'a Pass, known: Identification, field: Option<(Field, usize)>) -> Self {
         let own = Mounted::own(pass, known);
         Self { pass, own, others: Vec::new(), left_out: Vec::new(), unsettled: None, is_learned: true, field }
     }
@@ -244,13 +245,15 @@ impl<'a> Planner<'a> {
         resolution: Resolution,
     ) -> Bench<'p> {
         let bench = mounted.bench(path, table, grid, resolution);
-        let residual = self.field.as_ref().map(|field| field.along(bench.machine(), bench.slices()));
+        let residual = self.field.as_ref();
+        let residual = residual.map(|(field, contour)| field.along((bench.machine(), *contour), bench.slices()));
         bench.with_residual(residual.unwrap_or_default())
     }
 
     /// What is open of what parts have shown beside the machine.
     fn open(&self, bench: &Bench) -> Vec<Vec<f64>> {
-        self.field.as_ref().map(|field| field.open(bench.machine(), bench.slices())).unwrap_or_default()
+        let open = |(field, contour): &(Field, usize)| field.open((bench.machine(), *contour), bench.slices());
+        self.field.as_ref().map(open).unwrap_or_default()
     }
 
     /// The times of what is cut on the bench of a cutter; `own` is that of the program's cutter, at the same resolution.

@@ -2,7 +2,7 @@
 //!
 //! A Gaussian process (Rasmussen & Williams, *Gaussian Processes for Machine Learning*, ch. 2) with two kinds of likeness
 //! along the contour: the same stretch, and any place where the cutter is engaged alike, so that what one corner taught is known
-//! in the next. Half of either holds at every height, half at heights near to each other only: a wall that yields is off
+//! in the next, and on the other contours of the part. Half of either holds at every height, half at heights near to each other only: a wall that yields is off
 //! from tip to top, a helix that differs at some heights.
 //!
 //! It was seen on the walls of the same passes with much the same loads, and is believed in for these only.
@@ -16,6 +16,8 @@ use truepath_ground::units::{float, mm};
 /// A place of the wall as the kernel sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
+    /// Number of the contour on the part, and its length where it is closed, mm.
+    contour: (usize, Option<f64>),
     /// Arc length, mm.
     s: f64,
     /// Engagement there and a quarter of the cutter's radius before and behind, rad.
@@ -33,14 +35,13 @@ pub struct Kernel {
     pub load: f64,
     /// Length over which a stretch holds, mm.
     reach: f64,
-    /// Length of the contour where it is closed, mm.
-    round: Option<f64>,
 }
 
 /// Engagement along a path, where a correction that works leads the cutter.
 #[derive(Clone, Debug)]
 pub struct Engagement<'p> {
     path: &'p Path<'p>,
+    contour: usize,
     from: usize,
     engaged: Vec<f64>,
 }
@@ -70,16 +71,22 @@ fn bell(square: f64) -> f64 {
 }
 
 impl Place {
-    /// With the arc length, mm, the engagement there and a quarter of the cutter's radius before and behind, rad, and the height
+    /// On the first contour, open: with the arc length, mm, the engagement there and a quarter of the cutter's radius before and behind, rad, and the height
     /// above the tip as a share of the wall's.
     pub const fn new(s: f64, engaged: [f64; 3], height: f64) -> Self {
-        Self { s, engaged, height }
+        Self { contour: (0, None), s, engaged, height }
+    }
+
+    /// The same on a contour of the part by its number, with its length where it is closed, mm.
+    #[must_use]
+    pub const fn on(self, contour: usize, round: Option<f64>) -> Self {
+        Self { contour: (contour, round), ..self }
     }
 }
 
 impl<'p> Engagement<'p> {
-    /// Of a machine on its path.
-    pub fn of(machine: &'p Loop<'p>) -> Self {
+    /// Of a machine on its path, which is a contour of the part by its number.
+    pub fn of(machine: &'p Loop<'p>, contour: usize) -> Self {
         let path = machine.path;
         let working = path.working();
         let from = working.start;
@@ -87,7 +94,7 @@ impl<'p> Engagement<'p> {
             let per_tooth = path.setup().feed_per_tooth(path.samples()[index].feed);
             float(machine.nominal(index, machine.coefficients.chip_scale(per_tooth)).engaged)
         };
-        Self { path, from, engaged: working.map(engaged).collect() }
+        Self { path, contour, from, engaged: working.map(engaged).collect() }
     }
 
     /// A place of the wall.
@@ -97,7 +104,8 @@ impl<'p> Engagement<'p> {
             let at = self.path.index_at(s).saturating_sub(self.from);
             self.engaged.get(at).or(self.engaged.last()).copied().unwrap_or(0.0)
         };
-        Place::new(mm(s), [engaged(s - quarter), engaged(s), engaged(s + quarter)], height)
+        let round = self.path.is_closed().then(|| mm(self.path.length()));
+        Place::new(mm(s), [engaged(s - quarter), engaged(s), engaged(s + quarter)], height).on(self.contour, round)
     }
 
     /// The middles of all slices beside every sample of the contour, as a bench holds a wall.
@@ -116,20 +124,20 @@ impl<'p> Engagement<'p> {
 
 impl Kernel {
     /// With the standard deviations of the same stretch and of places that are engaged alike, mm; a stretch holds over half of
-    /// the cutter's `radius`, and a closed contour is so long.
-    pub fn new([stretch, load]: [f64; 2], radius: f64, round: Option<f64>) -> Self {
-        Self { stretch, load, reach: REACH * radius, round }
+    /// the cutter's `radius`.
+    pub fn new([stretch, load]: [f64; 2], radius: f64) -> Self {
+        Self { stretch, load, reach: REACH * radius }
     }
 
     /// Covariance of two places, mm².
     pub fn of(&self, a: &Place, b: &Place) -> f64 {
-        let mut way = (a.s - b.s).abs();
-        if let Some(round) = self.round {
+        let ((contour, round), mut way) = (a.contour, (a.s - b.s).abs());
+        if let Some(round) = round {
             way = way.min((round - way).abs());
         }
+        let near = if contour == b.contour.0 { bell((way / self.reach).powi(2)) } else { 0.0 };
         let apart = |k: usize| ((a.engaged[k] - b.engaged[k]) / ALIKE).powi(2);
-        let along = self.stretch.powi(2) * bell((way / self.reach).powi(2))
-            + self.load.powi(2) * bell(apart(0) + apart(1) + apart(2));
+        let along = self.stretch.powi(2) * near + self.load.powi(2) * bell(apart(0) + apart(1) + apart(2));
         along * (0.5 + 0.5 * bell(((a.height - b.height) / OVER_HEIGHT).powi(2)))
     }
 }
@@ -160,16 +168,16 @@ impl Field {
         self.seen.iter().map(|(at, seen)| self.kernel.of(seen, place) * self.weights[*at]).sum()
     }
 
-    /// Its most probable size beside every sample of the contour, slice by slice.
-    pub fn along(&self, machine: &Loop, slices: Slices) -> Vec<Offset> {
+    /// Its most probable size beside every sample of a contour of the part, slice by slice.
+    pub fn along(&self, (machine, contour): (&Loop, usize), slices: Slices) -> Vec<Offset> {
         let mean = |place: &Place| Offset::from_nm((self.at(place) * 1e6).round() as i64);
-        Engagement::of(machine).wall(slices).iter().map(mean).collect()
+        Engagement::of(machine, contour).wall(slices).iter().map(mean).collect()
     }
 
     /// What the points leave open of it: columns whose outer products add up to nearly all of its covariance, each beside
     /// every sample of the contour, slice by slice, mm (a pivoted Cholesky decomposition of low rank).
-    pub fn open(&self, machine: &Loop, slices: Slices) -> Vec<Vec<f64>> {
-        let places = Engagement::of(machine).wall(slices);
+    pub fn open(&self, (machine, contour): (&Loop, usize), slices: Slices) -> Vec<Vec<f64>> {
+        let places = Engagement::of(machine, contour).wall(slices);
         let known: Vec<Vec<f64>> = places.iter().map(|p| self.factor.halfway(&self.likeness(p))).collect();
         let covariance = |a: usize, b: usize| {
             let learned: f64 = known[a].iter().zip(&known[b]).map(|(x, y)| x * y).sum();

@@ -1,6 +1,6 @@
 //! Machine, material and what no parameter says, from an uncorrected part and the planned ones after it.
 //!
-//! The wall that is touched at a height is what the sequence of passes has left there: every part is cut again in the
+//! All contours of a part are fitted together: one machine and one datum made them. The wall that is touched at a height is what the sequence of passes has left there: every part is cut again in the
 //! model, all its passes in order, each with its own stock, load and correction. About an estimate of the machine the walls
 //! are linear in its parameters; then measured errors, parameters, datums and the [`Field`] beside them are one
 //! Gaussian process (Kennedy & O'Hagan, *Bayesian calibration of computer models*, J. R. Stat. Soc. B 63, 2001), solved at
@@ -17,7 +17,7 @@
 //! explain lose their weight. The walls are linearised anew about what was found, until that stays.
 
 use rayon::prelude::*;
-use truepath_core::cut::{ForceTable, Path, WallLaw};
+use truepath_core::cut::{ForceTable, Loop, Path, WallLaw};
 use truepath_core::identify::{COUNT, Fit, Observation, Parameter, Parameters, Prior, prior_weights};
 use truepath_core::job;
 use truepath_core::process::{ImmersionGrid, Mill, Slices};
@@ -30,9 +30,13 @@ use super::field::{Engagement, Field, Kernel, Place};
 use crate::surface::unmodelled::lack;
 use crate::surface::wall::at_height;
 
-/// A part as it was cut and touched.
+/// A contour of a part as it was cut and touched.
 #[derive(Clone, Debug)]
 pub struct CutPart {
+    /// Which of the walls it is.
+    pub wall: usize,
+    /// Number of the part: the contours of one have one datum.
+    pub part: u32,
     /// Its passes, in order.
     pub passes: Vec<CutPass>,
     /// Its points.
@@ -48,11 +52,11 @@ pub struct Joint {
     pub core: job::Identified,
     /// What planned parts show beside the machine; `None` when their points fit within their noise.
     pub field: Option<Field>,
-    /// The points of every part with predictions, weights and spread.
+    /// The points of every contour of every part with predictions, weights and spread.
     pub points: Vec<Vec<Observation>>,
 }
 
-/// The wall on which parts are compared.
+/// A wall on which parts are compared.
 #[derive(Clone, Copy, Debug)]
 pub struct Wall<'a> {
     /// Its path, under the wall law of the machine.
@@ -99,7 +103,7 @@ const WEIGHINGS: usize = 4;
 /// A point with what the parameters do to it.
 #[derive(Clone, Debug)]
 struct Row {
-    part: usize,
+    part: u32,
     is_planned: bool,
     place: Place,
     /// Measured − predicted by a machine of the prior's middle, linearised, without datum, mm.
@@ -130,21 +134,21 @@ struct Factored {
 }
 
 impl Joint {
-    /// Fits the parts; the walls are first linearised about `start`, prior standard deviations. `None` without points that
-    /// can be read off the walls.
+    /// Fits the parts, all contours of each; the walls are first linearised about `start`, prior standard deviations. `None` without points
+    /// that can be read off the walls.
     pub fn of(
-        wall: Wall<'_>,
+        walls: &[Wall<'_>],
         (prior, start): (&Prior, [Real; COUNT]),
         parts: &[CutPart],
         progress: &mut dyn FnMut(f64),
     ) -> Option<Self> {
-        let round = wall.path.is_closed().then(|| mm(wall.path.length()));
-        let kernel = |sizes| Kernel::new(sizes, mm(wall.path.setup().radius), round);
+        let first = walls.first()?.path;
+        let kernel = |sizes| Kernel::new(sizes, mm(first.setup().radius));
         let mut theta = start;
         let mut found = None;
         for round in 0..ROUNDS.0 {
             progress(round as f64 / ROUNDS.0 as f64);
-            let (rows, kept) = rows(wall, (prior, theta), parts);
+            let (rows, kept) = rows(walls, (prior, theta), parts);
             let solved = Task::of(&rows, prior, &theta).solve(&kernel)?;
             let step: Vec<f64> = (0..SHARED).map(|k| float(solved.theta[k] - theta[k])).collect();
             let farthest = step.iter().fold(0.0, |most: f64, by| most.max(by.abs()));
@@ -160,23 +164,24 @@ impl Joint {
         }
         progress(1.0);
         let (rows, kept, solved) = found?;
-        let law = wall.path.setup().law;
-        Some(Self::with(parts, (law, prior), &rows, &kept, solved))
+        Some(Self::with(parts, (first.setup().law, prior), &rows, &kept, solved))
     }
 
     /// What the model with the field misses at the points of a planned part, root mean square, mm; points of something else
     /// aside. `is_newest`: the datum is that of the part.
-    pub fn missed(&self, wall: Wall<'_>, part: &CutPart, is_newest: bool) -> f64 {
+    pub fn missed(&self, walls: &[Wall<'_>], part: &[CutPart], is_newest: bool) -> f64 {
         let table = self.core.table();
-        let machine = self.core.machine(wall.path, &table);
-        let engagement = Engagement::of(&machine);
+        let machines: Vec<Loop> = walls.iter().map(|wall| self.core.machine(wall.path, &table)).collect();
+        let engagements = engagements(&machines);
         let Parameters { datum, .. } = self.core.fit.parameters;
-        let walls = predicted(wall, &self.core.fit.parameters, std::slice::from_ref(part));
-        let squares = part.points.iter().zip(walls.iter().flatten()).filter_map(|(point, wall)| {
-            let place = engagement.place(point.s, float(point.height));
+        let left = predicted(walls, &self.core.fit.parameters, part);
+        let points =
+            part.iter().zip(&left).flat_map(|(cut, left)| cut.points.iter().zip(left).map(|at| (cut.wall, at)));
+        let squares = points.filter_map(|(wall, (point, left))| {
+            let place = engagements[wall].place(point.s, float(point.height));
             let beside = self.field.as_ref().map_or(0.0, |field| field.at(&place));
             let shift = if is_newest { mm(datum.along(point.normal)) } else { 0.0 };
-            (point.weight >= FITTING).then_some((mm(point.error) - ((*wall)? + beside - shift)).powi(2))
+            (point.weight >= FITTING).then_some((mm(point.error) - ((*left)? + beside - shift)).powi(2))
         });
         let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
         f64::sqrt(sum / f64::max(count, 1.0))
@@ -217,14 +222,20 @@ fn moved(found: &[Real; COUNT], shared: &[Real; COUNT]) -> [Real; COUNT] {
     std::array::from_fn(|k| if k < SHARED { shared[k] } else { found[k] })
 }
 
+/// Engagement along every contour of a part.
+fn engagements<'p>(machines: &'p [Loop<'p>]) -> Vec<Engagement<'p>> {
+    machines.iter().enumerate().map(|(contour, machine)| Engagement::of(machine, contour)).collect()
+}
+
 /// The walls that a machine leaves on all parts, at their points, mm; `None` where no wall is.
-pub fn predicted(wall: Wall<'_>, parameters: &Parameters, parts: &[CutPart]) -> Vec<Vec<Option<f64>>> {
+pub fn predicted(walls: &[Wall<'_>], parameters: &Parameters, parts: &[CutPart]) -> Vec<Vec<Option<f64>>> {
     let table = ForceTable::new(parameters.coefficients.size_exponent);
-    let machine = parameters.machine(wall.path, &table);
-    let bench = Bench::new(Mill::new(machine, wall.grid, wall.slices), wall.slices);
+    let machines = walls.iter().map(|wall| (wall, parameters.machine(wall.path, &table)));
+    let benches: Vec<Bench> =
+        machines.map(|(wall, machine)| Bench::new(Mill::new(machine, wall.grid, wall.slices), wall.slices)).collect();
     let of_part = |part: &CutPart| {
-        let left = bench.follow(&part.passes);
-        part.points.iter().map(|point| read(wall, &left, point)).collect()
+        let left = benches[part.wall].follow(&part.passes);
+        part.points.iter().map(|point| read(walls[part.wall], &left, point)).collect()
     };
     parts.iter().map(of_part).collect()
 }
@@ -245,7 +256,11 @@ fn read(wall: Wall<'_>, left: &[Offset], point: &Observation) -> Option<f64> {
 }
 
 /// The points of all parts, linearised about `theta`, and which they are.
-fn rows(wall: Wall<'_>, (prior, theta): (&Prior, [Real; COUNT]), parts: &[CutPart]) -> (Vec<Row>, Vec<(usize, usize)>) {
+fn rows(
+    walls: &[Wall<'_>],
+    (prior, theta): (&Prior, [Real; COUNT]),
+    parts: &[CutPart],
+) -> (Vec<Row>, Vec<(usize, usize)>) {
     let moved = |k: usize, by: Real| {
         let mut moved = theta;
         moved[k] += by;
@@ -255,20 +270,21 @@ fn rows(wall: Wall<'_>, (prior, theta): (&Prior, [Real; COUNT]), parts: &[CutPar
     let mut machines = vec![prior.at(&theta)];
     let asked: Vec<usize> = (0..SHARED).filter(physical).collect();
     machines.extend(asked.iter().flat_map(|k| [moved(*k, STEP), moved(*k, -STEP)]));
-    let walls: Vec<Vec<Vec<Option<f64>>>> =
-        machines.par_iter().map(|parameters| predicted(wall, parameters, parts)).collect();
+    let left: Vec<Vec<Vec<Option<f64>>>> =
+        machines.par_iter().map(|parameters| predicted(walls, parameters, parts)).collect();
     let table = ForceTable::new(machines[0].coefficients.size_exponent);
-    let machine = machines[0].machine(wall.path, &table);
-    let engagement = Engagement::of(&machine);
+    let middle: Vec<Loop> = walls.iter().map(|wall| machines[0].machine(wall.path, &table)).collect();
+    let engagements = engagements(&middle);
     let total: usize = parts.iter().map(|part| part.points.len()).sum();
     let each = total.div_ceil(MOST_POINTS).max(1);
     let (mut rows, mut kept) = (Vec::new(), Vec::new());
-    for (part, cut) in parts.iter().enumerate() {
+    for (of, cut) in parts.iter().enumerate() {
+        let path = walls[cut.wall].path;
         for (at, point) in cut.points.iter().enumerate().step_by(each) {
-            let Some(base) = walls[0][part][at] else { continue };
+            let Some(base) = left[0][of][at] else { continue };
             let mut sensitivity = [0.0; COUNT];
-            for (pair, k) in walls[1..].chunks(2).zip(&asked) {
-                let [Some(above), Some(below)] = [pair[0][part][at], pair[1][part][at]] else { continue };
+            for (pair, k) in left[1..].chunks(2).zip(&asked) {
+                let [Some(above), Some(below)] = [pair[0][of][at], pair[1][of][at]] else { continue };
                 sensitivity[*k] = (above - below) / (2.0 * float(STEP));
             }
             let [.., undersize, x, y] = prior.sigma.map(float);
@@ -276,16 +292,16 @@ fn rows(wall: Wall<'_>, (prior, theta): (&Prior, [Real; COUNT]), parts: &[CutPar
             sensitivity[SHARED] = -x * float(point.normal.x);
             sensitivity[SHARED + 1] = -y * float(point.normal.y);
             let linear: f64 = (0..SHARED).map(|k| sensitivity[k] * float(theta[k])).sum();
-            let missed = if cut.is_planned { cancelled(wall.path, cut, point) } else { mm(point.error) };
+            let missed = if cut.is_planned { cancelled(path, cut, point) } else { mm(point.error) };
             rows.push(Row {
-                part,
+                part: cut.part,
                 is_planned: cut.is_planned,
-                place: engagement.place(point.s, float(point.height)),
+                place: engagements[cut.wall].place(point.s, float(point.height)),
                 unexplained: mm(point.error) - base + linear,
                 deviation: mm(point.noise).hypot(MODEL_SHARE * missed),
                 sensitivity,
             });
-            kept.push((part, at));
+            kept.push((of, at));
         }
     }
     (rows, kept)
@@ -475,7 +491,7 @@ mod tests {
 
     /// A kernel on an open contour.
     fn kernel(sizes: [f64; 2]) -> Kernel {
-        Kernel::new(sizes, 10.0, None)
+        Kernel::new(sizes, 10.0)
     }
 
     fn prior() -> Prior {
@@ -504,7 +520,7 @@ mod tests {
             let engaged = [if corner { 1.4 } else { 0.8 }; 3];
             let off = if part == 1 { beside(s, height) } else { 0.0 };
             Row {
-                part,
+                part: part as u32,
                 is_planned: part == 1,
                 place: Place::new(s, engaged, 0.1 + 0.4 * height as f64),
                 unexplained: level * load + 1e-3 * noise[k] + off,
@@ -541,6 +557,19 @@ mod tests {
             let field = found.field.expect("a field");
             let at = |s| field.at(&Place::new(s, [0.8; 3], 0.5));
             prop_assert!((at(60.0) - 0.012).abs() < 0.004 && at(20.0).abs() < 0.004, "{} {}", at(60.0), at(20.0));
+        }
+
+        #[test]
+        fn what_one_contour_shows_beside_the_common_machine_is_not_on_the_other(level in -0.8f64..0.8, noise in noises()) {
+            let yields = |s: f64, _| if (s - 60.0).abs() < 1.0 { 0.012 } else { 0.0 };
+            let mut both = rows(level, &noise, yields);
+            let other = rows(level, &noise, |_, _| 0.0).into_iter();
+            both.extend(other.map(|row| Row { place: row.place.on(1, None), ..row }));
+            let found = solved(&both);
+            prop_assert!((float(found.theta[0]) - level).abs() < 0.05, "{:?} of {level}", found.theta[0]);
+            let field = found.field.expect("a field");
+            let at = |contour| field.at(&Place::new(60.0, [0.8; 3], 0.5).on(contour, None));
+            prop_assert!((at(0) - 0.012).abs() < 0.004 && at(1).abs() < 0.004, "{} {}", at(0), at(1));
         }
 
         #[test]

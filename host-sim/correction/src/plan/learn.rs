@@ -2,7 +2,7 @@
 //! parts together say.
 
 use truepath_core::correct::Node;
-use truepath_core::cut::Path;
+use truepath_core::cut::{Path, Sample, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{Cut as CutPoints, Observation};
 use truepath_core::process::{Aim, ImmersionGrid, Load};
@@ -15,27 +15,45 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use super::bench::CutPass;
-use super::choice::{Plan, Planner, Wanted};
+use super::choice::{Choice, Plan, Planner, Wanted};
 use super::history::{NextPart, PlanHistory, PlannedPart, Process};
 use super::joint::{CutPart, Joint, Wall, predicted};
-use super::mounted::{FINE, MIDDLE, path};
+use super::mounted::{FINE, MIDDLE, Resolution, path};
 use super::process::Cut;
 use super::written::{Chosen, WrittenPlan, write};
-use crate::codes::Q007;
+use crate::codes::{Q002, Q007};
 use crate::correction::Identification;
 use crate::identification::{Found, Points, asked, found};
 use crate::learn::refuse_feeds;
 use crate::learning::Part;
 
+/// A contour of a part that a planned program has cut.
+#[derive(Clone, Copy, Debug)]
+pub struct PlannedCut<'a> {
+    /// The pass of the program.
+    pub pass: &'a Pass,
+    /// What was learned before.
+    pub history: &'a PlanHistory,
+    /// Its points.
+    pub measurement: &'a Measurement,
+}
+
 /// The program of the next part.
+#[derive(Clone, Debug)]
+pub struct LearnedPart {
+    /// Of each contour.
+    pub contours: Vec<LearnedPlan>,
+    /// The program of all.
+    pub written: WrittenPlan,
+}
+
+/// What was learned of a contour.
 #[derive(Clone, Debug)]
 pub struct LearnedPlan {
     /// Its process, with what it promises; more where the passes were searched for.
     pub plan: Plan,
     /// The number of the choice that is written, from 1.
     pub chosen: usize,
-    /// The program.
-    pub written: WrittenPlan,
     /// The history with one part more.
     pub history: PlanHistory,
     /// How the touched part came out.
@@ -88,103 +106,177 @@ pub enum Passes {
     Searched(PlanTable),
 }
 
-/// Learns from the part that was cut with the planned program of a history. `names` are the files that the program of the next
-/// is written to; `progress` is told the share done, 0…1.
+/// Learns from the part whose contours were cut with the planned program of their histories: one machine is fitted to the points of all.
+/// `names` are the files that the program of the next is written to; `progress` is told the share done.
 ///
 /// # Errors
-/// A history of another cut or another contour (`Q002`), points it already holds (`Q003`), points of an uncorrected part
-/// (`Q007`), scheduled feeds (`Q006`), and those of [`write()`].
+/// A history of another cut, another contour or of other parts than that of the contour beside it (`Q002`), points it already holds
+/// (`Q003`), points of an uncorrected part (`Q007`), scheduled feeds (`Q006`), and those of [`write()`].
 pub fn learn(
-    pass: &Pass,
-    history: &PlanHistory,
-    (measurement, passes): (&Measurement, Passes),
+    cuts: &[PlannedCut<'_>],
+    passes: Passes,
     names: &[&str],
     progress: &mut dyn FnMut(f64),
-) -> Result<LearnedPlan, Failure> {
-    history.facts.agree(pass)?;
-    refuse_feeds(pass)?;
-    let number = history.next_number();
-    let new = Part::new(number, measurement, None)?;
-    history.refuse_known(&new)?;
-    let mut newest = PlannedPart { measured: new, process: Some(history.next.process.clone()) };
-
-    let known = uncorrected(pass, history)?;
-    let (mut coarse, mut fine) = (Vec::new(), Vec::new());
-    let law = known.core.law;
-    let (coarse, fine) = (path(pass, law, MIDDLE, &mut coarse)?, path(pass, law, FINE, &mut fine)?);
-    let grid = ImmersionGrid::new();
-    let wall = Wall { path: &coarse, slices: MIDDLE.slices(&coarse), grid: &grid };
-    let told = history.parts.iter().filter(|part| !part.measured.set_aside).chain([&newest]);
-    let mut parts = Vec::new();
-    for part in told {
-        parts.push(cut_part(wall, &fine, part)?);
-    }
+) -> Result<LearnedPart, Failure> {
     let nothing = || Failure::Internal("no point lies on the wall".to_owned());
-    let (prior, earlier) = (&known.core.prior, parts.len() - 1);
-    let start = known.core.fit.theta;
-    let before = Joint::of(wall, (prior, start), &parts[..earlier], &mut |share| progress(0.25 * share));
+    let first = cuts.first().ok_or_else(nothing)?;
+    let number = first.history.next_number();
+    let mut newest = Vec::new();
+    for cut in cuts {
+        cut.history.facts.agree(cut.pass)?;
+        refuse_feeds(cut.pass)?;
+        refuse_other_parts(first.history, cut.history)?;
+        let measured = Part::new(number, cut.measurement, None)?;
+        cut.history.refuse_known(&measured)?;
+        newest.push(PlannedPart { measured, process: Some(cut.history.next.process.clone()) });
+    }
+
+    let known = uncorrected(cuts)?;
+    let law = known.core.law;
+    let mut room: [Vec<Vec<Sample>>; 2] = std::array::from_fn(|_| vec![Vec::new(); cuts.len()]);
+    let [coarse, fine] = &mut room;
+    let (coarse, fine) = (paths(cuts, law, MIDDLE, coarse)?, paths(cuts, law, FINE, fine)?);
+    let grid = ImmersionGrid::new();
+    let wall = |path| Wall { path, slices: MIDDLE.slices(path), grid: &grid };
+    let walls: Vec<Wall> = coarse.iter().map(wall).collect();
+    let (mut before, mut touched) = (Vec::new(), Vec::new());
+    for (at, ((cut, newest), fine)) in cuts.iter().zip(&newest).zip(&fine).enumerate() {
+        for part in cut.history.parts.iter().filter(|part| !part.measured.set_aside) {
+            before.push(cut_part((at, walls[at]), fine, part)?);
+        }
+        touched.push(cut_part((at, walls[at]), fine, newest)?);
+    }
+    let (prior, start, earlier) = (&known.core.prior, known.core.fit.theta, before.len());
+    let all: Vec<CutPart> = before.iter().chain(&touched).cloned().collect();
+    let before = Joint::of(&walls, (prior, start), &before, &mut |share| progress(0.25 * share));
     let before = before.ok_or_else(nothing)?;
-    refuse_uncorrected(wall, &before, &parts[earlier], mm(measurement.noise), number)?;
+    refuse_uncorrected(&walls, &before, &touched, mm(first.measurement.noise), number)?;
     let start = before.core.fit.theta;
-    let after = Joint::of(wall, (prior, start), &parts, &mut |share| progress(0.25 + 0.35 * share));
+    let after = Joint::of(&walls, (prior, start), &all, &mut |share| progress(0.25 + 0.35 * share));
     let after = after.ok_or_else(nothing)?;
 
-    let own = after.points.last().map_or(&[][..], Vec::as_slice);
-    let outlying = own.iter().filter(|point| float(point.weight) < FITTING).count();
-    let touched = CutPart { points: own.to_vec(), ..parts[earlier].clone() };
-    let missed_before_mm = before.missed(wall, &touched, false);
-    let missed_after_mm = after.missed(wall, &touched, true);
+    for (touched, weighed) in touched.iter_mut().zip(&after.points[earlier..]) {
+        touched.points.clone_from(weighed);
+    }
+    let outlying = |part: &CutPart| part.points.iter().filter(|point| float(point.weight) < FITTING).count();
+    let missed = |part: &[CutPart]| [before.missed(&walls, part, false), after.missed(&walls, part, true)];
     // What is learned has to explain what was not known, or it is not what happened.
-    let set_aside = 2 * outlying > own.len() || missed_after_mm > missed_before_mm + mm(measurement.noise);
-    newest.measured.set_aside = set_aside;
-    let measured: Vec<f64> = own.iter().map(|point| mm(point.error)).collect();
-    let Joint { core, field, mut points } = if set_aside { before } else { after.clone() };
-    let verdict = PlannedVerdict {
-        part: number,
-        points: own.len(),
-        measured_max_mm: measured.iter().fold(0.0, |most, error| error.abs().max(most)),
-        measured_rms_mm: rms(measured.iter().copied()),
-        promised_mm: history.next.profile_mm,
-        promised_sigma_mm: history.next.sigma_mm,
-        missed_before_mm,
-        missed_after_mm,
-        outlying,
-        beside_mm: field.as_ref().map(super::field::Field::amplitudes_mm),
-        set_aside,
+    let (count, strange) = touched.iter().fold((0, 0), |(n, k), part| (n + part.points.len(), k + outlying(part)));
+    let [missed_before_mm, missed_after_mm] = missed(&touched);
+    let set_aside = 2 * strange > count || missed_after_mm > missed_before_mm + mm(first.measurement.noise);
+    let verdict = |(cut, part): (&PlannedCut<'_>, &CutPart)| {
+        let measured: Vec<f64> = part.points.iter().map(|point| mm(point.error)).collect();
+        let [missed_before_mm, missed_after_mm] = missed(std::slice::from_ref(part));
+        PlannedVerdict {
+            part: number,
+            points: part.points.len(),
+            measured_max_mm: measured.iter().fold(0.0, |most, error| error.abs().max(most)),
+            measured_rms_mm: rms(measured.iter().copied()),
+            promised_mm: cut.history.next.profile_mm,
+            promised_sigma_mm: cut.history.next.sigma_mm,
+            missed_before_mm,
+            missed_after_mm,
+            outlying: outlying(part),
+            beside_mm: if set_aside { &before } else { &after }.field.as_ref().map(super::field::Field::amplitudes_mm),
+            set_aside,
+        }
     };
-    let known = Identification { core, observations: points.pop().unwrap_or_default() };
-    let planner = Planner::learned(pass, known, field);
-    let NextPart { tolerance_mm, confidence, .. } = history.next;
+    let verdicts: Vec<PlannedVerdict> = cuts.iter().zip(&touched).map(verdict).collect();
+    let Joint { core, field, points } = if set_aside { before } else { after };
+    let last = |at: usize| {
+        let own = all.iter().zip(&points).filter(|(part, _)| part.wall == at).last();
+        own.map(|(_, points)| points.clone()).unwrap_or_default()
+    };
+    let planner = |at: usize| {
+        let known = Identification { core, observations: last(at) };
+        Planner::learned(cuts[at].pass, known, field.clone().map(|field| (field, at)))
+    };
+    let planners: Vec<Planner> = (0..cuts.len()).map(planner).collect();
+    let mut plans = Vec::new();
+    for (planner, cut) in planners.iter().zip(cuts) {
+        plans.push(planned(planner, cut, passes)?);
+        progress(0.6 + 0.2 * plans.len() as f64 / cuts.len() as f64);
+    }
+    let choices: Vec<&Choice> = plans.iter().map(|(plan, chosen)| &plan.choices[*chosen]).collect();
+    let next: Vec<Chosen> = planners
+        .iter()
+        .zip(&choices)
+        .map(|(planner, choice)| Chosen { planner, cuts: &choice.cuts, cutter: choice.cutter })
+        .collect();
+    let (route, crc) = (first.history.next.route(), first.measurement.crc);
+    let written = write(&next, route, crc, &mut |share| progress(0.8 + 0.2 * share))?;
+    let mut contours = Vec::new();
+    for (((cut, choice), wall), (mut newest, verdict)) in
+        cuts.iter().zip(&choices).zip(&written.walls).zip(newest.into_iter().zip(verdicts))
+    {
+        newest.measured.set_aside = set_aside;
+        let process = Process::of(&choice.cuts, &wall.passes);
+        let NextPart { tolerance_mm, confidence, .. } = cut.history.next;
+        let asked = (tolerance_mm, confidence);
+        let next = NextPart::of(process, asked, choice.surface.profile, (&written.program, names));
+        contours.push((cut.history.with(newest, next), verdict));
+    }
+    let contours = contours.into_iter().zip(plans);
+    let contours = contours
+        .map(|((history, verdict), (plan, chosen))| LearnedPlan { plan, chosen: chosen + 1, history, verdict })
+        .collect();
+    Ok(LearnedPart { contours, written })
+}
+
+/// The processes of the next part, and which of them is written, from 0.
+fn planned(planner: &Planner<'_>, cut: &PlannedCut<'_>, passes: Passes) -> Result<(Plan, usize), Failure> {
+    let NextPart { tolerance_mm, confidence, .. } = cut.history.next;
     let wanted = |limits| Wanted { tolerance_mm, confidence, limits };
     let (plan, chosen) = match passes {
-        Passes::Same => (planner.again(&history.next.process.cuts(), &wanted(pass.job.plan))?, 0),
+        Passes::Same => (planner.again(&cut.history.next.process.cuts(), &wanted(cut.pass.job.plan))?, 0),
         Passes::Searched(limits) => {
             let plan = planner.plan(&wanted(planner.possible(limits).0), &|_| ())?;
             let chosen = plan.recommended.map_or(plan.choices.len().saturating_sub(1), |number| number - 1);
             (plan, chosen)
         }
     };
-    progress(0.8);
-    let choice = plan.choices.get(chosen).ok_or_else(|| {
+    if plan.choices.is_empty() {
         let help = "loosen [plan] of the job, or learn without --replan";
-        InputError::new(J008, "no process keeps the limits of [plan]", "at least one", help)
-    })?;
-    let cuts = choice.cuts.clone();
-    let next = [Chosen { planner: &planner, cuts: &cuts, cutter: choice.cutter }];
-    let written = write(&next, history.next.route(), measurement.crc, &mut |share| progress(0.8 + 0.2 * share))?;
-    let process = Process::of(&cuts, written.walls.first().map_or(&[], |wall| &wall.passes));
-    let next = NextPart::of(process, (tolerance_mm, confidence), choice.surface.profile, (&written.program, names));
-    Ok(LearnedPlan { history: history.with(newest, next), chosen: chosen + 1, plan, written, verdict })
+        return Err(InputError::new(J008, "no process keeps the limits of [plan]", "at least one", help).into());
+    }
+    Ok((plan, chosen))
+}
+
+/// Contours of one part have been cut and touched together.
+fn refuse_other_parts(first: &PlanHistory, other: &PlanHistory) -> Result<(), InputError> {
+    let parts = |history: &PlanHistory| -> Vec<(u32, bool)> {
+        history.parts.iter().map(|part| (part.measured.number, part.measured.set_aside)).collect()
+    };
+    if parts(first) == parts(other) && first.next.files == other.next.files {
+        return Ok(());
+    }
+    let help = "name the folder as truepath plan or truepath learn has written it";
+    let found = "the histories of two contours tell of different parts or programs";
+    Err(InputError::new(Q002, found, "contours that were cut and touched together", help))
+}
+
+/// The paths of cuts at a resolution.
+fn paths<'p>(
+    cuts: &[PlannedCut<'_>],
+    law: WallLaw,
+    resolution: Resolution,
+    samples: &'p mut [Vec<Sample>],
+) -> Result<Vec<Path<'p>>, Failure> {
+    cuts.iter().zip(samples).map(|(cut, samples)| path(cut.pass, law, resolution, samples)).collect()
 }
 
 /// Machine and material as the model of one pass finds them from the part without a correction: where the fit of all parts begins.
-fn uncorrected(pass: &Pass, history: &PlanHistory) -> Result<Found, Failure> {
-    let mut buffer = PathBuffer::default();
-    let path = pass.sample(&mut buffer)?;
-    let points: Vec<Observation> = history.parts.first().map(|part| observations(&part.measured)).unwrap_or_default();
-    let cuts = [CutPoints { path, points: points.len(), part: 0 }];
-    let points = Points { cuts: &cuts, earlier: &[], observations: &points };
-    Ok(found(&pass.core, asked(pass.core.job.force.model), points, |_, _| Vector::ZERO, &mut |_| ()))
+fn uncorrected(cuts: &[PlannedCut<'_>]) -> Result<Found, Failure> {
+    let mut buffers: Vec<PathBuffer> = cuts.iter().map(|_| PathBuffer::default()).collect();
+    let (mut placed, mut points) = (Vec::new(), Vec::new());
+    for (cut, buffer) in cuts.iter().zip(&mut buffers) {
+        let own = cut.history.parts.first().map(|part| observations(&part.measured)).unwrap_or_default();
+        placed.push(CutPoints { path: cut.pass.sample(buffer)?, points: own.len(), part: 0 });
+        points.extend(own);
+    }
+    let first = &cuts.first().ok_or_else(|| Failure::Internal("no contour to learn from".to_owned()))?.pass.core;
+    let points = Points { cuts: &placed, earlier: &[], observations: &points };
+    Ok(found(first, asked(first.job.force.model), points, |_, _| Vector::ZERO, &mut |_| ()))
 }
 
 fn observations(part: &Part) -> Vec<Observation> {
@@ -193,12 +285,13 @@ fn observations(part: &Part) -> Vec<Observation> {
 }
 
 /// A part with its passes beside the samples of a wall; `fine` is the path that they were designed along.
-fn cut_part(wall: Wall<'_>, fine: &Path, part: &PlannedPart) -> Result<CutPart, InputError> {
+fn cut_part((at, wall): (usize, Wall<'_>), fine: &Path, part: &PlannedPart) -> Result<CutPart, InputError> {
     let passes = match &part.process {
         None => as_programmed(wall),
         Some(process) => process.passes(wall.slices, |nodes| placed(fine, wall.path, nodes))?,
     };
-    Ok(CutPart { passes, points: observations(&part.measured), is_planned: part.process.is_some() })
+    let (part, is_planned) = (&part.measured, part.process.is_some());
+    Ok(CutPart { wall: at, part: part.number, passes, points: observations(part), is_planned })
 }
 
 /// The one pass of the program.
@@ -232,19 +325,20 @@ fn placed(from: &Path, to: &Path, nodes: &[Node]) -> Option<Vec<Node>> {
 /// # Errors
 /// `Q007` with both distances.
 fn refuse_uncorrected(
-    wall: Wall<'_>,
+    walls: &[Wall<'_>],
     before: &Joint,
-    part: &CutPart,
+    part: &[CutPart],
     noise_mm: f64,
     number: u32,
 ) -> Result<(), InputError> {
-    let plain = CutPart { passes: as_programmed(wall), ..part.clone() };
-    let walls = predicted(wall, &before.core.fit.parameters, &[part.clone(), plain]);
-    let missed = |of: usize| -> Vec<f64> {
-        let both = part.points.iter().zip(&walls[of]);
+    let plain = |cut: &CutPart| CutPart { passes: as_programmed(walls[cut.wall]), ..cut.clone() };
+    let plain: Vec<CutPart> = part.iter().map(plain).collect();
+    let missed = |part: &[CutPart]| -> Vec<f64> {
+        let left = predicted(walls, &before.core.fit.parameters, part);
+        let both = part.iter().zip(&left).flat_map(|(cut, left)| cut.points.iter().zip(left));
         both.filter_map(|(point, wall)| Some(mm(point.error) - (*wall)?)).collect()
     };
-    let (with, without) = (missed(0), missed(1));
+    let (with, without) = (missed(part), missed(&plain));
     let [far, near] = [&with, &without].map(|missed| middle(missed));
     if far > CLEARLY * near && far > BEYOND_NOISE * noise_mm {
         let found = format!(
@@ -269,7 +363,6 @@ fn middle(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use truepath_core::cut::WallLaw;
     use truepath_core::identify::Fit;
     use truepath_core::job::Identified;
     use truepath_job::job::{JobFile, Route};
@@ -330,8 +423,8 @@ mod tests {
             )
         };
         let points: Vec<Observation> = (1..10).map(|k| at(10 * k)).collect();
-        let part = CutPart { passes, points, is_planned: true };
-        let again = &predicted(wall, &prior.mean, &[part])[0];
+        let part = CutPart { wall: 0, part: 2, passes, points, is_planned: true };
+        let again = &predicted(&[wall], &prior.mean, &[part])[0];
         let of_map = written.map.s_mm.iter().position(|s| *s >= 15.0).unwrap();
         let designed = &written.map.error_mm[of_map];
         for (k, again) in (1..10).zip(again) {

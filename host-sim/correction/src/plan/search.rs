@@ -6,7 +6,7 @@
 //! * the less a cut before leaves, the less the last one is pushed; against the direction of the program the helix leans the other
 //!   way, so that what the cut before left too high is taken by another part of the tooth's way;
 //! * levels as deep as an axial contact ratio of one keep the force as the cutter turns; even levels shorten the tooth's way;
-//! * a thin last cut stands more feed;
+//! * a thin last cut stands more feed, and so does the one before it where time is short;
 //! * a spring pass, with the same commands or with its own, takes what the cut before was pushed away from.
 //!
 //! Which of them helps on a part is found by cutting it. Work grows with the contour's length and no further.
@@ -27,6 +27,8 @@ const TURNS: u32 = 7;
 const LEFT_FIRST: [i64; 4] = [5, 20, 60, 150];
 /// What a second of three cuts may leave, um.
 const LEFT_SECOND: [i64; 3] = [2, 8, 25];
+/// Feeds of a second of three cuts where at the programmed feed no time is left for a third, percent: the fastest allowed.
+const SECOND_FEEDS: [u16; 3] = [200, 150, 100];
 /// Feeds of a last cut, percent.
 const LAST_FEEDS: [u16; 4] = [100, 150, 200, 60];
 /// Feeds of a single cut, percent.
@@ -154,10 +156,19 @@ pub fn search(
         progress(0.7);
         if limits.max_cuts >= 3 {
             // Three cuts.
-            let second = |um: i64, reversed: bool| Cut { reversed, ..Cut::whole(leaving(um)) };
-            let second: Vec<Cut> =
-                LEFT_SECOND.iter().flat_map(|um| ways.iter().map(move |w| second(*um, *w))).collect();
-            let mut second = go_on(&first, &second);
+            let second = |feed_percent: u16| -> Vec<Cut> {
+                let cut = |um: i64, reversed: bool| Cut { reversed, feed_percent, ..Cut::whole(leaving(um)) };
+                LEFT_SECOND.iter().flat_map(|um| ways.iter().map(move |w| cut(*um, *w))).collect()
+            };
+            let quickest = Cut { feed_percent: fastest.min(LAST_FEEDS[2]), ..Cut::whole(Aim::Middle) };
+            let leaves_time = |branch: &Branch| {
+                let cuts = [&branch.cuts[..], &[Cut::whole(leaving(LEFT_SECOND[0])), quickest]].concat();
+                times.of(&cuts).is_none_or(|minutes| in_time(&minutes))
+            };
+            let (usual, late): (Vec<Branch>, Vec<Branch>) = first.iter().cloned().partition(leaves_time);
+            let mut second_branches = go_on(&usual, &second(100));
+            second_branches.extend(go_on(&late, &second(allowed(&SECOND_FEEDS).first().copied().unwrap_or(100))));
+            let mut second = second_branches;
             progress(0.8);
             second.sort_by(|a, b| a.uneven_mm.total_cmp(&b.uneven_mm));
             second.truncate(KEPT + 1);

@@ -24,7 +24,7 @@ use truepath_report::pages::learned;
 
 use super::correct::words as correction;
 use super::correction_files::{FILES, HISTORY, MILLED, commit, write_contour, write_program};
-use super::history::{history_in, refuse_unlearned};
+use super::history::{history_in, holds_planned};
 use super::plan_files::PLAN_HISTORY;
 use super::readings::Readings;
 use crate::terminal::Terminal;
@@ -67,7 +67,7 @@ pub struct Options {
 
 /// Learns and prints what was learned.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
-    if files::exists(&options.from.join(PLAN_HISTORY)) {
+    if holds_planned(&options.from) {
         refuse_same_folder(options)?;
         let mut job = options.said.read(&options.job)?;
         job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
@@ -82,7 +82,6 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
         };
         return planned::main(job, (probe, &options.from), to, wish, terminal);
     }
-    refuse_unlearned(&options.from)?;
     if options.replan {
         let found = format!("--replan, and {} holds no {PLAN_HISTORY}", options.from.display());
         let help = "leave --replan out, or name a folder of truepath plan --write with --from";

@@ -2,9 +2,10 @@
 
 use std::path::Path as FilePath;
 
-use truepath_correction::codes::{Q002, Q003, Q007};
+use truepath_correction::codes::{Q002, Q003, Q007, Q010};
 use truepath_correction::plan::choice::Plan;
-use truepath_correction::plan::learn::{Passes, PlannedVerdict, learn};
+use truepath_correction::plan::learn::{Passes, PlannedCut, PlannedVerdict, learn};
+use truepath_correction::remarks::said_of_every;
 use truepath_correction::surface::touched::TouchedSurface;
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
@@ -14,7 +15,8 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::{PlannedWall, planned_page};
 
-use super::super::history::plan_history_in;
+use super::super::correction_files::{contour_folder, contour_name};
+use super::super::history::{PlannedContours, planned_in};
 use super::super::plan::{Written, planned_name, program_name, write_files};
 use super::super::plan_files::{FILES, PLAN_HISTORY, PROBED, PROGRAM, REPORT};
 use crate::terminal::Terminal;
@@ -24,6 +26,24 @@ use crate::terminal::Terminal;
 pub struct LearnedPlanSummary {
     /// Version of this file.
     version: u32,
+    /// What was learned, where one contour was planned.
+    #[serde(flatten)]
+    learned: Option<LearnedContour>,
+    /// What was learned of each of several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    contours: Vec<LearnedContour>,
+    /// The program of the next part.
+    written: Written,
+    /// What the user should know.
+    warnings: Vec<String>,
+}
+
+/// What was learned of a contour.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct LearnedContour {
+    /// Its name, of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contour: Option<String>,
     /// The part that was touched.
     #[serde(flatten)]
     verdict: PlannedVerdict,
@@ -32,10 +52,9 @@ pub struct LearnedPlanSummary {
     /// The next part: the process of the part before, designed anew, is the one choice, unless passes were searched for.
     #[serde(flatten)]
     plan: Plan,
-    /// Its program.
-    written: Written,
-    /// What the user should know.
-    warnings: Vec<String>,
+    /// The number of the choice that is written.
+    #[serde(skip)]
+    chosen: usize,
 }
 
 /// What the next part is asked.
@@ -63,8 +82,23 @@ pub(super) fn main(
 }
 
 fn words(summary: &LearnedPlanSummary) -> String {
+    let mut text: String = summary.learned.iter().map(of_contour).collect();
+    for one in &summary.contours {
+        text += &format!("{}\n{}\n", one.contour.as_deref().unwrap_or_default(), of_contour(one));
+    }
+    let next =
+        summary.learned.iter().chain(&summary.contours).map(|one| one.verdict.part + 1).next().unwrap_or_default();
+    text + &format!(
+        "\nwritten: {}, {} passes\n{}next: mill part {next} with it; touch it, and learn from there\n",
+        summary.written.program.display(),
+        summary.written.passes(),
+        summary.written.of_images(),
+    )
+}
+
+fn of_contour(one: &LearnedContour) -> String {
     let um = |mm: f64| mm * 1e3;
-    let (verdict, plan, measured) = (&summary.verdict, &summary.plan, &summary.measured_surface);
+    let (verdict, plan, measured) = (&one.verdict, &one.plan, &one.measured_surface);
     let mut text = format!(
         "part {} at {} points: largest error {:.1} um, rms {:.1} um; {:.1} ± {:.1} um were predicted for the worst place of the wall\n\
          {} (2 sigma), 95 % of the points within {:.4} mm\n  {}\n\
@@ -88,7 +122,7 @@ fn words(summary: &LearnedPlanSummary) -> String {
             um(load)
         );
     }
-    if let Some(choice) = summary.written.choice.as_ref().and_then(|one| plan.choices.get(one.choice - 1)) {
+    if let Some(choice) = plan.choices.get(one.chosen - 1) {
         text += &format!(
             "\npart {}: {}\n  profile error {:.1} ± {:.1} um at every height, 95 % of the wall within {:.1} um, mean over the height {:.1} um, {:.0} % within {:.1} um\n  {}\n",
             verdict.part + 1,
@@ -106,13 +140,7 @@ fn words(summary: &LearnedPlanSummary) -> String {
         text +=
             "  these passes do not hold the tolerance with the confidence asked for: truepath plan looks for others\n";
     }
-    text + &format!(
-        "\nwritten: {}, {} passes\n{}next: mill part {} with it; touch it, and learn from there\n",
-        summary.written.program.display(),
-        summary.written.passes(),
-        summary.written.of_images(),
-        verdict.part + 1
-    )
+    text
 }
 
 /// Refuses a route that is not the one of the plan.
@@ -137,49 +165,85 @@ fn run(
     wish: Wish,
     progress: &mut dyn FnMut(f64),
 ) -> Result<LearnedPlanSummary, Failure> {
-    let mut history = plan_history_in(from)?;
-    refuse_other_route(wish.route, history.next.route())?;
-    history.next.tolerance_mm = wish.tolerance_mm.unwrap_or(history.next.tolerance_mm);
-    let pass = Pass::read(job)?;
-    let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
-    let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
+    let PlannedContours { cuts, several, left } = planned_in(from, job)?;
     let file = Source::read(probe)?;
-    let measurement = Measurement::read(&pass, &file)?;
+    let (walls, mut histories): (Vec<Pass>, Vec<_>) = cuts.into_iter().unzip();
+    for history in &mut histories {
+        refuse_other_route(wish.route, history.next.route())?;
+        history.next.tolerance_mm = wish.tolerance_mm.unwrap_or(history.next.tolerance_mm);
+    }
+    let measured = match <[Pass; 1]>::try_from(walls) {
+        Ok([only]) => {
+            let measurement = Measurement::read(&only, &file)?;
+            vec![(only, measurement)]
+        }
+        Err(walls) => Measurement::of_every(walls, &file)?,
+    };
+    if let Some((pass, _)) = measured.iter().find(|(_, measurement)| measurement.contacts.is_empty()) {
+        let found = format!("no point is on the wall of {}, which was cut with planned passes", contour_name(pass));
+        return Err(Q010.error(found, "points on every planned contour").in_file(probe).into());
+    }
     let folder = OutputFolder::create(output, force, FILES)?;
-    let name = planned_name(std::slice::from_ref(&pass));
-    let passes = if wish.replan { Passes::Searched(pass.job.plan) } else { Passes::Same };
-    let learned = learn(&pass, &history, (&measurement, passes), &[PROGRAM, &name], progress);
-    let learned = learned.map_err(|failure| match failure {
+    let passes: Vec<Pass> = measured.iter().map(|(pass, _)| pass.clone()).collect();
+    let name = planned_name(&passes);
+    let next = match passes.first().filter(|_| wish.replan) {
+        Some(pass) => Passes::Searched(pass.job.plan),
+        None => Passes::Same,
+    };
+    let parts: Vec<PlannedCut> = measured
+        .iter()
+        .zip(&histories)
+        .map(|((pass, measurement), history)| PlannedCut { pass, history, measurement })
+        .collect();
+    let learned = learn(&parts, next, &[PROGRAM, &name], progress).map_err(|failure| match failure {
         Failure::Input(error) if [Q003.code, Q007.code].contains(&error.code()) => error.in_file(probe).into(),
         Failure::Input(error) if error.code() == Q002.code && error.line_column().is_none() => {
-            error.in_file(&from.join(PLAN_HISTORY)).into()
+            error.in_file(&if several { from.to_owned() } else { from.join(PLAN_HISTORY) }).into()
         }
         failure => failure,
     })?;
-    let mut warnings = pass.warnings.clone();
-    warnings.extend(measurement.remarks(&file));
-    if learned.verdict.set_aside {
+    let mut warnings: Vec<String> =
+        left.iter().map(|name| format!("{name} stays as it is: {} has no history of it", from.display())).collect();
+    let said: Vec<Vec<String>> = measured
+        .iter()
+        .map(|(pass, measurement)| [pass.warnings.clone(), measurement.remarks(&file)].concat())
+        .collect();
+    let names: Vec<String> = passes.iter().map(contour_name).collect();
+    warnings.extend(match &said[..] {
+        [only] => only.clone(),
+        said => said_of_every(names.iter().map(String::as_str).zip(said.iter().map(Vec::as_slice))),
+    });
+    if let Some(verdict) = learned.contours.first().map(|one| one.verdict).filter(|verdict| verdict.set_aside) {
+        let points =
+            |of: &dyn Fn(&PlannedVerdict) -> usize| learned.contours.iter().map(|one| of(&one.verdict)).sum::<usize>();
         warnings.push(format!(
             "part {} is set aside: nothing explains {} of its {} points beside the parts before; the next part is cut by what was known before it",
-            learned.verdict.part, learned.verdict.outlying, learned.verdict.points
+            verdict.part,
+            points(&|one| one.outlying),
+            points(&|one| one.points)
         ));
     }
-    let (walls, numbers) = (std::slice::from_ref(&pass), [learned.chosen]);
-    let written = write_files((&folder, output), walls, false, &numbers, learned.written, &mut warnings)?;
-    folder.write(PLAN_HISTORY, &learned.history.text()?)?;
+    let numbers: Vec<usize> = learned.contours.iter().map(|one| one.chosen).collect();
+    let written = write_files((&folder, output), &passes, several, &numbers, learned.written, &mut warnings)?;
+    let mut contours = Vec::new();
+    for ((pass, measurement), one) in measured.iter().zip(learned.contours) {
+        let place = if several { contour_folder(pass) } else { String::new() };
+        folder.write(&format!("{place}{PLAN_HISTORY}"), &one.history.text()?)?;
+        contours.push(LearnedContour {
+            contour: several.then(|| contour_name(pass)),
+            verdict: one.verdict,
+            measured_surface: TouchedSurface::of_measurement(pass, measurement),
+            plan: one.plan,
+            chosen: one.chosen,
+        });
+    }
     folder.write(PROBED, file.bytes())?;
-    folder.write(
-        REPORT,
-        planned_page(&[PlannedWall { name: None, plan: &learned.plan }], &program_name(&pass)).as_bytes(),
-    )?;
-    let summary = LearnedPlanSummary {
-        version: 1,
-        verdict: learned.verdict,
-        measured_surface: TouchedSurface::of_measurement(&pass, &measurement),
-        plan: learned.plan,
-        written: Written { learns: true, ..written },
-        warnings,
-    };
+    let shown: Vec<PlannedWall> =
+        contours.iter().map(|one| PlannedWall { name: one.contour.clone(), plan: &one.plan }).collect();
+    folder.write(REPORT, planned_page(&shown, &passes.first().map(program_name).unwrap_or_default()).as_bytes())?;
+    let learned = if several { None } else { contours.pop() };
+    let written = Written { learns: true, ..written };
+    let summary = LearnedPlanSummary { version: 1, learned, contours, written, warnings };
     folder.write("summary.json", &json(&summary)?)?;
     folder.commit()?;
     Ok(summary)

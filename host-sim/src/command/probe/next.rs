@@ -17,24 +17,22 @@ use truepath_correction::correction::{DesignRequest, Identification, design_corr
 use truepath_correction::feeds;
 use truepath_correction::learn::refuse_feeds;
 use truepath_correction::learning::{History, Part, PartPoints, joint, refuse_uncorrected};
-use truepath_correction::verification::{Measured, Plan, Settings, WallSensitivity, plan, plan_next};
+use truepath_correction::verification::{Measured, Plan, Settings, WallSensitivity, plan_every, plan_next};
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
-use truepath_ground::files;
 use truepath_ground::units::mm;
-use truepath_job::job::Route;
+use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
-use crate::command::history::{history_in, plan_history_in, refuse_unlearned};
-use crate::command::plan_files::PLAN_HISTORY;
+use crate::command::history::{history_in, holds_planned, planned_in};
 
 /// Plans further touches from files. `progress` is told the share done, 0…1.
 ///
 /// # Errors
 /// Neither file nor folder; whatever is wrong with them, a correction beyond the clamp, and as [`plan_next`].
 pub(super) fn of_files(
-    pass: Pass,
+    job: JobFile,
     (probe, from): (Option<&FilePath>, Option<&FilePath>),
     settings: &Settings,
     progress: &mut dyn FnMut(f64),
@@ -45,15 +43,15 @@ pub(super) fn of_files(
             let help = "give --probe, --from or both";
             return Err(InputError::new(C001, "--next without anything measured", "measured points", help).into());
         };
-        let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
+        let (pass, measurement) = Measurement::of_any_depth(Pass::read(job)?, &file)?;
         let mut plan = next(&pass, &measurement, settings, progress)?;
         plan.warnings.extend(measurement.remarks(&file));
         return Ok(plan);
     };
-    if files::exists(&folder.join(PLAN_HISTORY)) {
-        return planned_part(pass, folder, settings, progress);
+    if holds_planned(folder) {
+        return planned_part(job, folder, settings, progress);
     }
-    refuse_unlearned(folder)?;
+    let pass = Pass::read(job)?;
     let history = history_in(folder, folder)?;
     let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
@@ -70,20 +68,21 @@ pub(super) fn of_files(
     Ok(plan)
 }
 
-/// Plans touches of the part cut with the planned program of a folder: at heights that tell its profile, since every height counts.
+/// Plans touches of the part cut with the planned program of a folder, of all its contours: at heights that tell the profile, since every
+/// height counts.
 fn planned_part(
-    pass: Pass,
+    job: JobFile,
     folder: &FilePath,
     settings: &Settings,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Plan, Failure> {
-    let history = plan_history_in(folder)?;
-    let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
-    let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass);
-    history.facts.agree(&pass)?;
-    let tolerance = settings.tolerance.or(Some(history.next.tolerance_mm));
-    let plan = plan(&pass, &Settings { tolerance, ..settings.clone() }, progress)?;
-    Ok(Plan { correction: history.program(), ..plan })
+    let cuts = planned_in(folder, job)?.cuts;
+    cuts.iter().try_for_each(|(pass, history)| history.facts.agree(pass))?;
+    let narrowest = cuts.iter().map(|(_, history)| history.next.tolerance_mm).reduce(f64::min);
+    let settings = Settings { tolerance: settings.tolerance.or(narrowest), ..settings.clone() };
+    let program = cuts.first().and_then(|(_, history)| history.program());
+    let passes: Vec<Pass> = cuts.into_iter().map(|(pass, _)| pass).collect();
+    Ok(Plan { correction: program, ..plan_every(&passes, &settings, progress)? })
 }
 
 /// Plans further touches of an uncorrected part that was measured, in memory. `progress` is told the share done, 0…1.
