@@ -4,6 +4,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use clap::{Args, ValueEnum};
 use truepath_core::checksum::crc32;
+use truepath_core::units::Offset;
 use truepath_correction::plan::choice::{Choice, Plan, Planner, Wanted};
 use truepath_correction::plan::history::{NextPart, PlanHistory, Process};
 use truepath_correction::plan::written::{Chosen, WrittenPlan, write};
@@ -17,6 +18,7 @@ use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::limits::Limits;
 use truepath_ground::output::{OutputFolder, json};
+use truepath_ground::units::{float, mm};
 use truepath_job::job::{JobFile, ProbeFlags, ROUTES, Route, Which, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
@@ -313,7 +315,8 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
         let share = 0.8 / planners.len() as f64;
         let plan =
             search(planner, &Wanted { limits, ..wanted }, &mut |done| progress(0.1 + (k as f64 + done) * share))?;
-        let beyond = beyond_what_shows(&plan, pass).into_iter().chain(pushed_far(&plan, pass)).collect();
+        let beyond = beyond_what_shows(&plan, pass).into_iter().chain(pushed_far(&plan, pass));
+        let beyond = beyond.chain(deeper_than_apart(pass)).collect();
         said.push([pass.warnings.clone(), points.remarks(&file), own, beyond].concat());
         plans.push(plan);
     }
@@ -383,7 +386,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
 
 /// What is said of a tolerance narrower than what the probe can show, or than what is known of the machine.
 fn beyond_what_shows(plan: &Plan, pass: &Pass) -> Option<String> {
-    let touch = 2.0 * truepath_ground::units::mm(pass.job.numbers.probe?.noise);
+    let touch = 2.0 * mm(pass.job.numbers.probe?.noise);
     let machine = plan.choices.iter().map(|choice| 2.0 * choice.surface.profile.sigma_mm).fold(f64::INFINITY, f64::min);
     let floor = if machine.is_finite() { touch.max(machine) } else { touch };
     (plan.tolerance_mm < floor).then(|| {
@@ -403,11 +406,26 @@ fn beyond_what_shows(plan: &Plan, pass: &Pass) -> Option<String> {
 /// What is said where the cutter is pushed off the wall by more than half of what it is to take: there its engagement hangs on
 /// the push itself, and plans were not tried.
 fn pushed_far(plan: &Plan, pass: &Pass) -> Option<String> {
-    let (pushed, allowance) = (plan.as_programmed.profile_mm, truepath_ground::units::mm(pass.core.setup.allowance));
+    let (pushed, allowance) = (plan.as_programmed.profile_mm, mm(pass.core.setup.allowance));
     (2.0 * pushed > allowance).then(|| {
         format!(
             "as programmed the wall is off by {pushed:.3} mm of an allowance of {allowance} mm: beyond half of it predictions were not tried, and \
              one there was wrong by more than two standard deviations; rough the part closer to the wall, or judge the first planned part with truepath inspect"
+        )
+    })
+}
+
+/// What is said of depths that are nearer to each other than the cutter is taken to be deep in the stock.
+fn deeper_than_apart(pass: &Pass) -> Option<String> {
+    let depth = float(pass.core.setup.axial_depth);
+    let finishing = pass.plan.iter().flat_map(|plan| &plan.passes).filter(|one| !one.spring);
+    let z: Vec<Offset> = finishing.filter_map(|one| Some(Offset::from_nm(one.z?.nm()))).collect();
+    let apart = z.windows(2).map(|pair| mm((pair[0] - pair[1]).abs())).fold(f64::INFINITY, f64::min);
+    (apart + 0.001 < depth).then(|| {
+        format!(
+            "the depths of {} are {apart} mm apart, and cut.axial_depth_mm is {depth}: the depth before has cut the wall above already, and the \
+             plan takes it to be in the stock; leave axial_depth_mm out, so that every contour has its own",
+            contour_name(pass)
         )
     })
 }
@@ -592,9 +610,7 @@ fn wanted(options: &Options, job: &JobFile) -> Result<Wanted, Failure> {
     let tolerance_mm = match &options.tolerance {
         Some(text) => flag("--tolerance", text, TOLERANCE, "write --tolerance 0.02 for ±0.02 mm at every height")?,
         None => match job.part.tolerance {
-            Some(tolerance) => {
-                truepath_ground::units::mm(tolerance.upper).min(-truepath_ground::units::mm(tolerance.lower))
-            }
+            Some(tolerance) => mm(tolerance.upper).min(-mm(tolerance.lower)),
             None => {
                 let help = "write --tolerance 0.02 for ±0.02 mm, or tolerance_mm under [part] of the job";
                 let error = InputError::new(J004, "no tolerance to plan for", "half the width of one", help);
@@ -605,4 +621,35 @@ fn wanted(options: &Options, job: &JobFile) -> Result<Wanted, Failure> {
     let confidence =
         flag("--confidence", &options.confidence, CONFIDENCE, "write --confidence 95 for 95 of 100 parts")? / 100.0;
     Ok(Wanted { tolerance_mm, confidence, limits: job.plan })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DEPTHS: &str = "%\nG21 G90 G17\nT5 M6\nS2500 M3\nG0 X-6 Y6 Z20\nG1 Z-6 F300\nG1 X0 Y0 F420\nG1 X30\nG3 X40 Y10 I0 J10\n\
+        G1 Y36\nG1 X34 Y42\nG0 Z20\nG0 X-6 Y6\nG1 Z-12 F300\nG1 X0 Y0 F420\nG1 X30\nG3 X40 Y10 I0 J10\nG1 Y36\nG1 X34 Y42\nG0 Z20\n\
+        M30\n%\n";
+
+    #[test]
+    fn depths_nearer_than_the_cutter_is_deep_are_told() {
+        let job = |depth: &str| {
+            format!(
+                "version = 1\nprogram = \"part.nc\"\nwall = \"right\"\n[stock]\nallowance_mm = 0.7\n[tool]\ndiameter_mm = 12.0\nteeth = 4\n\
+                 helix_deg = 30.0\n[cut]\n{depth}[force]\nmaterial = \"al-7075-heavy\"\n[machine]\nstiffness_x_n_per_mm = 1600\n\
+                 stiffness_y_n_per_mm = 1600\n"
+            )
+        };
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("part.nc"), DEPTHS).expect("written");
+        let said = |depth: &str| {
+            let place = folder.path().join("job.toml");
+            std::fs::write(&place, job(depth)).expect("written");
+            let Ok(pass) = JobFile::read(&place).map_err(Failure::from).and_then(Pass::read) else { panic!("refused") };
+            deeper_than_apart(&pass)
+        };
+        assert!(said("axial_depth_mm = 8.0\n").is_some_and(|text| text.contains("6 mm apart")));
+        assert_eq!(said("axial_depth_mm = 6.0\n"), None);
+        assert_eq!(said(""), None);
+    }
 }

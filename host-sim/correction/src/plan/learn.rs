@@ -184,7 +184,7 @@ pub fn learn(
     let verdicts: Vec<PlannedVerdict> = cuts.iter().zip(&touched).map(verdict).collect();
     let Joint { core, field, points } = if set_aside { before } else { after };
     let last = |at: usize| {
-        let own = all.iter().zip(&points).filter(|(part, _)| part.wall == at).last();
+        let own = all.iter().zip(&points).rfind(|(part, _)| part.wall == at);
         own.map(|(_, points)| points.clone()).unwrap_or_default()
     };
     let planner = |at: usize| {

@@ -29,8 +29,11 @@ pub struct Times<'a> {
     /// Minutes along the contour at the programmed feed, with the cutter of the program and with the one that is planned for.
     along: [f64; 2],
     /// What was found out, by raise and direction of the passes; `None` where no program can be written.
-    known: Mutex<HashMap<Vec<(Offset, bool)>, Option<Written>>>,
+    known: Mutex<HashMap<Turns, Option<Written>>>,
 }
+
+/// Raise and direction of every pass.
+type Turns = Vec<(Offset, bool)>;
 
 impl<'a> Times<'a> {
     /// Of a wall of a height, mm, with the minutes along the contour at the programmed feed, of the cutter of the program and of the
@@ -50,7 +53,7 @@ impl<'a> Times<'a> {
     pub fn of(&self, cuts: &[Cut]) -> Option<f64> {
         let slices = Slices::new(DIVISIONS);
         let orders = cuts.iter().flat_map(|cut| cut.orders(slices));
-        let turns: Vec<(Offset, bool)> =
+        let turns: Turns =
             orders.map(|pass| (Offset::from_mm(self.depth * pass.raised), pass.order.reversed)).collect();
         let plain = turns == [(Offset::ZERO, false)];
         let Some(times) = self.written(turns) else { return plain.then(|| self.at_least(cuts)) };
@@ -78,7 +81,7 @@ impl<'a> Times<'a> {
         if times.contour > 0.0 { self.along[0] / times.contour } else { 1.0 }
     }
 
-    fn written(&self, turns: Vec<(Offset, bool)>) -> Option<Written> {
+    fn written(&self, turns: Turns) -> Option<Written> {
         let found = |known: &Mutex<HashMap<_, _>>| known.lock().ok().and_then(|known| known.get(&turns).cloned());
         found(&self.known).unwrap_or_else(|| {
             let turn = |&(raise, reversed): &(Offset, bool)| Turn { raise, reversed, feed: 1.0 };
