@@ -89,7 +89,9 @@ pub struct RepeatedPass {
 pub fn can_repeat(source: &Source, depth: &Depth, options: Options<'static>) -> Result<Times, Failure> {
     let repeated = repeat_contours(source, std::slice::from_ref(depth), options)?;
     let own = repeated.depths.first().ok_or_else(|| Failure::Internal("a depth that was not written".to_owned()))?;
-    let times = Times::of((source.bytes(), &repeated.text), own, options);
+    let lines = |pass: &RepeatedPass| (pass.lines, pass.parts[1].iter().map(|block| block.line).collect());
+    let passes: Vec<(LineRange, Vec<u32>)> = own.passes.iter().map(lines).collect();
+    let times = Times::of((source.bytes(), &repeated.text), own.replaced, &passes, options);
     times.map_err(|error| InputError::of_program(source, &error).into())
 }
 

@@ -5,7 +5,6 @@ use truepath_core::units::Position;
 use truepath_ground::units::{float, mm};
 
 use super::super::survey::{Kind, Move, survey};
-use super::RepeatedDepth;
 
 /// Minutes at feed, by the F words of the program. Rapids are not in them: how fast they are, no program says.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,34 +29,36 @@ pub struct PassTimes {
 }
 
 impl Times {
-    /// Of the only depth of a program, which has become `text`, every pass at the programmed feed.
+    /// Of a contour on some lines of a program, which has become `text`; of every pass there, which is at the programmed feed, its lines
+    /// and those of the contour.
     pub(super) fn of(
         (original, text): (&[u8], &[u8]),
-        depth: &RepeatedDepth,
+        replaced: LineRange,
+        passes: &[(LineRange, Vec<u32>)],
         options: Options<'static>,
     ) -> Result<Self, GcodeError> {
         let before = survey(original, options)?;
         let on = |lines: LineRange| move |m: &Move| lines.contains(m.line);
-        let first = before.iter().position(on(depth.replaced)).unwrap_or_default();
-        let behind = before.iter().rposition(on(depth.replaced)).map_or(first, |last| last + 1);
+        let first = before.iter().position(on(replaced)).unwrap_or_default();
+        let behind = before.iter().rposition(on(replaced)).map_or(first, |last| last + 1);
         let way = |m: &&Move| matches!(m.kind, Kind::Feed | Kind::Arc(..)) && m.from.z != m.to.z;
         let down = before[..first].iter().rev().take_while(way).map(minutes);
         let kept = down.chain(before[behind..].iter().take_while(way).map(minutes)).sum::<f64>();
         let own = before[first..behind].iter().map(minutes).sum::<f64>();
 
         let after = survey(text, options)?;
-        let pass = |pass: &super::RepeatedPass| {
+        let pass = |(lines, _): &(LineRange, Vec<u32>)| {
             let mut times = PassTimes::default();
-            for m in after.iter().filter(|m| pass.lines.contains(m.line)) {
+            for m in after.iter().filter(|m| lines.contains(m.line)) {
                 *if m.cuts() { &mut times.along } else { &mut times.beside } += minutes(m);
             }
             times
         };
-        let contour = depth.passes.first().map_or(0.0, |pass| {
-            let lines: Vec<u32> = pass.parts[1].iter().map(|block| block.line).collect();
+        let on_contour = |(_, lines): &(LineRange, Vec<u32>)| -> f64 {
             after.iter().filter(|m| lines.contains(&m.line)).map(minutes).sum()
-        });
-        Ok(Self { programmed: kept + own, contour, kept, passes: depth.passes.iter().map(pass).collect() })
+        };
+        let contour = passes.first().map_or(0.0, on_contour);
+        Ok(Self { programmed: kept + own, contour, kept, passes: passes.iter().map(pass).collect() })
     }
 }
 
