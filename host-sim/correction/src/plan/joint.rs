@@ -1,10 +1,11 @@
 //! Machine, material and what no parameter says, from an uncorrected part and the planned ones after it.
 //!
-//! All contours of a part are fitted together: one machine and one datum made them. The wall that is touched at a height is what the sequence of passes has left there: every part is cut again in the
-//! model, all its passes in order, each with its own stock, load and correction. About an estimate of the machine the walls
-//! are linear in its parameters; then measured errors, parameters, datums and the [`Field`] beside them are one
-//! Gaussian process (Kennedy & O'Hagan, *Bayesian calibration of computer models*, J. R. Stat. Soc. B 63, 2001), solved at
-//! once, so that neither is bent by the other:
+//! All contours of a part are fitted together: one machine and one datum made them. The wall that is touched at a
+//! height is what the sequence of passes has left there: every part is cut again in the model, all its passes in order,
+//! each with its own stock, load and correction. About an estimate of the machine the walls are linear in its
+//! parameters; then measured errors, parameters, datums and the [`Field`] beside them are one Gaussian process (Kennedy
+//! & O'Hagan, *Bayesian calibration of computer models*, J. R. Stat. Soc. B 63, 2001), solved at once, so that neither
+//! is bent by the other:
 //!
 //! | unknown | of which points | believed in beforehand |
 //! |---|---|---|
