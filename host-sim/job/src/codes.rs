@@ -43,6 +43,10 @@ truepath_ground::codes! {
         / "give a Q-DAS file (.dfq) with a characteristic of this name (K2002) or number (K2001), in mm, and a value",
     M051 => "a dimension between two contours"
         / "give a distance to each of the two walls in its place, kind = \"distance\" with face_mm, both from the same face",
+    M052 => "no QIF 3 document with results"
+        / "export results as QIF 3.0 from the measuring machine, as XML in UTF-8, and give that file as it is",
+    M053 => "a QIF document without what is asked of it"
+        / "export measured points with their coordinates, in work coordinates of the program; or name the document in a file of [[dimension]] tables, values = \"part.qif\", which say where each length was measured",
     K004 => "touches of the stock that lie on the finished wall"
         / "touch the stock before the finishing pass, with the program that truepath probe --stock writes, and name that file in stock.probe",
     K005 => "too few touches of the stock"

@@ -5,7 +5,7 @@ use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::units::{mm, nm};
 
-use crate::dimension::{Axis, Dimension, Dimensions, Level, Placed, Walls, placed, read};
+use crate::dimension::{Axis, Dimension, Dimensions, Level, Placed, Walls, kept, placed, read};
 use crate::levels;
 use crate::measurement::Measurement;
 use crate::pass::Pass;
@@ -33,7 +33,8 @@ impl Measurement {
                 walls.into_iter().map(at_depth).collect::<Result<Vec<_>, Failure>>()?
             }
         };
-        let lines = probe.map_or(0, |probe| probe.bytes().split(|b| *b == b'\n').count());
+        let text = measured.first().filter(|_| probe.is_some()).map(|(_, measurement)| measurement.source.bytes());
+        let lines = text.map_or(0, |text| text.split(|b| *b == b'\n').count());
         let lines = u32::try_from(lines).unwrap_or(u32::MAX);
         let mut shares: Vec<Vec<Placed>> = vec![Vec::new(); measured.len()];
         {
@@ -45,10 +46,12 @@ impl Measurement {
                 }
             }
         }
+        // Of what is kept of them: what is made again from that is the same.
+        let crc = crc32(&kept(file)?);
         for ((pass, measurement), mut own) in measured.iter_mut().zip(shares) {
             share_faces(&mut own);
             measurement.taken_as_is = pass.job.force_data;
-            measurement.take(Dimensions { source: file.clone(), placed: own });
+            measurement.take(Dimensions { source: file.clone(), placed: own }, crc);
         }
         Ok(measured)
     }
@@ -87,9 +90,9 @@ impl Measurement {
     }
 
     /// Takes dimensions beside the readings there are.
-    fn take(&mut self, dimensions: Dimensions) {
-        let Dimensions { source, placed } = &dimensions;
-        self.crc ^= crc32(source.bytes());
+    fn take(&mut self, dimensions: Dimensions, crc: u32) {
+        let placed = &dimensions.placed;
+        self.crc ^= crc;
         if placed.is_empty() {
             return;
         }

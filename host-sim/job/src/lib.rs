@@ -14,6 +14,7 @@
 //! | the stock as it was touched before the pass | [`probed_stock`], between its places [`allowance`] |
 //! | feeds in place of the programmed ones | [`feed`] |
 //! | contour, cut and machine as the core takes them | [`pass`], at every depth [`levels`] |
+//! | results of measuring machines in QIF 3 | `qif` |
 //! | the format of a probe file, by its contents | `probe_format` |
 //! | the points of a probe file on that contour | [`measurement`], on several of them `sharing` |
 //! | dimensions taken by hand in place of points, or beside them | [`dimension`], `dimensioned` |
@@ -37,6 +38,7 @@ pub mod pass;
 pub mod post;
 mod probe_format;
 pub mod probed_stock;
+mod qif;
 pub mod refusal;
 mod sharing;
 pub mod surface;

@@ -15,7 +15,7 @@ use crate::dimension::{Dimensions, Placed};
 use crate::levels;
 use crate::otherwise::otherwise;
 use crate::pass::Pass;
-use crate::probe_format::{LARGEST_FILE, settled};
+use crate::probe_format::{LARGEST_FILE, Settled, settled};
 use crate::refusal::why;
 
 /// Points that machine and material are identified from at most: the fit cuts the contour around every place some hundred
@@ -48,7 +48,7 @@ pub struct Measurement {
     pub noise: Offset,
     /// Whether the points are taken although they may not fit the job.
     pub taken_as_is: bool,
-    /// The file.
+    /// The file; of a QIF document its points, each in its line.
     pub source: Source,
     /// CRC-32 of the file.
     pub crc: u32,
@@ -77,7 +77,8 @@ impl Measurement {
 
     /// The same, with the points at the depths that `core` names.
     fn of(pass: &Pass, core: &ContourPass, file: &Source) -> Result<Self, Failure> {
-        let (probe, read_as) = settled(&pass.job, file)?;
+        let Settled { probe, read_as, text } = settled(&pass.job, file)?;
+        let (crc, file) = (crc32(file.bytes()), &text);
         let mut core = core.clone();
         core.job.probe = Some(probe);
         let lines = file.bytes().iter().filter(|b| matches!(b, b'\n' | b'\r')).count() + 1;
@@ -97,7 +98,7 @@ impl Measurement {
         rejected.sort_by_key(|aside| aside.line);
         // Every reading has a line, which is never 0.
         readings.truncate(readings.iter().take_while(|reading| reading.line > 0).count());
-        let (crc, source, file) = (crc32(file.bytes()), file.clone(), file.name().to_owned());
+        let (source, file) = (file.clone(), file.name().to_owned());
         Ok(Self {
             contacts,
             rejected,

@@ -281,7 +281,7 @@ impl Pass {
     /// # Errors
     /// What is wrong with the file at first sight.
     pub fn of_file(mut self, file: &Source) -> Result<Self, Failure> {
-        let (probe, _) = settled(&self.job, file)?;
+        let probe = settled(&self.job, file)?.probe;
         self.job.numbers.probe = Some(probe);
         self.core.job.probe = Some(probe);
         Ok(self)

@@ -3,6 +3,7 @@
 //!
 //! | in the file | format |
 //! |---|---|
+//! | an XML document whose root is `QIFDocument` | QIF 3, read as `columns` of surface points in work coordinates |
 //! | `# truepath probe log`, or nine columns with commas of which two are a normal and the last 0 or 1 | `linuxcnc-log` |
 //! | `[PRB:` | `grbl` |
 //! | `G800` or `G801` alone at the start of lines, numbers without padding | `inspection` |
@@ -16,6 +17,7 @@ use truepath_ground::diagnostics::{InputError, Source};
 
 use crate::codes::{J043, J044};
 use crate::job::{FORMATS, JobFile};
+use crate::qif::{as_columns, is_qif};
 
 /// Readings kept at most.
 pub(crate) const LARGEST_FILE: usize = 1 << 20;
@@ -23,13 +25,33 @@ pub(crate) const LARGEST_FILE: usize = 1 << 20;
 /// Lines with something on them that are looked at.
 const LINES: usize = 60;
 
-/// The probe of a job for a file: in the format that the job names, or that the file shows; and what is said of it where the two
-/// are not the same.
+/// A probe file whose format is settled.
+pub(crate) struct Settled {
+    /// The probe of the job, with that format.
+    pub(crate) probe: Probe,
+    /// What is said of the format, where it is not that of the job.
+    pub(crate) read_as: Option<String>,
+    /// The text to be read: the file, of a QIF document its points.
+    pub(crate) text: Source,
+}
+
+/// The probe of a job for a file: in the format that the job names, or that the file shows.
 ///
 /// # Errors
-/// `J044` for a file in UTF-16, `J043` when neither job nor file shows a format, `J004` for a job without `[probe]`.
-pub(crate) fn settled(job: &JobFile, file: &Source) -> Result<(Probe, Option<String>), InputError> {
+/// `J044` for a file in UTF-16, `J043` when neither job nor file shows a format, `J004` for a job without `[probe]`; what is wrong
+/// with a QIF document.
+pub(crate) fn settled(job: &JobFile, file: &Source) -> Result<Settled, InputError> {
     let probe = job.require_probe()?;
+    if is_qif(file.bytes()) {
+        let (layout, text) = as_columns(file)?;
+        let probe = Probe { format: Format::Columns, layout: Some(layout), ..probe };
+        return Ok(Settled { probe, read_as: None, text });
+    }
+    let (probe, read_as) = shown(job, probe, file)?;
+    Ok(Settled { probe, read_as, text: file.clone() })
+}
+
+fn shown(job: &JobFile, probe: Probe, file: &Source) -> Result<(Probe, Option<String>), InputError> {
     if let Some(found) = utf16(file.bytes()) {
         return Err(J044.error(found, "a text in ASCII or UTF-8").at(file, 0..2.min(file.bytes().len())));
     }

@@ -17,7 +17,7 @@ use crate::allowance::{Allowance, Place};
 use crate::codes::{K004, K005, K006};
 use crate::feature::Plan;
 use crate::job::JobFile;
-use crate::probe_format::{LARGEST_FILE, settled};
+use crate::probe_format::{LARGEST_FILE, Settled, settled};
 use crate::refusal::{line_span, suspected};
 
 /// The stock that was touched.
@@ -91,7 +91,8 @@ pub(crate) struct TouchedPass<'a> {
 /// # Errors
 /// What is wrong with the file; `K004` for touches of the finished wall, `K005` for too few, `K006` for touches elsewhere.
 pub(crate) fn read(pass: &TouchedPass<'_>, file: &Source) -> Result<Option<ProbedStock>, Failure> {
-    let (probe, _) = settled(pass.job, file)?;
+    let Settled { probe, text, .. } = settled(pass.job, file)?;
+    let file = &text;
     let mut core = pass.core.clone();
     core.job.probe = Some(probe);
     core.cut_with = CutWith::Anything;

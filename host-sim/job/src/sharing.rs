@@ -18,7 +18,7 @@ use truepath_ground::diagnostics::{Failure, Source};
 use crate::levels;
 use crate::measurement::{Aside, Measurement, numbered};
 use crate::pass::Pass;
-use crate::probe_format::{LARGEST_FILE, settled};
+use crate::probe_format::{LARGEST_FILE, Settled, settled};
 
 /// A depth of one of the walls.
 struct Depth<'a> {
@@ -39,7 +39,8 @@ impl Measurement {
             Err(walls) => walls,
         };
         let Some(any) = first.first() else { return Ok(Vec::new()) };
-        let (probe, read_as) = settled(&any.job, file)?;
+        let Settled { probe, read_as, text } = settled(&any.job, file)?;
+        let (given, file) = (file, &text);
         let mut core = any.core.clone();
         core.job.probe = Some(probe);
         let lines = file.bytes().iter().filter(|b| matches!(b, b'\n' | b'\r')).count() + 1;
@@ -60,7 +61,7 @@ impl Measurement {
         }
         let shares = shared(&places, &readings, first.len());
         refuse_strange(&places, &readings, &shares, file)?;
-        let crc = crc32(file.bytes());
+        let crc = crc32(given.bytes());
         let mut all = Vec::new();
         for (wall, (own, depths)) in shares.iter().zip(&depths).enumerate() {
             let count = |depth: &&Depth| own.iter().filter(|r| depth.on_wall.contact(r).is_ok()).count();
@@ -97,7 +98,7 @@ impl Measurement {
         }
         if all.iter().all(|(_, measurement)| measurement.contacts.is_empty()) {
             // Why, the first wall says.
-            Self::of_any_depth(any.clone(), file)?;
+            Self::of_any_depth(any.clone(), given)?;
         }
         Ok(all)
     }

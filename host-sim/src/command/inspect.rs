@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args};
 use truepath_core::probe::{Contact, CutWith};
 use truepath_core::units::Offset;
 use truepath_correction::inspection::{
-    Extent, Judgement, NamedWall, PointVerdict, Reach, Rule, SetAside, Touched, coverage, judge, judge_every,
+    Extent, Judgement, NamedWall, PointVerdict, Reach, Rule, SetAside, State, Touched, coverage, judge, judge_every,
 };
 use truepath_correction::misfit::noticed;
 use truepath_correction::remarks::said_of_every;
@@ -20,7 +20,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::page::render_all;
 use truepath_report::pages::{self, REPORT};
-use truepath_report::{InspectSummary, aqdef, inspect_summary, judged_points_csv, points_csv};
+use truepath_report::{InspectSummary, QifWall, aqdef, inspect_summary, judged_points_csv, points_csv, qif};
 
 use super::correction_files::{CONTOURS, contour_folder, contour_name};
 use super::readings::{DIMENSIONS, PROBE, Readings};
@@ -83,6 +83,9 @@ pub struct Options {
     /// File for the readings in Q-DAS ASCII transfer format (AQDEF), for a shop's statistics.
     #[arg(long, value_name = "FILE.dfq", group = "written")]
     pub aqdef: Option<PathBuf>,
+    /// File for the inspection as a QIF 3 results document, for measuring software and quality systems.
+    #[arg(long, value_name = "FILE.qif", group = "written")]
+    pub qif: Option<PathBuf>,
     /// Replace the files of an earlier run.
     #[arg(long, requires = "written")]
     pub force: bool,
@@ -199,7 +202,10 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
         let page = pages::inspected(wall.pass, wall.measurement, &wall.judgement, &wall.summary, &wall.told)?;
         pages.push((contour_name(wall.pass), page));
     }
-    let inspection = together(inspected, &measured)?;
+    let inspection = together(&inspected, &measured)?;
+    if let Some(target) = &options.qif {
+        write_file(target, options.force, document(&inspected, inspection.summary.verdict.state).as_bytes())?;
+    }
     if let Some(folder) = folder {
         folder.write("summary.json", &json(&inspection.summary)?)?;
         folder.write(REPORT, &render_all(&pages)?)?;
@@ -258,10 +264,21 @@ fn one<'a>(pass: &'a Pass, measurement: &'a Measurement, several: bool) -> Resul
     Ok(Inspected { pass, measurement, rule, aside, judgement, summary, told, contacts })
 }
 
+/// The inspection as a QIF document.
+fn document(inspected: &[Inspected<'_>], state: State) -> String {
+    let walls = inspected.iter().map(|wall| QifWall {
+        name: wall.summary.contour.as_deref(),
+        pass: wall.pass,
+        measurement: wall.measurement,
+        judgement: &wall.judgement,
+    });
+    qif(&walls.collect::<Vec<_>>(), state)
+}
+
 /// The report on all walls of a part.
-fn together(inspected: Vec<Inspected<'_>>, measured: &[(Pass, Measurement)]) -> Result<Inspection, Failure> {
+fn together(inspected: &[Inspected<'_>], measured: &[(Pass, Measurement)]) -> Result<Inspection, Failure> {
     let nothing = || Failure::Internal("no wall was inspected".to_owned());
-    if let ([one], [_]) = (&inspected[..], measured) {
+    if let ([one], [_]) = (inspected, measured) {
         let (summary, contacts) = (one.summary.clone(), one.contacts.clone());
         return Ok(Inspection { contacts, summary, decimals: one.judgement.decimals });
     }

@@ -6,6 +6,7 @@ use truepath_correction::correction::Identification;
 use truepath_correction::verification::unseparated;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::OutputFolder;
+use truepath_job::dimension::kept;
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
@@ -54,12 +55,13 @@ impl Readings {
         self.probe.as_ref().or(self.dimensions.as_ref()).map_or(FilePath::new(""), |file| FilePath::new(file.name()))
     }
 
-    /// Writes them to the outputs as they are.
+    /// Writes them to the outputs as they are; dimensions whose values another file has, with these values.
     pub(super) fn keep(&self, folder: &OutputFolder) -> Result<(), InputError> {
-        for (name, file) in [(PROBE, &self.probe), (DIMENSIONS, &self.dimensions)] {
-            if let Some(file) = file {
-                folder.write(name, file.bytes())?;
-            }
+        if let Some(probe) = &self.probe {
+            folder.write(PROBE, probe.bytes())?;
+        }
+        if let Some(dimensions) = &self.dimensions {
+            folder.write(DIMENSIONS, &kept(dimensions)?)?;
         }
         Ok(())
     }

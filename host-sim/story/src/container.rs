@@ -131,7 +131,7 @@ fn agree(told: &Told, files: &BTreeMap<String, Vec<u8>>) -> Result<(), String> {
             Some(_) => {}
         }
     }
-    let named = told.steps.iter().flat_map(|step| [&step.job, &step.probe]).chain(&told.cut_again);
+    let named = told.steps.iter().flat_map(|step| step.readings().chain([&step.job])).chain(&told.cut_again);
     match named.into_iter().find(|name| !files.contains_key(*name)) {
         Some(name) => Err(format!("a step names {name}, which is not there")),
         None => {

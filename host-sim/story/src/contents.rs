@@ -29,7 +29,8 @@ pub struct Told {
     pub anonymous: bool,
     /// Corrections that can be made again, each after those it goes on from.
     pub steps: Vec<Step>,
-    /// The probe file of the part that was cut with the last of them, where that was touched and not learned from.
+    /// The probe file, or the file of dimensions, of the part that was cut with the last of them, where that was measured and not
+    /// learned from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cut_again: Option<String>,
     /// Folders of corrections that are kept and not made again, with the reason.
@@ -48,7 +49,11 @@ pub struct Step {
     /// The job.
     pub job: String,
     /// The probe file.
-    pub probe: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probe: Option<String>,
+    /// The file of dimensions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dimensions: Option<String>,
     /// The folder that was written.
     pub output: String,
     /// The folder of the correction that the part was cut with, of `learn`.
@@ -67,6 +72,20 @@ pub enum Command {
     Correct,
     /// `truepath learn`.
     Learn,
+}
+
+impl Step {
+    /// The files that were measured.
+    pub fn readings(&self) -> impl Iterator<Item = &String> {
+        self.probe.iter().chain(&self.dimensions)
+    }
+
+    /// The same from other readings: a file of dimensions by its name, else a probe file.
+    #[must_use]
+    pub fn of_readings(self, file: String) -> Self {
+        let (probe, dimensions) = if file.ends_with(".toml") { (None, Some(file)) } else { (Some(file), None) };
+        Self { probe, dimensions, ..self }
+    }
 }
 
 impl Command {

@@ -53,8 +53,19 @@ fn is_mark(comment: &[u8]) -> bool {
 /// become others.
 const HEADS: [&str; 5] = ["truepath probe log", "unit ", "ball ", "points ", "end "];
 
-/// A probe file without its lines of comment, which are left empty.
-pub fn probe(bytes: &[u8]) -> Vec<u8> {
+/// A file of dimensions without names and comments; `None` for one that is no TOML, or that names another file.
+pub fn dimensions(bytes: &[u8]) -> Option<Vec<u8>> {
+    let mut table: Table = std::str::from_utf8(bytes).ok()?.parse().ok()?;
+    let all = table.get_mut("dimension")?.as_array_mut()?;
+    all.iter_mut().filter_map(Value::as_table_mut).for_each(|one| drop(one.remove("name")));
+    (!table.contains_key("values")).then(|| table.to_string().into_bytes())
+}
+
+/// A probe file without its lines of comment, which are left empty; `None` for XML, whose names are everywhere.
+pub fn probe(bytes: &[u8]) -> Option<Vec<u8>> {
+    if bytes.trim_ascii_start().starts_with(b"<") {
+        return None;
+    }
     let lines = bytes.split_inclusive(|byte| matches!(byte, b'\n' | b'\r'));
     let kept = lines.flat_map(|line| {
         let end = line.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(line.len());
@@ -64,7 +75,7 @@ pub fn probe(bytes: &[u8]) -> Vec<u8> {
         let head = HEADS.iter().any(|head| text.starts_with(head));
         if comment && !head { &line[end..] } else { line }
     });
-    kept.copied().collect()
+    Some(kept.copied().collect())
 }
 
 /// A job without comments and without the names of `[part]`, which names other files. `renamed` gives the new name for each old

@@ -129,3 +129,32 @@ fn widths_that_leave_two_walls_apart_name_the_measurement_that_tells() {
     let said: Vec<String> = apart("both.toml");
     assert!(said.iter().all(|said| !said.contains("see the sum of two walls")), "{said:?}");
 }
+
+#[test]
+fn a_correction_from_dimensions_alone_is_packed_and_made_again() {
+    let desk = workplace();
+    let width = |name: &str, along: &str, across: &str| {
+        format!(
+            "[[dimension]]\nname = \"{name}\"\nkind = \"width\"\nalong = \"{along}\"\n{across} = 0\nz_mm = -6\ninstrument = \"cmm\"\n"
+        )
+    };
+    let both = width("ACME length", "x", "y_mm") + &width("breadth", "y", "x_mm");
+    std::fs::create_dir(desk.path().join("cmm")).expect("a folder");
+    desk.write("cmm/widths.toml", format!("version = 1\nvalues = \"part.dfq\"\n{both}"));
+    desk.write("cmm/part.dfq", "K2002/1 breadth\nK2002/2 ACME length\n49.900\u{f}69.840\n");
+    desk.call("correct job.toml --dimensions cmm/widths.toml -o out");
+    // Whole in itself: the values of the measuring machine are in it.
+    assert!(
+        desk.read("out/dimensions-raw.toml").contains("value_mm = 69.84"),
+        "{}",
+        desk.read("out/dimensions-raw.toml")
+    );
+    let packed = desk.call("pack job.toml program.nc out -o story.tpk");
+    assert_eq!(packed["again"]["same"], true, "{packed}");
+    assert!(packed["files"].to_string().contains("out/dimensions-raw.toml"), "{packed}");
+    let bare = desk.call("pack job.toml program.nc out -o bare.tpk --anonymous");
+    assert_eq!(bare["again"]["same"], true, "{bare}");
+    assert!(bare["files"].to_string().contains("\"dimensions.toml\""), "{bare}");
+    desk.call("unpack bare.tpk -o there");
+    assert!(!desk.read("there/dimensions.toml").contains("ACME"));
+}

@@ -25,6 +25,7 @@ mod pocket_plant;
 mod pocket_slot;
 mod probe_command;
 mod process;
+mod qif;
 mod recorded;
 mod rehearsal;
 mod replay;

@@ -14,8 +14,6 @@
 //!
 //! Where a dimension was taken the format does not say: that is the file of dimensions' part.
 
-use std::path::Path;
-
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
 
@@ -41,16 +39,11 @@ struct Characteristic {
 }
 
 impl Results {
-    /// Reads a file that another one names.
+    /// Reads a file.
     ///
     /// # Errors
-    /// A file that cannot be read, `M050` for one that is none of this format.
-    pub(super) fn beside(named_in: &Source, name: &str) -> Result<Self, InputError> {
-        let folder = Path::new(named_in.name()).parent().unwrap_or(Path::new(""));
-        Self::of(Source::read(&folder.join(name))?)
-    }
-
-    fn of(source: Source) -> Result<Self, InputError> {
+    /// `M050` for one that is none of this format.
+    pub(super) fn of(source: Source) -> Result<Self, InputError> {
         let text = String::from_utf8_lossy(source.bytes()).into_owned();
         let mut all: Vec<Characteristic> = Vec::new();
         let mut common = Characteristic::default();

@@ -11,7 +11,7 @@ use truepath_ground::document::{Section, Spans};
 use truepath_ground::limits::Limits;
 use truepath_ground::notation::{parse, version};
 
-use super::aqdef::Results;
+use super::results::Results;
 use super::walls::Axis;
 use crate::codes::{M043, M044};
 
@@ -138,7 +138,7 @@ pub struct Dimension {
 }
 
 /// What an edge finder leaves open of a face, ± at two standard deviations.
-const FACE: Offset = Offset::from_um(20);
+pub(super) const FACE: Offset = Offset::from_um(20);
 
 const COORDINATE: Limits = Limits::within("-4000", "4000", "mm");
 const UNCERTAINTY: Limits = Limits::above("0", "1", "mm");
@@ -150,7 +150,7 @@ const FILE: &str = "the file of dimensions";
 /// # Errors
 /// `M043` at a value that was not filled in, `M044` for a dimension along Z, and what is wrong with a key, each with its
 /// place.
-pub(crate) fn read(source: &Source) -> Result<Vec<Dimension>, InputError> {
+pub(super) fn read(source: &Source) -> Result<Vec<Dimension>, InputError> {
     if let Some(span) = without_value(source) {
         return Err(not_filled_in("value_mm", "a dimension").at(source, span));
     }

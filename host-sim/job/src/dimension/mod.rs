@@ -3,7 +3,9 @@
 //! | step | where |
 //! |---|---|
 //! | the file with its `[[dimension]]` tables, checked | `file` |
-//! | the values of a measuring machine, in Q-DAS format, that it names | `aqdef` |
+//! | the values of a measuring machine that it names | `results`, in Q-DAS format `aqdef` |
+//! | a QIF document in its place, which says itself where it was measured | `measured` |
+//! | what is kept of it beside a correction | `kept` |
 //! | where the finished walls cross a line of measurement | `walls` |
 //! | which of them a dimension is between, and what it says of them | `placed` |
 //!
@@ -16,11 +18,26 @@
 
 mod aqdef;
 mod file;
+mod kept;
+mod measured;
 mod placed;
+mod results;
 mod walls;
 
-pub(crate) use file::read;
+use truepath_ground::diagnostics::{InputError, Source};
+
+use crate::qif::is_qif;
+
 pub use file::{Across, Dimension, INSTRUMENTS, Instrument, KINDS, Kind, Level};
+pub use kept::kept;
 pub(crate) use placed::placed;
 pub use placed::{Dimensions, Placed};
 pub use walls::{Axis, Crossing, Walls};
+
+/// Reads dimensions: the file with `[[dimension]]` tables, or a QIF document.
+///
+/// # Errors
+/// What is wrong with either, with its place.
+pub(crate) fn read(source: &Source) -> Result<Vec<Dimension>, InputError> {
+    if is_qif(source.bytes()) { measured::read(source) } else { file::read(source) }
+}

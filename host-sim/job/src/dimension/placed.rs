@@ -31,6 +31,8 @@ pub struct Placed {
     pub contact: Contact,
     /// The other wall, nominal; `None` where the dimension is one from a face.
     pub across: Option<Contact>,
+    /// How much larger it is for so much material left: −2 of a width, 2 of a thickness, 1 or −1 of a distance.
+    pub larger_per_error: f64,
     /// Standard deviation of that error; from a face what the face may be off belongs to it.
     pub noise: Offset,
     /// The same as a reading of a file of points.
@@ -299,14 +301,15 @@ fn of_walls(
     let Candidate { z, nominal_mm, first, second, .. } = *chosen;
     let larger = mm(dimension.value) - nominal_mm;
     let deviation = 0.25 * mm(dimension.uncertainty);
-    let (error, noise) = match (second, dimension.face) {
+    let (larger_per_error, noise) = match (second, dimension.face) {
         // Material left on both walls makes a pocket narrower, a boss wider.
-        (Some(_), _) => (0.5 * larger * first.towards.signum(), deviation),
+        (Some(_), _) => (2.0 * first.towards.signum(), deviation),
         (None, face) => {
             let away = (first.at_mm - face.unwrap_or_default()).signum();
-            (-larger * away * first.towards.signum(), 2.0 * deviation)
+            (-away * first.towards.signum(), 2.0 * deviation)
         }
     };
+    let error = larger / larger_per_error;
     // The wall lies so far from its nominal place, away from the material that is left.
     let along = dimension.along;
     let across = middle_of(&first, along);
@@ -320,6 +323,7 @@ fn of_walls(
         nominal_mm,
         contact,
         across: second.map(|second| second.nominal),
+        larger_per_error,
         noise: nm(noise),
         reading: reading(place, z, line),
         dimension,

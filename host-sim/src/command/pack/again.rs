@@ -172,10 +172,9 @@ pub fn again(story: &Story, progress: &mut dyn FnMut(f64)) -> Result<Again, Fail
     if let (Some(probe), Some(last)) = (&story.told.cut_again, story.told.steps.last()) {
         let step = Step {
             command: Command::Learn,
-            probe: probe.clone(),
             from: Some(last.output.clone()),
             output: String::new(),
-            ..last.clone()
+            ..last.clone().of_readings(probe.clone())
         };
         parts.extend(place.make(story, &step, "cut-again", &mut |_| ())?.came_out);
     }
@@ -231,17 +230,20 @@ impl Place {
             let output = self.0.path().join(format!("{to}-{number}"));
             let which = Which { feature: step.feature.clone(), pass: None };
             let said = Said { which, ..Said::default() };
-            let (job, probe) = (then.join(&step.job), Some(then.join(&step.probe)));
+            let file = |name: &Option<String>| name.as_ref().map(|name| then.join(name));
+            let (job, probe, dimensions) = (then.join(&step.job), file(&step.probe), file(&step.dimensions));
             match (step.command, &step.from) {
                 (Command::Learn, Some(from)) => {
                     let from = then.join(from);
+                    let output = output.clone();
                     let options =
-                        learn::Options { job, probe, from, output: output.clone(), route, said, ..Default::default() };
+                        learn::Options { job, probe, dimensions, from, output, route, said, ..Default::default() };
                     made.came_out = Some(CameOut::of(&learn::run(&options, progress)?));
                 }
                 _ => {
+                    let output = output.clone();
                     let options =
-                        correct::Options { job, probe, output: output.clone(), route, said, ..Default::default() };
+                        correct::Options { job, probe, dimensions, output, route, said, ..Default::default() };
                     correct::run(&options, progress)?;
                 }
             }

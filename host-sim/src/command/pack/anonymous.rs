@@ -9,6 +9,7 @@ use truepath_story::codes::{U005, U006};
 use truepath_story::contents::{Step, Story, sums};
 use truepath_story::nameless;
 
+use super::super::readings::{DIMENSIONS, PROBE};
 use super::again::{Made, Place, numbers};
 use super::gathered::{SUMMARY, beside, inside};
 
@@ -41,19 +42,17 @@ pub(super) fn anonymous(story: &Story, progress: &mut dyn FnMut(f64)) -> Result<
     let mut steps = Vec::new();
     for step in &story.told.steps {
         let job = bare_job(story, &step.job, &mut renamed, &mut files)?;
-        let probe = renamed.of(&step.probe, "probe", ".txt");
-        files.insert(probe.clone(), nameless::probe(bytes_of(story, &step.probe)?));
+        let mut bare = Step { job, ..step.clone() };
+        for (old, new) in [(&step.probe, &mut bare.probe), (&step.dimensions, &mut bare.dimensions)] {
+            *new = old.as_ref().map(|old| bare_readings(story, old, &mut renamed, &mut files)).transpose()?;
+        }
         let output = renamed.of(&format!("{}/", step.output), "correction", "");
         let from = step.from.as_ref().map(|from| renamed.of(&format!("{from}/"), "correction", ""));
-        steps.push(Step { job, probe, output, from, ..step.clone() });
+        steps.push(Step { output, from, ..bare });
     }
     let cut_again = match &story.told.cut_again {
         None => None,
-        Some(old) => {
-            let name = renamed.of(old, "probe", ".txt");
-            files.insert(name.clone(), nameless::probe(bytes_of(story, old)?));
-            Some(name)
-        }
+        Some(old) => Some(bare_readings(story, old, &mut renamed, &mut files)?),
     };
     let bare = Story::new(story.told.by.clone(), steps, cut_again, files);
     let (place, named) = (Place::of(&bare)?, Place::of(story)?);
@@ -66,7 +65,8 @@ pub(super) fn anonymous(story: &Story, progress: &mut dyn FnMut(f64)) -> Result<
         let made = place.make(story, &routed, &to, &mut |share| progress((at + share) / count))?;
         let then = named.make(story, old, &to, &mut |share| progress((at + 1.0 + share) / count))?;
         agree(&old.output, &then, &made)?;
-        let kept = |name: &str| story.within(&old.output).any(|(other, _)| other == name) || name == "probe-raw.txt";
+        let raw = |name: &str| [PROBE, DIMENSIONS].contains(&name);
+        let kept = |name: &str| story.within(&old.output).any(|(other, _)| other == name) || raw(name);
         for (name, bytes) in made.files.into_iter().filter(|(name, _)| kept(name)) {
             let name = inside(&own.output, &name);
             place.add(&name, &bytes)?;
@@ -81,6 +81,29 @@ pub(super) fn anonymous(story: &Story, progress: &mut dyn FnMut(f64)) -> Result<
 fn bytes_of<'a>(story: &'a Story, name: &str) -> Result<&'a [u8], InputError> {
     let missing = || U005.error(format!("{name} is missing"), "every file that the job names");
     story.files.get(name).map(Vec::as_slice).ok_or_else(missing)
+}
+
+/// A probe file or a file of dimensions, renamed and bare; its new name.
+fn bare_readings(
+    story: &Story,
+    old: &str,
+    renamed: &mut Renamed,
+    files: &mut BTreeMap<String, Vec<u8>>,
+) -> Result<String, Failure> {
+    let bytes = bytes_of(story, old)?;
+    let (name, bare) = if old.ends_with(".toml") {
+        (renamed.of(old, "dimensions", ".toml"), nameless::dimensions(bytes))
+    } else {
+        (renamed.of(old, "probe", ".txt"), nameless::probe(bytes))
+    };
+    let Some(bare) = bare else {
+        let found = format!("{old} is of a format whose names cannot be taken out");
+        return Err(U006
+            .error(found, "points in columns or in lines, dimensions in a file of [[dimension]] tables")
+            .into());
+    };
+    files.insert(name.clone(), bare);
+    Ok(name)
 }
 
 /// A job with the files it names, all of them renamed and bare; its new name.
@@ -108,7 +131,7 @@ fn bare_job(
                 let text = nameless::job(&String::from_utf8_lossy(bytes), str::to_owned);
                 ("forces", text.map(String::into_bytes).unwrap_or_else(|_| bytes.to_vec()))
             }
-            _ => ("stock", nameless::probe(bytes)),
+            _ => ("stock", nameless::probe(bytes).unwrap_or_else(|| bytes.to_vec())),
         };
         let new = renamed.of(&file, word, &extension);
         files.insert(new.clone(), bare);

@@ -13,11 +13,12 @@ use truepath_story::contents::{Command, Step, Story};
 use truepath_story::nameless::named;
 
 use super::super::correction_files::{CONTOURS, HISTORY};
+use super::super::readings::{DIMENSIONS, PROBE as RAW};
 
 /// What tells a folder with a correction.
 pub(super) const SUMMARY: &str = "summary.json";
 /// Files of a correction that are packed: what it says and does, without pages and pictures, which are made from these.
-const PACKED: [&str; 12] = [
+const PACKED: [&str; 13] = [
     HISTORY,
     SUMMARY,
     "corrected.nc",
@@ -28,11 +29,11 @@ const PACKED: [&str; 12] = [
     "wall.csv",
     "points.csv",
     RAW,
+    DIMENSIONS,
     SURFACE,
     "plant.toml",
 ];
-/// The probe file as `correct` and `learn` keep it, and as the demonstration does.
-const RAW: &str = "probe-raw.txt";
+/// The probe file as the demonstration keeps it.
 const DEMONSTRATED: &str = "probe.txt";
 /// What the second pass of a split allowance keeps of the first.
 const SURFACE: &str = "first-pass-surface.csv";
@@ -84,7 +85,8 @@ pub(super) fn gathered(inputs: &[PathBuf], cut_again: Option<&FilePath>) -> Resu
             Ok(step) => {
                 let job = jobs.iter().find(|job| job.name == step.job);
                 wanted.extend(job.into_iter().flat_map(|job| job.named.iter().cloned()));
-                wanted.extend([step.job.clone(), step.probe.clone()]);
+                wanted.push(step.job.clone());
+                wanted.extend(step.readings().cloned());
                 steps.push((one.part(), step));
             }
             Err(why) => drop(kept.insert(one.folder.clone(), why)),
@@ -254,9 +256,11 @@ impl Files {
             [first, ..] => first.name.clone(),
         };
         let probes = [RAW, DEMONSTRATED].map(|name| inside(&one.folder, name));
-        let Some(probe) = probes.into_iter().find(|name| self.names.contains_key(name)) else {
-            return Ok(Err(format!("no {RAW} is in it")));
-        };
+        let probe = probes.into_iter().find(|name| self.names.contains_key(name));
+        let dimensions = Some(inside(&one.folder, DIMENSIONS)).filter(|name| self.names.contains_key(name));
+        if probe.is_none() && dimensions.is_none() {
+            return Ok(Err(format!("neither {RAW} nor {DIMENSIONS} is in it")));
+        }
         let command = if one.learned() { Command::Learn } else { Command::Correct };
         let from = match command {
             Command::Correct => None,
@@ -266,7 +270,7 @@ impl Files {
             },
         };
         let feature = one.summary.pointer("/feature/id").and_then(Value::as_str).map(str::to_owned);
-        Ok(Ok(Step { command, job, probe, output: one.folder.clone(), from, feature }))
+        Ok(Ok(Step { command, job, probe, dimensions, output: one.folder.clone(), from, feature }))
     }
 
     /// The files of a correction that are packed.
