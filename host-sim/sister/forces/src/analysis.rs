@@ -118,6 +118,8 @@ const RETURNS: usize = 12;
 const CHATTER: f64 = 0.15;
 /// A share on harmonics that are not of the teeth above which runout is told.
 const RUNOUT: f64 = 0.03;
+/// The same above which the number of teeth may be another one.
+const MISCOUNTED: f64 = 0.9;
 
 impl Analysis {
     /// Reads the records that a description names, and fits.
@@ -522,14 +524,20 @@ fn result(
         if between > CHATTER {
             warnings.push(format!(
                 "{name}: {:.0} % of the fluctuation is on no harmonic of the spindle: chatter, vibration of the dynamometer, or a \
-                 speed other than {} rev/min; means hold, shapes do not",
+                 speed other than {} rev/min; of chatter the means hold and the shapes do not, of another speed neither",
                 100.0 * between,
                 cut.spindle_rpm
             ));
         }
         if other > RUNOUT {
+            // A cutter that runs out has some of it by the tooth all the same.
+            let miscounted = if other > MISCOUNTED {
+                format!(", or it has another number of teeth than {}", cut.teeth)
+            } else {
+                String::new()
+            };
             warnings.push(format!(
-                "{name}: {:.0} % of the fluctuation repeats by the revolution and not by the tooth: the cutter runs out",
+                "{name}: {:.0} % of the fluctuation repeats by the revolution and not by the tooth: the cutter runs out{miscounted}",
                 100.0 * other
             ));
         }

@@ -42,3 +42,18 @@ fn one_feed_is_told() {
     let analysis = records.analysis(&records.described(RECORD, 1)).expect("an analysis");
     assert!(analysis.warnings.iter().any(|w| w.starts_with("one feed only")), "{:?}", analysis.warnings);
 }
+
+#[test]
+fn another_speed_and_another_number_of_teeth_are_told() {
+    let records = Records::new(9002, &Dynamometer::default());
+    let good = records.described(RECORD, 2);
+    for (wrong, said) in [
+        (good.replace("spindle_rpm = 4200", "spindle_rpm = 5300"), "a speed other than 5300 rev/min"),
+        (good.replace("teeth = 4", "teeth = 3"), "another number of teeth than 3"),
+    ] {
+        let warnings = records.analysis(&wrong).expect("an analysis").warnings;
+        assert!(warnings.iter().filter(|warning| warning.contains(said)).count() == 2, "{said}: {warnings:?}");
+    }
+    let warnings = records.analysis(&good).expect("an analysis").warnings;
+    assert!(!warnings.iter().any(|w| w.contains("speed other") || w.contains("number of teeth")), "{warnings:?}");
+}
