@@ -196,7 +196,8 @@ mod tests {
         let step = Step {
             command: Command::Correct,
             job: "job.toml".to_owned(),
-            probe: "probe.txt".to_owned(),
+            probe: Some("probe.txt".to_owned()),
+            dimensions: None,
             output: "out".to_owned(),
             from: None,
             feature: None,

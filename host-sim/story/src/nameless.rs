@@ -130,9 +130,9 @@ mod tests {
     #[test]
     fn a_probe_file_keeps_its_numbers_on_their_lines() {
         let text = b"(part 7, Miller)\n1.0 2.0 3.0\r\n  # again\r\n4.0 5.0 6.0\n";
-        assert_eq!(probe(text), b"\n1.0 2.0 3.0\r\n\r\n4.0 5.0 6.0\n");
+        assert_eq!(probe(text).unwrap(), b"\n1.0 2.0 3.0\r\n\r\n4.0 5.0 6.0\n");
         let log = b"# truepath probe log 1\n# program 23d6c628\n# unit mm\n# points 1\n1,2\n# end 1\n";
-        assert_eq!(probe(log), b"# truepath probe log 1\n\n# unit mm\n# points 1\n1,2\n# end 1\n");
+        assert_eq!(probe(log).unwrap(), b"# truepath probe log 1\n\n# unit mm\n# points 1\n1,2\n# end 1\n");
     }
 
     #[test]

@@ -133,7 +133,8 @@ fn left(part: &str, runout_mm: f64, seed: u64) -> [f64; 4] {
     let corrected = |name: &str, job: &str| {
         desk.write(&format!("{name}.toml"), job);
         desk.call(&format!("correct {name}.toml --probe first/probe.txt -o {name}"));
-        error(&desk.call(&format!("simulate {name}.toml --plant plant.toml --from {name} -o {name}-cut")))
+        let program = format!("{name}/corrected.nc");
+        error(&desk.call(&format!("simulate {name}.toml --plant plant.toml --program {program} -o {name}-cut")))
     };
     [error(&first), corrected("guessed", &job), corrected("coefficients", &coefficients), corrected("both", &both)]
 }
