@@ -1,7 +1,7 @@
 //! `correct`: from a measured pass to its correction, written as program or as image, with its figures.
 
 use truepath_core::checksum::crc32;
-use truepath_core::cut::Path;
+use truepath_core::cut::{Path, Sample};
 use truepath_core::gcode::program_crc;
 use truepath_core::identify::Observation;
 use truepath_core::image::{DEVICE_NODES, image_bytes};
@@ -163,7 +163,7 @@ pub fn correct_identified(
 ) -> Result<Vec<CorrectedPass>, Failure> {
     progress(0.2);
     let count = walls.len() as f64;
-    let mut fed: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
+    let mut fed: Vec<(PathBuffer, Vec<Sample>)> = walls.iter().map(|_| Default::default()).collect();
     let mut designed = Vec::new();
     for (at, (wall, fed)) in walls.into_iter().zip(&mut fed).enumerate() {
         let later = &mut |share| progress(0.2 + (at as f64 + share) / count * 0.7);
@@ -198,10 +198,10 @@ struct Designed<'a> {
     warnings: Vec<String>,
 }
 
-/// Designs the correction of a wall; `fed` takes the samples of its path at scheduled feeds.
+/// Designs the correction of a wall; the buffers take the samples of its path at scheduled feeds and in other stock.
 fn design<'a>(
     wall: IdentifiedWall<'a>,
-    fed: &'a mut PathBuffer,
+    (fed, stocked): &'a mut (PathBuffer, Vec<Sample>),
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Designed<'a>, Failure> {
@@ -215,6 +215,9 @@ fn design<'a>(
         Some(schedule) => pass.sample_fed(fed, Some(schedule))?.with_law(identified.law()),
         None => path,
     };
+    // Where touches have shown other stock, the correction is designed for that.
+    let (path, in_stock) = request.beside.in_stock(&path, stocked);
+    let request = DesignRequest { beside: &in_stock, ..request };
     let machine = identified.machine(&path, &table);
     let correction = design_correction(pass, &machine, &identified, &request, progress)?;
     let mut warnings = pass.warnings.clone();

@@ -1,15 +1,16 @@
 //! Kernels by their evidence: points of something else, mean and standard deviation.
 
-use truepath_core::cut::Path;
+use truepath_core::cut::{Path, Sample};
 use truepath_core::identify::COUNT;
 use truepath_core::job;
 use truepath_core::units::Offset;
-use truepath_ground::units::{float, nm};
+use truepath_ground::units::{float, mm, nm};
 
+use super::allowance::Allowance;
 use super::evidence::{Factored, Task, discrepancy};
 use super::feature::{Engagement, Feature, Sensitivity};
 use super::kernel::Kernel;
-use super::nominal::{sensitivities, stock_sensitivities};
+use super::nominal::{by_stock, sensitivities, stock_sensitivities};
 use super::points::{Points, Row, SHARED};
 
 /// One quantity of a kernel: the values that are tried, with what is believed of each (natural logarithm).
@@ -102,13 +103,19 @@ pub struct Discrepancy {
     used: Vec<usize>,
     /// Kernels with their shares.
     kernels: Vec<(f64, Factored)>,
+    /// The stock that they show.
+    allowance: Allowance,
 }
 
 /// Beside every sample of a contour.
 #[derive(Clone, Debug, Default)]
 pub struct Along {
-    /// Expected discrepancy.
+    /// Expected discrepancy, that of other stock included.
     pub mean: Vec<Offset>,
+    /// The same without it.
+    pub rest: Vec<Offset>,
+    /// By how much the expected stock lies nearer to the wall than the job says, at every sample of the path; empty for nowhere.
+    pub stock: Vec<Offset>,
     /// Standard deviation of the wall that the next correction leaves by what the points leave open, beyond that by the
     /// fitted parameters.
     pub sigma: Vec<Offset>,
@@ -118,7 +125,19 @@ pub struct Along {
 
 impl Along {
     /// Nothing.
-    pub const NONE: Self = Self { mean: Vec::new(), sigma: Vec::new(), repeat: Vec::new() };
+    pub const NONE: Self =
+        Self { mean: Vec::new(), rest: Vec::new(), stock: Vec::new(), sigma: Vec::new(), repeat: Vec::new() };
+
+    /// A path in the stock that is expected, in a buffer, and what is beside a machine that cuts it.
+    pub fn in_stock<'a>(&self, path: &Path<'a>, buffer: &'a mut Vec<Sample>) -> (Path<'a>, Self) {
+        if self.stock.len() != path.samples().len() {
+            return (*path, self.clone());
+        }
+        buffer.resize(self.stock.len(), Sample::BLANK);
+        let mut shifts = self.stock.iter();
+        let path = path.with_stock_moved(buffer, |_| shifts.next().copied().unwrap_or_default());
+        (path, Self { mean: self.rest.clone(), ..self.clone() })
+    }
 }
 
 /// How large the kinds are, root mean square over the kernels by their shares.
@@ -143,7 +162,34 @@ impl Discrepancy {
     pub fn of(points: Points) -> Option<Self> {
         let Likeliest { kernel, used, .. } = Likeliest::of(&points)?;
         let kernels = averaged(&Task::of(&points, &used), &kernel);
-        Some(Self { points, used, kernels })
+        Some(Self::by(points, used, kernels))
+    }
+
+    /// Of points about other parameters, by the kernels of this one: which are tried and which points are of the wall stays as it
+    /// is, and so what follows changes little by little.
+    pub(super) fn again(&self, points: Points) -> Option<Self> {
+        let task = Task::of(&points, &self.used);
+        let factored = |(_, factored): &(f64, Factored)| {
+            let again = task.factored(&factored.kernel)?;
+            Some((again.evidence + belief(&factored.kernel), again))
+        };
+        let kernels: Vec<(f64, Factored)> = self.kernels.iter().filter_map(factored).collect();
+        let most = kernels.iter().map(|(height, _)| *height).max_by(f64::total_cmp)?;
+        let kernels = shares(kernels.into_iter().map(|(height, of)| ((height - most).exp(), of)).collect());
+        Some(Self::by(points, self.used.clone(), kernels))
+    }
+
+    fn by(points: Points, used: Vec<usize>, kernels: Vec<(f64, Factored)>) -> Self {
+        let rows: Vec<&Row> = used.iter().map(|k| &points.rows[*k]).collect();
+        let allowance = Allowance::of(&kernels, &rows, &points.extents);
+        Self { points, used, kernels, allowance }
+    }
+
+    /// How probable the points are by its most probable kernel, machine and discrepancy left open: natural logarithm of a density per
+    /// mm of each.
+    pub(super) fn ln_probability(&self) -> f64 {
+        let heights = self.kernels.iter().map(|(_, of)| of.evidence + belief(&of.kernel));
+        per_point(&self.points, &self.used, heights.fold(f64::NEG_INFINITY, f64::max))
     }
 
     fn rows(&self) -> impl Iterator<Item = &Row> {
@@ -164,10 +210,40 @@ impl Discrepancy {
         })
     }
 
+    /// The same with all stock among the discrepancy: none is expected of the path.
+    pub(super) fn in_even_stock(self) -> Self {
+        Self { allowance: Allowance::default(), ..self }
+    }
+
+    /// By how much the allowance is expected to be larger at a place, mm along a contour, than the job says, mm.
+    pub(super) fn more_stock(&self, contour: usize, s: f64) -> f64 {
+        self.allowance.more(&self.points.extents, contour, s)
+    }
+
+    /// Expected discrepancy at a place, mm, beside what the path [with its stock](Self::stocked) has.
+    pub fn rest_at(&self, place: &Feature) -> f64 {
+        self.at(place) - place.stock * self.more_stock(place.contour, place.s)
+    }
+
+    /// A path with the stock that is expected along it, in a buffer; as it is where that is the job's.
+    pub fn stocked<'a>(&self, path: &Path<'a>, contour: usize, buffer: &'a mut Vec<Sample>) -> Path<'a> {
+        if self.allowance.is_even() {
+            return *path;
+        }
+        buffer.resize(path.samples().len(), Sample::BLANK);
+        let mut shifts = self.moved(path, contour).into_iter();
+        path.with_stock_moved(buffer, |_| shifts.next().unwrap_or_default())
+    }
+
+    /// By how much the expected stock lies nearer to the wall than the job says, at every sample of a path.
+    fn moved(&self, path: &Path, contour: usize) -> Vec<Offset> {
+        path.samples().iter().map(|sample| -nm(self.more_stock(contour, mm(sample.s)))).collect()
+    }
+
     /// Expected discrepancy at every point that was given, in their order, mm; that of its own part, its level of force
-    /// included.
-    pub fn at_points(&self) -> Vec<f64> {
-        let mut all = vec![0.0; self.points.given];
+    /// included. With it, what of that a millimetre more of allowance does.
+    pub(super) fn at_points(&self) -> Vec<(f64, f64)> {
+        let mut all = vec![(0.0, 0.0); self.points.given];
         for row in &self.points.rows {
             let value = self.mean_over(|factored| {
                 let covariance: Vec<f64> =
@@ -175,7 +251,7 @@ impl Discrepancy {
                 factored.mean(&covariance)
             });
             for slot in &mut all[row.points.clone()] {
-                *slot = value;
+                *slot = (value, row.feature.stock);
             }
         }
         all
@@ -184,7 +260,9 @@ impl Discrepancy {
     /// Beside every sample of a contour, where the correction leads the cutter to its nominal place. `core` is the fit of
     /// the relieved points.
     pub fn along(&self, path: &Path, contour: usize, core: &job::Identified) -> Along {
-        let path = path.with_law(core.law);
+        let even = path.with_law(core.law);
+        let mut buffer = Vec::new();
+        let path = self.stocked(&even, contour, &mut buffer);
         let table = core.table();
         let machine = core.machine(&path, &table);
         let engagement = Engagement::nominal(&machine, contour);
@@ -199,7 +277,13 @@ impl Discrepancy {
                 engagement.at(sample.s, sample.normal, Sensitivity { load: row[0] / level, stock })
             })
             .collect();
-        let mean = features.iter().map(|feature| nm(self.at(feature))).collect();
+        let rest: Vec<Offset> = features.iter().map(|feature| nm(self.rest_at(feature))).collect();
+        let (mean, rest, stock) = if self.allowance.is_even() {
+            (rest, Vec::new(), Vec::new())
+        } else {
+            let all = rest.iter().zip(by_stock(&even, &path, core)).map(|(rest, by_stock)| *rest + by_stock);
+            (all.collect(), rest, self.moved(&path, contour))
+        };
         let stride = features.len().div_ceil(PLACES).max(1);
         let known: Vec<[f64; 2]> = (0..features.len())
             .step_by(stride)
@@ -212,7 +296,7 @@ impl Discrepancy {
             [0, 1].map(|which| nm(from[which] + share * (to[which] - from[which])))
         };
         let (sigma, repeat) = (0..features.len()).map(deviation).map(|[sigma, repeat]| (sigma, repeat)).unzip();
-        Along { mean, sigma, repeat }
+        Along { mean, rest, stock, sigma, repeat }
     }
 
     /// Standard deviations at a place of the next part, mm: of parameters and discrepancy together, without that which the
@@ -293,8 +377,13 @@ impl Likeliest {
 /// How probable points are, machine and discrepancy left open: natural logarithm of a density per mm of each.
 pub(super) fn ln_probability(points: &Points) -> Option<f64> {
     let Likeliest { used, height, .. } = Likeliest::of(points)?;
+    Some(per_point(points, &used, height))
+}
+
+/// Evidence and belief of the rows that are used, with those that are not.
+fn per_point(points: &Points, used: &[usize], height: f64) -> f64 {
     let strange = points.rows.len() - used.len();
-    Some(height - 0.5 * used.len() as f64 * std::f64::consts::TAU.ln() + strange as f64 * ELSEWHERE.ln())
+    height - 0.5 * used.len() as f64 * std::f64::consts::TAU.ln() + strange as f64 * ELSEWHERE.ln()
 }
 
 /// The same of a reading of something else.
@@ -378,7 +467,11 @@ fn averaged(task: &Task<'_>, best: &Factored) -> Vec<(f64, Factored)> {
         let more: Vec<Kernel> = values.iter().take(room).flat_map(with).collect();
         combined.extend(more);
     }
-    let mut kernels: Vec<(f64, Factored)> = combined.iter().filter_map(probable).collect();
+    shares(combined.iter().filter_map(probable).collect())
+}
+
+/// Kernels with their shares, one in all, by how probable they are.
+fn shares(mut kernels: Vec<(f64, Factored)>) -> Vec<(f64, Factored)> {
     let most = kernels.iter().map(|(share, _)| *share).fold(0.0, f64::max);
     kernels.retain(|(share, _)| *share > LEAST_SHARE * most);
     let sum: f64 = kernels.iter().map(|(share, _)| share).sum();

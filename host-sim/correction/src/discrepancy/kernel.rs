@@ -84,7 +84,7 @@ impl Extent {
 
     /// Distance of two places along the contour, mm; on a closed one the chord of a circle as long, on which a covariance of
     /// the distance stays one.
-    fn way(&self, a: f64, b: f64) -> f64 {
+    pub(super) fn way(&self, a: f64, b: f64) -> f64 {
         let way = (a - b).abs();
         if !self.closed || self.length <= 0.0 {
             return way;
@@ -94,7 +94,7 @@ impl Extent {
     }
 }
 
-fn matern(way: f64, reach: f64) -> f64 {
+pub(super) fn matern(way: f64, reach: f64) -> f64 {
     let x = 3f64.sqrt() * way / reach;
     (1.0 + x) * (-x).exp()
 }

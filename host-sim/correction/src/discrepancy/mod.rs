@@ -14,11 +14,13 @@
 //! | how alike two places are | [`Kernel`] |
 //! | the points with what a parameter does to them | [`Points`] |
 //! | kernels, points of something else, mean and standard deviation | [`Discrepancy`] |
+//! | the stock that they show | `Allowance` |
 //! | parameters again, the points relieved of their discrepancy | [`relieved()`] |
 //!
 //! Sums run in one stated order, and every entry of a covariance is made of products that keep their bits when the part
 //! is shifted, turned by a quarter or mirrored: so does the result.
 
+mod allowance;
 mod average;
 mod evidence;
 mod feature;

@@ -50,6 +50,12 @@ pub(super) fn stock_sensitivities(path: &Path, core: &job::Identified) -> Vec<f6
     more.1.iter().zip(&less.1).map(|(more, less)| if per > 0.0 { mm(*more - *less) / per } else { 0.0 }).collect()
 }
 
+/// What other stock does to the deflection at the nominal engagement, beside every sample of the contour.
+pub(super) fn by_stock(even: &Path, stocked: &Path, core: &job::Identified) -> Vec<Offset> {
+    let [without, with] = [even, stocked].map(|path| deflections(path, &engaged(path, core), &core.fit.parameters));
+    with.iter().zip(&without).map(|(with, without)| *with - *without).collect()
+}
+
 /// Buffers for a path with more and with less stock, and by how much it is moved towards the wall.
 pub(super) fn moved_stock(path: &Path) -> [(Vec<Sample>, Offset); 2] {
     let share = path.setup().allowance.scaled(Real::ratio(1, 20));

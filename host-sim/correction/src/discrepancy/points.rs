@@ -21,7 +21,7 @@ pub(super) const SHARED: usize = COUNT - 2;
 /// The points of one contour of one part, as a fit has left them.
 #[derive(Clone, Copy, Debug)]
 pub struct CutPoints<'a> {
-    /// Its path, whatever its law.
+    /// Its path, whatever its law, with the stock that is expected along it.
     pub path: &'a Path<'a>,
     /// Its number among the contours of the part.
     pub contour: usize,
@@ -31,6 +31,8 @@ pub struct CutPoints<'a> {
     pub nodes: &'a [Node],
     /// The points.
     pub observations: &'a [Observation],
+    /// By how much the allowance of that stock is larger than the job says at the points, mm; empty for nowhere.
+    pub more: &'a [f64],
     /// The datum of the part, prior standard deviations.
     pub datum: [f64; 2],
 }
@@ -42,8 +44,8 @@ pub(super) struct Row {
     /// The wall across, where the point is a width: the mean of both.
     pub(super) across: Option<Feature>,
     pub(super) parts_ago: usize,
-    /// Measured − predicted where no parameter is known better than before, mm: the residual of the fit and what the fitted
-    /// parameters have explained.
+    /// Measured − predicted where no parameter is known better than before and the stock is even, mm: the residual of the fit and
+    /// what the fitted parameters and the stock have explained.
     pub(super) unexplained: f64,
     /// Variance of each of its points by the stated noise, mm².
     pub(super) noise: f64,
@@ -98,9 +100,10 @@ impl Points {
             let mut at = 0;
             let same = |a: &Observation, b: &Observation| many && a.s == b.s && a.across() == b.across();
             for group in cut.observations.chunk_by(same) {
-                let stock = &stock[at..at + group.len()];
+                let own = at..at + group.len();
                 at += group.len();
-                let row = row(cut, (group, stock), &engagement, (&theta, level));
+                let more = cut.more.get(own.clone()).unwrap_or_default();
+                let row = row(cut, (group, &stock[own], more), &engagement, (&theta, level));
                 rows.push(Row { points: before..before + group.len(), ..row });
                 before += group.len();
             }
@@ -108,10 +111,9 @@ impl Points {
         // The newest parts tell most of the next one.
         rows.sort_by_key(|row| row.parts_ago);
         rows.truncate(MOST_PLACES);
-        let precision = std::array::from_fn(|k| {
-            let long = matches!(Parameter::ALL[k], Parameter::ComplianceCross | Parameter::Undersize);
-            if long { 3.0 / (2.0 + theta[k] * theta[k]) } else { 1.0 }
-        });
+        let is_long = |k: usize| matches!(Parameter::ALL[k], Parameter::ComplianceCross | Parameter::Undersize);
+        let precision: [f64; SHARED] =
+            std::array::from_fn(|k| if is_long(k) { 3.0 / (2.0 + theta[k] * theta[k]) } else { 1.0 });
         let blank = Extent { length: 1.0, closed: false, radius: 1.0, allowance: 0.0 };
         let extents = extents.into_iter().map(|extent| extent.unwrap_or(blank)).collect();
         Self { rows, extents, precision, given: before }
@@ -120,7 +122,7 @@ impl Points {
 
 fn row(
     cut: &CutPoints<'_>,
-    (group, stock): (&[Observation], &[f64]),
+    (group, stock, more): (&[Observation], &[f64], &[f64]),
     engagement: &Engagement<'_>,
     (theta, level): (&[f64; COUNT], f64),
 ) -> Row {
@@ -131,7 +133,8 @@ fn row(
     let shared: f64 = (0..SHARED).map(|k| sensitivity[k] * fitted(k)).sum();
     // The two components of a vector are added first: their order is lost.
     let datum = sensitivity[SHARED] * fitted(SHARED) + sensitivity[SHARED + 1] * fitted(SHARED + 1);
-    let unexplained = mean(&|o| mm(o.error - o.predicted)) + (shared + datum);
+    let by_stock = stock.iter().zip(more).map(|(per, more)| per * more).sum::<f64>() / count;
+    let unexplained = mean(&|o| mm(o.error - o.predicted)) + (shared + datum) + by_stock;
     let stated = mean(&|o| (mm(o.deviation()) / float(o.spread)).powi(2));
     let of_load = Sensitivity { load: sensitivity[0] / level, stock: stock.iter().sum::<f64>() / count };
     let feature = engagement.at(group[0].s, group[0].normal, of_load);

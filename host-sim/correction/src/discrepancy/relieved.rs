@@ -5,10 +5,11 @@
 //! of something else; and the discrepancy again about them.
 
 use truepath_core::correct::{Node, commanded};
-use truepath_core::cut::{Path, WallLaw};
+use truepath_core::cut::{Path, Sample, State, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{Cut, EarlierPart, Observation, speaks_for_mean};
+use truepath_core::identify::{Cut, EarlierPart, Observation, PredictionWorkspace, predict, speaks_for_mean};
 use truepath_core::job::{self, LawName};
+use truepath_core::units::Offset;
 use truepath_ground::units::{float, mm, nm};
 use truepath_job::pass::Pass;
 
@@ -20,8 +21,20 @@ use crate::plausible::is_possible;
 /// A discrepancy that is nowhere larger is none: the parameters stay as they are, to the last bit.
 const LEAST_MM: f64 = 0.000_5;
 
+/// Share of the allowance by which expected stock changes at most before what it does is looked at again.
+const MOST_STEP: f64 = 0.15;
+
+/// Stock that differs by a smaller share of the allowance is linear enough.
+const LEAST_STOCK: f64 = 0.05;
+
 /// Times that parameters are fitted to points relieved of a discrepancy that has changed.
 const ROUNDS: u32 = 6;
+
+/// The same about stock, which comes step by step.
+const STOCKED_ROUNDS: u32 = 9;
+
+/// Times that kernels are chosen anew: then they stay, because between two of them what follows would go to and fro.
+const FREE: u32 = 3;
 
 /// One contour of one part.
 #[derive(Clone, Copy, Debug)]
@@ -47,11 +60,13 @@ pub struct Relieved {
     pub datums: Vec<[f64; 2]>,
     /// What is beside them; `None` where there are no points.
     pub discrepancy: Option<Discrepancy>,
+    /// What is beside them at every point, mm.
+    pub at_points: Vec<f64>,
     /// Whether any of it is worth a correction.
     is_any: bool,
 }
 
-/// By how much the mean law must be more probable than the helical one before it is believed, natural logarithm: 20 : 1.
+/// By how much another law, or other stock, must be more probable before it is believed, natural logarithm: 20 : 1.
 const DECISIVE: f64 = 3.0;
 
 /// Whether a job's parts are fitted with what is beside the model: the other laws are kept to be compared with, as they are printed.
@@ -104,56 +119,270 @@ fn asked<T>(parts: &[PartCut<'_>], observations: &[Observation], fit: impl FnOnc
 
 /// What the parts show beside machine and material, which are fitted again to the points relieved of it; `found` is their
 /// [`plain()`] fit. `progress` is told the share done.
+///
+/// Where stock differs, other teeth cut at other times, which is not linear. Machine and material are therefore fitted a second
+/// time, about the stock that is expected, and believed where the points are clearly more probable so.
 pub fn relieved(
     pass: &job::ContourPass,
-    mut found: Found,
+    found: Found,
     cuts: &[PartCut<'_>],
     progress: &mut dyn FnMut(f64),
 ) -> Relieved {
-    let last = last_part(cuts);
-    let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
-    let mut discrepancy = Discrepancy::of(points(cuts, &found, last));
-    let alone = (found.clone(), discrepancy.clone());
-    let mut is_any = false;
-    let mut before: Vec<f64> = vec![0.0; measured.len()];
-    let mut moved_before = f64::INFINITY;
-    for round in 0..ROUNDS {
-        let beside = discrepancy.as_ref().map(Discrepancy::at_points).unwrap_or_default();
-        let moved = beside.iter().zip(&before).map(|(now, before)| (now - before).abs()).fold(0.0, f64::max);
-        if moved < LEAST_MM {
-            break;
+    let task = Task { pass, law: found.core.law, cuts };
+    let first = About::of(found, cuts, Beside::none(cuts), None);
+    let even = task.even(first.clone(), &mut |share| progress(0.5 * share));
+    let is_stock = |about: &About| about.shown(cuts) > LEAST_STOCK;
+    let stocked = is_stock(&even)
+        .then(|| task.stocked(first, &mut |share| progress(0.5 + 0.5 * share)))
+        .filter(|stocked| is_stock(stocked) && stocked.ln_probability() > even.ln_probability() + DECISIVE);
+    progress(1.0);
+    let About { found, discrepancy, beside } = stocked.unwrap_or_else(|| even.in_even_stock());
+    beside.relieved(found, discrepancy, cuts)
+}
+
+/// Cuts to be explained.
+#[derive(Clone, Copy, Debug)]
+struct Task<'t, 'a> {
+    pass: &'t job::ContourPass,
+    law: WallLaw,
+    cuts: &'t [PartCut<'a>],
+}
+
+impl Task<'_, '_> {
+    /// Machine and material about even stock, and what is beside them, in turn until neither moves.
+    fn even(self, first: About, progress: &mut dyn FnMut(f64)) -> About {
+        let mut now = first.clone();
+        let mut moved_before = f64::INFINITY;
+        for round in 0..ROUNDS {
+            let next = now.next(self.cuts, 0.0);
+            let moved = next.moved(&now.beside);
+            if moved < LEAST_MM {
+                break;
+            }
+            // What does not settle explains nothing: points of another part, or of another datum.
+            if moved > moved_before {
+                return first;
+            }
+            moved_before = moved;
+            now = self.about(next, None, &mut |share| progress((f64::from(round) + share) / f64::from(ROUNDS)));
         }
-        // What does not settle explains nothing: points of another part, or of another datum.
-        if moved > moved_before {
-            (found, discrepancy) = alone;
-            is_any = false;
-            break;
+        now
+    }
+
+    /// The same about the stock that is expected.
+    fn stocked(self, first: About, progress: &mut dyn FnMut(f64)) -> About {
+        let mut now = first;
+        let (mut moved_before, mut step) = (f64::INFINITY, 1.0);
+        for round in 0..STOCKED_ROUNDS {
+            let mut next = now.next(self.cuts, MOST_STEP);
+            let moved = next.moved(&now.beside);
+            if moved < LEAST_MM {
+                break;
+            }
+            // It goes to and fro: less than the whole way.
+            if moved > 0.7 * moved_before {
+                step *= 0.7;
+            }
+            moved_before = moved;
+            next.come(&now.beside, step);
+            let kernels = now.discrepancy.take().filter(|_| round + 1 >= FREE);
+            let share = |share: f64| (f64::from(round) + share) / f64::from(STOCKED_ROUNDS);
+            now = self.about(next, kernels.as_ref(), &mut |done| progress(share(done)));
         }
-        moved_before = moved;
-        is_any = true;
-        let mut relieved = measured.clone();
-        for (o, mm) in relieved.iter_mut().zip(&beside) {
-            o.error -= nm(*mm);
+        now
+    }
+
+    /// Machine and material from the points relieved of what is beside them, and the discrepancy about both.
+    fn about(self, beside: Beside, kernels: Option<&Discrepancy>, progress: &mut dyn FnMut(f64)) -> About {
+        let found = beside.fitted(self.pass, self.law, self.cuts, progress);
+        About::of(found, self.cuts, beside, kernels)
+    }
+}
+
+/// Machine and material about what is beside them, and the discrepancy about both.
+#[derive(Clone, Debug)]
+struct About {
+    found: Found,
+    discrepancy: Option<Discrepancy>,
+    beside: Beside,
+}
+
+impl About {
+    /// By the kernels of another discrepancy, or by those that are most probable.
+    fn of(found: Found, cuts: &[PartCut<'_>], beside: Beside, kernels: Option<&Discrepancy>) -> Self {
+        let points = beside.stocked(cuts, |cuts| points(cuts, &found, &beside.more));
+        let discrepancy = kernels.map_or_else(|| Discrepancy::of(points.clone()), |other| other.again(points.clone()));
+        Self { found, discrepancy, beside }
+    }
+
+    /// The same with all stock among what is beside the cut.
+    fn in_even_stock(self) -> Self {
+        Self { discrepancy: self.discrepancy.map(Discrepancy::in_even_stock), ..self }
+    }
+
+    /// How probable the points are, natural logarithm up to a constant.
+    fn ln_probability(&self) -> f64 {
+        self.discrepancy.as_ref().map_or(f64::NEG_INFINITY, Discrepancy::ln_probability)
+    }
+
+    /// The largest share of the allowance by which stock is expected to differ at a point.
+    fn shown(&self, cuts: &[PartCut<'_>]) -> f64 {
+        let Some(discrepancy) = &self.discrepancy else { return 0.0 };
+        let of_cut = |cut: &PartCut<'_>| {
+            let most = cut.observations.iter().map(|o| discrepancy.more_stock(cut.contour, mm(o.s)).abs());
+            most.fold(0.0, f64::max) / mm(cut.path.setup().allowance).max(1e-6)
+        };
+        cuts.iter().map(of_cut).fold(0.0, f64::max)
+    }
+
+    /// What the discrepancy says is beside machine and material.
+    fn next(&self, cuts: &[PartCut<'_>], stock_step: f64) -> Beside {
+        let Some(discrepancy) = &self.discrepancy else { return Beside::none(cuts) };
+        let stock: Vec<Vec<f64>> = cuts
+            .iter()
+            .zip(&self.beside.stock)
+            .map(|(cut, before)| {
+                let most = stock_step * mm(cut.path.setup().allowance);
+                let at = |(sample, before): (&Sample, &f64)| {
+                    before + (discrepancy.more_stock(cut.contour, mm(sample.s)) - before).clamp(-most, most)
+                };
+                cut.path.samples().iter().zip(before).map(at).collect()
+            })
+            .collect();
+        let at_points = |(cut, stock): (&PartCut<'_>, &Vec<f64>)| {
+            let at = |s| stock.get(cut.path.index_at(s)).copied().unwrap_or_default();
+            let of = |o: &Observation| o.across().map_or(at(o.s), |across| 0.5 * (at(o.s) + at(across)));
+            cut.observations.iter().map(of).collect::<Vec<f64>>()
+        };
+        let more: Vec<f64> = cuts.iter().zip(&stock).flat_map(at_points).collect();
+        let all = discrepancy.at_points();
+        let rest = all.iter().zip(&more).map(|((all, per_stock), more)| all - per_stock * more).collect();
+        let by_stock = all.iter().map(|(_, per_stock)| *per_stock).collect();
+        Beside { stock, more, by_stock, rest, is_any: true }
+    }
+}
+
+/// What is beside machine and material.
+#[derive(Clone, Debug)]
+struct Beside {
+    /// By how much the allowance is larger than the job says, for every cut at every sample of its path, mm.
+    stock: Vec<Vec<f64>>,
+    /// The same at every point, mm.
+    more: Vec<f64>,
+    /// What a millimetre more does to every point, mm.
+    by_stock: Vec<f64>,
+    /// What is at every point beside the stock, mm.
+    rest: Vec<f64>,
+    /// Whether it was found: points were relieved of it.
+    is_any: bool,
+}
+
+impl Beside {
+    fn none(cuts: &[PartCut<'_>]) -> Self {
+        let points = vec![0.0; cuts.iter().map(|cut| cut.observations.len()).sum()];
+        let stock = cuts.iter().map(|cut| vec![0.0; cut.path.samples().len()]).collect();
+        Self { stock, more: points.clone(), by_stock: points.clone(), rest: points, is_any: false }
+    }
+
+    /// How far it moves a point at most from where it was, mm.
+    fn moved(&self, before: &Self) -> f64 {
+        let each = 0..self.rest.len();
+        let by = |k: usize| self.rest[k] - before.rest[k] + self.by_stock[k] * (self.more[k] - before.more[k]);
+        each.map(|k| by(k).abs()).fold(0.0, f64::max)
+    }
+
+    /// Comes a share of the way from where it was.
+    fn come(&mut self, before: &Self, share: f64) {
+        let come = |now: &mut Vec<f64>, before: &Vec<f64>| {
+            now.iter_mut().zip(before).for_each(|(now, before)| *now = before + share * (*now - before));
+        };
+        self.stock.iter_mut().zip(&before.stock).for_each(|(now, before)| come(now, before));
+        come(&mut self.more, &before.more);
+        come(&mut self.rest, &before.rest);
+    }
+
+    /// Does something with the cuts in this stock.
+    fn stocked<T>(&self, cuts: &[PartCut<'_>], with: impl FnOnce(&[PartCut<'_>]) -> T) -> T {
+        let is_even = |more: &Vec<f64>| more.iter().all(|more| *more == 0.0);
+        let mut buffers: Vec<Vec<Sample>> =
+            cuts.iter().map(|cut| vec![Sample::BLANK; cut.path.samples().len()]).collect();
+        let stocked: Vec<PartCut<'_>> = cuts
+            .iter()
+            .zip(&mut buffers)
+            .zip(&self.stock)
+            .map(|((cut, buffer), more)| {
+                let mut each = more.iter();
+                let shift = |_: &Sample| -nm(each.next().copied().unwrap_or_default());
+                let path = if is_even(more) { cut.path } else { cut.path.with_stock_moved(buffer, shift) };
+                PartCut { path, ..*cut }
+            })
+            .collect();
+        with(&stocked)
+    }
+
+    /// Machine and material from the points relieved of it.
+    fn fitted(
+        &self,
+        pass: &job::ContourPass,
+        law: WallLaw,
+        cuts: &[PartCut<'_>],
+        progress: &mut dyn FnMut(f64),
+    ) -> Found {
+        let measured = || cuts.iter().flat_map(|cut| cut.observations);
+        let mut relieved: Vec<Observation> = measured().copied().collect();
+        for (o, rest) in relieved.iter_mut().zip(&self.rest) {
+            o.error -= nm(*rest);
         }
-        let share = |share: f64| (f64::from(round) + share) / f64::from(ROUNDS);
-        let law = found.core.law;
         // From the prior again: from the last fit it may stay with points of something else.
-        found = fitted(pass, law, cuts, &relieved, &mut |done| progress(share(done)));
-        for (o, measured) in found.observations.iter_mut().zip(&measured) {
+        let mut found = self.stocked(cuts, |cuts| fitted(pass, law, cuts, &relieved, progress));
+        for (o, measured) in found.observations.iter_mut().zip(measured()) {
             o.error = measured.error;
         }
-        before = beside;
-        discrepancy = Discrepancy::of(points(cuts, &found, last));
+        found
     }
-    progress(1.0);
-    Relieved { datums: datums(&found, last + 1), found, discrepancy, is_any }
+
+    /// What the parts say, the predictions of their points those of even stock.
+    fn relieved(self, mut found: Found, discrepancy: Option<Discrepancy>, cuts: &[PartCut<'_>]) -> Relieved {
+        let mut at_points: Vec<f64> = match &discrepancy {
+            Some(discrepancy) => discrepancy.at_points().iter().map(|(all, _)| *all).collect(),
+            None => vec![0.0; self.rest.len()],
+        };
+        let in_stock = self.stocked(cuts, |cuts| predictions(&found, cuts));
+        let in_even = predictions(&found, cuts);
+        let more = self.more.iter().zip(&self.by_stock);
+        for ((o, beside), ((stock, even), (more, by_stock))) in
+            found.observations.iter_mut().zip(&mut at_points).zip(in_stock.iter().zip(&in_even).zip(more))
+        {
+            let by_its_stock = *stock - *even;
+            o.predicted -= by_its_stock;
+            *beside += mm(by_its_stock) - more * by_stock;
+        }
+        let datums = datums(&found, last_part(cuts) + 1);
+        Relieved { found, datums, discrepancy, at_points, is_any: self.is_any }
+    }
+}
+
+/// What the machine leaves at the points of the cuts, all in the datum of the last part.
+fn predictions(found: &Found, cuts: &[PartCut<'_>]) -> Vec<Offset> {
+    let core = &found.core;
+    let of_cut = |cut: &PartCut<'_>| {
+        let path = cut.path.with_law(core.law);
+        let room = path.working().len() + 1;
+        let (mut states, mut displacements) = (vec![State::REST; room], vec![Vector::ZERO; room]);
+        let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
+        let mut points = cut.observations.to_vec();
+        let asked = |i: usize| commanded(&path, cut.nodes, i);
+        predict(&path, &core.table(), &core.fit.parameters, asked, &mut points, &mut workspace);
+        points.into_iter().map(|o| o.predicted).collect::<Vec<Offset>>()
+    };
+    cuts.iter().flat_map(of_cut).collect()
 }
 
 impl Relieved {
     /// What is beside a contour, for the next part.
     pub fn along(&self, path: &Path, contour: usize) -> Along {
         let along = self.discrepancy.as_ref().map(|d| d.along(path, contour, &self.found.core)).unwrap_or_default();
-        if self.is_any { along } else { Along { mean: Vec::new(), ..along } }
+        if self.is_any { along } else { Along { sigma: along.sigma, repeat: along.repeat, ..Along::NONE } }
     }
 }
 
@@ -165,21 +394,25 @@ fn last_part(cuts: &[PartCut<'_>]) -> usize {
 /// How probable the points of a part are that a job has cut, whatever the machine and what is beside it: natural logarithm, comparable
 /// with that under another job; `found` is their [`plain()`] fit under the job.
 pub fn ln_evidence(found: &Found, cuts: &[PartCut<'_>]) -> Option<f64> {
-    ln_probability(&points(cuts, found, last_part(cuts)))
+    ln_probability(&points(cuts, found, &[]))
 }
 
-/// The points as the discrepancy takes them.
-fn points(parts: &[PartCut<'_>], found: &Found, last: usize) -> Points {
+/// The points as the discrepancy takes them; the allowance is `more` than the job says at each.
+fn points(parts: &[PartCut<'_>], found: &Found, more: &[f64]) -> Points {
+    let last = last_part(parts);
     let datums = datums(found, last + 1);
-    let mut rest = &found.observations[..];
+    let (mut rest, mut more) = (&found.observations[..], more);
     let cuts: Vec<CutPoints> = parts
         .iter()
         .map(|cut| {
-            let (own, others) = rest.split_at(cut.observations.len().min(rest.len()));
-            rest = others;
+            let count = cut.observations.len();
+            let (observations, others) = rest.split_at(count.min(rest.len()));
+            let (more_here, more_there) = more.split_at(count.min(more.len()));
+            (rest, more) = (others, more_there);
             let datum = datums.get(cut.part).copied().unwrap_or_default();
             let parts_ago = last + 1 - cut.part;
-            CutPoints { path: &cut.path, contour: cut.contour, parts_ago, nodes: cut.nodes, observations: own, datum }
+            let (path, contour, nodes) = (&cut.path, cut.contour, cut.nodes);
+            CutPoints { path, contour, parts_ago, nodes, observations, more: more_here, datum }
         })
         .collect();
     Points::of(&cuts, &found.core)

@@ -65,11 +65,23 @@ impl Holdout {
 /// What a model, with what is known beside it, misses at points of a part: root mean square over the places, mm.
 pub(super) fn missed(path: &Path, part: &PartPoints, points: &[Observation], model: &Joint) -> f64 {
     let mut points = points.to_vec();
+    let mut buffer = Vec::new();
+    let path = &match &model.beside {
+        Some(beside) => beside.discrepancy.stocked(path, 0, &mut buffer),
+        None => *path,
+    };
     let states = predicted(path, part, model, &mut points);
     let path = path.with_law(model.core.law);
     let loads = loads(&path, part, model, &points);
-    let cut =
-        CutPoints { path: &path, contour: 0, parts_ago: 1, nodes: &part.nodes, observations: &points, datum: [0.0; 2] };
+    let cut = CutPoints {
+        path: &path,
+        contour: 0,
+        parts_ago: 1,
+        nodes: &part.nodes,
+        observations: &points,
+        more: &[],
+        datum: [0.0; 2],
+    };
     let stocks = stock_sensitivities(&path, &cut, &model.core);
     let engagement = Engagement::of(&path, 0, path.working().start, &states);
     let squares = points.chunk_by(|a, b| a.s == b.s).scan(0, |at, place| {
@@ -82,7 +94,7 @@ pub(super) fn missed(path: &Path, part: &PartPoints, points: &[Observation], mod
         let more = model
             .beside
             .as_ref()
-            .map_or(0.0, |beside| beside.discrepancy.at(&engagement.at(place[0].s, place[0].normal, sensitivity)));
+            .map_or(0.0, |beside| beside.discrepancy.rest_at(&engagement.at(place[0].s, place[0].normal, sensitivity)));
         Some((sum / count - more).powi(2))
     });
     let (sum, n) = squares.fold((0.0, 0.0), |(sum, n), square| (sum + square, n + 1.0));

@@ -63,10 +63,9 @@ fn is_allowed(pass: &Pass, measurement: &Measurement, core: &job::Identified, me
     let found = Found { core: *core, earlier: Vec::new(), observations: measured.to_vec() };
     let cut = PartCut { path, contour: 0, part: 0, nodes: &[], observations: measured };
     let relieved = relieved(&pass.core, found, &[cut], &mut |_| ());
-    let Some(discrepancy) = &relieved.discrepancy else { return false };
     let mut points = relieved.found.observations.clone();
-    for (o, beside) in points.iter_mut().zip(discrepancy.at_points()) {
-        o.error -= nm(beside);
+    for (o, beside) in points.iter_mut().zip(&relieved.at_points) {
+        o.error -= nm(*beside);
     }
     Look::of(pass, measurement, &relieved.found.core, &points).reason().is_none()
 }

@@ -49,7 +49,8 @@ pub fn unseparated(path: &Path, measurement: &Measurement, identified: &Identifi
         pairs.iter().flat_map(|(placed, across)| [touch(&placed.contact), touch(across)]).collect();
     let estimate = Estimate { prior: identified.prior(), theta: identified.fit().theta, nodes: &[] };
     let rows = rows(path, &estimate, &mut touches, &mut |_| ());
-    let cut = CutPoints { path, contour: 0, parts_ago: 1, nodes: &[], observations: &touches, datum: [0.0; 2] };
+    let cut =
+        CutPoints { path, contour: 0, parts_ago: 1, nodes: &[], observations: &touches, more: &[], datum: [0.0; 2] };
     let stock = stock_sensitivities(path, &cut, &identified.core);
     let known = Covariance::of(&identified.fit().covariance, false);
     let uneven = UNEVEN * mm(path.setup().allowance);
