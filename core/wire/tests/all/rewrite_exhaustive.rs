@@ -164,7 +164,7 @@ impl World {
     fn tick(&mut self, device: &Device, event: Event) -> Result<(), String> {
         let before = self.state.mode();
         let was_ending = self.state.reason() != Reason::None;
-        let steady = self.next.clone();
+        let steady = self.next;
         let [x, y, z, ..] = &mut self.next.axes;
         match event {
             Event::Forward => *x += FEED,
