@@ -99,6 +99,11 @@ pub(super) fn contour_folder(pass: &Pass) -> String {
     format!("{CONTOURS}{}/", contour_name(pass))
 }
 
+/// Where the outputs of a contour are below their folder: in it, or where there are `several` in one of its own.
+pub(super) fn contour_place(pass: &Pass, several: bool) -> String {
+    if several { contour_folder(pass) } else { String::new() }
+}
+
 /// What one of several contours is called in files and tables: its name where that can be a file's, or its number.
 pub(super) fn contour_name(pass: &Pass) -> String {
     let plain = |id: &&String| {

@@ -22,7 +22,7 @@ use truepath_report::page::render_all;
 use truepath_report::pages::{self, REPORT};
 use truepath_report::{InspectSummary, QifWall, aqdef, inspect_summary, judged_points_csv, points_csv, qif};
 
-use super::correction_files::{CONTOURS, contour_folder, contour_name};
+use super::correction_files::{CONTOURS, contour_name, contour_place};
 use super::readings::{DIMENSIONS, PROBE, Readings};
 use crate::terminal::Terminal;
 use truepath_report::next::correct;
@@ -179,7 +179,7 @@ pub fn run(options: &Options) -> Result<Inspection, Failure> {
     }
     if let Some(folder) = &folder {
         for wall in &inspected {
-            let place = if several { contour_folder(wall.pass) } else { String::new() };
+            let place = contour_place(wall.pass, several);
             let points = match wall.summary.tolerance {
                 Some(_) => judged_points_csv(wall.measurement, &wall.judgement.points)?,
                 None => points_csv(wall.measurement, &[])?,

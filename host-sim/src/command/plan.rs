@@ -24,7 +24,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::{PlannedWall, planned_map_csv, planned_page};
 
-use super::correction_files::{contour_folder, contour_name};
+use super::correction_files::{contour_name, contour_place};
 use super::plan_files::{FILES, MAP, PLAN_HISTORY, PROBED, PROGRAM, REPORT, VERIFY};
 use super::probe::log_name;
 use crate::terminal::Terminal;
@@ -362,7 +362,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSumma
             for (((pass, points), choice), wall) in measured.iter().zip(&choices).zip(&done.walls) {
                 let process = Process::of(&choice.cuts, &wall.passes);
                 let next = NextPart::of(process, asked, choice.surface.profile, (&done.program, &names));
-                let place = if several { contour_folder(pass) } else { String::new() };
+                let place = contour_place(pass, several);
                 let history = PlanHistory::first(pass, points, next)?.text()?;
                 folder.write(&format!("{place}{PLAN_HISTORY}"), &history)?;
             }
@@ -498,7 +498,7 @@ pub(super) fn write_files(
     }
     let mut choices = Vec::new();
     for ((pass, wall), &choice) in passes.iter().zip(&done.walls).zip(numbers) {
-        let place = if several { contour_folder(pass) } else { String::new() };
+        let place = contour_place(pass, several);
         folder.write(&format!("{place}{MAP}"), &planned_map_csv(&wall.map)?)?;
         choices.push(WrittenChoice {
             contour: several.then(|| contour_name(pass)),

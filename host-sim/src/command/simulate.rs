@@ -26,7 +26,7 @@ use truepath_trial::setpoints::Setpoints;
 use truepath_trial::virtual_mill::Made;
 use truepath_trial::{process, recorded, virtual_mill};
 
-use super::correction_files::{CONTOURS, contour_folder, contour_name};
+use super::correction_files::{CONTOURS, contour_name, contour_place};
 use super::placement::PlacementOptions;
 use crate::terminal::Terminal;
 
@@ -229,7 +229,7 @@ pub fn run(options: &Options) -> Result<SimulateSummary, Failure> {
             contour: several.then(|| contour_name(pass)),
             ..simulate_summary(pass, done.by, &done.trace, warnings)
         };
-        let place = if several { contour_folder(pass) } else { String::new() };
+        let place = contour_place(pass, several);
         let write = |name: &str, bytes: &[u8]| folder.write(&format!("{place}{name}"), bytes);
         if let Some(made) = done.made.as_ref().filter(|_| options.probed_wall) {
             write(PROBED, probed_wall(pass, made).as_bytes())?;

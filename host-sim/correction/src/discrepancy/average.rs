@@ -10,7 +10,7 @@ use super::allowance::Allowance;
 use super::evidence::{Factored, Task, discrepancy};
 use super::feature::{Engagement, Feature, Sensitivity};
 use super::kernel::Kernel;
-use super::nominal::{by_stock, sensitivities, stock_sensitivities};
+use super::nominal::{by_stock, sensitivities, stock_sensitivities, with_stock};
 use super::points::{Points, Row, SHARED};
 
 /// One quantity of a kernel: the values that are tried, with what is believed of each (natural logarithm).
@@ -133,9 +133,7 @@ impl Along {
         if self.stock.len() != path.samples().len() {
             return (*path, self.clone());
         }
-        buffer.resize(self.stock.len(), Sample::BLANK);
-        let mut shifts = self.stock.iter();
-        let path = path.with_stock_moved(buffer, |_| shifts.next().copied().unwrap_or_default());
+        let path = with_stock(path, self.stock.iter().copied(), buffer);
         (path, Self { mean: self.rest.clone(), ..self.clone() })
     }
 }
@@ -230,9 +228,7 @@ impl Discrepancy {
         if self.allowance.is_even() {
             return *path;
         }
-        buffer.resize(path.samples().len(), Sample::BLANK);
-        let mut shifts = self.moved(path, contour).into_iter();
-        path.with_stock_moved(buffer, |_| shifts.next().unwrap_or_default())
+        with_stock(path, self.moved(path, contour).into_iter(), buffer)
     }
 
     /// By how much the expected stock lies nearer to the wall than the job says, at every sample of a path.

@@ -56,6 +56,16 @@ pub(super) fn by_stock(even: &Path, stocked: &Path, core: &job::Identified) -> V
     with.iter().zip(&without).map(|(with, without)| *with - *without).collect()
 }
 
+/// A path with its stock moved towards the wall by so much at every sample, in a buffer.
+pub(super) fn with_stock<'a>(
+    path: &Path,
+    mut shifts: impl Iterator<Item = Offset>,
+    buffer: &'a mut Vec<Sample>,
+) -> Path<'a> {
+    buffer.resize(path.samples().len(), Sample::BLANK);
+    path.with_stock_moved(buffer, |_| shifts.next().unwrap_or_default())
+}
+
 /// Buffers for a path with more and with less stock, and by how much it is moved towards the wall.
 pub(super) fn moved_stock(path: &Path) -> [(Vec<Sample>, Offset); 2] {
     let share = path.setup().allowance.scaled(Real::ratio(1, 20));

@@ -14,6 +14,7 @@ use truepath_ground::units::{float, mm, nm};
 use truepath_job::pass::Pass;
 
 use super::average::{Along, Discrepancy, ln_probability};
+use super::nominal::with_stock;
 use super::points::{CutPoints, Points};
 use crate::identification::{Found, Points as Asked, found, under_both};
 use crate::plausible::is_possible;
@@ -211,7 +212,10 @@ impl About {
     /// By the kernels of another discrepancy, or by those that are most probable.
     fn of(found: Found, cuts: &[PartCut<'_>], beside: Beside, kernels: Option<&Discrepancy>) -> Self {
         let points = beside.stocked(cuts, |cuts| points(cuts, &found, &beside.more));
-        let discrepancy = kernels.map_or_else(|| Discrepancy::of(points.clone()), |other| other.again(points.clone()));
+        let discrepancy = match kernels {
+            Some(other) => other.again(points),
+            None => Discrepancy::of(points),
+        };
         Self { found, discrepancy, beside }
     }
 
@@ -304,16 +308,14 @@ impl Beside {
     /// Does something with the cuts in this stock.
     fn stocked<T>(&self, cuts: &[PartCut<'_>], with: impl FnOnce(&[PartCut<'_>]) -> T) -> T {
         let is_even = |more: &Vec<f64>| more.iter().all(|more| *more == 0.0);
-        let mut buffers: Vec<Vec<Sample>> =
-            cuts.iter().map(|cut| vec![Sample::BLANK; cut.path.samples().len()]).collect();
+        let mut buffers = vec![Vec::new(); cuts.len()];
         let stocked: Vec<PartCut<'_>> = cuts
             .iter()
             .zip(&mut buffers)
             .zip(&self.stock)
             .map(|((cut, buffer), more)| {
-                let mut each = more.iter();
-                let shift = |_: &Sample| -nm(each.next().copied().unwrap_or_default());
-                let path = if is_even(more) { cut.path } else { cut.path.with_stock_moved(buffer, shift) };
+                let shifts = more.iter().map(|more| -nm(*more));
+                let path = if is_even(more) { cut.path } else { with_stock(&cut.path, shifts, buffer) };
                 PartCut { path, ..*cut }
             })
             .collect();

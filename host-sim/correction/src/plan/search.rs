@@ -156,7 +156,7 @@ pub fn search(
         progress(0.7);
         if limits.max_cuts >= 3 {
             // Three cuts.
-            let second = |feed_percent: u16| -> Vec<Cut> {
+            let cuts = |feed_percent: u16| -> Vec<Cut> {
                 let cut = |um: i64, reversed: bool| Cut { reversed, feed_percent, ..Cut::whole(leaving(um)) };
                 LEFT_SECOND.iter().flat_map(|um| ways.iter().map(move |w| cut(*um, *w))).collect()
             };
@@ -166,9 +166,8 @@ pub fn search(
                 times.of(&cuts).is_none_or(|minutes| in_time(&minutes))
             };
             let (usual, late): (Vec<Branch>, Vec<Branch>) = first.iter().cloned().partition(leaves_time);
-            let mut second_branches = go_on(&usual, &second(100));
-            second_branches.extend(go_on(&late, &second(allowed(&SECOND_FEEDS).first().copied().unwrap_or(100))));
-            let mut second = second_branches;
+            let mut second = go_on(&usual, &cuts(100));
+            second.extend(go_on(&late, &cuts(allowed(&SECOND_FEEDS).first().copied().unwrap_or(100))));
             progress(0.8);
             second.sort_by(|a, b| a.uneven_mm.total_cmp(&b.uneven_mm));
             second.truncate(KEPT + 1);

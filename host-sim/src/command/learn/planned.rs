@@ -15,7 +15,7 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 use truepath_report::{PlannedWall, planned_page};
 
-use super::super::correction_files::{contour_folder, contour_name};
+use super::super::correction_files::{contour_name, contour_place};
 use super::super::history::{PlannedContours, planned_in};
 use super::super::plan::{Written, planned_name, program_name, write_files};
 use super::super::plan_files::{FILES, PLAN_HISTORY, PROBED, PROGRAM, REPORT};
@@ -227,7 +227,7 @@ fn run(
     let written = write_files((&folder, output), &passes, several, &numbers, learned.written, &mut warnings)?;
     let mut contours = Vec::new();
     for ((pass, measurement), one) in measured.iter().zip(learned.contours) {
-        let place = if several { contour_folder(pass) } else { String::new() };
+        let place = contour_place(pass, several);
         folder.write(&format!("{place}{PLAN_HISTORY}"), &one.history.text()?)?;
         contours.push(LearnedContour {
             contour: several.then(|| contour_name(pass)),
