@@ -57,7 +57,7 @@ pub const KERNELS: &[Kernel] = &[
     Kernel { name: "search/contours-2000", calls: 1, prepare: || search::work(search::contours(2_000)) },
     Kernel { name: "search/contours-20000", calls: 1, prepare: || search::work(search::contours(20_000)) },
     Kernel { name: "search/adaptive-10000", calls: 1, prepare: || search::work(search::adaptive(10_000)) },
-    Kernel { name: "search/adaptive-20000", calls: 1, prepare: || search::work(search::adaptive(20_000)) },
+    Kernel { name: "search/adaptive-100000", calls: 1, prepare: || search::work(search::adaptive(100_000)) },
     Kernel { name: "identify/corner", calls: 1, prepare: || whole::identify(whole::corner()) },
     Kernel { name: "identify/pocket", calls: 1, prepare: || whole::identify(whole::pocket()) },
     Kernel { name: "design/corner", calls: 1, prepare: || whole::design(whole::corner()) },

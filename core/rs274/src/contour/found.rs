@@ -5,8 +5,8 @@ use core::ops::Range;
 use super::Candidate;
 use super::split::{closed, length};
 use crate::LineRange;
-use truepath_units::Offset;
-use truepath_units::geometry::{Block, Side};
+use truepath_units::geometry::{Block, Extent, Side};
+use truepath_units::{Offset, Position};
 
 /// Why a run makes no wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,12 +64,17 @@ pub struct Found {
     pub(super) like: usize,
     /// Why it makes no wall.
     pub(super) idle: Option<Idle>,
+    /// A rectangle that holds it.
+    pub(super) extent: Extent,
+    /// Of the first run along a path: the greatest depth of all that follow it.
+    pub(super) deepest: Option<Position>,
 }
 
 impl Found {
     /// A run that was read, whose first block is at `first` among the blocks of all runs.
     pub const fn new(run: Candidate, first: usize) -> Self {
-        Self { run, first, skipped: 0, role: Role::OtherTool, like: 0, idle: None }
+        let (extent, deepest) = (Extent::EMPTY, None);
+        Self { run, first, skipped: 0, role: Role::OtherTool, like: 0, idle: None, extent, deepest }
     }
     /// The same run with only some of its blocks, counted within it; `None` when there is none of them.
     pub fn narrowed(&self, kept: Range<usize>, blocks: &[Block]) -> Option<Self> {

@@ -4,10 +4,10 @@
 //! Beside the end of an open path nothing can be said; such places do not count.
 
 use truepath_units::Offset;
-use truepath_units::geometry::{Block, Contour, Curve, Point, Shape, Side};
+use truepath_units::geometry::{Block, Contour, Curve, Nearby, Point, Shape, Side};
 
 /// Two places nearer than this are one: rounding of incremental programs and of arc centres.
-const SAME: Offset = Offset::from_um(2);
+pub(super) const SAME: Offset = Offset::from_um(2);
 /// Places looked at evenly along a path.
 const EVEN: i64 = 64;
 /// Block ends looked at.
@@ -38,55 +38,31 @@ fn same_curve(a: &Curve, b: &Curve) -> bool {
     shapes && near(a.start(), b.start()) && near(a.end(), b.end()) && near(a.point(half), b.point(half))
 }
 
-/// Whether two paths run over the same places, from wherever and in whichever direction.
+/// Whether two paths run over the same places, from wherever and in whichever direction. Not if the rectangles that hold them are
+/// farther apart than [`SAME`].
 pub(super) fn coincide(a: &[Block], b: &[Block]) -> bool {
-    let on = |a: &[Block], b: &[Block]| look(a, b, &mut |left| (left.abs() <= SAME).then_some(left.abs())).is_some();
-    !Extent::of(a).is_apart(&Extent::of(b), SAME) && on(a, b) && on(b, a)
-}
-
-/// A rectangle along the axes that holds a path.
-pub(super) struct Extent {
-    /// Its lower and upper end along x and y, nm.
-    ends: [[i64; 2]; 2],
-}
-
-impl Extent {
-    pub(super) fn of(path: &[Block]) -> Self {
-        let mut ends = [[i64::MAX, i64::MIN]; 2];
-        for block in path {
-            // No place of an arc is farther from the nearer of its ends than half of its length.
-            let more = match block.curve.shape() {
-                Shape::Line => 0,
-                Shape::Arc { .. } => block.curve.length().nm() / 2,
-            };
-            for point in [block.curve.start(), block.curve.end()] {
-                for ([lower, upper], at) in ends.iter_mut().zip([point.x.nm(), point.y.nm()]) {
-                    *lower = at.saturating_sub(more).min(*lower);
-                    *upper = at.saturating_add(more).max(*upper);
-                }
-            }
-        }
-        Self { ends }
-    }
-    /// Whether two of them are farther from each other than `gap`.
-    pub(super) fn is_apart(&self, other: &Self, gap: Offset) -> bool {
-        let beyond = |([lower, _], [_, upper]): (&[i64; 2], &[i64; 2])| lower.saturating_sub(*upper) > gap.nm();
-        self.ends.iter().zip(&other.ends).any(beyond) || other.ends.iter().zip(&self.ends).any(beyond)
-    }
+    let (Some(a), Some(b)) = (Contour::new(a), Contour::new(b)) else { return false };
+    let on = |a: &Contour, b: &Contour| {
+        look(a, &mut Nearby::new(*b), &mut |left| (left.abs() <= SAME).then_some(left.abs())).is_some()
+    };
+    on(&a, &b) && on(&b, &a)
 }
 
 /// How much farther from the wall of `other` a path lies: all of it on the free side of `other`, which in turn is not
 /// all on the free side of the path. Two paths that have each other on the free side are two walls.
 pub(super) fn farther(path: &[Block], other: &[Block], wall: Side, reach: Offset) -> Option<Gap> {
-    if far(path, other, reach) {
+    let path = Contour::new(path)?;
+    let mut other = Nearby::new(Contour::new(other)?);
+    if far(&path, &mut other, reach) {
         return None;
     }
-    let seen = view_free(path, other, wall)?;
-    if seen.lowest > reach || seen.highest <= SAME || view_free(other, path, wall).is_some() {
+    let seen = view_free(&path, &mut other, wall)?;
+    if seen.lowest > reach || seen.highest <= SAME || view_free(other.contour(), &mut Nearby::new(path), wall).is_some()
+    {
         return None;
     }
     let band = Offset::from_um(20).max(Offset::from_nm(seen.lowest.nm() / 20));
-    let even = count_even(path, other, |d| d.abs() <= seen.lowest + band);
+    let even = count_even(&path, &mut other, |d| d.abs() <= seen.lowest + band);
     let parallel = even.1 > 0 && even.0.saturating_mul(5) >= even.1.saturating_mul(4);
     Some(Gap { distance: seen.lowest.max(Offset::ZERO), parallel })
 }
@@ -98,7 +74,7 @@ struct View {
 }
 
 /// Distances into the free side; `None` when a place lies on the wall's side.
-fn view_free(path: &[Block], other: &[Block], wall: Side) -> Option<View> {
+fn view_free(path: &Contour, other: &mut Nearby, wall: Side) -> Option<View> {
     look(path, other, &mut |left| {
         let free = if wall == Side::Right { left } else { -left };
         (free >= -SAME).then_some(free)
@@ -107,29 +83,27 @@ fn view_free(path: &[Block], other: &[Block], wall: Side) -> Option<View> {
 
 /// Looks at another path from every place; `judge` turns the distance to the left into what counts, or ends it.
 /// `None` as well when fewer than half of the places lie beside the other path.
-fn look(path: &[Block], other: &[Block], judge: &mut dyn FnMut(Offset) -> Option<Offset>) -> Option<View> {
-    let (path, other) = (Contour::new(path)?, Contour::new(other)?);
+fn look(path: &Contour, other: &mut Nearby, judge: &mut dyn FnMut(Offset) -> Option<Offset>) -> Option<View> {
     let mut view = View { lowest: Offset::MAX, highest: Offset::ZERO };
     let (mut seen, mut beside) = (0u32, 0u32);
     let mut place = |point: Point| {
         seen = seen.saturating_add(1);
-        let Some(left) = nearest(&other, point) else { return true };
+        let Some(left) = nearest(other, point) else { return true };
         let Some(distance) = judge(left) else { return false };
         beside = beside.saturating_add(1);
         view.lowest = view.lowest.min(distance);
         view.highest = view.highest.max(distance);
         true
     };
-    let all = along(&path, &mut place) && ends(&path, &mut place);
+    let all = along(path, &mut place) && ends(path, &mut place);
     (all && beside > 0 && beside.saturating_mul(2) >= seen).then_some(view)
 }
 
 /// How many of the places evenly along a path hold, and how many lie beside the other one.
-fn count_even(path: &[Block], other: &[Block], holds: impl Fn(Offset) -> bool) -> (u32, u32) {
-    let (Some(path), Some(other)) = (Contour::new(path), Contour::new(other)) else { return (0, 0) };
+fn count_even(path: &Contour, other: &mut Nearby, holds: impl Fn(Offset) -> bool) -> (u32, u32) {
     let mut count = (0u32, 0u32);
-    along(&path, &mut |point| {
-        if let Some(left) = nearest(&other, point) {
+    along(path, &mut |point| {
+        if let Some(left) = nearest(other, point) {
             count = (count.0.saturating_add(holds(left).into()), count.1.saturating_add(1));
         }
         true
@@ -139,17 +113,14 @@ fn count_even(path: &[Block], other: &[Block], holds: impl Fn(Offset) -> bool) -
 
 /// Whether a path is certainly farther from another one than `reach`, seen from eight places: no place of the path is
 /// farther from the nearest of them than an eighth of its length.
-fn far(path: &[Block], other: &[Block], reach: Offset) -> bool {
-    let (Some(path), Some(other)) = (Contour::new(path), Contour::new(other)) else { return true };
+fn far(path: &Contour, other: &mut Nearby, reach: Offset) -> bool {
     let limit = reach + Offset::from_nm(path.length().nm() / 8);
     let mut hint = 0;
     (0..8).all(|k| {
         let s = Offset::from_nm((path.length().nm() / 8).saturating_mul(k));
         path.at(s, hint).is_none_or(|place| {
             hint = place.block;
-            let mut least = Offset::MAX;
-            other.feet(place.point, |foot| least = least.min(foot.left.abs()));
-            least > limit
+            other.nearest(place.point).is_none_or(|foot| foot.left.abs() > limit)
         })
     })
 }
@@ -174,14 +145,8 @@ fn ends(path: &Contour, visit: &mut dyn FnMut(Point) -> bool) -> bool {
 }
 
 /// Distance to the left of a path; `None` beyond its open ends.
-fn nearest(path: &Contour, point: Point) -> Option<Offset> {
-    let (length, open) = (path.length(), !path.is_closed());
-    let mut best = None;
-    path.feet(point, |foot| {
-        if best.is_none_or(|(left, _): (Offset, _)| foot.left.abs() < left.abs()) {
-            let beyond = open && !foot.beside && (foot.s <= Offset::ZERO || foot.s >= length);
-            best = Some((foot.left, beyond));
-        }
-    });
-    best.filter(|(left, beyond)| !beyond || left.abs() <= SAME).map(|(left, _)| left)
+fn nearest(path: &mut Nearby, point: Point) -> Option<Offset> {
+    let (foot, path) = (path.nearest(point)?, path.contour());
+    let at_an_end = !path.is_closed() && !foot.beside && (foot.s <= Offset::ZERO || foot.s >= path.length());
+    (!at_an_end || foot.left.abs() <= SAME).then_some(foot.left)
 }

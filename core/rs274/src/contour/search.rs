@@ -18,9 +18,9 @@
 
 use super::found::{Criteria, Found, Role};
 use super::idle::mark;
-use super::relation::{Extent, coincide, farther, same};
+use super::relation::{SAME, coincide, farther, same};
 use super::split::without_leads;
-use truepath_units::geometry::Block;
+use truepath_units::geometry::{Block, Extent};
 use truepath_units::{Offset, Position};
 
 /// Gives every run its role and returns the number of finishing contours. `runs` are in the order of execution,
@@ -32,10 +32,19 @@ pub fn search(runs: &mut [Found], blocks: &[Block], criteria: &Criteria) -> u32 
             split(found, blocks, criteria);
         }
     }
+    runs.iter_mut().for_each(|found| found.extent = Extent::of(found.blocks(blocks)));
     for index in 0..runs.len() {
         let like = first_alike(runs, blocks, criteria, index);
         if let Some(found) = runs.get_mut(index) {
             found.like = like;
+            found.deepest = found.run.z;
+        }
+        let (own, head) = (runs.get(index).and_then(|f| f.run.z), runs.get_mut(like));
+        if let Some(head) = head {
+            head.deepest = match (head.deepest, own) {
+                (Some(a), Some(b)) => Some(a.min(b)),
+                (a, b) => a.or(b),
+            };
         }
     }
     runs.iter_mut().for_each(|found| found.idle = None);
@@ -89,7 +98,8 @@ fn first_alike(runs: &[Found], blocks: &[Block], criteria: &Criteria, index: usi
     let level = |head| runs.iter().take(index).any(|f| f.like == head && same_height(f.run.z, found.run.z));
     let mut alike = heads.filter(|(head, f)| {
         let path = f.blocks(blocks);
-        same(path, own) || (level(*head) && coincide(path, own))
+        let apart = f.extent.is_apart(&found.extent, SAME);
+        !apart && (same(path, own) || (level(*head) && coincide(path, own)))
     });
     alike.next().map_or(index, |(head, _)| head)
 }
@@ -102,24 +112,17 @@ fn same_height(a: Option<Position>, b: Option<Position>) -> bool {
     }
 }
 
-/// The greatest depth of a path.
-fn deepest(runs: &[Found], head: usize) -> Option<Position> {
-    runs.iter().filter(|f| f.like == head).filter_map(|f| f.run.z).min()
-}
-
 /// Whether another path takes the wall of this one away. Finishing comes last, so the search begins there.
 fn rough(runs: &[Found], blocks: &[Block], criteria: &Criteria, index: usize) -> Option<Role> {
     let own = runs.get(index)?;
-    let depth = deepest(runs, index);
-    let extent = Extent::of(own.blocks(blocks));
     for (nearer, other) in runs.iter().enumerate().rev() {
         if nearer == index || other.like != nearer || !counts(other, criteria) || other.idle.is_some() {
             continue;
         }
-        if extent.is_apart(&Extent::of(other.blocks(blocks)), criteria.diameter) {
+        if own.extent.is_apart(&other.extent, criteria.diameter) {
             continue;
         }
-        let deep_enough = match (deepest(runs, nearer), depth) {
+        let deep_enough = match (other.deepest, own.deepest) {
             (Some(other), Some(own)) => other <= own + Offset::from_um(1),
             (None, None) => true,
             _ => false,

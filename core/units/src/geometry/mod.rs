@@ -14,12 +14,14 @@
 
 mod contour;
 mod curve;
+mod extent;
 mod nearest;
 mod side;
 mod vector;
 
 pub use contour::{Block, Contour, FACET_TURN_LIMIT, Place};
 pub use curve::{ARC_TOLERANCE, ArcError, Curve, Shape};
-pub use nearest::Nearest;
+pub use extent::Extent;
+pub use nearest::{Nearby, Nearest};
 pub use side::Side;
 pub use vector::{Direction, Point, Vector};
