@@ -1,6 +1,6 @@
 //! Runs a kernel a given number of times, for a tool that counts instructions: `cargo xtask bench --count`.
 //!
-//! `count` lists the kernels, `count KERNEL N` prepares the kernel and calls it N times. The difference between N and
+//! `count` lists the kernels with their calls and whether they are watched, `count KERNEL N` prepares the kernel and calls it N times. The difference between N and
 //! 2N calls is the cost of N calls, without that of the preparation.
 
 #[path = "../benches/kernel/mod.rs"]
@@ -15,7 +15,7 @@ fn main() -> ExitCode {
     match (arguments.is_empty(), chosen, calls) {
         (true, ..) => {
             for kernel in kernel::KERNELS {
-                println!("{} {}", kernel.name, kernel.calls);
+                println!("{} {} {}", kernel.name, kernel.calls, kernel.watched);
             }
             ExitCode::SUCCESS
         }

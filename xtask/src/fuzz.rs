@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use crate::repository::{cargo, may_install, program, read, root, run, succeeds, target};
 use crate::step::{Failure, Outcome, Passed};
+use crate::toolchain::install;
 
 /// A target and the files its corpus begins with: folders below the root, endings of names.
 struct Target {
@@ -77,7 +78,10 @@ pub fn check(only: Option<&str>, length: Length) -> Outcome {
 }
 
 /// Builds the targets; returns the folder of the programs.
-fn build() -> Result<PathBuf, Failure> {
+///
+/// # Errors
+/// What does not build, or a missing C++ compiler.
+pub fn build() -> Result<PathBuf, Failure> {
     cpp_compiler()?;
     let said = read(program("rustc").arg("-vV"))?;
     let host = said.lines().find_map(|line| line.strip_prefix("host: ")).unwrap_or("x86_64-unknown-linux-gnu");
@@ -93,8 +97,7 @@ fn cpp_compiler() -> Result<(), Failure> {
     if succeeds(program("c++").arg("--version")) {
         return Ok(());
     }
-    let install = ["apt-get", "install", "--yes", "--quiet", "--no-install-recommends", "g++"];
-    if may_install() && succeeds(program(install[0]).args(&install[1..])) {
+    if may_install() && install(&["g++"]).is_ok() {
         return Ok(());
     }
     Err(Failure::Missing("fuzzing needs a C++ compiler: apt-get install g++".into()))

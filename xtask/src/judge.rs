@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use crate::repository::{cargo, may_install, program, read, root, run, succeeds, target};
+use crate::repository::{local_truepath, may_install, program, read, root, run, succeeds, target};
 use crate::step::{Failure, Outcome, Passed};
 
 /// What a scenario has to reach.
@@ -71,13 +71,13 @@ pub fn run_all(given: Option<&Path>) -> Outcome {
         return Ok(Passed::Skipped(reason));
     }
     let scenarios = scenarios(&judge)?;
-    run(cargo().args(["build", "--release", "--bin", "truepath"]))?;
+    let truepath = local_truepath()?;
     let mut missed = Vec::new();
     println!("{:<20} {:>10} {:>9} {:>8} {:>8}  minimum", "scenario", "before mm", "after mm", "factor", "correct");
     for scenario in &scenarios {
         let name = scenario.file_stem().unwrap_or_default().to_string_lossy();
         let minimum = MINIMA.iter().find(|(listed, _)| *listed == name).map(|m| m.1);
-        match correct(&judge, scenario, &name) {
+        match correct(&truepath, &judge, scenario, &name) {
             Ok((score, seconds)) => {
                 let verdict = if score.reaches(minimum) { "reached" } else { "MISSED" };
                 let (before, after, factor) = (score.before_mm, score.after_mm, score.factor());
@@ -102,7 +102,7 @@ pub fn run_all(given: Option<&Path>) -> Outcome {
         }
     }
     if let Some(judge) = beside("judge3/judge3.py") {
-        plan_all(&judge, &mut missed)?;
+        plan_all(&truepath, &judge, &mut missed)?;
     }
     if missed.is_empty() { Ok(Passed::Done) } else { Err(Failure::found(format!("missed: {}", missed.join(", ")))) }
 }
@@ -111,14 +111,14 @@ pub fn run_all(given: Option<&Path>) -> Outcome {
 const PLANNED: (f64, f64) = (8.0, 3.5);
 
 /// Plans every scenario for its tolerance and has the written program scored at every height.
-fn plan_all(judge: &Path, missed: &mut Vec<String>) -> Result<(), Failure> {
+fn plan_all(truepath: &Path, judge: &Path, missed: &mut Vec<String>) -> Result<(), Failure> {
     println!(
         "\n{:<20} {:>10} {:>9} {:>8} {:>9} {:>6} {:>8}",
         "every height", "before mm", "after mm", "factor", "tolerance", "time", "plan"
     );
     for scenario in scenarios(judge)? {
         let name = scenario.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        match planned(judge, &scenario, &name) {
+        match planned(truepath, judge, &scenario, &name) {
             Ok(line) => {
                 let (least, most) = PLANNED;
                 let reached = line.after <= line.tolerance && line.before / line.after >= least && line.ratio <= most;
@@ -155,7 +155,7 @@ struct Planned {
     seconds: f64,
 }
 
-fn planned(judge: &Path, scenario: &Path, name: &str) -> Result<Planned, Failure> {
+fn planned(truepath: &Path, judge: &Path, scenario: &Path, name: &str) -> Result<Planned, Failure> {
     let folder = target().join("judge").join(name);
     let python = |verb: &str| {
         let mut command = program("python3");
@@ -166,7 +166,7 @@ fn planned(judge: &Path, scenario: &Path, name: &str) -> Result<Planned, Failure
     let lacks = || Failure::found(format!("{name}: no figure where one was expected"));
     let tolerance = number(&wanted, "profile_tolerance_mm").ok_or_else(lacks)?;
     read(python("make").arg(&folder))?;
-    let mut truepath = Command::new(target().join("release").join("truepath"));
+    let mut truepath = Command::new(truepath);
     truepath.current_dir(&folder).args(["plan", "job.toml", "--probe", "probe.txt", "--tolerance"]);
     truepath.arg(tolerance.to_string()).args(["--write", "-o", "planned", "--force"]);
     let start = Instant::now();
@@ -179,7 +179,7 @@ fn planned(judge: &Path, scenario: &Path, name: &str) -> Result<Planned, Failure
 }
 
 /// Makes the part, corrects it, has it scored. Returns the score and the seconds the correction took.
-fn correct(judge: &Path, scenario: &Path, name: &str) -> Result<(Score, f64), Failure> {
+fn correct(truepath: &Path, judge: &Path, scenario: &Path, name: &str) -> Result<(Score, f64), Failure> {
     let folder = target().join("judge").join(name);
     let python = |verb: &str| {
         let mut command = program("python3");
@@ -187,7 +187,7 @@ fn correct(judge: &Path, scenario: &Path, name: &str) -> Result<(Score, f64), Fa
         command
     };
     read(python("make").arg(&folder))?;
-    let mut truepath = Command::new(target().join("release").join("truepath"));
+    let mut truepath = Command::new(truepath);
     truepath.current_dir(&folder).args(["correct", "job.toml", "--probe", "probe.txt", "-o", "corrected", "--force"]);
     let start = Instant::now();
     read(&mut truepath)?;

@@ -23,6 +23,15 @@ pub fn target() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |dir| root().join(dir))
 }
 
+/// Builds the program to be used at once (profile `local`); its file.
+///
+/// # Errors
+/// When it does not build.
+pub fn local_truepath() -> Result<PathBuf, Failure> {
+    run(cargo().args(["build", "--profile", "local", "--package", "truepath", "--bin", "truepath"]))?;
+    Ok(target().join("local/truepath"))
+}
+
 /// The cargo that runs this program.
 pub fn cargo() -> Command {
     program(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))

@@ -5,10 +5,11 @@
 //! are changed: rustup is never called.
 
 use std::ffi::OsString;
+use std::fs::File;
 use std::path::Path;
 use std::process::Command;
 
-use crate::repository::{cargo, is_root, may_install, program, read, run};
+use crate::repository::{cargo, is_root, make_folder, may_install, program, read, run, target};
 use crate::step::Failure;
 
 /// Cortex-M4F and M7 with the floats in registers.
@@ -146,6 +147,11 @@ pub fn install(packages: &[&str]) -> Result<(), Failure> {
         }
         command
     };
+    // Steps run beside each other, and the lists of packages are for one at a time.
+    let failed = |e: std::io::Error| Failure::found(format!("the lock of apt-get: {e}"));
+    make_folder(&target())?;
+    let lock = File::create(target().join("apt-get.lock")).map_err(failed)?;
+    lock.lock().map_err(failed)?;
     run(apt().args(["update", "--quiet"]))?;
     run(apt().args(["install", "--yes", "--quiet", "--no-install-recommends"]).args(packages))
 }

@@ -42,7 +42,10 @@ pub fn check(tests: bool) -> Outcome {
 }
 
 /// Builds the module; its file.
-fn module() -> Result<PathBuf, Failure> {
+///
+/// # Errors
+/// What does not build, or a missing compiler.
+pub fn module() -> Result<PathBuf, Failure> {
     let toolchain = Toolchain::find_for(WASM)?;
     println!("compiler for {WASM}: {} ({})", toolchain.version()?, toolchain.describe());
     // A directory of its own: another compiler would rebuild everything else.

@@ -30,6 +30,7 @@ fn errors(summary: &Value) -> Vec<f64> {
 }
 
 #[test]
+#[ignore = "slow: more than nine seconds of processor time"]
 fn every_contour_is_touched_corrected_together_and_better() {
     let desk = workplace(POCKET_AND_ISLAND);
     let plan = desk.call("probe job.toml --dialect linuxcnc -o verify.nc");

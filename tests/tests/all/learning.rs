@@ -22,6 +22,7 @@ const STRAIGHT: [f64; 4] = [20.0, 32.0, 68.0, 80.0];
 const WITH_CORNER: [f64; 7] = [20.0, 32.0, 46.0, 49.0, 52.0, 68.0, 80.0];
 
 #[test]
+#[ignore = "slow: more than nine seconds of processor time"]
 fn three_places_in_the_corner_of_the_second_part_bring_the_third_to_a_twentieth() {
     let shop = shop(HELIX);
     let before = shop.error(None);
@@ -43,6 +44,7 @@ fn three_places_in_the_corner_of_the_second_part_bring_the_third_to_a_twentieth(
 }
 
 #[test]
+#[ignore = "slow: more than nine seconds of processor time"]
 fn a_pocket_is_closer_after_every_part_and_the_history_survives_its_file() {
     let shop = shop(POCKET);
     let before = shop.error(None);

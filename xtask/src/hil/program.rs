@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::repository::{cargo, program, read, run, target};
+use crate::repository::{cargo, local_truepath, program, read, run, target};
 use crate::step::Failure;
 
 /// The program, in debug or release.
@@ -26,13 +26,11 @@ pub struct Run {
 impl Program {
     /// Builds it.
     pub fn build(release: bool) -> Result<Self, Failure> {
-        let mut command = cargo();
-        command.args(["build", "--bin", "truepath"]);
         if release {
-            command.arg("--release");
+            return Ok(Self(local_truepath()?));
         }
-        run(&mut command)?;
-        Ok(Self(target().join(if release { "release" } else { "debug" }).join("truepath")))
+        run(cargo().args(["build", "--bin", "truepath"]))?;
+        Ok(Self(target().join("debug/truepath")))
     }
 
     /// `truepath hil`; an error holds what it said, the first differing tick included.

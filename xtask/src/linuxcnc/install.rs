@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::component;
-use crate::repository::{cargo, copy, is_root, may_install, program, root, run, target};
+use crate::repository::{copy, is_root, local_truepath, may_install, program, root, run};
 use crate::step::{Failure, Outcome, Passed};
 
 /// Programs on the path.
@@ -35,8 +35,7 @@ pub fn install(component_only: bool) -> Outcome {
     if component_only {
         return Ok(Passed::Done);
     }
-    run(cargo().args(["build", "--release", "--package", "truepath", "--bin", "truepath"]))?;
-    put(&target().join("release/truepath"), PROGRAMS, "755")?;
+    put(&local_truepath()?, PROGRAMS, "755")?;
     for (file, folder, mode) in FILES {
         let source = root().join("linuxcnc").join(file);
         if source.exists() {

@@ -108,6 +108,7 @@ fn s_index(column: &Value, s: f64) -> usize {
 }
 
 #[test]
+#[ignore = "slow: more than nine seconds of processor time"]
 fn a_part_that_is_set_aside_and_one_cut_without_correction_are_called_so() {
     let part = corrected_once();
     part.touched(&part.milled(Some("one/corrected.nc")), &PLACES, "probe-2.txt");

@@ -131,6 +131,7 @@ fn step(contour: &Contour) -> String {
 }
 
 #[test]
+#[ignore = "slow: more than nine seconds of processor time"]
 fn stock_that_was_touched_is_as_good_as_even_stock_in_the_corner() {
     // Nothing else infers the stock, as on the device.
     let job = CORNER.job.replace("[correct]", "[correct]\ndiscrepancy = \"ignore\"");
@@ -227,6 +228,7 @@ fn touches_of_the_finished_wall_too_few_and_those_elsewhere_are_refused_by_name_
 }
 
 #[test]
+#[ignore = "slow: more than nine seconds of processor time"]
 fn the_image_is_made_here_and_the_device_takes_even_stock_only() {
     let even = over(&CORNER, None).unwrap();
     let uneven = machine(&CORNER, &waves());

@@ -70,6 +70,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
     #[test]
+    #[ignore = "slow: more than nine seconds of processor time"]
     fn the_wall_is_what_dense_sampling_of_time_finds(setup in random_setup(), phis in prop::array::uniform4(0.0..TAU)) {
         let profile = setup.profile(3.0).expect("a wall");
         for phi in phis {
