@@ -1,6 +1,6 @@
 //! The fit: Gauss–Newton with priors and a robust loss, over one part or several.
 
-use super::observation::{Observation, PredictionWorkspace, predict};
+use super::observation::{Observation, PredictionWorkspace, join_pairs, predict};
 use super::parameters::{COUNT, Parameter, Parameters, Prior};
 use super::part::EarlierPart;
 use super::solve::{Information, Matrix};
@@ -59,7 +59,8 @@ pub struct Cut<'a> {
 
 /// Fits the parameters to the observations of the cuts that one machine made with one cutter, on one or several parts.
 ///
-/// The observations are those of the cuts in their order: those of the `earlier` parts, one part behind the other, then
+/// Both halves of a [pair](Observation::paired) are among the observations, each with those of its own cut, and no two pairs
+/// of all parts have one number. The observations are those of the cuts in their order: those of the `earlier` parts, one part behind the other, then
 /// those of the last. `commanded(cut, sample)` is the displacement that the program commanded at a sample of a cut, counted
 /// from 0. Every part has a datum of its own, which all its contours share; that of [`Fit::parameters`] is the last one's,
 /// the others are left in `earlier`. `observe` is told the share of the longest possible fit that is done, ‰, rising: a
@@ -211,6 +212,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
             predict(&cut.path, table, &parameters, |i| (self.commanded)(k, i), own, points.workspace);
             rest = others;
         }
+        join_pairs(points.observations);
     }
 
     /// Predicts all points and returns the robust cost; sets their weights.

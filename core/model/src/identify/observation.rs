@@ -5,7 +5,8 @@ use crate::cut::{Envelope, ForceTable, Loop, Path, State};
 use truepath_units::geometry::{Direction, Vector};
 use truepath_units::{Offset, Real, hypot_nm};
 
-/// One reading of the wall: a probe point on the contour, or a width between it and the wall across.
+/// One reading of the wall: a probe point on the contour, a width between it and the wall across, or one of the two halves
+/// of a width between two contours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Observation {
     /// Arc length of the contour.
@@ -18,7 +19,8 @@ pub struct Observation {
     pub noise: Offset,
     /// Nominal normal towards the wall.
     pub normal: Direction,
-    /// Arc length of the other wall of a width; of a point its own, which costs a device half the memory of an option.
+    /// Arc length of the other wall of a width; of a point its own, which costs a device half the memory of an option; of a half
+    /// [`PAIRED`] with the number of the pair.
     other: Offset,
     /// Predicted error of the last evaluation.
     pub predicted: Offset,
@@ -31,6 +33,9 @@ pub struct Observation {
     /// Sensitivities: change of the predicted error per prior standard deviation, in standard deviations of the point.
     pub sensitivity: [Real; COUNT],
 }
+
+/// A bit that no arc length has, nm.
+const PAIRED: i64 = 1 << 60;
 
 impl Observation {
     /// A measurement that has not been looked at.
@@ -56,16 +61,39 @@ impl Observation {
         Self { other: across, ..self }
     }
 
-    /// Arc length of the wall across, whose normal is the opposite one, where the reading is a width: a calliper sees the
-    /// mean of both errors, at one height, and no shift of the datum.
+    /// One of the two halves of a width between two contours. Each is an observation of its own contour, at its own wall, with
+    /// the mean of both errors; `pair` is a number that they alone share. Of the two readings in place of one each has
+    /// √2 times its standard deviation.
+    #[must_use]
+    pub const fn paired(self, pair: u32) -> Self {
+        Self { other: Offset::from_nm(PAIRED | pair as i64), ..self }
+    }
+
+    /// Arc length of the wall across, whose normal is the opposite one, where the reading is a width of one contour: a calliper
+    /// sees the mean of both errors, at one height, and no shift of the datum.
     pub fn across(&self) -> Option<Offset> {
-        (self.other != self.s).then_some(self.other)
+        (!self.is_point() && self.pair().is_none()).then_some(self.other)
+    }
+
+    /// The pair that the reading is a half of.
+    pub fn pair(&self) -> Option<u32> {
+        u32::try_from(self.other.nm() ^ PAIRED).ok()
+    }
+
+    /// Whether it sees one wall.
+    fn is_point(&self) -> bool {
+        self.other == self.s
+    }
+
+    /// What it counts among readings: of a pair each half is half of one.
+    pub(super) fn counts(&self) -> Real {
+        if self.pair().is_some() { Real::HALF } else { Real::ONE }
     }
 
     /// What a shift of the datum by a millimetre along x and along y does to the reading, mm: it makes a wall that it
     /// brings nearer look cut deeper; of two walls across from each other it takes as much as it gives.
     pub fn by_datum(&self) -> [Real; 2] {
-        if self.across().is_some() { [Real::ZERO; 2] } else { [-self.normal.x, -self.normal.y] }
+        if self.is_point() { [-self.normal.x, -self.normal.y] } else { [Real::ZERO; 2] }
     }
 }
 
@@ -138,7 +166,8 @@ fn reach(path: &Path) -> Offset {
 /// Predicts the wall error at every observation and writes it into `predicted`. Observations of one place should
 /// stand together: the elastic loop is run once for them.
 ///
-/// `commanded` is the displacement the program commanded at each sample of the path (zero for an uncorrected part).
+/// `commanded` is the displacement the program commanded at each sample of the path (zero for an uncorrected part). A half
+/// of a width between two contours is given its own wall: [`join_pairs`] makes it what the width sees.
 pub fn predict(
     path: &Path,
     table: &ForceTable,
@@ -153,12 +182,30 @@ pub fn predict(
         let wall = here.wall(&machine, &commanded, observation.s, observation.height, workspace);
         // A datum that moved towards the wall makes the wall look cut deeper by its share along the normal.
         observation.predicted = match observation.across() {
-            None => wall + parameters.undersize - parameters.datum.along(observation.normal),
+            None if observation.is_point() => {
+                wall + parameters.undersize - parameters.datum.along(observation.normal)
+            }
+            None => wall + parameters.undersize,
             Some(across) => {
                 let other = here.wall(&machine, &commanded, across, observation.height, workspace);
                 (wall + other).scaled(Real::HALF) + parameters.undersize
             }
         };
+    }
+}
+
+/// Gives both halves of every pair, of which each has the prediction of its own wall, the mean of the two.
+#[inline(never)]
+pub fn join_pairs(observations: &mut [Observation]) {
+    let mut rest = observations;
+    while let Some((half, others)) = rest.split_first_mut() {
+        if half.pair().is_some() {
+            if let Some(other) = others.iter_mut().find(|other| other.pair() == half.pair()) {
+                let mean = (half.predicted + other.predicted).scaled(Real::HALF);
+                (half.predicted, other.predicted) = (mean, mean);
+            }
+        }
+        rest = others;
     }
 }
 

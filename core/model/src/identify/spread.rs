@@ -25,7 +25,7 @@ const LN_2: Real = Real::ratio(693_147_181, 1_000_000_000);
 /// The factor κ on the stated noise after a fit with some factor, whose covariance is in units of the prior.
 pub(super) fn found(observations: &[Observation], covariance: &Matrix) -> Real {
     let used = || observations.iter().filter(|o| o.residual().abs() <= FAR);
-    let count = i32::try_from(used().count()).unwrap_or(i32::MAX);
+    let count = used().fold(Real::ZERO, |count, o| count + o.counts());
     let sum = used().fold(Real::ZERO, |sum, o| {
         // In deviations of the stated noise.
         let residual = o.residual() * o.spread;
@@ -35,7 +35,7 @@ pub(super) fn found(observations: &[Observation], covariance: &Matrix) -> Real {
         let left = covariance.get(k).and_then(|row| row.get(k)).copied().unwrap_or(Real::ONE);
         sum + (Real::ONE - left).max(Real::ZERO)
     });
-    let freedom = (Real::from_int(count) - determined).max(Real::ZERO);
+    let freedom = (count - determined).max(Real::ZERO);
     let square = (STATED + sum) / (STATED + freedom);
     square.sqrt().max(LEAST).min(LARGEST)
 }
@@ -50,6 +50,6 @@ pub(super) fn set(observations: &mut [Observation], factor: Real) {
 /// What κ costs in −2 ln(probability): its prior and the width of the points' distribution.
 pub(super) fn cost(observations: &[Observation], factor: Real) -> Real {
     let ln_square = log2(factor) * LN_2 * Real::from_int(2);
-    let count = Real::from_int(i32::try_from(observations.len()).unwrap_or(i32::MAX));
+    let count = observations.iter().fold(Real::ZERO, |count, o| count + o.counts());
     (count + STATED) * ln_square + STATED * (Real::ONE / (factor * factor) - Real::ONE)
 }

@@ -67,3 +67,45 @@ fn widths_alone_find_how_stiff_the_machine_is() {
     assert!(fit.remaining(1) > Real::ratio(8, 10) && fit.remaining(0) < Real::ratio(3, 10));
     assert!((fit.remaining(9), fit.remaining(10)) == (Real::ONE, Real::ONE), "nothing is known of the datum");
 }
+
+#[test]
+fn two_halves_on_two_cuts_say_what_one_width_says() {
+    let blocks = corner();
+    let path = path(&blocks, &setup(WallLaw::Mean), 200);
+    let around = |stiffness| {
+        Prior::around(coefficients(), Compliance::from_stiffness(real(stiffness), real(stiffness)), WallLaw::Mean)
+    };
+    let (believed, stiff) = (around(1150.0), around(1700.0));
+    let needed = PredictionWorkspace::needed(&path);
+    let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
+    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
+    let all = left(&path, &stiff.mean, &mut workspace);
+    let mut widths = vec![all[2], all[3]];
+    widths.iter_mut().for_each(|width| width.error = width.predicted);
+    // The same two readings as halves: those of one wall, then those of the other one, which another cut has made.
+    let noise = Offset::from_nm(2_828);
+    let half = |wall: usize, of: usize| {
+        let (wall, error) = (all[wall], all[of].predicted);
+        Observation::new(wall.s, wall.height, error, noise, wall.normal).paired(of as u32)
+    };
+    let halves = vec![half(0, 2), half(1, 3), half(4, 2), half(5, 3)];
+    let mut fitted = |mut readings: Vec<Observation>, points: &[usize]| {
+        let cuts: Vec<Cut> = points.iter().map(|points| Cut { path, points: *points, part: 0 }).collect();
+        let fit =
+            identify(&cuts, &believed, &mut [], &mut readings, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
+        (fit, readings)
+    };
+    let ((of_widths, widths), (of_halves, halves)) = (fitted(widths, &[2]), fitted(halves, &[2, 2]));
+    let bits = |real: Real| real.bits() as f64 / (1u64 << 32) as f64;
+    for k in 0..of_widths.theta.len() {
+        assert!((bits(of_widths.theta[k]) - bits(of_halves.theta[k])).abs() < 2e-3, "theta {k}");
+        assert!((bits(of_widths.remaining(k)) - bits(of_halves.remaining(k))).abs() < 2e-3, "remaining {k}");
+    }
+    for (k, half) in halves.iter().enumerate() {
+        assert!((half.predicted.nm() - widths[k % 2].predicted.nm()).abs() < 20, "{:?}", half.predicted);
+        assert_eq!((half.pair(), half.across(), half.by_datum()), (Some(2 + k as u32 % 2), None, [Real::ZERO; 2]));
+    }
+    assert_eq!((widths[0].pair(), widths[0].across().is_some()), (None, true));
+    let found = bits(of_halves.parameters.compliance.mean) / bits(stiff.mean.compliance.mean);
+    assert!((found - 1.0).abs() < 0.02, "{found}");
+}

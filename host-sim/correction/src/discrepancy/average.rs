@@ -246,8 +246,8 @@ impl Discrepancy {
                     self.rows().map(|other| discrepancy(&self.points, &factored.kernel, other, row)).collect();
                 factored.mean(&covariance)
             });
-            for slot in &mut all[row.points.clone()] {
-                *slot = (value, row.feature.stock);
+            for slot in row.points.clone().chain(row.other_half) {
+                all[slot] = (value, row.feature.stock);
             }
         }
         all

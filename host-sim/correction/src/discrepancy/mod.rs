@@ -26,6 +26,7 @@ mod evidence;
 mod feature;
 mod kernel;
 mod nominal;
+mod pairs;
 mod points;
 mod relieved;
 

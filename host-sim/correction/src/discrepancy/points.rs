@@ -41,7 +41,7 @@ pub struct CutPoints<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Row {
     pub(super) feature: Feature,
-    /// The wall across, where the point is a width: the mean of both.
+    /// The wall across, where the point is a width: the mean of both. It may be on another contour.
     pub(super) across: Option<Feature>,
     pub(super) parts_ago: usize,
     /// Measured − predicted where no parameter is known better than before and the stock is even, mm: the residual of the fit and
@@ -55,6 +55,8 @@ pub(super) struct Row {
     pub(super) sensitivity: [f64; COUNT],
     /// The places of the points among those given.
     pub(super) points: std::ops::Range<usize>,
+    /// The place of its other half, where it is one of a pair.
+    pub(super) other_half: Option<usize>,
 }
 
 impl Row {
@@ -85,27 +87,46 @@ impl Points {
         let table = core.table();
         let many = cuts.iter().map(|cut| cut.observations.len()).sum::<usize>() > MOST_POINTS;
         let (mut rows, mut extents): (Vec<Row>, Vec<Option<Extent>>) = (Vec::new(), Vec::new());
-        let mut before = 0;
-        for cut in cuts {
-            let path = cut.path.with_law(core.law);
+        let paths: Vec<Path> = cuts.iter().map(|cut| cut.path.with_law(core.law)).collect();
+        let (mut engagements, mut stock) = (Vec::new(), Vec::new());
+        for (cut, path) in cuts.iter().zip(&paths) {
             if extents.len() <= cut.contour {
                 extents.resize(cut.contour + 1, None);
             }
-            extents[cut.contour] = Some(Extent::of(&path));
+            extents[cut.contour] = Some(Extent::of(path));
             let working = path.working();
             let mut states = vec![State::REST; working.len()];
-            core.machine(&path, &table).run(working.start, &mut states, |i| commanded(&path, cut.nodes, i));
-            let engagement = Engagement::of(&path, cut.contour, working.start, &states);
-            let stock = stock_sensitivities(&path, cut, core);
-            let mut at = 0;
-            let same = |a: &Observation, b: &Observation| many && a.s == b.s && a.across() == b.across();
+            core.machine(path, &table).run(working.start, &mut states, |i| commanded(path, cut.nodes, i));
+            engagements.push(Engagement::of(path, cut.contour, working.start, &states));
+            stock.extend(stock_sensitivities(path, cut, core));
+        }
+        let pairs = Pairs::of(cuts.iter().flat_map(|cut| cut.observations));
+        pairs.join(&mut stock);
+        let place = |cut: usize| move |o: &Observation| (cut, o.s, o.normal);
+        let places: Vec<_> =
+            cuts.iter().enumerate().flat_map(|(cut, of)| of.observations.iter().map(place(cut))).collect();
+        let mut before = 0;
+        for (cut, engagement) in cuts.iter().zip(&engagements) {
+            let from = before;
+            let same = |a: &Observation, b: &Observation| {
+                many && a.s == b.s && a.across() == b.across() && a.pair() == b.pair()
+            };
             for group in cut.observations.chunk_by(same) {
-                let own = at..at + group.len();
-                at += group.len();
-                let more = cut.more.get(own.clone()).unwrap_or_default();
-                let row = row(cut, (group, &stock[own], more), &engagement, (&theta, level));
-                rows.push(Row { points: before..before + group.len(), ..row });
-                before += group.len();
+                let own = before..before + group.len();
+                before = own.end;
+                let more = cut.more.get(own.start - from..own.end - from).unwrap_or_default();
+                let row = row(cut, (group, &stock[own.clone()], more), engagement, (&theta, level));
+                let row = Row { points: own.clone(), ..row };
+                if group[0].pair().is_none() {
+                    rows.push(row);
+                    continue;
+                }
+                // A pair is one reading, and stands where its first half does.
+                let Some(other) = pairs.other(own.start).filter(|other| *other > own.start) else { continue };
+                let (cut, s, normal) = places[other];
+                let of_load = Sensitivity { load: row.feature.load, stock: row.feature.stock };
+                let across = Some(engagements[cut].at(s, normal, of_load));
+                rows.push(Row { across, noise: 0.5 * row.noise, other_half: Some(other), ..row });
             }
         }
         // The newest parts tell most of the next one.
@@ -140,7 +161,8 @@ fn row(
     let feature = engagement.at(group[0].s, group[0].normal, of_load);
     // Each of two walls bears as much of the load as both do in the mean.
     let across = group[0].across().map(|s| engagement.at(s, group[0].normal.reversed(), of_load));
-    Row { feature, across, parts_ago: cut.parts_ago, unexplained, noise: stated, count, sensitivity, points: 0..0 }
+    let (parts_ago, noise) = (cut.parts_ago, stated);
+    Row { feature, across, parts_ago, unexplained, noise, count, sensitivity, points: 0..0, other_half: None }
 }
 
 /// Change of the error at the points of a cut per allowance, mm per mm.

@@ -7,7 +7,9 @@
 use truepath_core::correct::{Node, commanded};
 use truepath_core::cut::{Path, Sample, State, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{Cut, EarlierPart, Observation, PredictionWorkspace, predict, speaks_for_mean};
+use truepath_core::identify::{
+    Cut, EarlierPart, Observation, PredictionWorkspace, join_pairs, predict, speaks_for_mean,
+};
 use truepath_core::job::{self, LawName};
 use truepath_core::units::Offset;
 use truepath_ground::units::{float, mm, nm};
@@ -15,6 +17,7 @@ use truepath_job::pass::Pass;
 
 use super::average::{Along, Discrepancy, ln_probability};
 use super::nominal::with_stock;
+use super::pairs::Pairs;
 use super::points::{CutPoints, Points};
 use crate::identification::{Found, Points as Asked, found, under_both};
 use crate::plausible::is_possible;
@@ -258,7 +261,8 @@ impl About {
             let of = |o: &Observation| o.across().map_or(at(o.s), |across| 0.5 * (at(o.s) + at(across)));
             cut.observations.iter().map(of).collect::<Vec<f64>>()
         };
-        let more: Vec<f64> = cuts.iter().zip(&stock).flat_map(at_points).collect();
+        let mut more: Vec<f64> = cuts.iter().zip(&stock).flat_map(at_points).collect();
+        Pairs::of(cuts.iter().flat_map(|cut| cut.observations)).join(&mut more);
         let all = discrepancy.at_points();
         let rest = all.iter().zip(&more).map(|((all, per_stock), more)| all - per_stock * more).collect();
         let by_stock = all.iter().map(|(_, per_stock)| *per_stock).collect();
@@ -375,9 +379,11 @@ fn predictions(found: &Found, cuts: &[PartCut<'_>]) -> Vec<Offset> {
         let mut points = cut.observations.to_vec();
         let asked = |i: usize| commanded(&path, cut.nodes, i);
         predict(&path, &core.table(), &core.fit.parameters, asked, &mut points, &mut workspace);
-        points.into_iter().map(|o| o.predicted).collect::<Vec<Offset>>()
+        points
     };
-    cuts.iter().flat_map(of_cut).collect()
+    let mut points: Vec<Observation> = cuts.iter().flat_map(of_cut).collect();
+    join_pairs(&mut points);
+    points.into_iter().map(|o| o.predicted).collect()
 }
 
 impl Relieved {

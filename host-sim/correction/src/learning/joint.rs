@@ -51,6 +51,11 @@ pub struct Beside {
     pub along: Along,
 }
 
+/// Pairs of a part have numbers below; those of different parts stay apart.
+const PAIRS: u32 = 1 << 16;
+/// Standard deviation of a half whose other half is not known: it tells nothing.
+const SILENT: Offset = Offset::from_um(1_000_000);
+
 /// Share of a cancelled deflection that the model may miss.
 const MODEL_SHARE: Real = Real::ratio(1, 100);
 
@@ -66,7 +71,7 @@ impl PartPoints {
             let mut o = point.observation(noise);
             let cancelled = commanded(path, &nodes, path.index_at(o.s)).along(o.normal);
             o.noise = hypot_nm(noise, cancelled.scaled(MODEL_SHARE));
-            o
+            o.pair().map_or(o, |pair| o.paired(part.number.wrapping_mul(PAIRS).wrapping_add(pair)))
         });
         Some(Self { number: part.number, observations: observed.collect(), nodes, noise })
     }

@@ -20,6 +20,10 @@ pub struct Point {
     /// Arc length of the wall across, mm, where the error is the mean of two walls: half of what a width shows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub across_s_mm: Option<f64>,
+    /// Number of the pair of which it is a half, where the error is the mean of two walls of two contours; that contour's points
+    /// have the other one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pair: Option<u32>,
     /// Standard deviation of its measurement, mm, where it is not that of the points of its part.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_mm: Option<f64>,
@@ -34,6 +38,7 @@ impl Point {
             error_mm: mm(o.error),
             normal: [float(o.normal.x), float(o.normal.y)],
             across_s_mm: o.across().map(mm),
+            pair: o.pair(),
             noise_mm: (o.noise != noise).then(|| mm(o.noise)),
         }
     }
@@ -43,7 +48,8 @@ impl Point {
         let [x, y] = self.normal.map(real);
         let noise = self.noise_mm.map_or(noise, nm);
         let point = Observation::new(nm(self.s_mm), real(self.height), nm(self.error_mm), noise, Direction { x, y });
-        self.across_s_mm.map_or(point, |across| point.with_across(nm(across)))
+        let point = self.across_s_mm.map_or(point, |across| point.with_across(nm(across)));
+        self.pair.map_or(point, |pair| point.paired(pair))
     }
 
     /// Whether it can be one: on a contour, within the engaged depth, with a normal of one.
@@ -73,11 +79,13 @@ mod tests {
         fn a_point_comes_back_from_its_text(s in -1_000_000_000i64..10_000_000_000, e in -900_000i64..900_000,
                                            h in 0i64..(1 << 32), x in -(1i64 << 32)..(1 << 32),
                                            across in prop::option::of(-1_000_000_000i64..10_000_000_000),
+                                           pair in prop::option::of(any::<u32>()),
                                            its_noise in 1_000i64..4_000) {
             let normal = Direction { x: Real::from_bits(x), y: Real::from_bits(-h) };
             let (noise, its_noise) = (Offset::from_nm(2000), Offset::from_nm(its_noise));
             let o = Observation::new(Offset::from_nm(s), Real::from_bits(h), Offset::from_nm(e), its_noise, normal);
             let o = across.map_or(o, |across| o.with_across(Offset::from_nm(across)));
+            let o = pair.map_or(o, |pair| o.paired(pair));
             let text = serde_json::to_string(&Point::of(&o, noise)).unwrap();
             let point: Point = serde_json::from_str(&text).unwrap();
             prop_assert_eq!(point.observation(noise), o);
