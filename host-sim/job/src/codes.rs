@@ -41,8 +41,8 @@ truepath_ground::codes! {
         / "add near_mm, a coordinate along the axis between the two walls that were measured",
     M050 => "results of a measuring machine without what is asked of them"
         / "give a Q-DAS file (.dfq) with a characteristic of this name (K2002) or number (K2001), in mm, and a value",
-    M051 => "a dimension between two contours"
-        / "give a distance to each of the two walls in its place, kind = \"distance\" with face_mm, both from the same face",
+    M051 => "a height above the tip between two contours that are cut to different depths"
+        / "give the height in program coordinates: z_mm in place of height_mm",
     M052 => "no QIF 3 document with results"
         / "export results as QIF 3.0 from the measuring machine, as XML in UTF-8, and give that file as it is",
     M053 => "a QIF document without what is asked of it"

@@ -39,10 +39,11 @@ impl Measurement {
         let mut shares: Vec<Vec<Placed>> = vec![Vec::new(); measured.len()];
         {
             let walls = measured.iter().map(|(pass, _)| Walls::of(pass)).collect::<Result<Vec<_>, _>>()?;
-            for dimension in &dimensions {
-                let (wall, placed) = placed(file, &walls, dimension, lines)?;
-                if let Some(share) = shares.get_mut(wall) {
-                    share.push(placed);
+            for (number, dimension) in (1..).zip(&dimensions) {
+                for (wall, placed) in placed(file, &walls, dimension, lines, number)? {
+                    if let Some(share) = shares.get_mut(wall) {
+                        share.push(placed);
+                    }
                 }
             }
         }

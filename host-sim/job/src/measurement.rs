@@ -9,6 +9,7 @@ use truepath_core::job::{self, ContourPass};
 use truepath_core::probe::{Contact, Outcome, Reading, Rejected};
 use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::units::{mm, nm};
 
 use crate::codes::M040;
 use crate::dimension::{Dimensions, Placed};
@@ -131,6 +132,11 @@ impl Measurement {
         self.dimensions.as_ref().and_then(|dimensions| dimensions.of_line(line))
     }
 
+    /// Whether a contact of this line repeats a dimension between two contours, the other one of which has it already.
+    pub fn is_second_half(&self, line: u32) -> bool {
+        self.dimension(line).and_then(|placed| placed.half).is_some_and(|half| half.is_second)
+    }
+
     /// File and place of a line.
     pub fn place_of(&self, line: u32) -> (&Source, Range<usize>) {
         match (&self.dimensions, self.dimension(line)) {
@@ -193,9 +199,15 @@ impl Measurement {
         for (observation, contact) in observations.iter_mut().zip(&self.contacts) {
             let Some(placed) = self.dimension(contact.line) else { continue };
             observation.noise = placed.noise;
-            if let Some(across) = placed.across {
-                *observation = observation.with_across(across.s);
-            }
+            *observation = match (placed.half, placed.across) {
+                // Two readings in place of one, each as good as half of it.
+                (Some(half), _) => {
+                    observation.noise = nm(mm(placed.noise) * std::f64::consts::SQRT_2);
+                    observation.paired(half.pair)
+                }
+                (None, Some(across)) => observation.with_across(across.s),
+                (None, None) => *observation,
+            };
         }
         Ok(observations)
     }
@@ -206,13 +218,19 @@ impl Measurement {
             let number = self.number(aside.line);
             format!("{}:{}: point {number} set aside: {}", file.name(), aside.line, why(&aside.reason))
         });
-        let placed = self.dimensions.iter().flat_map(|dimensions| &dimensions.placed);
-        let widths = placed.filter(|placed| placed.across.is_some()).count();
+        let placed = || self.dimensions.iter().flat_map(|dimensions| &dimensions.placed);
+        let widths = placed().filter(|placed| placed.across.is_some() && placed.half.is_none()).count();
         let of_two = (widths > 0).then(|| {
             format!(
                 "{widths} readings are dimensions between two walls: each stands at the first of them, with the mean error of both"
             )
         });
-        self.read_as.iter().cloned().chain(aside).chain(of_two).collect()
+        let halves = placed().filter(|placed| placed.half.is_some()).count();
+        let of_another = (halves > 0).then(|| {
+            format!(
+                "{halves} readings are dimensions between a wall of this contour and one of another: each stands at both of them, with the mean error of both"
+            )
+        });
+        self.read_as.iter().cloned().chain(aside).chain(of_two).chain(of_another).collect()
     }
 }

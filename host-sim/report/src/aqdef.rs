@@ -29,7 +29,8 @@ pub fn aqdef(walls: &[(Option<&str>, &Pass, &Measurement)]) -> String {
     let mut number = 0;
     for (wall, pass, measurement) in walls {
         let depth = mm(pass.job.numbers.cut.axial_depth);
-        for contact in &measurement.contacts {
+        // A dimension between two contours is one characteristic.
+        for contact in measurement.contacts.iter().filter(|c| !measurement.is_second_half(c.line)) {
             number += 1;
             let wall = wall.map_or_else(String::new, |wall| format!("{wall}: "));
             let what = measurement.dimension(contact.line).map_or_else(

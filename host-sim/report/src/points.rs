@@ -33,7 +33,11 @@ const OUTLYING: Real = Real::ratio(3, 10);
 pub(super) fn row_of(measurement: &Measurement, c: &Contact, fitted: Option<&Observation>) -> Row {
     let row = row_used(c, fitted);
     let Some(placed) = measurement.dimension(c.line) else { return row };
-    let of_two = if placed.across.is_some() { ", mean error of both walls" } else { "" };
+    let of_two = match (placed.half, placed.across) {
+        (Some(_), _) => ", mean error of this wall and one of another contour",
+        (None, Some(_)) => ", mean error of both walls",
+        (None, None) => "",
+    };
     let what = format!(
         "{} {:.4} mm, nominal {:.4}{of_two}",
         placed.dimension.name,

@@ -272,6 +272,10 @@ impl Lists {
         }
         for (at, contact) in measured.contacts.iter().enumerate() {
             let Some(placed) = measured.dimension(contact.line) else { continue };
+            // A dimension between two contours is one characteristic.
+            if measured.is_second_half(contact.line) {
+                continue;
+            }
             let name = named(plain(&placed.dimension.name));
             self.dimension(wall.pass, placed, &name, verdict(at), ids);
         }

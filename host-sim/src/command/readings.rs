@@ -3,7 +3,7 @@
 use std::path::Path as FilePath;
 
 use truepath_correction::correction::Identification;
-use truepath_correction::verification::unseparated;
+use truepath_correction::verification::{unseparated, unseparated_contours};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::output::OutputFolder;
 use truepath_job::dimension::kept;
@@ -79,6 +79,19 @@ pub(super) fn apart(
     let mut buffer = PathBuffer::default();
     let path = pass.sample(&mut buffer)?.with_law(identified.law());
     Ok(unseparated(&path, measurement, identified))
+}
+
+/// What widths between two contours leave open of their walls; every wall with what was identified from all.
+pub(super) fn contours_apart(
+    walls: &[(&Pass, &Measurement)],
+    identified: &Identification,
+) -> Result<Vec<String>, Failure> {
+    let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
+    let mut measured = Vec::new();
+    for ((pass, measurement), buffer) in walls.iter().zip(&mut buffers) {
+        measured.push((pass.sample(buffer)?.with_law(identified.law()), *measurement));
+    }
+    Ok(unseparated_contours(&measured, identified))
 }
 
 /// The probe file among the outputs.

@@ -182,9 +182,7 @@ pub fn predict(
         let wall = here.wall(&machine, &commanded, observation.s, observation.height, workspace);
         // A datum that moved towards the wall makes the wall look cut deeper by its share along the normal.
         observation.predicted = match observation.across() {
-            None if observation.is_point() => {
-                wall + parameters.undersize - parameters.datum.along(observation.normal)
-            }
+            None if observation.is_point() => wall + parameters.undersize - parameters.datum.along(observation.normal),
             None => wall + parameters.undersize,
             Some(across) => {
                 let other = here.wall(&machine, &commanded, across, observation.height, workspace);

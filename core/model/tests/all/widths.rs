@@ -91,8 +91,7 @@ fn two_halves_on_two_cuts_say_what_one_width_says() {
     let halves = vec![half(0, 2), half(1, 3), half(4, 2), half(5, 3)];
     let mut fitted = |mut readings: Vec<Observation>, points: &[usize]| {
         let cuts: Vec<Cut> = points.iter().map(|points| Cut { path, points: *points, part: 0 }).collect();
-        let fit =
-            identify(&cuts, &believed, &mut [], &mut readings, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
+        let fit = identify(&cuts, &believed, &mut [], &mut readings, |_, _| Vector::ZERO, &mut workspace, &mut |_| ());
         (fit, readings)
     };
     let ((of_widths, widths), (of_halves, halves)) = (fitted(widths, &[2]), fitted(halves, &[2, 2]));

@@ -10,6 +10,7 @@ use truepath_ground::units::{float, mm};
 use super::feature::{Engagement, Feature, Sensitivity};
 use super::kernel::{Extent, Kernel};
 use super::nominal::moved_stock;
+use super::pairs::Pairs;
 
 /// Points that are looked at one by one; of more the mean over the heights of a place is.
 const MOST_POINTS: usize = 120;

@@ -1,7 +1,9 @@
 //! Places left out of a fit, to tell honestly whether it learned something: one in five of the newest part's.
 //!
 //! The rule knows neither errors nor fits: the third place along the contour, and every fifth after it. A part with
-//! fewer than four places holds none out.
+//! fewer than four places holds none out, and no place counts where half a width to another contour was measured.
+
+use std::ops::Range;
 
 use truepath_core::correct::commanded;
 use truepath_core::cut::{ForceTable, Path, State};
@@ -41,8 +43,12 @@ impl Holdout {
         if places.len() < 4 {
             return None;
         }
-        let held = places.into_iter().enumerate().filter(|(k, _)| k % 5 == 2);
+        let is_whole = |range: &Range<usize>| newest.observations[range.clone()].iter().all(|o| o.pair().is_none());
+        let held = places.into_iter().enumerate().filter(|(k, range)| k % 5 == 2 && is_whole(range));
         let points: Vec<Observation> = held.flat_map(|(_, range)| newest.observations[range].to_vec()).collect();
+        if points.is_empty() {
+            return None;
+        }
         let places = points.chunk_by(|a, b| a.s == b.s).map(|place| mm(place[0].s)).collect();
         Some(Self { places, points })
     }
@@ -62,9 +68,10 @@ impl Holdout {
     }
 }
 
-/// What a model, with what is known beside it, misses at points of a part: root mean square over the places, mm.
+/// What a model, with what is known beside it, misses at points of a part: root mean square over the places, mm. Halves of
+/// widths to another contour, which it does not know, do not count.
 pub(super) fn missed(path: &Path, part: &PartPoints, points: &[Observation], model: &Joint) -> f64 {
-    let mut points = points.to_vec();
+    let mut points = seen_alone(points);
     let mut buffer = Vec::new();
     let path = &match &model.beside {
         Some(beside) => beside.discrepancy.stocked(path, 0, &mut buffer),
@@ -99,6 +106,11 @@ pub(super) fn missed(path: &Path, part: &PartPoints, points: &[Observation], mod
     });
     let (sum, n) = squares.fold((0.0, 0.0), |(sum, n), square| (sum + square, n + 1.0));
     (sum / f64::max(n, 1.0)).sqrt()
+}
+
+/// The points that one contour explains.
+pub(super) fn seen_alone(points: &[Observation]) -> Vec<Observation> {
+    points.iter().filter(|o| o.pair().is_none()).copied().collect()
 }
 
 /// Predicts points of a part by a model, without a datum shift: that of another clamping is not known. Returns the

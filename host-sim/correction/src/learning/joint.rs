@@ -4,6 +4,8 @@
 //! datum of its own ([`identify`](truepath_core::identify::identify)). A part that was cut with a good correction shows a small error, and is as
 //! trustworthy as the model is for the deflection that the correction cancelled: a hundredth of it counts as noise.
 
+use std::collections::{HashMap, HashSet};
+
 use truepath_core::correct::{Node, commanded};
 use truepath_core::cut::{Path, WallLaw};
 use truepath_core::identify::Observation;
@@ -70,7 +72,7 @@ impl PartPoints {
         let observed = part.points.iter().map(|point| {
             let mut o = point.observation(noise);
             let cancelled = commanded(path, &nodes, path.index_at(o.s)).along(o.normal);
-            o.noise = hypot_nm(noise, cancelled.scaled(MODEL_SHARE));
+            o.noise = hypot_nm(o.noise, cancelled.scaled(MODEL_SHARE));
             o.pair().map_or(o, |pair| o.paired(part.number.wrapping_mul(PAIRS).wrapping_add(pair)))
         });
         Some(Self { number: part.number, observations: observed.collect(), nodes, noise })
@@ -108,6 +110,9 @@ pub fn joint(
     progress: &mut dyn FnMut(f64),
 ) -> Joint {
     // The points of a part stand together: those of the contour itself, then those of its companions.
+    let (parts, others) = &whole(parts, companions);
+    let companions: Vec<Companion<'_>> =
+        companions.iter().zip(others).map(|(of, parts)| Companion { parts, ..*of }).collect();
     let mut cuts: Vec<PartCut<'_>> = Vec::new();
     for (part, own) in parts.iter().enumerate() {
         let others = companions.iter().enumerate().filter_map(|(k, companion)| {
@@ -137,4 +142,24 @@ pub fn joint(
         }
     }
     Joint { core: found.core, observations, datums, beside }
+}
+
+/// The parts of a contour and of its companions, where a half of a pair tells nothing whose other half is in none of them: a part that
+/// is set aside on one contour may count on the other.
+fn whole(parts: &[PartPoints], companions: &[Companion<'_>]) -> (Vec<PartPoints>, Vec<Vec<PartPoints>>) {
+    let numbers: HashSet<u32> = parts.iter().map(|part| part.number).collect();
+    let mut halves: HashMap<u32, usize> = HashMap::new();
+    let all = || std::iter::once(parts).chain(companions.iter().map(|companion| companion.parts));
+    let fitted = all().flatten().filter(|part| numbers.contains(&part.number));
+    for pair in fitted.flat_map(|part| &part.observations).filter_map(Observation::pair) {
+        *halves.entry(pair).or_default() += 1;
+    }
+    let whole = |part: &PartPoints| {
+        let mut part = part.clone();
+        let is_half = |o: &&mut Observation| o.pair().is_some_and(|pair| halves.get(&pair) != Some(&2));
+        part.observations.iter_mut().filter(is_half).for_each(|o| o.noise = SILENT);
+        part
+    };
+    let each = |parts: &[PartPoints]| parts.iter().map(whole).collect::<Vec<_>>();
+    (each(parts), companions.iter().map(|companion| each(companion.parts)).collect())
 }

@@ -5,7 +5,7 @@
 
 use truepath_core::cut::Path;
 
-use super::holdout::predicted;
+use super::holdout::{predicted, seen_alone};
 use super::joint::{Joint, PartPoints};
 use crate::codes::Q009;
 use crate::misfit::Rigid;
@@ -13,7 +13,7 @@ use crate::misfit::Rigid;
 /// What is said of a part whose points are shifted as a whole; `before` is what the parts before it say. Nothing is lost by
 /// going on: a part that came out worse for no reason of the machine is set aside.
 pub fn moved(path: &Path, part: &PartPoints, before: &Joint) -> Option<String> {
-    let mut points = part.observations.clone();
+    let mut points = seen_alone(&part.observations);
     predicted(path, part, before, &mut points);
     let rigid = Rigid::of(&points).filter(Rigid::is_wrong)?;
     let beside = format!("beside what the parts before promise of part {}", part.number);

@@ -62,5 +62,5 @@ pub use plan::{Gained, Place, Plan, Touch, plan, plan_every};
 pub use reason::Unknown;
 pub use settings::Settings;
 pub use stock::{STOCK_HEIGHTS, plan_stock};
-pub use unseparated::unseparated;
+pub use unseparated::{unseparated, unseparated_contours};
 pub use wall_sensitivity::WallSensitivity;

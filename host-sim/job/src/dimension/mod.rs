@@ -11,10 +11,11 @@
 //!
 //! A width sees two walls: it is off by the sum of their errors, and half of that, the mean error, is one reading of the
 //! pair ([`Observation::with_across`](truepath_core::identify::Observation::with_across)). A distance from a face sees
-//! one wall, as a probe does, and the datum with it.
+//! one wall, as a probe does, and the datum with it. A width between two contours is a reading of both: one half of it on
+//! either ([`Observation::paired`](truepath_core::identify::Observation::paired)).
 //!
-//! Limits: walls square to X or Y, and round ones across their middle; both walls of a width belong to one contour. Z is
-//! the machine's own: the depth of a step is not of this model.
+//! Limits: walls square to X or Y, and round ones across their middle. Z is the machine's own: the depth of a step is not of
+//! this model.
 
 mod aqdef;
 mod file;
@@ -31,7 +32,7 @@ use crate::qif::is_qif;
 pub use file::{Across, Dimension, INSTRUMENTS, Instrument, KINDS, Kind, Level};
 pub use kept::kept;
 pub(crate) use placed::placed;
-pub use placed::{Dimensions, Placed};
+pub use placed::{Dimensions, Half, Placed};
 pub use walls::{Axis, Crossing, Walls};
 
 /// Reads dimensions: the file with `[[dimension]]` tables, or a QIF document.

@@ -31,12 +31,23 @@ pub struct Placed {
     pub contact: Contact,
     /// The other wall, nominal; `None` where the dimension is one from a face.
     pub across: Option<Contact>,
+    /// Which half it is of a dimension between two contours, each of which has one with the same error.
+    pub half: Option<Half>,
     /// How much larger it is for so much material left: −2 of a width, 2 of a thickness, 1 or −1 of a distance.
     pub larger_per_error: f64,
     /// Standard deviation of that error; from a face what the face may be off belongs to it.
     pub noise: Offset,
     /// The same as a reading of a file of points.
     pub reading: Reading,
+}
+
+/// A half of a dimension between two contours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Half {
+    /// A number that it shares with the other half alone.
+    pub pair: u32,
+    /// Whether it is the one at the larger coordinate.
+    pub is_second: bool,
 }
 
 /// The dimensions of a wall.
@@ -57,11 +68,20 @@ impl Dimensions {
 
 /// What may be measured on a line.
 struct Candidate {
-    wall: usize,
+    /// The contour of the first wall, and that of the second.
+    walls: [usize; 2],
     z: Position,
     nominal_mm: f64,
     first: Crossing,
     second: Option<Crossing>,
+}
+
+/// A wall on the line of a dimension, and the contour that it is of.
+#[derive(Clone, Copy)]
+struct Seen {
+    wall: usize,
+    z: Position,
+    crossing: Crossing,
 }
 
 impl Candidate {
@@ -77,16 +97,18 @@ impl Candidate {
     }
 }
 
-/// Finds a dimension among the walls of some contours; returns the number of the contour it is of.
+/// Finds a dimension among the walls of some contours; returns the number of the contour it is of, or of both with its halves.
+/// `number` is a number of its own.
 ///
 /// # Errors
-/// `M045` to `M049`, at the key that is wrong.
+/// `M045` to `M049` and `M051`, at the key that is wrong.
 pub(crate) fn placed(
     source: &Source,
     walls: &[Walls<'_>],
     dimension: &Dimension,
     lines_before: u32,
-) -> Result<(usize, Placed), Failure> {
+    number: u32,
+) -> Result<Vec<(usize, Placed)>, Failure> {
     let along = dimension.along;
     let mut candidates = Vec::new();
     let (mut seen, mut heights) = (Vec::new(), Vec::new());
@@ -99,7 +121,7 @@ pub(crate) fn placed(
         match wall.crossings(along, across, z) {
             Ok(crossings) => {
                 candidates.extend(among(&crossings, dimension, number, z));
-                seen.extend(crossings.into_iter().map(|crossing| (number, crossing)));
+                seen.extend(crossings.into_iter().map(|crossing| Seen { wall: number, z, crossing }));
             }
             Err(Rejected::OffHeight { .. }) => heights.push(wall.heights()),
             Err(_) => {}
@@ -112,17 +134,33 @@ pub(crate) fn placed(
         }
         .into());
     }
-    let all: Vec<Crossing> = seen.iter().map(|(_, crossing)| *crossing).collect();
-    let chosen = chosen(source, dimension, candidates, &all)
-        .map_err(|refused| between_contours(source, dimension, seen).unwrap_or(refused))?;
-    let Some(wall) = walls.get(chosen.wall) else {
-        return Err(Failure::Internal("a dimension of no contour".to_owned()));
-    };
+    let all: Vec<Crossing> = seen.iter().map(|seen| seen.crossing).collect();
+    let chosen = match chosen(source, dimension, candidates, &all) {
+        // What no contour has by itself may lie between two.
+        Err(refused) if refused.code() != M049.code => {
+            let between = between_contours(source, dimension, seen)?;
+            if between.is_empty() {
+                return Err(refused.into());
+            }
+            self::chosen(source, dimension, between, &all)
+                .map_err(|far| if far.code() == M049.code { far } else { refused })
+        }
+        chosen => chosen,
+    }?;
     refuse_oblique(source, dimension, &chosen)?;
     let file_line = source.line_column(dimension.value_span.start).0;
     let file_line = u32::try_from(file_line).unwrap_or(u32::MAX);
     let line = lines_before.saturating_add(file_line);
-    Ok((chosen.wall, of_walls(wall, dimension.clone(), &chosen, [line, file_line])?))
+    let [first, second] = chosen.walls;
+    let (Some(wall), Some(other)) = (walls.get(first), walls.get(second)) else {
+        return Err(Failure::Internal("a dimension of no contour".to_owned()));
+    };
+    let whole = of_walls(wall, dimension.clone(), &chosen, [line, file_line])?;
+    let Some(crossing) = chosen.second.filter(|_| first != second) else { return Ok(vec![(first, whole)]) };
+    let half = |is_second| Some(Half { pair: number, is_second });
+    let chosen = Candidate { first: crossing, second: Some(chosen.first), ..chosen };
+    let there = of_walls(other, dimension.clone(), &chosen, [line, file_line])?;
+    Ok(vec![(first, Placed { half: half(false), ..whole }), (second, Placed { half: half(true), ..there })])
 }
 
 /// Whether two walls, one behind the other on a line, face each other as a kind wants it.
@@ -134,21 +172,31 @@ fn face(kind: Kind, a: &Crossing, b: &Crossing) -> bool {
     }
 }
 
-/// Refuses by name what fits the walls of two contours, which are corrected each on its own.
-fn between_contours(source: &Source, dimension: &Dimension, mut seen: Vec<(usize, Crossing)>) -> Option<InputError> {
-    let value = mm(dimension.value);
-    seen.sort_by(|a, b| a.1.at_mm.total_cmp(&b.1.at_mm));
-    let fits = |pair: &&[(usize, Crossing)]| {
-        let [(of_first, first), (of_second, second)] = [pair[0], pair[1]];
-        let nominal = second.at_mm - first.at_mm;
-        of_first != of_second && face(dimension.kind, &first, &second) && (nominal - value).abs() < FAR
+/// What a kind may be between a wall of one contour and the next wall on the line, of another one.
+///
+/// # Errors
+/// `M051` where a height above the tip is another one for either.
+fn between_contours(source: &Source, dimension: &Dimension, mut seen: Vec<Seen>) -> Result<Vec<Candidate>, InputError> {
+    if dimension.face.is_some() {
+        return Ok(Vec::new());
+    }
+    seen.sort_by(|a, b| a.crossing.at_mm.total_cmp(&b.crossing.at_mm));
+    let faces =
+        |pair: &&[Seen]| pair[0].wall != pair[1].wall && face(dimension.kind, &pair[0].crossing, &pair[1].crossing);
+    let candidate = |pair: &[Seen]| {
+        let [first, second] = [pair[0].crossing, pair[1].crossing];
+        if pair[0].z != pair[1].z {
+            let found =
+                format!("{} lies between two contours whose cutter's tips are not at one height", dimension.name);
+            return Err(M051
+                .error(found, "z_mm, a height in program coordinates")
+                .at(source, dimension.level_span.clone()));
+        }
+        let walls = [pair[0].wall, pair[1].wall];
+        let nominal_mm = second.at_mm - first.at_mm;
+        Ok(Candidate { walls, z: pair[0].z, nominal_mm, first, second: Some(second) })
     };
-    let pair = seen.windows(2).find(fits).filter(|_| dimension.face.is_none())?;
-    let along = dimension.along;
-    let [from, to] = [pair[0].1.at_mm, pair[1].1.at_mm];
-    let found = format!("{} lies between two contours, at {along}{from:.3} and {along}{to:.3}", dimension.name);
-    let expected = "both walls of one contour, or a face and a wall";
-    Some(M051.error(found, expected).at(source, dimension.place_span.clone()))
+    seen.windows(2).filter(faces).map(candidate).collect()
 }
 
 /// The coordinate of the line across its direction, mm.
@@ -164,13 +212,18 @@ fn among(crossings: &[Crossing], dimension: &Dimension, wall: usize, z: Position
     if let Some(face) = dimension.face {
         // Of a thickness the material lies between face and wall.
         let solid = |c: &&Crossing| dimension.kind != Kind::Thickness || (face - c.at_mm) * c.towards > 0.0;
-        let from_face =
-            |c: &Crossing| Candidate { wall, z, nominal_mm: (c.at_mm - face).abs(), first: *c, second: None };
+        let from_face = |c: &Crossing| Candidate {
+            walls: [wall; 2],
+            z,
+            nominal_mm: (c.at_mm - face).abs(),
+            first: *c,
+            second: None,
+        };
         return crossings.iter().filter(solid).map(from_face).collect();
     }
     let pairs = crossings.windows(2).filter(|pair| face(dimension.kind, &pair[0], &pair[1]));
     let pair = |pair: &[Crossing]| Candidate {
-        wall,
+        walls: [wall; 2],
         z,
         nominal_mm: pair[1].at_mm - pair[0].at_mm,
         first: pair[0],
@@ -303,7 +356,7 @@ fn of_walls(
     let deviation = 0.25 * mm(dimension.uncertainty);
     let (larger_per_error, noise) = match (second, dimension.face) {
         // Material left on both walls makes a pocket narrower, a boss wider.
-        (Some(_), _) => (2.0 * first.towards.signum(), deviation),
+        (Some(second), _) => (2.0 * (first.towards * (second.at_mm - first.at_mm)).signum(), deviation),
         (None, face) => {
             let away = (first.at_mm - face.unwrap_or_default()).signum();
             (-away * first.towards.signum(), 2.0 * deviation)
@@ -323,6 +376,7 @@ fn of_walls(
         nominal_mm,
         contact,
         across: second.map(|second| second.nominal),
+        half: None,
         larger_per_error,
         noise: nm(noise),
         reading: reading(place, z, line),

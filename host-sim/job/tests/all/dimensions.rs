@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use truepath_core::identify::Observation;
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::job::JobFile;
 use truepath_job::measurement::Measurement;
@@ -150,26 +151,58 @@ fn what_cannot_be_is_refused_with_its_place_and_what_to_do() {
     }
 }
 
-#[test]
-fn the_rib_between_two_pockets_is_refused_by_name() {
-    // A second pocket 80 mm further along X: 10 mm stand between them.
+/// Dimensions of two pockets, the second one 80 mm further along X and cut with other heights: 10 mm stand between them.
+fn of_two_pockets(deeper: &str, dimensions: &str) -> Result<Vec<Measurement>, Failure> {
     let shifted = |word: &str| match word.strip_prefix('X').and_then(|x| x.trim_end_matches('.').parse::<i32>().ok()) {
         Some(x) => format!("X{}.", x + 80),
         None => word.to_owned(),
     };
     let second: String =
         POCKET.lines().map(|line| line.split_whitespace().map(shifted).collect::<Vec<_>>().join(" ") + "\n").collect();
-    let read = |dimensions: &str| {
-        let file = Source::new("widths.toml", format!("version = 1\n{dimensions}").into_bytes());
-        Measurement::of_files(vec![pass(POCKET), pass(&second)], None, Some(&file))
-    };
+    let second = second.replace("Z-12.", deeper);
+    let file = Source::new("widths.toml", format!("version = 1\n{dimensions}").into_bytes());
+    let measured = Measurement::of_files(vec![pass(POCKET), pass(&second)], None, Some(&file))?;
+    Ok(measured.into_iter().map(|(_, measurement)| measurement).collect())
+}
+
+#[test]
+fn the_rib_between_two_pockets_is_a_reading_of_both() {
     let rib = dimension("thickness", "y_mm = 0.0", "10.02");
-    let Err(Failure::Input(refused)) = read(&rib) else { panic!("a rib of two contours is read") };
-    assert_eq!((refused.code(), refused.line_column()), ("M051", Some((5, 8))));
-    let said = refused.to_json().to_string();
-    assert!(said.contains("X35.000 and X45.000") && said.contains("kind = \\\"distance\\\""), "{said}");
-    // What fits a pocket is read as before, and what fits nothing is refused as before.
-    assert!(read(&dimension("width", "y_mm = 0.0\nnear_mm = 80.0", "69.98")).is_ok());
-    let Err(Failure::Input(refused)) = read(&dimension("thickness", "y_mm = 0.0", "14.0")) else { panic!("read") };
-    assert_eq!(refused.code(), "M045");
+    let own = dimension("width", "y_mm = 5.0\nnear_mm = 0.0", "69.98");
+    let measured = of_two_pockets("Z-12.", &(rib + &own)).unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)));
+    let [first, second] = [0, 1].map(|k: usize| measured[k].observations().unwrap());
+    assert_eq!((first.len(), second.len()), (2, 1));
+    let half = |o: &[Observation]| *o.iter().find(|o| o.pair().is_some()).expect("a half of the rib");
+    let halves = [half(&first), half(&second)];
+    for half in halves {
+        // 0.02 mm too thick: 0.01 mm are left on either wall; ± 8 µm are 2 µm of the mean, and √2 times that of each half.
+        assert_eq!((half.error.nm(), half.noise.nm(), half.across()), (10_000, 2_828, None));
+    }
+    assert_eq!((halves[0].pair(), halves[0].normal.x), (halves[1].pair(), -halves[1].normal.x));
+    let at = |k: usize| {
+        let contacts = &measured[k].contacts;
+        contacts.iter().find(|c| measured[k].dimension(c.line).is_some_and(|p| p.half.is_some())).unwrap().point.x.nm()
+    };
+    assert_eq!([at(0), at(1)], [34_990_000, 45_010_000], "either wall stands where the mean has it");
+    assert!(!first.iter().any(|o| o.across().is_none() && o.pair().is_none()), "a width is a width as before");
+    let line = measured[0].contacts.iter().map(|c| c.line).find(|line| measured[1].is_second_half(*line));
+    assert!(line.is_some_and(|line| !measured[0].is_second_half(line)), "one of the two is counted");
+}
+
+#[test]
+fn between_contours_the_height_is_that_of_the_program_and_what_fits_nothing_is_refused_as_before() {
+    let above = dimension("thickness", "y_mm = 0.0", "10.02").replace("z_mm = -6.0", "height_mm = 4.0");
+    assert!(of_two_pockets("Z-12.", &above).is_ok());
+    let Err(Failure::Input(refused)) = of_two_pockets("Z-9.", &above) else { panic!("one height of two") };
+    assert_eq!((refused.code(), refused.line_column()), ("M051", Some((6, 13))));
+    assert!(of_two_pockets("Z-9.", &dimension("thickness", "y_mm = 0.0", "10.02")).is_ok());
+    assert!(of_two_pockets("Z-12.", &dimension("width", "y_mm = 0.0\nnear_mm = 80.0", "69.98")).is_ok());
+    for (text, code) in [
+        (dimension("thickness", "y_mm = 0.0", "14.0"), "M045"),
+        (dimension("width", "y_mm = 0.0", "10.02"), "M047"),
+        (dimension("width", "y_mm = 0.0", "69.98"), "M049"),
+    ] {
+        let Err(Failure::Input(refused)) = of_two_pockets("Z-12.", &text) else { panic!("{text} is read") };
+        assert_eq!(refused.code(), code, "{text}");
+    }
 }

@@ -19,7 +19,7 @@ use super::super::correction_files::{
     FILES, HISTORY, commit, contour_folder, contour_name, write_contour, write_program,
 };
 use super::super::history::refuse_replacing;
-use super::super::readings::{Readings, apart};
+use super::super::readings::{Readings, apart, contours_apart};
 
 /// Corrects the walls that were touched, and leaves the others as they are.
 pub(super) fn run(
@@ -50,7 +50,13 @@ pub(super) fn run(
         done.summary.warnings.extend(apart(wall.pass, wall.measurement, &done.identified)?);
     }
 
-    let mut warnings = Vec::new();
+    let mut warnings = match corrected.first() {
+        Some(done) => {
+            let measured: Vec<_> = touched.iter().map(|(pass, measurement)| (pass, measurement)).collect();
+            contours_apart(&measured, &done.identified)?
+        }
+        None => Vec::new(),
+    };
     let mut pages = Vec::new();
     let mut contours = Vec::new();
     for (pass, measurement) in &untouched {

@@ -4,13 +4,15 @@ use rayon::prelude::*;
 use std::path::Path;
 
 use truepath_core::units::Offset;
-use truepath_correction::correct::{CorrectedPass, correct_pass};
-use truepath_correction::verification::{DimensionPlan, PlannedDimension, plan_dimensions, table};
+use truepath_correction::correct::{CorrectedPass, MeasuredWall, correct_every, correct_pass};
+use truepath_correction::verification::{
+    DimensionPlan, PlannedDimension, plan_dimensions, table, unseparated_contours,
+};
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::dimension::Instrument;
 use truepath_job::job::{JobFile, Route};
 use truepath_job::measurement::Measurement;
-use truepath_job::pass::Pass;
+use truepath_job::pass::{Pass, PathBuffer};
 use truepath_plant::{Machine, Milled};
 use truepath_trial::virtual_mill;
 
@@ -49,16 +51,20 @@ fn left(pass: &Pass, machine: &Machine, done: &CorrectedPass) -> f64 {
 
 /// What an instrument without error reads on the milled part, mm: the distance of the walls on the line of a dimension.
 fn measured(milled: &Milled, d: &PlannedDimension) -> f64 {
-    let wall = milled.walls(&[(d.z_mm + DEPTH_MM) / DEPTH_MM]).remove(0);
-    let (along, across) = if d.along == "x" { (0, 1) } else { (1, 0) };
-    let line = |p: &[f64; 2]| p[across] - d.across_mm;
+    let wall = |near_mm| wall_near(milled, usize::from(d.along == "y"), d.across_mm, d.z_mm, near_mm);
+    wall(d.walls_mm[1]) - wall(d.walls_mm[0])
+}
+
+/// Coordinate of the milled wall nearest to one, on the line along an axis (0 or 1) at a coordinate across it, mm.
+fn wall_near(milled: &Milled, along: usize, across_mm: f64, z_mm: f64, near_mm: f64) -> f64 {
+    let wall = milled.walls(&[(z_mm + DEPTH_MM) / DEPTH_MM]).remove(0);
+    let line = |p: &[f64; 2]| p[1 - along] - across_mm;
     let on_line = |pair: &[[f64; 2]]| {
         let ([a, b], [from, to]) = ([pair[0], pair[1]], [line(&pair[0]), line(&pair[1])]);
         ((from > 0.0) != (to > 0.0)).then(|| a[along] + from / (from - to) * (b[along] - a[along]))
     };
-    let at: Vec<f64> = wall.windows(2).filter_map(on_line).collect();
-    let nearest = |to: f64| *at.iter().min_by(|a, b| (*a - to).abs().total_cmp(&(*b - to).abs())).expect("a wall");
-    nearest(d.walls_mm[1]) - nearest(d.walls_mm[0])
+    let at = wall.windows(2).filter_map(on_line);
+    at.min_by(|a, b| (*a - near_mm).abs().total_cmp(&(*b - near_mm).abs())).expect("a wall")
 }
 
 /// Noise of a standard deviation of 1 (Box–Muller on splitmix64).
@@ -113,6 +119,90 @@ fn eight_widths_correct_a_pocket_nearly_as_well_as_fifteen_points() {
     println!("before {before:.4} points {points:.4} widths {widths:.4}");
     assert!(before > 0.1 && widths < before / 4.0, "{before} {widths}");
     assert!(widths < 2.0 * points.max(0.010), "{points} {widths}");
+}
+
+/// Between the first pocket and the second one, mm.
+const RIB_MM: f64 = 6.0;
+
+/// The pocket of the demonstration, and another one like it beyond a rib.
+fn two_pockets() -> [Pass; 2] {
+    let shifted = |word: &str| match word.strip_prefix('X').and_then(|x| x.parse::<f64>().ok()) {
+        Some(x) => format!("X{}", x + 70.0 + RIB_MM),
+        None => word.to_owned(),
+    };
+    let line = |line: &str| line.split_whitespace().map(shifted).collect::<Vec<_>>().join(" ") + "\n";
+    let second: String = PROGRAM.lines().map(line).collect();
+    [PROGRAM, &second].map(|program| {
+        let job = JobFile::parse(Source::new("job.toml", JOB.as_bytes().to_vec()), Path::new("")).unwrap();
+        shown(Pass::new(job, Source::new("program.nc", program.as_bytes().to_vec())))
+    })
+}
+
+/// What is left at most on each of the two pockets when they are corrected from a file of dimensions, mm, and what is said of the
+/// walls of the widths between them.
+fn corrected_together(passes: &[Pass; 2], machine: &Machine, dimensions: &str) -> ([f64; 2], Vec<String>) {
+    let file = Source::new("widths.toml", format!("version = 1\n{dimensions}").into_bytes());
+    let measured = shown(Measurement::of_files(passes.to_vec(), None, Some(&file)));
+    let walls: Vec<MeasuredWall> =
+        measured.iter().map(|(pass, measurement)| MeasuredWall { pass, measurement, remarks: &[] }).collect();
+    let done = shown(correct_every(&walls, &[], &mut |_| ()));
+    let left = [0, 1].map(|k: usize| {
+        let centres: Vec<[f64; 2]> =
+            done[k].rows.iter().map(|row| [row.x_mm + row.dx_mm, row.y_mm + row.dy_mm]).collect();
+        shown(virtual_mill::mill(&passes[k], machine, Some(&centres))).score().max_error_mm
+    });
+    let mut buffers = [PathBuffer::default(), PathBuffer::default()];
+    let paths: Vec<_> = passes.iter().zip(&mut buffers).map(|(pass, buffer)| shown(pass.sample(buffer))).collect();
+    let told: Vec<_> =
+        paths.iter().zip(&measured).map(|(path, (_, m))| (path.with_law(done[0].identified.law()), m)).collect();
+    (left, unseparated_contours(&told, &done[0].identified))
+}
+
+#[test]
+fn the_rib_between_two_pockets_corrects_the_walls_on_both_sides_of_it() {
+    let (passes, machine) = (two_pockets(), machine(3));
+    let first = [0, 1].map(|k: usize| shown(virtual_mill::mill(&passes[k], &machine, None)));
+    let one = |kind: &str, along: &str, place: &str, z_mm: f64, value_mm: f64| {
+        format!(
+            "[[dimension]]\nkind = \"{kind}\"\nalong = \"{along}\"\n{place}\nz_mm = {z_mm}\ninstrument = \"micrometer\"\nvalue_mm = {value_mm:.3}\n"
+        )
+    };
+    let centre_mm = 70.0 + RIB_MM;
+    let along_y = |k: usize| {
+        let x = centre_mm * k as f64;
+        let wall = |near| wall_near(&first[k], 1, x, -6.0, near);
+        one("width", "y", &format!("x_mm = {x}"), -6.0, wall(25.0) - wall(-25.0))
+    };
+    let rib = |z: f64| {
+        let [from, to] =
+            [(0, 35.0), (1, 35.0 + RIB_MM)].map(|(k, near): (usize, f64)| wall_near(&first[k], 0, 0.0, z, near));
+        one("thickness", "x", "y_mm = 0.0", z, to - from)
+    };
+    let along_x = |z: f64| {
+        let wall = |near| wall_near(&first[0], 0, 0.0, z, near);
+        one("width", "x", "y_mm = 0.0\nnear_mm = 0.0", z, wall(35.0) - wall(-35.0))
+    };
+    let own = along_y(0) + &along_y(1);
+    let three = |of: &dyn Fn(f64) -> String| [-2.0, -6.0, -10.0].map(of).concat();
+    let before = first.each_ref().map(|milled| milled.score().max_error_mm);
+    let (without, _) = corrected_together(&passes, &machine, &own);
+    let (ribs, said) = corrected_together(&passes, &machine, &(own.clone() + &three(&rib)));
+    let (widths, none) = corrected_together(&passes, &machine, &(own.clone() + &three(&along_x)));
+    println!("before {before:.4?} without {without:.4?} ribs {ribs:.4?} widths {widths:.4?}\n{said:?}");
+    for k in [0, 1] {
+        assert!(before[k] > 0.1 && ribs[k] < before[k] / 4.0, "{before:?} {ribs:?}");
+        assert!(ribs[k] < 0.7 * without[k] && ribs[k] < 2.0 * widths[k].max(0.010), "{without:?} {ribs:?} {widths:?}");
+    }
+    assert!(
+        said.len() == 1 && said[0].contains("between two contours along X") && said[0].contains("X35.0"),
+        "{said:?}"
+    );
+    assert_eq!(none, Vec::<String>::new(), "a width of one contour is none between two");
+    let face = "y_mm = 0.0\nface_mm = 100.0";
+    let wall = wall_near(&first[0], 0, 0.0, -6.0, 35.0);
+    let single = one("distance", "x", face, -6.0, 100.0 - wall);
+    let (_, said) = corrected_together(&passes, &machine, &(own + &rib(-6.0) + &single));
+    assert_eq!(said, Vec::<String>::new(), "one distance tells the walls apart");
 }
 
 #[test]
