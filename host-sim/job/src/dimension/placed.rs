@@ -185,18 +185,21 @@ fn between_contours(source: &Source, dimension: &Dimension, mut seen: Vec<Seen>)
         |pair: &&[Seen]| pair[0].wall != pair[1].wall && face(dimension.kind, &pair[0].crossing, &pair[1].crossing);
     let candidate = |pair: &[Seen]| {
         let [first, second] = [pair[0].crossing, pair[1].crossing];
+        let walls = [pair[0].wall, pair[1].wall];
+        let nominal_mm = second.at_mm - first.at_mm;
         if pair[0].z != pair[1].z {
+            if (nominal_mm - mm(dimension.value)).abs() >= FAR {
+                return Ok(None);
+            }
             let found =
                 format!("{} lies between two contours whose cutter's tips are not at one height", dimension.name);
             return Err(M051
                 .error(found, "z_mm, a height in program coordinates")
                 .at(source, dimension.level_span.clone()));
         }
-        let walls = [pair[0].wall, pair[1].wall];
-        let nominal_mm = second.at_mm - first.at_mm;
-        Ok(Candidate { walls, z: pair[0].z, nominal_mm, first, second: Some(second) })
+        Ok(Some(Candidate { walls, z: pair[0].z, nominal_mm, first, second: Some(second) }))
     };
-    seen.windows(2).filter(faces).map(candidate).collect()
+    seen.windows(2).filter(faces).filter_map(|pair| candidate(pair).transpose()).collect()
 }
 
 /// The coordinate of the line across its direction, mm.
