@@ -197,11 +197,11 @@ pub fn predict(
 pub fn join_pairs(observations: &mut [Observation]) {
     let mut rest = observations;
     while let Some((half, others)) = rest.split_first_mut() {
-        if half.pair().is_some() {
-            if let Some(other) = others.iter_mut().find(|other| other.pair() == half.pair()) {
-                let mean = (half.predicted + other.predicted).scaled(Real::HALF);
-                (half.predicted, other.predicted) = (mean, mean);
-            }
+        if half.pair().is_some()
+            && let Some(other) = others.iter_mut().find(|other| other.pair() == half.pair())
+        {
+            let mean = (half.predicted + other.predicted).scaled(Real::HALF);
+            (half.predicted, other.predicted) = (mean, mean);
         }
         rest = others;
     }

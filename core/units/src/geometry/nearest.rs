@@ -135,7 +135,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::geometry::Curve;
+    use crate::geometry::{Curve, Vector};
 
     /// A path of lines and half circles with corners in a square of 40 mm.
     fn path() -> impl Strategy<Value = Vec<Block>> {
@@ -144,8 +144,8 @@ mod tests {
             let (mut at, mut s) = (Point::from_nm(0, 0), Offset::ZERO);
             let mut blocks = Vec::new();
             for (x, y, round, left) in corners {
-                let next = Point::from_nm(x * 1_000, y * 1_000);
-                let middle = Point::from_nm((at.x.nm() + next.x.nm()) / 2, (at.y.nm() + next.y.nm()) / 2);
+                let next = Point::from_nm(0, 0) + Vector { x: Offset::from_um(x), y: Offset::from_um(y) };
+                let middle = at + next.from(at).scaled(Real::HALF);
                 let arc = || Curve::arc(at, next, middle, left).ok();
                 let Some(curve) = (if round { arc() } else { Curve::line(at, next) }) else { continue };
                 blocks.push(Block { curve, s, feed: Real::ONE, line: 1 });
