@@ -168,9 +168,12 @@ fn collected(child: Child) -> Result<u64, Failure> {
     instructions(&said).ok_or_else(|| Failure::found(format!("cachegrind said:\n{said}")))
 }
 
-/// The number in cachegrind's line `==123== I refs:        1,234`.
+/// The number in cachegrind's line `==123== I   refs:      1,234`.
 fn instructions(said: &str) -> Option<u64> {
-    said.lines().rev().find_map(|line| line.split_once("I refs:")?.1.trim().replace(',', "").parse().ok())
+    said.lines().find_map(|line| match line.split_whitespace().collect::<Vec<_>>()[..] {
+        [_, "I", "refs:", number] => number.replace(',', "").parse().ok(),
+        _ => None,
+    })
 }
 
 /// The median of criterion's estimates, ns.
@@ -186,7 +189,7 @@ mod tests {
 
     #[test]
     fn cachegrinds_count_is_read() {
-        let said = "==7== Cachegrind, a high-precision tracing profiler\n==7== I refs:        1,123,456\n";
+        let said = "==7== Cachegrind, a high-precision tracing profiler\n==7== I   refs:      1,123,456\n";
         assert_eq!(instructions(said), Some(1_123_456));
         assert_eq!(instructions("==7== Process terminating"), None);
     }
