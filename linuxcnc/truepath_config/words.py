@@ -56,6 +56,7 @@ REFUSALS = {
     7: "X, Y and Z are not three different joints: check COORDINATES",
     8: "no setpoints arrive: is truepath.command in the servo thread?",
     9: "setpoints come faster than the servo period says, or have only just begun",
+    10: "the drives were dropped, and nobody has acknowledged since that they are disabled: switch the machine off and on again",
     16: "the image is for another program",
     17: "the image is for another feature",
     18: "the image is for another pass",
