@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use crate::linuxcnc;
-use crate::repository::{cargo, copy, make_folder, program, read, root, run, target, write};
+use crate::repository::{self, Profile, cargo, copy, make_folder, program, read, root, run, target, write};
 use crate::step::{Failure, Outcome, Passed};
 
 /// The triple that the packages are for.
@@ -103,15 +103,15 @@ fn packages(folder: &Path, build: Build) -> Result<(), Failure> {
 
 /// Builds the program.
 fn binary(build: Build) -> Result<PathBuf, Failure> {
-    let mut command = cargo();
-    command.args(["build", "--package", "truepath", "--bin", "truepath"]);
     if build == Build::Dev {
-        run(&mut command)?;
+        let program_of_tests = repository::truepath(Profile::Dev)?;
         // Packing what debuggers read of it would take longer than all the rest.
         let stripped = target().join("debug/truepath-stripped");
-        run(program("strip").arg("-o").arg(&stripped).arg(target().join("debug/truepath")))?;
+        run(program("strip").arg("-o").arg(&stripped).arg(program_of_tests))?;
         return Ok(stripped);
     }
+    let mut command = cargo();
+    command.args(["build", "--package", "truepath", "--bin", "truepath"]);
     // With the triple named, build scripts and macros are not linked statically.
     command.args(["--profile", "dist", "--target", TRIPLE]);
     command.env("CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUSTFLAGS", "-Ctarget-feature=+crt-static");

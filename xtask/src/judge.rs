@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use crate::repository::{local_truepath, may_install, program, read, root, run, succeeds, target};
+use crate::repository::{self, Profile, may_install, program, read, root, run, succeeds, target};
 use crate::step::{Failure, Outcome, Passed};
 
 /// What a scenario has to reach.
@@ -58,7 +58,7 @@ impl Score {
 
 /// Corrects every scenario and compares with the minima. Without a path the judge is looked for as `judge/judge.py`
 /// in the folders beside the repository.
-pub fn run_all(given: Option<&Path>) -> Outcome {
+pub fn run_all(given: Option<&Path>, profile: Profile) -> Outcome {
     let Some(judge) =
         given.map(|path| root().join(path)).or_else(|| beside("judge/judge.py")).filter(|path| path.is_file())
     else {
@@ -71,7 +71,7 @@ pub fn run_all(given: Option<&Path>) -> Outcome {
         return Ok(Passed::Skipped(reason));
     }
     let scenarios = scenarios(&judge)?;
-    let truepath = local_truepath()?;
+    let truepath = repository::truepath(profile)?;
     let mut missed = Vec::new();
     println!("{:<20} {:>10} {:>9} {:>8} {:>8}  minimum", "scenario", "before mm", "after mm", "factor", "correct");
     for scenario in &scenarios {

@@ -30,6 +30,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use firmware::Board;
+use repository::Profile;
 use step::{Report, Step};
 
 /// Set-up, tests and checks of the Truepath repository.
@@ -278,7 +279,7 @@ fn main() -> ExitCode {
         Task::Linuxcnc { task, scenario, write } => {
             report.run(Step::new("linuxcnc", || linuxcnc::run(task, scenario.as_deref(), write)));
         }
-        Task::Judge { judge } => report.run(Step::new("judge", || judge::run_all(judge.as_deref()))),
+        Task::Judge { judge } => report.run(Step::new("judge", || judge::run_all(judge.as_deref(), Profile::Local))),
     }
     report.finish()
 }
@@ -308,7 +309,7 @@ fn test(report: &mut Report, all: bool) {
             report.run(Step::new("conformance", || conformance::check(false)));
             report.run(Step::new("dist", dist::check));
             report.run(Step::new("shop", || shop::check(None, None, false)));
-            report.run(Step::new("judge", || judge::run_all(None)));
+            report.run(Step::new("judge", || judge::run_all(None, Profile::Dev)));
             report.run(Step::new("fuzz", || fuzz::check(None, fuzz::Length::Seconds(15))));
         });
     });

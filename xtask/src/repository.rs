@@ -23,13 +23,29 @@ pub fn target() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |dir| root().join(dir))
 }
 
-/// Builds the program to be used at once (profile `local`); its file.
+/// How the program `truepath` is built; the profiles are in the workspace's `Cargo.toml`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Profile {
+    /// As its tests are.
+    Dev,
+    /// To be used at once.
+    Local,
+    /// Its setpoint path as in a release, without the checks of a debug build.
+    Bits,
+}
+
+/// Builds the program; its file.
 ///
 /// # Errors
 /// When it does not build.
-pub fn local_truepath() -> Result<PathBuf, Failure> {
-    run(cargo().args(["build", "--profile", "local", "--package", "truepath", "--bin", "truepath"]))?;
-    Ok(target().join("local/truepath"))
+pub fn truepath(profile: Profile) -> Result<PathBuf, Failure> {
+    let (name, folder) = match profile {
+        Profile::Dev => ("dev", "debug"),
+        Profile::Local => ("local", "local"),
+        Profile::Bits => ("bits", "bits"),
+    };
+    run(cargo().args(["build", "--quiet", "--profile", name, "--package", "truepath", "--bin", "truepath"]))?;
+    Ok(target().join(folder).join("truepath"))
 }
 
 /// The cargo that runs this program.

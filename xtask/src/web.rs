@@ -8,7 +8,7 @@ use std::process::Stdio;
 
 use crate::firmware::linker;
 use crate::page;
-use crate::repository::{cargo, program, run, target};
+use crate::repository::{self, Profile, program, run, target};
 use crate::step::{Failure, Outcome, Passed};
 use crate::toolchain::{Toolchain, WASM};
 
@@ -23,8 +23,7 @@ pub fn check(tests: bool) -> Outcome {
     let module = module()?;
     let (tools, folder) = page::tools()?;
     // The example is a part of the demonstration, and the tests hold the page against this program.
-    run(cargo().args(["build", "--quiet", "--package", "truepath", "--bin", "truepath"]))?;
-    let command_line = target().join("debug/truepath");
+    let command_line = repository::truepath(Profile::Dev)?;
     let web = target().join("web");
     let demo = web.join("demo");
     run(program(&command_line).args(["demo", "--force", "--output"]).arg(&demo).stdout(Stdio::null()))?;

@@ -17,7 +17,7 @@ use std::fs;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::repository::{cargo, may_install, program, read, root, run, succeeds, target};
+use crate::repository::{self, Profile, may_install, program, read, root, succeeds, target};
 use crate::step::{Failure, Outcome, Passed};
 use crate::toolchain::install;
 use corpus::{PACKAGE, Program};
@@ -35,7 +35,7 @@ pub fn check(write: bool) -> Outcome {
         }
         install(&[PACKAGE])?;
     }
-    run(cargo().args(["build", "--package", "truepath", "--bin", "truepath"]))?;
+    repository::truepath(Profile::Dev)?;
     five_axis::check()?;
     let programs = corpus::programs()?;
     let verdicts = judge(&programs)?;

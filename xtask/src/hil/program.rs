@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::repository::{cargo, local_truepath, program, read, run, target};
+use crate::repository::{self, Profile, program, read, target};
 use crate::step::Failure;
 
 /// The program, in debug or release.
@@ -26,11 +26,8 @@ pub struct Run {
 impl Program {
     /// Builds it.
     pub fn build(release: bool) -> Result<Self, Failure> {
-        if release {
-            return Ok(Self(local_truepath()?));
-        }
-        run(cargo().args(["build", "--bin", "truepath"]))?;
-        Ok(Self(target().join("debug/truepath")))
+        let profile = if release { Profile::Bits } else { Profile::Dev };
+        Ok(Self(repository::truepath(profile)?))
     }
 
     /// `truepath hil`; an error holds what it said, the first differing tick included.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::component;
-use crate::repository::{copy, is_root, local_truepath, may_install, program, root, run};
+use crate::repository::{self, Profile, copy, is_root, may_install, program, root, run};
 use crate::step::{Failure, Outcome, Passed};
 
 /// Programs on the path.
@@ -27,15 +27,19 @@ const FILES: [(&str, &str, &str); 4] = [
     ("mcodes/M161", M_CODES, "755"),
 ];
 
-/// Builds and installs; says where everything went.
-pub fn install(component_only: bool) -> Outcome {
+/// Builds and installs, the program only where none is given; says where everything went.
+pub fn install(component_only: bool, truepath: Option<PathBuf>) -> Outcome {
+    let truepath = truepath.map(|file| root().join(file));
+    if let Some(missing) = truepath.as_ref().filter(|file| !file.is_file()) {
+        return Err(Failure::found(format!("no program at {}", missing.display())));
+    }
     let folder = component::build()?;
     run(with_rights("make").arg("--directory").arg(&folder).arg("install"))?;
     println!("truepath.so -> LinuxCNC's modules (loadrt truepath)");
     if component_only {
         return Ok(Passed::Done);
     }
-    put(&local_truepath()?, PROGRAMS, "755")?;
+    put(&truepath.map_or_else(|| repository::truepath(Profile::Local), Ok)?, PROGRAMS, "755")?;
     for (file, folder, mode) in FILES {
         let source = root().join("linuxcnc").join(file);
         if source.exists() {
@@ -114,7 +118,7 @@ pub fn component_if_changed() -> Result<(), Failure> {
     if !may_install() {
         return Err(Failure::Missing("another truepath.so is installed: cargo xtask linuxcnc install".to_owned()));
     }
-    install(true).map(drop)
+    install(true, None).map(drop)
 }
 
 fn read_bytes(file: &Path) -> Option<Vec<u8>> {

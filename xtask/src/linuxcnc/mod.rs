@@ -14,6 +14,8 @@ mod suite;
 mod timing;
 mod verdict;
 
+use std::path::PathBuf;
+
 use clap::Subcommand;
 
 pub use install::packaged;
@@ -21,7 +23,7 @@ pub use install::packaged;
 use crate::step::Outcome;
 
 /// What is done with the component; without one, everything that tests it.
-#[derive(Clone, Copy, Debug, Subcommand)]
+#[derive(Clone, Debug, Subcommand)]
 pub enum Task {
     /// Builds the real-time component truepath.so, and proves from its machine code what its servo side does not do.
     Build,
@@ -30,6 +32,9 @@ pub enum Task {
         /// Only the real-time component, not the programs.
         #[arg(long)]
         component_only: bool,
+        /// This program `truepath`, for instance a downloaded one, instead of building it.
+        #[arg(long, value_name = "FILE", conflicts_with = "component_only")]
+        program: Option<PathBuf>,
     },
     /// Takes away what install put there; images, ledger and configuration of a machine stay.
     Uninstall,
@@ -50,7 +55,7 @@ pub fn run(task: Option<Task>, scenario: Option<&str>, write: bool) -> Outcome {
         Some(Task::Board) => route_b::run(),
         Some(Task::Story) => story::run(write),
         Some(Task::Build) => component::build().map(|_| crate::step::Passed::Done),
-        Some(Task::Install { component_only }) => install::install(component_only),
+        Some(Task::Install { component_only, program }) => install::install(component_only, program),
         Some(Task::Uninstall) => install::uninstall(),
     }
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use super::machine::sample::Sample;
-use crate::repository::{cargo, program, read, run, target};
+use crate::repository::{self, Profile, program, read, target};
 use crate::step::Failure;
 
 /// Parts that the scenarios mill; their walls have been probed.
@@ -24,8 +24,7 @@ impl Parts {
     /// # Errors
     /// Something does not build, or a part cannot be corrected.
     pub fn make(sample: &Sample) -> Result<Self, Failure> {
-        run(cargo().args(["build", "--package", "truepath", "--bin", "truepath"]))?;
-        let truepath = target().join("debug/truepath");
+        let truepath = repository::truepath(Profile::Dev)?;
         sample.put(&truepath)?;
         let folder = target().join("linuxcnc/parts");
         let parts = Self { truepath, folder };

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-use crate::repository::{cargo, program, root, run, target};
+use crate::repository::{self, Profile, program, root, run, target};
 use crate::step::Failure;
 
 /// Job, program, machine and touches of the island, relative to the root.
@@ -48,10 +48,10 @@ const FEW: &str = "\n[plan]\nmax_cuts = 2\nmax_levels = 1\nmax_percent = 100\n";
 /// # Errors
 /// A command that fails.
 pub fn write() -> Result<PathBuf, Failure> {
-    run(cargo().args(["build", "--quiet", "--package", "truepath", "--bin", "truepath"]))?;
+    let tool = repository::truepath(Profile::Dev)?;
     let pages = target().join("page");
     let truepath = |arguments: &[&Path], out: &str| {
-        let mut command = program(target().join("debug/truepath"));
+        let mut command = program(&tool);
         command.args(arguments).arg("--output").arg(pages.join(out));
         run(command.stdout(Stdio::null()).stderr(Stdio::null()))
     };

@@ -16,7 +16,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::repository::{cargo, root, run, target};
+use crate::repository::{self, Profile, root, target};
 use crate::step::{Failure, Outcome, Passed};
 use table::Program;
 use way::{End, Way};
@@ -31,7 +31,7 @@ const TABLE: &str = "programs.csv";
 /// Takes the programs of a folder the whole way. Those of this repository are compared with what the table expects, or the
 /// expectations renewed; of any other folder the results are only shown.
 pub fn check(folder: Option<&Path>, only: Option<&str>, write: bool) -> Outcome {
-    run(cargo().args(["build", "--package", "truepath", "--bin", "truepath"]))?;
+    repository::truepath(Profile::Dev)?;
     let own = root().join(FOLDER);
     let folder = folder.map_or(own.clone(), |f| root().join(f));
     let path = folder.join(TABLE);

@@ -24,7 +24,7 @@ use super::machine::session::{self, End};
 use super::notes::{self, Notes};
 use super::recording::Recording;
 use super::suite::settings;
-use crate::repository::{cargo, program, read, root, run as build, target};
+use crate::repository::{self, Profile, program, read, root, target};
 use crate::step::{Failure, Outcome, Passed};
 use outcome::{Part, Told};
 use path::Placed;
@@ -71,8 +71,7 @@ struct Story {
 impl Story {
     fn begin() -> Result<Self, Failure> {
         let sample = Sample::fresh("story")?;
-        build(cargo().args(["build", "--package", "truepath", "--bin", "truepath"]))?;
-        let truepath = target().join("debug/truepath");
+        let truepath = repository::truepath(Profile::Dev)?;
         sample.put(&truepath)?;
         sample.ready()?;
         let ini = fs::read_to_string(sample.ini()).map_err(|e| failed(&sample.ini(), &e))?;
