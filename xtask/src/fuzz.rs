@@ -7,9 +7,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::repository::{cargo, may_install, program, read, root, run, succeeds, target};
+use crate::repository::{cargo, program, read, root, run, succeeds, target};
 use crate::step::{Failure, Outcome, Passed};
-use crate::toolchain::install;
+use crate::toolchain::need;
 
 /// A target and the files its corpus begins with: folders below the root, endings of names.
 struct Target {
@@ -94,13 +94,7 @@ pub fn build() -> Result<PathBuf, Failure> {
 
 /// libFuzzer is C++.
 fn cpp_compiler() -> Result<(), Failure> {
-    if succeeds(program("c++").arg("--version")) {
-        return Ok(());
-    }
-    if may_install() && install(&["g++"]).is_ok() {
-        return Ok(());
-    }
-    Err(Failure::Missing("fuzzing needs a C++ compiler: apt-get install g++".into()))
+    need(|| succeeds(program("c++").arg("--version")), "g++", "fuzzing needs a C++ compiler")
 }
 
 fn fuzz(target: &Target, binaries: &Path, length: Length) -> Result<(), Failure> {

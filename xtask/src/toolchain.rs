@@ -135,6 +135,17 @@ fn minor(version: &str) -> Option<u32> {
     version.strip_prefix("rustc 1.")?.split('.').next()?.parse().ok()
 }
 
+/// Has a tool: where it is missing, its package is installed if that is allowed.
+///
+/// # Errors
+/// It is missing still; `why` is what it is for.
+pub fn need(there: impl Fn() -> bool, package: &str, why: &str) -> Result<(), Failure> {
+    if there() || (may_install() && install(&[package]).is_ok() && there()) {
+        return Ok(());
+    }
+    Err(Failure::Missing(format!("{why}: apt-get install {package}")))
+}
+
 /// Installs packages of Debian.
 ///
 /// # Errors

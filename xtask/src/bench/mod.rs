@@ -9,9 +9,9 @@ pub mod table;
 
 use std::process::{Child, Command, Stdio};
 
-use crate::repository::{cargo, may_install, program, read, root, run, succeeds, target};
+use crate::repository::{cargo, program, read, root, run, succeeds, target};
 use crate::step::{Failure, Outcome, Passed};
-use crate::toolchain::install;
+use crate::toolchain::need;
 
 /// The document the tables are written into.
 const DOCUMENT: &str = "docs/measure.md";
@@ -108,11 +108,7 @@ fn difference(document: &str, kernel: &str, count: u64) -> Option<String> {
 
 /// The program that counts, installed where that is allowed.
 fn counting_tool() -> Result<(), Failure> {
-    let there = || succeeds(program("valgrind").arg("--version"));
-    if there() || (may_install() && install(&["valgrind"]).is_ok() && there()) {
-        return Ok(());
-    }
-    Err(Failure::Missing("instructions are counted by valgrind: apt-get install valgrind".into()))
+    need(|| succeeds(program("valgrind").arg("--version")), "valgrind", "instructions are counted by valgrind")
 }
 
 /// The compiler, as `rustc 1.95.0`.

@@ -17,9 +17,9 @@ use std::fs;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::repository::{self, Profile, may_install, program, read, root, succeeds, target};
+use crate::repository::{self, Profile, program, read, root, succeeds, target};
 use crate::step::{Failure, Outcome, Passed};
-use crate::toolchain::install;
+use crate::toolchain::need;
 use corpus::{PACKAGE, Program};
 use outcome::Bench;
 use verdict::Verdict;
@@ -29,12 +29,7 @@ const DOCUMENT: &str = "docs/conformance.md";
 
 /// Runs both interpreters over everything; writes the document or compares with it.
 pub fn check(write: bool) -> Outcome {
-    if !succeeds(program("sh").args(["-c", "command -v rs274"])) {
-        if !may_install() {
-            return Err(Failure::Missing(format!("rs274 is missing: apt-get install {PACKAGE}")));
-        }
-        install(&[PACKAGE])?;
-    }
+    need(|| succeeds(program("sh").args(["-c", "command -v rs274"])), PACKAGE, "rs274 is missing")?;
     repository::truepath(Profile::Dev)?;
     five_axis::check()?;
     let programs = corpus::programs()?;

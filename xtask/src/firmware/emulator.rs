@@ -2,9 +2,9 @@
 
 use std::process::Command;
 
-use crate::repository::{may_install, program, succeeds};
+use crate::repository::{program, succeeds};
 use crate::step::Failure;
-use crate::toolchain::install;
+use crate::toolchain::need;
 
 const NAME: &str = "qemu-system-arm";
 
@@ -13,11 +13,7 @@ const NAME: &str = "qemu-system-arm";
 /// # Errors
 /// It is missing and may not be installed.
 pub fn command() -> Result<Command, Failure> {
-    let there = || succeeds(program(NAME).arg("--version"));
-    let installed = || may_install() && install(&[NAME]).is_ok() && there();
-    if !(there() || installed()) {
-        return Err(Failure::Missing(format!("no emulator of the virtual board: apt-get install {NAME}")));
-    }
+    need(|| succeeds(program(NAME).arg("--version")), NAME, "no emulator of the virtual board")?;
     let mut command = program(NAME);
     command.args(["-M", "mps2-an500", "-display", "none", "-monitor", "none"]);
     Ok(command)
