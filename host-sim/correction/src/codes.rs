@@ -44,5 +44,5 @@ truepath_ground::codes! {
     V006 => "G52 or G92 has shifted the origin when the contour is cut"
         / "put the shift into the work offset",
     V007 => "no dimension of the cut can be taken by hand"
-        / "touch the wall with a probe, or measure from a face: kind = \"distance\" in a file of your own (docs/dimensions.md)",
+        / "name an instrument that reaches farther (--instrument, --reach), touch the wall with a probe, or measure from a face: kind = \"distance\" in a file of your own (docs/dimensions.md)",
 }

@@ -221,15 +221,21 @@ impl Measurement {
         let placed = || self.dimensions.iter().flat_map(|dimensions| &dimensions.placed);
         let widths = placed().filter(|placed| placed.across.is_some() && placed.half.is_none()).count();
         let of_two = (widths > 0).then(|| {
-            format!(
-                "{widths} readings are dimensions between two walls: each stands at the first of them, with the mean error of both"
-            )
+            let which = if widths == 1 {
+                "1 reading is a dimension between two walls: it".to_owned()
+            } else {
+                format!("{widths} readings are dimensions between two walls: each")
+            };
+            format!("{which} stands at the first of them, with the mean error of both")
         });
         let halves = placed().filter(|placed| placed.half.is_some()).count();
         let of_another = (halves > 0).then(|| {
-            format!(
-                "{halves} readings are dimensions between a wall of this contour and one of another: each stands at both of them, with the mean error of both"
-            )
+            let which = if halves == 1 {
+                "1 reading is a dimension between a wall of this contour and one of another: it".to_owned()
+            } else {
+                format!("{halves} readings are dimensions between a wall of this contour and one of another: each")
+            };
+            format!("{which} stands at both of them, with the mean error of both")
         });
         self.read_as.iter().cloned().chain(aside).chain(of_two).chain(of_another).collect()
     }

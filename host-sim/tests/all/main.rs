@@ -30,6 +30,7 @@ mod recorded;
 mod rehearsal;
 mod replay;
 mod report_page;
+mod rib;
 mod several;
 mod shop_corners;
 mod split_allowance;

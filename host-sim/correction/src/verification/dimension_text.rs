@@ -8,15 +8,17 @@ use super::dimensions::{DimensionPlan, PlannedDimension};
 pub fn table(plan: &DimensionPlan, sheet: &str) -> String {
     let mut text = format!(
         "# Dimensions of the milled part, in the order of {sheet}: type what was read between the quotation marks.\n\
+         # uncertainty_mm is what a reading stays within, ±, at two standard deviations (k = 2): about 95 of 100 readings.\n\
          # A dimension that cannot be taken: delete it, from [[dimension]] to its value_mm.\n\
          version = 1\n"
     );
     for (k, d) in plan.dimensions.iter().enumerate() {
         let across = if d.along == "x" { "y_mm" } else { "x_mm" };
+        let of = of(d);
         // Writing to a string cannot fail.
         let _ = write!(
             text,
-            "\n[[dimension]]  # {}: {}; nominal {:.3}\nname = \"{}\"\nkind = \"{}\"\nalong = \"{}\"\n{across} = {}\nnear_mm = {:.3}\nz_mm = {:.3}\ninstrument = \"{}\"\nuncertainty_mm = {}\nvalue_mm = \"\"\n",
+            "\n[[dimension]]  # {}: {of}{}; nominal {:.3}\nname = \"{}\"\nkind = \"{}\"\nalong = \"{}\"\n{across} = {}\nnear_mm = {:.3}\nz_mm = {:.3}\ninstrument = \"{}\"\nuncertainty_mm = {}\nvalue_mm = \"\"\n",
             k + 1,
             d.words(),
             d.nominal_mm,
@@ -33,6 +35,12 @@ pub fn table(plan: &DimensionPlan, sheet: &str) -> String {
     text
 }
 
+/// The contour, or both, with a colon; empty where there is one alone.
+fn of(d: &PlannedDimension) -> String {
+    let of = d.of();
+    if of.is_empty() { of } else { of + ": " }
+}
+
 fn middle(d: &PlannedDimension) -> f64 {
     0.5 * (d.walls_mm[0] + d.walls_mm[1])
 }
@@ -42,7 +50,7 @@ fn middle(d: &PlannedDimension) -> f64 {
 pub fn sheet(plan: &DimensionPlan, title: &str, table: &str) -> String {
     let mut rows = String::new();
     for (k, d) in plan.dimensions.iter().enumerate() {
-        let contour = d.contour.as_ref().map_or_else(String::new, |name| format!("{}: ", escaped(name)));
+        let contour = escaped(&of(d));
         let _ = writeln!(
             rows,
             "<tr><td>{}</td><td>{contour}{}<br><small>{}</small></td><td>{:.2}</td><td>{:.3}</td><td class=room></td></tr>",
@@ -58,7 +66,7 @@ pub fn sheet(plan: &DimensionPlan, title: &str, table: &str) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>{title}: dimensions</title>\n<style>{STYLE}</style>\n\
          <h1>{title}: dimensions to measure</h1>\n\
-         <p>Take them on the part as it was milled, cleaned and cold, with the same instrument ({}, ± {} mm). Coordinates are those of the program. Half a millimetre beside the line does not matter. Let only the tips of the jaws touch, at the Z given; read each dimension twice and write down the mean.</p>\n\
+         <p>Take them on the part as it was milled, cleaned and cold, with the same instrument ({}, ± {} mm with k = 2: about 95 of 100 readings stay within). Coordinates are those of the program. Half a millimetre beside the line does not matter. Let only the tips of the jaws touch, at the Z given; read each dimension twice and write down the mean.</p>\n\
          {}\n<table><thead><tr><th>No.</th><th>what</th><th>Z mm</th><th>nominal mm</th><th>read mm</th></tr></thead>\n<tbody>\n{rows}</tbody></table>\n\
          <p>Type the numbers into {}. They leave the predicted wall uncertain by {after:.3} mm (one standard deviation); {before:.3} mm without them.</p>\n\
          <p class=sign>part ................................ instrument ................................ date and name ................................</p>\n</html>\n",

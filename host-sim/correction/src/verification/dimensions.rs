@@ -1,13 +1,17 @@
 //! The choice of dimensions to be taken by hand: the few that tell most of the wall that will be corrected.
 //!
-//! Candidates are the pairs of walls that face each other along X or Y, on lines spread over the contour, at three heights.
+//! Candidates are the pairs of walls that face each other along X or Y, on lines spread over every contour, at three heights: two
+//! walls of one contour, or a wall of one and the next wall on the line, of another (a rib, a web, a ring), which is one reading of
+//! both. An instrument has to reach them: nothing stands in the room of a width, and beside material is room for a jaw.
 //! The criterion is that of the places of a probe ([`choice`](super::choice)): one after the other, each the one that most
 //! lowers the variance of the wall error, summed over the wall and its heights. A hand sets a jaw to half a millimetre: where the
 //! wall changes within that, a reading says less.
 
+use std::collections::BTreeSet;
+
 use truepath_core::cut::Path;
 use truepath_core::identify::Observation;
-use truepath_core::units::{Offset, Position, Real, hypot_nm};
+use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{mm, nm};
 use truepath_job::dimension::{Axis, Crossing, Instrument, Kind, Walls};
@@ -15,6 +19,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use super::covariance::{Covariance, Row, products};
 use super::estimate::Estimate;
+use super::part_program::PartProgram;
 use super::plan::name;
 use super::reason::{self, Unknown};
 use super::sensitivity::{real, rows, wall_row};
@@ -26,10 +31,14 @@ pub const USUAL_DIMENSIONS: u32 = 8;
 const LINES: usize = 24;
 /// Heights of a line, as shares of the engaged depth: the lowest first.
 const HEIGHTS: [f64; 3] = [0.15, 0.5, 0.85];
+/// What the jaws of a usual calliper open to, mm.
+const CALLIPER: f64 = 150.0;
 /// Half of the stretch of a wall that a jaw lies against, mm.
 const JAW: f64 = 1.5;
 /// How far from its line a hand measures, mm.
 const BY_HAND: f64 = 0.5;
+/// Room that the outside jaw of a calliper, or the spindle of a micrometer for ribs, needs beside material, mm.
+const JAW_ROOM: f64 = 4.0;
 /// Places of the wall that are to become certain.
 const PLACES: usize = 60;
 
@@ -39,6 +48,9 @@ pub struct PlannedDimension {
     /// The contour it is of, where there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contour: Option<String>,
+    /// That of its second wall, where it is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to_contour: Option<String>,
     /// What is measured.
     pub kind: &'static str,
     /// Along which axis.
@@ -61,6 +73,35 @@ impl PlannedDimension {
         let Self { kind, along, across_mm, .. } = self;
         let across = if *along == "x" { "Y" } else { "X" };
         format!("{kind} along {} at {across}{across_mm:.2}", along.to_uppercase())
+    }
+
+    /// The contour it is of, or both that it is between; empty where there is one alone.
+    pub fn of(&self) -> String {
+        match (&self.contour, &self.to_contour) {
+            (Some(contour), Some(other)) => format!("{contour} to {other}"),
+            (Some(contour), None) => contour.clone(),
+            _ => String::new(),
+        }
+    }
+}
+
+/// What dimensions are taken with, and how many.
+#[derive(Clone, Copy, Debug)]
+pub struct DimensionSettings {
+    /// How many are chosen.
+    pub count: u32,
+    /// With what they are taken.
+    pub instrument: Instrument,
+    /// What a reading stays within, ± at two standard deviations.
+    pub uncertainty: Offset,
+    /// The largest that the instrument takes, mm; by default 150 of a calliper, and no limit of others.
+    pub reach_mm: Option<f64>,
+}
+
+impl DimensionSettings {
+    fn reach_mm(&self) -> f64 {
+        let usual = if self.instrument == Instrument::Calliper { CALLIPER } else { f64::INFINITY };
+        self.reach_mm.unwrap_or(usual)
     }
 }
 
@@ -94,22 +135,39 @@ struct Candidate {
 /// `V007` where no two walls face each other along X or Y, and whatever is wrong with a path.
 pub fn plan_dimensions(
     passes: &[Pass],
-    (count, instrument, uncertainty): (u32, Instrument, Offset),
+    settings: &DimensionSettings,
     progress: &mut dyn FnMut(f64),
 ) -> Result<DimensionPlan, Failure> {
-    let (mut candidates, mut wall, mut outlines) = (Vec::new(), Vec::new(), Vec::new());
-    for (at, pass) in passes.iter().enumerate() {
-        let told = &mut |share: f64| progress((at as f64 + share) / passes.len().max(1) as f64);
-        let walls = Walls::of(pass)?;
-        let (own, certain) = of_pass(&walls, passes.len() > 1, uncertainty, told)?;
-        candidates.extend(own);
-        wall.extend(certain);
-        outlines.push(walls.outline().collect());
-    }
-    let Some(pass) = passes.first().filter(|_| !candidates.is_empty()) else {
-        let found = "no two walls of this cut face each other square to X or Y";
+    let walls = passes.iter().map(Walls::of).collect::<Result<Vec<_>, _>>()?;
+    let DimensionSettings { count, instrument, uncertainty, .. } = *settings;
+    let reach_mm = settings.reach_mm();
+    let taken = |faced: &Faced| instrument.measures(faced.pair.kind()) && faced.pair.nominal_mm() <= reach_mm;
+    let faced: Vec<Faced> = faced(&Part::of(&walls)).into_iter().filter(taken).collect();
+    let Some(pass) = passes.first().filter(|_| !faced.is_empty()) else {
+        let words = instrument.words();
+        let reach = if reach_mm.is_finite() { format!(" of {reach_mm} mm") } else { String::new() };
+        let found = format!("a {words}{reach} reaches no two walls of this cut that face each other square to X or Y");
         return Err(V007.error(found, "two walls that an instrument fits between, or around").into());
     };
+    let mut said = Vec::new();
+    let mut wall = Vec::new();
+    for (at, pass) in passes.iter().enumerate() {
+        let told = &mut |share: f64| progress((at as f64 + share) / passes.len() as f64);
+        let (own, certain) = readings(pass, at, &faced, uncertainty, told)?;
+        said.push(own.into_iter());
+        wall.extend(certain);
+    }
+    let mut candidates: Vec<Candidate> = Vec::new();
+    for faced in faced {
+        let [first, second] = [faced.pair.first.wall, faced.pair.second.wall];
+        let mut next = |wall: usize| said.get_mut(wall).and_then(Iterator::next);
+        let own = next(first);
+        let other = if first == second { own.clone() } else { next(second) };
+        let (Some(own), Some(other)) = (own, other) else {
+            return Err(Failure::Internal("a dimension that nothing was predicted of".to_owned()));
+        };
+        candidates.push(Candidate { row: own.mean(&other).row(), planned: faced.planned(passes) });
+    }
     let prior = pass.core.prior(pass.core.setup.law);
     let total = products(wall.iter());
     let sigma = |known: &Covariance| (known.total(&total).max(0.0) / wall.len().max(1) as f64).sqrt();
@@ -133,115 +191,280 @@ pub fn plan_dimensions(
         uncertainty_mm: mm(uncertainty),
         wall_sigma_mm: [before, sigma(&known)],
         unknowns: reason::unknowns(&known, &prior),
-        outlines,
+        outlines: walls.iter().map(|walls| walls.outline().collect()).collect(),
     })
 }
 
-/// What may be measured of a pass, and the rows of its wall, which is to become certain.
-fn of_pass(
-    walls: &Walls<'_>,
-    several: bool,
-    uncertainty: Offset,
-    progress: &mut dyn FnMut(f64),
-) -> Result<(Vec<Candidate>, Vec<Row>), Failure> {
-    let pass = walls.pass();
-    let mut buffer = PathBuffer::default();
-    let path = pass.sample(&mut buffer)?;
-    let prior = pass.core.prior(path.setup().law);
-    let estimate = Estimate::stated(&prior);
-    let [tip, top] = walls.heights();
-    let contour = several.then(|| name(pass));
-    let mut planned = Vec::new();
-    let mut touches = Vec::new();
-    for along in [Axis::X, Axis::Y] {
-        let Some([from, to]) = walls.extent(along.other()) else { continue };
-        let middle = 0.5 * (from + to);
-        let spread = (0..LINES).map(|line| from + (to - from) * (line as f64 + 0.5) / LINES as f64);
-        // Coordinates that a hand can set; round walls are measured through their middle.
-        for across in spread.map(|at| (2.0 * at).round() / 2.0).chain([middle]) {
-            for share in HEIGHTS {
-                let z = tip + nm(share * mm(top - tip));
-                let pairs = |at: f64| pairs(walls, along, at, z);
-                for pair in pairs(across) {
-                    let same = |by: f64| pairs(across + by).into_iter().find(|other| other.is_alike(&pair));
-                    // A jaw finds the apex of a round wall by itself.
-                    let is_round = pair.kind() == Kind::Diameter;
-                    if !is_round && (same(JAW).is_none() || same(-JAW).is_none()) {
-                        continue;
-                    }
-                    let beside = [-BY_HAND, BY_HAND].map(|by| same(by).unwrap_or(pair));
-                    let noise = Offset::from_nm(uncertainty.nm() / 4);
-                    touches.extend([pair, beside[0], beside[1]].map(|pair| pair.observation(noise)));
-                    planned.push(PlannedDimension {
-                        contour: contour.clone(),
-                        kind: pair.kind().name(),
-                        along: along.of(["x", "y"]),
-                        across_mm: across,
-                        z_mm: (z - Position::ZERO).nm() as f64 / 1e6,
-                        walls_mm: [pair.first.at_mm, pair.second.at_mm],
-                        nominal_mm: pair.second.at_mm - pair.first.at_mm,
-                        why: String::new(),
-                    });
-                }
-            }
-        }
-    }
-    let places = places(&path);
-    let count = touches.len();
-    touches.extend(places);
-    let rows = rows(&path, &estimate, &mut touches, progress);
-    let candidates = planned.into_iter().zip(rows.chunks(3).zip(touches.chunks(3)));
-    let candidate = |(planned, (rows, touches)): (PlannedDimension, (&[Row], &[Observation]))| {
-        let noise = touches[0].deviation();
-        let set = hypot_nm(noise, (touches[2].error - touches[1].error).scaled(Real::HALF));
-        let scale = mm(noise) / mm(set);
-        Candidate { planned, row: rows[0].map(|sensitivity| sensitivity * scale) }
-    };
-    let certain = rows[count..].iter().zip(&touches[count..]).map(|(row, touch)| wall_row(row, mm(touch.deviation())));
-    Ok((candidates.map(candidate).collect(), certain.collect()))
+/// A wall on a line, and the contour that it is of.
+#[derive(Clone, Copy)]
+struct Seen {
+    wall: usize,
+    crossing: Crossing,
 }
 
 /// Two walls that face each other, or away from each other, at a height.
 #[derive(Clone, Copy)]
 struct Pair {
-    first: Crossing,
-    second: Crossing,
+    first: Seen,
+    second: Seen,
 }
 
+/// Cosine of 1°: nearer to square than a reading has to be.
+const SQUARE: f64 = 0.999_85;
+/// Walls nearer to each other than this are alike, mm.
+const ALIKE: f64 = 0.002;
+
 impl Pair {
+    fn is_between_contours(&self) -> bool {
+        self.first.wall != self.second.wall
+    }
+
+    fn nominal_mm(&self) -> f64 {
+        self.second.crossing.at_mm - self.first.crossing.at_mm
+    }
+
     fn kind(&self) -> Kind {
-        match (self.first.is_round && self.second.is_round, self.first.towards < 0.0) {
+        let [first, second] = [&self.first.crossing, &self.second.crossing];
+        match (first.is_round && second.is_round && !self.is_between_contours(), first.towards < 0.0) {
             (true, _) => Kind::Diameter,
             (false, true) => Kind::Width,
             (false, false) => Kind::Thickness,
         }
     }
 
-    /// Whether a jaw that lies against one lies against the other.
-    fn is_alike(&self, other: &Self) -> bool {
-        let off = [self.first.at_mm - other.first.at_mm, self.second.at_mm - other.second.at_mm];
-        self.kind() == other.kind() && off.iter().all(|off| off.abs() < 0.002)
+    fn ends(&self) -> [&Crossing; 2] {
+        [&self.first.crossing, &self.second.crossing]
     }
 
-    fn observation(&self, noise: Offset) -> Observation {
-        let contact = &self.first.nominal;
-        Observation::new(contact.s, contact.height, Offset::ZERO, noise, contact.normal)
-            .with_across(self.second.nominal.s)
+    /// Whether both are between the same walls, and of one kind.
+    fn is_of(&self, other: &Self) -> bool {
+        (self.kind(), self.first.wall, self.second.wall) == (other.kind(), other.first.wall, other.second.wall)
+    }
+
+    /// Whether the same jaw lies flat against both walls to either side of the line, or at the apex of a round wall, which a hand finds
+    /// by itself: the least reading across a web or a ring, the largest across a bore.
+    fn is_flat(&self, beside: &[Option<Self>; 2]) -> bool {
+        if self.kind() == Kind::Diameter {
+            return true;
+        }
+        let [Some(below), Some(above)] = beside else { return false };
+        (0..2).all(|end| {
+            let [here, below, above] = [self, below, above].map(|pair| pair.ends()[end]);
+            let [from, to] = [below, above].map(|there| there.at_mm - here.at_mm);
+            let flat = from.abs() < ALIKE && to.abs() < ALIKE;
+            let apex = || [here, below, above].iter().all(|end| end.is_round) && (from - to).abs() < ALIKE;
+            flat || self.is_between_contours() && apex()
+        })
+    }
+
+    /// Half of the reading, or all of it, that is of a contour.
+    fn observation(&self, of: usize, number: u32, noise: Offset) -> Observation {
+        let own = if self.first.wall == of { &self.first } else { &self.second };
+        let contact = &own.crossing.nominal;
+        let point = Observation::new(contact.s, contact.height, Offset::ZERO, noise, contact.normal);
+        if self.is_between_contours() {
+            point.paired(number)
+        } else {
+            point.with_across(self.second.crossing.nominal.s)
+        }
     }
 }
 
-/// Cosine of 1°: nearer to square than a reading has to be.
-const SQUARE: f64 = 0.999_85;
+/// A pair of walls on a line that may be measured, and what is measured half a millimetre to either side of it.
+struct Faced {
+    pair: Pair,
+    beside: [Pair; 2],
+    along: Axis,
+    across_mm: f64,
+    z: Position,
+}
 
-/// The pairs of walls on a line.
-fn pairs(walls: &Walls<'_>, along: Axis, across: f64, z: Position) -> Vec<Pair> {
-    let crossings = walls.crossings(along, across, z).unwrap_or_default();
-    let square = |c: &Crossing| c.towards.abs() > SQUARE;
-    crossings
+impl Faced {
+    /// Where it is: its axis, line, height and walls, nm.
+    fn place(&self) -> (bool, [i64; 4]) {
+        let [from, to] = self.pair.ends().map(|end| nm(end.at_mm).nm());
+        (self.along == Axis::X, [nm(self.across_mm).nm(), (self.z - Position::ZERO).nm(), from, to])
+    }
+
+    fn planned(&self, passes: &[Pass]) -> PlannedDimension {
+        let Pair { first, second } = self.pair;
+        let name = |seen: Seen| passes.get(seen.wall).filter(|_| passes.len() > 1).map(name);
+        let [from, to] = [first, second].map(|seen| seen.crossing.at_mm);
+        PlannedDimension {
+            contour: name(first),
+            to_contour: name(second).filter(|_| self.pair.is_between_contours()),
+            kind: self.pair.kind().name(),
+            along: self.along.of(["x", "y"]),
+            across_mm: self.across_mm,
+            z_mm: (self.z - Position::ZERO).nm() as f64 / 1e6,
+            walls_mm: [from, to],
+            nominal_mm: self.pair.nominal_mm(),
+            why: String::new(),
+        }
+    }
+}
+
+/// The walls of some contours.
+struct Part<'w, 'a> {
+    walls: &'w [Walls<'a>],
+    /// The work offset of each; `None` where the program has shifted it, and all of one contour alone.
+    offsets: Vec<Option<u16>>,
+}
+
+impl<'w, 'a> Part<'w, 'a> {
+    fn of(walls: &'w [Walls<'a>]) -> Self {
+        let offset = |walls: &Walls<'_>| PartProgram::read(walls.pass()).ok().map(|program| program.work_offset);
+        let offsets = if walls.len() > 1 { walls.iter().map(offset).collect() } else { vec![None] };
+        Self { walls, offsets }
+    }
+
+    /// Whether the coordinates of two contours are of one origin.
+    fn share_origin(&self, a: usize, b: usize) -> bool {
+        let offset = |wall: usize| self.offsets.get(wall).copied().flatten();
+        a == b || offset(a).is_some() && offset(a) == offset(b)
+    }
+}
+
+/// All that may be measured on the walls of a part.
+fn faced(part: &Part<'_, '_>) -> Vec<Faced> {
+    let mut found: Vec<Faced> = Vec::new();
+    // One between two contours is seen from both.
+    let mut known = BTreeSet::new();
+    for (own, wall) in part.walls.iter().enumerate() {
+        let [tip, top] = wall.heights();
+        for along in [Axis::X, Axis::Y] {
+            let Some([from, to]) = wall.extent(along.other()) else { continue };
+            let middle = 0.5 * (from + to);
+            let spread = (0..LINES).map(|line| from + (to - from) * (line as f64 + 0.5) / LINES as f64);
+            // Coordinates that a hand can set; round walls are measured through their middle.
+            for across_mm in spread.map(|at| (2.0 * at).round() / 2.0).chain([middle]) {
+                for share in HEIGHTS {
+                    let z = tip + nm(share * mm(top - tip));
+                    let pairs = |at: f64| pairs(part, own, along, at, z);
+                    let here = pairs(across_mm);
+                    if here.is_empty() {
+                        continue;
+                    }
+                    let [jaw, hand] = [JAW, BY_HAND].map(|by| [-by, by].map(|by| pairs(across_mm + by)));
+                    for pair in here {
+                        let same = |there: &Vec<Pair>| there.iter().find(|other| other.is_of(&pair)).copied();
+                        if !pair.is_flat(&jaw.each_ref().map(same)) {
+                            continue;
+                        }
+                        let beside = hand.each_ref().map(|there| same(there).unwrap_or(pair));
+                        let faced = Faced { pair, beside, along, across_mm, z };
+                        if known.insert(faced.place()) {
+                            found.push(faced);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    found
+}
+
+/// The pairs of walls on a line that an instrument reaches, of which at least one is of a contour.
+fn pairs(part: &Part<'_, '_>, own: usize, along: Axis, across: f64, z: Position) -> Vec<Pair> {
+    let on_line = |(wall, walls): (usize, &Walls<'_>)| {
+        let reaches = walls.extent(along.other()).is_some_and(|[from, to]| from <= across && across <= to);
+        let crossings = if reaches && part.share_origin(own, wall) {
+            walls.crossings(along, across, z).unwrap_or_default()
+        } else {
+            Vec::new()
+        };
+        crossings.into_iter().map(move |crossing| Seen { wall, crossing })
+    };
+    let mut seen: Vec<Seen> = part.walls.iter().enumerate().flat_map(on_line).collect();
+    seen.sort_by(|a, b| a.crossing.at_mm.total_cmp(&b.crossing.at_mm));
+    let of_one: Vec<Seen> = seen.iter().filter(|seen| seen.wall == own).copied().collect();
+    let pair = |pair: &[Seen]| Pair { first: pair[0], second: pair[1] };
+    let between = seen
         .windows(2)
-        .filter(|pair| pair[0].towards * pair[1].towards < 0.0 && pair.iter().all(square))
-        .map(|pair| Pair { first: pair[0], second: pair[1] })
-        .collect()
+        .map(pair)
+        .filter(|pair| pair.is_between_contours() && (pair.first.wall == own || pair.second.wall == own));
+    let faces = |pair: &Pair| {
+        let [first, second] = pair.ends().map(|end| end.towards);
+        first * second < 0.0 && first.abs() > SQUARE && second.abs() > SQUARE
+    };
+    let reached = |pair: &Pair| {
+        let [from, to] = pair.ends().map(|end| end.at_mm);
+        let mut others = seen.iter().map(|seen| seen.crossing.at_mm);
+        match pair.first.crossing.towards < 0.0 {
+            true => others.all(|at| at <= from || to <= at),
+            false => others.all(|at| (from..=to).contains(&at) || at < from - JAW_ROOM || to + JAW_ROOM < at),
+        }
+    };
+    of_one.windows(2).map(pair).chain(between).filter(faces).filter(reached).collect()
+}
+
+/// What is expected of a reading: on its line and to either side of it.
+#[derive(Clone)]
+struct Said {
+    /// Change per prior standard deviation, mm.
+    change: Row,
+    /// Standard deviation of the reading, mm.
+    deviation_mm: f64,
+    /// Errors half a millimetre below and above the line, mm.
+    beside_mm: [f64; 2],
+}
+
+impl Said {
+    /// Of the readings on its line and beside it.
+    fn of(rows: &[Row], touches: &[Observation]) -> Self {
+        let deviation_mm = mm(touches[0].deviation());
+        Self {
+            change: rows[0].map(|sensitivity| sensitivity * deviation_mm),
+            deviation_mm,
+            beside_mm: [mm(touches[1].error), mm(touches[2].error)],
+        }
+    }
+
+    /// Of a reading of two walls.
+    fn mean(&self, other: &Self) -> Self {
+        let mean = |a: f64, b: f64| 0.5 * (a + b);
+        Self {
+            change: std::array::from_fn(|k| mean(self.change[k], other.change[k])),
+            deviation_mm: mean(self.deviation_mm, other.deviation_mm),
+            beside_mm: [0, 1].map(|k| mean(self.beside_mm[k], other.beside_mm[k])),
+        }
+    }
+
+    /// Sensitivities: what a hand that sets the jaw beside the line adds belongs to the noise.
+    fn row(&self) -> Row {
+        let set = 0.5 * (self.beside_mm[1] - self.beside_mm[0]);
+        let deviation = self.deviation_mm.hypot(set);
+        self.change.map(|change| change / deviation)
+    }
+}
+
+/// What is expected of all that may be measured on a contour, in their order, and the rows of its wall, which is to become certain.
+fn readings(
+    pass: &Pass,
+    of: usize,
+    faced: &[Faced],
+    uncertainty: Offset,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(Vec<Said>, Vec<Row>), Failure> {
+    let mut buffer = PathBuffer::default();
+    let path = pass.sample(&mut buffer)?;
+    let prior = pass.core.prior(path.setup().law);
+    let estimate = Estimate::stated(&prior);
+    let noise = Offset::from_nm(uncertainty.nm() / 4);
+    let mut touches = Vec::new();
+    for (number, faced) in (0u32..).zip(faced) {
+        if [faced.pair.first.wall, faced.pair.second.wall].contains(&of) {
+            let [below, above] = &faced.beside;
+            touches.extend([&faced.pair, below, above].map(|pair| pair.observation(of, number, noise)));
+        }
+    }
+    let count = touches.len();
+    touches.extend(places(&path));
+    let rows = rows(&path, &estimate, &mut touches, progress);
+    let (expected, wall) = (rows[..count].chunks(3), &rows[count..]);
+    let said = expected.zip(touches.chunks(3)).map(|(rows, touches)| Said::of(rows, touches));
+    let certain = wall.iter().zip(&touches[count..]).map(|(row, touch)| wall_row(row, mm(touch.deviation())));
+    Ok((said.collect(), certain.collect()))
 }
 
 /// Readings of the wall itself, spread along it and over its height.

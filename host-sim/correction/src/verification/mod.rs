@@ -54,7 +54,7 @@ mod wall_sensitivity;
 pub use candidates::KeptOff;
 pub use dialect::{ProbeDialect, write};
 pub use dimension_text::{sheet, table};
-pub use dimensions::{DimensionPlan, PlannedDimension, USUAL_DIMENSIONS, plan_dimensions};
+pub use dimensions::{DimensionPlan, DimensionSettings, PlannedDimension, USUAL_DIMENSIONS, plan_dimensions};
 pub use heights::Height;
 pub use next::{Measured, plan_next};
 pub use part_program::PartProgram;

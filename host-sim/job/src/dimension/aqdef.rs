@@ -12,7 +12,8 @@
 //! | K2101, K2110, K2111 | its nominal, its limits |
 //! | K2142 | its unit |
 //!
-//! Where a dimension was taken the format does not say: that is the file of dimensions' part.
+//! Its text is UTF-8 or, as most programs write it, that of Windows-1252. Where a dimension was taken the format does not say: that is
+//! the file of dimensions' part.
 
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{InputError, Source};
@@ -44,7 +45,7 @@ impl Results {
     /// # Errors
     /// `M050` for one that is none of this format.
     pub(super) fn of(source: Source) -> Result<Self, InputError> {
-        let text = String::from_utf8_lossy(source.bytes()).into_owned();
+        let text = decoded(&source)?;
         let mut all: Vec<Characteristic> = Vec::new();
         let mut common = Characteristic::default();
         for (line, text) in (1u32..).zip(text.lines()) {
@@ -95,7 +96,15 @@ impl Results {
     /// `M050` where there is none, or its unit is no length.
     pub(super) fn value(&self, name: &str) -> Result<Decimal, InputError> {
         let named = |c: &&Characteristic| c.name == name || c.number == name;
-        let Some(found) = self.characteristics.iter().find(named) else {
+        let mut all = self.characteristics.iter().filter(named);
+        let first = all.next();
+        if all.next().is_some() {
+            let found = format!("{} has several characteristics \"{name}\"", self.source.name());
+            let help =
+                "name the [[dimension]] by the number of its characteristic (K2001), or rename the characteristic";
+            return Err(InputError::new(M050, found, "one of that name", help).at(&self.source, 0..0));
+        }
+        let Some(found) = first else {
             let names: Vec<&str> = self.characteristics.iter().map(|c| c.name.as_str()).take(12).collect();
             let found = format!("{} has no characteristic \"{name}\"", self.source.name());
             return Err(M050.error(found, format!("one of {}", names.join(", "))).at(&self.source, 0..0));
@@ -107,7 +116,7 @@ impl Results {
         // A shift of the decimal point is exact.
         let factor = match found.unit.to_lowercase().as_str() {
             "" | "mm" => "",
-            "µm" | "um" | "\u{3bc}m" => "e-3",
+            "µm" | "um" | "\u{3bc}m" | "micron" => "e-3",
             "cm" => "e1",
             "m" => "e3",
             _ => {
@@ -144,6 +153,20 @@ impl Characteristic {
     }
 }
 
+/// The text of a file, byte for byte where it is not UTF-8: Latin-1, which names and the sign for micro need no more of
+/// Windows-1252 than.
+fn decoded(source: &Source) -> Result<String, InputError> {
+    let bytes = source.bytes();
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        let found = format!("{} is UTF-16", source.name());
+        let help = "export it as ASCII or ANSI, or save it as UTF-8";
+        return Err(InputError::new(M050, found, "text in UTF-8 or ANSI", help).at(source, 0..2));
+    }
+    let text =
+        std::str::from_utf8(bytes).map_or_else(|_| bytes.iter().copied().map(char::from).collect(), str::to_owned);
+    Ok(text.trim_start_matches('\u{feff}').to_owned())
+}
+
 /// The characteristic of a place, which is made where there is none.
 fn at(all: &mut Vec<Characteristic>, place: usize) -> &mut Characteristic {
     if all.len() <= place {
@@ -170,6 +193,27 @@ mod tests {
         let refused = value("slot").unwrap_err();
         assert_eq!(refused.code(), "M050");
         assert!(refused.to_string().contains("pocket X, pocket Y, bore"), "{refused}");
+    }
+
+    #[test]
+    fn ansi_text_is_read_and_utf_16_and_a_name_that_stands_twice_are_named() {
+        let of = |bytes: Vec<u8>| Results::of(Source::new("part.dfq", bytes));
+        let ansi: Vec<u8> =
+            FILE.replace("pocket X", "L\u{e4}nge").chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
+        assert!(std::str::from_utf8(&ansi).is_err());
+        let results = of(ansi).unwrap();
+        let value = |name| results.value(name).map(|value| value.as_mm().nm());
+        assert_eq!((value("L\u{e4}nge").unwrap(), value("bore").unwrap()), (39_872_000, 20_012_000));
+        let marked = of(format!("\u{feff}{FILE}").into_bytes()).unwrap();
+        assert_eq!(marked.value("pocket Y").unwrap().as_mm().nm(), 29_910_000);
+        let wide: Vec<u8> =
+            std::iter::once('\u{feff}').chain(FILE.chars()).flat_map(|c| (c as u16).to_le_bytes()).collect();
+        let refused = of(wide).unwrap_err();
+        assert!(refused.code() == "M050" && refused.to_string().contains("UTF-16"), "{refused}");
+        let twice = of(FILE.replace("pocket Y", "pocket X").into_bytes()).unwrap();
+        let refused = twice.value("pocket X").unwrap_err();
+        assert!(refused.code() == "M050" && refused.to_string().contains("several"), "{refused}");
+        assert_eq!(twice.value("17").unwrap().as_mm().nm(), 20_012_000);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The file of dimensions: `version = 1` and one `[[dimension]]` for each, every key with its unit.
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use truepath_core::units::{Offset, Position};
@@ -13,7 +14,7 @@ use truepath_ground::notation::{parse, version};
 
 use super::results::Results;
 use super::walls::Axis;
-use crate::codes::{M043, M044};
+use crate::codes::{M043, M044, M050};
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +73,21 @@ impl Instrument {
     /// Its name in the file.
     pub fn name(self) -> &'static str {
         INSTRUMENTS.iter().find(|(_, instrument)| *instrument == self).map_or("", |(name, _)| name)
+    }
+
+    /// Its name in a sentence.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Calliper => "calliper",
+            Self::Micrometer => "micrometer",
+            Self::BoreGauge => "bore gauge",
+            Self::Cmm => "measuring machine",
+        }
+    }
+
+    /// Whether it takes dimensions of a kind: a bore gauge reaches what lies around it alone.
+    pub fn measures(self, kind: Kind) -> bool {
+        self != Self::BoreGauge || matches!(kind, Kind::Width | Kind::Diameter)
     }
 
     /// What its reading stays within, ±, at two standard deviations: the limit of error that its class allows up to 100 mm
@@ -164,7 +180,18 @@ pub(super) fn read(source: &Source) -> Result<Vec<Dimension>, InputError> {
     if sections.is_empty() {
         return Err(root.missing("dimension", "at least one [[dimension]]"));
     }
-    sections.iter().map(|section| dimension(source, section, results.as_ref())).collect()
+    let mut taken = BTreeSet::new();
+    let one = |section: &Section<'_>| {
+        let from_results = results.is_some() && section.value("value_mm").is_none();
+        let dimension = dimension(source, section, results.as_ref())?;
+        if from_results && !taken.insert(dimension.name.clone()) {
+            let found = format!("two dimensions take the value of \"{}\"", dimension.name);
+            let help = "give every characteristic and its [[dimension]] a name of their own";
+            return Err(InputError::new(M050, found, "one for each characteristic", help).at(source, section.place()));
+        }
+        Ok(dimension)
+    };
+    sections.iter().map(one).collect()
 }
 
 /// A key of a value with nothing behind it, which is no TOML.

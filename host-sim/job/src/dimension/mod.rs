@@ -40,5 +40,6 @@ pub use walls::{Axis, Crossing, Walls};
 /// # Errors
 /// What is wrong with either, with its place.
 pub(crate) fn read(source: &Source) -> Result<Vec<Dimension>, InputError> {
-    if is_qif(source.bytes()) { measured::read(source) } else { file::read(source) }
+    let is_document = source.name().to_lowercase().ends_with(".qif") || is_qif(source.bytes());
+    if is_document { measured::read(source) } else { file::read(source) }
 }

@@ -1,5 +1,6 @@
 //! Which walls a dimension is between, and what it says of them.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use truepath_core::probe::{Contact, Reading, Rejected};
@@ -15,6 +16,9 @@ use crate::codes::{M045, M046, M047, M048, M049, M051};
 const FAR: f64 = 2.0;
 /// Cosine of 3°: a wall farther from square is not what a jaw lies against.
 const SQUARE: f64 = 0.998_63;
+
+/// Lines nearer to each other than this are one, mm: nearer than a hand keeps to it.
+const ONE_LINE: f64 = 0.5;
 
 /// A dimension on the walls it was measured between.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,14 +84,23 @@ struct Candidate {
 #[derive(Clone, Copy)]
 struct Seen {
     wall: usize,
+    /// Coordinate of the line across its direction, mm.
+    across: f64,
     z: Position,
     crossing: Crossing,
 }
 
 impl Candidate {
-    /// Middle of what is measured, mm.
-    fn middle(&self, face: Option<f64>) -> f64 {
-        0.5 * (self.first.at_mm + self.second.map_or(face.unwrap_or(self.first.at_mm), |second| second.at_mm))
+    /// How far a coordinate along the axis is outside of what is measured, 0 within it, and from its middle, mm.
+    fn off(&self, at: f64, face: Option<f64>) -> [f64; 2] {
+        let end = self.second.map_or(face.unwrap_or(self.first.at_mm), |second| second.at_mm);
+        let [middle, half] = [0.5 * (self.first.at_mm + end), 0.5 * (self.first.at_mm - end).abs()];
+        let off = (at - middle).abs();
+        [(off - half).max(0.0), off]
+    }
+
+    fn fits(&self, value: f64) -> bool {
+        (self.nominal_mm - value).abs() < FAR
     }
 
     fn words(&self, along: Axis) -> String {
@@ -121,7 +134,7 @@ pub(crate) fn placed(
         match wall.crossings(along, across, z) {
             Ok(crossings) => {
                 candidates.extend(among(&crossings, dimension, number, z));
-                seen.extend(crossings.into_iter().map(|crossing| Seen { wall: number, z, crossing }));
+                seen.extend(crossings.into_iter().map(|crossing| Seen { wall: number, across, z, crossing }));
             }
             Err(Rejected::OffHeight { .. }) => heights.push(wall.heights()),
             Err(_) => {}
@@ -135,18 +148,13 @@ pub(crate) fn placed(
         .into());
     }
     let all: Vec<Crossing> = seen.iter().map(|seen| seen.crossing).collect();
+    let (between, at_other_heights) = between_contours(source, dimension, seen);
+    candidates.extend(between);
     let chosen = match chosen(source, dimension, candidates, &all) {
-        // What no contour has by itself may lie between two.
-        Err(refused) if refused.code() != M049.code => {
-            let between = between_contours(source, dimension, seen)?;
-            if between.is_empty() {
-                return Err(refused.into());
-            }
-            self::chosen(source, dimension, between, &all)
-                .map_err(|far| if far.code() == M049.code { far } else { refused })
-        }
-        chosen => chosen,
-    }?;
+        // What is nothing of one height may be something of two.
+        Err(refused) if refused.code() != M049.code => return Err(at_other_heights.unwrap_or(refused).into()),
+        chosen => chosen?,
+    };
     refuse_oblique(source, dimension, &chosen)?;
     let file_line = source.line_column(dimension.value_span.start).0;
     let file_line = u32::try_from(file_line).unwrap_or(u32::MAX);
@@ -172,34 +180,37 @@ fn face(kind: Kind, a: &Crossing, b: &Crossing) -> bool {
     }
 }
 
-/// What a kind may be between a wall of one contour and the next wall on the line, of another one.
-///
-/// # Errors
-/// `M051` where a height above the tip is another one for either.
-fn between_contours(source: &Source, dimension: &Dimension, mut seen: Vec<Seen>) -> Result<Vec<Candidate>, InputError> {
+/// What a kind may be between a wall of one contour and the next wall on the line, of another one; and, where its height above
+/// the tip is another one for either, what is wrong with that (`M051`).
+fn between_contours(
+    source: &Source,
+    dimension: &Dimension,
+    mut seen: Vec<Seen>,
+) -> (Vec<Candidate>, Option<InputError>) {
+    let (mut candidates, mut at_other_heights) = (Vec::new(), None);
     if dimension.face.is_some() {
-        return Ok(Vec::new());
+        return (candidates, at_other_heights);
     }
     seen.sort_by(|a, b| a.crossing.at_mm.total_cmp(&b.crossing.at_mm));
-    let faces =
-        |pair: &&[Seen]| pair[0].wall != pair[1].wall && face(dimension.kind, &pair[0].crossing, &pair[1].crossing);
-    let candidate = |pair: &[Seen]| {
+    for pair in seen.windows(2) {
         let [first, second] = [pair[0].crossing, pair[1].crossing];
-        let walls = [pair[0].wall, pair[1].wall];
+        // Through the middle of either is one line only where both middles are.
+        let on_one_line = (pair[0].across - pair[1].across).abs() < ONE_LINE;
+        if pair[0].wall == pair[1].wall || !on_one_line || !face(dimension.kind, &first, &second) {
+            continue;
+        }
         let nominal_mm = second.at_mm - first.at_mm;
-        if pair[0].z != pair[1].z {
-            if (nominal_mm - mm(dimension.value)).abs() >= FAR {
-                return Ok(None);
-            }
+        if pair[0].z == pair[1].z {
+            let walls = [pair[0].wall, pair[1].wall];
+            candidates.push(Candidate { walls, z: pair[0].z, nominal_mm, first, second: Some(second) });
+        } else if (nominal_mm - mm(dimension.value)).abs() < FAR {
             let found =
                 format!("{} lies between two contours whose cutter's tips are not at one height", dimension.name);
-            return Err(M051
-                .error(found, "z_mm, a height in program coordinates")
-                .at(source, dimension.level_span.clone()));
+            let error = M051.error(found, "z_mm, a height in program coordinates");
+            at_other_heights = Some(error.at(source, dimension.level_span.clone()));
         }
-        Ok(Some(Candidate { walls, z: pair[0].z, nominal_mm, first, second: Some(second) }))
-    };
-    seen.windows(2).filter(faces).filter_map(|pair| candidate(pair).transpose()).collect()
+    }
+    (candidates, at_other_heights)
 }
 
 /// The coordinate of the line across its direction, mm.
@@ -235,6 +246,11 @@ fn among(crossings: &[Crossing], dimension: &Dimension, wall: usize, z: Position
     pairs.map(pair).collect()
 }
 
+/// One key behind the other.
+fn order<const N: usize>(a: &[f64; N], b: &[f64; N]) -> Ordering {
+    a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+}
+
 /// The candidate that is meant: the one around `near_mm`, or the only one that the value fits.
 fn chosen(
     source: &Source,
@@ -249,14 +265,18 @@ fn chosen(
     let candidates: Vec<Candidate> = match dimension.near {
         None => candidates,
         Some(near) => {
-            let least = |c: &Candidate| (c.middle(dimension.face) - near).abs();
-            candidates.into_iter().min_by(|a, b| least(a).total_cmp(&least(b))).into_iter().collect()
+            // Around it lie a pocket and the ring in it: the one that the value fits.
+            let key = |c: &Candidate| {
+                let [outside, off] = c.off(near, dimension.face);
+                [outside, f64::from(u8::from(!c.fits(value))), off]
+            };
+            let nearest = candidates.into_iter().min_by(|a, b| order(&key(a), &key(b)));
+            nearest.into_iter().collect()
         }
     };
     let listed: Vec<String> = candidates.iter().map(|candidate| candidate.words(along)).collect();
     let nominals: Vec<f64> = candidates.iter().map(|candidate| candidate.nominal_mm).collect();
-    let mut fitting: Vec<Candidate> =
-        candidates.into_iter().filter(|candidate| (candidate.nominal_mm - value).abs() < FAR).collect();
+    let mut fitting: Vec<Candidate> = candidates.into_iter().filter(|candidate| candidate.fits(value)).collect();
     match (fitting.pop(), fitting.is_empty()) {
         (Some(only), true) => Ok(only),
         (Some(_), false) => {

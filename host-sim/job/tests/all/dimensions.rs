@@ -198,11 +198,31 @@ fn between_contours_the_height_is_that_of_the_program_and_what_fits_nothing_is_r
     assert!(of_two_pockets("Z-9.", &dimension("thickness", "y_mm = 0.0", "10.02")).is_ok());
     assert!(of_two_pockets("Z-12.", &dimension("width", "y_mm = 0.0\nnear_mm = 80.0", "69.98")).is_ok());
     for (text, code) in [
-        (dimension("thickness", "y_mm = 0.0", "14.0"), "M045"),
+        (dimension("thickness", "y_mm = 0.0", "14.0"), "M047"),
         (dimension("width", "y_mm = 0.0", "10.02"), "M047"),
         (dimension("width", "y_mm = 0.0", "69.98"), "M049"),
     ] {
         let Err(Failure::Input(refused)) = of_two_pockets("Z-12.", &text) else { panic!("{text} is read") };
         assert_eq!(refused.code(), code, "{text}");
     }
+}
+
+#[test]
+fn near_mm_tells_the_ring_from_the_pocket_around_it_and_one_ring_from_the_other() {
+    let island = "G21 G90 G17\nT2 M6\nS3200 M3\nG0 X0 Y-15 Z10\nG1 Z-12 F600\nG1 X-20\nG1 Y15\nG1 X20\nG1 Y-15\nG1 X0\nG0 Z10\nM30\n";
+    let of_both = |text: &str| {
+        let file = Source::new("widths.toml", format!("version = 1\n{text}").into_bytes());
+        Measurement::of_files(vec![pass(POCKET), pass(island)], None, Some(&file))
+            .map(|all| all.into_iter().map(|(_, measurement)| measurement.observations().unwrap()).collect::<Vec<_>>())
+    };
+    let is_pair = |all: &[Vec<Observation>]| all.iter().all(|own| own.len() == 1 && own[0].pair().is_some());
+    // The island reaches from X-15 to X15: a ring of 20 mm to either side of it, and 70 mm across.
+    let ring = |near: f64| dimension("width", &format!("y_mm = 0.0\nnear_mm = {near}"), "19.96");
+    for near in [-25.0, -16.0, 34.0] {
+        assert!(is_pair(&of_both(&ring(near)).unwrap_or_else(|e| panic!("{}", e.render(Form::Plain)))), "{near}");
+    }
+    let pocket = of_both(&dimension("width", "y_mm = 0.0\nnear_mm = -16.0", "69.96")).unwrap();
+    assert!(pocket[0].len() == 1 && pocket[0][0].across().is_some() && pocket[1].is_empty());
+    let Err(Failure::Input(refused)) = of_both(&dimension("width", "y_mm = 0.0", "19.96")) else { panic!("two rings") };
+    assert_eq!(refused.code(), "M049");
 }

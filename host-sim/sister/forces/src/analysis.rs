@@ -405,7 +405,9 @@ fn assigned(raw: &[Raw], description: &Description) -> Result<(Assignment, Optio
         let sizes: Vec<String> = forces.iter().map(|r| format!("{:.4}", r.values[0].hypot(r.values[1]))).collect();
         let found = format!("mean forces of {} N are not those of a cut this deep at this feed", sizes.join(", "));
         let help = match by {
-            by if by > 1.0 => "the record is in kN: add unit = \"kN\" under [record]",
+            by if by > 1.0 => {
+                "the record is in kN: add unit = \"kN\" under [record]; or there is no cut in it: look at it, and at from_s and to_s"
+            }
             by if by < 1.0 => "the record is in N: add unit = \"N\" under [record]",
             _ => E007.remedy,
         };

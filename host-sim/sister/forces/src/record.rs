@@ -151,6 +151,14 @@ fn body(
         if fields.len() < names.len() {
             return Err(refused(format!("this line has {} fields", fields.len())));
         }
+        // A comment of LabVIEW stands behind the numbers; two numbers for each name are halves at a decimal comma.
+        let beyond = fields.iter().skip(names.len()).filter(|field| notation.number(field).is_some()).count();
+        if beyond > 0 && notation.separator == b',' {
+            let found = format!("this line has {} numbers for {} names", names.len() + beyond, names.len());
+            let help = "a decimal comma needs another separator than the comma: export with decimal points, or with tabs or semicolons";
+            let span = source.line_span(u32::try_from(at + 1).unwrap_or(u32::MAX));
+            return Err(InputError::new(E001, found, format!("{} numbers", names.len()), help).at(source, span));
+        }
         for (column, field) in columns.iter_mut().zip(&fields) {
             column.push(notation.number(field).ok_or_else(|| refused(format!("\"{field}\" is no number")))?);
         }
@@ -271,7 +279,12 @@ fn labview(source: &Source, text: &str, head: &[&str]) -> Result<Record, InputEr
 
 fn plain(source: &Source, text: &str, head: &[&str]) -> Result<Record, InputError> {
     let (from, notation) = first_numbers(head, 0).ok_or_else(|| no_numbers(source, "text"))?;
-    let count = notation.fields(head[from]).len();
+    let mut count = notation.fields(head[from]).len();
+    // Names for half of the numbers: the others are behind decimal commas, which `body` refuses.
+    let is_half = |line: &&str| !line.starts_with('#') && 2 * notation.fields(line).len() == count;
+    if notation.separator == b',' && count > 2 && head[..from].iter().any(|line| is_half(line)) {
+        count /= 2;
+    }
     let before: Vec<Vec<&str>> = head[..from]
         .iter()
         .filter(|l| !l.trim().is_empty() && !l.starts_with('#'))
@@ -346,5 +359,17 @@ mod tests {
         let error = read("Fx,Fy\n1,2\n3\n").expect_err("short");
         assert_eq!((error.code(), error.line_column()), ("E001", Some((3, 1))));
         assert_eq!(read("Fx,Fy\nnone\n").expect_err("nothing").code(), "E001");
+    }
+
+    #[test]
+    fn decimal_commas_between_commas_are_named() {
+        let dynoware = "DynoWare,Version 2.5\nSampling rate [Hz]:,10000\nTime,Fx,Fy\ns,N,N\n0,00000,2,172,-2,496\n0,00010,3,1,-2,5\n";
+        for (text, line) in [(dynoware, 5), ("t,Fx\n0,0,1,5\n0,1,2,5\n", 2)] {
+            let error = read(text).expect_err("halves of numbers");
+            assert_eq!((error.code(), error.line_column()), ("E001", Some((line, 1))), "{error}");
+            assert!(error.to_json()["error"]["help"].to_string().contains("decimal comma"), "{error}");
+        }
+        // What stands there that is no number does no harm, nor a comma at the end.
+        assert_eq!(read("t,Fx\n0,1.5,\n1,2.5,\n").expect("a comma at the end").columns[1], [1.5, 2.5]);
     }
 }

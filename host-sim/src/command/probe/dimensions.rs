@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path as FilePath, PathBuf};
 
-use truepath_correction::verification::{DimensionPlan, USUAL_DIMENSIONS, plan_dimensions, sheet, table};
+use truepath_correction::verification::{
+    DimensionPlan, DimensionSettings, USUAL_DIMENSIONS, plan_dimensions, sheet, table,
+};
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFile;
@@ -31,10 +33,14 @@ pub(super) struct Request<'a> {
     pub(super) instrument: Instrument,
     /// What a reading of it stays within, ±, mm; otherwise that of the instrument.
     pub(super) uncertainty: Option<f64>,
+    /// The largest that the instrument takes, mm; otherwise what is usual.
+    pub(super) reach: Option<f64>,
 }
 
 /// Most dimensions of a sheet.
 const MOST: u32 = 64;
+/// The largest that any instrument takes, as a dimension of the file, mm.
+const MOST_MM: f64 = 4000.0;
 
 /// Plans, writes both files and prints the dimensions.
 pub(super) fn main(request: &Request<'_>, terminal: &Terminal) -> Result<(), Failure> {
@@ -47,6 +53,10 @@ fn words(plan: &DimensionPlan, request: &Request<'_>) -> String {
     for (k, d) in plan.dimensions.iter().enumerate() {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{:>4}  {:<34} {:>8.2} {:>11.3}  {}", k + 1, d.words(), d.z_mm, d.nominal_mm, d.why);
+        let of = d.of();
+        if !of.is_empty() {
+            let _ = writeln!(text, "      {of}");
+        }
     }
     text += "\nuncertainty left of what the job states:";
     for unknown in &plan.unknowns {
@@ -82,6 +92,12 @@ fn run(request: &Request<'_>, progress: &mut dyn FnMut(f64)) -> Result<Dimension
             return Err(InputError::new(C001, found, "above 0, up to 1 mm", help).into());
         }
     };
+    if let Some(mm) = request.reach.filter(|mm| !(*mm > 0.0 && *mm <= MOST_MM)) {
+        let help = "give the largest dimension that the instrument takes, in millimetres: 150 for a calliper";
+        return Err(
+            InputError::new(C001, format!("--reach is {mm}"), format!("above 0, up to {MOST_MM} mm"), help).into()
+        );
+    }
     let paths = files(request);
     // Targets that may not be written are refused before the work.
     let [mut page, mut typed] = {
@@ -91,7 +107,9 @@ fn run(request: &Request<'_>, progress: &mut dyn FnMut(f64)) -> Result<Dimension
     let mut job = JobFile::read(request.job)?;
     job.which = request.which.clone();
     let passes = Pass::every(job)?;
-    let plan = plan_dimensions(&passes, (count, request.instrument, uncertainty), progress)?;
+    let (instrument, reach_mm) = (request.instrument, request.reach);
+    let settings = DimensionSettings { count, instrument, uncertainty, reach_mm };
+    let plan = plan_dimensions(&passes, &settings, progress)?;
     let title = passes.first().map_or("", |pass| pass.program.name());
     let [html, toml] = paths.each_ref().map(|path| path.file_name().unwrap_or_default().to_string_lossy().into_owned());
     let both = [(&mut page, sheet(&plan, title, &toml), &paths[0]), (&mut typed, table(&plan, &html), &paths[1])];

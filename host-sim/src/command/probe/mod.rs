@@ -48,9 +48,12 @@ pub struct Options {
     /// What the dimensions are taken with.
     #[arg(long, value_name = "NAME", requires = "dimensions", value_parser = one_of(&INSTRUMENTS), default_value = "calliper")]
     pub instrument: Instrument,
-    /// What a reading of it stays within, ±, mm [default: that of the instrument].
+    /// What a reading of it stays within, ± at two standard deviations (k = 2), mm [default: that of the instrument].
     #[arg(long, value_name = "MM", requires = "dimensions")]
     pub uncertainty: Option<f64>,
+    /// The largest dimension that it takes, mm [default: 150 with a calliper, otherwise no limit].
+    #[arg(long, value_name = "MM", requires = "dimensions")]
+    pub reach: Option<f64>,
     /// How far the stock may be from the allowance of the job, mm [default: half of the allowance, at least 0.3].
     #[arg(long, value_name = "MM", requires = "stock")]
     pub stock_margin: Option<f64>,
@@ -84,9 +87,9 @@ const FURTHER: u32 = 4;
 /// Plans, and prints the places.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     if let (true, Some(output)) = (options.dimensions, &options.output) {
-        let Options { job, which, force, points, instrument, uncertainty, .. } = options;
-        let (force, count, instrument, uncertainty) = (*force, *points, *instrument, *uncertainty);
-        let request = dimensions::Request { job, which, output, force, count, instrument, uncertainty };
+        let Options { job, which, force, points, instrument, uncertainty, reach, .. } = options;
+        let (force, count, instrument, uncertainty, reach) = (*force, *points, *instrument, *uncertainty, *reach);
+        let request = dimensions::Request { job, which, output, force, count, instrument, uncertainty, reach };
         return dimensions::main(&request, terminal);
     }
     let report = terminal.watch("choosing places", |progress| run(options, progress))?;

@@ -7,7 +7,7 @@ use truepath_core::units::Offset;
 use truepath_correction::correct::{CorrectedPass, MeasuredWall, correct_every, correct_pass};
 use truepath_correction::correction::{MeasuredCut, identify_together};
 use truepath_correction::verification::{
-    DimensionPlan, PlannedDimension, plan_dimensions, table, unseparated_contours,
+    DimensionPlan, DimensionSettings, PlannedDimension, plan_dimensions, table, unseparated_contours,
 };
 use truepath_ground::diagnostics::{Failure, Form, Source};
 use truepath_job::dimension::Instrument;
@@ -105,8 +105,8 @@ fn compared(seed: u64, sigma_mm: f64) -> [f64; 3] {
     let probe = shown(virtual_mill::probe(&pass, &first, &PLACES_MM, &LEVELS, 4.0));
     let points = shown(Measurement::read(&pass, &Source::new("probe.txt", probe.into_bytes())));
     let uncertainty = Offset::from_nm((2.0 * sigma_mm * 1e6).round() as i64);
-    let plan =
-        shown(plan_dimensions(std::slice::from_ref(&pass), (8, Instrument::Micrometer, uncertainty), &mut |_| ()));
+    let settings = DimensionSettings { count: 8, instrument: Instrument::Micrometer, uncertainty, reach_mm: None };
+    let plan = shown(plan_dimensions(std::slice::from_ref(&pass), &settings, &mut |_| ()));
     assert_eq!(plan.dimensions.len(), 8);
     let widths = of_dimensions(&pass, typed(&plan, &first, sigma_mm, seed));
     let [of_points, of_widths] =
