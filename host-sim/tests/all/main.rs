@@ -32,6 +32,7 @@ mod replay;
 mod report_page;
 mod several;
 mod shop_corners;
+mod signed_images;
 mod split_allowance;
 mod study;
 mod target_and_guard;
