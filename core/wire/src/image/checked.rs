@@ -70,7 +70,7 @@ impl<'a> Image<'a> {
         let (nodes, odd) = body.as_chunks::<NODE_BYTES>();
         if !odd.is_empty() || nodes.len() != header.node_count as usize {
             return Err(ImageError::Length {
-                expected: image_bytes(header.node_count as usize).saturating_add(block),
+                expected: image_bytes(header.node_count as usize).saturating_add(signature),
                 found,
             });
         }
