@@ -5,7 +5,7 @@ use crate::gcode::{
     CornerError, CycleError, ExpressionError, FlowError, GcodeErrorKind, KlartextError, ParameterError, SettingError,
     WarningKind,
 };
-use crate::image::ImageError;
+use crate::image::{ImageError, SignatureError};
 use crate::job::{Buffer, JobError};
 use crate::link::LinkError;
 use crate::probe::{ProbeErrorKind, Suspicion};
@@ -13,7 +13,7 @@ use crate::probe::{ProbeErrorKind, Suspicion};
 pub use crate::units::errors::{Row, number};
 
 /// The rows of every enum of errors.
-pub const CATALOGUE: [&[Row]; 16] = [
+pub const CATALOGUE: [&[Row]; 17] = [
     GcodeErrorKind::CATALOGUE,
     ParameterError::CATALOGUE,
     CompensationError::CATALOGUE,
@@ -27,6 +27,7 @@ pub const CATALOGUE: [&[Row]; 16] = [
     ProbeErrorKind::CATALOGUE,
     Suspicion::CATALOGUE,
     ImageError::CATALOGUE,
+    SignatureError::CATALOGUE,
     LinkError::CATALOGUE,
     JobError::CATALOGUE,
     Buffer::CATALOGUE,

@@ -5,6 +5,7 @@
 //! on a clock that never goes back, not even over a reset.
 //!
 //! ```
+//! use truepath_core::image::DeviceClass;
 //! use truepath_core::link::{Ask, PACKET_BYTES, Reply, Request, ResetCause, Response, decode, encode};
 //! use truepath_fw::config_service::{Board, IMAGE_BYTES, Memory};
 //! use truepath_fw::device::Device;
@@ -23,7 +24,7 @@
 //!     probe: &mut probe,
 //!     meter: &ProgressMeter::new(),
 //! };
-//! let board = Board { name: "in process", last_reset: ResetCause::PowerOn };
+//! let board = Board { name: "in process", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: false };
 //! let mut device = Device::start(flash, memory, board, 0);
 //!
 //! let mut packet = [0; PACKET_BYTES];

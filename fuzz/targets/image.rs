@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use truepath_core::image::Image;
+use truepath_core::image::{Image, Signed};
 
 fuzz_target!(|bytes: &[u8]| {
     judge(bytes);
@@ -19,11 +19,12 @@ fuzz_target!(|bytes: &[u8]| {
 });
 
 fn judge(bytes: &[u8]) {
+    let signed = Signed::of(bytes);
     match Image::new_checked(bytes) {
         Ok(image) => {
             assert!(image.len() >= 2 && image.nodes().count() == image.len());
             let mut text = String::new();
-            truepath_core::image::dump(&image, &mut text).expect("memory");
+            truepath_core::image::dump(&image, signed.as_ref(), &mut text).expect("memory");
             assert!(text.lines().count() > image.len());
         }
         Err(error) => assert!(!error.to_string().is_empty()),

@@ -23,7 +23,7 @@ use crate::command::{
     replay, simulate, split,
 };
 #[cfg(not(target_family = "wasm"))]
-use crate::command::{device, hil, manual, pack, study};
+use crate::command::{device, hil, key, manual, pack, study};
 use crate::help;
 use crate::streams;
 use crate::terminal::Terminal;
@@ -92,8 +92,11 @@ enum Command {
     Multiaxis(multiaxis::Options),
     /// Recorded setpoints through the device's own code.
     Replay(replay::Options),
-    /// A correction image as text.
+    /// A correction image as text; its signature.
     Image(image::Options),
+    /// Keys that sign correction images.
+    #[cfg(not(target_family = "wasm"))]
+    Key(key::Options),
     /// A board under setpoints and faults, compared with the host's own code.
     #[cfg(not(target_family = "wasm"))]
     Hil(hil::Arguments),
@@ -190,6 +193,8 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Multiaxis(options) => multiaxis::main(&options, terminal),
         Command::Replay(options) => replay::main(&options, terminal),
         Command::Image(options) => image::main(&options, terminal),
+        #[cfg(not(target_family = "wasm"))]
+        Command::Key(options) => key::main(&options, terminal),
         #[cfg(not(target_family = "wasm"))]
         Command::Hil(arguments) => hil::main(&arguments, terminal),
         #[cfg(not(target_family = "wasm"))]

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 use truepath_bench::{BenchError, Client, Committed, Wire};
-use truepath_core::link::{Ask, Item, Reply, ResetCause, SetpointFrame, Slot, setpoint_bytes};
+use truepath_core::link::{Ask, Denial, Item, Reply, ResetCause, SetpointFrame, Slot, setpoint_bytes};
 use truepath_core::rewrite::{AXES, Setpoint};
 
 /// Identity and sizes of a device.
@@ -24,6 +24,51 @@ pub struct Info {
     pub probe_bytes: u32,
     pub boots: u32,
     pub last_reset: ResetCause,
+    /// Whose images it takes; `None` of a firmware that takes every image and knows no keys.
+    pub trust: Option<Trust>,
+}
+
+/// Whose images a device takes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Trust {
+    /// Every image, because it has no key.
+    pub open: bool,
+    /// The numbers of its keys.
+    pub keys: Vec<String>,
+    /// What kind of device it is.
+    pub class: &'static str,
+    /// Whether its button was held at its last reset, so that keys can be provisioned.
+    pub provisioning: bool,
+}
+
+impl Trust {
+    /// In words, on lines of its own.
+    pub fn words(&self) -> String {
+        let class = self.class;
+        let mut text = if self.open {
+            format!("OPEN: takes every image, signed or not (class {class}, no key is provisioned)\n")
+        } else {
+            format!("takes images signed for {class} with {}\n", self.keys.join(" or "))
+        };
+        if self.provisioning {
+            text += "the button was held at the last reset: keys can be provisioned until the next one\n";
+        }
+        text
+    }
+}
+
+/// Asks whose images a device takes.
+///
+/// # Errors
+/// As [`Client::ask`].
+pub fn trust<W: Wire>(client: &mut Client<W>) -> Result<Trust, BenchError> {
+    let keys = client.keys()?;
+    Ok(Trust {
+        open: keys.keys.is_open(),
+        keys: keys.keys.iter().map(|key| key.id().to_string()).collect(),
+        class: keys.class.name(),
+        provisioning: keys.present,
+    })
 }
 
 /// Asks who is there.
@@ -31,6 +76,10 @@ pub struct Info {
 /// # Errors
 /// As [`Client::ask`].
 pub fn info<W: Wire>(client: &mut Client<W>) -> Result<Info, BenchError> {
+    let trust = match trust(client) {
+        Err(BenchError::Denied(Denial::Unknown)) => None,
+        other => Some(other?),
+    };
     match client.ask(Ask::Hello)? {
         Reply::Hello(h) => Ok(Info {
             board: h.board.to_owned(),
@@ -46,6 +95,7 @@ pub fn info<W: Wire>(client: &mut Client<W>) -> Result<Info, BenchError> {
             probe_bytes: h.probe_bytes,
             boots: h.boots,
             last_reset: h.last_reset,
+            trust,
         }),
         other => Err(BenchError::Foreign(format!("{other:?}"))),
     }

@@ -10,13 +10,13 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("Correct a part", &["init", "probe", "inspect", "correct", "learn", "plan", "split"]),
     ("Look closer", &["simulate", "compare", "plot", "canon", "forces"]),
     ("Keep and share", &["pack", "unpack", "study"]),
-    ("Coprocessor", &["image", "replay", "hil", "device"]),
+    ("Coprocessor", &["image", "key", "replay", "hil", "device"]),
     ("Without a probe, other processes", &["pocket", "bore", "multiaxis"]),
     ("This program", &["completions", "man", "help"]),
 ];
 
 /// Command lines of each command, and what they do.
-const EXAMPLES: [(&str, &[(&str, &str)]); 25] = [
+const EXAMPLES: [(&str, &[(&str, &str)]); 26] = [
     ("demo", &[("truepath demo", "three parts, reports and programs in out/demo")]),
     (
         "init",
@@ -70,7 +70,21 @@ const EXAMPLES: [(&str, &[(&str, &str)]); 25] = [
         &[("truepath multiaxis part.nc --machine machine.toml --tolerance 0.005 -o out.nc", "proved move by move")],
     ),
     ("replay", &[("truepath replay part.tpi --setpoints in.csv -o out.csv", "setpoints as the device answers them")]),
-    ("image", &[("truepath image part.tpi", "what the image holds")]),
+    (
+        "image",
+        &[
+            ("truepath image part.tpi", "what the image holds"),
+            ("truepath image sign part.tpi --key shop.key -o signed.tpi", "signed, to be taken by a device with a key"),
+            ("truepath image verify signed.tpi --key shop.key.pub", "whether it is signed with that key"),
+        ],
+    ),
+    (
+        "key",
+        &[
+            ("truepath key new shop.key", "a pair: shop.key and shop.key.pub"),
+            ("truepath key show shop.key", "the public key"),
+        ],
+    ),
     (
         "hil",
         &[("truepath hil part.tpi --board virtual --random 200000 --drop 0.01", "the emulated board, with faults")],

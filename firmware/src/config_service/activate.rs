@@ -65,7 +65,13 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         self.active = None;
         let buffer = self.image.take().ok_or(Denial::Busy)?;
         match slots::read(&mut self.flash, wanted.slot, wanted.crc, buffer) {
-            Ok(length) => self.put_in_use(buffer, length, settings, servo)?,
+            Ok(length) => {
+                if let Err(denial) = self.admit(buffer.get(..length).unwrap_or(&[])) {
+                    self.image = Some(buffer);
+                    return Err(denial);
+                }
+                self.put_in_use(buffer, length, settings, servo)?;
+            }
             Err(denial) => {
                 self.image = Some(buffer);
                 if matches!(denial, Denial::Image(_) | Denial::Checksum { .. } | Denial::Flash { .. })

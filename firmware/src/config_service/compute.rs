@@ -1,7 +1,7 @@
 //! The on-board correction, as a request: collect what it needs, lend it out, write the image it made.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::Image;
+use truepath_core::image::{Image, SignatureError};
 use truepath_core::link::{ComputeFailure, Computed, Denial, Item, Progress, Reply, Slot, Stage};
 
 use super::handler::{Handler, idle};
@@ -13,6 +13,10 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     pub fn compute<'s>(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         idle(servo)?;
         self.not_computing()?;
+        // Nobody could sign what is made here.
+        if !self.ledger.keys().is_open() {
+            return Err(Denial::Untrusted(SignatureError::Missing));
+        }
         let ram_uploads = self.ram_uploads.as_ref().ok_or(Denial::Busy)?;
         for (item, upload) in
             [(Item::Program, &ram_uploads.program), (Item::Job, &ram_uploads.job), (Item::Probe, &ram_uploads.probe)]

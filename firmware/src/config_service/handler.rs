@@ -1,6 +1,7 @@
 //! What the requests work on: the flash, the ledger, the slots, the buffers; and whether they may.
 
 use embedded_storage::nor_flash::NorFlash;
+use truepath_core::image::DeviceClass;
 use truepath_core::link::{ActiveImage, Denial, DeviceSettings, Item, Progress, ResetCause, Slot};
 use truepath_core::rewrite::Mode;
 
@@ -36,6 +37,10 @@ pub struct Board {
     pub name: &'static str,
     /// Why the last reset happened.
     pub last_reset: ResetCause,
+    /// What kind of device it is: an image can be signed for some kinds only.
+    pub class: DeviceClass,
+    /// Whether its button was held at the reset: somebody is there who may provision keys.
+    pub present: bool,
 }
 
 /// Everything the service keeps, apart from how requests come.
@@ -69,6 +74,13 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     /// The settings in force.
     pub fn settings(&self) -> DeviceSettings {
         self.ledger.now().settings_in_use()
+    }
+    /// Refused unless the image may be used here: any while no key is provisioned, else a signed one.
+    ///
+    /// Not inlined: the verification has frames of its own, which nothing else is to stand upon.
+    #[inline(never)]
+    pub fn admit(&self, image: &[u8]) -> Result<(), Denial> {
+        self.ledger.keys().admits(image, self.board.class).map_err(Denial::Untrusted)
     }
     /// Refused while a computation has the buffers.
     pub fn not_computing(&self) -> Result<(), Denial> {

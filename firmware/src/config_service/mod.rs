@@ -13,6 +13,7 @@
 mod activate;
 mod compute;
 mod handler;
+mod keys;
 mod operate;
 mod report;
 mod upload;
@@ -221,6 +222,8 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             Ask::Compute => self.compute(servo),
             Ask::Progress => Ok(Reply::Progress(self.progress())),
             Ask::Restart { .. } => Ok(Reply::Done),
+            Ask::Keys => Ok(Reply::Keys(self.keys())),
+            Ask::Provision(key) => self.provision(key, servo),
         }
     }
 }
@@ -240,6 +243,13 @@ const fn holds(ask: &Ask<'_>, mode: Mode) -> bool {
 const fn changes(ask: &Ask<'_>) -> bool {
     !matches!(
         ask,
-        Ask::Hello | Ask::Status | Ask::Check(_) | Ask::List | Ask::Settings | Ask::Recording { .. } | Ask::Progress
+        Ask::Hello
+            | Ask::Status
+            | Ask::Check(_)
+            | Ask::List
+            | Ask::Settings
+            | Ask::Recording { .. }
+            | Ask::Progress
+            | Ask::Keys
     )
 }

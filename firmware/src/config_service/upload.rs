@@ -99,7 +99,8 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             self.borrow_image(servo)?;
         }
         let buffer = self.image.as_deref_mut().ok_or(Denial::Busy)?;
-        let done = upload.commit(&mut self.flash, buffer);
+        let (keys, class) = (*self.ledger.keys(), self.board.class);
+        let done = upload.commit(&mut self.flash, buffer, &keys, class);
         self.back_to(before, servo);
         self.slots[usize::from(upload.slot())] = match done {
             Ok(held) => held,

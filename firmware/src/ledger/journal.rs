@@ -6,6 +6,8 @@
 //! programmed is found again, a place that was begun is passed over, and a sector whose erase was interrupted is
 //! erased again before it is used, because the newest record is not in it.
 //!
+//! The last place of a sector is for the keys ([`keys`]), which are written before its first record.
+//!
 //! A sector is good for 10,000 erases (DS12110), the journal so for 2.5 million records.
 //!
 //! Why not the map of `sequential-storage` 8: it takes a page for open when its first and last words are blank, so
@@ -16,16 +18,14 @@
 //! 28 CRC-32 of the 28 bytes before.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::crc32;
+use truepath_core::image::{KeyRing, PublicKey, crc32};
 
+use super::keys;
+use super::place::{PLACE_BYTES, PLACES};
 use crate::flash::{BLANK, LEDGER_SECTORS, SECTOR_BYTES, WORD_BYTES, Word, sector_start};
 
-/// Bytes of the place of a record.
-const PLACE_BYTES: usize = 1024;
 /// Most bytes of a payload.
 pub const PAYLOAD_BYTES: usize = PLACE_BYTES - WORD_BYTES;
-/// Places in a sector.
-pub const PLACES: usize = SECTOR_BYTES / PLACE_BYTES;
 /// Places that are tried when programming fails, before the journal gives up.
 const ATTEMPTS: usize = 3;
 /// Its digit is the version of the record: one of another version is no record.
@@ -88,7 +88,8 @@ impl Journal {
     /// Finds the newest record and copies its payload; gives the journal and the length of the payload, if any.
     pub fn open<F: NorFlash>(flash: &mut F, payload: &mut [u8; PAYLOAD_BYTES]) -> (Self, Option<usize>) {
         let mut newest: Option<(Place, Head)> = None;
-        for place in (0..LEDGER_SECTORS.count).flat_map(|sector| (0..PLACES).map(move |index| Place { sector, index }))
+        // In the last place there may be a record of a firmware that had no keys.
+        for place in (0..LEDGER_SECTORS.count).flat_map(|sector| (0..=PLACES).map(move |index| Place { sector, index }))
         {
             let Some(head) = read_head(flash, place) else { continue };
             let newer = newest.is_none_or(|(_, n)| head.sequence > n.sequence);
@@ -111,7 +112,7 @@ impl Journal {
     ///
     /// # Errors
     /// The payload is longer than [`PAYLOAD_BYTES`] or the flash failed at several places.
-    pub fn append<F: NorFlash>(&mut self, flash: &mut F, payload: &[u8]) -> Result<(), JournalFailed> {
+    pub fn append<F: NorFlash>(&mut self, flash: &mut F, payload: &[u8], keys: &KeyRing) -> Result<(), JournalFailed> {
         if payload.len() > PAYLOAD_BYTES {
             return Err(JournalFailed);
         }
@@ -121,7 +122,7 @@ impl Journal {
         for _ in 0..ATTEMPTS {
             let place = match self.next {
                 Some(place) => place,
-                None => self.begin_sector(flash)?,
+                None => self.begin_sector(flash, keys)?,
             };
             // Whatever becomes of it, this place is not tried again.
             self.next = (place.index + 1 < PLACES).then_some(Place { index: place.index + 1, ..place });
@@ -133,12 +134,22 @@ impl Journal {
         Err(JournalFailed)
     }
 
-    /// Erases the sector that does not hold the newest record; slow, once in [`PLACES`] records.
-    fn begin_sector<F: NorFlash>(&mut self, flash: &mut F) -> Result<Place, JournalFailed> {
+    /// Writes a key beside those of the sector of the newest record; whether that went well.
+    pub fn write_key<F: NorFlash>(&self, flash: &mut F, key: &PublicKey) -> bool {
+        self.current.is_some_and(|sector| keys::write(flash, sector, key))
+    }
+    /// Lets the next record begin the other sector.
+    pub fn leave_sector(&mut self) {
+        self.next = None;
+    }
+
+    /// Erases the sector that does not hold the newest record, and writes the keys there; slow, once in [`PLACES`] records.
+    fn begin_sector<F: NorFlash>(&mut self, flash: &mut F, keys: &KeyRing) -> Result<Place, JournalFailed> {
         let sector = self.current.map_or(0, |current| 1 - current);
         let start = sector_start(LEDGER_SECTORS.first + sector);
         flash.erase(start, start + SECTOR_BYTES as u32).map_err(|_| JournalFailed)?;
-        Ok(Place { sector, index: 0 })
+        let written = keys.iter().all(|key| keys::write(flash, sector, key));
+        if written { Ok(Place { sector, index: 0 }) } else { Err(JournalFailed) }
     }
 }
 

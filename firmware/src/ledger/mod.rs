@@ -1,17 +1,22 @@
-//! What the device remembers over resets: the active image, its settings, the armed passes of parts, its boots.
+//! What the device remembers over resets: the active image, its settings, the armed passes of parts, its boots, the keys
+//! it trusts.
 //!
-//! All of it is one record of the journal, so that every change is whole or has not happened. A copy in RAM is read;
-//! it changes only after the flash has taken the change.
+//! All of it but the keys is one record of the journal, so that every change is whole or has not happened. A copy in RAM
+//! is read; it changes only after the flash has taken the change. The keys have a page of their own (`keys`).
 
 mod journal;
+mod keys;
+mod place;
 
 use embedded_storage::nor_flash::NorFlash;
 use serde::{Deserialize, Serialize};
+use truepath_core::image::{KeyRing, KeyRingError, PublicKey};
 use truepath_core::link::{ActiveImage, DeviceSettings};
 use truepath_core::rewrite::{Spent, SpentList};
 
+pub use journal::JournalFailed;
 use journal::{Journal, PAYLOAD_BYTES};
-pub use journal::{JournalFailed, PLACES};
+pub use place::PLACES;
 
 /// The record. The order is that of importance: of a record that another firmware has written, as much is taken as
 /// can be read from the front.
@@ -49,6 +54,16 @@ impl Remembered {
 pub struct Ledger {
     journal: Journal,
     now: Remembered,
+    keys: KeyRing,
+}
+
+/// Why a key is not trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotProvisioned {
+    /// It cannot be used, or there is no room.
+    Ring(KeyRingError),
+    /// The flash did not take it.
+    Flash(JournalFailed),
 }
 
 impl Ledger {
@@ -59,7 +74,7 @@ impl Ledger {
         let (journal, length) = Journal::open(flash, &mut payload);
         let mut now = length.map(|length| read(&payload[..length])).unwrap_or_default();
         now.settings = now.settings.filter(|settings| settings.check().is_ok());
-        Self { journal, now }
+        Self { journal, now, keys: keys::read(flash) }
     }
     /// What is remembered.
     pub const fn now(&self) -> &Remembered {
@@ -79,11 +94,38 @@ impl Ledger {
         if next == self.now {
             return Ok(());
         }
-        let mut payload = [0; PAYLOAD_BYTES];
-        let bytes = postcard::to_slice(&next, &mut payload).map_err(|_| JournalFailed)?;
-        self.journal.append(flash, bytes)?;
+        self.append(flash, &next)?;
         self.now = next;
         Ok(())
+    }
+    fn append<F: NorFlash>(&mut self, flash: &mut F, next: &Remembered) -> Result<(), JournalFailed> {
+        let mut payload = [0; PAYLOAD_BYTES];
+        let bytes = postcard::to_slice(next, &mut payload).map_err(|_| JournalFailed)?;
+        self.journal.append(flash, bytes, &self.keys)
+    }
+
+    /// The keys whose images are taken; none while every image is.
+    pub const fn keys(&self) -> &KeyRing {
+        &self.keys
+    }
+    /// Trusts one more key, for ever. Takes two programmed words.
+    ///
+    /// # Errors
+    /// The key cannot be used or there is no room for it: nothing has changed. The flash did not take it: it is not
+    /// trusted now, and may be after the next reset.
+    pub fn provision<F: NorFlash>(&mut self, flash: &mut F, key: PublicKey) -> Result<(), NotProvisioned> {
+        let before = self.keys;
+        self.keys.add(key).map_err(NotProvisioned::Ring)?;
+        if self.keys == before || self.journal.write_key(flash, &key) {
+            return Ok(());
+        }
+        // The page is worn or used: the keys go with a record to the other sector.
+        self.journal.leave_sector();
+        let now = self.now;
+        self.append(flash, &now).map_err(|failed| {
+            self.keys = before;
+            NotProvisioned::Flash(failed)
+        })
     }
 }
 

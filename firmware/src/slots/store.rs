@@ -1,7 +1,7 @@
 //! A slot in the flash: its head and commit word, what it holds after any history, and its image.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{DEVICE_NODES, Image, crc32, image_bytes};
+use truepath_core::image::{DEVICE_NODES, Image, SIGNATURE_BYTES, crc32, image_bytes};
 use truepath_core::link::{Denial, Slot};
 
 use crate::flash::{Region, SECTOR_BYTES, SLOT_BYTES, SLOT_SECTORS, WORD_BYTES, Word};
@@ -10,8 +10,8 @@ use crate::flash::{Region, SECTOR_BYTES, SLOT_BYTES, SLOT_SECTORS, WORD_BYTES, W
 const COMMIT: u32 = WORD_BYTES as u32;
 /// Where the image begins in a slot.
 pub(super) const DATA: u32 = 2 * WORD_BYTES as u32;
-/// Most bytes of an image.
-pub const SLOT_IMAGE_BYTES: usize = image_bytes(DEVICE_NODES);
+/// Most bytes of an image, signed.
+pub const SLOT_IMAGE_BYTES: usize = image_bytes(DEVICE_NODES) + SIGNATURE_BYTES;
 
 const _: () = assert!(SLOT_IMAGE_BYTES + DATA as usize <= SLOT_BYTES);
 

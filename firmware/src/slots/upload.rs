@@ -1,7 +1,7 @@
 //! One upload into a slot, from `Begin` to the commit word.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::Binding;
+use truepath_core::image::{Binding, DeviceClass, KeyRing};
 use truepath_core::link::{Denial, Slot};
 
 use super::store::{FlashSlot, Header, Kind, image};
@@ -106,11 +106,22 @@ impl Upload {
     /// Reads the image back into `scratch`, checks it, and programs the commit word; gives what the slot then holds.
     ///
     /// # Errors
-    /// [`Denial::Incomplete`], with nothing changed; [`Denial::Image`] or [`Denial::Checksum`]: no usable image, or
-    /// another one, and the slot is marked so; [`Denial::Flash`].
-    pub fn commit<F: NorFlash>(&mut self, flash: &mut F, scratch: &mut [u8]) -> Result<Slot, Denial> {
+    /// [`Denial::Incomplete`], with nothing changed; [`Denial::Image`], [`Denial::Checksum`] or [`Denial::Untrusted`]: no
+    /// usable image, another one, or one that the keys do not admit, and the slot is marked so; [`Denial::Flash`].
+    pub fn commit<F: NorFlash>(
+        &mut self,
+        flash: &mut F,
+        scratch: &mut [u8],
+        keys: &KeyRing,
+        class: DeviceClass,
+    ) -> Result<Slot, Denial> {
         self.is_complete()?;
         let found = image(flash, self.place, &self.header, scratch).map(|image| image.settings().binding);
+        let bytes = scratch.get(..self.header.length as usize).unwrap_or(&[]);
+        let found = found.and_then(|binding| match keys.admits(bytes, class) {
+            Ok(()) => Ok(binding),
+            Err(error) => Err(Denial::Untrusted(error)),
+        });
         self.seal(flash, found)
     }
 

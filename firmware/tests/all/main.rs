@@ -16,5 +16,6 @@ mod wire_power;
 mod wire_reset;
 mod wire_setpoints;
 mod wire_settings;
+mod wire_signed;
 mod wire_support;
 mod wire_upload;

@@ -6,6 +6,7 @@ use std::rc::Rc;
 
 use crate::wire_support;
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
+use truepath_core::image::DeviceClass;
 use truepath_core::link::{
     Ask, CHUNK_BYTES, DeviceSettings, Item, PACKET_BYTES, Request, ResetCause, Response, decode, encode,
 };
@@ -85,7 +86,7 @@ impl Meter {
             meter: Box::leak(Box::new(ProgressMeter::new())),
         };
         let work = Work::default();
-        let board = Board { name: "test", last_reset: ResetCause::PowerOn };
+        let board = Board { name: "test", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: false };
         let device = Device::start(Counted(bank, Rc::clone(&work)), memory, board, 0);
         Self { device, work, id: 0, most: vec![] }
     }

@@ -45,6 +45,8 @@ fn asks(image: &[u8]) -> Vec<Ask<'_>> {
         Ask::Compute,
         Ask::Progress,
         Ask::Restart { watchdog: false },
+        Ask::Keys,
+        Ask::Provision(public(&owner(1))),
     ]
 }
 

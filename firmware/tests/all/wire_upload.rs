@@ -154,7 +154,7 @@ fn chunks_elsewhere_too_long_or_without_a_beginning_change_nothing() {
 fn what_is_too_long_is_refused_before_anything_is_erased() {
     let mut rig = Rig::new();
     let before = rig.operations();
-    for (item, most) in [(Item::Image, 384_292), (Item::Program, 4_096), (Item::Job, 512), (Item::Probe, 4_096)] {
+    for (item, most) in [(Item::Image, 384_372), (Item::Program, 4_096), (Item::Job, 512), (Item::Probe, 4_096)] {
         for length in [0, most + 1, u32::MAX] {
             let denied = rig.ask(Ask::Begin { item, length, crc: 1 }).unwrap_err();
             assert_eq!(denied, Denial::TooLong { item, length, most });

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use truepath_core::checksum::crc32;
 use truepath_core::link::{
-    Ask, CHUNK_BYTES, Denial, DeviceSettings, DeviceStatus, Item, LinkError, PACKET_BYTES, Reply, Request, Response,
-    Slot, decode, encode,
+    Ask, CHUNK_BYTES, Denial, DeviceKeys, DeviceSettings, DeviceStatus, Item, LinkError, PACKET_BYTES, Reply, Request,
+    Response, Slot, decode, encode,
 };
 
 use super::error::BenchError;
@@ -141,6 +141,16 @@ impl<W: Wire> Client<W> {
     pub fn settings(&mut self) -> Result<DeviceSettings, BenchError> {
         match self.ask(Ask::Settings)? {
             Reply::Settings(settings) => Ok(settings),
+            other => Err(foreign(&other)),
+        }
+    }
+    /// Whose images the device takes.
+    ///
+    /// # Errors
+    /// As [`Client::ask`].
+    pub fn keys(&mut self) -> Result<DeviceKeys, BenchError> {
+        match self.ask(Ask::Keys)? {
+            Reply::Keys(keys) => Ok(keys),
             other => Err(foreign(&other)),
         }
     }

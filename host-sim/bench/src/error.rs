@@ -98,6 +98,9 @@ fn remedy(denial: &Denial) -> &'static str {
         },
         Denial::NoImage { .. } => "truepath device upload FILE --activate",
         Denial::NotConfigured => "truepath device settings NAME=VALUE, with the limits of this machine",
+        Denial::Untrusted(error) => error.help(),
+        Denial::NotPresent => "hold the button of the board while it is reset, then ask again",
+        Denial::KeysFull => "the keys of this device are final: use one of them",
         Denial::Busy => "wait until the upload or the computation has ended",
         _ => "bring the device into the mode in which it takes this request",
     }

@@ -8,6 +8,7 @@ use truepath_core::cut::{Sample, State};
 use truepath_core::gcode::DeviceMemory;
 use truepath_core::geometry::{Block, Direction, Vector};
 use truepath_core::identify::Observation;
+use truepath_core::image::DeviceClass;
 use truepath_core::job::Workspace;
 use truepath_core::link::ResetCause;
 use truepath_core::probe::{Contact, Reading};
@@ -66,7 +67,7 @@ impl InProcess {
             probe: lasting(0, PROBE_BYTES),
             meter: Box::leak(Box::new(ProgressMeter::new())),
         };
-        let board = Board { name: "host", last_reset: ResetCause::PowerOn };
+        let board = Board { name: "host", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: false };
         let device = Device::start(Nor::erased(bytes, words), memory, board, 0);
         Ok(Self { device: Some(device), now_us: 0, output: vec![0; OUTPUT_BYTES], workspace: workspace() })
     }

@@ -399,5 +399,5 @@ fn written_image(
         .and_then(|()| job::write_image(core, found, path, blocks, &nodes, &mut bytes))
         .map_err(|error| pass.refused(&error))?;
     bytes.truncate(written.bytes);
-    Ok(bytes)
+    pass.job.signed(bytes)
 }

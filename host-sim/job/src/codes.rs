@@ -53,6 +53,12 @@ truepath_ground::codes! {
         / "touch it at more places, spread along the whole contour: truepath probe --stock writes the program",
     K006 => "touches that are not of the stock of this contour"
         / "check that the file is of this part before its finishing pass, in the work coordinates of its program, and allowance_mm in the job",
+    K020 => "a file that should hold keys and does not"
+        / "give a file that truepath key new wrote",
+    K021 => "a public key where a private one belongs, or the other way round"
+        / "the private key is the file named to truepath key new, the public one beside it ends with .pub",
+    K022 => "a private key that others can read"
+        / "chmod 600 it, and make a new pair if somebody may have seen it",
     N001 => "several features can be corrected, and none is named"
         / "add --feature and one of these names; each of them is a correction of its own",
     N002 => "no feature of that name"

@@ -41,4 +41,5 @@ pub mod probed_stock;
 mod qif;
 pub mod refusal;
 mod sharing;
+pub mod signing;
 pub mod surface;

@@ -1,35 +1,83 @@
-//! `truepath image`: a correction image as text.
+//! `truepath image`: a correction image as text; its signature.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use truepath_core::image::{Image, ImageError, dump};
+use clap::{Args, Subcommand};
+use truepath_core::image::{
+    DeviceClass, Image, ImageError, KeyRing, KeyRingError, PublicKey, SignatureError, Signed, dump, verify,
+};
+use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::files;
 use truepath_ground::output::write_file;
+use truepath_job::signing::{Signer, class, read_public};
 
 use crate::terminal::{Terminal, print};
 
 /// Which image.
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Options {
     /// The correction image.
-    file: PathBuf,
+    #[arg(required = true)]
+    file: Option<PathBuf>,
     /// Write to a file instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Replace the output file if it exists.
     #[arg(long, requires = "output")]
     force: bool,
+    #[command(subcommand)]
+    task: Option<Task>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Whether an image is signed with one of some keys: exit code 0, else 1.
+    Verify {
+        /// The correction image.
+        file: PathBuf,
+        /// A file of public keys; more than one may be named.
+        #[arg(long, value_name = "PUB", required = true)]
+        key: Vec<PathBuf>,
+        /// The class of device that is to take it; otherwise any.
+        #[arg(long = "for", value_name = "CLASS", value_parser = class)]
+        class: Option<DeviceClass>,
+    },
+    /// Signs an image, in place of the signature it may have.
+    Sign {
+        /// The correction image.
+        file: PathBuf,
+        /// The private key (truepath key new).
+        #[arg(long, value_name = "KEY")]
+        key: PathBuf,
+        /// Sign for devices of these classes only: board, linuxcnc, bench.
+        #[arg(long = "for", value_name = "CLASS", value_delimiter = ',', value_parser = class)]
+        classes: Vec<DeviceClass>,
+        /// The signed image.
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        /// Replace the output file if it exists.
+        #[arg(long)]
+        force: bool,
+    },
 }
 
 /// Prints the image.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
-    let bytes = read(&options.file)?;
-    let image = check(&bytes, &options.file)?;
+    let file = match (&options.task, &options.file) {
+        (Some(Task::Verify { file, key, class }), _) => return verified(file, key, *class, terminal),
+        (Some(Task::Sign { file, key, classes, output, force }), _) => {
+            return signed(file, &Signer::read(key, classes)?, (output, *force), terminal);
+        }
+        (None, Some(file)) => file,
+        (None, None) => return Err(Failure::Internal("an image without a name".to_owned())),
+    };
+    let bytes = read(file)?;
+    let image = check(&bytes, file)?;
     let mut text = String::new();
-    dump(&image, &mut text).map_err(|e| Failure::Internal(e.to_string()))?;
+    dump(&image, Signed::of(&bytes).as_ref(), &mut text).map_err(|e| Failure::Internal(e.to_string()))?;
     if terminal.json() {
         text = json(&text)?;
     }
@@ -37,6 +85,58 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
         Some(path) => Ok(write_file(path, options.force, text.as_bytes())?),
         None => print(text.as_bytes()),
     }
+}
+
+/// Verifies the signature of an image.
+fn verified(file: &Path, keys: &[PathBuf], class: Option<DeviceClass>, terminal: &Terminal) -> Result<(), Failure> {
+    let bytes = read(file)?;
+    check(&bytes, file)?;
+    let mut ring = KeyRing::default();
+    for path in keys {
+        for key in read_public(path)? {
+            ring.add(key).map_err(|error| refused_key(error, &key, path))?;
+        }
+    }
+    let untrusted = |error: SignatureError| {
+        let found = match error {
+            SignatureError::Missing => format!("{} is not signed", file.display()),
+            _ => format!("{}: {error}", file.display()),
+        };
+        InputError::of_core(error.code(), found, "an image signed with one of the keys", error.help()).in_file(file)
+    };
+    let signed = Signed::of(&bytes).ok_or_else(|| untrusted(SignatureError::Missing))?;
+    let any = DeviceClass::ALL.into_iter().find(|&one| signed.classes.holds(one));
+    let class = class.or(any).unwrap_or(DeviceClass::Board);
+    let key = verify(&bytes, &ring, class).map_err(untrusted)?.to_string();
+    let classes = signed.classes.to_string();
+    terminal
+        .tell(&serde_json::json!({ "key": key, "for": classes }), || format!("signed with key {key} for {classes}\n"))
+}
+
+fn refused_key(error: KeyRingError, key: &PublicKey, path: &Path) -> InputError {
+    match error {
+        KeyRingError::Key(error) => {
+            InputError::of_core(error.code(), error.to_string(), "", error.help()).in_file(path)
+        }
+        KeyRingError::Full => {
+            let found = format!("key {} is one too many", key.id());
+            let expected = format!("at most {} keys, as many as a device trusts", truepath_core::image::MOST_KEYS);
+            C001.error(found, expected).in_file(path)
+        }
+    }
+}
+
+/// Writes the signed form of an image.
+fn signed(file: &Path, signer: &Signer, to: (&Path, bool), terminal: &Terminal) -> Result<(), Failure> {
+    let bytes = read(file)?;
+    check(&bytes, file)?;
+    let bytes = signer.signed(&bytes)?;
+    let crc = Image::new_checked(&bytes).map_err(|e| Failure::Internal(e.to_string()))?.crc();
+    let (output, force) = to;
+    write_file(output, force, &bytes)?;
+    let (key, classes) = (signer.public().id().to_string(), signer.classes.to_string());
+    let value = serde_json::json!({ "key": key, "for": classes, "crc": format!("{crc:08x}"), "file": output });
+    terminal.tell(&value, || format!("image {crc:08x} signed with key {key} for {classes}: {}\n", output.display()))
 }
 
 /// The bytes of an image file.
@@ -75,7 +175,7 @@ fn json(text: &str) -> Result<String, Failure> {
             continue;
         };
         // Checksums are names, not quantities.
-        let value = match (name.ends_with("crc"), number(value), value) {
+        let value = match (name.ends_with("crc") || name == "signature_key", number(value), value) {
             (false, Some(n), _) => serde_json::Value::Number(n),
             (false, None, "true" | "false") => serde_json::Value::Bool(value == "true"),
             (false, None, list) if list.contains(' ') => {

@@ -18,6 +18,8 @@ mod history;
 pub mod image;
 pub mod init;
 pub mod inspect;
+#[cfg(not(target_family = "wasm"))]
+pub mod key;
 pub mod learn;
 #[cfg(not(target_family = "wasm"))]
 pub mod manual;

@@ -22,6 +22,7 @@ use truepath_ground::units::{float, mm};
 use truepath_job::job::{JobFile, ProbeFlags, ROUTES, Route, Which, one_of};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
+use truepath_job::signing::SignFlags;
 use truepath_report::{PlannedWall, planned_map_csv, planned_page};
 
 use super::correction_files::{contour_name, contour_place};
@@ -61,6 +62,9 @@ pub struct Options {
     /// Replace the files of an earlier run.
     #[arg(long, requires = "output")]
     pub force: bool,
+    /// Who signs an image.
+    #[command(flatten)]
+    pub sign: SignFlags,
     /// What is said of the probe file in place of the job.
     #[command(flatten)]
     pub probe_flags: ProbeFlags,
@@ -283,6 +287,7 @@ fn together(contours: &[ContourPlan]) -> String {
 /// Whatever is wrong with job, program, probe file or options, and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<PlanSummary, Failure> {
     let mut job = JobFile::read(&options.job)?;
+    job.signer = options.sign.signer()?;
     job.override_probe(&options.probe_flags)?;
     job.which = options.which.clone();
     let wanted = wanted(options, &job)?;

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 use truepath::command::{correct, inspect, simulate};
-use truepath_core::image::Image;
+use truepath_core::image::{DeviceClass, Image, KeyRing, verify};
 use truepath_correction::correct::{CorrectedPass, correct_pass};
 use truepath_ground::diagnostics::{Failure, Form, InputError, Source};
 use truepath_job::job::{JobFile, Route, Which};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
+use truepath_job::signing::{SignFlags, Signer};
 use truepath_plant::Machine;
 use truepath_trial::virtual_mill;
 
@@ -270,6 +271,15 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
     };
     let summary = inspect::run(&options).unwrap().summary;
     assert_eq!((summary.feature.unwrap().pass, summary.points), (2, 8));
+    let signer = Signer::of_seed(&[9; 32]);
+    std::fs::write(at("shop.key"), signer.text()).unwrap();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        std::fs::set_permissions(at("shop.key"), std::fs::Permissions::from_mode(0o600)).unwrap();
+    }
+    let mut keys = KeyRing::default();
+    keys.add(signer.public()).unwrap();
     for (route, files) in [
         (Route::Program, &["corrected.nc", "difference.txt"][..]),
         (Route::Coprocessor, &["correction.tpi", "correction-pass-1.tpi"][..]),
@@ -280,9 +290,15 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
             probe: Some(probe.clone()),
             output: out.clone(),
             route: Some(route),
+            sign: SignFlags { sign: Some(at("shop.key")), classes: vec![] },
             ..correct::Options::default()
         };
         correct::run(&options, &mut |_| ()).unwrap();
+        // Every image that is written is signed.
+        for name in files.iter().filter(|name| name.ends_with(".tpi")) {
+            let bytes = std::fs::read(out.join(name)).unwrap();
+            assert_eq!(verify(&bytes, &keys, DeviceClass::Board), Ok(signer.public().id()), "{name}");
+        }
         assert!(files.iter().all(|name| out.join(name).exists()), "{route:?}");
         let summary: serde_json::Value =
             serde_json::from_slice(&std::fs::read(out.join("summary.json")).unwrap()).unwrap();

@@ -33,6 +33,7 @@ mod report_page;
 mod rib;
 mod several;
 mod shop_corners;
+mod signed_images;
 mod split_allowance;
 mod study;
 mod target_and_guard;

@@ -32,6 +32,16 @@ const ALLOWED: &[(&str, &str)] = &[
     ("serde", "fields of messages"),
     ("serde_core", "the traits of serde"),
     ("postcard", "messages of the configuration link"),
+    ("ed25519-dalek", "signatures of images, outside the servo cycle"),
+    ("ed25519", "the bytes of a signature, for ed25519-dalek"),
+    ("signature", "the trait of a signature, for ed25519-dalek"),
+    ("curve25519-dalek", "the curve, for ed25519-dalek"),
+    ("sha2", "SHA-512, for ed25519-dalek"),
+    ("digest", "the trait of a hash, for sha2"),
+    ("block-buffer", "whole blocks for sha2"),
+    ("crypto-common", "traits for digest"),
+    ("hybrid-array", "arrays by type, for digest"),
+    ("subtle", "comparisons in constant time, for ed25519-dalek"),
 ];
 
 /// Features that would bring an allocator or the standard library.

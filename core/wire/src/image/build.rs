@@ -3,7 +3,8 @@
 use core::borrow::Borrow;
 
 use super::check::{MAX_NODES, reach_nm};
-use super::checked::{CRC_BYTES, image_bytes};
+use super::checked::image_bytes;
+use super::header::CRC_BYTES;
 use super::{
     FACTOR_ONE, FeedLaw, Field, HEADER_BYTES, Header, Image, ImageError, ImageNode, ImageSettings, NODE_BYTES, Node,
     crc32,

@@ -1,12 +1,10 @@
 //! The checked image.
 
-use super::header::{FLAG_CLOSED, FORMAT, MAGIC, SEMANTICS};
-use super::{HEADER_BYTES, Header, ImageError, ImageSettings, NODE_BYTES, Node, check, crc32, read};
+use super::block::{self, Signed};
+use super::header::{CRC_BYTES, FLAG_CLOSED, MAGIC, SEMANTICS};
+use super::{HEADER_BYTES, Header, ImageError, ImageSettings, NODE_BYTES, Node, SIGNATURE_BYTES, check, crc32, read};
 
-/// Bytes of the checksum at the end.
-pub(super) const CRC_BYTES: usize = 4;
-
-/// Bytes of an image with a number of nodes.
+/// Bytes of an image with a number of nodes, not signed.
 pub const fn image_bytes(nodes: usize) -> usize {
     nodes.saturating_mul(NODE_BYTES).saturating_add(HEADER_BYTES + CRC_BYTES)
 }
@@ -44,10 +42,7 @@ impl<'a> Image<'a> {
         let Some((body, stored)) = rest.split_last_chunk::<CRC_BYTES>() else {
             return Err(ImageError::Length { expected: least, found });
         };
-        let format = read::u16_at(head, 8);
-        if format != FORMAT {
-            return Err(ImageError::Format { found: format, expected: FORMAT });
-        }
+        let signed = block::format(read::u16_at(head, 8))?;
         let semantics = read::u32_at(head, 12);
         if semantics != SEMANTICS {
             return Err(ImageError::Semantics { found: semantics, expected: SEMANTICS });
@@ -65,9 +60,19 @@ impl<'a> Image<'a> {
             return Err(ImageError::Reserved);
         }
         let header = Header::decode(head);
+        let (body, signature) = if signed {
+            // The block itself is looked at here, whether its signature is good is another question.
+            Signed::of(bytes).ok_or(ImageError::Reserved)?;
+            body.split_last_chunk::<SIGNATURE_BYTES>().map_or((body, 0), |(body, _)| (body, SIGNATURE_BYTES))
+        } else {
+            (body, 0)
+        };
         let (nodes, odd) = body.as_chunks::<NODE_BYTES>();
         if !odd.is_empty() || nodes.len() != header.node_count as usize {
-            return Err(ImageError::Length { expected: image_bytes(header.node_count as usize), found });
+            return Err(ImageError::Length {
+                expected: image_bytes(header.node_count as usize).saturating_add(signature),
+                found,
+            });
         }
         Ok(Self { header, nodes, crc: stored })
     }

@@ -2,20 +2,25 @@
 
 use core::fmt::{self, Write};
 
-use super::{FACTOR_BITS, FORMAT, FineOffset, Image, RATIO_BITS, SEMANTICS};
+use super::{FACTOR_BITS, FORMAT, FineOffset, Image, RATIO_BITS, SEMANTICS, SIGNED_FORMAT, Signed};
 use truepath_units::Real;
 
 /// Writes an image as text: the head as `name = value` lines, then one line a node,
-/// `index x y chip_x chip_y edge_x edge_y` in millimetres, program coordinates.
+/// `index x y chip_x chip_y edge_x edge_y` in millimetres, program coordinates. `signed` is its signature, which is
+/// named and not verified.
 ///
 /// # Errors
 /// Only those of `out`.
-pub fn dump(image: &Image<'_>, out: &mut impl Write) -> fmt::Result {
+pub fn dump(image: &Image<'_>, signed: Option<&Signed<'_>>, out: &mut impl Write) -> fmt::Result {
     let s = image.settings();
     let b = &s.binding;
-    writeln!(out, "format = {FORMAT}")?;
+    writeln!(out, "format = {}", if signed.is_some() { SIGNED_FORMAT } else { FORMAT })?;
     writeln!(out, "semantics = {SEMANTICS}")?;
     writeln!(out, "crc = {:08x}", image.crc())?;
+    if let Some(Signed { key, classes, .. }) = signed {
+        writeln!(out, "signature_key = {key}")?;
+        writeln!(out, "signature_for = {classes}")?;
+    }
     writeln!(out, "program_crc = {:08x}", b.program_crc)?;
     writeln!(out, "feature = {}", b.feature)?;
     writeln!(out, "pass = {}", b.pass)?;

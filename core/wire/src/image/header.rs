@@ -13,12 +13,17 @@ use truepath_units::{Offset, Position};
 pub const MAGIC: [u8; 8] = *b"TRUEPATH";
 /// Layout of the bytes.
 pub const FORMAT: u16 = 1;
+/// Layout of the bytes of a signed image: that of [`FORMAT`] with a block of [`SIGNATURE_BYTES`](super::SIGNATURE_BYTES)
+/// between the nodes and the checksum. A program that knows only [`FORMAT`] refuses it by this number.
+pub const SIGNED_FORMAT: u16 = 2;
 /// Meaning of the numbers: raised whenever the same image and setpoints would give other bits.
 /// 2: the walk along the path looks ahead once a tick, a joint limit is judged by the correction that is on.
 /// 3: nothing is added for a cutter that does not turn at the gate, and the fade rests while the axes stand.
 pub const SEMANTICS: u32 = 3;
 /// Bit of the flags word: the path ends where it starts.
 pub const FLAG_CLOSED: u32 = 1;
+/// Bytes of the checksum at the end.
+pub(super) const CRC_BYTES: usize = 4;
 /// Bytes of the head; the nodes follow.
 pub const HEADER_BYTES: usize = 288;
 

@@ -4,8 +4,8 @@
 //! the header, spacing of the nodes, the derived fields, and that no correction within the feed window exceeds the
 //! clamp. After that no accessor can fail, so the servo cycle reads it without a branch for bad data.
 //!
-//! Layout: header ([`HEADER_BYTES`]), nodes ([`NODE_BYTES`] each), CRC-32 (ISO-HDLC, 4 bytes) of everything before
-//! it. Little endian throughout. A CRC-32 notices every single flipped bit and every burst up to 32 bits.
+//! Layout: header ([`HEADER_BYTES`]), nodes ([`NODE_BYTES`] each), in a signed image its signature
+//! ([`SIGNATURE_BYTES`]), CRC-32 (ISO-HDLC, 4 bytes) of everything before it. Little endian throughout. A CRC-32 notices every single flipped bit and every burst up to 32 bits.
 //!
 //! Coordinates are program coordinates. Nodes stand along the nominal path in the order of travel, about 0.1 mm
 //! apart; corners of the path are nodes. The path includes lead-in and lead-out if the correction should be full at
@@ -51,6 +51,7 @@
 //! assert!(Image::new_checked(&bytes).is_err());
 //! ```
 
+mod block;
 mod build;
 mod check;
 mod checked;
@@ -62,7 +63,9 @@ mod fine;
 mod header;
 mod node;
 mod read;
+mod signature;
 
+pub use block::{DeviceClass, DeviceClasses, KeyId, SIGNATURE_BYTES, Signed};
 pub use build::{build, peak};
 pub use check::{DEVICE_NODES, MAX_CLAMP_NM, MAX_NODES, MAX_SPACING_NM, MIN_SPACING_NM};
 pub use checked::{Image, image_bytes};
@@ -73,6 +76,8 @@ pub use field::Field;
 pub use fine::FineOffset;
 pub use header::{
     Binding, CorrectionLimits, FLAG_CLOSED, FORMAT, HEADER_BYTES, Header, ImageSettings, MAGIC, PathWindow, SEMANTICS,
+    SIGNED_FORMAT,
 };
 pub use node::{ImageNode, NODE_BYTES, Node};
+pub use signature::{KeyRing, KeyRingError, MOST_KEYS, PublicKey, SignatureError, sign, signed_bytes, verify};
 pub use truepath_units::checksum::crc32;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::device::Item;
 use super::settings::DeviceSettingsError;
-use crate::image::ImageError;
+use crate::image::{ImageError, MOST_KEYS, SignatureError};
 use crate::rewrite::{Mode, Refusal};
 
 /// Why a request had no effect; a mismatch carries both sides. The order of the variants is the number on the wire.
@@ -87,6 +87,12 @@ pub enum Denial {
     /// The device has no settings of its own: it was never configured, or what it had stored is damaged. Check and arm
     /// are refused until `Configure`, because joint limits that nobody has set protect nothing.
     NotConfigured,
+    /// A key is provisioned, and the image is not signed with it for this class of device; or the key itself is none.
+    Untrusted(SignatureError),
+    /// A key can be provisioned only by somebody who is at the device: its button was not held at the last reset.
+    NotPresent,
+    /// There is no room for another key, and none is ever taken away.
+    KeysFull,
 }
 
 impl fmt::Display for Denial {
@@ -115,6 +121,9 @@ impl fmt::Display for Denial {
             Self::NoRecording { total } => write!(f, "no such frame, or the recorder still runs ({total} frames)"),
             Self::Flash { address } => write!(f, "the flash failed at 0x{address:x}"),
             Self::NotConfigured => f.write_str("the device has no settings of its own: it is to be configured first"),
+            Self::Untrusted(error) => error.fmt(f),
+            Self::NotPresent => f.write_str("nobody is at the device: its button was not held at the last reset"),
+            Self::KeysFull => write!(f, "the device trusts {MOST_KEYS} keys already, and none is ever taken away"),
         }
     }
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::counters::Counters;
-use crate::image::Binding;
+use crate::image::{Binding, DeviceClass, KeyRing};
 use crate::rewrite::{Mode, Reason};
 
 /// Identity of the device.
@@ -72,6 +72,17 @@ pub struct DeviceStatus {
     pub counters: Counters,
     /// Microseconds since the reset.
     pub uptime_us: u64,
+}
+
+/// Whose images the device takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DeviceKeys {
+    /// What kind of device it is.
+    pub class: DeviceClass,
+    /// Whether its button was held at the last reset: keys can be provisioned until the next one.
+    pub present: bool,
+    /// The keys it trusts; none while it is open.
+    pub keys: KeyRing,
 }
 
 /// Which image is in use.

@@ -7,9 +7,10 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::denial::Denial;
-use super::device::{DeviceStatus, Hello, Item, Progress, Slot};
+use super::device::{DeviceKeys, DeviceStatus, Hello, Item, Progress, Slot};
 use super::settings::DeviceSettings;
 use super::trace::{TRACE_SAMPLES, TraceSample};
+use crate::image::PublicKey;
 use crate::rewrite::ArmRequest;
 
 /// Most bytes of a message with its CRC-32, before COBS.
@@ -107,6 +108,10 @@ pub enum Ask<'a> {
         /// By letting the watchdog run out.
         watchdog: bool,
     },
+    /// The keys whose signatures the device trusts.
+    Keys,
+    /// Trusts one more key, for ever.
+    Provision(PublicKey),
 }
 
 /// The replies.
@@ -154,4 +159,6 @@ pub enum Reply<'a> {
     },
     /// To `Progress`.
     Progress(Progress),
+    /// To `Keys`.
+    Keys(DeviceKeys),
 }

@@ -39,7 +39,9 @@ mod trace;
 pub use answer::{AnswerFrame, FORWARD, MAX_ANSWER_BYTES, answer_bytes};
 pub use counters::Counters;
 pub use denial::Denial;
-pub use device::{ActiveImage, ComputeFailure, Computed, DeviceStatus, Hello, Item, Progress, ResetCause, Slot, Stage};
+pub use device::{
+    ActiveImage, ComputeFailure, Computed, DeviceKeys, DeviceStatus, Hello, Item, Progress, ResetCause, Slot, Stage,
+};
 pub use endpoint::{BEHIND, Endpoint, RESTART_AFTER, Verdict};
 pub use error::LinkError;
 pub use message::{Ask, CHUNK_BYTES, MESSAGE_BYTES, PACKET_BYTES, Reply, Request, Response};

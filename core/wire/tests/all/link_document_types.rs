@@ -5,7 +5,7 @@ use crate::link_samples;
 use document::*;
 use link_samples::*;
 use serde::Serialize;
-use truepath_wire::image::Binding;
+use truepath_wire::image::{Binding, DeviceClass};
 use truepath_wire::link::{
     ActiveImage, ComputeFailure, Computed, DeviceSettings, Item, PACKET_BYTES, Progress, Request, ResetCause, Response,
     Slot, Stage, encode,
@@ -87,6 +87,7 @@ fn types_have_the_fields_of_the_table_in_its_order() {
         format!("{:?}", Settings::at_1_khz()),
         format!("{:?}", hello()),
         format!("{:?}", status()),
+        format!("{:?}", keys()),
         format!("{:?}", ActiveImage { slot: 0, crc: 0 }),
         format!("{:?}", counters()),
         format!("{:?}", sample()),
@@ -129,6 +130,7 @@ fn enums_have_the_variants_of_the_table_in_its_order() {
         ("Mode", names(first(&[Mode::Off, Mode::Bypass, Mode::Armed, Mode::Active, Mode::Hold, Mode::Fault]))),
         ("Item", names(first(&[Item::Image, Item::Program, Item::Job, Item::Probe]))),
         ("ResetCause", names(first(&causes))),
+        ("DeviceClass", names(first(&DeviceClass::ALL))),
         ("Slot", names(first(&[Slot::Empty, Slot::Partial { length: 0, crc: 0, written: 0 }, Slot::Damaged, image]))),
         ("Stage", names(first(&[Idle, Job, Program, Probe, Cut, Identify, Correct, Write, Ended]))),
     ];

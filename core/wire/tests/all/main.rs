@@ -1,6 +1,7 @@
 //! Image, link and rewriting as their documents have them, and the table of the safety contract.
 
 mod document;
+mod image_signature;
 mod link_chaos;
 mod link_document;
 mod link_document_types;

@@ -8,6 +8,7 @@
 //! | configuration link, 921,600 bit/s | USART3, the ST-LINK's serial port | PD8 out, PD9 in |
 //! | drive enable | high: drives may be enabled | PE11 (D5), green lamp PB0 |
 //! | fault | high | PE9 (D6), red lamp PB14 |
+//! | somebody is here, who may provision keys | blue button, read once at the reset | PC13, high while it is held |
 //! | log | defmt over RTT | debug probe |
 //!
 //! | who | runs | deadline | what a miss does |

@@ -7,6 +7,7 @@ use embassy_stm32::pac::{GPIOA, RCC};
 use embassy_stm32::spi::{self, SlaveSelectPolarity, Spi};
 use embassy_stm32::usart::{self, BufferedUart, Uart};
 use static_cell::StaticCell;
+use truepath_core::image::DeviceClass;
 use truepath_core::link::ResetCause;
 
 use super::flash::Bank2;
@@ -41,7 +42,10 @@ pub fn run() -> ! {
     // SAFETY: nothing in these regions is used before.
     unsafe { memory::wake() };
 
-    let board = Board { name: NAME, last_reset };
+    // The blue button is high while it is held (UM2407, 6.6).
+    let button = Input::new(p.PC13, Pull::Down);
+    cortex_m::asm::delay(48_000);
+    let board = Board { name: NAME, last_reset, class: DeviceClass::Board, present: button.is_high() };
     let (service, servo) = ConfigService::start(Bank2::new(p.FLASH), memory::lend(), board, 0);
     // SAFETY: the first side goes to the setpoint task, the second below it; above it run only interrupts that leave the
     // servo alone.

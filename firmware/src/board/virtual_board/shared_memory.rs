@@ -22,6 +22,7 @@ enum Word {
     Done,
     InputBytes,
     OutputBytes,
+    Presence,
 }
 
 unsafe extern "C" {
@@ -46,6 +47,11 @@ fn read(word: Word) -> u32 {
 fn write(word: Word, value: u32) {
     // SAFETY: as in `read`.
     unsafe { base().cast::<u32>().add(word as usize).write_volatile(value) }
+}
+
+/// Whether the host says that somebody is at the device: what the button is on a board that has one.
+pub fn presence() -> bool {
+    read(Word::Presence) == 1
 }
 
 /// The shared memory. There is one.

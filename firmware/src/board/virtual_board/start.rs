@@ -2,10 +2,12 @@
 
 use heapless::spsc::Queue;
 use static_cell::StaticCell;
+use truepath_core::image::DeviceClass;
 
 use super::gpio::{DRIVE_ENABLE, FAULT, Output};
 use super::interrupts::{self, CONFIG_EXECUTOR, CONFIG_UART, SETPOINT_EXECUTOR, SETPOINT_UART};
 use super::line::Line;
+use super::shared_memory::presence;
 use super::tasks::{background, config_task, setpoint_task};
 use super::uart::{Port, RING};
 use super::{clock, memory, retained, watchdog};
@@ -35,7 +37,7 @@ pub fn run() -> ! {
     interrupts::set_up(&mut core.NVIC);
 
     // The clock of the device begins here, at 0, in batches as well.
-    let board = Board { name: NAME, last_reset };
+    let board = Board { name: NAME, last_reset, class: DeviceClass::Bench, present: presence() };
     let (service, servo) = ConfigService::start(memory::bank(last_reset), memory::lend(), board, 0);
     // SAFETY: the first side goes to the setpoint task, the second below it; above it run only interrupts that leave the
     // servo alone.

@@ -5,8 +5,9 @@
 #[path = "../../../../core/wire/tests/all/rewrite_support/mod.rs"]
 pub mod part;
 
+use ed25519_dalek::{Signer, SigningKey};
 use part::{CLEAR, GATE, MM, PASS, SPINDLE};
-use truepath_core::image::{Image, build, image_bytes};
+use truepath_core::image::{DeviceClass, DeviceClasses, Image, PublicKey, build, image_bytes, sign, signed_bytes};
 use truepath_core::link::{
     AnswerFrame, Ask, CHUNK_BYTES, Denial, DeviceSettings, DeviceStatus, Item, PACKET_BYTES, Reply, Request,
     ResetCause, Response, SetpointFrame, Slot, decode, encode, unstuff,
@@ -38,6 +39,20 @@ pub fn image_with(settings: &truepath_core::image::ImageSettings, points: Vec<(i
     bytes
 }
 
+/// Somebody who signs images.
+pub fn owner(seed: u8) -> SigningKey {
+    SigningKey::from_bytes(&[seed; 32])
+}
+pub fn public(key: &SigningKey) -> PublicKey {
+    PublicKey(key.verifying_key().to_bytes())
+}
+/// An image signed for some classes of device.
+pub fn signed(image: &[u8], key: &SigningKey, classes: DeviceClasses) -> Vec<u8> {
+    let mut bytes = vec![0; signed_bytes(image)];
+    sign(image, &public(key), classes, |message| key.sign(message).to_bytes(), &mut bytes).unwrap();
+    bytes
+}
+
 /// The checksum that names an image.
 pub fn name(image: &[u8]) -> u32 {
     Image::new_checked(image).unwrap().crc()
@@ -59,6 +74,13 @@ impl Rig {
         rig.done(Ask::Configure(DeviceSettings::at_1_khz())).unwrap();
         rig
     }
+    /// A device at which nobody is: its button was not held at its start.
+    pub fn absent() -> Self {
+        let mut rig = Self::new();
+        let (flash, memory, board) = rig.device.take().unwrap().into_parts();
+        rig.device = Some(Device::start(flash, memory, Board { present: false, ..board }, rig.now_us));
+        rig
+    }
     /// A device as it leaves the factory.
     pub fn from_factory() -> Self {
         let bank = lent(0xFF, BANK_BYTES).try_into().unwrap();
@@ -71,7 +93,7 @@ impl Rig {
             probe: lent(0, 4_096),
             meter: Box::leak(Box::new(ProgressMeter::new())),
         };
-        let board = Board { name: "test", last_reset: ResetCause::PowerOn };
+        let board = Board { name: "test", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: true };
         let device = Device::start(Nor::erased(bank, words), memory, board, 0);
         let setpoint = Setpoint {
             axes: [0, 0, CLEAR, 0, 0, 0],

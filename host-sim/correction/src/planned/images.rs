@@ -181,5 +181,5 @@ fn image(pass: &Pass, identified: &Identified, path: &Path<'_>, planned: &Planne
     }
     let mut own = vec![0; bytes.len()];
     build(&settings, &nodes, &mut own).map_err(internal)?;
-    Ok(own)
+    pass.job.signed(own)
 }

@@ -164,6 +164,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         open_depth: !deep,
         format_stated,
         probe_control: open.probe_control(stated_dialect),
+        signer: None,
         force_data: false,
         spans: spans.into_inner(),
         source: source.clone(),

@@ -32,6 +32,7 @@ use truepath_ground::files;
 
 use crate::codes::{J001, J009};
 use crate::post::ToolNote;
+use crate::signing::Signer;
 use crate::surface::Surface;
 
 pub use check::DECIMALS;
@@ -103,6 +104,8 @@ pub struct JobFile {
     pub probe_control: Option<&'static str>,
     /// Whether the depth of the cut is still to be found with the contour.
     pub open_depth: bool,
+    /// Who signs the images that are made; only the command line says it.
+    pub signer: Option<Signer>,
     /// Whether points are taken although they do not fit the job; only the command line says it.
     pub force_data: bool,
     source: Source,
@@ -155,6 +158,17 @@ pub enum Route {
 }
 
 impl JobFile {
+    /// An image of this job as it is to be written: signed, if somebody signs.
+    ///
+    /// # Errors
+    /// As [`Signer::signed`].
+    pub fn signed(&self, image: Vec<u8>) -> Result<Vec<u8>, Failure> {
+        match &self.signer {
+            Some(signer) => signer.signed(&image),
+            None => Ok(image),
+        }
+    }
+
     /// Reads the program.
     ///
     /// # Errors

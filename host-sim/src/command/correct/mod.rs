@@ -15,6 +15,7 @@ use truepath_ground::output::OutputFolder;
 use truepath_job::feature::listing;
 use truepath_job::job::{PartFlags, ROUTES, Route, Said, one_of};
 use truepath_job::pass::Pass;
+use truepath_job::signing::SignFlags;
 use truepath_program::first_pass_of;
 use truepath_report::page::render;
 use truepath_report::pages;
@@ -57,6 +58,9 @@ pub struct Options {
     /// Replace the files of an earlier run.
     #[arg(long)]
     pub force: bool,
+    /// Who signs an image.
+    #[command(flatten)]
+    pub sign: SignFlags,
     /// What is said in place of the job.
     #[command(flatten)]
     pub said: Said,
@@ -145,6 +149,7 @@ pub(super) fn words(s: &CorrectSummary, output: &FilePath) -> String {
 /// As [`correct_pass`], and outputs that cannot be written.
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSummary, Failure> {
     let mut job = options.said.read(&options.job)?;
+    job.signer = options.sign.signer()?;
     job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
     // clap has seen to it that there is one of them.
     let readings = Readings::read(options.probe.as_deref(), options.dimensions.as_deref())?;

@@ -16,10 +16,11 @@ use truepath_ground::output::write_file;
 use truepath_job::job::JobFile;
 use truepath_job::levels;
 use truepath_job::pass::Pass;
+use truepath_job::signing::read_public;
 
 use super::hil::Counts;
 use super::image;
-use crate::coprocessor::{activate, info, recording, recording_setpoints, recording_table, upload};
+use crate::coprocessor::{Trust, activate, info, recording, recording_setpoints, recording_table, trust, upload};
 use crate::monitor::{Known, Looked, device as view, wanted};
 use crate::settings::{NoSuchSetting, changed, named, paced};
 use crate::terminal::Terminal;
@@ -111,6 +112,13 @@ enum Task {
         #[arg(long)]
         clear: bool,
     },
+    /// Whose images the device takes.
+    Keys,
+    /// Lets the device trust the keys of a file, for ever; its button must have been held at its last reset.
+    Provision {
+        /// A file of public keys.
+        file: PathBuf,
+    },
     /// Resets the device.
     Restart {
         /// By letting its watchdog run out.
@@ -148,7 +156,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
             terminal.tell(&both, || {
                 format!(
                     "{} with firmware {}, {} axes, images up to {} nodes\n\
-                     link {}, image format {}, semantics {}; {} boots, the last by {:?}\n{}",
+                     link {}, image format {}, semantics {}; {} boots, the last by {:?}\n{}{}",
                     info.board,
                     info.firmware,
                     info.axes,
@@ -158,7 +166,8 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
                     info.semantics,
                     info.boots,
                     info.last_reset,
-                    status_words(&status)
+                    status_words(&status),
+                    info.trust.as_ref().map(Trust::words).unwrap_or_default()
                 )
             })
         }
@@ -240,6 +249,17 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
                 client.done(Ask::ClearCounters)?;
             }
             terminal.tell(&status.counters, || counters_words(&status.counters))
+        }
+        Task::Keys => {
+            let trust = trust(&mut client)?;
+            terminal.tell(&trust, || trust.words())
+        }
+        Task::Provision { file } => {
+            for key in read_public(file)? {
+                client.done(Ask::Provision(key))?;
+            }
+            let trust = trust(&mut client)?;
+            terminal.tell(&trust, || trust.words())
         }
         Task::Restart { watchdog } => done(&mut client, Ask::Restart { watchdog: *watchdog }, terminal, "restarted"),
         Task::Compute { job, probe, activate: after, minutes } => {

@@ -18,6 +18,7 @@ use truepath_ground::output::OutputFolder;
 use truepath_ground::units::mm;
 use truepath_job::job::{PartFlags, ROUTES, Route, Said, one_of};
 use truepath_job::pass::Pass;
+use truepath_job::signing::SignFlags;
 use truepath_report::correction_csv;
 use truepath_report::page::render;
 use truepath_report::pages::learned;
@@ -60,6 +61,9 @@ pub struct Options {
     /// Replace the files of an earlier run.
     #[arg(long)]
     pub force: bool,
+    /// Who signs an image.
+    #[command(flatten)]
+    pub sign: SignFlags,
     /// What is said in place of the job.
     #[command(flatten)]
     pub said: Said,
@@ -70,6 +74,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     if holds_planned(&options.from) {
         refuse_same_folder(options)?;
         let mut job = options.said.read(&options.job)?;
+        job.signer = options.sign.signer()?;
         job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
         let tolerance = options.tolerance.as_ref().and(job.part.tolerance);
         let tolerance_mm = tolerance.map(|tolerance| mm(tolerance.upper).min(-mm(tolerance.lower)));
@@ -159,6 +164,7 @@ fn words(s: &LearnSummary) -> String {
 pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSummary, Failure> {
     refuse_same_folder(options)?;
     let mut job = options.said.read(&options.job)?;
+    job.signer = options.sign.signer()?;
     job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
     let readings = Readings::read(options.probe.as_deref(), options.dimensions.as_deref())?;
     let pass = match <[Pass; 1]>::try_from(Pass::every(job)?) {

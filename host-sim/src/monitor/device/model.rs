@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use truepath_core::image::{HEADER_BYTES, Image, NODE_BYTES};
+use truepath_core::image::{Image, NODE_BYTES, SIGNATURE_BYTES, image_bytes};
 use truepath_core::link::{DeviceStatus, Slot, TraceSample};
 use truepath_core::rewrite::{Reason, Status};
 
@@ -231,7 +231,9 @@ impl ViewModel {
         let active = self.status.as_ref()?.active?;
         match self.identity.as_ref()?.1.get(usize::from(active.slot))? {
             Slot::Image { length, crc, .. } if *crc == active.crc => {
-                let body = (*length as usize).checked_sub(HEADER_BYTES)?;
+                // With a signature or without: what is behind the nodes is no multiple of them.
+                let body = (*length as usize).checked_sub(image_bytes(0))?;
+                let body = if body % NODE_BYTES == 0 { body } else { body.checked_sub(SIGNATURE_BYTES)? };
                 Some((body / NODE_BYTES) as u32)
             }
             _ => None,

@@ -35,6 +35,7 @@ fn info() -> Info {
         probe_bytes: 16_384,
         boots: 3,
         last_reset: ResetCause::PowerOn,
+        trust: None,
     }
 }
 

@@ -43,6 +43,9 @@ pub fn identity(model: &ViewModel) -> String {
     if let Some(up) = up {
         text += &format!("  up {}", time(up));
     }
+    if info.trust.as_ref().is_some_and(|trust| trust.open) {
+        text += "  OPEN";
+    }
     if matches!(info.last_reset, ResetCause::Watchdog | ResetCause::BrownOut) {
         text += &format!("  (last reset: {:?})", info.last_reset);
     }

@@ -1,9 +1,9 @@
 //! One of each: every request, reply and denial, with the number that `docs/link.md` gives it. The lists cannot fall
 //! behind: a new variant does not compile before it is named here.
 
-use truepath_wire::image::{Binding, ImageError};
+use truepath_wire::image::{Binding, DeviceClass, ImageError, KeyId, KeyRing, PublicKey, SignatureError};
 use truepath_wire::link::{
-    ActiveImage, Ask, ComputeFailure, Counters, Denial, DeviceSetting, DeviceSettings, DeviceSettingsError,
+    ActiveImage, Ask, ComputeFailure, Counters, Denial, DeviceKeys, DeviceSetting, DeviceSettings, DeviceSettingsError,
     DeviceStatus, Hello, Item, Progress, Reply, ResetCause, Slot, Stage, TraceSample,
 };
 use truepath_wire::rewrite::{ArmRequest, AxisMap, Frame, Identity, Mode, Place, Reason, Refusal, Status};
@@ -43,6 +43,8 @@ pub fn asks() -> Vec<(&'static str, Ask<'static>)> {
         Ask::Compute,
         Ask::Progress,
         Ask::Restart { watchdog: true },
+        Ask::Keys,
+        Ask::Provision(PublicKey([7; 32])),
     ];
     all.into_iter().map(|ask| (ask_name(&ask), ask)).collect()
 }
@@ -70,6 +72,8 @@ fn ask_name(ask: &Ask<'_>) -> &'static str {
         Ask::Compute => "Compute",
         Ask::Progress => "Progress",
         Ask::Restart { .. } => "Restart",
+        Ask::Keys => "Keys",
+        Ask::Provision(_) => "Provision",
     }
 }
 
@@ -122,6 +126,10 @@ pub fn status() -> DeviceStatus {
     }
 }
 
+pub fn keys() -> DeviceKeys {
+    DeviceKeys { class: DeviceClass::Board, present: false, keys: KeyRing::default() }
+}
+
 pub fn sample() -> TraceSample {
     TraceSample {
         sequence: 70_000,
@@ -149,6 +157,7 @@ pub fn replies() -> Vec<(&'static str, Reply<'static>)> {
         Reply::Trace { dropped: 3, samples: [sample(), TraceSample::default()].into_iter().collect() },
         Reply::Recording { total: 200, from: 10, bytes: &[0x53, 1, 3, 0] },
         Reply::Progress(Progress { stage: Stage::Ended, permille: 1_000, result: Some(Err(failure)) }),
+        Reply::Keys(keys()),
     ];
     all.into_iter().map(|reply| (reply_name(&reply), reply)).collect()
 }
@@ -165,6 +174,7 @@ fn reply_name(reply: &Reply<'_>) -> &'static str {
         Reply::Trace { .. } => "Trace",
         Reply::Recording { .. } => "Recording",
         Reply::Progress(_) => "Progress",
+        Reply::Keys(_) => "Keys",
     }
 }
 
@@ -189,6 +199,9 @@ pub fn denials() -> Vec<(&'static str, Denial)> {
         Denial::NoRecording { total: 0 },
         Denial::Flash { address: 0x4_0000 },
         Denial::NotConfigured,
+        Denial::Untrusted(SignatureError::UnknownKey { key: KeyId([1; 8]) }),
+        Denial::NotPresent,
+        Denial::KeysFull,
     ];
     all.into_iter().map(|denial| (denial_name(&denial), denial)).collect()
 }
@@ -212,5 +225,8 @@ fn denial_name(denial: &Denial) -> &'static str {
         Denial::NoRecording { .. } => "NoRecording",
         Denial::Flash { .. } => "Flash",
         Denial::NotConfigured => "NotConfigured",
+        Denial::Untrusted(_) => "Untrusted",
+        Denial::NotPresent => "NotPresent",
+        Denial::KeysFull => "KeysFull",
     }
 }

@@ -1,0 +1,151 @@
+//! The block of the signature in an image: what it names and where it lies.
+//!
+//! A signed image has [`SIGNED_FORMAT`] in its head and a block of [`SIGNATURE_BYTES`] between its nodes and its CRC-32:
+//!
+//! | offset | bytes | |
+//! |---:|---:|---|
+//! | 0 | 4 | `TPSG` |
+//! | 4 | 4 | classes of device it is for, [`DeviceClasses`], little endian |
+//! | 8 | 8 | number of the key, [`KeyId`] |
+//! | 16 | 64 | signature |
+//!
+//! The signature is over everything before it: head, nodes, classes, key number. The head holds format and length, so
+//! a signed image without its block is no image, and one made unsigned again has another head. The CRC-32 is over the
+//! signature too: signed and unsigned copies of an image have different names.
+
+use core::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::header::{CRC_BYTES, FORMAT, HEADER_BYTES, SIGNED_FORMAT};
+use super::{ImageError, read};
+
+/// Bytes of the block of the signature.
+pub const SIGNATURE_BYTES: usize = 80;
+/// First bytes of the block.
+pub(super) const BLOCK: [u8; 4] = *b"TPSG";
+/// Bytes of the signature itself, at the end of the block.
+pub(super) const RAW_BYTES: usize = 64;
+
+/// The number of a key: the first eight bytes of the public key. It tells which key to try and proves nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KeyId(pub [u8; 8]);
+
+impl fmt::Display for KeyId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+/// What kind of device executes an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum DeviceClass {
+    /// A coprocessor in a machine.
+    Board,
+    /// The LinuxCNC component.
+    LinuxCnc,
+    /// A board without a machine: in the emulator, or in the process of the bench.
+    Bench,
+}
+
+impl DeviceClass {
+    /// All of them, in the order of their bits.
+    pub const ALL: [Self; 3] = [Self::Board, Self::LinuxCnc, Self::Bench];
+
+    const fn bit(self) -> u32 {
+        match self {
+            Self::Board => 1,
+            Self::LinuxCnc => 2,
+            Self::Bench => 4,
+        }
+    }
+    /// Its name in files and options.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Board => "board",
+            Self::LinuxCnc => "linuxcnc",
+            Self::Bench => "bench",
+        }
+    }
+}
+
+impl fmt::Display for DeviceClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The classes of device an image is for: a bit each, in the order of [`DeviceClass::ALL`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DeviceClasses(u32);
+
+impl DeviceClasses {
+    /// Every class there is.
+    pub const ALL: Self = Self(7);
+
+    /// Those of a list; none of an empty one.
+    pub fn of(classes: &[DeviceClass]) -> Option<Self> {
+        Self::from_bits(classes.iter().fold(0, |bits, class| bits | class.bit()))
+    }
+    /// The bits, as they lie in the block.
+    pub(super) const fn bits(self) -> u32 {
+        self.0
+    }
+    /// Some classes, and none that is unknown.
+    const fn from_bits(bits: u32) -> Option<Self> {
+        if bits == 0 || bits & !Self::ALL.0 != 0 { None } else { Some(Self(bits)) }
+    }
+    /// Whether a class is among them.
+    pub const fn holds(self, class: DeviceClass) -> bool {
+        self.0 & class.bit() != 0
+    }
+}
+
+impl fmt::Display for DeviceClasses {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut between = "";
+        for class in DeviceClass::ALL {
+            if self.holds(class) {
+                write!(f, "{between}{class}")?;
+                between = ",";
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The signature of an image, not yet verified.
+#[derive(Clone, Copy, Debug)]
+pub struct Signed<'a> {
+    /// What is signed.
+    pub(super) message: &'a [u8],
+    pub(super) signature: &'a [u8; RAW_BYTES],
+    /// Number of the key it names.
+    pub key: KeyId,
+    /// The classes of device it names.
+    pub classes: DeviceClasses,
+}
+
+impl<'a> Signed<'a> {
+    /// Finds the signature of an image; none if it is not signed, or no image at all.
+    pub fn of(image: &'a [u8]) -> Option<Self> {
+        let content = image.split_last_chunk::<CRC_BYTES>()?.0;
+        if content.len() < HEADER_BYTES || read::u16_at(content, 8) != SIGNED_FORMAT {
+            return None;
+        }
+        let (message, signature) = content.split_last_chunk()?;
+        let block = content.last_chunk::<SIGNATURE_BYTES>()?;
+        let classes = DeviceClasses::from_bits(read::u32_at(block, 4)).filter(|_| block.starts_with(&BLOCK))?;
+        let key = KeyId(block.get(8..)?.first_chunk().copied()?);
+        Some(Self { message, signature, key, classes })
+    }
+}
+
+/// Whether the number of a format is one this version reads, and whether such images are signed.
+pub(super) fn format(found: u16) -> Result<bool, ImageError> {
+    match found {
+        FORMAT => Ok(false),
+        SIGNED_FORMAT => Ok(true),
+        _ => Err(ImageError::Format { found, expected: FORMAT }),
+    }
+}

@@ -1,0 +1,180 @@
+//! Who made an image: an Ed25519 signature (RFC 8032) at its end, and the keys a device trusts.
+//!
+//! What is signed, and where the signature lies, is in [`block`](super::block).
+//!
+//! A signature says who made an image, not that it is a good one: [`Image::new_checked`](super::Image::new_checked)
+//! is needed as well. Verification is one pass over the bytes (SHA-512) and one double scalar multiplication of
+//! variable time, which depends on public data alone. Not for the servo cycle.
+//!
+//! `ed25519-dalek` and not `salty`: it is looked after by several people, was audited, and its strict verification refuses
+//! keys of small order and every second form of a signature. It costs 35 KB of flash and 5 KB of stack more, which the
+//! boards have (`docs/firmware.md`).
+
+use ed25519_dalek::{Signature, VerifyingKey};
+use serde::{Deserialize, Serialize};
+use truepath_units::errors;
+
+use super::block::{BLOCK, RAW_BYTES, SIGNATURE_BYTES};
+use super::header::CRC_BYTES;
+use super::{DeviceClass, DeviceClasses, Image, ImageError, KeyId, SIGNED_FORMAT, Signed, crc32};
+
+/// Most keys a device trusts.
+pub const MOST_KEYS: usize = 4;
+
+errors! {
+    /// Why an image is not trusted. The sentence of each variant is the text shown.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum SignatureError {
+        /// It has no signature.
+        Missing = "I015", "the image is not signed, and only signed images are taken here: a key is provisioned"
+            => "sign it with truepath image sign, or make it with truepath correct --sign";
+        /// It is signed with a key that is not trusted.
+        UnknownKey {
+            /// Number of the key in the image.
+            key: KeyId,
+        } = "I016", "the image is signed with key {key}, which is not trusted here"
+            => "sign it with a key that is provisioned, or provision this one";
+        /// The signature is not one of these bytes by this key.
+        Forged {
+            /// Number of the key in the image.
+            key: KeyId,
+        } = "I017", "the signature does not belong to key {key}: the image was changed, or signed by somebody else"
+            => "do not use it; make and sign it again, and find out where it came from";
+        /// It was signed for devices of another class.
+        OtherClass {
+            /// What it is for.
+            found: DeviceClasses,
+            /// What the device is.
+            expected: DeviceClass,
+        } = "I018", "the image is signed for {found}, this is {expected}"
+            => "sign it again with --for";
+        /// The public key is no point of the curve, or one of small order.
+        Key {
+            /// Its number.
+            key: KeyId,
+        } = "I019", "key {key} cannot be used: it is no sound public key"
+            => "copy the public key again, or make a new pair with truepath key new";
+    }
+}
+
+impl core::error::Error for SignatureError {}
+
+/// A public key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PublicKey(pub [u8; 32]);
+
+impl PublicKey {
+    /// Its number.
+    pub fn id(&self) -> KeyId {
+        KeyId(self.0.first_chunk().copied().unwrap_or_default())
+    }
+    /// Whether a signature can be verified with it.
+    ///
+    /// # Errors
+    /// [`SignatureError::Key`].
+    pub fn check(&self) -> Result<(), SignatureError> {
+        self.verifying().map(|_| ())
+    }
+    fn verifying(&self) -> Result<VerifyingKey, SignatureError> {
+        let key = VerifyingKey::from_bytes(&self.0).ok().filter(|key| !key.is_weak());
+        key.ok_or(SignatureError::Key { key: self.id() })
+    }
+}
+
+/// Verifies that one of the keys signed an image for a class of device; gives the number of the key.
+///
+/// # Errors
+/// A [`SignatureError`]; whatever the bytes are.
+#[inline(never)]
+pub fn verify(image: &[u8], keys: &KeyRing, class: DeviceClass) -> Result<KeyId, SignatureError> {
+    let Signed { message, signature, key, classes } = Signed::of(image).ok_or(SignatureError::Missing)?;
+    let trusted = keys.iter().find(|trusted| trusted.id() == key).ok_or(SignatureError::UnknownKey { key })?;
+    let forged = |_| SignatureError::Forged { key };
+    trusted.verifying()?.verify_strict(message, &Signature::from_bytes(signature)).map_err(forged)?;
+    // Behind the signature, so that what is said of the classes is what the signer said.
+    if classes.holds(class) { Ok(key) } else { Err(SignatureError::OtherClass { found: classes, expected: class }) }
+}
+
+/// The keys that a device trusts. Without any, it is open: it takes every image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KeyRing([Option<PublicKey>; MOST_KEYS]);
+
+/// Why a key was not added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeyRingError {
+    /// It cannot be used.
+    Key(SignatureError),
+    /// There are [`MOST_KEYS`] already.
+    Full,
+}
+
+impl KeyRing {
+    /// Its keys.
+    pub fn iter(&self) -> impl Iterator<Item = &PublicKey> {
+        self.0.iter().flatten()
+    }
+    /// Whether every image is taken, because no key is known.
+    pub fn is_open(&self) -> bool {
+        self.iter().next().is_none()
+    }
+    /// Adds a key; one that is there already changes nothing. Keys are never taken away.
+    ///
+    /// # Errors
+    /// It cannot be used, or there is no room. A key with the number of another one counts as unusable.
+    pub fn add(&mut self, key: PublicKey) -> Result<(), KeyRingError> {
+        key.check().map_err(KeyRingError::Key)?;
+        if let Some(there) = self.iter().find(|there| there.id() == key.id()) {
+            let other = SignatureError::Key { key: key.id() };
+            return if *there == key { Ok(()) } else { Err(KeyRingError::Key(other)) };
+        }
+        let place = self.0.iter_mut().find(|place| place.is_none()).ok_or(KeyRingError::Full)?;
+        *place = Some(key);
+        Ok(())
+    }
+    /// Whether an image may be used on a device of a class: any while the ring is open, else one that [`verify`] passes.
+    ///
+    /// # Errors
+    /// As [`verify`].
+    pub fn admits(&self, image: &[u8], class: DeviceClass) -> Result<(), SignatureError> {
+        if self.is_open() { Ok(()) } else { verify(image, self, class).map(|_| ()) }
+    }
+}
+
+/// Bytes of an image once it is signed; of a signed one its own.
+pub fn signed_bytes(image: &[u8]) -> usize {
+    if Signed::of(image).is_some() { image.len() } else { image.len().saturating_add(SIGNATURE_BYTES) }
+}
+
+/// Writes the signed form of a checked image into a lent buffer and gives it back, checked; its bytes are the first
+/// [`signed_bytes`] of the buffer. An image that is signed already gets the new signature in place of the old one.
+/// `sign` makes the signature of the key's owner.
+///
+/// # Errors
+/// The buffer is too small, or the bytes are no image.
+pub fn sign<'b>(
+    image: &[u8],
+    key: &PublicKey,
+    classes: DeviceClasses,
+    sign: impl FnOnce(&[u8]) -> [u8; RAW_BYTES],
+    buffer: &'b mut [u8],
+) -> Result<Image<'b>, ImageError> {
+    Image::new_checked(image)?;
+    let needed = signed_bytes(image);
+    let short = ImageError::Buffer { needed, found: buffer.len() };
+    let whole = buffer.get_mut(..needed).ok_or(short)?;
+    let (content, crc) = whole.split_last_chunk_mut::<CRC_BYTES>().ok_or(short)?;
+    let (message, signature) = content.split_last_chunk_mut::<RAW_BYTES>().ok_or(short)?;
+    let (body, tail) = message.split_last_chunk_mut::<{ SIGNATURE_BYTES - RAW_BYTES }>().ok_or(short)?;
+    body.copy_from_slice(image.get(..body.len()).ok_or(short)?);
+    for (at, field) in [(8, &SIGNED_FORMAT.to_le_bytes()[..]), (16, &(needed as u32).to_le_bytes()[..])] {
+        if let Some(place) = body.get_mut(at..).and_then(|rest| rest.get_mut(..field.len())) {
+            place.copy_from_slice(field);
+        }
+    }
+    for (place, byte) in tail.iter_mut().zip(BLOCK.into_iter().chain(classes.bits().to_le_bytes()).chain(key.id().0)) {
+        *place = byte;
+    }
+    *signature = sign(message);
+    *crc = crc32(content).to_le_bytes();
+    Image::new_checked(whole)
+}
