@@ -42,7 +42,7 @@ pub fn run() -> ! {
     // SAFETY: nothing in these regions is used before.
     unsafe { memory::wake() };
 
-    // The blue button is high while it is held (UM2407, 6.6).
+    // The blue button is high while it is held (UM2407, push-buttons).
     let button = Input::new(p.PC13, Pull::Down);
     cortex_m::asm::delay(48_000);
     let board = Board { name: NAME, last_reset, class: DeviceClass::Board, present: button.is_high() };
