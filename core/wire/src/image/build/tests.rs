@@ -180,7 +180,7 @@ fn what_does_not_fit_is_an_error_that_names_the_limit() {
 fn the_text_names_every_value_in_millimetres() {
     let buffer = bytes(3);
     let mut text = String::new();
-    dump(&Image::new_checked(&buffer).unwrap(), &mut text).unwrap();
+    dump(&Image::new_checked(&buffer).unwrap(), None, &mut text).unwrap();
     for line in [
         "program_crc = deadbeef",
         "feed_per_tooth_mm = 0.044444",
