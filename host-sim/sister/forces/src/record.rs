@@ -279,7 +279,9 @@ fn labview(source: &Source, text: &str, head: &[&str]) -> Result<Record, InputEr
 
 fn plain(source: &Source, text: &str, head: &[&str]) -> Result<Record, InputError> {
     let (from, notation) = first_numbers(head, 0).ok_or_else(|| no_numbers(source, "text"))?;
-    let mut count = notation.fields(head[from]).len();
+    let fields = notation.fields(head[from]);
+    // A separator may stand at the end of a line, too.
+    let mut count = fields.iter().rposition(|field| !field.trim().is_empty()).map_or(0, |last| last + 1);
     // Names for half of the numbers: the others are behind decimal commas, which `body` refuses.
     let is_half = |line: &&str| !line.starts_with('#') && 2 * notation.fields(line).len() == count;
     if notation.separator == b',' && count > 2 && head[..from].iter().any(|line| is_half(line)) {
