@@ -284,7 +284,7 @@ fn plain(source: &Source, text: &str, head: &[&str]) -> Result<Record, InputErro
     let mut count = fields.iter().rposition(|field| !field.trim().is_empty()).map_or(0, |last| last + 1);
     // Names for half of the numbers: the others are behind decimal commas, which `body` refuses.
     let is_half = |line: &&str| !line.starts_with('#') && 2 * notation.fields(line).len() == count;
-    if notation.separator == b',' && count > 2 && head[..from].iter().any(|line| is_half(line)) {
+    if notation.separator == b',' && count > 2 && head[..from].iter().any(is_half) {
         count /= 2;
     }
     let before: Vec<Vec<&str>> = head[..from]
