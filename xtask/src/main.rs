@@ -47,7 +47,7 @@ enum Task {
     ///
     /// fmt, rooms, test-only and features: what needs nothing but Rust, the same on every repeat. With --all also the slow tests,
     /// other random cases each time, budget, hil, page, web, linuxcnc, conformance, dist, shop, judge and fuzz; beside them firmware
-    /// (both boards), elf, device, bench, lint and doc.
+    /// (both boards), elf, device, bench, lint and doc. Campaigns, tests that make a table of a document anew, are run by name.
     Test {
         /// Also what takes long.
         #[arg(long)]
@@ -273,7 +273,7 @@ fn main() -> ExitCode {
             report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
         }
         Task::Page { write } => report.run(Step::new("page", || page::check(write))),
-        Task::Web { no_tests } => report.run(Step::new("web", || web::check(!no_tests))),
+        Task::Web { no_tests } => report.run(Step::new("web", || web::check(web::Build::Small, !no_tests))),
         Task::Dist { check: true } => report.run(Step::new("dist", dist::check)),
         Task::Dist { check: false } => report.run(Step::new("dist", dist::make)),
         Task::Linuxcnc { task, scenario, write } => {
@@ -301,7 +301,7 @@ fn test(report: &mut Report, all: bool) {
         report.run(Step::new("budget", || firmware::budget::check(false)));
         report.run(Step::new("hil", || hil::check(true)));
         report.run(Step::new("page", || page::check(false)));
-        report.run(Step::new("web", || web::check(true)));
+        report.run(Step::new("web", || web::check(web::Build::Tests, true)));
         // It mills in real time and hardly computes: a tenth of one processor.
         let mut linuxcnc = repository::itself();
         report.beside("linuxcnc", linuxcnc.arg("linuxcnc"), &repository::target().join("linuxcnc.log"), |report| {
@@ -322,7 +322,7 @@ fn builds(report: &mut Report) {
     report.run(Step::new("firmware", || firmware::build(&Board::ALL, false)));
     report.run(Step::new("elf", || firmware::elf::check(&Board::ALL, false)));
     report.run(Step::new("device", device::check));
-    report.run(Step::new("web build", || web::module().map(|_| step::Passed::Done)));
+    report.run(Step::new("web build", || web::module(web::Build::Tests).map(|_| step::Passed::Done)));
     report.run(Step::new("fuzz build", || fuzz::build().map(|_| step::Passed::Done)));
     report.run(Step::new("bench", || bench::time(true, false, &[])));
     report.run(Step::new("bench --count", || bench::count(bench::Counts::Compare)));

@@ -12,15 +12,30 @@ use crate::repository::{self, Profile, program, run, target};
 use crate::step::{Failure, Outcome, Passed};
 use crate::toolchain::{Toolchain, WASM};
 
-/// The profile of the module, in Cargo.toml.
-const PROFILE: &str = "web";
+/// How the module is built; the profiles are in the workspace's `Cargo.toml`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Build {
+    /// To be handed on.
+    Small,
+    /// To be tested: in a fifth of the time.
+    Tests,
+}
+
+impl Build {
+    fn profile(self) -> &'static str {
+        match self {
+            Self::Small => "web",
+            Self::Tests => "web-tests",
+        }
+    }
+}
 
 /// Builds the page, and with `tests` tries it.
 ///
 /// # Errors
 /// What does not build, a test that fails, a tool that is missing.
-pub fn check(tests: bool) -> Outcome {
-    let module = module()?;
+pub fn check(build: Build, tests: bool) -> Outcome {
+    let module = module(build)?;
     let (tools, folder) = page::tools()?;
     // The example is a part of the demonstration, and the tests hold the page against this program.
     let command_line = repository::truepath(Profile::Dev)?;
@@ -44,15 +59,24 @@ pub fn check(tests: bool) -> Outcome {
 ///
 /// # Errors
 /// What does not build, or a missing compiler.
-pub fn module() -> Result<PathBuf, Failure> {
+pub fn module(build: Build) -> Result<PathBuf, Failure> {
     let toolchain = Toolchain::find_for(WASM)?;
     println!("compiler for {WASM}: {} ({})", toolchain.version()?, toolchain.describe());
     // A directory of its own: another compiler would rebuild everything else.
     let directory = target().join("wasm");
     let mut command = toolchain.cargo_with("std,panic_abort");
-    command.args(["build", "--package", "truepath-web", "--profile", PROFILE, "--target", WASM, "--target-dir"]);
+    command.args([
+        "build",
+        "--package",
+        "truepath-web",
+        "--profile",
+        build.profile(),
+        "--target",
+        WASM,
+        "--target-dir",
+    ]);
     command.arg(&directory);
     linker::provide(&toolchain, &mut command)?;
     run(&mut command)?;
-    Ok(directory.join(WASM).join(PROFILE).join("truepath_web.wasm"))
+    Ok(directory.join(WASM).join(build.profile()).join("truepath_web.wasm"))
 }

@@ -101,6 +101,18 @@ impl InputError {
         self.0.file = Some(visible(&path.display().to_string()).into_owned());
         self
     }
+    /// The same of a file that was copied below `folder` to be read: it is named from there on, in the texts as well.
+    #[must_use]
+    pub fn without_folder(mut self, folder: &Path) -> Self {
+        let own = format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR);
+        let bare = |text: &str| text.replace(&own, "");
+        let Body { found, expected, help, file, place, .. } = &mut *self.0;
+        [found, expected, help].into_iter().chain(file).for_each(|text| *text = bare(text));
+        if let Some((source, _)) = place {
+            *source = Source::new(bare(source.name()), source.bytes().to_vec());
+        }
+        self
+    }
     /// The same as a refusal by judgement: every file could be read, together they do not do.
     #[must_use]
     pub fn by_judgement(mut self) -> Self {

@@ -1,10 +1,10 @@
 // First picture and frames a second, of the pocket and of a contour of ten metres with 100,000 samples.
-// A machine that is busy with something else may miss the figures: then they are measured again, and if they are missed a second
-// time on a machine with more work than processors, the page's own processor time decides. What happened is said.
+// A machine that is slow or busy with something else may miss the figures: then they are measured again, and if they are missed a second
+// time the page's own processor time decides, against what the machine takes for other work. What happened is said.
 import assert from "node:assert/strict";
-import { availableParallelism, loadavg } from "node:os";
 import { test } from "node:test";
 import { dataOf, open, report, show, write } from "./browser.mjs";
+import { busy, processor, slowness } from "./pace.mjs";
 
 /** Milliseconds to the first picture, of the long contour; frames a second at least while playing. */
 const FIRST = 1000;
@@ -47,37 +47,37 @@ async function slowestRedraw(page) {
 
 async function measured(file, redraws) {
   const { context, page, complaints, close } = await open("about:blank");
-  const cost = await context.newCDPSession(page);
-  await cost.send("Performance.enable", { timeDomain: "threadTicks" });
-  const cpu = async () => (await cost.send("Performance.getMetrics")).metrics.find(({ name }) => name === "TaskDuration").value * 1000;
+  const cost = await processor(context, page);
   await show(page, file);
   const first = Number(await page.getAttribute("html", "data-first-picture"));
-  const firstCpu = await cpu();
+  const firstCpu = await cost.read();
   await page.click("#play");
-  const from = await cpu();
+  const from = await cost.read();
   const [rate, drawn] = await frames(page, 1.5);
-  const frameCpu = ((await cpu()) - from) / Math.max(1, drawn);
+  const frameCpu = ((await cost.read()) - from) / Math.max(1, drawn);
   await page.click("#play");
-  const before = await cpu();
+  const before = await cost.read();
   const [slowest, keys] = redraws ? await slowestRedraw(page) : [0, 1];
-  const redrawCpu = ((await cpu()) - before) / keys;
+  const redrawCpu = ((await cost.read()) - before) / keys;
   assert.deepEqual(complaints, []);
+  await cost.close();
   await close();
-  return { first, firstCpu, rate, frameCpu, slowest, redrawCpu };
+  const slow = await slowness(context, page);
+  return { first, firstCpu, rate, frameCpu, slowest, redrawCpu, slow };
 }
 
 async function fast(t, name, file, most, redraws = false) {
   for (const again of [true, false]) {
-    const { first, firstCpu, rate, frameCpu, slowest, redrawCpu } = await measured(file, redraws);
+    const { first, firstCpu, rate, frameCpu, slowest, redrawCpu, slow } = await measured(file, redraws);
     const said = `${name}: first picture ${first} ms (${firstCpu.toFixed(0)} ms of processor), ${rate.toFixed(0)} frames a second (${frameCpu.toFixed(1)} ms each)`
       + (redraws ? `, slowest redraw ${slowest.toFixed(0)} ms (${redrawCpu.toFixed(0)} ms each)` : "");
     t.diagnostic(said);
     if (first < most && rate >= FRAMES && slowest < REDRAW) return;
-    t.diagnostic(`load ${loadavg()[0].toFixed(1)} on ${availableParallelism()} processors${again ? ": measured again" : ""}`);
+    t.diagnostic(`other work takes ${slow.toFixed(1)} times as long as it might${again ? ": measured again" : ""}`);
     if (again) continue;
-    const busy = loadavg()[0] > availableParallelism() + 1;
-    assert.ok(busy && firstCpu < most && frameCpu < 1000 / FRAMES && redrawCpu < REDRAW, said);
-    t.diagnostic("the machine is busy: judged by processor time");
+    const fair = busy() || slow > 1;
+    assert.ok(fair && firstCpu < most * slow && frameCpu < (1000 / FRAMES) * slow && redrawCpu < REDRAW * slow, said);
+    t.diagnostic("the machine is busy or slow: judged by processor time");
   }
 }
 

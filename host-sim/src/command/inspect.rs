@@ -67,15 +67,15 @@ const FILES: &[&str] = &["points.csv", "summary.json", PROBE, DIMENSIONS, REPORT
 
 /// What is inspected.
 #[derive(Clone, Debug, Default, Args)]
-#[command(group = ArgGroup::new("written").multiple(true))]
+#[command(group = ArgGroup::new("written").multiple(true), group = ArgGroup::new("measured").required(true).multiple(true))]
 pub struct Options {
     /// The job.
     pub job: PathBuf,
     /// The probe file.
-    #[arg(long, value_name = "FILE", required_unless_present = "dimensions")]
+    #[arg(long, value_name = "FILE", group = "measured")]
     pub probe: Option<PathBuf>,
     /// Widths, diameters and distances measured on the part, beside the probe file or in its place.
-    #[arg(long, value_name = "FILE.toml")]
+    #[arg(long, group = "measured", value_name = "FILE.toml")]
     pub dimensions: Option<PathBuf>,
     /// Folder for report.html, the points as a table, the summary and the probe file as it is.
     #[arg(short, long, value_name = "DIR", group = "written")]

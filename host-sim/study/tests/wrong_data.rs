@@ -309,10 +309,13 @@ fn what_shops_have_beside_the_model_stops_nothing() {
     }
 }
 
-#[test]
-#[ignore = "slow: honest parts of shops, minutes"]
-fn honest_parts_with_all_that_shops_add_pass_but_for_three() {
-    let ids = (1003..1005).flat_map(|seed| FAMILIES.iter().map(move |f| format!("{}/{seed}/all/chosen", f.name)));
+/// Parts with all that shops add that are stopped all the same: uneven stock that no smooth field and no machine explains. Three of 128
+/// over four seeds.
+const KNOWN: [&str; 3] = ["corner-sharp/1003/all/chosen", "corners-two/1003/all/chosen", "s-arcs/1004/all/chosen"];
+
+/// Honest parts with all that shops add, of these seeds; fails where others are stopped than those that are known.
+fn pass_but_for_known(seeds: &[u64]) {
+    let ids = seeds.iter().flat_map(|seed| FAMILIES.iter().map(move |f| format!("{}/{seed}/all/chosen", f.name)));
     let (mut honest, mut stopped) = (0, Vec::new());
     for id in ids {
         let Ok(case) = Case::draw(&id.parse().unwrap()) else { continue };
@@ -326,13 +329,23 @@ fn honest_parts_with_all_that_shops_add_pass_but_for_three() {
             }
         }
     }
-    // Three of 128 over four seeds, all of them here: uneven stock that no smooth field and no machine explains.
-    let known = ["corner-sharp/1003/all/chosen", "corners-two/1003/all/chosen", "s-arcs/1004/all/chosen"];
-    let others: Vec<_> = stopped.iter().filter(|id| !known.contains(&id.as_str())).collect();
+    let others: Vec<_> = stopped.iter().filter(|id| !KNOWN.contains(&id.as_str())).collect();
     assert!(
-        honest > 50 && others.is_empty(),
+        honest > 25 * seeds.len() && others.is_empty(),
         "{honest} honest parts, stopped besides those that are known: {others:?}"
     );
+}
+
+#[test]
+#[ignore = "slow: honest parts of shops, a minute"]
+fn honest_parts_with_all_that_shops_add_pass_but_for_two() {
+    pass_but_for_known(&[1003]);
+}
+
+#[test]
+#[ignore = "campaign: minutes"]
+fn campaign_honest_parts_with_all_that_shops_add_pass_but_for_three() {
+    pass_but_for_known(&[1003, 1004]);
 }
 
 #[test]
@@ -406,14 +419,23 @@ fn the_table_of_wrong_data_is_that_of_the_document() {
     assert!(document[from..to] == table, "docs/wrong-data.md (BLESS=1 renews it) has another table:\n{table}");
 }
 
-/// Seeds of the honest parts: usual machines and wild ones.
-const SEEDS: [u64; 8] = [1002, 1003, 1004, 1005, 100_001, 100_002, 100_003, 100_004];
+#[test]
+#[ignore = "slow: 64 honest parts, each also with wild touches"]
+fn honest_parts_pass_and_wild_touches_are_named_where_they_bend_the_fit() {
+    // A usual machine of every family and a wild one.
+    pass_with_wild_touches(&[1002, 100_001]);
+}
 
 #[test]
-#[ignore = "slow: 256 honest parts, each also with wild touches"]
-fn honest_parts_pass_and_wild_touches_are_named_where_they_bend_the_fit() {
+#[ignore = "campaign: 256 honest parts, each also with wild touches"]
+fn campaign_honest_parts_pass_and_wild_touches_are_named_where_they_bend_the_fit() {
+    pass_with_wild_touches(&[1002, 1003, 1004, 1005, 100_001, 100_002, 100_003, 100_004]);
+}
+
+/// Honest parts of these seeds, as touched and with wild touches.
+fn pass_with_wild_touches(seeds: &[u64]) {
     let (mut honest, mut wild, mut named, mut misnamed) = (0, 0, 0, 0);
-    let cases: Vec<_> = SEEDS.iter().flat_map(|seed| FAMILIES.iter().map(move |f| (f.name, *seed))).collect();
+    let cases: Vec<_> = seeds.iter().flat_map(|seed| FAMILIES.iter().map(move |f| (f.name, *seed))).collect();
     let mut wrong = Vec::new();
     for (family, seed) in cases {
         let Some(shop) = Shop::new(family, seed) else { continue };
@@ -437,6 +459,6 @@ fn honest_parts_pass_and_wild_touches_are_named_where_they_bend_the_fit() {
     println!(
         "{honest} honest parts; {wild} with wild touches, {named} of them stopped for these, {misnamed} for others"
     );
-    assert!(honest > 200 && wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(honest > 25 * seeds.len() && wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(20 * named < wild && 100 * misnamed < wild, "{named} and {misnamed} of {wild}");
 }

@@ -33,8 +33,7 @@ fn run(program: &str, options: Options<'_>) -> Result<Read, GcodeError> {
         match event.canon {
             Canon::Traverse { to, .. } => read.moves.push(('T', line, at(to), [0; 2])),
             Canon::Feed { to, .. } => read.moves.push(('F', line, at(to), [0; 2])),
-            Canon::Arc { to, centre, counter_clockwise, turns, .. } => {
-                assert!(turns == 0 || event.modal.feed.is_some());
+            Canon::Arc { to, centre, counter_clockwise, .. } => {
                 let kind = if counter_clockwise { 'R' } else { 'L' };
                 read.moves.push((kind, line, at(to), [um(Some(centre.x)), um(Some(centre.y))]));
             }
@@ -416,6 +415,14 @@ fn the_examples_of_the_manual_are_read() {
         APPR PCT PR+32 PA-182 CCA180 R+2 RL F100\nCP IPA+3240 IZ+13.5 DR+ F200\nDEP CT CCA180 R+2\nL Z+250 R0 FMAX M2\nEND PGM HELIX MM";
     let read = run(helix, Options::default()).unwrap_or_else(|e| panic!("{e}"));
     assert!(read.moves.iter().any(|m| m.0 == 'R' && m.1 == 8 && m.2[2] == 750), "{:?}", read.moves);
+}
+
+#[test]
+fn a_helix_without_a_feed_is_read_and_warned_of() {
+    let read = run("CC X+5 Y+5\nCP IPA-7200 DR- IZ-1", Options { start: Axes::ORIGIN, ..Options::default() });
+    let read = read.unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(read.moves.len(), 1);
+    assert!(read.warnings.as_slice().iter().any(|w| (w.kind, w.line) == (WarningKind::FeedMissing, 2)));
 }
 
 proptest! {

@@ -104,10 +104,35 @@ struct Raw<'d> {
     values: [f64; 2],
     sigma: [f64; 2],
     levels: Option<[Level; 2]>,
+    /// Without what the amplifier makes of air.
     signals: Option<[Signal; 2]>,
     span: Option<[f64; 2]>,
     start_s: f64,
     torque: Option<Mean>,
+}
+
+impl Raw<'_> {
+    /// The means when the columns are taken so; what repeated cuts differ by, as a share, is in their standard deviations.
+    fn measured(&self, assignment: Assignment, repeatability: f64) -> Measured {
+        let force = assignment.apply(self.values);
+        let sigma = if assignment.swapped { [self.sigma[1], self.sigma[0]] } else { self.sigma };
+        let size = force[0].hypot(force[1]);
+        let mean = |along, k: usize| {
+            let repeated = repeatability * force[k].abs().max(0.25 * size);
+            Mean { along, value: force[k], sigma: sigma[k].hypot(repeated).max(1e-6) }
+        };
+        let means = match self.torque {
+            Some(torque) => vec![Mean { sigma: torque.sigma.hypot(repeatability * torque.value.abs()), ..torque }],
+            None => vec![mean(Along::Feed, 0), mean(Along::Across, 1)],
+        };
+        Measured { cut: self.described.cut.clone(), means }
+    }
+
+    /// The mean revolution, in the order of the columns.
+    fn turn(&self) -> Option<[Vec<f64>; 2]> {
+        let (signals, span) = self.signals.as_ref().zip(self.span)?;
+        fold(signals.each_ref(), span, self.described.cut.revolution_s())
+    }
 }
 
 /// Rounds in which coefficients and what runout adds to the means settle: each leaves some tenth of what was wrong.
@@ -130,27 +155,9 @@ impl Analysis {
         let mut warnings = Vec::new();
         let raw =
             description.cuts.iter().map(|cut| read(cut, description, &mut warnings)).collect::<Result<Vec<_>, _>>()?;
-        let (assignment, axes) = assigned(&raw, description)?;
+        let (assignment, axes) = assigned(&raw, description, &mut warnings)?;
         let repeatability = description.recording.repeatability;
-        let measured: Vec<Measured> = raw
-            .iter()
-            .map(|raw| {
-                let force = assignment.apply(raw.values);
-                let sigma = if assignment.swapped { [raw.sigma[1], raw.sigma[0]] } else { raw.sigma };
-                let size = force[0].hypot(force[1]);
-                let mean = |along, k: usize| {
-                    let repeated = repeatability * force[k].abs().max(0.25 * size);
-                    Mean { along, value: force[k], sigma: sigma[k].hypot(repeated).max(1e-6) }
-                };
-                let means = match raw.torque {
-                    Some(torque) => {
-                        vec![Mean { sigma: torque.sigma.hypot(repeatability * torque.value.abs()), ..torque }]
-                    }
-                    None => vec![mean(Along::Feed, 0), mean(Along::Across, 1)],
-                };
-                Measured { cut: raw.described.cut.clone(), means }
-            })
-            .collect();
+        let measured: Vec<Measured> = raw.iter().map(|raw| raw.measured(assignment, repeatability)).collect();
         let uses: Vec<bool> = raw.iter().map(|r| r.described.fitted).collect();
         let fitted = |measured: &[Measured]| -> Vec<Measured> {
             measured.iter().zip(&uses).filter(|(_, fitted)| **fitted).map(|(m, _)| m.clone()).collect()
@@ -335,6 +342,7 @@ fn read<'d>(
             "{name}: no stretch without cutting is in the record: the zero of the amplifier is taken for that of the force"
         ));
     }
+    let [first, second] = signals;
     Ok(Raw {
         name,
         columns,
@@ -342,11 +350,21 @@ fn read<'d>(
         values: [levels[0].value, levels[1].value],
         sigma: [levels[0].sigma, levels[1].sigma],
         levels: Some(levels),
-        signals: Some(signals),
+        signals: Some([above_air(first, &levels[0], cut), above_air(second, &levels[1], cut)]),
         span: Some(cut),
         start_s,
         ..nothing
     })
+}
+
+/// A signal without the offset and the drift of its amplifier.
+fn above_air(signal: Signal, level: &Level, [from, to]: [f64; 2]) -> Signal {
+    let Signal { mut samples, rate_hz } = signal;
+    let middle = 0.5 * (from + to);
+    for (n, v) in samples.iter_mut().enumerate() {
+        *v -= level.offset.unwrap_or(0.0) + level.drift_per_s * (n as f64 / rate_hz - middle);
+    }
+    Signal { samples, rate_hz }
 }
 
 /// The part of a signal of the spindle that cuts: what lies above the middle between its ends.
@@ -396,7 +414,11 @@ fn axes(recording: &Recording, record: &Record, source: &Source, file: &Path) ->
 }
 
 /// How the columns are to be taken, and in words; refuses what no cut makes.
-fn assigned(raw: &[Raw], description: &Description) -> Result<(Assignment, Option<String>), InputError> {
+fn assigned(
+    raw: &[Raw],
+    description: &Description,
+    warnings: &mut Vec<String>,
+) -> Result<(Assignment, Option<String>), InputError> {
     let forces: Vec<&Raw> = raw.iter().filter(|r| r.torque.is_none()).collect();
     let Some(first) = forces.first() else { return Ok((Assignment::NAMED, None)) };
     let columns: Vec<(&Cut, [f64; 2])> = forces.iter().map(|r| (&r.described.cut, r.values)).collect();
@@ -416,38 +438,92 @@ fn assigned(raw: &[Raw], description: &Description) -> Result<(Assignment, Optio
     }
     let possible = assignment::possible(&columns);
     let recording = &description.recording;
-    let named = recording.axes.is_some();
-    let allowed = |a: &&Assignment| match (named, recording.on_tool) {
-        (true, Some(_)) => **a == Assignment::NAMED,
+    let allowed = |a: &Assignment| match (recording.axes.is_some(), recording.on_tool) {
+        (true, Some(_)) => *a == Assignment::NAMED,
         // Which side the forces act on is open: both at once are turned.
         (true, None) => !a.swapped && a.signs[0] == a.signs[1],
         (false, _) => true,
     };
-    let fitting: Vec<&Assignment> = possible.iter().filter(allowed).collect();
+    let words = |a: Assignment| a.words(names, first.signs);
+    let every = |of: &[Assignment]| of.iter().map(|a| words(*a)).collect::<Vec<_>>().join("; or ");
+    let refused = |found: String, expected: &str, help: String| {
+        let error = InputError::new(E006, found, expected, help);
+        Err(error.at(&description.source, first.described.place.clone()))
+    };
+    if let Some((best, left)) = told_by_shape(raw, &possible, recording) {
+        if allowed(&best) {
+            return Ok((best, Some(words(best))));
+        }
+        let found = format!(
+            "taken as {}, the means could be forces of this cut, but a revolution does not look like one",
+            words(Assignment::NAMED)
+        );
+        let help = format!(
+            "the columns are swapped or turned; what fits: {}: {:.0} % of the force over a revolution is explained so",
+            words(best),
+            100.0 * (1.0 - left)
+        );
+        return refused(found, "the force over a revolution that the stated engagement makes", help);
+    }
+    let fitting: Vec<Assignment> = possible.iter().copied().filter(allowed).collect();
     match fitting.as_slice() {
         [] => {
             let [t, r] = assignment::secant(columns[0].0, columns[0].1);
             let found = format!(
                 "taken as {}, the tangential force would be {t:.0} and the radial {r:.0} N per mm² of chip",
-                Assignment::NAMED.words(names, first.signs)
+                words(Assignment::NAMED)
             );
-            let others: Vec<String> = possible.iter().map(|a| a.words(names, first.signs)).collect();
-            let help = match others.as_slice() {
-                [] => "no way to name the two columns fits: check the engagement, the direction of milling and the columns".to_owned(),
-                [only] => format!("the columns are swapped or turned; what fits: {only}"),
-                several => format!("the columns are swapped or turned; what fits: {}", several.join("; or ")),
+            let help = if possible.is_empty() {
+                "no way to name the two columns fits: check the engagement, the direction of milling and the columns"
+                    .to_owned()
+            } else {
+                format!("the columns are swapped or turned; what fits: {}", every(&possible))
             };
-            let error = InputError::new(E006, found, "a positive tangential force and a smaller radial one", help);
-            Err(error.at(&description.source, first.described.place.clone()))
+            refused(found, "a positive tangential force and a smaller radial one", help)
         }
-        [only] => Ok((**only, Some(only.words(names, first.signs)))),
+        [only] => {
+            let others: Vec<Assignment> = possible.iter().copied().filter(|a| a != only).collect();
+            if !others.is_empty() {
+                warnings.push(format!(
+                    "whether the columns are named right is not told by these forces: {} would make a cut as well; a record of a \
+                     deeper cut or a slot, its revolution visible, tells",
+                    every(&others)
+                ));
+            }
+            Ok((*only, Some(words(*only))))
+        }
         several => {
-            let ways: Vec<String> = several.iter().map(|a| a.words(names, first.signs)).collect();
             let found = format!("{} ways to name the two columns fit this engagement", several.len());
-            let help = format!("write one of them under [record]: {}", ways.join("; or "));
-            Err(InputError::new(E006, found, "feed and across", help)
-                .at(&description.source, first.described.place.clone()))
+            refused(found, "feed and across", format!("write one of them under [record]: {}", every(several)))
         }
+    }
+}
+
+/// What a shape has to leave unexplained for another one to be told from it, over what that one leaves.
+const TOLD_APART: f64 = 3.0;
+
+/// Of several possible assignments the one that the shape of a revolution tells, with the share of the fluctuation it leaves
+/// unexplained; nothing where no record shows teeth, or several are as good.
+fn told_by_shape(raw: &[Raw], possible: &[Assignment], recording: &Recording) -> Option<(Assignment, f64)> {
+    let [_, _, ..] = possible else { return None };
+    // The thickest chips stand out most.
+    let feed = |raw: &&Raw| raw.described.cut.feed_per_tooth_mm;
+    let clearest = raw.iter().filter(|r| r.signals.is_some()).max_by(|a, b| feed(a).total_cmp(&feed(b)))?;
+    let turn = clearest.turn()?;
+    let left = |assignment: Assignment| {
+        let fitted = raw.iter().filter(|r| r.described.fitted);
+        let means: Vec<Measured> = fitted.map(|r| r.measured(assignment, recording.repeatability)).collect();
+        let near = near(linear(&means, &mut Vec::new())?.coefficients);
+        let turn = assignment.apply_all(turn.clone());
+        let (shape, _) = shape(&clearest.described.cut, &turn, near, recording.low_pass_hz)?;
+        shape.believed.then_some(1.0 - shape.explained)
+    };
+    let mut explained: Vec<(Assignment, f64)> = possible.iter().filter_map(|a| Some((*a, left(*a)?))).collect();
+    explained.sort_by(|a, b| a.1.total_cmp(&b.1));
+    match explained.as_slice() {
+        [best, next, ..] if next.1 < TOLD_APART * best.1 => None,
+        [best, ..] => Some(*best),
+        [] => None,
     }
 }
 
@@ -497,22 +573,11 @@ fn result(
     let period = cut.revolution_s();
     let order = |pair: [f64; 2]| assignment.apply(pair);
     let drift = raw.levels.map(|levels| order(levels.map(|l| l.drift_per_s)));
-    let offsets = raw.levels.map_or([0.0; 2], |levels| levels.map(|l| l.offset.unwrap_or(0.0)));
-    let signals = raw.signals.map(|[first, second]| {
-        let span = raw.span.unwrap_or([0.0, f64::MAX]);
-        let middle = 0.5 * (span[0] + span[1]);
-        let flat = |signal: Signal, k: usize| {
-            let drift = raw.levels.map_or(0.0, |l| l[k].drift_per_s);
-            let level = |n: usize| offsets[k] + drift * (n as f64 / signal.rate_hz - middle);
-            let samples = signal.samples.iter().enumerate().map(|(n, v)| v - level(n)).collect();
-            Signal { samples, rate_hz: signal.rate_hz }
-        };
-        let [first, second] = [flat(first, 0), flat(second, 1)];
-        let turned =
-            |signal: Signal, sign: f64| Signal { samples: signal.samples.iter().map(|v| sign * v).collect(), ..signal };
-        let [feed, across] = if assignment.swapped { [second, first] } else { [first, second] };
-        [turned(feed, assignment.signs[0]), turned(across, assignment.signs[1])]
-    });
+    let rate_hz = raw.signals.as_ref().map_or(0.0, |[first, _]| first.rate_hz);
+    let turn = raw.turn().map(|turn| assignment.apply_all(turn));
+    let signals = raw
+        .signals
+        .map(|pair| assignment.apply_all(pair.map(|signal| signal.samples)).map(|samples| Signal { samples, rate_hz }));
     let shares = signals.as_ref().zip(raw.span).and_then(|(signals, span)| {
         let most = (6 * cut.teeth as usize).max(24);
         let each = signals.each_ref().map(|s| harmonics(s, span, period, cut.teeth, most).map(|h| h.shares));
@@ -555,9 +620,8 @@ fn result(
             }
         }
     }
-    let folded = signals.as_ref().zip(raw.span).and_then(|(signals, span)| fold(signals.each_ref(), span, period));
     let near = near(linear.coefficients);
-    let shaped = folded.as_ref().and_then(|folded| shape(&cut, folded, near, recording.low_pass_hz));
+    let shaped = turn.as_ref().and_then(|turn| shape(&cut, turn, near, recording.low_pass_hz));
     if let Some((shape, _)) = &shaped {
         if !shape.believed {
             warnings.push(format!(
@@ -576,7 +640,7 @@ fn result(
         }
     }
     let (shape, drawn) = shaped.unzip();
-    let turn = folded.map(|recorded| Turn { recorded, fitted: drawn });
+    let turn = turn.map(|recorded| Turn { recorded, fitted: drawn });
     CutResult {
         turn,
         shape,

@@ -2,7 +2,8 @@
 //!
 //! Whatever the metal, the tangential force drives the cutter back and the radial one pushes the edge off, and is the smaller
 //! of both. The means of a cut give the two as if there were chip force alone; of the eight ways to name two columns with
-//! their signs, seven make a negative force or a radial one above the tangential.
+//! their signs, seven make a negative force or a radial one above the tangential in a slot. In a partial cut a second way may pass:
+//! there the shape of a revolution decides (`analysis`).
 
 use crate::cut::{Cut, Term};
 
@@ -35,6 +36,13 @@ impl Assignment {
     pub fn apply(self, [first, second]: [f64; 2]) -> [f64; 2] {
         let [feed, across] = if self.swapped { [second, first] } else { [first, second] };
         [self.signs[0] * feed, self.signs[1] * across]
+    }
+
+    /// The same of whole signals.
+    pub fn apply_all(self, [first, second]: [Vec<f64>; 2]) -> [Vec<f64>; 2] {
+        let [feed, across] = if self.swapped { [second, first] } else { [first, second] };
+        let turned = |values: Vec<f64>, sign: f64| values.into_iter().map(|v| sign * v).collect();
+        [turned(feed, self.signs[0]), turned(across, self.signs[1])]
     }
 
     /// In the words of `[record]`, for columns that were multiplied by `applied` before.

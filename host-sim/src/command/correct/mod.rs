@@ -4,7 +4,7 @@ mod several;
 
 use std::path::{Path as FilePath, PathBuf};
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use truepath_correction::correct::correct_pass;
 use truepath_correction::learning::History;
 use truepath_correction::second_pass;
@@ -30,17 +30,18 @@ use truepath_report::next::after_correction;
 
 /// What is corrected.
 #[derive(Clone, Debug, Default, Args)]
+#[command(group = ArgGroup::new("measured").required(true).multiple(true))]
 pub struct Options {
     /// The job.
     pub job: PathBuf,
     /// What the probe measured on the part cut by the job's program.
-    #[arg(long, value_name = "FILE", required_unless_present_any = ["no_probe", "dimensions"])]
+    #[arg(long, value_name = "FILE", group = "measured")]
     pub probe: Option<PathBuf>,
     /// Widths, diameters and distances measured on that part, beside the probe file or in its place.
-    #[arg(long, value_name = "FILE.toml", conflicts_with = "first_pass")]
+    #[arg(long, value_name = "FILE.toml", group = "measured", conflicts_with = "first_pass")]
     pub dimensions: Option<PathBuf>,
     /// From tool and material data alone: the same as truepath pocket.
-    #[arg(long, conflicts_with_all = ["probe", "dimensions", "route", "first_pass"])]
+    #[arg(long, group = "measured", conflicts_with_all = ["probe", "dimensions", "route", "first_pass"])]
     pub no_probe: bool,
     /// Folder for the corrected program (or image), tables, summary, report and picture.
     #[arg(short, long, value_name = "DIR")]

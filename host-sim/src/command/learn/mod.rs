@@ -6,7 +6,7 @@ mod several;
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use truepath_correction::as_milled::AsMilled;
 use truepath_correction::codes::{Q002, Q003, Q005, Q007};
 use truepath_correction::learn::{LearnSummary, learn};
@@ -33,14 +33,15 @@ use truepath_report::next::after_correction;
 
 /// What is learned from.
 #[derive(Clone, Debug, Default, Args)]
+#[command(group = ArgGroup::new("measured").required(true).multiple(true))]
 pub struct Options {
     /// The job.
     pub job: PathBuf,
     /// What the probe measured on the part cut with the correction in --from.
-    #[arg(long, value_name = "FILE", required_unless_present = "dimensions")]
+    #[arg(long, value_name = "FILE", group = "measured")]
     pub probe: Option<PathBuf>,
     /// Widths, diameters and distances measured on that part, beside the probe file or in its place.
-    #[arg(long, value_name = "FILE.toml")]
+    #[arg(long, group = "measured", value_name = "FILE.toml")]
     pub dimensions: Option<PathBuf>,
     /// Folder that truepath correct, truepath plan or truepath learn wrote that correction into.
     #[arg(long, value_name = "DIR")]

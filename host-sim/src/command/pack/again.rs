@@ -211,7 +211,7 @@ impl Place {
         written.map_err(|error| InputError::unwritable(&path, &error).into())
     }
 
-    /// Makes a correction again, for the routes whose files it has.
+    /// Makes a correction again, for the routes whose files it has. Errors name files as the story does.
     pub(super) fn make(
         &self,
         story: &Story,
@@ -220,6 +220,19 @@ impl Place {
         progress: &mut dyn FnMut(f64),
     ) -> Result<Made, Failure> {
         let then = self.0.path().join("then");
+        self.made(story, step, (&then, to), progress).map_err(|failure| match failure {
+            Failure::Input(error) => Failure::Input(error.without_folder(&then)),
+            other => other,
+        })
+    }
+
+    fn made(
+        &self,
+        story: &Story,
+        step: &Step,
+        (then, to): (&FilePath, &str),
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Made, Failure> {
         let has = |ending: &str| story.within(&step.output).any(|(name, _)| name.ends_with(ending));
         let mut routes: Vec<Route> = Vec::new();
         routes.extend(has("corrected.nc").then_some(Route::Program));

@@ -74,8 +74,8 @@ fn a_stated_runout_takes_a_third_of_what_a_corner_leaves_without_it() {
 }
 
 #[test]
-#[ignore = "slow: cargo xtask test --all"]
-fn what_corner_and_pocket_leave_with_and_without_a_stated_runout() {
+#[ignore = "campaign: the table of docs/forces.md"]
+fn campaign_what_corner_and_pocket_leave_with_and_without_a_stated_runout() {
     // With 15 µm that nothing is known of, the points of the corner are refused: ball or cutter are not as stated (Q009).
     for (name, part, all) in [("pocket", &POCKET, &[0.0, 0.010][..]), ("corner", &CORNER, &[0.0, 0.005, 0.010][..])] {
         for &runout_mm in all {

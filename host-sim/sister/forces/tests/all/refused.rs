@@ -37,6 +37,49 @@ fn wrong_descriptions_are_refused_with_what_to_do() {
 }
 
 #[test]
+fn of_eight_ways_to_name_the_columns_seven_are_refused_at_every_engagement() {
+    let side = |sign: bool, column: &str| format!("{}{column}", if sign { "" } else { "-" });
+    let mut wrong = Vec::new();
+    for (k, radial_depth_mm) in [1.0, 4.5, 8.0, 12.0].into_iter().enumerate() {
+        for down in [true, false] {
+            let records = Records::engaged(radial_depth_mm, down, 9100 + k as u64, &Dynamometer::default());
+            let good = records.described(RECORD, 3);
+            for (first, second) in [("Fx", "Fy"), ("Fy", "Fx")] {
+                for (feed, across) in [(true, true), (true, false), (false, true), (false, false)] {
+                    let axes = format!("feed = \"{}\"\nacross = \"{}\"", side(feed, first), side(across, second));
+                    let told = records.analysis(&good.replace("feed = \"Fx\"\nacross = \"Fy\"", &axes));
+                    let fits = match &told {
+                        Ok(_) => first == "Fx" && feed && across,
+                        // Forces on the tool are those on the workpiece turned.
+                        Err(error) => {
+                            error.code() == "E006"
+                                && error.to_json().to_string().contains("feed = \\\"-Fx\\\", across = \\\"-Fy\\\"")
+                        }
+                    };
+                    if !fits {
+                        let said = told.map_or_else(|error| error.to_json().to_string(), |_| "taken".to_owned());
+                        wrong.push(format!("{radial_depth_mm} mm, down {down}, {axes}: {said}"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn where_a_thin_cut_does_not_tell_the_axes_apart_it_is_said() {
+    let records = Records::engaged(0.3, true, 9003, &Dynamometer::default());
+    let warned = |text: &str| {
+        let analysis = records.analysis(text).expect("an analysis");
+        analysis.warnings.iter().any(|w| w.contains("whether the columns are named right is not told"))
+    };
+    let good = records.described(RECORD, 3);
+    assert!(warned(&good));
+    assert!(warned(&good.replace("feed = \"Fx\"\nacross = \"Fy\"", "feed = \"Fy\"\nacross = \"Fx\"")));
+}
+
+#[test]
 fn one_feed_is_told() {
     let records = Records::new(9001, &Dynamometer::default());
     let analysis = records.analysis(&records.described(RECORD, 1)).expect("an analysis");
