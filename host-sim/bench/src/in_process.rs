@@ -55,6 +55,18 @@ impl InProcess {
     /// # Errors
     /// None in practice: the sizes of the flash model do not fit.
     pub fn start() -> Result<Self, BenchError> {
+        Self::made(false)
+    }
+
+    /// The same with its button held: keys may be provisioned until the next reset.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn attended() -> Result<Self, BenchError> {
+        Self::made(true)
+    }
+
+    fn made(present: bool) -> Result<Self, BenchError> {
         let unfit = |_| BenchError::Foreign("the sizes of the flash model".to_owned());
         let bytes = lasting(0, BANK_BYTES).try_into().map_err(unfit)?;
         let unfit = |_| BenchError::Foreign("the sizes of the flash model".to_owned());
@@ -67,7 +79,7 @@ impl InProcess {
             probe: lasting(0, PROBE_BYTES),
             meter: Box::leak(Box::new(ProgressMeter::new())),
         };
-        let board = Board { name: "host", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present: false };
+        let board = Board { name: "host", last_reset: ResetCause::PowerOn, class: DeviceClass::Bench, present };
         let device = Device::start(Nor::erased(bytes, words), memory, board, 0);
         Ok(Self { device: Some(device), now_us: 0, output: vec![0; OUTPUT_BYTES], workspace: workspace() })
     }

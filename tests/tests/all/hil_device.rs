@@ -7,10 +7,10 @@ use std::os::unix::net::UnixStream;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::hil_support::{image, options, part, serve};
+use crate::hil_support::{image, options, part, serve, serve_device};
 use truepath::command::hil::{Kind, Source, open, run};
 use truepath::coprocessor::{Recorded, recording, recording_table};
-use truepath_bench::{Board, Faults};
+use truepath_bench::{Board, Faults, InProcess};
 use truepath_core::image::Image;
 use truepath_core::link::{Ask, SetpointFrame};
 use truepath_core::rewrite::{Flags, Frame, Setpoint};
@@ -23,22 +23,26 @@ use truepath_job::pass::Pass;
 /// The program's own binary would have to be built for this; the library is called as `main` calls it, in a process of
 /// its own by way of this test binary.
 fn device(folder: &Path, arguments: &[&str]) -> (u8, String) {
-    let (code, said, _) = called(folder, arguments);
+    let (code, said, _) = called(&at_port(folder, arguments));
     (code, said)
 }
 
 /// What it says on standard error.
 fn device_with_errors(folder: &Path, arguments: &[&str]) -> (u8, String) {
-    let (code, _, complaint) = called(folder, arguments);
+    let (code, _, complaint) = called(&at_port(folder, arguments));
     // The test binary adds its own lines.
     (code, complaint.lines().find(|line| line.starts_with('{')).unwrap_or_default().to_owned())
 }
 
-fn called(folder: &Path, arguments: &[&str]) -> (u8, String, String) {
+fn at_port(folder: &Path, arguments: &[&str]) -> Vec<String> {
+    let port = folder.join("config.sock").display().to_string();
+    ["device", "--port", &port].into_iter().chain(arguments.iter().copied()).map(str::to_owned).collect()
+}
+
+fn called(arguments: &[String]) -> (u8, String, String) {
     let Output { status, stdout, stderr } = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "hil_device::child_that_is_the_command_line", "--nocapture", "--ignored"])
         .env("TRUEPATH_ARGUMENTS", arguments.join("\n"))
-        .env("TRUEPATH_PORT", folder.join("config.sock"))
         .output()
         .unwrap();
     let text = String::from_utf8(stdout).unwrap();
@@ -54,10 +58,8 @@ const END: &str = "said>>>";
 #[ignore = "called by the others, in a process of its own"]
 fn child_that_is_the_command_line() {
     let Ok(arguments) = std::env::var("TRUEPATH_ARGUMENTS") else { return };
-    let port = std::env::var("TRUEPATH_PORT").unwrap();
     print!("{BEGIN}");
-    let words = ["truepath", "device", "--port", &port].into_iter().chain(arguments.lines()).map(Into::into);
-    let code = truepath::cli::run(words);
+    let code = truepath::cli::run(["truepath"].into_iter().chain(arguments.lines()).map(Into::into));
     print!("{END}");
     assert_eq!(code, 0);
 }
@@ -107,6 +109,52 @@ fn a_new_board_is_looked_at_loaded_configured_and_its_fault_recorded() {
     let table = folder.path().join("frames.csv").display().to_string();
     assert_eq!(device(folder.path(), &["record", "-o", &table]).0, 1);
     assert!(!fs::exists(&table).unwrap());
+}
+
+#[test]
+fn a_device_with_a_key_takes_what_is_signed_with_it_and_says_what_to_do_about_anything_else() {
+    let folder = tempfile::tempdir().unwrap();
+    serve_device(folder.path(), InProcess::attended().unwrap());
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let call = |words: &[&str]| {
+        let (code, said, complaint) = called(&words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>());
+        assert_eq!(code, 0, "{words:?}: {complaint}");
+        said
+    };
+    let ask = |arguments: &[&str]| {
+        let (code, said) = device(folder.path(), arguments);
+        assert_eq!(code, 0, "{arguments:?}: {said}");
+        said
+    };
+    let refused = |image: &str| {
+        let (code, said) = device_with_errors(folder.path(), &["--json", "upload", image]);
+        assert_eq!(code, 1, "{image}");
+        let error: serde_json::Value = serde_json::from_str(&said).unwrap_or_else(|e| panic!("{e}: {said}"));
+        error["error"]["message"].as_str().unwrap().to_owned() + error["error"]["help"].as_str().unwrap()
+    };
+    for name in ["shop.key", "stranger.key"] {
+        call(&["key", "new", &file(name)]);
+    }
+    let plain = part(0).join("correction.tpi").display().to_string();
+    for (key, class, name) in
+        [("shop.key", "bench", "good.tpi"), ("shop.key", "board", "board.tpi"), ("stranger.key", "bench", "other.tpi")]
+    {
+        call(&["image", "sign", &plain, "--key", &file(key), "--for", class, "-o", &file(name)]);
+    }
+    assert!(ask(&["keys"]).contains("OPEN") && ask(&["info"]).contains("OPEN"));
+    ask(&["upload", &plain, "--activate"]);
+    assert!(!ask(&["provision", &file("shop.key.pub")]).contains("OPEN"));
+    assert!(ask(&["info"]).contains("no image"), "what came while it was open is in use no more");
+
+    let unsigned = refused(&plain);
+    assert!(unsigned.contains("not signed") && unsigned.contains("--sign"), "{unsigned}");
+    let (other, board) = (refused(&file("other.tpi")), refused(&file("board.tpi")));
+    assert!(other.contains("key") && board.contains("board"), "{other} {board}");
+    ask(&["upload", &file("good.tpi"), "--activate"]);
+    assert!(ask(&["list"]).contains("ACTIVE"));
+    // Behind a reset nobody holds the button: no further key, and the image in use is verified anew.
+    ask(&["restart"]);
+    assert!(ask(&["list"]).contains("ACTIVE"));
 }
 
 /// So many setpoints to the device behind the socket, each a millisecond after the one before.

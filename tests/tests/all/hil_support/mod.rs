@@ -67,7 +67,12 @@ pub fn on(board: &mut dyn Board, part: usize, options: &Options) -> Report {
 /// A device in process behind two Unix sockets in a folder: `setpoint.sock`, `config.sock`. Its clock goes on by 1 ms with
 /// every frame.
 pub fn serve(folder: &Path) {
-    let device = Arc::new(Mutex::new(InProcess::start().unwrap()));
+    serve_device(folder, InProcess::start().unwrap());
+}
+
+/// The same of this device.
+pub fn serve_device(folder: &Path, device: InProcess) {
+    let device = Arc::new(Mutex::new(device));
     for (name, channel) in [("setpoint.sock", Channel::Setpoint), ("config.sock", Channel::Config)] {
         let listener = UnixListener::bind(folder.join(name)).unwrap();
         let device = Arc::clone(&device);
