@@ -14,6 +14,7 @@ pub mod library;
 pub mod limits;
 pub mod notation;
 pub mod output;
+pub mod rows;
 pub mod sheet;
 pub mod table;
 pub mod units;

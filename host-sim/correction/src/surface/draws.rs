@@ -13,6 +13,7 @@ use rand_distr::{Distribution, StandardNormal};
 use truepath_core::cut::Path;
 use truepath_core::process::Slices;
 use truepath_core::units::Offset;
+use truepath_ground::rows::{add, add_scaled, largest};
 use truepath_ground::units::mm;
 
 use super::causes::Causes;
@@ -118,7 +119,7 @@ impl Uncertain {
             wall.clone_from(&self.base);
             for column in &columns {
                 let weight = normal();
-                wall.iter_mut().zip(*column).for_each(|(error, change)| *error += change * weight);
+                add_scaled(&mut wall, column, weight);
             }
             if let Some(beside) = &self.beside {
                 beside.draw(self.heights, &mut wall, &mut normal);
@@ -139,14 +140,9 @@ impl Beside {
             let [before, behind] = [knot, knot + 1].map(|k| knots.get(k).copied().unwrap_or_default());
             // Between two knots the deviation is that at them.
             let share = (before * (1.0 - u) + behind * u) / (1.0 - u).hypot(u);
-            column.iter_mut().for_each(|error| *error += sigma * share);
+            add(column, sigma * share);
         }
     }
-}
-
-/// The largest error, the sign aside.
-pub fn largest(errors: &[f64]) -> f64 {
-    errors.iter().fold(0.0, |most, error| most.max(error.abs()))
 }
 
 /// Draws of a quantity.

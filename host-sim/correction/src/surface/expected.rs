@@ -1,9 +1,10 @@
 //! What is expected of a whole wall, at every height: how large its error is, how sure that is, and what makes it. Every command that
 //! predicts a wall, of one pass or of several, says it with these figures.
 
+use truepath_ground::rows;
+
 use super::causes::Causes;
-use super::draws::{Draws, Predicted, Uncertain, largest};
-use super::wall::p95;
+use super::draws::{Draws, Predicted, Uncertain};
 
 /// The predicted error of a whole wall, at every height, mm. Values are means over the machines that the points allow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -66,9 +67,8 @@ impl Surface {
     pub fn of(uncertain: &Uncertain, worst: usize, place: (f64, f64)) -> (Self, Draws) {
         let mut magnitudes = Vec::new();
         let [profile, p95, mean] = uncertain.draws(|wall| {
-            magnitudes.clear();
-            magnitudes.extend(wall.iter().map(|error| error.abs()));
-            [largest(wall), p95(&mut magnitudes), largest_mean(wall, uncertain.heights)]
+            rows::magnitudes(wall, &mut magnitudes);
+            [rows::largest(wall), rows::p95(&mut magnitudes), rows::largest_mean(wall, uncertain.heights)]
         });
         let (within, over_height) = (p95.predicted(), mean.predicted());
         let surface = Self {
@@ -88,12 +88,6 @@ impl Surface {
     pub fn worst_words(&self) -> String {
         format!("at s = {:.1} mm, {:.1} mm above the tip: {}", self.s_mm, self.height_mm, self.causes.words())
     }
-}
-
-/// The largest mean over the heights of a place, the sign aside.
-fn largest_mean(errors: &[f64], heights: usize) -> f64 {
-    let means = errors.chunks(heights.max(1)).map(|column| column.iter().sum::<f64>() / column.len() as f64);
-    means.fold(0.0, |most, mean| most.max(mean.abs()))
 }
 
 #[cfg(test)]

@@ -9,9 +9,10 @@ use truepath_core::cut::{Envelope, ForceTable, Loop, State};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{Parameters, neighbours};
 use truepath_core::units::Offset;
+use truepath_ground::rows::largest;
 use truepath_ground::units::{float, mm};
 
-use super::draws::{Beside, Uncertain, largest};
+use super::draws::{Beside, Uncertain};
 use super::expected::Surface;
 use super::unmodelled::{unbent, unmodelled};
 use super::wall::{WallFigures, judged};

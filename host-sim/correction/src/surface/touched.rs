@@ -3,12 +3,12 @@
 use truepath_core::job::same_place;
 use truepath_core::probe::Contact;
 use truepath_core::units::Offset;
+use truepath_ground::rows::p95;
 use truepath_ground::units::{float, mm};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::Pass;
 
 use super::causes::MeasuredCauses;
-use super::wall::p95;
 
 /// The largest measured error at any touched height beside the largest mean over the touched heights of a place, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]

@@ -3,6 +3,7 @@
 use truepath_core::cut::Path;
 use truepath_core::process::Slices;
 use truepath_core::units::Offset;
+use truepath_ground::rows::p95;
 use truepath_ground::units::{float, mm};
 
 /// What is judged of a wall, mm. Errors are positive where material is left.
@@ -81,12 +82,6 @@ impl WallFigures {
         figures.p95_mm = p95(&mut all);
         figures
     }
-}
-
-/// 95 of 100 of some magnitudes are at most this; zero of none. Their order is lost.
-pub fn p95(magnitudes: &mut [f64]) -> f64 {
-    let at = (magnitudes.len() * 95 / 100).min(magnitudes.len().saturating_sub(1));
-    if magnitudes.is_empty() { 0.0 } else { *magnitudes.select_nth_unstable_by(at, f64::total_cmp).1 }
 }
 
 /// What is left of a wall, unrolled, mm.

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use truepath_core::units::Offset;
 use truepath_correction::surface::causes::MeasuredCauses;
 use truepath_correction::surface::expected::Surface;
-use truepath_correction::surface::wall::p95;
+use truepath_ground::rows::p95;
 use truepath_ground::units::mm;
 
 use super::Candidate;

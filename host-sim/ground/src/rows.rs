@@ -1,0 +1,59 @@
+//! What is done to long rows of numbers many times over: drawn walls, their largest errors and quantiles.
+//!
+//! In this room because it is built optimised in every profile, whoever calls.
+
+/// Adds `by` times the numbers of another row.
+pub fn add_scaled(to: &mut [f64], from: &[f64], by: f64) {
+    for (to, from) in to.iter_mut().zip(from) {
+        *to += from * by;
+    }
+}
+
+/// Adds one number to all of a row.
+pub fn add(to: &mut [f64], number: f64) {
+    for to in to {
+        *to += number;
+    }
+}
+
+/// The largest magnitude; zero of none.
+pub fn largest(row: &[f64]) -> f64 {
+    row.iter().fold(0.0, |most, value| most.max(value.abs()))
+}
+
+/// The largest magnitude of the means of so many neighbours each; zero of none.
+pub fn largest_mean(row: &[f64], neighbours: usize) -> f64 {
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+    row.chunks(neighbours.max(1)).fold(0.0, |most, part| most.max(mean(part).abs()))
+}
+
+/// Writes the magnitudes of a row.
+pub fn magnitudes(row: &[f64], to: &mut Vec<f64>) {
+    to.clear();
+    to.extend(row.iter().map(|value| value.abs()));
+}
+
+/// 95 of 100 of some magnitudes are at most this; zero of none. Their order is lost.
+pub fn p95(magnitudes: &mut [f64]) -> f64 {
+    let at = (magnitudes.len() * 95 / 100).min(magnitudes.len().saturating_sub(1));
+    if magnitudes.is_empty() { 0.0 } else { *magnitudes.select_nth_unstable_by(at, f64::total_cmp).1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_added_to_and_asked() {
+        let mut row = [1.0, -4.0, 2.0, 3.0, -1.0];
+        add_scaled(&mut row, &[1.0, 1.0, 0.0, 0.0, 2.0], 0.5);
+        assert_eq!(row, [1.5, -3.5, 2.0, 3.0, 0.0]);
+        add(&mut row[..2], 0.5);
+        assert_eq!((largest(&row), largest_mean(&row, 2)), (3.0, 2.5));
+        let mut all = Vec::new();
+        magnitudes(&row, &mut all);
+        assert_eq!((p95(&mut all), p95(&mut []), largest(&[]), largest_mean(&[], 3)), (3.0, 0.0, 0.0, 0.0));
+        let mut hundred: Vec<f64> = (0..100).rev().map(f64::from).collect();
+        assert_eq!(p95(&mut hundred), 95.0);
+    }
+}
