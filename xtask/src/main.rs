@@ -196,6 +196,9 @@ enum Task {
         /// Only build it.
         #[arg(long)]
         no_tests: bool,
+        /// As `test --all` builds it: in less time, larger, and not to be handed on.
+        #[arg(long)]
+        fast: bool,
     },
     /// Packages to install: archive, Debian packages, checksums and a list of all parts, in target/packages.
     Dist {
@@ -273,7 +276,10 @@ fn main() -> ExitCode {
             report.run(Step::new("fuzz", || fuzz::check(target.as_deref(), length)));
         }
         Task::Page { write } => report.run(Step::new("page", || page::check(write))),
-        Task::Web { no_tests } => report.run(Step::new("web", || web::check(web::Build::Small, !no_tests))),
+        Task::Web { no_tests, fast } => {
+            let build = if fast { web::Build::Tests } else { web::Build::Small };
+            report.run(Step::new("web", || web::check(build, !no_tests)));
+        }
         Task::Dist { check: true } => report.run(Step::new("dist", dist::check)),
         Task::Dist { check: false } => report.run(Step::new("dist", dist::make)),
         Task::Linuxcnc { task, scenario, write } => {

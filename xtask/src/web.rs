@@ -17,7 +17,7 @@ use crate::toolchain::{Toolchain, WASM};
 pub enum Build {
     /// To be handed on.
     Small,
-    /// To be tested: in a fifth of the time.
+    /// To be tested: built in less time.
     Tests,
 }
 
