@@ -14,11 +14,11 @@ export async function processor(context, page) {
 /** Whether more wants to run here than there are processors for. */
 export const busy = () => loadavg()[0] > availableParallelism() + 1;
 
-/** Milliseconds of processor time of `work` on the machine the bounds were set on, idle. */
-const REFERENCE = 100;
+/** Milliseconds of processor time of `work` on a machine that keeps the bounds with a factor of two to spare, idle. */
+const REFERENCE = 180;
 
 /**
- * What this machine now takes for work that no change of ours alters, over what it took where the bounds were set; at least 1.
+ * What this machine now takes for work that no change of ours alters, over what it took there; at least 1.
  * A processor shared with other programs is slower as well: they take its caches and its other half.
  */
 export async function slowness(context, page) {
