@@ -267,3 +267,20 @@ fn plain_reason(error: &io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_was_copied_to_be_read_is_named_as_the_user_knows_it() {
+        let copy = Path::new("/tmp/copied/then/part/probe.txt");
+        let source = Source::new(copy.display().to_string(), b"1 2".to_vec());
+        let error = F001.error(format!("{} is short", copy.display()), "three numbers").at(&source, 0..3);
+        let shown = error.without_folder(Path::new("/tmp/copied/then"));
+        assert_eq!(shown.to_json()["error"]["file"], "part/probe.txt");
+        assert_eq!(shown.found(), "part/probe.txt is short");
+        let drawn = Failure::Input(shown).render(Form::Plain);
+        assert!(drawn.contains("part/probe.txt:1:1") && !drawn.contains("copied"), "{drawn}");
+    }
+}
