@@ -5,8 +5,8 @@
 //! follows the canonical machining functions of RS274/NGC (NIST 6556, chapter 4).
 
 use super::{
-    Axes, Coolant, Decimal, FeedMode, MachineParameters, Modal, Number, PathControl, Plane, Span, Spindle, ToolLength,
-    Units,
+    Axes, Coolant, Decimal, FeedMode, GcodeErrorKind, MachineParameters, Modal, Number, PathControl, Plane, Span,
+    Spindle, ToolLength, Units,
 };
 use truepath_units::Real;
 use truepath_units::geometry::{Curve, Point, Side};
@@ -215,3 +215,6 @@ pub struct Event<'a> {
     /// The parameters at this moment.
     pub parameters: &'a dyn MachineParameters,
 }
+
+/// What takes the steps of a program. Called dynamically, so that the interpreter is in a compiled program once, whoever calls it.
+pub type Sink<'s> = dyn FnMut(&Event<'_>) -> Result<(), GcodeErrorKind> + 's;

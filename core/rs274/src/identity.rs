@@ -14,7 +14,7 @@ pub fn program_crc(program: &[u8]) -> u32 {
 /// Whether a comment of the file begins with `TRUEPATH CORRECTED`, in any case, wherever it stands: a correction
 /// must never be applied twice, so text outside `%` counts as well.
 pub fn is_marked_corrected(program: &[u8]) -> bool {
-    program.iter().enumerate().filter(|(_, b)| matches!(b, b'(' | b';')).any(|(at, _)| {
+    memchr::memchr2_iter(b'(', b';', program).any(|at| {
         let body = program.get(at.saturating_add(1)..).unwrap_or(&[]);
         let mut letters = body.iter().filter(|b| !is_blank(**b)).map(u8::to_ascii_uppercase);
         b"TRUEPATHCORRECTED".iter().all(|&expected| letters.next() == Some(expected))

@@ -16,8 +16,8 @@ use super::corner::CornerStage;
 use super::execute::Execution;
 use super::flow::{Next, Reader, Sentence};
 use super::{
-    Event, GcodeError, GcodeErrorKind, Line, Memory, Options, Program, Source, WarningKind, Warnings, Word,
-    is_marked_corrected, program_crc,
+    GcodeError, Line, Memory, Options, Program, Sink, Source, WarningKind, Warnings, Word, is_marked_corrected,
+    program_crc,
 };
 
 /// A block that was executed.
@@ -67,32 +67,16 @@ impl<'t> Interpreter<'t> {
     ///
     /// # Errors
     /// The first thing that is not understood, or what `sink` answers, with the place of the block.
-    pub fn run<'p, S>(
+    pub fn run<'p>(
         &self,
         program: impl Into<Program<'p>>,
         memory: &mut Memory<'_>,
-        sink: &mut S,
+        sink: &mut Sink<'_>,
     ) -> Result<ProgramSummary, GcodeError>
     where
         't: 'p,
-        S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
     {
-        self.run_observed(program, memory, sink, |_| ())
-    }
-
-    /// The same by dynamic calls, once in the compiled program whoever calls it: each caller of [`Self::run`] has an interpreter of its
-    /// own, which takes seconds to compile.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn read(
-        &self,
-        program: Program<'_>,
-        memory: &mut Memory<'_>,
-        mut sink: &mut dyn FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-        observe: &mut dyn FnMut(&Executed<'_>),
-    ) -> Result<ProgramSummary, GcodeError> {
-        Interpreter { options: self.options }.run_observed(program, memory, &mut sink, observe)
+        self.run_observed(program.into(), memory, sink, &mut |_| ())
     }
 
     /// The same as [`Self::run`]; every block that is executed is given to `observe`. Statements of control flow and lines that only assign
@@ -100,18 +84,16 @@ impl<'t> Interpreter<'t> {
     ///
     /// # Errors
     /// As [`Self::run`].
-    pub fn run_observed<'p, S>(
+    pub fn run_observed<'p>(
         &self,
-        program: impl Into<Program<'p>>,
+        program: Program<'p>,
         memory: &mut Memory<'_>,
-        sink: &mut S,
-        mut observe: impl FnMut(&Executed<'_>),
+        sink: &mut Sink<'_>,
+        observe: &mut dyn FnMut(&Executed<'_>),
     ) -> Result<ProgramSummary, GcodeError>
     where
         't: 'p,
-        S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
     {
-        let program = program.into();
         memory.start(self.options.dialect);
         let mut reader = Reader::new(program, &self.options);
         let mut warnings = Warnings::default();

@@ -74,7 +74,7 @@ mod shifts;
 mod text;
 mod warning;
 
-pub use canon::{Canon, Event, ShiftKind, Source};
+pub use canon::{Canon, Event, ShiftKind, Sink, Source};
 pub use code::GCode;
 pub use comment::{Comment, CommentKind};
 pub use contour::{

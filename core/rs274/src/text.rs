@@ -106,7 +106,7 @@ impl<'a> Lines<'a> {
     /// From the first line.
     pub fn new(program: &'a [u8]) -> Self {
         let at = if program.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
-        let end = if program.contains(&b'\n') { b'\n' } else { b'\r' };
+        let end = if memchr::memchr(b'\n', program).is_some() { b'\n' } else { b'\r' };
         Self { program, at, number: 0, end }
     }
     /// From a line of them on.
@@ -122,7 +122,7 @@ impl<'a> Iterator for Lines<'a> {
     #[inline(never)]
     fn next(&mut self) -> Option<Line<'a>> {
         let rest = self.program.get(self.at..).filter(|r| !r.is_empty())?;
-        let len = rest.iter().position(|b| *b == self.end).unwrap_or(rest.len());
+        let len = memchr::memchr(self.end, rest).unwrap_or(rest.len());
         let mut text = rest.get(..len)?;
         while let [before @ .., b'\r'] = text {
             text = before;

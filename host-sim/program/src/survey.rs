@@ -99,6 +99,6 @@ pub(super) fn survey(program: &[u8], options: Options) -> Result<Vec<Move>, Gcod
         });
         Ok(())
     };
-    Interpreter::new(options).read(program.into(), &mut memory.lend(), &mut sink, &mut |_| ())?;
+    Interpreter::new(options).run_observed(program.into(), &mut memory.lend(), &mut sink, &mut |_| ())?;
     Ok(moves)
 }

@@ -34,15 +34,16 @@ pub fn unrolled(program: &[u8], options: Options<'static>) -> Option<Vec<u8>> {
     let (mut count, mut foreign) = (0usize, false);
     let mut written = BTreeSet::new();
     let mut memory = Box::new(HostMemory::new());
-    let read = Interpreter::new(options).read(program.into(), &mut memory.lend(), &mut |_| Ok(()), &mut |block| {
-        count += 1;
-        foreign |= block.source.file != 0;
-        // The number of a subprogram is none of the program it is written into.
-        let names = block.source.depth > 0 && block.words.iter().any(|word| word.letter == b'O');
-        if !block.steers && !names && count <= LONGEST {
-            put(&line_of(block, written.insert(block.source.line)));
-        }
-    });
+    let read =
+        Interpreter::new(options).run_observed(program.into(), &mut memory.lend(), &mut |_| Ok(()), &mut |block| {
+            count += 1;
+            foreign |= block.source.file != 0;
+            // The number of a subprogram is none of the program it is written into.
+            let names = block.source.depth > 0 && block.words.iter().any(|word| word.letter == b'O');
+            if !block.steers && !names && count <= LONGEST {
+                put(&line_of(block, written.insert(block.source.line)));
+            }
+        });
     read.ok()?;
     lines.last().filter(|_| lines.len() > 1).filter(percent).into_iter().for_each(|line| put(line));
     (!foreign && count <= LONGEST && same_steps(program, &text, options)).then_some(text)
@@ -60,21 +61,22 @@ fn conversational(program: &[u8], options: Options<'static>) -> Option<Vec<u8>> 
         text.extend_from_slice(end);
     };
     let mut memory = Box::new(HostMemory::new());
-    let read = Interpreter::new(options).read(program.into(), &mut memory.lend(), &mut |_| Ok(()), &mut |block| {
-        count += 1;
-        if count > LONGEST || block.steers {
-            return;
-        }
-        put(&mut text, &conversational_line(block));
-        // What belongs to CYCL DEF: values in lines of their own.
-        if KlartextBlock::of(block.line).is_ok_and(|b| matches!(b.statement, Statement::Cycle(..))) {
-            let behind = lines.iter().skip(block.source.line as usize);
-            let values = |line: &&Line<'_>| {
-                KlartextBlock::of(**line).is_ok_and(|b| b.statement == Statement::Assignment && b.number.is_none())
-            };
-            behind.take_while(values).for_each(|line| put(&mut text, line.text));
-        }
-    });
+    let read =
+        Interpreter::new(options).run_observed(program.into(), &mut memory.lend(), &mut |_| Ok(()), &mut |block| {
+            count += 1;
+            if count > LONGEST || block.steers {
+                return;
+            }
+            put(&mut text, &conversational_line(block));
+            // What belongs to CYCL DEF: values in lines of their own.
+            if KlartextBlock::of(block.line).is_ok_and(|b| matches!(b.statement, Statement::Cycle(..))) {
+                let behind = lines.iter().skip(block.source.line as usize);
+                let values = |line: &&Line<'_>| {
+                    KlartextBlock::of(**line).is_ok_and(|b| b.statement == Statement::Assignment && b.number.is_none())
+                };
+                behind.take_while(values).for_each(|line| put(&mut text, line.text));
+            }
+        });
     read.ok()?;
     let ends = |line: &&Line<'_>| KlartextBlock::of(**line).is_ok_and(|b| b.statement == Statement::End);
     let last = lines.iter().find(ends)?;

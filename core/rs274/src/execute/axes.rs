@@ -3,8 +3,8 @@
 use super::super::block::BlockWords;
 use super::super::shifts::sin_cos_degrees;
 use super::super::{
-    AXIS_LETTERS, Axes, Decimal, Event, GcodeError, GcodeErrorKind, Number, Plane, PointlessLength, SettingError,
-    Units, WarningKind, Word,
+    AXIS_LETTERS, Axes, Decimal, GcodeError, GcodeErrorKind, Number, Plane, PointlessLength, SettingError, Units,
+    WarningKind, Word,
 };
 use super::Execution;
 use truepath_units::geometry::Point;
@@ -21,17 +21,14 @@ pub(super) const fn turns(axis: usize) -> bool {
     matches!(axis, 3..=5)
 }
 
-impl<S> Execution<'_, '_, '_, S> {
+impl Execution<'_, '_, '_> {
     /// The letter of an axis by its number.
     pub(super) fn letter(&self, axis: usize) -> u8 {
         AXIS_LETTERS.get(axis).copied().unwrap_or(b'Z')
     }
 }
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// A length word in nanometres.
     pub(super) fn length(&mut self, word: Word) -> Result<Offset, GcodeError> {
         self.note_unit(word);

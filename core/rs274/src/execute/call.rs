@@ -4,18 +4,13 @@ use super::super::block::BlockWords;
 use super::super::flow::{Next, Target};
 use super::super::group::Group;
 use super::super::mcode::MCodes;
-use super::super::{
-    CycleError, Dialect, Event, GcodeError, GcodeErrorKind, Number, PointlessLength, SettingError, WarningKind, Word,
-};
+use super::super::{CycleError, Dialect, GcodeError, Number, PointlessLength, SettingError, WarningKind, Word};
 use super::Execution;
 
 /// Repetitions of a call in one block.
 const REPETITIONS: u32 = 9_999;
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// G65: every other word of the block is an argument.
     /// Where numbers without a point are in least increments, a length among the arguments must have one.
     pub(super) fn macro_call(&self, block: &BlockWords<'_>) -> Result<Option<Next>, GcodeError> {

@@ -1,9 +1,7 @@
 //! G2 and G3 in the three planes, with the third axis moving along (helix) and extra turns (P).
 
 use super::super::block::BlockWords;
-use super::super::{
-    ArcCentres, Axes, Canon, Decimal, Event, GcodeError, GcodeErrorKind, Number, Plane, Units, WarningKind,
-};
+use super::super::{ArcCentres, Axes, Canon, Decimal, GcodeError, GcodeErrorKind, Number, Plane, Units, WarningKind};
 use super::Execution;
 use super::arc::{absolute_centre, centre_from_offsets, centre_from_radius};
 use super::cycle::centre_letter;
@@ -17,10 +15,7 @@ const INCH_TOLERANCE: Offset = Offset::from_nm(71_842);
 /// Turns of one arc; more are an error.
 const TURNS: u32 = 10_000;
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     pub(super) fn arc(&mut self, block: &mut BlockWords<'_>, counter_clockwise: bool) -> Result<(), GcodeError> {
         let span = self.block_span();
         let plane = self.modal.plane;

@@ -11,10 +11,7 @@ use truepath_units::{Offset, div_rounded};
 /// The largest radius, 100 m.
 const LARGEST_NM: u64 = 100_000_000_000;
 
-impl<'p, S> Execution<'p, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl<'p> Execution<'p, '_, '_> {
     /// Executes G40 … G42.1.
     pub(super) fn compensation(&mut self, block: &mut BlockWords) -> Result<(), GcodeError> {
         let Some((code, span)) = block.code(Group::Compensation) else {

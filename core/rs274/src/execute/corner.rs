@@ -3,15 +3,12 @@
 use super::super::block::BlockWords;
 use super::super::compensation::{Piece, Waiting, in_plane, moved, put};
 use super::super::corner::{Corner, Held, Misfit, Straight};
-use super::super::{Axes, Canon, CornerError, Event, FeedMode, GcodeError, GcodeErrorKind, Span, Word};
+use super::super::{Axes, Canon, CornerError, FeedMode, GcodeError, GcodeErrorKind, Span, Word};
 use super::Execution;
 use super::compensate::error_of;
 use truepath_units::Offset;
 
-impl<'p, S> Execution<'p, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl<'p> Execution<'p, '_, '_> {
     /// The corner word of a line.
     pub(super) fn corner_word(&mut self, block: &mut BlockWords<'_>) -> Result<Option<(Corner, Word)>, GcodeError> {
         let word = match (block.use_word(b'r'), block.use_word(b'c')) {

@@ -1,16 +1,13 @@
 //! G5, G5.1, G5.2 … G5.3: splines in X and Y, as lines within the tolerance or as a whole.
 
 use super::super::block::BlockWords;
-use super::super::{Axes, Canon, CycleError, Event, GCode, GcodeError, GcodeErrorKind, Plane, Span};
+use super::super::{Axes, Canon, CycleError, GCode, GcodeError, GcodeErrorKind, Plane, Span};
 use super::Execution;
 use super::spline::{ControlPoint, ORDER, POINTS, Spline};
 use truepath_units::geometry::{Point, Vector};
 use truepath_units::{Offset, Real};
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// G5 (cubic) and G5.1 (quadratic).
     pub(super) fn bezier(&mut self, block: &mut BlockWords<'_>, code: GCode) -> Result<(), GcodeError> {
         let span = self.block_span();

@@ -8,8 +8,7 @@
 
 use super::super::block::BlockWords;
 use super::super::{
-    Axes, Canon, CycleError, Event, FeedMode, GCode, GcodeError, GcodeErrorKind, Number, Plane, RetractLevel, Span,
-    Spindle,
+    Axes, Canon, CycleError, FeedMode, GCode, GcodeError, GcodeErrorKind, Number, Plane, RetractLevel, Span, Spindle,
 };
 use super::Execution;
 use super::memory::CycleMemory;
@@ -54,10 +53,7 @@ impl Hole {
     }
 }
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// Executes the cycle that is on with the words of this block.
     pub(super) fn cycle(&mut self, block: &mut BlockWords<'_>, code: GCode) -> Result<(), GcodeError> {
         let span = self.block_span();

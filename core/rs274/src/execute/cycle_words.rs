@@ -4,17 +4,14 @@
 //! Fanuc's: they stay until G80 or another motion.
 
 use super::super::block::BlockWords;
-use super::super::{CycleError, Event, GCode, GcodeError, GcodeErrorKind, Span, WarningKind};
+use super::super::{CycleError, GCode, GcodeError, GcodeErrorKind, Span, WarningKind};
 use super::Execution;
 use super::memory::CycleMemory;
 
 /// Repetitions of one block; more are an error.
 const REPETITIONS: u32 = 10_000;
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// The words of this block, and those that stay from the last hole of the same cycle.
     pub(super) fn cycle_words(
         &mut self,

@@ -2,7 +2,7 @@
 
 use super::super::block::BlockWords;
 use super::super::{
-    AXIS_LETTERS, Axes, Canon, Event, GcodeError, GcodeErrorKind, Motion, NineAxes, SettingError, Shifts, Span,
+    AXIS_LETTERS, Axes, Canon, GcodeError, GcodeErrorKind, Motion, NineAxes, SettingError, Shifts, Span,
 };
 use super::Execution;
 use truepath_units::Position;
@@ -12,10 +12,7 @@ const fn stored_place(second: bool) -> u16 {
     if second { 5181 } else { 5161 }
 }
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// G28, G30: by way of the place that the words give, then to the stored one; without axis words every axis.
     /// Without knowledge of the machine that place is unknown.
     pub(super) fn reference(&mut self, block: &mut BlockWords<'_>, second: bool, span: Span) -> Result<(), GcodeError> {

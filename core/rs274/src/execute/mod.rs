@@ -50,7 +50,7 @@ use super::flow::{Next, Sentence};
 use super::parameter::Surroundings;
 use super::{
     ArcCentres, Axes, Canon, Comment, CommentKind, Event, GcodeError, GcodeErrorKind, Line, Memory, Modal, Motion,
-    Options, PointlessLength, Source, Span, Token, Tool, WarningKind, Warnings, Words,
+    Options, PointlessLength, Sink, Source, Span, Token, Tool, WarningKind, Warnings, Words,
 };
 
 use memory::{CHANGED_TOOLS, CycleMemory, LEVELS, SavedModes, SplineMemory};
@@ -58,7 +58,7 @@ use memory::{CHANGED_TOOLS, CycleMemory, LEVELS, SavedModes, SplineMemory};
 use truepath_units::Position;
 
 /// The machine.
-pub(super) struct Execution<'p, 's, 'm, S> {
+pub(super) struct Execution<'p, 's, 'm> {
     pub(super) options: Options<'p>,
     pub(super) modal: Modal,
     pub(super) at: Axes,
@@ -77,7 +77,7 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     line: Line<'p>,
     source: Source,
     /// Away only while an event is given to it.
-    sink: Option<&'s mut S>,
+    sink: Option<&'s mut Sink<'s>>,
     /// Whether the present block gives F.
     feed_given: bool,
     cycle: Option<CycleMemory>,
@@ -100,7 +100,7 @@ pub(super) struct Execution<'p, 's, 'm, S> {
     klartext: klartext_memory::KlartextMemory<'p>,
 }
 
-impl<S> Surroundings for Execution<'_, '_, '_, S> {
+impl Surroundings for Execution<'_, '_, '_> {
     fn change<R>(&mut self, how: impl FnOnce(&mut Memory<'_>) -> R) -> R {
         how(self.memory)
     }
@@ -112,17 +112,14 @@ impl<S> Surroundings for Execution<'_, '_, '_, S> {
     }
 }
 
-impl<'p, 's, 'm, S> Execution<'p, 's, 'm, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl<'p, 's, 'm> Execution<'p, 's, 'm> {
     /// The machine at the start of a program.
     pub(super) fn new(
         options: Options<'p>,
         memory: &'s mut Memory<'m>,
         (corner, compensation): (&'s mut CornerStage<'p>, &'s mut CompensationStage<'p>),
         warnings: Warnings,
-        sink: &'s mut S,
+        sink: &'s mut Sink<'s>,
     ) -> Self {
         let mut execution = Self {
             options,

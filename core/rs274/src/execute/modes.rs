@@ -8,15 +8,12 @@ use super::super::flow::Next;
 use super::super::group::Group;
 use super::super::mcode::MCodes;
 use super::super::{
-    ArcCentres, Canon, CornerError, Dialect, Event, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel,
-    SettingError, WarningKind, Word,
+    ArcCentres, Canon, CornerError, Dialect, Foreign, GcodeError, GcodeErrorKind, Plane, RetractLevel, SettingError,
+    WarningKind, Word,
 };
 use super::Execution;
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// Executes a block; tells where the program goes on.
     pub(super) fn execute(&mut self, block: &mut BlockWords<'_>) -> Result<Next, GcodeError> {
         if let Some((second, span)) = block.program {

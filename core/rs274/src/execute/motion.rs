@@ -4,15 +4,12 @@ use super::super::block::BlockWords;
 use super::super::compensation::CompensationError;
 use super::super::group::Group;
 use super::super::{
-    Axes, Canon, CycleError, Event, GCode, GcodeError, GcodeErrorKind, Motion, SettingError, Span, WarningKind,
+    Axes, Canon, CycleError, GCode, GcodeError, GcodeErrorKind, Motion, SettingError, Span, WarningKind,
 };
 use super::Execution;
 use super::axes::PLACE_LETTERS;
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// Executes the codes that use axis words: those for one block, then the motion.
     pub(super) fn moves(&mut self, block: &mut BlockWords<'_>) -> Result<(), GcodeError> {
         let explicit = block.code(Group::Motion);

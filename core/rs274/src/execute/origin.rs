@@ -6,8 +6,7 @@
 use super::super::block::BlockWords;
 use super::super::group::Group;
 use super::super::{
-    AXIS_LETTERS, Axes, Canon, Event, GCode, GcodeError, GcodeErrorKind, NineAxes, SettingError, ShiftKind, Shifts,
-    Span, Word,
+    AXIS_LETTERS, Axes, Canon, GCode, GcodeError, NineAxes, SettingError, ShiftKind, Shifts, Span, Word,
 };
 use super::Execution;
 use super::axes::turns;
@@ -17,10 +16,7 @@ use truepath_units::Position;
 /// Axis words of a block as values.
 type AxisWords = [Option<i64>; 9];
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// G54 … G59.3, G54.1 P, G154 P.
     pub(super) fn work_offset(&mut self, block: &mut BlockWords<'_>) -> Result<(), GcodeError> {
         let Some((code, span)) = block.code(Group::WorkOffset) else {

@@ -4,9 +4,7 @@
 //! distance before the end, as LinuxCNC's stand-alone interpreter does; without one the axes that moved are unknown.
 
 use super::super::block::BlockWords;
-use super::super::{
-    Axes, Canon, CycleError, Event, GCode, GcodeError, GcodeErrorKind, Number, SettingError, Span, Units,
-};
+use super::super::{Axes, Canon, CycleError, GCode, GcodeError, Number, SettingError, Span, Units};
 use super::Execution;
 use super::axes::turns;
 use truepath_units::{Offset, Position, div_rounded, isqrt_rounded};
@@ -15,10 +13,7 @@ use truepath_units::{Offset, Position, div_rounded, isqrt_rounded};
 const RESULT: u16 = 5061;
 const ANSWERED: u16 = 5070;
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     pub(super) fn probe(&mut self, block: &mut BlockWords<'_>, away: bool, must: bool) -> Result<(), GcodeError> {
         let span = self.block_span();
         let (from, auxiliary) = (self.at, self.modal.auxiliary);

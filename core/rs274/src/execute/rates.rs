@@ -3,8 +3,7 @@
 use super::super::block::BlockWords;
 use super::super::group::Group;
 use super::super::{
-    Canon, CycleError, Dialect, Event, FeedMode, GCode, GcodeError, GcodeErrorKind, SettingError, Units, WarningKind,
-    Word,
+    Canon, CycleError, Dialect, FeedMode, GCode, GcodeError, GcodeErrorKind, SettingError, Units, WarningKind, Word,
 };
 use super::Execution;
 use truepath_units::Real;
@@ -12,10 +11,7 @@ use truepath_units::Real;
 /// The largest F (mm/min) and S (rpm).
 const LARGEST_RATE: i32 = 1_000_000_000;
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     pub(super) fn units(&mut self, block: &BlockWords<'_>) -> Result<(), GcodeError> {
         let Some((code, span)) = block.code(Group::Units) else {
             return Ok(());

@@ -8,7 +8,7 @@ use super::Execution;
 use super::axes::turns;
 use truepath_units::{Offset, Position};
 
-impl<S> MachineParameters for Execution<'_, '_, '_, S> {
+impl MachineParameters for Execution<'_, '_, '_> {
     fn number(&self, number: u32) -> Option<f64> {
         match number {
             5400 => Some(f64::from(self.modal.tool.unwrap_or(0))),
@@ -102,7 +102,7 @@ const fn flag(on: bool) -> f64 {
     if on { 1.0 } else { 0.0 }
 }
 
-impl<S> Execution<'_, '_, '_, S> {
+impl Execution<'_, '_, '_> {
     fn machine_units(&self) -> Units {
         self.options.machine.map_or(Units::Millimetres, |machine| machine.units)
     }

@@ -3,11 +3,11 @@
 //! Limits: coolant, overrides and cutter radius compensation are not restored, and a tool offset only when it was off.
 
 use super::super::mcode::MCodes;
-use super::super::{Canon, Event, GcodeError, GcodeErrorKind, SettingError, Span};
+use super::super::{Canon, GcodeError, SettingError, Span};
 use super::Execution;
 use super::memory::SavedModes;
 
-impl<S> Execution<'_, '_, '_, S> {
+impl Execution<'_, '_, '_> {
     /// A call level has ended: what M73 saved in it waits to come back.
     pub(super) fn modes_of_level(&mut self, level: u8) {
         let saved = self.saved.get_mut(usize::from(level)).and_then(Option::take);
@@ -15,10 +15,7 @@ impl<S> Execution<'_, '_, '_, S> {
     }
 }
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// M70 saves, M71 forgets, M72 restores, M73 saves and restores on return.
     pub(super) fn saved_modes(&mut self, m: &MCodes) -> Result<(), GcodeError> {
         let Some(code) = m.saved else { return Ok(()) };

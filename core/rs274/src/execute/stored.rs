@@ -2,7 +2,7 @@
 //!
 //! The values are in the unit of the machine (LinuxCNC's `LINEAR_UNITS`), axes that turn in degrees.
 
-use super::super::{Event, GcodeError, GcodeErrorKind, NineAxes, Number, RetractLevel, Shifts, Span, Units};
+use super::super::{GcodeError, NineAxes, Number, RetractLevel, Shifts, Span, Units};
 use super::Execution;
 use super::axes::turns;
 use truepath_units::Position;
@@ -21,7 +21,7 @@ pub(super) const fn work_place(system: u16) -> u16 {
     }
 }
 
-impl<S> Execution<'_, '_, '_, S> {
+impl Execution<'_, '_, '_> {
     fn native(&self, axis: usize) -> Units {
         if turns(axis) { Units::Millimetres } else { self.options.machine.map_or(Units::Millimetres, |m| m.units) }
     }
@@ -89,10 +89,7 @@ impl<S> Execution<'_, '_, '_, S> {
     }
 }
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// Stores the value of an axis.
     pub(super) fn store_axis(&mut self, first: u16, axis: usize, value: i64, span: Span) -> Result<(), GcodeError> {
         let number = first.saturating_add(u16::try_from(axis).unwrap_or(0));

@@ -4,16 +4,13 @@ use super::super::block::BlockWords;
 use super::super::group::Group;
 use super::super::mcode::{MCode, MCodes};
 use super::super::{
-    Canon, Coolant, CycleError, Dialect, Event, GcodeError, GcodeErrorKind, Number, PathControl, SettingError, Span,
-    Spindle, WarningKind,
+    Canon, Coolant, CycleError, Dialect, GcodeError, GcodeErrorKind, Number, PathControl, SettingError, Span, Spindle,
+    WarningKind,
 };
 use super::Execution;
 use truepath_units::Offset;
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// M62 … M68: outputs and inputs, with the words they need.
     pub(super) fn inputs_and_outputs(&mut self, block: &mut BlockWords<'_>, m: &MCodes) -> Result<(), GcodeError> {
         let Some(code) = m.io else { return Ok(()) };

@@ -3,14 +3,12 @@
 use super::super::block::BlockWords;
 use super::super::group::Group;
 use super::super::mcode::MCodes;
-use super::super::{
-    Canon, CycleError, Event, GCode, GcodeError, GcodeErrorKind, NineAxes, SettingError, Shifts, Span, Tool, ToolLength,
-};
+use super::super::{Canon, CycleError, GCode, GcodeError, NineAxes, SettingError, Shifts, Span, Tool, ToolLength};
 use super::Execution;
 use super::memory::CHANGED_TOOLS;
 use truepath_units::{Offset, Position};
 
-impl<S> Execution<'_, '_, '_, S> {
+impl Execution<'_, '_, '_> {
     /// A row of the tool table, as G10 has left it.
     pub(super) fn tool_row(&self, number: u32) -> Option<Tool> {
         let changed = self.changed_tools.iter().find(|tool| tool.number == number);
@@ -18,10 +16,7 @@ impl<S> Execution<'_, '_, '_, S> {
     }
 }
 
-impl<S> Execution<'_, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl Execution<'_, '_, '_> {
     /// T, M6, M61.
     pub(super) fn tool_codes(&mut self, block: &mut BlockWords<'_>, m: &MCodes) -> Result<(), GcodeError> {
         if let Some(word) = block.use_word(b'T') {

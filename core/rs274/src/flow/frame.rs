@@ -26,21 +26,38 @@ impl<'a> Frame<'a> {
 
     /// Of a file.
     pub(in super::super) fn of(program: &'a [u8]) -> Self {
-        let percents = || Lines::new(program).filter(|l| first_byte(l) == Some(b'%'));
-        let text = || Lines::new(program).filter(|l| first_byte(l).is_some());
-        let none = Line { number: 1, start: 0, text: &[] };
-        let (first, second) = (percents().next(), percents().nth(1));
-        let only_remarks_before = |p: Line<'_>| {
-            text().take_while(|l| l.number < p.number).all(|l| matches!(first_byte(&l), Some(b'(' | b';')))
+        let mut last = Line { number: 1, start: 0, text: &[] };
+        let (mut first, mut second) = (None, None);
+        // The first text of the file, and behind each of the two.
+        let (mut text, mut behind_first, mut behind_second) = (None, None, None);
+        let mut only_remarks_before = true;
+        for line in Lines::new(program) {
+            let Some(byte) = first_byte(&line) else { continue };
+            last = line;
+            let place = match (first, second) {
+                (None, _) => &mut text,
+                (_, None) => &mut behind_first,
+                _ => &mut behind_second,
+            };
+            let is_percent = byte == b'%';
+            if !(is_percent && second.is_none()) {
+                place.get_or_insert(line);
+            }
+            if !is_percent {
+                only_remarks_before &= first.is_some() || matches!(byte, b'(' | b';');
+            } else if first.is_none() {
+                first = Some(line.number);
+            } else if second.is_none() {
+                second = Some(line.number);
+            }
+        }
+        let (open, close, outside) = match (first, second) {
+            (Some(a), Some(b)) => (a, b, text.or(behind_second)),
+            (Some(a), None) if only_remarks_before => (a, u32::MAX, text),
+            (Some(a), None) => (0, a, behind_first),
+            (None, _) => (0, u32::MAX, None),
         };
-        let (open, close) = match (first, second) {
-            (Some(a), Some(b)) => (a.number, b.number),
-            (Some(a), None) if only_remarks_before(a) => (a.number, u32::MAX),
-            (Some(a), None) => (0, a.number),
-            (None, _) => (0, u32::MAX),
-        };
-        let outside = text().find(|l| l.number < open || l.number > close);
-        Self { open, close, outside, last: text().last().unwrap_or(none) }
+        Self { open, close, outside, last }
     }
 
     /// Whether a line belongs to the program, its `%` included.

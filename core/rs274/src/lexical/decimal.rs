@@ -41,6 +41,9 @@ impl Decimal {
         is_point: impl Fn(u8) -> bool,
         is_blank: impl Fn(u8) -> bool,
     ) -> (&[u8], Result<Self, NumberError>) {
+        if let Some((value, end)) = Self::read_plain(input, &is_point, &is_blank) {
+            return (input.get(end..).unwrap_or(&[]), Ok(value));
+        }
         let (mut mantissa, mut significant, mut decimals) = (0i64, 0u8, 0u8);
         let (mut negative, mut signed, mut point, mut any, mut too_large) = (false, false, false, false, false);
         let mut end = 0usize;
@@ -74,6 +77,33 @@ impl Decimal {
         };
         (input.get(end..).unwrap_or(&[]), value)
     }
+    /// The same of a number as programs nearly always write it: at most 18 digits, only a minus before them, nothing between them.
+    /// With the number of bytes read; `None` where the long way decides.
+    fn read_plain(input: &[u8], is_point: impl Fn(u8) -> bool, is_blank: impl Fn(u8) -> bool) -> Option<(Self, usize)> {
+        let negative = input.first() == Some(&b'-');
+        let start = usize::from(negative);
+        let (mut mantissa, mut end, mut point) = (0i64, start, None);
+        while let Some(&byte) = input.get(end) {
+            let digit = byte.wrapping_sub(b'0');
+            if digit < 10 {
+                mantissa = mantissa.wrapping_mul(10).wrapping_add(i64::from(digit));
+            } else if point.is_none() && is_point(byte) {
+                point = Some(end);
+            } else {
+                break;
+            }
+            end = end.wrapping_add(1);
+        }
+        let digits = end.wrapping_sub(start).wrapping_sub(usize::from(point.is_some()));
+        let decimals = point.map_or(0, |at| end.wrapping_sub(at).wrapping_sub(1));
+        // Behind a blank the number may go on.
+        let behind = input.get(end..).unwrap_or(&[]).iter().find(|byte| !is_blank(**byte));
+        let goes_on = behind.is_some_and(|&byte| byte.is_ascii_digit() || is_point(byte));
+        (0 < digits && digits <= usize::from(DIGITS) && !goes_on).then(|| {
+            let mantissa = if negative { mantissa.wrapping_neg() } else { mantissa };
+            (Self { mantissa, decimals: decimals as u8 }, end)
+        })
+    }
     /// The written digits as a whole number, with the sign.
     pub const fn mantissa(self) -> i64 {
         self.mantissa
@@ -93,6 +123,10 @@ impl Decimal {
     }
     /// This number times a whole one, rounded once to a whole number.
     pub const fn times(self, factor: i64) -> i128 {
+        // Nearly always the power of ten divides the factor: no division of 128 bits then.
+        if let Some(whole) = self.whole_factor(factor) {
+            return (self.mantissa as i128).wrapping_mul(whole as i128);
+        }
         div_rounded((self.mantissa as i128).saturating_mul(factor as i128), self.power())
     }
     /// This number times a whole one, when that is a whole number.
@@ -116,6 +150,19 @@ impl Decimal {
     #[expect(clippy::float_arithmetic, reason = "what expressions compute with")]
     pub fn value(self) -> f64 {
         self.mantissa as f64 / POWERS.get(usize::from(self.decimals)).copied().unwrap_or(1e18)
+    }
+    /// `factor / 10^decimals` when that is whole.
+    const fn whole_factor(self, factor: i64) -> Option<i64> {
+        let mut whole = factor;
+        let mut left = self.decimals;
+        while left > 0 {
+            if whole % 10 != 0 {
+                return None;
+            }
+            whole /= 10;
+            left = left.saturating_sub(1);
+        }
+        Some(whole)
     }
     const fn power(self) -> i128 {
         10i128.saturating_pow(self.decimals as u32)
@@ -194,6 +241,15 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn the_short_way_reads_what_the_long_way_reads(text in "[-+]?[0-9. X]{0,24}") {
+            // A blank in front is what the short way leaves to the long one.
+            let (long, left) = read(&format!(" {text}"));
+            let (short, rest) = read(&text);
+            prop_assert_eq!(&short, &long);
+            prop_assert!(short.is_err() || rest == left);
+        }
+
         #[test]
         fn every_written_number_reads_back_as_its_digits(whole in 0u32.., part in 0u32..1_000_000, minus: bool) {
             let text = format!("{}{whole}.{part:06}", if minus { "-" } else { "" });

@@ -1,7 +1,7 @@
 //! Texts that errors can point into, and the way from bytes to lines and columns.
 
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::visible::{visible, visible_lines};
 
@@ -16,14 +16,14 @@ pub struct Source(Arc<Inner>);
 struct Inner {
     name: String,
     bytes: Vec<u8>,
-    text: String,
+    /// Made when something points into it: a program of 100 MB that is sound needs none.
+    text: OnceLock<String>,
 }
 
 impl Source {
     /// From bytes already at hand.
     pub fn new(name: impl Into<String>, bytes: Vec<u8>) -> Self {
-        let text = readable(&bytes);
-        Self(Arc::new(Inner { name: name.into(), bytes, text }))
+        Self(Arc::new(Inner { name: name.into(), bytes, text: OnceLock::new() }))
     }
 
     /// The file's name as the user wrote it.
@@ -94,7 +94,8 @@ impl miette::SourceCode for Source {
         before: usize,
         after: usize,
     ) -> Result<Box<dyn miette::SpanContents<'a> + 'a>, miette::MietteError> {
-        let contents = self.0.text.read_span(span, before, after)?;
+        let text = self.0.text.get_or_init(|| readable(&self.0.bytes));
+        let contents = text.read_span(span, before, after)?;
         Ok(Box::new(miette::MietteSpanContents::new_named(
             visible(&self.0.name).into_owned(),
             contents.data(),

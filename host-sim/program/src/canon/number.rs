@@ -8,10 +8,19 @@ use std::io::Write;
 /// Appends `value / unit` with four decimals; `unit` is positive: 1 000 000 for millimetres and degrees, 25 400 000
 /// for inches.
 pub(super) fn push_ratio(out: &mut Vec<u8>, value: i64, unit: i64) {
-    // Both units are multiples of 10 000.
-    let last = (unit / 10_000).unsigned_abs().max(1);
+    // An axis that does not move, and those that turn nearly always.
+    if value == 0 {
+        return out.extend_from_slice(b"0.0000");
+    }
+    // Both units are multiples of 10 000. Division by a constant is a product.
     let magnitude = value.unsigned_abs();
-    let (mut digits, rest) = (magnitude / last, magnitude % last);
+    let (mut digits, rest, last) = match unit {
+        1_000_000 => (magnitude / 100, magnitude % 100, 100),
+        _ => {
+            let last = (unit / 10_000).unsigned_abs().max(1);
+            (magnitude / last, magnitude % last, last)
+        }
+    };
     if rest * 2 == last {
         return push_real(out, value as f64 / unit as f64);
     }
@@ -36,25 +45,15 @@ pub(super) fn push_real(out: &mut Vec<u8>, value: f64) {
 fn push_digits(out: &mut Vec<u8>, ten_thousandths: u64) {
     let (whole, part) = (ten_thousandths / 10_000, ten_thousandths % 10_000);
     push_whole(out, whole);
-    let part = part as u32;
-    let digit = |power: u32| b'0' + (part / power % 10) as u8;
-    out.extend_from_slice(&[b'.', digit(1000), digit(100), digit(10), digit(1)]);
+    // With a one before them, so that the zeros stay.
+    let mut text = itoa::Buffer::new();
+    let digits = text.format(part as u32 + 10_000).as_bytes();
+    out.extend_from_slice(&[b'.', digits[1], digits[2], digits[3], digits[4]]);
 }
 
 /// Appends a whole number.
 pub(super) fn push_whole(out: &mut Vec<u8>, number: u64) {
-    let mut digits = [0u8; 20];
-    let mut at = digits.len();
-    let mut rest = number;
-    loop {
-        at -= 1;
-        digits[at] = b'0' + (rest % 10) as u8;
-        rest /= 10;
-        if rest == 0 {
-            break;
-        }
-    }
-    out.extend_from_slice(&digits[at..]);
+    out.extend_from_slice(itoa::Buffer::new().format(number).as_bytes());
 }
 
 #[cfg(test)]

@@ -259,7 +259,8 @@ fn each(text: &Text<'_>, options: Options<'static>, mut step: impl FnMut(u32, Ca
         }
         Ok(())
     };
-    let run = Interpreter::new(options).read(text.source.bytes().into(), &mut memory.lend(), &mut sink, &mut |_| ());
+    let run =
+        Interpreter::new(options).run_observed(text.source.bytes().into(), &mut memory.lend(), &mut sink, &mut |_| ());
     run.map(|_| ()).map_err(|error| InputError::of_program(text.source, &error).into())
 }
 

@@ -106,7 +106,7 @@ pub(super) fn facts(program: &[u8], options: Options, centre_path: bool) -> Resu
         });
         Ok(())
     };
-    Interpreter::new(options).read(program.into(), &mut memory.lend(), &mut sink, &mut |_| ())?;
+    Interpreter::new(options).run_observed(program.into(), &mut memory.lend(), &mut sink, &mut |_| ())?;
     Ok(facts)
 }
 

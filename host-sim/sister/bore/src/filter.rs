@@ -5,9 +5,11 @@
 //! a wall of radius ρ is the cut-off `2πρ/λ` undulations per revolution.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
-use rustfft::FftPlanner;
+use rustfft::algorithm::{BluesteinsAlgorithm, Radix4};
 use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftDirection};
 
 use super::envelope::Profile;
 
@@ -23,6 +25,21 @@ const MOST: usize = 1 << 22;
 /// Share of `n` undulations per revolution that the long-wave side of a cut-off passes.
 pub fn passed(undulations: f64, cutoff: f64) -> f64 {
     (-(undulations / cutoff).powi(2)).exp2()
+}
+
+/// The discrete Fourier transform, in place, not scaled. A planner would choose among algorithms of every length, 0.3 MB of program; the
+/// lengths here are powers of two, but for profiles that were measured.
+fn transform(values: &mut [Complex<f64>], direction: FftDirection) {
+    let count = values.len();
+    if count < 2 {
+        return;
+    }
+    if count.is_power_of_two() {
+        Radix4::new(count, direction).process(values);
+    } else {
+        let inner = Radix4::new((2 * count - 1).next_power_of_two(), direction);
+        BluesteinsAlgorithm::new(count, Arc::new(inner)).process(values);
+    }
 }
 
 /// A closed profile: deviations from a circle about the centre of the path at equal angles from 0.
@@ -50,7 +67,7 @@ impl Closed {
         let mean_mm = base + radii.iter().map(|r| r - base).sum::<f64>() / count;
         let deviations: Vec<f64> = radii.into_iter().map(|r| r - mean_mm).collect();
         let mut spectrum: Vec<Complex<f64>> = deviations.iter().map(|d| Complex::new(*d, 0.0)).collect();
-        FftPlanner::new().plan_fft_forward(spectrum.len()).process(&mut spectrum);
+        transform(&mut spectrum, FftDirection::Forward);
         Self { mean_mm, deviations, spectrum }
     }
     /// Circumference of the mean circle, mm.
@@ -68,7 +85,7 @@ impl Closed {
         for (index, component) in kept.iter_mut().enumerate() {
             *component *= passed(index.min(count - index) as f64, cutoff) / count as f64;
         }
-        FftPlanner::new().plan_fft_inverse(count).process(&mut kept);
+        transform(&mut kept, FftDirection::Inverse);
         kept.into_iter().map(|c| c.re).collect()
     }
     /// Amplitude, mm, of the component of `n` undulations per revolution.

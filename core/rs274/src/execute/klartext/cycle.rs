@@ -8,18 +8,13 @@
 use super::super::super::flow::{Next, Sentence};
 use super::super::super::klartext::{Formula, parameter};
 use super::super::super::lexical::trimmed;
-use super::super::super::{
-    Axes, Canon, Event, GCode, GcodeError, GcodeErrorKind, KlartextError, Lines, Motion, Number, Word,
-};
+use super::super::super::{Axes, Canon, GCode, GcodeError, GcodeErrorKind, KlartextError, Lines, Motion, Number, Word};
 use super::super::Execution;
 use super::super::klartext_memory::{Asked, Lowered};
 use super::path::PLACE;
 use truepath_units::{Offset, Position};
 
-impl<'p, S> Execution<'p, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl<'p> Execution<'p, '_, '_> {
     /// CYCL DEF.
     pub(super) fn cycle_block(&mut self, sentence: &Sentence<'p>, number: u16, part: u8) -> Result<(), GcodeError> {
         let span = self.block_span();

@@ -18,8 +18,8 @@ use super::super::super::block::BlockWords;
 use super::super::super::compensation::{Cutter, StartUp, Waiting};
 use super::super::super::flow::{Next, Sentence};
 use super::super::super::{
-    Axes, Canon, Event, Form, GcodeError, GcodeErrorKind, KlartextBlock, KlartextError, Line, Span, Statement,
-    WarningKind, Word, klartext_letter as letter,
+    Axes, Canon, Form, GcodeError, GcodeErrorKind, KlartextBlock, KlartextError, Line, Span, Statement, WarningKind,
+    Word, klartext_letter as letter,
 };
 use super::super::Execution;
 use super::super::klartext_memory::{Lead, Lowered, Shape};
@@ -38,10 +38,7 @@ struct LeadArc {
     counter_clockwise: bool,
 }
 
-impl<'p, S> Execution<'p, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl<'p> Execution<'p, '_, '_> {
     /// APPR: its modes now, its way with the first move of the contour.
     pub(super) fn approach(&mut self, sentence: &Sentence<'p>, form: Form, polar: bool) -> Result<Next, GcodeError> {
         let span = self.block_span();

@@ -17,17 +17,14 @@ mod path;
 use super::super::block::BlockWords;
 use super::super::flow::{Next, Sentence};
 use super::super::{
-    Canon, CornerError, Decimal, Event, GcodeError, GcodeErrorKind, KlartextError, Line, Lines, Number, Span,
-    Statement, Units, WarningKind, Word, klartext_letter as letter,
+    Canon, CornerError, Decimal, GcodeError, GcodeErrorKind, KlartextError, Line, Lines, Number, Span, Statement,
+    Units, WarningKind, Word, klartext_letter as letter,
 };
 use super::Execution;
 use super::klartext_memory::{Asked, LOWERED, Lowered};
 use truepath_units::Position;
 
-impl<'p, S> Execution<'p, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl<'p> Execution<'p, '_, '_> {
     /// Executes a conversational block; tells where the program goes on.
     pub(super) fn klartext(&mut self, sentence: &Sentence<'p>) -> Result<Next, GcodeError> {
         let next = self.klartext_block(sentence);

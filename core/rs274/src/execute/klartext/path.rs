@@ -3,8 +3,8 @@
 use super::super::super::flow::{Next, Sentence};
 use super::super::super::shifts::sin_cos_degrees;
 use super::super::super::{
-    CornerError, Decimal, Event, GcodeError, GcodeErrorKind, KlartextError, Number, SettingError, Span, Statement,
-    Word, klartext_letter as letter,
+    CornerError, Decimal, GcodeError, GcodeErrorKind, KlartextError, Number, SettingError, Span, Statement, Word,
+    klartext_letter as letter,
 };
 use super::super::Execution;
 use super::super::arc::centre_from_radius;
@@ -52,10 +52,7 @@ impl Way {
     }
 }
 
-impl<'p, S> Execution<'p, '_, '_, S>
-where
-    S: FnMut(&Event<'_>) -> Result<(), GcodeErrorKind>,
-{
+impl<'p> Execution<'p, '_, '_> {
     /// A block of a contour, or one that positions.
     pub(super) fn path(&mut self, sentence: &Sentence<'p>) -> Result<Next, GcodeError> {
         let corner = sentence.words.iter().find(|w| is_corner(w)).copied();
