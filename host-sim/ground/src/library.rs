@@ -37,7 +37,7 @@ impl Folder {
         let folder = program.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut paths = files::entries(folder).unwrap_or_default();
         paths.retain(|path| is_program(path));
-        paths.sort();
+        paths.sort_unstable();
         paths.truncate(usize::from(u16::MAX) - 1);
         let entry = |path: PathBuf| {
             let stem = path.file_stem()?.to_str()?.to_lowercase();

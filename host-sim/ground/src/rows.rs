@@ -16,6 +16,17 @@ pub fn add(to: &mut [f64], number: f64) {
     }
 }
 
+/// Sorts numbers, the smallest first.
+pub fn ascending(row: &mut [f64]) {
+    row.sort_unstable_by(f64::total_cmp);
+}
+
+/// Sorts numbers; the one in the middle, the larger of two, 0 of none.
+pub fn median(row: &mut [f64]) -> f64 {
+    ascending(row);
+    row.get(row.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// The largest magnitude; zero of none.
 pub fn largest(row: &[f64]) -> f64 {
     row.iter().fold(0.0, |most, value| most.max(value.abs()))

@@ -12,6 +12,7 @@ use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::job::{self, Compensation, JobError};
 use truepath_core::units::Offset;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::rows::median;
 use truepath_ground::units::mm;
 
 use crate::codes::K002;
@@ -259,8 +260,7 @@ impl Pass {
             }
             beside.iter().map(|d| radius - d).collect()
         };
-        allowances.sort_by(f64::total_cmp);
-        let median = allowances.get(allowances.len() / 2).copied().unwrap_or_default();
+        let median = median(&mut allowances);
         let allowance = Offset::from_nm((median * 1e6).round() as i64);
         self.core.setup.allowance = allowance;
         (self.surface, self.stock) = (Some(surface), None);

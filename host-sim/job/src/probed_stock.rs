@@ -11,6 +11,7 @@ use truepath_core::job::{self, ContourPass, JobError, REACH};
 use truepath_core::probe::{Contact, Contacts, CutWith, Outcome, Reading, Rejected, Setting, suspect};
 use truepath_core::units::{Offset, Position, Real};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
+use truepath_ground::rows::median;
 use truepath_ground::units::mm;
 
 use crate::allowance::{Allowance, Place};
@@ -123,8 +124,7 @@ pub(crate) fn read(pass: &TouchedPass<'_>, file: &Source) -> Result<Option<Probe
         return Ok(None);
     }
     let mut found: Vec<f64> = contacts.iter().map(|c| mm(expected + c.error)).collect();
-    found.sort_by(f64::total_cmp);
-    let median = found.get(found.len() / 2).copied().unwrap_or_default();
+    let median = median(&mut found);
     if let Some(first) = contacts.first().filter(|_| median < LEAST * mm(expected)) {
         return Err(finished_wall(file, first.line, median, expected).into());
     }
@@ -201,8 +201,7 @@ fn refuse_strange(
     let astray: Vec<&&Reading> = touched.iter().filter(|r| off(r)).collect();
     let Some(first) = astray.first().filter(|_| 2 * astray.len() >= touched.len()) else { return Ok(()) };
     let mut errors: Vec<f64> = touched.iter().filter_map(|r| on_wall.contact(r).ok()).map(|c| mm(c.error)).collect();
-    errors.sort_by(f64::total_cmp);
-    let median = errors.get(errors.len() / 2).copied().unwrap_or_default();
+    let median = median(&mut errors);
     if 2 * errors.len() > touched.len() && median < LEAST * mm(expected) {
         return Err(finished_wall(file, first.line, median, expected));
     }

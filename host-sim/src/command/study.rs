@@ -276,7 +276,7 @@ pub fn cases(options: &Options) -> Result<Vec<CaseId>, Failure> {
         Some(axis) => axis.values().iter().map(|&value| Some(Cell { axis, value })).collect(),
     };
     let mut nuisances: Vec<Option<Nuisance>> = options.nuisance.iter().copied().flatten().copied().collect();
-    nuisances.sort();
+    nuisances.sort_unstable();
     nuisances.dedup();
     let mut cases = Vec::new();
     for seed in seeds {

@@ -3,6 +3,7 @@
 
 use truepath_correction::verification::{Settings, plan};
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::rows::ascending;
 use truepath_ground::units::float;
 use truepath_job::pass::Pass;
 
@@ -75,7 +76,7 @@ pub fn more(contour: &Contour, trim: f64) -> Vec<f64> {
 /// The two lists in the order of the contour, places nearer than 1 mm to another left out.
 pub fn together(first: &[f64], more: &[f64]) -> Vec<f64> {
     let mut all: Vec<f64> = first.iter().chain(more).copied().collect();
-    all.sort_by(f64::total_cmp);
+    ascending(&mut all);
     all.dedup_by(|b, a| *b - *a < 1.0);
     all
 }
@@ -83,6 +84,6 @@ pub fn together(first: &[f64], more: &[f64]) -> Vec<f64> {
 fn keep(mut places: Vec<f64>, contour: &Contour, trim: f64) -> Vec<f64> {
     let end = contour.length_mm() - trim;
     places.retain(|s| (trim..=end).contains(s));
-    places.sort_by(f64::total_cmp);
+    ascending(&mut places);
     places
 }

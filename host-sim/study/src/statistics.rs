@@ -1,11 +1,13 @@
 //! Order statistics of outcomes.
 
+use truepath_ground::rows::ascending;
+
 use serde::Serialize;
 
 /// Quantile `share` (0…1) of values, by linear interpolation between neighbours; `None` of no values.
 pub fn quantile(values: &[f64], share: f64) -> Option<f64> {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
+    ascending(&mut sorted);
     let place = share * sorted.len().checked_sub(1)? as f64;
     let (low, high) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
     Some(low + (high - low) * (place - place.floor()))

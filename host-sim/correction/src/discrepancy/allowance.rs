@@ -1,5 +1,7 @@
 //! The stock that points show: by how much the allowance is larger along a contour than the job says.
 
+use truepath_ground::rows::ascending;
+
 use super::evidence::Factored;
 use super::kernel::{Extent, matern};
 use super::points::Row;
@@ -29,7 +31,7 @@ impl Allowance {
     /// By kernels with their shares and the rows that they are of.
     pub(super) fn of(kernels: &[(f64, Factored)], rows: &[&Row], extents: &[Extent]) -> Self {
         let mut reaches: Vec<f64> = kernels.iter().map(|(_, of)| of.kernel.stock_reach).collect();
-        reaches.sort_by(f64::total_cmp);
+        ascending(&mut reaches);
         reaches.dedup();
         let mut terms = Vec::new();
         for reach in reaches {

@@ -4,6 +4,7 @@
 //! like noisy ones. Here the stated noise counts, with what an honest wall adds to it.
 
 use truepath_core::identify::{COUNT, Observation, Parameter};
+use truepath_ground::rows::ascending;
 use truepath_ground::units::mm;
 
 /// What a wall is off beside the model: blanks that vary, runout, wear, the ball on a rough wall.
@@ -66,7 +67,7 @@ impl Score {
     /// Of points with predictions at parameters so many prior standard deviations from what the job says.
     pub fn of(theta: &[f64; COUNT], observations: &[Observation], lost: usize) -> Self {
         let mut residuals: Vec<f64> = observations.iter().map(|o| residual_mm(o).abs() / expected_mm(o)).collect();
-        residuals.sort_by(f64::total_cmp);
+        ascending(&mut residuals);
         let points = residuals.len();
         let square: f64 = observations.iter().map(|o| residual_mm(o).powi(2)).sum();
         let cost: f64 = residuals.iter().copied().map(loss).sum();

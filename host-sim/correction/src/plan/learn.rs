@@ -9,6 +9,7 @@ use truepath_core::process::{Aim, ImmersionGrid, Load};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError};
+use truepath_ground::rows::median;
 use truepath_ground::units::{float, mm};
 use truepath_job::job::PlanTable;
 use truepath_job::measurement::Measurement;
@@ -357,8 +358,7 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 /// Median of the magnitudes.
 fn middle(values: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    sizes.get(sizes.len() / 2).copied().unwrap_or_default()
+    median(&mut sizes)
 }
 
 #[cfg(test)]

@@ -117,7 +117,7 @@ pub(super) fn arm(walls: &[ArmedWall<'_>], laid: &Laid<'_>) -> Result<Armed, Fai
             images.push((written.down, PassImage { feature, pass: number, bytes }));
         }
     }
-    images.sort_by_key(|(line, _)| *line);
+    images.sort_unstable_by_key(|(line, _)| *line);
     let images = images.into_iter().map(|(_, image)| image).collect();
     let said =
         |own: &String| format!("{}: \"{own}\" is a comment now: M160 stands before each pass", first.program.name());
@@ -132,7 +132,7 @@ const WHOLE: Part = Part { feature: 1, pass: 1, run: 1, first_block: 0, blocks: 
 fn numbered(laid: &Laid<'_>) -> Result<Vec<Vec<(u32, u32)>>, Failure> {
     let depths = &laid.repeated.depths;
     let mut order: Vec<usize> = (0..depths.len()).collect();
-    order.sort_by_key(|at| depths[*at].written.first);
+    order.sort_unstable_by_key(|at| depths[*at].written.first);
     let mut counts = BTreeMap::new();
     let mut numbers = vec![Vec::new(); depths.len()];
     for at in order {

@@ -66,7 +66,7 @@ pub(super) fn slices(heights: &Heights) -> Result<Vec<Slice>, PlantError> {
     require(deep, "stock_from_z_mm", deepest, "at the lower edge or up to 500 mm below it")?;
     let mut edges: Vec<f64> = heights.edges_z_mm.iter().copied().filter(|z| *z > deepest && *z < top).collect();
     edges.extend([deepest, bottom, top]);
-    edges.sort_by(f64::total_cmp);
+    edges.sort_unstable_by(f64::total_cmp);
     edges.dedup_by(|b, a| *b - *a < SAME_MM);
     let thickest = (top - bottom) / count as f64;
     let thickest = |lower: f64| if lower < bottom - SAME_MM { BELOW * thickest } else { thickest };

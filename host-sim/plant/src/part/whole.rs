@@ -89,13 +89,13 @@ impl Part {
             let climb = self.cut.is_climb(&self.path) != lap.reversed;
             let mut feeds: Vec<f64> = lap.steps.iter().map(|step| step.feed_mm_per_min).collect();
             let mut each = feeds.clone();
-            each.sort_by(f64::total_cmp);
+            each.sort_unstable_by(f64::total_cmp);
             each.dedup();
             if each.len() > MOST_FEEDS {
                 let step = SAME_FEED.ln_1p();
                 feeds.iter_mut().for_each(|feed| *feed = ((feed.ln() / step).round() * step).exp());
                 each.clone_from(&feeds);
-                each.sort_by(f64::total_cmp);
+                each.sort_unstable_by(f64::total_cmp);
                 each.dedup();
             }
             let cut = Cut { spindle_rpm: run.spindle_rpm, ..self.cut.clone() };

@@ -135,7 +135,7 @@ fn laid_out(
     for (at, depth) in depths.iter().enumerate() {
         sections.push((at, text.section(depth)?));
     }
-    sections.sort_by_key(|(_, section)| section.lines);
+    sections.sort_unstable_by_key(|(_, section)| section.lines);
     if let Some(pair) = sections.windows(2).find(|pair| pair[0].1.lines[1] >= pair[1].1.lines[0]) {
         let found = "two depths of the contour share lines of the program";
         let expected = "lines of their own for every depth";

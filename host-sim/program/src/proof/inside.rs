@@ -165,7 +165,7 @@ fn others(facts: &[Fact], scheduled: bool) -> Vec<String> {
         What::Straight { .. } | What::Arc { .. } => None,
     };
     let mut texts: Vec<_> = facts.iter().filter_map(text).collect();
-    texts.sort();
+    texts.sort_unstable();
     texts
 }
 

@@ -1,5 +1,7 @@
 //! What the height of the waviness depends on: number of teeth, feed, runout, direction, helix.
 
+use truepath_ground::rows::ascending;
+
 use super::depth::generatrix_wavelength;
 use super::envelope::Steady;
 use super::refusal::Refusal;
@@ -87,7 +89,7 @@ pub fn on_runout(setup: &Setup, progress: &mut dyn FnMut(f64)) -> Result<Vec<Run
     let mut amounts: Vec<f64> = (0..=24).map(|n| scale * 1.2 * f64::from(n * n) / 576.0).collect();
     amounts.push(setup.cutter.runout_mm);
     amounts.retain(|a| *a <= setup.cutter.radius_mm / 2.0);
-    amounts.sort_by(f64::total_cmp);
+    ascending(&mut amounts);
     amounts.dedup();
     let mut rows = Vec::with_capacity(amounts.len());
     for (n, runout_mm) in amounts.iter().copied().enumerate() {
@@ -144,7 +146,7 @@ pub struct HelixRow {
 pub fn on_helix(setup: &Setup) -> Result<Vec<HelixRow>, Refusal> {
     let motion = setup.motion()?;
     let mut angles = vec![0.0, 15.0, 30.0, 38.0, 45.0, 60.0, setup.cutter.helix_deg];
-    angles.sort_by(f64::total_cmp);
+    ascending(&mut angles);
     angles.dedup();
     let row = |helix_deg: f64| {
         let mut with = *setup;

@@ -6,6 +6,8 @@
 //! decide by themselves. A model that misses the means by more than those has its standard deviations widened by the root
 //! of `χ²` per degree of freedom.
 
+use truepath_ground::rows::ascending;
+
 use crate::cut::Cut;
 use crate::law::{LAWS, Law};
 use crate::squares::{Estimate, least_squares};
@@ -105,7 +107,7 @@ pub fn torque_alone(cuts: &[Measured]) -> bool {
 /// Feeds per tooth that differ by more than 2 %.
 pub fn feeds(cuts: &[Measured]) -> usize {
     let mut feeds: Vec<f64> = cuts.iter().map(|c| c.cut.feed_per_tooth_mm).collect();
-    feeds.sort_by(f64::total_cmp);
+    ascending(&mut feeds);
     feeds.dedup_by(|b, a| *b < 1.02 * *a);
     feeds.len()
 }

@@ -5,6 +5,8 @@
 //! the revolutions of the cut together (`air: a + d·t`, `cut: F + a + d·t`), so that the mean is that above the air. Without air
 //! the zero is that of the amplifier, and the change of the mean over the cut goes into the standard deviation.
 
+use truepath_ground::rows::ascending;
+
 use std::f64::consts::TAU;
 
 use crate::squares::inverse;
@@ -98,7 +100,7 @@ pub fn parts(signals: [&Signal; 2], period_s: f64) -> Option<Parts> {
     let [first, second] = signals.map(|s| s.loudness(period_s));
     let loud: Vec<f64> = first.iter().zip(&second).map(|(a, b)| a.hypot(*b)).collect();
     let mut sorted = loud.clone();
-    sorted.sort_by(f64::total_cmp);
+    ascending(&mut sorted);
     let (quiet, most) = (*sorted.get(sorted.len() / 50)?, *sorted.get(sorted.len() * 9 / 10)?);
     let whole = Parts { cut: [0.0, signals[0].length_s()], air: Vec::new() };
     if most <= LOUD * quiet {

@@ -9,6 +9,8 @@
 //! Limits: slender beam (Euler–Bernoulli, no shear: it would add 0.54·(d/L)², 6 % at a free length of 3 diameters), rigid clamp,
 //! small deflection.
 
+use truepath_ground::rows::ascending;
+
 /// A clamped beam of two diameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
@@ -51,7 +53,7 @@ impl Beam {
             Load::Spread(low, high) => (self.length - high, self.length - low),
         };
         let mut bounds = [0.0, self.shank, from, to, x];
-        bounds.sort_by(f64::total_cmp);
+        ascending(&mut bounds);
         let pieces = bounds.windows(2).filter(|w| w[1] > w[0] && w[0] < x && w[0] < to);
         pieces.map(|w| self.piece(w[0], w[1].min(x), x, [from, to])).sum()
     }

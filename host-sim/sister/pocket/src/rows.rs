@@ -1,6 +1,7 @@
 //! The tables: one row a section, and one row a station.
 
 use truepath_ground::diagnostics::Failure;
+use truepath_ground::rows::median as middle;
 use truepath_ground::table::table;
 use truepath_ground::units::rounded;
 use truepath_job::job::{Mode, PerSection};
@@ -65,8 +66,7 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
 /// The value in the middle; 0 where there is none.
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut known: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-    known.sort_by(f64::total_cmp);
-    known.get(known.len() / 2).copied().unwrap_or(0.0)
+    middle(&mut known)
 }
 
 /// The rows of a compensated pocket.

@@ -5,6 +5,8 @@
 //! rises before its arc begins and falls before it ends (by 7 mm on a 20 mm cutter), so the borders here lie where the
 //! engagement that the program intends leaves that of the straight wall.
 
+use truepath_ground::rows::median;
+
 use super::station::Station;
 
 /// What a section is.
@@ -91,7 +93,7 @@ fn kinds(stations: &[Station], nominal: &[f64]) -> Vec<Kind> {
     while from < stations.len() {
         let block = stations[from].block;
         let to = from + stations[from..].iter().take_while(|s| s.block == block).count();
-        let steady = median(&nominal[from..to]);
+        let steady = median(&mut nominal[from..to].to_vec());
         for i in from..to {
             let off = (nominal[i] - steady).abs();
             kinds[i] = match (stations[i].held, stations[i].turns) {
@@ -104,12 +106,6 @@ fn kinds(stations: &[Station], nominal: &[f64]) -> Vec<Kind> {
         from = to;
     }
     kinds
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
 }
 
 /// Very short stretches of a kind become part of the corner they lie in.

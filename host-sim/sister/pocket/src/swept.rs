@@ -71,7 +71,7 @@ pub(super) fn engaged(frame: &Frame, earlier: impl Iterator<Item = [f64; 2]>) ->
             }
         }
     }
-    covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    covered.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
     let mut left = Vec::new();
     let mut at = 0.0;
     for [low, high] in covered {

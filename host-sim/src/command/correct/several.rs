@@ -83,7 +83,7 @@ pub(super) fn run(
         let summary = Some(CorrectSummary { program: None, ..done.summary.clone() });
         contours.push(ContourSummary { contour: name, corrected: true, lines: [lines.first, lines.last], summary });
     }
-    contours.sort_by_key(|contour| contour.lines);
+    contours.sort_unstable_by_key(|contour| contour.lines);
     let said = contours.iter().filter_map(|one| Some((one.contour.as_str(), &one.summary.as_ref()?.warnings[..])));
     warnings.extend(said_of_every(said));
     let summary = CorrectSummary::of_every(contours, warnings);

@@ -100,7 +100,7 @@ pub(super) fn gathered(inputs: &[PathBuf], cut_again: Option<&FilePath>) -> Resu
     steps.sort_by_key(|(part, _)| *part);
     let cut_again = cut_again.map(|file| files.name_of(file)).transpose()?;
     wanted.extend(cut_again.clone());
-    wanted.sort();
+    wanted.sort_unstable();
     wanted.dedup();
     let mut contents = BTreeMap::new();
     let mut size = 0;
