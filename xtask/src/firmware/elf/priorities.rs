@@ -68,6 +68,9 @@ const FIT: &str = ">::settle::{closure#";
 const DESIGN: &[&str] =
     &["guarded_design::<truepath_model::correct::reader::InOrder>::{closure#", "whole::designed::{closure#0}"];
 
+/// What takes the steps of a program.
+const STEPS: &[&str] = &["contour::read::read_contour::{closure#"];
+
 pub const INDIRECT: &[Indirect] = &[
     ("interrupts::config_executor", &["__config_task_task_inner_function::{closure#0}>>::poll"]),
     ("interrupts::setpoint_executor", &["__setpoint_task_task_inner_function::{closure#0}>>::poll"]),
@@ -106,6 +109,9 @@ pub const INDIRECT: &[Indirect] = &[
     (DESIGN[0], &[DESIGN[1]]),
     (DESIGN[1], TOLD),
     ("uncertainty::spread", &["guard::margins::{closure#", "shrinkage::damp::{closure#"]),
+    // A device reads a program for its contour alone.
+    ("execute::Execution>::emit_on", STEPS),
+    ("execute::Execution>::give", STEPS),
     // A device has no library of other programs.
     ("flow::program::Program>::file", &[]),
 ];
