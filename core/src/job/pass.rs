@@ -29,6 +29,8 @@ pub struct ContourPass {
     pub setup: CutSetup,
     /// The correction that measured parts have to be cut with: none, unless the caller says another.
     pub cut_with: CutWith,
+    /// Least and greatest feed along the contour as the program says it, mm/min, whatever the job says.
+    pub written_feeds: [Real; 2],
 }
 
 impl ContourPass {
@@ -49,13 +51,22 @@ impl ContourPass {
             _ => {}
         }
         let setup = setup(job, &contour)?;
+        let mut written_feeds = [Real::MAX, Real::ZERO];
         for block in blocks.iter_mut().take(contour.blocks) {
+            written_feeds = [written_feeds[0].min(block.feed), written_feeds[1].max(block.feed)];
             block.feed = job.cut.feed_mm_per_min.unwrap_or(block.feed);
             if block.feed <= Real::ZERO {
                 return Err(JobError::NoFeed { line: block.line });
             }
         }
-        Ok(Self { job: *job, contour, program_crc: program_crc(program), setup, cut_with: CutWith::Nothing })
+        Ok(Self {
+            job: *job,
+            contour,
+            program_crc: program_crc(program),
+            setup,
+            cut_with: CutWith::Nothing,
+            written_feeds,
+        })
     }
 
     /// What an image of this pass belongs to. `feature` and `pass` are those of the job's part of the program; both are 1 in

@@ -10,10 +10,10 @@ use truepath_core::gcode::{
 };
 use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::job::{self, Compensation, JobError};
-use truepath_core::units::Offset;
+use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::rows::median;
-use truepath_ground::units::mm;
+use truepath_ground::units::{float, mm};
 
 use crate::codes::K002;
 use crate::cutter;
@@ -174,6 +174,7 @@ impl Pass {
                 program.name()
             ));
         }
+        warnings.extend(other_feed(&job, &program, core.written_feeds));
         warnings.extend(plan.iter().flat_map(|p| p.warnings.iter().cloned()));
         let surface = job.read_surface()?;
         let pass = Self { job, program, core, blocks, surface: None, stock: None, plan, warnings };
@@ -467,4 +468,22 @@ pub const fn milling_name(milling: Milling) -> &'static str {
 /// Whether a warning is of M160 or M161 of LinuxCNC, with which a program arms and disarms Truepath itself: they move no axis.
 const fn arms_truepath(kind: WarningKind, dialect: Dialect) -> bool {
     matches!((kind, dialect), (WarningKind::UnknownM { m: 160 | 161 }, Dialect::Linuxcnc))
+}
+
+/// Feeds that differ by less are the same.
+const SAME_FEED: f64 = 0.02;
+
+/// A warning where the program cuts at another feed than the job says: a corrected program keeps its F words.
+fn other_feed(job: &JobFile, program: &Source, written: [Real; 2]) -> Option<String> {
+    let feed = float(job.numbers.cut.feed_mm_per_min?);
+    let [least, greatest] = written.map(float);
+    if greatest <= 0.0 || [least, greatest].iter().all(|written| (written / feed - 1.0).abs() < SAME_FEED) {
+        return None;
+    }
+    let says = if least == greatest { format!("F{greatest}") } else { format!("F{least} to F{greatest}") };
+    Some(format!(
+        "cut.feed_mm_per_min is {feed}, the contour in {} says {says}: everything holds for {feed} mm/min; run the program at that feed, or \
+         remove the key",
+        program.name()
+    ))
 }

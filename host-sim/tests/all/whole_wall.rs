@@ -186,3 +186,15 @@ fn laws_are_compared_at_every_height_as_the_virtual_machine_judges_itself() {
     came_out_within(number(cut, "p95_mm"), wall, "p95_mm", "p95_sigma_mm", 0.004);
     assert!(model["causes"].is_null() && number(&wall["causes"], "height_mm").abs() > 0.001, "{wall}");
 }
+
+#[test]
+fn a_feed_that_the_job_states_goes_for_the_corrected_program_as_well() {
+    // The program says F250 and F150, the job 400.
+    let desk = Workplace::demo("corner", &["program.nc", "job.toml", "plant.toml"]);
+    desk.call("probe job.toml --dialect linuxcnc -o verify.nc");
+    let before = desk.call("simulate job.toml --plant plant.toml --touch verify.nc -o first");
+    desk.call("correct job.toml --probe first/probe.txt -o out");
+    let after = desk.call("simulate job.toml --plant plant.toml --from out -o second");
+    let [before, after] = [&before, &after].map(|cut| number(cut, "max_error_mm").abs());
+    assert!(before > 0.2 && after < before / 15.0, "{before} -> {after}");
+}

@@ -169,7 +169,9 @@ pub fn mill_executed(pass: &Pass, machine: &plant::Machine, program: &Source) ->
             continue;
         };
         for block in run.blocks(&survey.blocks) {
-            let ticks = mm(block.curve.length()) / (float(block.feed) / 60e9 * period_ns as f64);
+            // What the job says of the feed goes for the corrected program as for its own.
+            let feed = pass.job.numbers.cut.feed_mm_per_min.unwrap_or(block.feed);
+            let ticks = mm(block.curve.length()) / (float(feed) / 60e9 * period_ns as f64);
             let ticks = ticks.ceil().clamp(1.0, 1e6) as i64;
             let skip = i64::from(!rows.is_empty());
             rows.extend((skip..=ticks).map(|k| row(block.curve.point(Real::ratio(k, ticks)), z.nm())));
