@@ -21,6 +21,7 @@ mod repository;
 mod rooms;
 mod shop;
 mod step;
+mod table;
 mod toolchain;
 mod web;
 
@@ -146,6 +147,9 @@ enum Task {
         /// Measure how fast five-axis moves are measured and divided instead.
         #[arg(long, conflicts_with_all = ["count", "reading", "long"])]
         multiaxis: bool,
+        /// Ours beside what others have for the same instead, in one run: rs274, the crate gcode, LinuxCNC's components, the papers' law.
+        #[arg(long, conflicts_with_all = ["count", "reading", "long", "multiaxis"])]
+        peers: bool,
         /// Write the table into docs/measure.md.
         #[arg(long)]
         write: bool,
@@ -263,6 +267,9 @@ fn main() -> ExitCode {
         Task::Bench { long: true, write, .. } => report.run(Step::new("bench --long", || bench::long::measure(write))),
         Task::Bench { multiaxis: true, write, .. } => {
             report.run(Step::new("bench --multiaxis", || bench::rates::multiaxis(write)))
+        }
+        Task::Bench { peers: true, write, .. } => {
+            report.run(Step::new("bench --peers", || bench::peers::measure(write)))
         }
         Task::Bench { no_run, write, arguments, .. } => {
             report.run(Step::new("bench", || bench::time(no_run, write, &arguments)))

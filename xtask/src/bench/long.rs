@@ -5,10 +5,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use super::table;
 use crate::cost::{Cost, Meter};
 use crate::repository::{cargo, program, root, run, target};
 use crate::step::{Failure, Outcome, Passed};
+use crate::table;
 
 /// The document the table is written into.
 const DOCUMENT: &str = "docs/measure.md";

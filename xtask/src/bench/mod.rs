@@ -4,13 +4,14 @@
 //! release build and are the same on every repeat. Neither is a number of cycles on a microcontroller.
 
 pub mod long;
+pub mod peers;
 pub mod rates;
-pub mod table;
 
 use std::process::{Child, Command, Stdio};
 
 use crate::repository::{cargo, program, read, root, run, succeeds, target};
 use crate::step::{Failure, Outcome, Passed};
+use crate::table;
 use crate::toolchain::need;
 
 /// The document the tables are written into.

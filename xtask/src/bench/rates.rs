@@ -1,9 +1,9 @@
 //! Rates of whole programs over the same bytes in one run, by the benchmarks of `truepath-tests`: how fast programs are read,
 //! by ours, the crate `gcode` and LinuxCNC's `rs274`, and how fast five-axis moves are measured, proved and divided.
 
-use super::table;
 use crate::repository::{cargo, read, root, run, target};
 use crate::step::{Failure, Outcome, Passed};
+use crate::table;
 
 /// The document the tables are written into.
 const DOCUMENT: &str = "docs/measure.md";
@@ -45,7 +45,7 @@ pub fn multiaxis(write: bool) -> Outcome {
 }
 
 /// Runs a benchmark with the release program: what it names, and the rates as it prints them.
-fn measured(benchmark: &str) -> Result<Vec<(String, String)>, Failure> {
+pub fn measured(benchmark: &str) -> Result<Vec<(String, String)>, Failure> {
     run(cargo().args(["build", "--quiet", "--release", "--package", "truepath"]))?;
     let binary = target().join("release/truepath");
     let bench = ["bench", "--quiet", "--package", "truepath-tests", "--bench", benchmark];

@@ -10,9 +10,9 @@ use std::time::Duration;
 use super::emulator;
 use super::image::Image;
 use super::{document, rate};
-use crate::bench::table::thousands;
 use crate::repository::{read, root};
 use crate::step::{Failure, Outcome, Passed};
+use crate::table::thousands;
 use crate::toolchain::Toolchain;
 
 /// The committed budget.

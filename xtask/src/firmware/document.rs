@@ -4,9 +4,9 @@
 //! table; with the same version the numbers have to agree to half a percent (paths of the build are in an image), with
 //! another one a difference is reported and no more, because compilers come and go with the machine.
 
-use crate::bench::table;
 use crate::repository::root;
 use crate::step::Failure;
+use crate::table;
 
 const DOCUMENT: &str = "docs/firmware.md";
 /// Part of a number by which it may differ.

@@ -14,8 +14,8 @@ use std::path::PathBuf;
 pub use image::Board;
 use sizes::Sizes;
 
-use crate::bench::table::thousands;
 use crate::step::{Outcome, Passed};
+use crate::table::thousands;
 use crate::toolchain::{TARGET, Toolchain};
 
 /// Builds the images of boards, prints their sizes and compares them with the document, or writes them there.

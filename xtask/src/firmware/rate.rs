@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::bench::table::thousands;
+use crate::table::thousands;
 
 /// Assumed.
 const CYCLES_PER_INSTRUCTION: f64 = 1.5;

@@ -19,6 +19,9 @@ use std::path::PathBuf;
 use clap::Subcommand;
 
 pub use install::packaged;
+pub use machine::sample::Sample;
+pub use suite::typical_times;
+pub use timing::clocks_per_second;
 
 use crate::step::Outcome;
 

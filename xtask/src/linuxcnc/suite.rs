@@ -13,9 +13,9 @@ use super::parts::Parts;
 use super::recording::{JOINTS, Recording, Row};
 use super::verdict::{self, Verdict};
 use super::{install, timing};
-use crate::bench::table::replace;
 use crate::repository::{program, root, run as run_command};
 use crate::step::{Failure, Outcome};
+use crate::table::replace;
 
 /// Servo periods per second of the sample machine.
 const HZ: f64 = 1000.0;
@@ -70,6 +70,16 @@ pub fn run(only: Option<&str>, write: bool) -> Outcome {
         replace(&root().join(DOCUMENT), "scenarios", &verdict::document(&verdicts))?;
     }
     Ok(outcome)
+}
+
+/// What a servo period of a scenario with a correction costs on the simulated machine, function by function: medians, µs.
+pub fn typical_times(scenario: &str) -> Result<Vec<(&'static str, f64)>, Failure> {
+    install::component_if_changed()?;
+    let sample = Sample::fresh("times")?;
+    let _parts = Parts::make(&sample)?;
+    sample.ready()?;
+    let folder = session::run(&sample, "times", &[scenario], End::Regular)?;
+    Ok(timing::typical(&Recording::read(&folder)?.rows))
 }
 
 /// The tests of the operator's component, which need no LinuxCNC: Python's own `unittest`.

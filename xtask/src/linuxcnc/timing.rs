@@ -46,6 +46,17 @@ pub fn table(rows: &[Row]) -> String {
     text
 }
 
+/// What our functions and the motion controller take in a period with a correction, µs: the medians.
+pub fn typical(rows: &[Row]) -> Vec<(&'static str, f64)> {
+    let hz = clocks_per_second();
+    let median = |clocks: Clocks| {
+        let mut times: Vec<i64> = rows.iter().filter(|row| row.state >= ACTIVE).map(clocks).collect();
+        times.sort_unstable();
+        times.get(times.len() / 2).map_or(f64::NAN, |&c| c as f64 * 1e6 / hz)
+    };
+    FUNCTIONS.iter().map(|(name, clocks)| (*name, median(*clocks))).collect()
+}
+
 fn info(key: &str) -> Option<String> {
     let info = fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = info.lines().find(|line| line.split(':').next().is_some_and(|k| k.trim() == key))?;
@@ -53,7 +64,7 @@ fn info(key: &str) -> Option<String> {
 }
 
 /// Other processors than x86 count nanoseconds.
-fn clocks_per_second() -> f64 {
+pub fn clocks_per_second() -> f64 {
     info("cpu MHz").and_then(|mhz| mhz.parse::<f64>().ok()).map_or(1e9, |mhz| mhz * 1e6)
 }
 

@@ -12,8 +12,8 @@ use stack::Search;
 
 use super::document;
 use super::image::Board;
-use crate::bench::table::thousands;
 use crate::step::{Failure, Outcome, Passed};
+use crate::table::thousands;
 use crate::toolchain::Toolchain;
 
 /// Proves both, the stack for these boards; with `write` it goes into the document.

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::bench::table::replace;
 use crate::repository::{program, read, root};
 use crate::step::Failure;
+use crate::table::replace;
 
 /// Times by which the largest error of a wall has to be smaller.
 const LEAST_FACTOR: f64 = 10.0;
