@@ -189,8 +189,8 @@ fn laws_are_compared_at_every_height_as_the_virtual_machine_judges_itself() {
 
 #[test]
 fn a_feed_that_the_job_states_goes_for_the_corrected_program_as_well() {
-    // The program says F250 and F150, the job 400.
-    let desk = Workplace::demo("corner", &["program.nc", "job.toml", "plant.toml"]);
+    // The program says F250 and F150, the job 400; and the corrected one has short blocks, in which a control does not slow down.
+    let desk = Workplace::demo("corner-helix", &["program.nc", "job.toml", "plant.toml"]);
     desk.call("probe job.toml --dialect linuxcnc -o verify.nc");
     let before = desk.call("simulate job.toml --plant plant.toml --touch verify.nc -o first");
     desk.call("correct job.toml --probe first/probe.txt -o out");

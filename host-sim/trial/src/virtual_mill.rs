@@ -168,13 +168,18 @@ pub fn mill_executed(pass: &Pass, machine: &plant::Machine, program: &Source) ->
         let Some(z) = run.run.z.filter(|z| (z.nm() - pass.core.contour.z.nm()).abs() <= SAME_DEPTH_NM) else {
             continue;
         };
+        // The ticks go on over the ends of blocks: one that began anew with every block would slow down in short ones.
+        let mut next_ns = 0.0;
         for block in run.blocks(&survey.blocks) {
             // What the job says of the feed goes for the corrected program as for its own.
             let feed = pass.job.numbers.cut.feed_mm_per_min.unwrap_or(block.feed);
-            let ticks = mm(block.curve.length()) / (float(feed) / 60e9 * period_ns as f64);
-            let ticks = ticks.ceil().clamp(1.0, 1e6) as i64;
-            let skip = i64::from(!rows.is_empty());
-            rows.extend((skip..=ticks).map(|k| row(block.curve.point(Real::ratio(k, ticks)), z.nm())));
+            let length_ns = mm(block.curve.length()) / float(feed).max(fastest / SLOWEST) * 60e9;
+            while next_ns < length_ns {
+                let share = Real::from_bits((next_ns / length_ns * 4_294_967_296.0) as i64);
+                rows.push(row(block.curve.point(share), z.nm()));
+                next_ns += period_ns as f64;
+            }
+            next_ns -= length_ns;
         }
         // A correction may end a contour short of its nominal end, which a recording has to pass.
         if let [.., before, end] = rows[..] {
@@ -189,6 +194,8 @@ pub fn mill_executed(pass: &Pass, machine: &plant::Machine, program: &Source) ->
 
 /// A tick of the control at the greatest feed, mm.
 const TICK_MM: f64 = 0.05;
+/// A block without F, or a thousand times slower than the pass, would hold as many rows as memory has room for.
+const SLOWEST: f64 = 1000.0;
 /// Depths nearer to each other than this are one, nm.
 const SAME_DEPTH_NM: i64 = 20_000;
 

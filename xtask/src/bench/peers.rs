@@ -1,9 +1,9 @@
 //! Ours beside what others have for the same, in one run on one machine: reading of programs, what a servo period costs, the correction
-//! with all laws and with the mean force of the papers alone, and how fast virtual parts are studied.
+//! beside the law of the papers and a mirror, and how fast virtual parts are studied.
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::process::Stdio;
 
 use serde_json::Value;
 
@@ -70,56 +70,40 @@ pub fn measure(write: bool) -> Outcome {
     Ok(Passed::Done)
 }
 
-/// The helical corner of the demonstration, corrected with the law that the points speak for, and with the mean force of the papers;
-/// cut again by the virtual machine.
+/// The helical corner of the demonstration, touched where `probe` says: what each law of correction leaves on the virtual machine, and
+/// what the correction takes.
 fn corrections() -> Result<Vec<(String, String)>, Failure> {
     let folder = target().join("peers");
     let found = |e: std::io::Error| Failure::found(format!("{}: {e}", folder.display()));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).map_err(found)?;
-    let demo = root().join("host-sim/demo/corner-helix");
-    for name in ["program.nc", "plant.toml"] {
-        fs::copy(demo.join(name), folder.join(name)).map_err(found)?;
-    }
-    let job = fs::read_to_string(demo.join("job.toml")).map_err(found)?;
-    if !job.contains("model = \"auto\"") {
-        return Err(Failure::found("the job of the demonstration has no model = \"auto\""));
+    for name in ["program.nc", "plant.toml", "job.toml"] {
+        fs::copy(root().join("host-sim/demo/corner-helix").join(name), folder.join(name)).map_err(found)?;
     }
     let truepath = |arguments: &str| {
         let mut command = program(target().join("release/truepath"));
-        command.args(arguments.split(' ')).arg("--quiet").current_dir(&folder).stderr(std::process::Stdio::null());
-        command
+        command.args(arguments.split(' ')).arg("--quiet").current_dir(&folder).stderr(Stdio::null());
+        run(&mut command)
     };
-    fs::write(folder.join("auto.toml"), &job).map_err(found)?;
-    fs::write(folder.join("mean.toml"), job.replace("model = \"auto\"", "model = \"mean\"")).map_err(found)?;
-    run(&mut truepath("probe auto.toml --dialect linuxcnc -o verify.nc"))?;
-    run(&mut truepath("simulate auto.toml --plant plant.toml --touch verify.nc -o first"))?;
-    let before = errors(&folder.join("first"))?;
+    truepath("probe job.toml --dialect linuxcnc -o verify.nc")?;
+    truepath("simulate job.toml --plant plant.toml --touch verify.nc -o first")?;
+    let meter = Meter::start();
+    truepath("correct job.toml --probe first/probe.txt -o corrected")?;
+    let seconds = meter.read().processor.as_secs_f64();
+    truepath("compare job.toml --probe first/probe.txt --plant plant.toml -o compared")?;
+    let text = fs::read_to_string(folder.join("compared/summary.json")).map_err(found)?;
+    let summary: Value = serde_json::from_str(&text).map_err(|e| Failure::found(e.to_string()))?;
     let mut rows = Vec::new();
-    for (law, name) in [("auto", "the law the points speak for"), ("mean", "the papers' mean force")] {
-        let meter = Meter::start();
-        run(&mut truepath(&format!("correct {law}.toml --probe first/probe.txt -o {law}")))?;
-        let seconds = meter.read().processor.as_secs_f64();
-        run(&mut truepath(&format!("simulate {law}.toml --plant plant.toml --from {law} -o cut-{law}")))?;
-        let after = errors(&folder.join(format!("cut-{law}")))?;
-        let [mean, height] = [0, 1].map(|k| format!("{:.3} → {:.3} mm", before[k], after[k]));
-        rows.push((
-            format!("`correct`, helical corner: {name}"),
-            format!("{seconds:.2} s of the processor; mean over the height {mean}, any height {height}"),
-        ));
+    for law in summary["laws"].as_array().map(Vec::as_slice).unwrap_or_default() {
+        let [mean, height] = ["max_error_mm", "worst_height_mm"].map(|key| law[key].as_f64());
+        let (Some(title), Some(mean), Some(height)) = (law["title"].as_str(), mean, height) else {
+            return Err(Failure::found("a law without its errors in summary.json of compare"));
+        };
+        let left = format!("{mean:.3} mm of the mean over the height, {height:.3} mm at any height");
+        rows.push((format!("helical corner: {title}"), left));
     }
+    rows.push(("helical corner: time of `correct`".to_owned(), format!("{seconds:.2} s of the processor")));
     Ok(rows)
-}
-
-/// Largest error of a simulated wall, mm: of the mean over the height, and at any height.
-fn errors(folder: &Path) -> Result<[f64; 2], Failure> {
-    let file = folder.join("summary.json");
-    let text = fs::read_to_string(&file).map_err(|e| Failure::found(format!("{}: {e}", file.display())))?;
-    let summary: Value = serde_json::from_str(&text).map_err(|e| Failure::found(format!("{}: {e}", file.display())))?;
-    let number = |part: &str, key: &str| {
-        summary[part][key].as_f64().ok_or_else(|| Failure::found(format!("{}: no {part}.{key}", file.display())))
-    };
-    Ok([number("judged", "max_error_mm")?, number("surface", "profile_mm")?])
 }
 
 /// How many virtual parts a second are milled, touched, corrected and milled again.
