@@ -31,7 +31,7 @@ pub struct Parameter {
     pub prior_sigma: f64,
     /// Unit of the four.
     pub unit: &'static str,
-    /// Whether the points decide it: they have at least halved the uncertainty.
+    /// Whether the points decide it: they have at least halved the uncertainty, or moved the value by more than two of them.
     pub observable: bool,
 }
 
@@ -267,6 +267,9 @@ pub fn correct_summary(
     }
 }
 
+/// A value that lies farther than this many prior standard deviations from what was believed is what the points say.
+const MOVED: f64 = 2.0;
+
 fn parameters(identified: &Identification) -> BTreeMap<&'static str, Parameter> {
     let (fitted, believed) = (&identified.fit().parameters, &identified.prior().mean);
     let (values, prior) = (fitted.values(), believed.values());
@@ -274,13 +277,14 @@ fn parameters(identified: &Identification) -> BTreeMap<&'static str, Parameter> 
     let each = identify::Parameter::ALL.iter().enumerate().filter(|(i, _)| identified.prior().sigma[*i] != Real::ZERO);
     each.map(|(i, parameter)| {
         let remaining = float(identified.fit().remaining(i));
+        let (value, prior, prior_sigma) = (float(values[i]), float(prior[i]), float(prior_sigma[i]));
         let value = Parameter {
-            value: float(values[i]),
+            value,
             sigma: float(sigma[i]) * remaining,
-            prior: float(prior[i]),
-            prior_sigma: float(prior_sigma[i]),
+            prior,
+            prior_sigma,
             unit: parameter.unit(),
-            observable: remaining <= 0.5,
+            observable: remaining <= 0.5 || (value - prior).abs() > MOVED * prior_sigma,
         };
         (parameter.name(), value)
     })
