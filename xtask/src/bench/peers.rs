@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::rates;
 use crate::cost::Meter;
-use crate::linuxcnc::{Sample, clocks_per_second, typical_times};
+use crate::linuxcnc::{Sample, median_us, typical_times};
 use crate::repository::{program, read, root, run, target};
 use crate::step::{Failure, Outcome, Passed};
 use crate::table;
@@ -127,16 +127,12 @@ fn components() -> Result<Vec<(String, f64)>, Failure> {
     }
     sample.user.own(&sample.folder)?;
     let said = read(sample.user.program("halrun", &sample.folder).arg("-f").arg("peers.hal"))?;
-    let hz = clocks_per_second();
     let mut clocks: BTreeMap<&str, Vec<i64>> = BTreeMap::new();
     for (name, count) in said.lines().filter_map(counter) {
         clocks.entry(name).or_default().push(count);
     }
-    let median = |mut counts: Vec<i64>| {
-        counts.sort_unstable();
-        counts.get(counts.len() / 2).copied().unwrap_or_default() as f64 * 1e6 / hz
-    };
-    let rows: Vec<(String, f64)> = clocks.into_iter().map(|(name, counts)| (name.to_owned(), median(counts))).collect();
+    let rows: Vec<(String, f64)> =
+        clocks.into_iter().map(|(name, counts)| (name.to_owned(), median_us(counts))).collect();
     if rows.is_empty() { Err(Failure::found("HAL showed no counter")) } else { Ok(rows) }
 }
 

@@ -21,7 +21,7 @@ use clap::Subcommand;
 pub use install::packaged;
 pub use machine::sample::Sample;
 pub use suite::typical_times;
-pub use timing::clocks_per_second;
+pub use timing::median_us;
 
 use crate::step::Outcome;
 

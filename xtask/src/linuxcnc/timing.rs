@@ -48,13 +48,14 @@ pub fn table(rows: &[Row]) -> String {
 
 /// What our functions and the motion controller take in a period with a correction, µs: the medians.
 pub fn typical(rows: &[Row]) -> Vec<(&'static str, f64)> {
-    let hz = clocks_per_second();
-    let median = |clocks: Clocks| {
-        let mut times: Vec<i64> = rows.iter().filter(|row| row.state >= ACTIVE).map(clocks).collect();
-        times.sort_unstable();
-        times.get(times.len() / 2).map_or(f64::NAN, |&c| c as f64 * 1e6 / hz)
-    };
-    FUNCTIONS.iter().map(|(name, clocks)| (*name, median(*clocks))).collect()
+    let of = |clocks: Clocks| rows.iter().filter(|row| row.state >= ACTIVE).map(clocks).collect();
+    FUNCTIONS.iter().map(|(name, clocks)| (*name, median_us(of(*clocks)))).collect()
+}
+
+/// The median of what HAL counted, µs.
+pub fn median_us(mut clocks: Vec<i64>) -> f64 {
+    clocks.sort_unstable();
+    clocks.get(clocks.len() / 2).map_or(f64::NAN, |&c| c as f64 * 1e6 / clocks_per_second())
 }
 
 fn info(key: &str) -> Option<String> {
@@ -64,7 +65,7 @@ fn info(key: &str) -> Option<String> {
 }
 
 /// Other processors than x86 count nanoseconds.
-pub fn clocks_per_second() -> f64 {
+fn clocks_per_second() -> f64 {
     info("cpu MHz").and_then(|mhz| mhz.parse::<f64>().ok()).map_or(1e9, |mhz| mhz * 1e6)
 }
 
