@@ -135,10 +135,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Err(error) if error.use_stderr() => Err(usage_error(&error, json)),
         Err(help) => {
             // Help and version are asked for: data, on standard output.
-            let printed = match cfg!(target_family = "wasm") {
-                true => streams::write_out(help.render().to_string().as_bytes()),
-                false => help.print().map_err(|e| Failure::Internal(e.to_string())),
-            };
+            #[cfg(target_family = "wasm")]
+            let printed = streams::write_out(help.render().to_string().as_bytes());
+            #[cfg(not(target_family = "wasm"))]
+            let printed = streams::unless_closed(help.print());
             return printed.map_or_else(|failure| terminal.fail(&failure), |()| 0);
         }
     };

@@ -9,4 +9,4 @@ mod of_the_process;
 #[cfg(target_family = "wasm")]
 pub use kept::{Bar, Kept, taken, watch, write_error, write_out};
 #[cfg(not(target_family = "wasm"))]
-pub use of_the_process::{Bar, write_error, write_out};
+pub use of_the_process::{Bar, unless_closed, write_error, write_out};

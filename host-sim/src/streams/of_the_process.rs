@@ -15,7 +15,15 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Internal, where the system refuses.
 pub fn write_out(text: &[u8]) -> Result<(), Failure> {
     let mut out = BufWriter::new(std::io::stdout().lock());
-    match out.write_all(text).and_then(|()| out.flush()) {
+    unless_closed(out.write_all(text).and_then(|()| out.flush()))
+}
+
+/// What became of writing to standard output; that it was closed early is not an error.
+///
+/// # Errors
+/// Internal, where the system refused.
+pub fn unless_closed(written: std::io::Result<()>) -> Result<(), Failure> {
+    match written {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::Internal(error.to_string())),
         _ => Ok(()),
     }

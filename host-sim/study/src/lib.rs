@@ -12,6 +12,7 @@ pub mod draw;
 pub mod export;
 pub mod families;
 pub mod id;
+pub mod limit;
 pub mod machine;
 pub mod markdown;
 pub mod nuisance;

@@ -87,9 +87,29 @@ pub fn nuisances(summary: &Summary) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "### {seeds} seeds, touched where {touched}\n");
         text += &table("nuisance", one.rows.iter());
+        text += &limits(&one.rows);
         text += &whole_walls("nuisance", one.rows.iter());
     }
     text
+}
+
+/// What exact knowledge of the part before would have reached.
+fn limits(rows: &[Row]) -> String {
+    let mut text = "What exact knowledge of the part before would have reached, and the median share of it that was.\n\n\
+        | nuisance | first: median | P10 | reached | learned: median | P10 | reached |\n|---|---:|---:|---:|---:|---:|---:|\n"
+        .to_owned();
+    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.1}"));
+    let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |c| format!("{:.0} %", 100.0 * c));
+    for row in rows {
+        let of = &row.limits;
+        let each = [(of.first, of.first_reached), (of.learned, of.learned_reached)].map(|(limit, reached)| {
+            let [median, p10] = [limit.map(|l| l.median), limit.map(|l| l.p10)].map(number);
+            format!("{median} | {p10} | {}", percent(reached))
+        });
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "| {} | {} |", row.name, each.join(" | "));
+    }
+    text + "\n"
 }
 
 fn listed(sentences: impl Iterator<Item = String>) -> String {

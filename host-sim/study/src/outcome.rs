@@ -98,6 +98,14 @@ pub struct Outcome {
     pub learned_p95_sigma_mm: Option<f64>,
     /// Deepest gouge after learning, of the mean over the heights.
     pub learned_gouge_mm: Option<f64>,
+    /// Largest wall error of the second part, cut with what exact knowledge of the first would have made of it.
+    pub limit_mm: Option<f64>,
+    /// before/limit.
+    pub limit_factor: Option<f64>,
+    /// The same of the third part with exact knowledge of the second.
+    pub learned_limit_mm: Option<f64>,
+    /// before/learned_limit.
+    pub learned_limit_factor: Option<f64>,
     /// Whether learning went back to an earlier correction.
     pub rolled_back: Option<bool>,
     /// Time of learning, s.

@@ -47,8 +47,41 @@ pub struct Row {
     pub learned_any_height_held: Option<f64>,
     /// What is left at any height.
     pub whole_wall: WholeWall,
+    /// What exact knowledge of the part before would have reached.
+    pub limits: Limits,
     /// Median time of the first correction, s.
     pub correct_s: Option<f64>,
+}
+
+/// What a part cut with exact knowledge of the one before reaches, and how near to it the method comes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Limits {
+    /// Factor of the second part.
+    pub first: Option<Spread>,
+    /// Median share of it that the first correction reached.
+    pub first_reached: Option<f64>,
+    /// Factor of the third part.
+    pub learned: Option<Spread>,
+    /// Median share of it that learning reached.
+    pub learned_reached: Option<f64>,
+}
+
+impl Limits {
+    fn of(outcomes: &[&Outcome]) -> Self {
+        let spread =
+            |of: fn(&Outcome) -> Option<f64>| Spread::of(&outcomes.iter().filter_map(|o| of(o)).collect::<Vec<f64>>());
+        let reached = |of: fn(&Outcome) -> Option<(f64, f64)>| {
+            let shares: Vec<f64> =
+                outcomes.iter().filter_map(|o| of(o)).map(|(factor, limit)| factor / limit).collect();
+            quantile(&shares, 0.5)
+        };
+        Self {
+            first: spread(|o| o.limit_factor),
+            first_reached: reached(|o| o.factor.zip(o.limit_factor)),
+            learned: spread(|o| o.learned_limit_factor),
+            learned_reached: reached(|o| o.learned_factor.zip(o.learned_limit_factor)),
+        }
+    }
 }
 
 /// The walls of several cases at every height: medians in mm; what is left is said of the first correction.
@@ -356,6 +389,7 @@ fn row(name: &str, outcomes: &[&Outcome]) -> Row {
         learned_any_height: Spread::of(&values(|o| o.learned_worst_height_factor)),
         learned_any_height_held: share(outcomes.iter().filter_map(|o| o.learned_worst_height_held())),
         whole_wall: WholeWall::of(outcomes),
+        limits: Limits::of(outcomes),
         correct_s: median(|o| o.correct_s),
     }
 }
@@ -398,6 +432,22 @@ fn limits(sets: &[SetSummary], axes: &[AxisSummary]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_reached_is_a_share_of_what_exact_knowledge_would() {
+        let outcome = |factor, limit| Outcome {
+            case: "bore/1001/all".to_owned(),
+            factor: Some(factor),
+            limit_factor: Some(limit),
+            ..Outcome::default()
+        };
+        // One that was refused has a limit and no factor.
+        let refused = Outcome { factor: None, ..outcome(0.0, 8.0) };
+        let outcomes = [outcome(5.0, 10.0), outcome(9.0, 12.0), outcome(3.0, 30.0), refused];
+        let limits = Limits::of(&outcomes.iter().collect::<Vec<_>>());
+        assert_eq!(limits.first.map(|first| (first.count, first.worst)), Some((4, 8.0)));
+        assert_eq!((limits.first_reached, limits.learned_reached), (Some(0.5), None));
+    }
 
     #[test]
     fn the_whole_wall_is_told_by_medians_in_which_a_sign_does_not_count() {

@@ -14,6 +14,7 @@ use truepath_trial::virtual_mill;
 
 use super::case::Case;
 use super::id::CaseId;
+use super::limit;
 use super::outcome::{Outcome, one_line};
 
 /// A corrected part.
@@ -47,6 +48,7 @@ pub fn outcome(id: &CaseId, first_only: bool) -> Outcome {
     let work = || -> Result<Outcome, Failure> {
         let case = Case::draw(id)?;
         let mut outcome = described(&case);
+        limit::add(&case, !first_only, &mut outcome)?;
         match first(&case, &mut outcome) {
             Ok(_) if first_only => {}
             Ok(first_part) => {

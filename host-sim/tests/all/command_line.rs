@@ -154,16 +154,18 @@ fn a_reader_that_closes_early_is_no_error() {
         long += &format!("G1 X{i}\n");
     }
     std::fs::write(desk.path().join("long.nc"), long + "M30\n%\n").expect("a file");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_truepath"))
-        .args(["canon", "long.nc"])
-        .current_dir(desk.path())
-        .stdout(std::process::Stdio::piped())
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .expect("the program runs");
-    drop(child.stdout.take());
-    let done = child.wait_with_output().expect("it ends");
-    assert_eq!((done.status.code(), text(&done.stderr)), (Some(0), String::new()));
+    for arguments in [["canon", "long.nc"], ["probe", "--help"], ["completions", "bash"]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_truepath"))
+            .args(arguments)
+            .current_dir(desk.path())
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("the program runs");
+        drop(child.stdout.take());
+        let done = child.wait_with_output().expect("it ends");
+        assert_eq!((done.status.code(), text(&done.stderr)), (Some(0), String::new()), "{arguments:?}");
+    }
 }
 
 /// A sequence that clears the screen, one that renames the window, one in eight bits, a bell and a step back.

@@ -35,11 +35,13 @@ impl Surface {
         let columns: Vec<&[f64]> = all.chunks(COUNT).collect();
         let figures = WallFigures::over(places.iter().zip(&columns).map(|((_, s), c)| (*s, c.to_vec())));
 
-        // Of every stretch the worst place.
+        // Of every stretch the worst place; of several as bad as the worst of all, that one.
         let stretch = places.len().div_ceil(DRAWN_PLACES).max(1);
+        let worst_place = figures.worst / COUNT;
         let worst_of = |from: usize| {
             let to = (from + stretch).min(places.len());
-            (from..to).max_by(|a, b| largest(columns[*a]).total_cmp(&largest(columns[*b])))
+            let of_all = (from..to).contains(&worst_place).then_some(worst_place);
+            of_all.or_else(|| (from..to).max_by(|a, b| largest(columns[*a]).total_cmp(&largest(columns[*b]))))
         };
         let kept: Vec<usize> = (0..places.len()).step_by(stretch).filter_map(worst_of).collect();
         let drawn: Vec<usize> = kept.iter().map(|at| indices[*at]).collect();
@@ -77,9 +79,9 @@ impl Surface {
             places: kept.iter().map(|at| places[*at]).map(|(index, s)| (s, sigma(index))).collect(),
             reach_mm: mm(path.setup().radius),
         });
-        let worst = kept.iter().position(|at| *at == figures.worst / COUNT).unwrap_or_default();
+        let worst = worst_place / stretch * COUNT + figures.worst % COUNT;
         let place = (figures.worst_s_mm, figures.worst_fraction * depth_mm);
-        Self::of(&uncertain, worst * COUNT + figures.worst % COUNT, place).0
+        Self::of(&uncertain, worst, place).0
     }
 }
 
