@@ -26,6 +26,7 @@ use crate::remarks::{MeasuredPart, Remarks};
 use crate::rows::{CorrectionRow, correction_rows};
 use crate::summary::{CorrectSummary, correct_summary, corrected_name};
 use crate::surface::expected::{Surface, Surfaces};
+use crate::told::{self, Told};
 use crate::warnings::{beyond_tolerance, cut_corrected, kinked, model_warnings};
 
 /// A correction in memory: everything the command writes follows from it.
@@ -87,6 +88,9 @@ pub fn correct_every(
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Vec<CorrectedPass>, Failure> {
+    let passes = as_told(walls)?;
+    let walls: Vec<MeasuredWall> =
+        walls.iter().zip(&passes).map(|(wall, pass)| MeasuredWall { pass, ..*wall }).collect();
     let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
     let mut sampled = Vec::new();
     for (wall, buffer) in walls.iter().zip(&mut buffers) {
@@ -107,6 +111,27 @@ pub fn correct_every(
             IdentifiedWall { pass: wall.pass, path, identified, request, remarks }
         });
     correct_identified(identified.collect(), routes, progress)
+}
+
+/// A pass as the points of an uncorrected part have it: its cutter's runout, the stock that roughing left.
+///
+/// # Errors
+/// What is wrong with program or measurement.
+pub fn as_its_points_tell(pass: Pass, measurement: &Measurement) -> Result<Pass, Failure> {
+    let passes = as_told(&[MeasuredWall { pass: &pass, measurement, remarks: &[] }])?;
+    Ok(passes.into_iter().next().unwrap_or(pass))
+}
+
+/// The passes of walls of an uncorrected part as their points have them: [`told`].
+///
+/// # Errors
+/// What is wrong with program or measurement.
+fn as_told(walls: &[MeasuredWall<'_>]) -> Result<Vec<Pass>, Failure> {
+    let passes: Vec<&Pass> = walls.iter().map(|wall| wall.pass).collect();
+    told::passes(&passes, true, &|k, _| {
+        let wall = walls.get(k).ok_or_else(|| Failure::Internal("points of no wall".to_owned()))?;
+        Ok(vec![Told { nodes: Vec::new(), observations: wall.measurement.observations()? }])
+    })
 }
 
 /// What the walls of an uncorrected part show beside the machine, which is then known better: it with its points, and the

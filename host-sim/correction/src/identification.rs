@@ -1,11 +1,15 @@
 //! Machine and material from probe points, under the wall law that is given or that the points speak for.
 //!
 //! Which law that is only a fit under either can tell ([`truepath_core::identify`]). The device fits one after the other;
-//! here both run at the same time, on points of their own, and give the same bits.
+//! here both run at the same time, on points of their own, and the places of a fit are predicted at the same time: no place knows of
+//! another, so the bits are the same.
 
-use truepath_core::cut::{State, WallLaw};
+use rayon::prelude::*;
+use truepath_core::cut::{ForceTable, Path, State, WallLaw};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{Cut, EarlierPart, Observation, PredictionWorkspace, identify, speaks_for_mean};
+use truepath_core::identify::{
+    Cut, EarlierPart, Observation, Parameters, PredictionWorkspace, Predictor, identify, predict, speaks_for_mean,
+};
 use truepath_core::job::{self, ForceModel};
 
 /// What a fit has found, with the points as it left them.
@@ -74,16 +78,38 @@ fn under(
     law: WallLaw,
     pass: &job::ContourPass,
     points: Points<'_>,
-    commanded: impl Fn(usize, usize) -> Vector + Copy,
+    commanded: impl Fn(usize, usize) -> Vector + Copy + Sync,
     progress: &mut dyn FnMut(f64),
 ) -> Found {
     let (mut earlier, mut observations) = (points.earlier.to_vec(), points.observations.to_vec());
     let cuts: Vec<Cut> = points.cuts.iter().map(|cut| Cut { path: cut.path.with_law(law), ..*cut }).collect();
-    let needed = cuts.iter().map(|cut| cut.path.working().len()).max().unwrap_or_default() + 1;
-    let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
-    let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
+    let mut predictor =
+        Places { room: cuts.iter().map(|cut| PredictionWorkspace::needed(&cut.path)).max().unwrap_or(0) };
     let prior = pass.prior(law);
     let mut observe = |permille| progress(f64::from(permille) / 1000.0);
-    let fit = identify(&cuts, &prior, &mut earlier, &mut observations, commanded, &mut workspace, &mut observe);
+    let fit = identify(&cuts, &prior, &mut earlier, &mut observations, commanded, &mut predictor, &mut observe);
     Found { core: job::Identified { law, prior, fit }, earlier, observations }
+}
+
+/// Predicts the places of a contour on all processors.
+struct Places {
+    /// Length of the buffers for one place.
+    room: usize,
+}
+
+impl Predictor for Places {
+    fn predict(
+        &mut self,
+        path: &Path,
+        table: &ForceTable,
+        parameters: &Parameters,
+        commanded: impl Fn(usize) -> Vector + Copy + Sync,
+        observations: &mut [Observation],
+    ) {
+        let places: Vec<&mut [Observation]> = observations.chunk_by_mut(|a, b| a.s == b.s).collect();
+        let buffers = || (vec![State::REST; self.room], vec![Vector::ZERO; self.room]);
+        places.into_par_iter().for_each_init(buffers, |(states, displacements), place| {
+            predict(path, table, parameters, commanded, place, &mut PredictionWorkspace { states, displacements });
+        });
+    }
 }

@@ -18,6 +18,7 @@ use crate::remarks::{MeasuredPart, Remarks};
 use crate::summary::{ContourSummary, CorrectSummary};
 use crate::surface::expected::Surface;
 use crate::surface::touched::TouchedSurface;
+use crate::told::{self, Told};
 
 /// The correction of the next part.
 #[derive(Clone, Debug)]
@@ -116,20 +117,24 @@ pub fn learn_every(
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Vec<Learned>, Failure> {
-    let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
-    let (mut sampled, mut parts) = (Vec::new(), Vec::new());
-    for (wall, buffer) in walls.iter().zip(&mut buffers) {
+    let mut parts = Vec::new();
+    for wall in walls {
         wall.history.facts.agree(wall.pass)?;
         refuse_other_laws(wall.pass)?;
         refuse_feeds(wall.pass)?;
         let part = Part::new(wall.history.next_number(), wall.measurement, Some(wall.history.next.correction.clone()))?;
         wall.history.refuse_known(&part)?;
         parts.push(part);
-        sampled.push(wall.pass.sample(buffer)?);
     }
-    let mut points: Vec<Vec<PartPoints>> = Vec::new();
-    for ((wall, path), part) in walls.iter().zip(&sampled).zip(&parts) {
-        points.push(part_points(wall.history, part, path)?);
+    let passes = as_told(walls, &parts)?;
+    let walls: Vec<CorrectedWall> =
+        walls.iter().zip(&passes).map(|(wall, pass)| CorrectedWall { pass, ..*wall }).collect();
+    let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
+    let (mut sampled, mut points) = (Vec::new(), Vec::<Vec<PartPoints>>::new());
+    for ((wall, buffer), part) in walls.iter().zip(&mut buffers).zip(&parts) {
+        let path = wall.pass.sample(buffer)?;
+        points.push(part_points(wall.history, part, &path)?);
+        sampled.push(path);
     }
     let count = walls.len() as f64;
     let mut taught = Vec::new();
@@ -170,6 +175,18 @@ pub fn learn_every(
         Learned { corrected, history, verdict: update.verdict }
     });
     Ok(done.collect())
+}
+
+/// The passes of the walls as the points of all their parts have them.
+fn as_told(walls: &[CorrectedWall<'_>], newest: &[Part]) -> Result<Vec<Pass>, Failure> {
+    let passes: Vec<&Pass> = walls.iter().map(|wall| wall.pass).collect();
+    told::passes(&passes, false, &|k, path| {
+        let (Some(wall), Some(part)) = (walls.get(k), newest.get(k)) else {
+            return Err(Failure::Internal("points of no wall".to_owned()));
+        };
+        let parts = part_points(wall.history, part, path)?;
+        Ok(parts.into_iter().map(|part| Told { nodes: part.nodes, observations: part.observations }).collect())
+    })
 }
 
 /// The parts of a history that count, then the newest.

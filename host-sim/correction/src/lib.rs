@@ -2,6 +2,7 @@
 //!
 //! | step | where |
 //! |---|---|
+//! | cutter and stock as the points have them: runout, roughing that was pushed away | `told`: [`runout`], `roughing` |
 //! | machine and material from the points | [`identification`] |
 //! | the correction of an identified machine | [`correction`] |
 //! | what parts show beside machine and material | [`discrepancy`] |
@@ -37,10 +38,13 @@ pub mod plan;
 pub mod planned;
 pub mod plausible;
 pub mod remarks;
+mod roughing;
 pub mod rows;
+pub mod runout;
 mod seal;
 pub mod second_pass;
 pub mod summary;
 pub mod surface;
+mod told;
 pub mod verification;
 pub mod warnings;

@@ -40,6 +40,10 @@ pub struct Parameter {
 pub struct CorrectSummary {
     /// Version of this file.
     pub version: u32,
+    /// How far the cutter runs out by what the points say, mm: radial offset of its axis. Absent where the job says it, and where they
+    /// do not speak for any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub runout_mm: Option<f64>,
     /// Largest predicted wall error without correction (of the target quantity), mm.
     pub max_error_before_mm: f64,
     /// Largest predicted wall error with it, mm.
@@ -230,8 +234,10 @@ pub fn correct_summary(
     let noise = pass.job.numbers.probe.map_or(0.0, |probe| mm(probe.noise));
     let before_mm = largest(predicted.iter().map(|p| p.before.aim(target, None).abs()));
     let floor = Floor::of(pass.job.repeatability.map(mm), noise, observations, before_mm, axial_form_error_mm);
+    let runout = pass.core.setup.runout.offset;
     CorrectSummary {
         version: 1,
+        runout_mm: (runout != pass.core.job.tool.runout).then_some(mm(runout)),
         profile_error_before_mm: surface.before.profile.profile_mm,
         profile_error_after_mm: surface.after.profile.profile_mm,
         surface,

@@ -53,6 +53,8 @@ truepath_ground::codes! {
         / "touch it at more places, spread along the whole contour: truepath probe --stock writes the program",
     K006 => "touches that are not of the stock of this contour"
         / "check that the file is of this part before its finishing pass, in the work coordinates of its program, and allowance_mm in the job",
+    K008 => "roughing of the program that does not leave the stock of this pass"
+        / "correct stock.roughing_diameter_mm or stock.roughing_tool, or leave both out: the stock is then even",
     K020 => "a file that should hold keys and does not"
         / "give a file that truepath key new wrote",
     K021 => "a public key where a private one belongs, or the other way round"

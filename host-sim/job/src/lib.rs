@@ -12,6 +12,7 @@
 //! | the cuts of a program, and which of them the job means | [`feature`] |
 //! | the surface the stock really has | [`surface`] |
 //! | the stock as it was touched before the pass | [`probed_stock`], between its places [`allowance`] |
+//! | the stock as the program's own roughing leaves it | [`roughed_stock`] |
 //! | feeds in place of the programmed ones | [`feed`] |
 //! | contour, cut and machine as the core takes them | [`pass`], at every depth [`levels`] |
 //! | results of measuring machines in QIF 3 | `qif` |
@@ -40,6 +41,7 @@ mod probe_format;
 pub mod probed_stock;
 mod qif;
 pub mod refusal;
+pub mod roughed_stock;
 mod sharing;
 pub mod signing;
 pub mod surface;

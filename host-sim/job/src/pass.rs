@@ -3,13 +3,13 @@
 //! What decides numbers is [`truepath_core::job`], which the device runs as well; here it is given buffers, and what it
 //! refuses becomes a diagnostic.
 
-use truepath_core::cut::{Milling, Path, Sample};
+use truepath_core::cut::{Milling, Path, Runout, Sample};
 use truepath_core::gcode::{
     ContourOptions, ContourProgram, Dialect, GcodeError, GcodeErrorKind, HostMemory, Options, Program, Spindle,
     WarningKind, read_contour,
 };
 use truepath_core::geometry::{Block, Contour, Point, Side};
-use truepath_core::job::{self, Compensation, JobError};
+use truepath_core::job::{self, Compensation, JobError, Part};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::rows::median;
@@ -26,6 +26,7 @@ use crate::job::{Assumed, JobFile, Which};
 use crate::probe_format::settled;
 use crate::probed_stock::{self, ProbedStock, TouchedPass};
 use crate::refusal::Inputs;
+use crate::roughed_stock::{self, Pushed, RoughedPass, RoughedStock, SAID};
 use crate::surface::{Surface, stock_point};
 
 /// Blocks a program may hold before the buffer is enlarged.
@@ -47,12 +48,31 @@ pub struct Pass {
     pub blocks: Vec<Block>,
     /// The actual surface of the stock; without one the stock is the parallel curve at the allowance.
     pub surface: Option<Surface>,
-    /// The stock as touches have found it; never beside a surface.
-    pub stock: Option<ProbedStock>,
+    /// The stock as touches have found it or roughing leaves it; never beside a surface.
+    pub stock: Option<KnownStock>,
     /// The feature it belongs to; `None` in a program with one cut and no names.
     pub plan: Option<Plan>,
     /// Things the user should know, in the order in which they were noticed.
     pub warnings: Vec<String>,
+}
+
+/// Stock that is not even, and why that is known.
+#[derive(Clone, Debug)]
+pub enum KnownStock {
+    /// It was touched before the pass.
+    Touched(ProbedStock),
+    /// The program's own roughing leaves it.
+    Roughed(RoughedStock),
+}
+
+impl KnownStock {
+    /// Mean along the contour, mm.
+    pub const fn mean_mm(&self) -> f64 {
+        match self {
+            Self::Touched(stock) => stock.facts.mean_mm,
+            Self::Roughed(stock) => stock.facts.mean_mm,
+        }
+    }
 }
 
 /// Buffer for the samples of a path.
@@ -60,6 +80,15 @@ pub struct Pass {
 pub struct PathBuffer(Vec<Sample>);
 
 impl Pass {
+    /// The same pass with a cutter whose axis stands off by so much, its direction towards a tooth, and a sentence about it.
+    #[must_use]
+    pub fn running_out(&self, offset: Offset, said: String) -> Self {
+        let mut pass = self.clone();
+        pass.core.setup.runout = Runout { offset, behind: Real::ZERO };
+        pass.warnings.push(said);
+        pass
+    }
+
     /// Reads job and program.
     ///
     /// # Errors
@@ -77,7 +106,7 @@ impl Pass {
         cutter::settle(&mut job, &program)?;
         let drawn = find_out_drawn(&mut job, &program)?;
         let plan = feature::plan(&job, &program)?;
-        Self::of_plan(job, program, plan, drawn.as_ref())?.over_probed()
+        Self::of_plan(job, program, plan, drawn.as_ref())?.over_known()
     }
 
     /// Reads job and program: a pass for every contour that the job's cutter finishes, in the order of the program; the one
@@ -91,7 +120,7 @@ impl Pass {
         let drawn = find_out_drawn(&mut job, &program)?;
         let plans = feature::plans(&job, &program)?;
         if plans.is_empty() {
-            return Ok(vec![Self::of_plan(job, program, None, drawn.as_ref())?.over_probed()?]);
+            return Ok(vec![Self::of_plan(job, program, None, drawn.as_ref())?.over_known()?]);
         }
         let several = plans.len() > 1;
         let (mut passes, mut refused, mut left) = (Vec::new(), None, Vec::new());
@@ -101,7 +130,7 @@ impl Pass {
                 job.which.feature.clone_from(&plan.id);
             }
             let name = plan.id.clone().unwrap_or_default();
-            match Self::of_plan(job, program.clone(), Some(plan), drawn.as_ref()).and_then(Self::over_probed) {
+            match Self::of_plan(job, program.clone(), Some(plan), drawn.as_ref()).and_then(Self::over_known) {
                 Ok(pass) => passes.push(pass),
                 Err(Failure::Input(error)) if several => {
                     left.push(format!("{name} is left as it is: {}: {}", error.code(), error.found()));
@@ -184,9 +213,21 @@ impl Pass {
         }
     }
 
-    /// The same pass over the stock that the touches which the job names have found.
-    fn over_probed(self) -> Result<Self, Failure> {
-        let Some(file) = self.job.read_stock_probe()? else { return Ok(self) };
+    /// The same pass over the stock that the touches which the job names have found, or that its program's roughing leaves.
+    fn over_known(self) -> Result<Self, Failure> {
+        if let Some(roughing) = self.job.roughing {
+            let stock = self.of_roughing(|pass| RoughedStock::read(pass, roughing))?;
+            let said = stock.facts.text(self.program.name());
+            let mut pass = self.over_stock(KnownStock::Roughed(stock));
+            pass.warnings.push(said);
+            return Ok(pass);
+        }
+        let Some(file) = self.job.read_stock_probe()? else {
+            let hint = self.surface.is_none().then(|| self.of_roughing(roughed_stock::hint)).flatten();
+            let mut pass = self;
+            pass.warnings.extend(hint);
+            return Ok(pass);
+        };
         let stock = {
             let refused = |error: &JobError| self.refused_of(&file, error);
             let contour = self.path_contour();
@@ -197,7 +238,7 @@ impl Pass {
         Ok(match stock {
             Some(stock) => {
                 let said = stock.facts.text();
-                let mut pass = self.over_stock(stock);
+                let mut pass = self.over_stock(KnownStock::Touched(stock));
                 pass.warnings.push(said);
                 pass
             }
@@ -209,15 +250,15 @@ impl Pass {
         })
     }
 
-    /// The same pass over stock that was touched: its allowance becomes the mean one along the contour.
+    /// The same pass over stock that is known: its allowance becomes the mean one along the contour.
     #[must_use]
-    pub fn over_stock(mut self, stock: ProbedStock) -> Self {
-        self.core.setup.allowance = Offset::from_nm((stock.facts.mean_mm * 1e6).round() as i64);
+    pub fn over_stock(mut self, stock: KnownStock) -> Self {
+        self.core.setup.allowance = Offset::from_nm((stock.mean_mm() * 1e6).round() as i64);
         self.stock = Some(stock);
         self
     }
 
-    /// The same over another pass's stock, where that was touched.
+    /// The same over another pass's stock, where that is known.
     fn over_stock_of(self, other: &Self) -> Self {
         match &other.stock {
             Some(stock) => self.over_stock(stock.clone()),
@@ -230,7 +271,7 @@ impl Pass {
     /// # Errors
     /// As [`Pass::read`].
     pub fn of_text(&self, mut job: JobFile, program: Source) -> Result<Self, Failure> {
-        job.stock_probe = None;
+        (job.stock_probe, job.roughing) = (None, None);
         Ok(Self::new(job, program)?.over_stock_of(self))
     }
 
@@ -335,6 +376,89 @@ impl Pass {
         Ok(Self::of_part(job, self.program.clone(), plan)?.over_stock_of(self))
     }
 
+    /// A run that roughs before this pass, with this pass's cutter, over what the runs before it have left: as it is programmed.
+    ///
+    /// # Errors
+    /// As [`Pass::read`], and where it is no run of the roughing of this pass.
+    pub fn roughed_by(&self, number: u32) -> Result<Self, Failure> {
+        let none = || Failure::Internal(format!("run {number} does not rough this pass"));
+        let Some(KnownStock::Roughed(stock)) = &self.stock else { return Err(none()) };
+        let found = self.of_roughing(|pass| {
+            let (run, axial_depth) = stock.run(number, pass)?;
+            Some((run, axial_depth, stock.side(run, pass)?))
+        });
+        let (run, axial_depth, side) = found.ok_or_else(none)?;
+        let mut job = self.job_as_cut();
+        let blocks = u32::try_from(run.blocks.len()).map_err(|_| none())?;
+        job.numbers.part =
+            Some(Part { feature: 1, pass: 1, run: number, first_block: 0, blocks, alike: Default::default() });
+        job.numbers.wall = Some(side);
+        job.numbers.cut.feed_mm_per_min = None;
+        job.numbers.cut.axial_depth = axial_depth;
+        job.numbers.correct.band = [Offset::ZERO, axial_depth];
+        let mut rough = Self::of_part(job, self.program.clone(), None)?;
+        rough.core.setup.allowance = rough.of_roughing(|rough| stock.mean_before(rough))?;
+        rough.stock = Some(KnownStock::Roughed(stock.clone()));
+        Ok(rough)
+    }
+
+    /// Whether its own cutter has roughed before it.
+    pub fn is_roughed_by_its_cutter(&self) -> bool {
+        matches!(&self.stock, Some(KnownStock::Roughed(stock)) if self.of_roughing(|pass| stock.is_of_the_cutter_of(pass)))
+    }
+
+    /// Numbers of the runs of roughing whose paths lie beside the contour, in their order; none where the stock is not what roughing leaves.
+    ///
+    /// # Errors
+    /// As [`Pass::sample`].
+    pub fn roughing_runs(&self) -> Result<Vec<u32>, Failure> {
+        match &self.stock {
+            Some(KnownStock::Roughed(stock)) => self.of_roughing(|pass| stock.runs_beside(pass)),
+            _ => Ok(Vec::new()),
+        }
+    }
+
+    /// The same pass where the runs of its roughing left so much more than their paths say, and by how much its stock is another
+    /// by that at most, mm.
+    ///
+    /// # Errors
+    /// As [`Pass::sample`].
+    pub fn over_pushed(&self, pushed: Vec<Pushed>) -> Result<(Self, f64), Failure> {
+        let Some(KnownStock::Roughed(stock)) = &self.stock else { return Ok((self.clone(), 0.0)) };
+        let left = self.of_roughing(|pass| stock.pushed(pass, pushed))?;
+        let change = left.largest_change(stock);
+        Ok((self.clone().over_stock(KnownStock::Roughed(left)), change))
+    }
+
+    fn of_roughing<T>(&self, of: impl FnOnce(&RoughedPass<'_>) -> T) -> T {
+        let Self { job, program, core, plan, .. } = self;
+        let refused = |error: &JobError| self.refused(error);
+        let (plan, contour) = (plan.as_ref(), self.path_contour());
+        of(&RoughedPass { job, program, core, plan, contour, refused: &refused })
+    }
+
+    /// What a run that roughs left more, from what it left at samples of its path: index and mm, in the order of the path.
+    pub fn pushed(&self, path: &Path<'_>, left: impl Iterator<Item = (usize, f64)>) -> Pushed {
+        let number = self.job.numbers.part.map_or(0, |part| part.run);
+        let samples = path.samples();
+        let told = left.filter_map(|(index, more)| {
+            let sample = samples.get(index).filter(|sample| sample.on_wall && !sample.near_corner)?;
+            Some([mm(sample.s), more])
+        });
+        Pushed { number, side: self.core.setup.wall, more: told.collect() }
+    }
+
+    /// Says what roughing leaves as it is known by now.
+    pub fn say_roughing(&mut self) {
+        let Some(KnownStock::Roughed(stock)) = &self.stock else { return };
+        let said = stock.facts.text(self.program.name());
+        let before = format!("{}: {SAID}", self.program.name());
+        match self.warnings.iter_mut().find(|text| text.starts_with(&before)) {
+            Some(text) => *text = said,
+            None => self.warnings.push(said),
+        }
+    }
+
     /// The job with the allowance of the cut, for another pass of the same feature.
     fn job_as_cut(&self) -> JobFile {
         let mut job = self.job.clone();
@@ -384,9 +508,16 @@ impl Pass {
         let Some(surface) = &self.surface else {
             buffer.0 = vec![Sample::BLANK; needed];
             let radius = mm(self.core.setup.radius);
+            let mut swept = match &self.stock {
+                Some(KnownStock::Roughed(stock)) => Some(self.of_roughing(|pass| stock.swept(pass))),
+                _ => None,
+            };
             let shape = |sample: &mut Sample| {
-                if let Some(stock) = &self.stock {
+                if let Some(KnownStock::Touched(stock)) = &self.stock {
                     sample.stock = stock_point(sample, radius - stock.allowance.at(mm(sample.s)));
+                }
+                if let Some(swept) = &mut swept {
+                    sample.stock = stock_point(sample, swept.distance(sample));
                 }
                 fed(sample);
             };

@@ -62,6 +62,7 @@ impl Stock {
 
     pub(super) fn new(path: &Path, cut: &Cut, machine: &Machine) -> Self {
         let (points, closed) = match &cut.surface {
+            Some(points) if path.closed => (points.clone(), true),
             Some(points) => (extended(points.clone()), false),
             None => {
                 let curve = parallel_curve(path, cut, machine);

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use truepath_chart::view::View;
+use truepath_correction::correct::as_its_points_tell;
 use truepath_correction::correction::identify;
 use truepath_correction::surface::expected::Surfaces;
 use truepath_ground::diagnostics::{Failure, Source};
@@ -144,6 +145,7 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CompareSu
     let (pass, measurement) = Measurement::of_any_depth(pass, &file)?;
     let plant = options.plant.as_deref().map(read_machine).transpose()?;
     let folder = options.output.as_ref().map(|out| OutputFolder::create(out, options.force, FILES)).transpose()?;
+    let pass = as_its_points_tell(pass, &measurement)?;
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
     let identified = identify(&pass, &sampled, &measurement, |share| progress(0.3 * share))?;

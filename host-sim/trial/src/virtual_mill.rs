@@ -9,7 +9,7 @@ use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::units::{float, mm};
 use truepath_job::feature::Survey;
 use truepath_job::levels;
-use truepath_job::pass::{Pass, PathBuffer};
+use truepath_job::pass::{KnownStock, Pass, PathBuffer};
 use truepath_plant as plant;
 use truepath_plant::{Milled, PlantError};
 
@@ -50,17 +50,23 @@ fn path(pass: &Pass) -> Result<plant::Path, PlantError> {
 }
 
 /// The cut of a pass for the plant. Stock that was touched is its stock where the machine says nothing of how that is uneven:
-/// otherwise the machine's is the truth, and touches are what is known of it.
+/// otherwise the machine's is the truth, and touches are what is known of it. So is what roughing leaves: the machine mills that as well.
 fn cut(pass: &Pass, path: &plant::Path, machine: &plant::Machine) -> Result<plant::Cut, Failure> {
     let surface = match (&pass.surface, &pass.stock) {
         (Some(surface), _) => Some(surface.points().to_vec()),
+        (None, Some(KnownStock::Roughed(_))) if machine.has_even_stock() => Some(stock_line(&roughed(pass, machine)?)?),
         (None, Some(_)) if machine.has_even_stock() => Some(stock_line(pass)?),
         (None, _) => None,
     };
+    Ok(cut_over(pass, path, surface))
+}
+
+/// The cut of a pass for the plant, over a surface or even stock.
+fn cut_over(pass: &Pass, path: &plant::Path, surface: Option<Vec<plant::Point>>) -> plant::Cut {
     let setup = &pass.core.setup;
     let first = pass.blocks.first().map_or(0.0, |b| float(b.feed));
     let changes = pass.blocks.windows(2).filter(|w| w[0].feed != w[1].feed);
-    Ok(plant::Cut {
+    plant::Cut {
         radius_mm: mm(setup.radius),
         teeth: setup.teeth.into(),
         helix_deg: float(setup.helix_deg),
@@ -78,7 +84,31 @@ fn cut(pass: &Pass, path: &plant::Path, machine: &plant::Machine) -> Result<plan
         surface,
         // A path that runs on into itself is cut as if it had no beginning.
         memory_mm: path.runs_on().then_some(3.0),
-    })
+    }
+}
+
+/// A pass over what the machine leaves where it mills the roughing as well: each run beside the contour, over what the paths before it leave.
+fn roughed(pass: &Pass, machine: &plant::Machine) -> Result<Pass, Failure> {
+    if !pass.is_roughed_by_its_cutter() {
+        return Ok(pass.clone());
+    }
+    let mut told = Vec::new();
+    for number in pass.roughing_runs()? {
+        // A run that is no contour is taken as it is programmed.
+        let Ok(rough) = pass.roughed_by(number) else { continue };
+        let path = nominal(&rough)?;
+        let milled = plant::mill(&path, &cut_over(&rough, &path, Some(stock_line(&rough)?)), machine, None);
+        let errors = milled.map_err(|e| refused(&e))?.mean_errors();
+        let mut buffer = PathBuffer::default();
+        let sampled = rough.sample(&mut buffer)?;
+        let beside = |index: usize| {
+            let s_mm = mm(sampled.samples().get(index)?.s);
+            errors.get(path.index_at(s_mm)).filter(|error| error.is_finite()).map(|error| (index, *error))
+        };
+        let contour = sampled.first()..sampled.first() + sampled.count();
+        told.push(rough.pushed(&sampled, contour.filter_map(beside)));
+    }
+    pass.over_pushed(told).map(|(pass, _)| pass)
 }
 
 /// The stock of a pass along its contour.

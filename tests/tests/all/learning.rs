@@ -93,12 +93,20 @@ fn an_error_that_no_machine_of_the_model_makes_is_learned_beside_it() {
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn a_machine_that_the_model_describes_leaves_nothing_to_learn_beside_it() {
-    let shop = shop(HELIX);
-    let (corrected, history) = shop.first(&WITH_CORNER);
-    let learned = shop.next(&history, &corrected, &WITH_CORNER);
-    if let Some(residual) = learned.verdict.residual {
-        assert!(residual.max_mm < 0.004, "{residual:?}");
-    }
+    // What is left is chance of the probe: of five chances, each small, and most of them under 4 µm.
+    let mut shop = shop(HELIX);
+    let before = shop.error(None);
+    let left = [0, 100, 200, 300, 500].map(|chance| {
+        shop.chance = chance;
+        let (corrected, history) = shop.first(&WITH_CORNER);
+        let learned = shop.next(&history, &corrected, &WITH_CORNER);
+        let residual = learned.verdict.residual.map_or(0.0, |residual| residual.max_mm);
+        let error = shop.error(Some(&learned.corrected));
+        println!("{chance}: beside it {residual:.4}, wall {before:.4} -> {error:.4} mm");
+        assert!(residual < 0.008 && error < before / 30.0, "{chance}: {residual}, {before} -> {error}");
+        residual
+    });
+    assert!(left.iter().filter(|residual| **residual < 0.004).count() > 2, "{left:?}");
 }
 
 #[test]

@@ -9,7 +9,7 @@
 use super::corner;
 use super::sample::Sample;
 use super::seam::Seam;
-use super::setup::{CutSetup, Helix, WallLaw};
+use super::setup::{CutSetup, Helix, Runout, WallLaw};
 use super::walk::{closes_smoothly, margin, walk};
 use truepath_units::Offset;
 use truepath_units::geometry::{Contour, FACET_TURN_LIMIT, Point, Side};
@@ -144,6 +144,11 @@ impl<'a> Path<'a> {
     /// The same path under another wall law.
     pub const fn with_law(mut self, law: WallLaw) -> Self {
         self.setup.law = law;
+        self
+    }
+    /// The same path for a cutter that runs out otherwise.
+    pub const fn with_runout(mut self, runout: Runout) -> Self {
+        self.setup.runout = runout;
         self
     }
     /// All samples, run-in and run-out included.

@@ -1,6 +1,6 @@
 //! The fit: Gauss–Newton with priors and a robust loss, over one part or several.
 
-use super::observation::{Observation, PredictionWorkspace, join_pairs, predict};
+use super::observation::{Observation, Predictor, join_pairs};
 use super::parameters::{COUNT, Parameter, Parameters, Prior};
 use super::part::EarlierPart;
 use super::solve::{Information, Matrix};
@@ -16,9 +16,18 @@ const MAX_STEPS: u32 = 12;
 /// the fit goes on without them.
 const WILD: Real = Real::from_int(25);
 /// Times the spread of the points is found anew.
-const SPREADS: usize = 4;
+const SPREADS: usize = 8;
 /// Step of the difference quotients, in prior standard deviations.
 const DIFFERENCE: Real = Real::ratio(1, 32);
+/// Sensitivities are good for steps as far as this from where they were taken, in prior standard deviations: they cost twice as many
+/// predictions as there are parameters, a step costs one.
+const NEAR: Real = Real::ratio(1, 4);
+/// As far as this they are those of the solution.
+const THERE: Real = Real::ratio(1, 32);
+/// A step that takes less than this off the cost, of which one standard deviation is 1, is the last.
+const SETTLED: Real = Real::ratio(1, 1000);
+/// The same while it is not settled what the points weigh.
+const ROUGHLY: Real = Real::ratio(1, 20);
 
 /// Result of an identification.
 #[derive(Clone, Copy, Debug)]
@@ -71,11 +80,11 @@ pub fn identify(
     prior: &Prior,
     earlier: &mut [EarlierPart],
     observations: &mut [Observation],
-    commanded: impl Fn(usize, usize) -> Vector + Copy,
-    workspace: &mut PredictionWorkspace,
+    commanded: impl Fn(usize, usize) -> Vector + Copy + Sync,
+    predictor: &mut impl Predictor,
     observe: &mut dyn FnMut(u16),
 ) -> Fit {
-    Task { cuts, prior, commanded }.fit(earlier, observations, workspace, observe)
+    Task { cuts, prior, commanded }.fit(earlier, observations, predictor, observe)
 }
 
 /// Share of the longest possible fit that is done after some steps and parameters of the next linearisation, ‰.
@@ -92,20 +101,31 @@ struct Task<'t, C> {
     commanded: C,
 }
 
-/// The points at which a fit looks, part by part, and the memory they are predicted in.
-struct Points<'p, 'w> {
+/// The points at which a fit looks, part by part, and who predicts them.
+struct Points<'p, P> {
     earlier: &'p mut [EarlierPart],
     observations: &'p mut [Observation],
-    workspace: &'p mut PredictionWorkspace<'w>,
+    predictor: &'p mut P,
+    /// How far the fit has come at most from where the sensitivities were taken; `None` where there are none.
+    come: Option<Real>,
 }
 
-impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
+/// How far downhill a fit goes.
+#[derive(Clone, Copy)]
+struct Aim {
+    /// Points beyond this have no weight.
+    gate: Real,
+    /// A step that takes less than this off the cost is the last.
+    least: Real,
+}
+
+impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
     #[inline(never)]
     fn fit(
         &self,
         earlier: &mut [EarlierPart],
         observations: &mut [Observation],
-        workspace: &mut PredictionWorkspace,
+        predictor: &mut impl Predictor,
         observe: &mut dyn FnMut(u16),
     ) -> Fit {
         let prior = self.prior;
@@ -115,17 +135,17 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         for part in earlier.iter_mut() {
             *part = EarlierPart::new(part.points);
         }
-        let mut points = Points { earlier, observations, workspace };
+        let mut points = Points { earlier, observations, predictor, come: None };
         spread::set(points.observations, Real::ONE);
-        let (mut information, mut cost, mut steps) =
-            self.settle(&mut table, &mut theta, Real::MAX, &mut points, observe);
+        let mut aim = Aim { gate: Real::MAX, least: ROUGHLY };
+        let (mut information, _, mut steps) = self.settle(&mut table, &mut theta, aim, &mut points, observe);
         let quiet = &mut |_| ();
         // A few points far off are of something else than this wall: they pull no more, and say nothing of the noise.
         let wild = points.observations.iter().filter(|o| o.residual().abs() > WILD).count();
-        let gate = if wild.saturating_mul(4) <= points.observations.len() { WILD } else { Real::MAX };
-        if wild > 0 && gate == WILD {
-            let (again, its_cost, more) = self.settle(&mut table, &mut theta, gate, &mut points, quiet);
-            (information, cost, steps) = (again, its_cost, steps.saturating_add(more));
+        aim.gate = if wild.saturating_mul(4) <= points.observations.len() { WILD } else { Real::MAX };
+        if wild > 0 && aim.gate == WILD {
+            let (again, _, more) = self.settle(&mut table, &mut theta, aim, &mut points, quiet);
+            (information, steps) = (again, steps.saturating_add(more));
         }
         // How far the points spread about the model is found from themselves, and weighs them.
         let mut factor = Real::ONE;
@@ -136,9 +156,12 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
             }
             factor = found;
             spread::set(points.observations, factor);
-            let (again, its_cost, more) = self.settle(&mut table, &mut theta, gate, &mut points, quiet);
-            (information, cost, steps) = (again, its_cost, steps.saturating_add(more));
+            let (again, _, more) = self.settle(&mut table, &mut theta, aim, &mut points, quiet);
+            (information, steps) = (again, steps.saturating_add(more));
         }
+        aim.least = SETTLED;
+        let (information, cost, more) = self.settle(&mut table, &mut theta, aim, &mut points, quiet);
+        steps = steps.saturating_add(more);
         let taken_out = points.earlier.iter().fold(Real::ZERO, |sum, part| sum + part.eliminated.log2_determinant());
         let ln_determinant = (information.log2_determinant() + taken_out) * Real::ratio(693_147_181, 1_000_000_000);
         let evidence = -((cost + ln_determinant + spread::cost(points.observations, factor)) * Real::HALF);
@@ -147,19 +170,18 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         Fit { parameters: prior.at(&theta), theta, covariance, cost, steps, outliers, evidence }
     }
 
-    /// Goes downhill from `theta` until the cost settles. Returns information, cost and steps taken; points beyond
-    /// `gate` have no weight.
+    /// Goes downhill from `theta` until the cost settles. Returns information, cost and steps taken.
     fn settle(
         &self,
         table: &mut ForceTable,
         theta: &mut [Real; COUNT],
-        gate: Real,
-        points: &mut Points,
+        Aim { gate, least }: Aim,
+        points: &mut Points<impl Predictor>,
         observe: &mut dyn FnMut(u16),
     ) -> (Information, Real, u32) {
         let mut cost = self.evaluate(table, theta, gate, points);
         let mut steps = 0;
-        let mut information = self.linearise(table, theta, points, &mut |k| observe(permille(0, k)));
+        let mut information = self.linearised(table, theta, points, &mut |k| observe(permille(0, k)));
         while steps < MAX_STEPS {
             steps = steps.saturating_add(1);
             let step = information.step();
@@ -183,15 +205,32 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
                     break (None, cost);
                 }
             };
-            let Some(accepted) = taken else { break };
+            let Some(accepted) = taken else {
+                if points.come.is_none_or(|come| come == Real::ZERO) {
+                    break;
+                }
+                // Sensitivities of another place may have led astray.
+                points.come = None;
+                for part in points.earlier.iter_mut() {
+                    part.trial = part.datum;
+                }
+                cost = self.evaluate(table, theta, gate, points);
+                information = self.linearised(table, theta, points, &mut |k| observe(permille(steps, k)));
+                continue;
+            };
             *theta = accepted;
             for part in points.earlier.iter_mut() {
                 part.datum = part.trial;
             }
-            let settled = largest < Real::ratio(1, 2000) || cost - new_cost < Real::ratio(1, 100_000);
+            points.come = points.come.map(|come| come + largest * share);
+            let settled = largest < Real::ratio(1, 2000) || cost - new_cost < least;
             cost = new_cost;
-            information = self.linearise(table, theta, points, &mut |k| observe(permille(steps, k)));
-            if settled {
+            let is_there = least > SETTLED || points.come.is_some_and(|come| come <= THERE);
+            if settled && !is_there {
+                points.come = None;
+            }
+            information = self.linearised(table, theta, points, &mut |k| observe(permille(steps, k)));
+            if settled && is_there {
                 break;
             }
         }
@@ -203,20 +242,26 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
     }
 
     /// Predicts the points of every cut with its own correction and the datum of its part.
-    fn predict(&self, table: &ForceTable, parameters: &Parameters, points: &mut Points) {
+    fn predict(&self, table: &ForceTable, parameters: &Parameters, points: &mut Points<impl Predictor>) {
         let mut rest = &mut *points.observations;
         for (k, cut) in self.cuts.iter().enumerate() {
             let datum = points.earlier.get(cut.part).map_or(parameters.datum, |part| part.trial_datum(self.prior));
             let (own, others) = rest.split_at_mut(cut.points.min(rest.len()));
             let parameters = Parameters { datum, ..*parameters };
-            predict(&cut.path, table, &parameters, |i| (self.commanded)(k, i), own, points.workspace);
+            points.predictor.predict(&cut.path, table, &parameters, |i| (self.commanded)(k, i), own);
             rest = others;
         }
         join_pairs(points.observations);
     }
 
     /// Predicts all points and returns the robust cost; sets their weights.
-    fn evaluate(&self, table: &mut ForceTable, theta: &[Real; COUNT], gate: Real, points: &mut Points) -> Real {
+    fn evaluate(
+        &self,
+        table: &mut ForceTable,
+        theta: &[Real; COUNT],
+        gate: Real,
+        points: &mut Points<impl Predictor>,
+    ) -> Real {
         let parameters = self.prior.at(theta);
         renew(table, &parameters);
         self.predict(table, &parameters, points);
@@ -228,17 +273,43 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
         cost
     }
 
-    /// Sensitivities and the normal equations at a point just evaluated; `observe` is told how many parameters are done.
-    ///
-    /// Radius and datum act on the measurement and are known; the others are central difference quotients, so that a
-    /// parameter whose sign turns with the part has the same sensitivity with the other sign.
-    fn linearise(
+    /// The normal equations at a point just evaluated, with sensitivities taken anew where the last are too far; `observe` is told how
+    /// many parameters are done.
+    fn linearised(
         &self,
         table: &ForceTable,
         theta: &[Real; COUNT],
-        points: &mut Points,
+        points: &mut Points<impl Predictor>,
         observe: &mut dyn FnMut(usize),
     ) -> Information {
+        if points.come.is_none_or(|come| come > NEAR) {
+            self.differentiate(table, theta, points, observe);
+            points.come = Some(Real::ZERO);
+        }
+        let mut information = Information::prior(theta, &tails::weights(theta));
+        let mut rest = &*points.observations;
+        for part in points.earlier.iter_mut() {
+            let (own, others) = rest.split_at(part.points.min(rest.len()));
+            part.inform(&mut information, own);
+            rest = others;
+        }
+        for o in rest {
+            information.add(&o.sensitivity, o.residual(), o.weight);
+        }
+        information
+    }
+
+    /// Sensitivities at a point just evaluated; `observe` is told how many parameters are done.
+    ///
+    /// Radius and datum act on the measurement and are known; the others are central difference quotients, so that a
+    /// parameter whose sign turns with the part has the same sensitivity with the other sign.
+    fn differentiate(
+        &self,
+        table: &ForceTable,
+        theta: &[Real; COUNT],
+        points: &mut Points<impl Predictor>,
+        observe: &mut dyn FnMut(usize),
+    ) {
         let mut changed = ForceTable::BLANK;
         for (k, (parameter, sigma)) in Parameter::ALL.iter().zip(&self.prior.sigma).enumerate() {
             observe(k);
@@ -280,17 +351,6 @@ impl<C: Fn(usize, usize) -> Vector + Copy> Task<'_, C> {
                 }
             }
         }
-        let mut information = Information::prior(theta, &tails::weights(theta));
-        let mut rest = &*points.observations;
-        for part in points.earlier.iter_mut() {
-            let (own, others) = rest.split_at(part.points.min(rest.len()));
-            part.inform(&mut information, own);
-            rest = others;
-        }
-        for o in rest {
-            information.add(&o.sensitivity, o.residual(), o.weight);
-        }
-        information
     }
 }
 

@@ -1,7 +1,7 @@
 //! Which wall law the points speak for.
 
 use super::fit::{Cut, Fit, identify};
-use super::observation::{Observation, PredictionWorkspace};
+use super::observation::{Observation, Predictor};
 use super::parameters::Prior;
 use crate::cut::{Path, WallLaw};
 use truepath_units::Real;
@@ -19,15 +19,15 @@ pub fn identify_law(
     path: &Path,
     around: impl Fn(WallLaw) -> Prior,
     observations: &mut [Observation],
-    commanded: impl Fn(usize, usize) -> Vector + Copy,
-    workspace: &mut PredictionWorkspace,
+    commanded: impl Fn(usize, usize) -> Vector + Copy + Sync,
+    predictor: &mut impl Predictor,
     observe: &mut dyn FnMut(u16),
 ) -> (WallLaw, Prior, Fit) {
     let mut under = |law, observations: &mut [Observation], fits: u16| {
         let prior = around(law);
         let third = &mut |permille: u16| observe(fits.saturating_mul(1000).saturating_add(permille) / 3);
         let cuts = [Cut { path: path.with_law(law), points: observations.len(), part: 0 }];
-        let fit = identify(&cuts, &prior, &mut [], observations, commanded, workspace, third);
+        let fit = identify(&cuts, &prior, &mut [], observations, commanded, predictor, third);
         (law, prior, fit)
     };
     let mean = under(WallLaw::Mean, observations, 0);

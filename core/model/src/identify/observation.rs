@@ -132,6 +132,33 @@ impl Observation {
     }
 }
 
+/// Who predicts the points of a fit: one place after the other in lent buffers ([`PredictionWorkspace`]), or several at a time where
+/// there are several processors. The points of a place stand together, and no place knows of another.
+pub trait Predictor {
+    /// As [`predict`].
+    fn predict(
+        &mut self,
+        path: &Path,
+        table: &ForceTable,
+        parameters: &Parameters,
+        commanded: impl Fn(usize) -> Vector + Copy + Sync,
+        observations: &mut [Observation],
+    );
+}
+
+impl Predictor for PredictionWorkspace<'_> {
+    fn predict(
+        &mut self,
+        path: &Path,
+        table: &ForceTable,
+        parameters: &Parameters,
+        commanded: impl Fn(usize) -> Vector + Copy + Sync,
+        observations: &mut [Observation],
+    ) {
+        predict(path, table, parameters, commanded, observations, self);
+    }
+}
+
 /// Buffers for the prediction of probe points, lent by the caller. Both as long as
 /// [`PredictionWorkspace::needed`] says.
 #[derive(Debug)]

@@ -40,10 +40,15 @@ pub(super) fn found(observations: &[Observation], covariance: &Matrix) -> Real {
     square.sqrt().max(LEAST).min(LARGEST)
 }
 
-/// Gives all points the factor κ.
+/// Gives all points the factor κ; their sensitivities are then in the new deviations.
 pub(super) fn set(observations: &mut [Observation], factor: Real) {
     for o in observations {
+        let before = o.deviation();
         o.spread = factor;
+        let ratio = before.over(o.deviation());
+        for sensitivity in &mut o.sensitivity {
+            *sensitivity = *sensitivity * ratio;
+        }
     }
 }
 

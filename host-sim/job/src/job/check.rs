@@ -122,7 +122,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     let part = part(&source, root.section("part")?.as_ref())?;
     root.close()?;
     let program = path;
-    let Stock { allowance, surface, probe: stock_probe } = stock;
+    let Stock { allowance, surface, probe: stock_probe, roughing } = stock;
     let [surface, stock_probe] = [surface, stock_probe].map(|name| name.map(|name| folder.join(name)));
     drop(root);
     Ok(JobFile {
@@ -156,6 +156,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         shank,
         surface,
         stock_probe,
+        roughing,
         features,
         which: Which::default(),
         drawn: false,

@@ -49,6 +49,15 @@ pub use open::{Assumed, DIALECTS, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, WOR
 
 pub(crate) use check_feature::is_id;
 
+/// The roughing cutter, as the job has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Roughing {
+    /// Its diameter.
+    pub diameter: Offset,
+    /// Its number, where only its passes count.
+    pub tool: Option<u32>,
+}
+
 /// A checked job.
 #[derive(Clone, Debug)]
 pub struct JobFile {
@@ -87,6 +96,8 @@ pub struct JobFile {
     pub surface: Option<PathBuf>,
     /// The file of touches of the stock before the pass, as a path that can be opened.
     pub stock_probe: Option<PathBuf>,
+    /// The cutter whose passes in the same program leave the stock.
+    pub roughing: Option<Roughing>,
     /// The `[[feature]]` tables.
     pub features: Vec<FeatureTable>,
     /// Which feature and pass the command is about.
@@ -211,10 +222,11 @@ impl JobFile {
 
     /// The key that says of stock that it is measured, where one does.
     pub const fn measured_stock(&self) -> Option<&'static str> {
-        match (&self.surface, &self.stock_probe) {
-            (Some(_), _) => Some("stock.surface"),
-            (None, Some(_)) => Some("stock.probe"),
-            (None, None) => None,
+        match (&self.surface, &self.stock_probe, &self.roughing) {
+            (Some(_), ..) => Some("stock.surface"),
+            (None, Some(_), _) => Some("stock.probe"),
+            (None, None, Some(_)) => Some("stock.roughing_diameter_mm"),
+            (None, None, None) => None,
         }
     }
 

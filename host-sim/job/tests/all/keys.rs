@@ -43,6 +43,16 @@ const MEANINGS: &[(&str, &str, &str)] = &[
         "even stock",
         "with allowance_mm: touches of the stock before this pass, relative to this file: [stock](stock.md)",
     ),
+    (
+        "stock.roughing_diameter_mm",
+        "even stock",
+        "with allowance_mm: diameter of the cutter that roughs this part in the same program, whose passes then say what they leave: [stock](stock.md#stock-that-the-programs-own-roughing-leaves)",
+    ),
+    (
+        "stock.roughing_tool",
+        "every pass before",
+        "number of that cutter, where other cuts before the pass are no roughing",
+    ),
     ("tool", "", "the cutter"),
     ("tool.diameter_mm", "that of a comment of the program", "nominal diameter"),
     ("tool.measured_diameter_mm", "diameter_mm", "measured diameter, within 10 % of the nominal one"),

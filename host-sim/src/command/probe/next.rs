@@ -13,6 +13,7 @@ use truepath_core::correct::{Law, Node};
 use truepath_core::cut::Path;
 use truepath_core::job;
 use truepath_correction::codes::{Q002, Q003, Q007};
+use truepath_correction::correct::as_its_points_tell;
 use truepath_correction::correction::{DesignRequest, Identification, design_correction, identify};
 use truepath_correction::feeds;
 use truepath_correction::learn::refuse_feeds;
@@ -95,6 +96,7 @@ pub fn next(
     settings: &Settings,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Plan, Failure> {
+    let pass = &as_its_points_tell(pass.clone(), measurement)?;
     let mut buffer = PathBuffer::default();
     let sampled = pass.sample(&mut buffer)?;
     let known = identify(pass, &sampled, measurement, |share| progress(0.2 * share))?;

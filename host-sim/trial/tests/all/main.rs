@@ -5,6 +5,7 @@ mod device_image;
 mod dimensions;
 mod feed;
 mod probed_stock;
+mod roughing;
 mod runout;
 mod shrinkage;
 mod two_threads;

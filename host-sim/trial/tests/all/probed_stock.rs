@@ -9,7 +9,7 @@ use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_job::job::{JobFile, Route};
 use truepath_job::levels;
 use truepath_job::measurement::Measurement;
-use truepath_job::pass::Pass;
+use truepath_job::pass::{KnownStock, Pass};
 use truepath_plant::Machine;
 use truepath_trial::virtual_mill;
 
@@ -173,7 +173,7 @@ fn every_control_finds_the_stock_as_it_is() {
             ..POCKET
         };
         let found = over(&contour, Some(&touched(&pass, &uneven, dialect))).unwrap();
-        let stock = found.stock.as_ref().unwrap();
+        let Some(KnownStock::Touched(stock)) = &found.stock else { panic!("{:?}", found.stock) };
         assert_eq!(stock.facts.places, planned(&pass, None).places.len(), "{dialect:?}");
         assert!(stock.facts.least_mm < 0.68 && stock.facts.most_mm > 0.92, "{:?}", stock.facts);
         seen.push((0..19).map(|k| stock.allowance.at(10.0 * f64::from(k))).collect::<Vec<f64>>());

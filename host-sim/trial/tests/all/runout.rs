@@ -45,6 +45,12 @@ fn shown<T>(result: Result<T, Failure>) -> T {
 /// Largest mean error over the height, mm, uncorrected and corrected: on a machine whose axis is offset by so much towards a
 /// tooth, by a job that states so much.
 fn left(part: &Part, runout_mm: f64, stated_mm: f64, seed: u64) -> [f64; 2] {
+    let (left, _) = corrected(part, runout_mm, stated_mm, seed);
+    left
+}
+
+/// The same, with the runout that the points spoke for.
+fn corrected(part: &Part, runout_mm: f64, stated_mm: f64, seed: u64) -> ([f64; 2], Option<f64>) {
     let stated = format!("[tool]\nrunout_mm = {stated_mm}\n");
     let job = part.job.replace("[tool]\n", if stated_mm > 0.0 { &stated } else { "[tool]\n" });
     let job = JobFile::parse(Source::new("job.toml", job.into_bytes()), Path::new(""));
@@ -62,22 +68,35 @@ fn left(part: &Part, runout_mm: f64, stated_mm: f64, seed: u64) -> [f64; 2] {
     let done = shown(correct_pass(&pass, &measurement, &[], &[Route::Program], &mut |_| ()));
     let commanded = shown(virtual_mill::commanded(&pass, done.program.as_deref().expect("a program")));
     let second = shown(virtual_mill::mill(&pass, &machine, Some(&commanded)));
-    [first.score().max_error_mm, second.score().max_error_mm]
+    ([first.score().max_error_mm, second.score().max_error_mm], done.summary.runout_mm)
+}
+
+#[test]
+fn points_say_how_far_a_cutter_runs_out_and_nothing_of_one_that_runs_true_or_is_stated() {
+    let (left, found) = corrected(&POCKET, 0.010, 0.0, 1);
+    assert!(found.is_some_and(|found| (0.005..0.017).contains(&found)), "{found:?}");
+    assert!(left[1] < 0.06 * left[0], "{left:?}");
+    for (runout_mm, stated_mm) in [(0.0, 0.0), (0.010, 0.010)] {
+        let (_, found) = corrected(&POCKET, runout_mm, stated_mm, 1);
+        assert_eq!(found, None, "{runout_mm} mm, stated {stated_mm}");
+    }
 }
 
 #[test]
 #[ignore = "slow: more than nine seconds of processor time"]
-fn a_stated_runout_takes_a_third_of_what_a_corner_leaves_without_it() {
-    let [unknown, stated] = [0.0, 0.010].map(|stated_mm| left(&CORNER, 0.010, stated_mm, 2));
-    println!("uncorrected {:.4}, unknown {:.4}, stated {:.4} mm", unknown[0], unknown[1], stated[1]);
-    assert!(unknown[0] > 0.4 && stated[1] < 0.67 * unknown[1], "{unknown:?} {stated:?}");
+fn a_runout_that_the_points_tell_leaves_no_more_of_a_corner_than_a_stated_one() {
+    let [told, stated] = [0.0, 0.010].map(|stated_mm| left(&CORNER, 0.010, stated_mm, 2));
+    println!("uncorrected {:.4}, told by the points {:.4}, stated {:.4} mm", told[0], told[1], stated[1]);
+    // Without either it was 0.051 mm.
+    assert!(told[0] > 0.4 && told[1] < 0.035 && told[1] < 1.25 * stated[1], "{told:?} {stated:?}");
 }
 
 #[test]
 #[ignore = "campaign: the table of docs/forces.md"]
 fn campaign_what_corner_and_pocket_leave_with_and_without_a_stated_runout() {
-    // With 15 µm that nothing is known of, the points of the corner are refused: ball or cutter are not as stated (Q009).
-    for (name, part, all) in [("pocket", &POCKET, &[0.0, 0.010][..]), ("corner", &CORNER, &[0.0, 0.005, 0.010][..])] {
+    for (name, part, all) in
+        [("pocket", &POCKET, &[0.0, 0.010][..]), ("corner", &CORNER, &[0.0, 0.005, 0.010, 0.015][..])]
+    {
         for &runout_mm in all {
             let median = |stated_mm: f64| {
                 let mut seeds: Vec<[f64; 2]> =
@@ -90,7 +109,7 @@ fn campaign_what_corner_and_pocket_leave_with_and_without_a_stated_runout() {
                 "{name} {runout_mm:.3}: uncorrected {:.4}, unknown {:.4}, stated {:.4} mm",
                 unknown[0], unknown[1], stated[1]
             );
-            assert!(runout_mm == 0.0 || stated[1] < unknown[1], "{name} {runout_mm}: {unknown:?} {stated:?}");
+            assert!(unknown[1] < 1.5 * stated[1], "{name} {runout_mm}: {unknown:?} {stated:?}");
         }
     }
 }

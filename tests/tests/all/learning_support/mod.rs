@@ -20,6 +20,8 @@ pub struct Shop {
     pub pass: Pass,
     pub machine: Machine,
     ball_mm: f64,
+    /// Of all its probing: another one is other noise.
+    pub chance: u64,
 }
 
 pub fn source(name: &str, text: &str) -> Source {
@@ -31,7 +33,7 @@ impl Shop {
         let job = JobFile::parse(source("job.toml", job), Path::new("")).unwrap();
         let ball_mm = job.numbers.probe.unwrap().ball_diameter.nm() as f64 / 1e6;
         let pass = Pass::new(job, source("program.nc", program)).unwrap();
-        Self { pass, machine: toml::from_str(plant).unwrap(), ball_mm }
+        Self { pass, machine: toml::from_str(plant).unwrap(), ball_mm, chance: 0 }
     }
 
     /// Mills a part, uncorrected or with a correction.
@@ -49,7 +51,7 @@ impl Shop {
     /// The probe file of a part; `noise` is the seed of the probe's chance.
     pub fn probe(&self, corrected: Option<&CorrectedPass>, places: &[f64], noise: u64) -> String {
         let mut milled = self.mill(corrected);
-        milled.machine.seed = noise;
+        milled.machine.seed = noise + self.chance;
         virtual_mill::probe(&self.pass, &milled, places, &LEVELS, self.ball_mm).unwrap()
     }
 

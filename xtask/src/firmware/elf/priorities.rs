@@ -62,8 +62,9 @@ const WAKER: &[&str] = &["embassy_executor::raw::waker::"];
 /// Closures that are told how far an on-board correction is, outermost first.
 const TOLD: &[&str] = &["Computation>::run::{closure#0}>::{closure#3}", "Computation>::run::{closure#0}>::{closure#4}"];
 /// Of one of the fits under both wall laws.
-const LAW: &str = "identified::{closure#0}>::{closure#0}::{closure#0}";
-const FIT: &str = ">::settle::{closure#";
+const LAW: &str = "PredictionWorkspace>::{closure#0}::{closure#0}";
+const FIT: &str = ">::settle::<truepath_model::identify::observation::PredictionWorkspace>::{closure#";
+const QUIET: &str = ">::fit::<truepath_model::identify::observation::PredictionWorkspace>::{closure#0}";
 /// Of a design, which reads the walls in order: under the guard, and of the whole.
 const DESIGN: &[&str] =
     &["guarded_design::<truepath_model::correct::reader::InOrder>::{closure#", "whole::designed::{closure#0}"];
@@ -102,7 +103,7 @@ pub const INDIRECT: &[Indirect] = &[
     ("uart::Receiving>::on_received", WAKER),
     ("tasks::background", WAKER),
     (">::linearise", &[FIT]),
-    (FIT, &[">::fit::{closure#0}", LAW, TOLD[0], TOLD[1]]),
+    (FIT, &[QUIET, LAW, TOLD[0], TOLD[1]]),
     (LAW, TOLD),
     ("correct::design::pass", &["design::design::<truepath_model::correct::reader::InOrder>::{closure#0}"]),
     ("correct::design::design", DESIGN),
