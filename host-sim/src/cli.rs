@@ -19,8 +19,8 @@ use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::interruption;
 
 use crate::command::{
-    bore, canon, compare, correct, demo, forces, image, init, inspect, learn, multiaxis, plan, plot, pocket, probe,
-    replay, simulate, split,
+    bore, canon, compare, correct, demo, fillet, forces, image, init, inspect, learn, multiaxis, plan, plot, pocket,
+    probe, replay, simulate, split,
 };
 #[cfg(not(target_family = "wasm"))]
 use crate::command::{device, hil, key, manual, pack, study};
@@ -81,6 +81,8 @@ enum Command {
     Unpack(pack::UnpackOptions),
     /// For a single part: a program that cuts half of the allowance, to be probed then.
     Split(split::Options),
+    /// Small arcs on sharp inside corners, where no correction reaches.
+    Fillet(fillet::Options),
     /// A pocket or slot compensated from tool and material data alone, without a probe.
     Pocket(pocket::Options),
     /// Pictures (SVG, PNG) of what the commands wrote.
@@ -185,6 +187,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Pack(options) => pack::main(&options, terminal),
         #[cfg(not(target_family = "wasm"))]
         Command::Unpack(options) => pack::unpack(&options, terminal),
+        Command::Fillet(options) => fillet::main(&options, terminal),
         Command::Split(options) => split::main(&options, terminal),
         Command::Pocket(options) => pocket::main(&options, terminal),
         Command::Plot(options) => plot::main(&options, terminal),

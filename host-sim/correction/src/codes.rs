@@ -6,11 +6,13 @@ truepath_ground::codes! {
     K007 => "a planned process of a cutter of another diameter, or of another cutter for the coprocessor"
         / "post the program with that cutter and plan its job, or write a choice of the program's cutter; --tolerance and [plan] decide which there are",
     P020 => "an inside corner that the path of the first pass would have to cut across"
-        / "give the path an arc there (a lead too meets the wall along it), or leave less stock before this pass",
+        / "give the path an arc there (truepath fillet; a lead too meets the wall along it), or leave less stock before this pass",
     P021 => "another cut of the tool comes nearer to the finishing path than half of the allowance"
         / "let one feature hold all passes along the wall; otherwise correct allowance_mm",
     P022 => "passes of a plan that the coprocessor cannot be armed for one after the other"
         / "write the program route (--route program), or say dialect = \"linuxcnc\" in the job if that is the control",
+    P023 => "no sharp inside corner that an arc has room in"
+        / "nothing has to be done here: correct the job as it is; a smaller --corner-radius needs less room",
     Q001 => "no history of corrections, or one of another version"
         / "name the folder that truepath correct or truepath learn wrote the correction of this part into",
     Q002 => "the history belongs to another job, program or contour"

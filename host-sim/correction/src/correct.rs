@@ -6,16 +6,14 @@ use truepath_core::gcode::program_crc;
 use truepath_core::identify::Observation;
 use truepath_core::image::{DEVICE_NODES, image_bytes};
 use truepath_core::job;
-use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::mm;
-use truepath_job::feature::Plan;
 use truepath_job::feed::Schedule;
 use truepath_job::job::Route;
 use truepath_job::levels::{self, Levels};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
-use truepath_program::codes::P004;
-use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program, unrolled};
+use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
 
 use crate::correction::{Correction, DesignRequest, Identification, MeasuredCut, design_correction, identify_together};
 use crate::discrepancy::{Along, PartCut, is_fitted, relieved};
@@ -24,10 +22,12 @@ use crate::feeds;
 use crate::identification::Found;
 use crate::remarks::{MeasuredPart, Remarks};
 use crate::rows::{CorrectionRow, correction_rows};
+use crate::sharp_corners::{self, SharpCorners};
 use crate::summary::{CorrectSummary, correct_summary, corrected_name};
 use crate::surface::expected::{Surface, Surfaces};
 use crate::told::{self, Told};
 use crate::warnings::{beyond_tolerance, cut_corrected, kinked, model_warnings};
+use crate::written_out::written_out;
 
 /// A correction in memory: everything the command writes follows from it.
 #[derive(Clone, Debug)]
@@ -217,6 +217,7 @@ struct Designed<'a> {
     feeds: feeds::Feeds,
     beside: Along,
     surface: Surfaces,
+    sharp_corners: Option<SharpCorners>,
     set_aside: usize,
     probe: u32,
     part: MeasuredPart,
@@ -248,11 +249,19 @@ fn design<'a>(
     let mut warnings = pass.warnings.clone();
     warnings.extend(remarks.texts.iter().cloned());
     warnings.extend(model_warnings(pass, remarks.measurement, &identified, &correction, &machine));
+    let mut sharp_corners = SharpCorners::of(pass, &path, &correction);
+    if let Some(corners) = &mut sharp_corners {
+        if remarks.part == MeasuredPart::Uncorrected {
+            corners.with_arcs = sharp_corners::with_arcs(pass, &identified);
+        }
+        warnings.push(corners.text());
+    }
     warnings.extend(feeds.warnings(mm(correction.sigma_by_points.iter().copied().max().unwrap_or_default())));
     let wall = |nodes| Surface::predicted(&machine, &identified, request.beside, nodes);
     let surface = Surfaces { before: wall(&[]), after: wall(&correction.nodes) };
     warnings.extend(beyond_tolerance(pass, &remarks, &surface.after));
     Ok(Designed {
+        sharp_corners,
         pass,
         path,
         surface,
@@ -333,6 +342,7 @@ impl Designed<'_> {
             corrected_program: written.map(|_| corrected_name(pass.program.name())),
             program: written.map(|rewritten| rewritten.difference.clone()),
             feed: feeds.summary,
+            sharp_corners: self.sharp_corners,
             feature: pass.feature(&levels.written),
             ..correct_summary(pass, &identified, &path, &correction, self.surface, self.set_aside, warnings)
         };
@@ -380,31 +390,6 @@ fn written_program(
         ..RewriteOptions::default()
     };
     rewrite_program(&pass.program, &edits, &options)
-}
-
-/// The same passes of the program with its subprograms and loops written out, and what is said about it, where a line of
-/// a contour is executed several times; `None` where that is not what failed, or the cuts would be others.
-pub(crate) fn written_out(passes: &[&Pass], failure: &Failure) -> Option<(Vec<Pass>, String)> {
-    let Failure::Input(error) = failure else { return None };
-    let first = passes.first()?;
-    if error.code() != P004.code || !first.job.features.is_empty() {
-        return None;
-    }
-    let text = unrolled(first.program.bytes(), first.job.numbers.program_options())?;
-    let curves = |pass: &Pass| pass.blocks.iter().map(|b| (b.curve, b.feed)).collect::<Vec<_>>();
-    let levels = |pass: &Pass| pass.plan.as_ref().map(Plan::levels);
-    let mut all = Vec::new();
-    for pass in passes {
-        let mut job = pass.job.clone();
-        job.which.pass = pass.plan.as_ref().map(|_| pass.level());
-        let flat = pass.of_text(job, Source::new(pass.program.name(), text.clone())).ok()?;
-        if curves(&flat) != curves(pass) || levels(&flat) != levels(pass) {
-            return None;
-        }
-        all.push(flat);
-    }
-    let said = "lines of the contour are executed several times, each with a correction of its own: the corrected program has its subprograms and loops written out";
-    Some((all, format!("{}: {said}", first.program.name())))
 }
 
 /// Makes the image of a correction.

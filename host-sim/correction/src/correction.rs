@@ -47,8 +47,17 @@ pub struct Correction {
     pub used_again: bool,
     /// What it was designed for.
     pub wanted: Design,
+    /// Whether the wall turns on the spot beside a sample, in a sharp inside corner.
+    pub turning: Vec<bool>,
     /// How the elastic loop fared.
     pub passage: Passage,
+}
+
+impl Correction {
+    /// The walls that are judged, with their samples: those beside the path, not what sharp inside corners keep in their rounding.
+    pub fn walls(&self) -> impl Iterator<Item = (usize, &Predicted)> {
+        self.predicted.iter().enumerate().filter(|(at, _)| self.turning.get(*at) != Some(&true))
+    }
 }
 
 /// Fits machine and material to the measurement of an uncorrected part. `progress` is told the share done, 0…1.
@@ -221,7 +230,8 @@ fn guarded_correction(
         *sigma = hypot_nm(*sigma, *more);
     }
     let used_again = request.kept.is_some();
-    Correction { nodes, unguarded, predicted, sigma, sigma_by_points, damped, used_again, wanted, passage }
+    let turning = (0..count).map(|i| path.is_pivot(path.first() + i)).collect();
+    Correction { turning, nodes, unguarded, predicted, sigma, sigma_by_points, damped, used_again, wanted, passage }
 }
 
 /// Memory of a design.

@@ -75,7 +75,7 @@ const fn raw(p: Point) -> [i64; 2] {
 }
 
 /// Adds a line's points to those there are, with the feeds from them on; a line with several moves is one edit.
-fn add(edits: &mut Vec<BlockEdit>, line: u32, points: Vec<[i64; 2]>, feeds: Vec<FeedFrom>) {
+pub(crate) fn add(edits: &mut Vec<BlockEdit>, line: u32, points: Vec<[i64; 2]>, feeds: Vec<FeedFrom>) {
     match edits.last_mut() {
         Some(last) if last.line == line => {
             let before = last.samples.len() - 1;

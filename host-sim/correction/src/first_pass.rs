@@ -12,7 +12,7 @@ use truepath_core::geometry::{Block, Contour, Point, Side};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::mm;
-use truepath_job::feature::Survey;
+use truepath_job::feature::{FeaturePass, Survey};
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::BlockEdit;
 
@@ -20,7 +20,7 @@ use crate::codes::{P020, P021};
 use crate::edits::carried_edits;
 
 /// Sine of the turn between two blocks from which on a corner counts as sharp: about 3 degrees.
-const SHARP: Real = Real::ratio(5, 100);
+pub(crate) const SHARP: Real = Real::ratio(5, 100);
 
 /// A cut this much nearer than half of the allowance is none: rounding of programs.
 const ROUNDING: Offset = Offset::from_um(5);
@@ -34,21 +34,34 @@ const STEP: Offset = Offset::from_um(50);
 /// `P020` for an inside corner without room, `P021` for another cut that would reach the finished wall, and what is
 /// wrong with a pass.
 pub fn edits(pass: &Pass, half: Offset) -> Result<Vec<BlockEdit>, Failure> {
-    let Some(plan) = &pass.plan else {
-        return moved(pass, [&[], &[]], half);
-    };
     let mut edits = Vec::new();
     let mut lines = Vec::new();
-    for one in &plan.passes {
-        let same = pass.along(one, pass.job.numbers.wall)?;
-        let against = against(&same.blocks, &pass.path_contour());
-        let wall = pass.job.numbers.wall.map(|wall| if against { opposite(wall) } else { wall });
-        let along = if against { pass.along(one, wall)? } else { same };
-        edits.extend(moved(&along, [&one.leads[0], &one.leads[1]], half)?);
-        lines.extend(one.leads.iter().flatten().chain(&along.blocks).map(|block| block.line));
+    for (along, leads) in every_pass(pass)? {
+        edits.extend(moved(&along, [&leads[0], &leads[1]], half)?);
+        lines.extend(leads.iter().flatten().chain(&along.blocks).map(|block| block.line));
+    }
+    if pass.plan.is_none() {
+        return Ok(edits);
     }
     alone(pass, half, &lines)?;
     Ok(edits)
+}
+
+/// A pass over the contour and its leads.
+pub(crate) type Along = (Pass, [Vec<Block>; 2]);
+
+/// Every pass over the contour, spring passes that run against it as well, each beside the wall; and its leads.
+pub(crate) fn every_pass(pass: &Pass) -> Result<Vec<Along>, Failure> {
+    let Some(plan) = &pass.plan else { return Ok(vec![(pass.clone(), [Vec::new(), Vec::new()])]) };
+    let one = |one: &FeaturePass| {
+        let same = pass.along(one, pass.job.numbers.wall)?;
+        if !against(&same.blocks, &pass.path_contour()) {
+            return Ok((same, one.leads.clone()));
+        }
+        let along = pass.along(one, pass.job.numbers.wall.map(opposite))?;
+        Ok((along, one.leads.clone()))
+    };
+    plan.passes.iter().map(one).collect()
 }
 
 /// One pass and its leads, moved away from the wall.

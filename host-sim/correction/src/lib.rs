@@ -10,6 +10,7 @@
 //! | points that are not of this job | [`misfit`] |
 //! | what no correction brings a part below | [`floor`] |
 //! | a whole correction with its programs, images and figures | [`correct`], [`summary`] |
+//! | sharp inside corners, and arcs in their place | [`sharp_corners`], [`fillet`] |
 //! | the second of two passes | [`first_pass`], [`second_pass`] |
 //! | passes that hold the wall at every height | [`plan`] |
 //! | the next part | [`learning`], [`learn`], [`as_milled`] |
@@ -25,6 +26,7 @@ pub mod damped;
 pub mod discrepancy;
 pub mod edits;
 pub mod feeds;
+pub mod fillet;
 pub mod first_pass;
 pub mod floor;
 pub mod guard;
@@ -43,8 +45,10 @@ pub mod rows;
 pub mod runout;
 mod seal;
 pub mod second_pass;
+pub mod sharp_corners;
 pub mod summary;
 pub mod surface;
 mod told;
 pub mod verification;
 pub mod warnings;
+mod written_out;

@@ -16,6 +16,7 @@ use crate::correction::{Correction, Identification};
 use crate::damped::{DampedSummary, damped_summary};
 use crate::floor::Floor;
 use crate::guard::{GuardSummary, guard_summary};
+use crate::sharp_corners::SharpCorners;
 use crate::surface::expected::Surfaces;
 
 /// An identified quantity.
@@ -71,6 +72,9 @@ pub struct CorrectSummary {
     pub surface: Surfaces,
     /// Deepest predicted gouge at any height of the engaged depth, mm (positive).
     pub worst_gouge_mm: f64,
+    /// What is left beside and in sharp inside corners; absent where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sharp_corners: Option<SharpCorners>,
     /// What the gouge guard allowed of what the target wants; absent without `max_gouge_mm`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub guard: Option<GuardSummary>,
@@ -203,11 +207,11 @@ fn largest(values: impl Iterator<Item = Offset>) -> f64 {
 
 /// What is left with a correction at the feeds of the program.
 pub fn unscheduled(correction: &Correction) -> Unscheduled {
-    let (predicted, target) = (&correction.predicted, correction.wanted.target);
+    let target = correction.wanted.target;
     Unscheduled {
-        max_error_after_mm: largest(predicted.iter().map(|p| p.after.aim(target, None).abs())),
+        max_error_after_mm: largest(correction.walls().map(|(_, p)| p.after.aim(target, None).abs())),
         max_sigma_mm: largest(correction.sigma.iter().copied()),
-        axial_form_error_mm: largest(predicted.iter().map(|p| p.after.form_error(target))),
+        axial_form_error_mm: largest(correction.walls().map(|(_, p)| p.after.form_error(target))),
         max_correction_mm: largest(correction.nodes.iter().map(|n| n.total().x.abs().max(n.total().y.abs()))),
     }
 }
@@ -223,16 +227,15 @@ pub fn correct_summary(
     warnings: Vec<String>,
 ) -> CorrectSummary {
     let target = correction.wanted.target;
-    let predicted = &correction.predicted;
     let observations = &identified.observations;
     let squares: f64 = observations.iter().map(|o| mm(o.error - o.predicted).powi(2)).sum();
     let Unscheduled { max_error_after_mm, max_sigma_mm, axial_form_error_mm, max_correction_mm } =
         unscheduled(correction);
-    let errors = predicted.iter().map(|p| p.after.aim(target, None).abs());
-    let at = errors.enumerate().max_by_key(|(_, error)| *error).map(|(at, _)| at);
+    let errors = correction.walls().map(|(at, p)| (at, p.after.aim(target, None).abs()));
+    let at = errors.max_by_key(|(_, error)| *error).map(|(at, _)| at);
     let sample = at.and_then(|at| path.samples().get(path.first() + at));
     let noise = pass.job.numbers.probe.map_or(0.0, |probe| mm(probe.noise));
-    let before_mm = largest(predicted.iter().map(|p| p.before.aim(target, None).abs()));
+    let before_mm = largest(correction.walls().map(|(_, p)| p.before.aim(target, None).abs()));
     let floor = Floor::of(pass.job.repeatability.map(mm), noise, observations, before_mm, axial_form_error_mm);
     let runout = pass.core.setup.runout.offset;
     CorrectSummary {
@@ -250,7 +253,8 @@ pub fn correct_summary(
         axial_form_error_mm,
         floor_mm: floor.mm(),
         floor,
-        worst_gouge_mm: largest(predicted.iter().map(|p| -p.after.deepest())).max(0.0),
+        worst_gouge_mm: largest(correction.walls().map(|(_, p)| -p.after.deepest())).max(0.0),
+        sharp_corners: None,
         guard: guard_summary(path, correction),
         damped: damped_summary(path, correction),
         max_correction_mm,

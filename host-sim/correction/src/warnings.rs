@@ -50,16 +50,6 @@ pub fn model_warnings(
             mm(correction.passage.worst_residual)
         ));
     }
-    let held = machine.path.samples().iter().filter(|s| s.near_corner).count();
-    if held > 0 {
-        let line =
-            machine.path.samples().iter().find(|s| s.near_corner).and_then(|s| pass.blocks.get(s.block as usize));
-        out.push(format!(
-            "a sharp inside corner near line {}: the load changes there the moment the direction does, so the correction of the straight wall is held and up to {:.3} mm stay; give the path an arc there",
-            line.map_or(0, |b| b.line),
-            correction.predicted.iter().map(|p| mm(p.after.mean.abs())).fold(0.0, f64::max)
-        ));
-    }
     if let Some(guard) = guard_summary(machine.path, correction) {
         if !guard.heeded && guard.deepest_mm > guard.max_gouge_mm {
             out.push(format!(

@@ -43,6 +43,11 @@ pub enum Purpose {
         /// Stock it leaves.
         left: Offset,
     },
+    /// It has arcs where the path had sharp inside corners, and is milled, probed and corrected in the place of the original.
+    Fillets {
+        /// Their radius on the cutter's path.
+        radius: Offset,
+    },
 }
 
 /// How the corrected program is written.

@@ -49,6 +49,10 @@ pub(super) fn text(crc: u32, options: &RewriteOptions, line_end: &[u8]) -> Vec<u
             format!("({FIRST_PASS}, LEAVES {} MM)", left.nm() as f64 / 1e6),
             "(PROBE THE WALL BEFORE THE SECOND PASS)".to_owned(),
         ),
+        Purpose::Fillets { radius } => (
+            format!("(TRUEPATH FILLETS, R {} MM ON THE PATH)", radius.nm() as f64 / 1e6),
+            "(NOT CORRECTED YET)".to_owned(),
+        ),
     };
     let notes = options.notes.iter().map(|note| format!("({})", plain(note)));
     let mut text = Vec::new();

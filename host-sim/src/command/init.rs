@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, IsTerminal, Write};
-use std::path::{Component, Path as FilePath, PathBuf};
+use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
 use truepath_ground::codes::C001;
@@ -17,6 +17,7 @@ use truepath_job::draft::{ContourNote, Draft, Entry, Origin};
 use truepath_job::job::{DIALECTS, FORMATS, JobFile, MATERIALS};
 use truepath_job::pass::Pass;
 
+use crate::command::relative::relative;
 use crate::streams::write_error;
 use crate::terminal::Terminal;
 
@@ -335,24 +336,6 @@ fn ask(question: &Question) -> Result<Option<String>, Failure> {
 
 fn visible_text(text: &str) -> String {
     text.lines().map(|line| visible(line).into_owned()).collect::<Vec<_>>().join("\n")
-}
-
-/// How a file in the folder of `job` names `program`.
-fn relative(job: &FilePath, program: &FilePath) -> Result<String, InputError> {
-    let whole = |path: &FilePath| files::canonical(path).map_err(|e| InputError::unreadable(path, &e));
-    let folder = match job.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => whole(folder)?,
-        _ => whole(FilePath::new("."))?,
-    };
-    let program = whole(program)?;
-    let (from, to): (Vec<Component>, Vec<Component>) = (folder.components().collect(), program.components().collect());
-    let same = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
-    if same == 0 {
-        return Ok(program.display().to_string());
-    }
-    let up = from.iter().skip(same).map(|_| "..".to_owned());
-    let down = to.iter().skip(same).map(|c| c.as_os_str().to_string_lossy().into_owned());
-    Ok(up.chain(down).collect::<Vec<_>>().join("/"))
 }
 
 fn words(report: &Report) -> String {

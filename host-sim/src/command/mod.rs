@@ -11,6 +11,7 @@ mod correction_files;
 pub mod demo;
 #[cfg(not(target_family = "wasm"))]
 pub mod device;
+pub mod fillet;
 pub mod forces;
 #[cfg(not(target_family = "wasm"))]
 pub mod hil;
@@ -35,7 +36,9 @@ pub mod plot;
 pub mod pocket;
 pub mod probe;
 mod readings;
+mod relative;
 pub mod replay;
+mod rewritten_job;
 pub mod simulate;
 pub mod split;
 #[cfg(not(target_family = "wasm"))]

@@ -8,18 +8,17 @@
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
-use toml_edit::{Array, DocumentMut, Item, value};
 use truepath_core::units::Offset;
 use truepath_correction::first_pass;
 use truepath_ground::codes::J008;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFolder;
 use truepath_ground::units::mm;
-use truepath_job::feature::lines_named;
 use truepath_job::job::JobFile;
 use truepath_job::pass::Pass;
-use truepath_program::{Purpose, RewriteOptions, Rewritten, rewrite_program};
+use truepath_program::{Purpose, RewriteOptions, rewrite_program};
 
+use crate::command::rewritten_job::job_of;
 use crate::terminal::Terminal;
 
 /// The program of the first pass.
@@ -106,7 +105,9 @@ pub fn run(options: &Options) -> Result<Split, Failure> {
     };
     let written = rewrite_program(&pass.program, &edits, &rewrite)?;
     folder.write(PROGRAM, &written.text)?;
-    folder.write(JOB, job_text(&pass, half, &written)?.as_bytes())?;
+    let said =
+        format!("The first of two passes; the second is corrected with: truepath correct ... --first-pass {JOB}");
+    folder.write(JOB, job_of(&pass, &written, (PROGRAM, &options.output), Some(half), &said)?.as_bytes())?;
     folder.commit()?;
     Ok(Split {
         program: options.output.join(PROGRAM),
@@ -115,34 +116,4 @@ pub fn run(options: &Options) -> Result<Split, Failure> {
         moves: written.difference.straight_moves + written.difference.arcs,
         warnings: pass.warnings.clone(),
     })
-}
-
-/// The job of the first pass: the original text, comments included, with another program and allowance. Features are
-/// named by their lines in the new program, which has more of them.
-fn job_text(pass: &Pass, half: Offset, written: &Rewritten) -> Result<String, Failure> {
-    let text = String::from_utf8_lossy(pass.job.source().bytes()).into_owned();
-    let mut document: DocumentMut =
-        text.parse().map_err(|e| Failure::Internal(format!("the job cannot be edited: {e}")))?;
-    document["program"] = value(PROGRAM);
-    let chosen = pass.plan.as_ref().and_then(|plan| plan.id.as_deref());
-    let mut own_allowance = false;
-    if let Some(tables) = document.get_mut("feature").and_then(Item::as_array_of_tables_mut) {
-        let places = lines_named(&pass.job, &pass.program)?;
-        for ((table, feature), place) in tables.iter_mut().zip(&pass.job.features).zip(places) {
-            if let Some(lines) = place.map(|lines| written.lines(lines)) {
-                table.remove("blocks");
-                table["lines"] = value([lines.first, lines.last].map(i64::from).into_iter().collect::<Array>());
-            }
-            if Some(feature.id.as_str()) == chosen {
-                table["allowance_mm"] = value(mm(half));
-                own_allowance = true;
-            }
-        }
-    }
-    if !own_allowance {
-        document["stock"]["allowance_mm"] = value(mm(half));
-    }
-    Ok(format!(
-        "# The first of two passes; the second is corrected with: truepath correct ... --first-pass {JOB}\n{document}"
-    ))
 }

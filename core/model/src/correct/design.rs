@@ -88,8 +88,8 @@ pub enum DesignStep<'a> {
 /// Makes the correction: `nodes` as long as the contour's own samples, `predicted` as well, or empty where the predictions
 /// are not needed one by one.
 ///
-/// Near a sharp inside corner the correction of the straight wall is held: there the load changes the moment the
-/// direction does, and a correction that followed it would be driven into the wall by a machine that cannot.
+/// Near a sharp inside corner, where the load ends the moment the direction changes, the correction never goes nearer to the
+/// wall than that of the straight wall: the cutter springs back there into what it was sent to.
 /// `observe` is told what the design does. Returns the summary of the last pass of the elastic loop;
 /// `workspace.profiles` then holds the corrected wall.
 pub fn design<R: WallReader>(
@@ -229,8 +229,11 @@ fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorr
     }
 }
 
-/// The largest error the target sees, away from sharp inside corners, where the correction is held.
+/// The largest error the target sees; near sharp inside corners the deepest, as material that is left there stays.
 pub(super) fn worst(wanted: &Design, path: &Path, profiles: &[Profile]) -> Offset {
-    let followed = profiles.iter().zip(path.samples().iter().skip(path.first())).filter(|(_, s)| !s.near_corner);
-    followed.map(|(p, _)| p.aim(wanted.target, wanted.max_gouge).abs()).max().unwrap_or_default()
+    let seen = profiles.iter().zip(path.samples().iter().skip(path.first())).map(|(p, sample)| {
+        let error = p.aim(wanted.target, wanted.max_gouge);
+        if sample.near_corner { -error } else { error.abs() }
+    });
+    seen.max().unwrap_or_default().max(Offset::ZERO)
 }

@@ -64,6 +64,7 @@
 //! assert!(middle.after.mean.abs() < Offset::from_um(1));
 //! ```
 
+mod corner;
 mod design;
 mod guard;
 mod node;

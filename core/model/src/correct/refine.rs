@@ -1,5 +1,6 @@
 //! Refinement of a correction on the predicted wall error, and where it is not refined.
 
+use super::corner;
 use super::node::Node;
 use super::profile::{Profile, Target};
 use crate::cut::Path;
@@ -20,7 +21,8 @@ impl Update {
 }
 
 /// One refinement: every cutter position moves along the normal by the mean error of the wall places it made (over
-/// samples and heights); positions that made none follow their neighbours.
+/// samples and heights); positions that made none follow their neighbours. What stays in a sharp inside corner, where the wall turns on
+/// the spot, asks for nothing: no position reaches it that does not cut into a wall beside it.
 pub(super) fn refine(
     path: &Path,
     (target, max_gouge): (Target, Option<Offset>),
@@ -30,6 +32,9 @@ pub(super) fn refine(
 ) {
     updates.fill(Update::default());
     for (index, profile) in profiles.iter().enumerate() {
+        if path.is_pivot(path.first().saturating_add(index)) {
+            continue;
+        }
         let error = profile.aim(target, max_gouge);
         for maker in profile.makers(index) {
             if let Some(update) = updates.get_mut(maker) {
@@ -84,8 +89,8 @@ pub(crate) fn fill_gaps(updates: &mut [Update]) {
     }
 }
 
-/// Closes a closed correction, turns it round outside corners from that of one leg to that of the other, and holds it
-/// around sharp inside corners: up to the corner that of the wall before, from it on that of the wall behind.
+/// Closes a closed correction, turns it round outside corners from that of one leg to that of the other, and leads it through
+/// sharp inside corners ([`corner`]).
 pub(crate) fn settle_ends(path: &Path, nodes: &mut [Node]) {
     round_corners(path, nodes);
     if path.is_closed()
@@ -94,27 +99,7 @@ pub(crate) fn settle_ends(path: &Path, nodes: &mut [Node]) {
     {
         *last = first;
     }
-    let samples = path.samples().get(path.first()..).unwrap_or_default();
-    let near = |i: usize| samples.get(i).is_some_and(|s| s.near_corner);
-    let turned = |i: usize| {
-        // Both on the spot: the corner lies between them and the samples before.
-        matches!((samples.get(i), samples.get(i.saturating_add(1))), (Some(a), Some(b)) if a.point == b.point)
-    };
-    let mut at = 0usize;
-    while at < nodes.len() {
-        let zone = (at..nodes.len()).take_while(|i| near(*i)).count();
-        let end = at.saturating_add(zone);
-        if zone > 0 {
-            let before = at.checked_sub(1).and_then(|i| nodes.get(i)).copied();
-            let behind = nodes.get(end).copied();
-            let corner = (at..end).find(|i| turned(*i)).unwrap_or(end);
-            for (i, node) in nodes.iter_mut().enumerate().take(end).skip(at) {
-                let held = if i <= corner { before.or(behind) } else { behind.or(before) };
-                *node = held.unwrap_or_default();
-            }
-        }
-        at = end.saturating_add(1);
-    }
+    corner::turn(path, nodes);
 }
 
 /// Round an outside corner the cutter makes no wall: from the end of one leg to the start of the other the correction

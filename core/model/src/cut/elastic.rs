@@ -153,6 +153,11 @@ impl Loop<'_> {
                 feed = Some(sample.feed);
                 chip_scale = self.coefficients.chip_scale(self.path.setup().feed_per_tooth(sample.feed));
             }
+            if self.path.is_pivot(index) {
+                // Nothing is cut on the spot: the machine stands, and the cutter springs back to where it was sent.
+                *slot = State { commanded: commanded(index), normal: sample.normal, ..State::REST };
+                continue;
+            }
             let (state, iterations) = self.settle_about(index, commanded(index), guess, chip_scale, &mut exit);
             guess = state.displacement;
             passage.iterations = passage.iterations.saturating_add(iterations);

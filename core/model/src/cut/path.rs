@@ -155,6 +155,13 @@ impl<'a> Path<'a> {
     pub const fn samples(&self) -> &'a [Sample] {
         self.samples
     }
+    /// Whether the normal turns at a sample while the centre stays: between the end of one leg of a sharp inside corner and the
+    /// start of the other.
+    pub fn is_pivot(&self, index: usize) -> bool {
+        let at = |i: usize| self.samples.get(i).map(|s| s.point);
+        let here = at(index);
+        here.is_some() && index.checked_sub(1).and_then(at) == here && at(index.saturating_add(1)) == here
+    }
     /// The samples on which the cut is computed: the contour and, on either side, as much of the straight run as
     /// shapes its wall.
     pub fn working(&self) -> core::ops::Range<usize> {

@@ -29,8 +29,8 @@ use truepath_program::codes::{P002, P003, P005};
 use truepath_program::passes::{Cutter, Depth, Repeated, RepeatedPass, Times, Turn, can_repeat, repeat_contours};
 use truepath_program::{BlockEdit, Difference, Origin, RewriteOptions, Rewritten, rewrite_program};
 
-use crate::correct::written_out;
 use crate::feeds::written_feeds_count;
+use crate::written_out::written_out;
 
 use images::Laid;
 pub use images::{ArmedWall, PassImage, image_name};

@@ -81,6 +81,7 @@ mod tests {
         };
         let wanted = Design { law: Law::Model, target: Target::Mean, band: Band::WHOLE, max_gouge: None };
         Correction {
+            turning: vec![false; walls.len()],
             nodes: Vec::new(),
             unguarded: Vec::new(),
             predicted: walls.iter().map(wall).collect(),

@@ -7,5 +7,6 @@ mod feed;
 mod probed_stock;
 mod roughing;
 mod runout;
+mod sharp_corners;
 mod shrinkage;
 mod two_threads;

@@ -1,0 +1,118 @@
+//! What is left beside and in the sharp inside corners of a contour, and what arcs there would leave.
+
+use truepath_core::cut::Path;
+use truepath_core::job;
+use truepath_core::units::Offset;
+use truepath_ground::diagnostics::{Failure, Source};
+use truepath_ground::units::{mm, nm, rounded};
+use truepath_job::pass::{Pass, PathBuffer};
+
+use crate::correction::{Correction, DesignRequest, Identification, design_correction};
+use crate::fillet;
+
+/// Arcs that are proposed have this share of the cutter's radius on its path: the correction has a way to turn on then.
+const SHARE: f64 = 1.0 / 3.0;
+
+/// The sharp inside corners of a contour, of the target quantity.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct SharpCorners {
+    /// Line of the program that ends in the first.
+    pub line: u32,
+    /// How many there are.
+    pub count: usize,
+    /// Largest error of the walls beside them without correction, mm.
+    pub before_mm: f64,
+    /// The same with it, mm.
+    pub after_mm: f64,
+    /// Material that the correction leaves in a corner's own rounding, mm: it lets no cutter into a wall beside it.
+    pub left_in_corner_mm: f64,
+    /// What arcs would leave; absent where that was not reckoned.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub with_arcs: Option<WithArcs>,
+}
+
+/// What is predicted for the same contour with arcs in its sharp inside corners.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct WithArcs {
+    /// Radius of the wall's corners, mm.
+    pub corner_radius_mm: f64,
+    /// Largest error of the whole contour without correction, mm.
+    pub before_mm: f64,
+    /// The same with it, mm.
+    pub after_mm: f64,
+}
+
+impl SharpCorners {
+    /// Of a corrected contour; `None` where it has none.
+    pub fn of(pass: &Pass, path: &Path, correction: &Correction) -> Option<Self> {
+        let samples = path.samples().get(path.first()..).unwrap_or_default();
+        let first = samples.iter().find(|sample| sample.near_corner)?;
+        let target = correction.wanted.target;
+        let near = || correction.walls().filter(|(at, _)| samples.get(*at).is_some_and(|s| s.near_corner));
+        let in_corner = correction.predicted.iter().zip(&correction.turning).filter(|(_, turning)| **turning);
+        let largest = |values: &mut dyn Iterator<Item = Offset>| mm(values.max().unwrap_or_default()).max(0.0);
+        Some(Self {
+            line: pass.blocks.get(first.block as usize).map_or(0, |block| block.line),
+            count: correction.turning.windows(2).filter(|pair| *pair == [false, true]).count(),
+            before_mm: largest(&mut near().map(|(_, p)| p.before.aim(target, None).abs())),
+            after_mm: largest(&mut near().map(|(_, p)| p.after.aim(target, None).abs())),
+            left_in_corner_mm: largest(&mut in_corner.map(|(p, _)| p.after.aim(target, None))),
+            with_arcs: None,
+        })
+    }
+
+    /// In words.
+    pub fn text(&self) -> String {
+        let Self { line, count, before_mm, after_mm, left_in_corner_mm, .. } = self;
+        let corners = match count {
+            0 | 1 => format!("a sharp inside corner near line {line}"),
+            count => format!("{count} sharp inside corners, the first near line {line}"),
+        };
+        let mut text = format!(
+            "{corners}: the load ends there the moment the direction changes, so the walls beside are predicted to be {before_mm:.3} mm off before and {after_mm:.3} mm after, and {left_in_corner_mm:.3} mm stay in the corner itself"
+        );
+        if let Some(WithArcs { corner_radius_mm, after_mm, .. }) = self.with_arcs {
+            text += &format!(
+                "; if the drawing allows corners of {corner_radius_mm} mm, truepath fillet --corner-radius {corner_radius_mm} puts arcs there, with which {after_mm:.3} mm are predicted along the whole contour"
+            );
+        }
+        text
+    }
+}
+
+/// What the contour with arcs of a third of the cutter's radius would come to on the machine that was identified. `None` where its
+/// corners have no room for them.
+pub fn with_arcs(pass: &Pass, identified: &Identification) -> Option<WithArcs> {
+    let cutter = mm(pass.core.setup.radius);
+    let radius = (cutter * SHARE * 10.0).ceil() / 10.0;
+    predicted(pass, identified, radius).ok().flatten()
+}
+
+fn predicted(pass: &Pass, identified: &Identification, radius: f64) -> Result<Option<WithArcs>, Failure> {
+    // Features named by their lines stand elsewhere in the program with arcs.
+    if !pass.job.features.is_empty() || pass.job.measured_stock().is_some() {
+        return Ok(None);
+    }
+    let (written, corners, _) = fillet::rewritten(pass, nm(radius))?;
+    if corners.iter().any(|corner| corner.radius_mm < radius) {
+        return Ok(None);
+    }
+    let mut job = pass.job.clone();
+    job.which.pass = pass.plan.as_ref().map(|_| pass.level());
+    let other = pass.of_text(job, Source::new(pass.program.name(), written.text))?;
+    let mut buffer = PathBuffer::default();
+    let path = other.sample(&mut buffer)?.with_law(identified.law());
+    let table = identified.table();
+    let machine = identified.machine(&path, &table);
+    let law = job::law(&other.core, &machine, &[]);
+    let correction = design_correction(&other, &machine, identified, &DesignRequest::of(law), |_| ())?;
+    let largest = |error: &dyn Fn(&truepath_core::correct::Predicted) -> Offset| {
+        mm(correction.walls().map(|(_, p)| error(p).abs()).max().unwrap_or_default())
+    };
+    let target = correction.wanted.target;
+    Ok(Some(WithArcs {
+        corner_radius_mm: rounded(radius + mm(pass.core.setup.radius), 4),
+        before_mm: largest(&|p| p.before.aim(target, None)),
+        after_mm: largest(&|p| p.after.aim(target, None)),
+    }))
+}
