@@ -8,7 +8,7 @@
 //! | 0 | done |
 //! | 1 | what was given is wrong: a file, a value in it, two things that do not go together |
 //! | 2 | a wrong command line, or a fault of the program |
-//! | 3 | refused by judgement: points that do not fit the job (Q009) |
+//! | 3 | refused by judgement: points that do not fit the job (Q009), a batch that asks for action (Q011) |
 //! | 128 + n | ended by signal n: 130 after Ctrl-C |
 
 use std::ffi::OsString;
@@ -19,8 +19,8 @@ use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::interruption;
 
 use crate::command::{
-    bore, canon, compare, correct, demo, fillet, forces, image, init, inspect, learn, multiaxis, plan, plot, pocket,
-    probe, replay, simulate, split,
+    batch, bore, canon, compare, correct, demo, fillet, forces, image, init, inspect, learn, multiaxis, plan, plot,
+    pocket, probe, replay, simulate, split,
 };
 #[cfg(not(target_family = "wasm"))]
 use crate::command::{device, hil, key, manual, pack, study};
@@ -81,6 +81,8 @@ enum Command {
     Unpack(pack::UnpackOptions),
     /// For a single part: a program that cuts half of the allowance, to be probed then.
     Split(split::Options),
+    /// Many parts of one job: what moves from part to part, control charts, capability, alarms.
+    Batch(batch::Options),
     /// Small arcs on sharp inside corners, where no correction reaches.
     Fillet(fillet::Options),
     /// A pocket or slot compensated from tool and material data alone, without a probe.
@@ -187,6 +189,7 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Pack(options) => pack::main(&options, terminal),
         #[cfg(not(target_family = "wasm"))]
         Command::Unpack(options) => pack::unpack(&options, terminal),
+        Command::Batch(options) => batch::main(&options, terminal),
         Command::Fillet(options) => fillet::main(&options, terminal),
         Command::Split(options) => split::main(&options, terminal),
         Command::Pocket(options) => pocket::main(&options, terminal),

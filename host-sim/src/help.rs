@@ -7,7 +7,7 @@ use clap::Command;
 /// What one wants to do, and the commands for it.
 const GROUPS: [(&str, &[&str]); 7] = [
     ("See it", &["demo"]),
-    ("Correct a part", &["init", "probe", "inspect", "correct", "learn", "plan", "split", "fillet"]),
+    ("Correct a part", &["init", "probe", "inspect", "correct", "learn", "plan", "split", "fillet", "batch"]),
     ("Look closer", &["simulate", "compare", "plot", "canon", "forces"]),
     ("Keep and share", &["pack", "unpack", "study"]),
     ("Coprocessor", &["image", "key", "replay", "hil", "device"]),
@@ -16,7 +16,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
 ];
 
 /// Command lines of each command, and what they do.
-const EXAMPLES: [(&str, &[(&str, &str)]); 27] = [
+const EXAMPLES: [(&str, &[(&str, &str)]); 28] = [
     ("demo", &[("truepath demo", "three parts, reports and programs in out/demo")]),
     (
         "init",
@@ -62,6 +62,7 @@ const EXAMPLES: [(&str, &[(&str, &str)]); 27] = [
     ("pack", &[("truepath pack out -o part.tpk", "job, program, readings and corrections in one file")]),
     ("unpack", &[("truepath unpack part.tpk -o part", "as a folder again")]),
     ("split", &[("truepath split job.toml -o out", "cuts half of the allowance first")]),
+    ("batch", &[("truepath batch job.toml parts.csv --from out -o batch", "many parts: what moves, and when to act")]),
     (
         "fillet",
         &[("truepath fillet job.toml --corner-radius 8 -o out", "corners of 8 mm in place of sharp ones on the path")],

@@ -12,7 +12,7 @@ use super::style::{DARK, ZERO, failed};
 use super::view::{SIZES, View, short};
 
 /// The lower axis of all of them.
-const ALONG: &str = "along the contour (mm)";
+pub const ALONG: &str = "along the contour (mm)";
 /// Usual height of one, two, three or more diagrams each, and the least, px.
 const HEIGHTS: [f64; 4] = [300.0, 220.0, 180.0, 150.0];
 const LEAST: f64 = 60.0;
@@ -93,17 +93,18 @@ impl Panel {
         legend: &Legend,
         left: f64,
         (x, window): (&Scale, (f64, f64)),
-        numbered: bool,
+        numbered: Option<&str>,
     ) -> Result<(), Failure> {
         let (width, height) = area.dim_in_pixel();
         let columns = columns(width);
         legend.draw(area, left, 0.0)?;
         let (_, below) = area.split_vertically(units(legend.height()));
         let y = self.scale(window, columns);
-        let room = f64::from(height) / super::page::FINE - legend.height() - if numbered { BELOW } else { 0.0 };
+        let room =
+            f64::from(height) / super::page::FINE - legend.height() - if numbered.is_some() { BELOW } else { 0.0 };
         let unit_fits = fitted(&self.unit, SMALL, room) >= 0.6 * SMALL;
         let unit = if unit_fits { self.unit.as_str() } else { "" };
-        let mut chart = chart(&below, left, (x, numbered.then_some(ALONG)), (&y, unit))?;
+        let mut chart = chart(&below, left, (x, numbered), (&y, unit))?;
         if let Some(band) = &self.band {
             curve::band(&mut chart, band, window, columns)?;
         }
@@ -138,6 +139,14 @@ pub fn along(window: (f64, f64)) -> Scale {
 /// # Errors
 /// What the view asks for and cannot be, texts that are too long; internal, when it cannot be drawn.
 pub fn panels(view: &View, title: &str, panels: &[Panel]) -> Result<Vec<u8>, Failure> {
+    panels_over(view, title, ALONG, panels)
+}
+
+/// The same over another axis.
+///
+/// # Errors
+/// As [`panels`].
+pub fn panels_over(view: &View, title: &str, axis: &str, panels: &[Panel]) -> Result<Vec<u8>, Failure> {
     let title = view.titled(title)?;
     for name in panels.iter().flat_map(|p| &p.curves) {
         short("a name", &name.name)?;
@@ -162,7 +171,7 @@ pub fn panels(view: &View, title: &str, panels: &[Panel]) -> Result<Vec<u8>, Fai
             let numbered = k + 1 == panels.len();
             let height = each + legend.height() + if numbered { BELOW } else { 0.0 };
             let area = root.clone().shrink((0, units(y)), (units(f64::from(size.0)), units(height)));
-            panel.draw(&area, legend, left, (&x, window), numbered)?;
+            panel.draw(&area, legend, left, (&x, window), numbered.then_some(axis))?;
             y += height + BETWEEN;
         }
         Ok(())

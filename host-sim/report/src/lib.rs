@@ -3,6 +3,7 @@
 //! Nothing is computed here that decides a correction.
 
 mod aqdef;
+pub mod batch;
 pub mod codes;
 mod inspection;
 pub mod next;

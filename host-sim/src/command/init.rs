@@ -9,7 +9,6 @@ use truepath_ground::codes::C001;
 use truepath_ground::decimal::Decimal;
 use truepath_ground::diagnostics::{Failure, InputError, Source, visible};
 use truepath_ground::document;
-use truepath_ground::files;
 use truepath_ground::output::OutputFile;
 use truepath_ground::units::mm;
 use truepath_job::codes::J042;

@@ -3,6 +3,7 @@
 //! A command is a module: `Options`, which clap fills; `run`, which does the work and gives a summary; `main`, which runs it
 //! and prints. Those that need ports, processes, folders of the system or threads are left out in a browser.
 
+pub mod batch;
 pub mod bore;
 pub mod canon;
 pub mod compare;

@@ -4,7 +4,7 @@ use truepath_chart::chart::{RIGHT, room};
 use truepath_chart::curve::{Band, Curve};
 use truepath_chart::legend::{Entry, Legend, Sign};
 use truepath_chart::page::{picture, thick, title_height, units};
-use truepath_chart::panel::{Mark, Panel, along, columns};
+use truepath_chart::panel::{ALONG, Mark, Panel, along, columns};
 use truepath_chart::style::AFTER;
 use truepath_chart::view::{View, short};
 use truepath_correction::rows::CorrectionRow;
@@ -64,7 +64,7 @@ pub fn error(
         part.draw(&area(top + rows, upper(rows)), left, (&x, &y), per_px)?;
         let below = area(height - lower, lower);
         let along = along(window);
-        panel.draw(&below, &Legend::default(), left, (&along, window), true)
+        panel.draw(&below, &Legend::default(), left, (&along, window), Some(ALONG))
     })
 }
 

@@ -1,0 +1,323 @@
+//! What moves from part to part: a Kalman filter (Bar-Shalom, *Estimation with Applications to Tracking and Navigation*, chapters 5
+//! and 11), whose readings come one by one, so that no matrix is inverted.
+//!
+//! | state | between two parts |
+//! |---|---|
+//! | force level ΔL, share | walks, and has a slope that walks slowly: wear |
+//! | radius lost ΔU, mm | the same |
+//! | datum D, mm | walks: clamping, warming up |
+//! | offset b of every place, mm | stays |
+//!
+//! Level and size are counted from the first part. A new cutter frees level, size and their slopes, a lot the level, a set-up the datum.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::series::{Event, Part, Place, Series};
+
+/// States before those of the places.
+pub const OWN: usize = 6;
+/// Force level, its slope, radius lost, its slope, datum along X and Y.
+pub const LEVEL: usize = 0;
+/// Change of the force level per part.
+pub const LEVEL_SLOPE: usize = 1;
+/// Radius that the cutter lost, mm.
+pub const SIZE: usize = 2;
+/// Its change per part, mm.
+pub const SIZE_SLOPE: usize = 3;
+/// Datum along X, mm; along Y it follows.
+pub const DATUM: usize = 4;
+
+/// Standard deviations of the walk between two parts, by state.
+const WALK: [f64; OWN] = [0.004, 0.0003, 0.0002, 2e-5, 0.002, 0.002];
+/// Standard deviations at the first part; level and size are counted from it.
+const FIRST: [f64; OWN] = [0.0, 0.004, 0.0, 2e-4, 0.01, 0.01];
+/// What a new cutter may change: level, slope, size, slope.
+const NEW_CUTTER: [f64; OWN] = [0.1, 0.004, 0.01, 2e-4, 0.0, 0.0];
+/// What another lot may change.
+const NEW_LOT: [f64; OWN] = [0.06, 0.0, 0.0, 0.0, 0.0, 0.0];
+/// What a new set-up may change.
+const NEW_SETUP: [f64; OWN] = [0.0, 0.0, 0.0, 0.0, 0.03, 0.03];
+/// What a part that does not go on as those before may have changed.
+const STEP: [f64; OWN] = [0.15, 0.0, 0.01, 0.0, 0.03, 0.03];
+/// Standard deviation of a place's own offset, mm.
+const OFFSET: f64 = 0.05;
+/// A wall is not pushed in proportion to the force: share of a change of the level by which a place may answer otherwise.
+const UNEVEN: f64 = 0.1;
+/// A reading farther from its expectation is wild, standard deviations; several of a part are none.
+const WILD: f64 = 4.5;
+/// Parts whose misfit says what the noise is, from the first on that has one before it.
+const LEAST_PARTS: usize = 4;
+
+/// State after a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Number of the part.
+    pub number: u32,
+    /// Mean of every state: [`OWN`], then places.
+    pub mean: Vec<f64>,
+    /// Covariance, row by row.
+    pub covariance: Vec<Vec<f64>>,
+    /// Readings set aside as wild.
+    pub wild: Vec<usize>,
+    /// How well it went with the parts before.
+    pub innovation: Fit,
+    /// What changed at once, where the part did not go on as those before.
+    pub step: Option<Step>,
+}
+
+/// What a part does not share with those before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// What explains it best.
+    pub cause: Cause,
+    /// By how much that changed; of the datum its length, mm.
+    pub change: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+}
+
+/// What a change is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// The force level: wear, material.
+    ForceLevel,
+    /// The cutter's radius.
+    Radius,
+    /// The datum: clamping, temperature.
+    Datum,
+    /// None of these alone.
+    Place,
+}
+
+impl Cause {
+    /// The states it changes.
+    const fn states(self) -> &'static [usize] {
+        match self {
+            Self::ForceLevel => &[LEVEL],
+            Self::Radius => &[SIZE],
+            Self::Datum => &[DATUM, DATUM + 1],
+            Self::Place => &[],
+        }
+    }
+}
+
+/// The filter's result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Filtered {
+    /// After every touched part.
+    pub estimates: Vec<Estimate>,
+    /// Standard deviation of a reading beside the model, mm.
+    pub noise_mm: f64,
+}
+
+impl Estimate {
+    /// Standard deviation of a state.
+    pub fn sigma(&self, state: usize) -> f64 {
+        self.covariance[state][state].max(0.0).sqrt()
+    }
+
+    /// Deviation at a place so many parts later, and its standard deviation without noise, mm.
+    pub fn forecast(&self, place: usize, of: &Place, parts: u32) -> (f64, f64) {
+        let mut h = row(place, of, self.mean.len());
+        h[LEVEL_SLOPE] = h[LEVEL] * f64::from(parts);
+        h[SIZE_SLOPE] = h[SIZE] * f64::from(parts);
+        let mean = h.iter().zip(&self.mean).map(|(h, x)| h * x).sum();
+        let walked: f64 =
+            h.iter().take(OWN).zip(WALK).map(|(h, walk)| (h * walk).powi(2)).sum::<f64>() * f64::from(parts);
+        let variance: f64 = product(&self.covariance, &h).iter().zip(&h).map(|(a, h)| a * h).sum();
+        (mean, (variance.max(0.0) + walked).sqrt())
+    }
+}
+
+/// Follows a batch. `noise_mm` is the standard deviation of one reading where the parts say nothing of it yet; a part counts as a step
+/// that chance would make once in `rarely` parts.
+pub fn follow(series: &Series, noise_mm: f64, rarely: f64) -> Filtered {
+    let first = run(series, noise_mm, rarely);
+    // The median is not moved by the parts that differ.
+    let mut seen: Vec<f64> = first
+        .estimates
+        .iter()
+        .skip(1)
+        .filter(|e| e.innovation.1 > 0 && e.step.is_none())
+        .map(|e| e.innovation.0 / e.innovation.1 as f64)
+        .collect();
+    if seen.len() < LEAST_PARTS {
+        return first;
+    }
+    seen.sort_by(f64::total_cmp);
+    let factor = seen[seen.len() / 2].sqrt().clamp(0.3, 5.0);
+    // Of fewer parts the expected noise counts as four of them.
+    let weight = seen.len() as f64 / (seen.len() + LEAST_PARTS) as f64;
+    run(series, noise_mm * (1.0 + (factor - 1.0) * weight), rarely)
+}
+
+fn run(series: &Series, noise_mm: f64, rarely: f64) -> Filtered {
+    let count = OWN + series.places.len();
+    let mut mean = vec![0.0; count];
+    let mut covariance = vec![vec![0.0; count]; count];
+    widen(&mut covariance, &FIRST);
+    (OWN..count).for_each(|at| covariance[at][at] = OFFSET * OFFSET);
+    let mut before: Option<u32> = None;
+    let mut estimates = Vec::new();
+    for part in &series.parts {
+        if let Some(before) = before {
+            advance(&mut mean, &mut covariance, part.number.saturating_sub(before));
+            let moved = mean[LEVEL_SLOPE] * f64::from(part.number.saturating_sub(before));
+            uneven(series, &mut covariance, moved);
+        }
+        before = Some(part.number);
+        for event in &part.events {
+            widen(
+                &mut covariance,
+                match event {
+                    Event::Cutter => &NEW_CUTTER,
+                    Event::Lot => &NEW_LOT,
+                    Event::Setup => &NEW_SETUP,
+                },
+            );
+        }
+        let expected = (mean.clone(), covariance.clone());
+        let (mut wild, mut innovation) = update(series, part, noise_mm, (&mut mean, &mut covariance), &[]);
+        let mut step = None;
+        // Offsets of places that no part before has told of absorb everything: the first part cannot be a step.
+        if !estimates.is_empty() && differs(innovation, wild.len(), part.readings.len(), rarely) {
+            (mean, covariance) = expected.clone();
+            step = Some(cause_of(series, part, noise_mm, &expected));
+            widen(&mut covariance, &STEP);
+            uneven(series, &mut covariance, STEP[LEVEL]);
+            let of_step;
+            (wild, of_step) = update(series, part, noise_mm, (&mut mean, &mut covariance), &[]);
+            innovation.1 = of_step.1;
+        }
+        let (mean, covariance) = (mean.clone(), covariance.clone());
+        estimates.push(Estimate { number: part.number, mean, covariance, wild, innovation, step });
+    }
+    Filtered { estimates, noise_mm }
+}
+
+/// The one cause under which the readings of a part are most probable: what it changes is a state of its own then, beside that
+/// which it changes. None where they fit under no single one.
+fn cause_of(series: &Series, part: &Part, noise_mm: f64, (mean, covariance): &(Vec<f64>, Vec<Vec<f64>>)) -> Step {
+    let pushed = series.places.iter().any(|place| place.deflection_mm != 0.0);
+    let causes = [Cause::ForceLevel, Cause::Radius, Cause::Datum].into_iter();
+    let tried = causes.filter(|cause| pushed || *cause != Cause::ForceLevel).map(|cause| {
+        let (mut mean, mut covariance) = (mean.clone(), covariance.clone());
+        let first = mean.len();
+        for state in cause.states() {
+            mean.push(0.0);
+            covariance.iter_mut().for_each(|line| line.push(0.0));
+            covariance.push(vec![0.0; mean.len()]);
+            if let Some(cell) = covariance.last_mut().and_then(|line| line.last_mut()) {
+                *cell = STEP[*state] * STEP[*state];
+            }
+        }
+        let (wild, fit) = update(series, part, noise_mm, (&mut mean, &mut covariance), cause.states());
+        let change = mean[first..].iter().fold(0.0, |sum: f64, v| sum.hypot(*v));
+        let signed = if cause == Cause::Datum { change } else { mean[first] };
+        let sigma = (first..mean.len()).map(|at| covariance[at][at].max(0.0).sqrt()).fold(0.0, f64::max);
+        // A reading set aside is as improbable as one at the bound.
+        let improbable = fit.0 + fit.2 + wild.len() as f64 * WILD * WILD;
+        let fits = wild.len() * 4 <= part.readings.len();
+        (improbable, fits, Step { cause, change: signed, sigma })
+    });
+    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
+    let certain = |step: &Step| step.change.abs() > 2.0 * step.sigma;
+    best.filter(|(_, fits, step)| *fits && certain(step))
+        .map_or(Step { cause: Cause::Place, change: 0.0, sigma: 0.0 }, |(.., step)| step)
+}
+
+/// Whether a part differs from what was expected by more than chance.
+fn differs((sum, count, _): Fit, wild: usize, readings: usize, rarely: f64) -> bool {
+    let many = wild * 4 > readings && wild >= 2;
+    let limit =
+        |count: usize| ChiSquared::new(count as f64).map_or(f64::MAX, |chi| chi.inverse_cdf(1.0 - 1.0 / rarely));
+    many || (count > 0 && sum > limit(count))
+}
+
+/// Sum of squared normalised innovations, how many, and the sum of the logarithms of their variances, mm².
+pub type Fit = (f64, usize, f64);
+
+/// One part's readings, one by one; wild ones are set aside. `changed` are states that have a change of their own behind the places.
+fn update(
+    series: &Series,
+    part: &Part,
+    noise_mm: f64,
+    (mean, covariance): (&mut [f64], &mut [Vec<f64>]),
+    changed: &[usize],
+) -> (Vec<usize>, Fit) {
+    let (mut wild, mut sum, mut count, mut logarithms) = (Vec::new(), 0.0, 0, 0.0);
+    let first = OWN + series.places.len();
+    for (at, &(place, error)) in part.readings.iter().enumerate() {
+        let mut h = row(place, &series.places[place], mean.len());
+        for (at, state) in changed.iter().enumerate() {
+            h[first + at] = h[*state];
+        }
+        let gain = product(covariance, &h);
+        let variance = gain.iter().zip(&h).map(|(a, h)| a * h).sum::<f64>() + noise_mm * noise_mm;
+        let off = error - h.iter().zip(mean.iter()).map(|(h, x)| h * x).sum::<f64>();
+        let square = off * off / variance;
+        if square > WILD * WILD {
+            wild.push(at);
+            continue;
+        }
+        sum += square;
+        count += 1;
+        logarithms += variance.ln();
+        for (i, x) in mean.iter_mut().enumerate() {
+            *x += gain[i] * off / variance;
+        }
+        for (i, line) in covariance.iter_mut().enumerate() {
+            for (j, cell) in line.iter_mut().enumerate() {
+                *cell -= gain[i] * gain[j] / variance;
+            }
+        }
+    }
+    (wild, (sum, count, logarithms))
+}
+
+/// How a place answers to the states.
+fn row(place: usize, of: &Place, count: usize) -> Vec<f64> {
+    let mut h = vec![0.0; count];
+    h[LEVEL] = of.deflection_mm;
+    h[SIZE] = 1.0;
+    h[DATUM] = of.normal[0];
+    h[DATUM + 1] = of.normal[1];
+    h[OWN + place] = 1.0;
+    h
+}
+
+fn product(matrix: &[Vec<f64>], vector: &[f64]) -> Vec<f64> {
+    matrix.iter().map(|line| line.iter().zip(vector).map(|(a, b)| a * b).sum()).collect()
+}
+
+fn widen(covariance: &mut [Vec<f64>], by: &[f64; OWN]) {
+    for (at, by) in by.iter().enumerate() {
+        covariance[at][at] += by * by;
+    }
+}
+
+/// The offsets of places after a change of the force level.
+fn uneven(series: &Series, covariance: &mut [Vec<f64>], change: f64) {
+    for (at, place) in series.places.iter().enumerate() {
+        covariance[OWN + at][OWN + at] += (UNEVEN * change * place.deflection_mm).powi(2);
+    }
+}
+
+/// Goes on by some parts.
+fn advance(mean: &mut [f64], covariance: &mut [Vec<f64>], parts: u32) {
+    let k = f64::from(parts);
+    for (state, slope) in [(LEVEL, LEVEL_SLOPE), (SIZE, SIZE_SLOPE)] {
+        mean[state] += k * mean[slope];
+        // F·P·Fᵀ with F = 1 + k at (state, slope).
+        for column in 0..covariance.len() {
+            covariance[state][column] += k * covariance[slope][column];
+        }
+        for line in covariance.iter_mut() {
+            line[state] += k * line[slope];
+        }
+    }
+    for (at, walk) in WALK.iter().enumerate() {
+        covariance[at][at] += walk * walk * k;
+    }
+}

@@ -1,0 +1,156 @@
+//! What is said of batches, against what happened.
+
+use truepath_batch::batch::{Alarm, Batch, Cause, Request};
+use truepath_batch::control::Chart;
+use truepath_batch::series::Series;
+
+use crate::drawn::Shop;
+
+fn followed(series: &Series, tolerance: f64) -> Batch {
+    Batch::of(series, &Request { tolerance_mm: Some([-tolerance, tolerance]), ..Request::default() }).unwrap()
+}
+
+/// What is said after every part, as in a shop.
+fn each(series: &Series, tolerance: f64) -> Vec<(u32, Batch)> {
+    let upto = |n: usize| Series { places: series.places.clone(), parts: series.parts[..n].to_vec() };
+    (2..=series.parts.len()).map(|n| (series.parts[n - 1].number, followed(&upto(n), tolerance))).collect()
+}
+
+#[test]
+fn a_batch_in_which_nothing_happens_is_left_alone() {
+    let (mut false_ones, mut parts) = (Vec::new(), 0);
+    for seed in 0..20 {
+        let warming = if seed % 2 == 0 { 0.0 } else { 0.0004 };
+        let series = Shop { warming_mm: warming, ..Shop::default() }.mill(60, seed);
+        for (part, batch) in each(&series, 0.1) {
+            parts += 1;
+            false_ones.extend(batch.alarms.into_iter().map(|alarm| (seed, part, alarm)));
+        }
+    }
+    println!("{} of {parts}: {false_ones:?}", false_ones.len());
+    assert!(false_ones.len() * 500 <= parts, "{} of {parts}: {false_ones:?}", false_ones.len());
+}
+
+#[test]
+fn a_step_of_the_force_level_is_told_within_two_parts_and_named() {
+    let mut told = 0;
+    for seed in 100..140 {
+        let at = 12 + (seed % 7) as u32;
+        let series = Shop { step: Some((at, 0.10)), ..Shop::default() }.mill(at + 1, seed);
+        let alarms: Vec<Alarm> = each(&series, 0.1).into_iter().flat_map(|(_, batch)| batch.alarms).collect();
+        let named = |alarm: &Alarm| matches!(alarm, Alarm::Step { part, cause: Cause::ForceLevel, change } if (at..=at + 1).contains(part) && (change.value - 0.10).abs() < 0.03);
+        told += usize::from(alarms.iter().any(named));
+    }
+    println!("{told} of 40");
+    assert!(told >= 38, "{told} of 40");
+}
+
+#[test]
+fn a_datum_that_moves_at_once_is_told_as_that() {
+    let mut told = 0;
+    for seed in 200..220 {
+        let series = Shop { moved: Some((15, 0.02)), ..Shop::default() }.mill(16, seed);
+        let alarms: Vec<Alarm> = each(&series, 0.1).into_iter().flat_map(|(_, batch)| batch.alarms).collect();
+        told += usize::from(alarms.iter().any(|a| matches!(a, Alarm::Step { part: 15..=16, cause: Cause::Datum, .. })));
+    }
+    println!("{told} of 20");
+    assert!(told >= 18, "{told} of 20");
+}
+
+#[test]
+fn wear_is_followed_and_the_part_that_leaves_the_tolerance_foretold() {
+    let (mut inside, mut all, mut off, mut ahead) = (0, 0, Vec::new(), Vec::new());
+    for seed in 300..320 {
+        let shop = Shop { wear: 0.003, ..Shop::default() };
+        let series = shop.mill(60, seed);
+        // Parts that leave ±0.03 mm: the corners, 0.3 mm of deflection at 0.3 % a part, by about part 30.
+        let tolerance = 0.03;
+        let leaves = |part: u32| {
+            (0..series.places.len()).any(|at| {
+                let own = series.at(at);
+                // Its own offset, by the mean of the batch without what was drawn to move it.
+                let offset = own.iter().map(|(n, d)| d - shop.level(*n) * series.places[at].deflection_mm).sum::<f64>()
+                    / own.len() as f64;
+                (offset + shop.level(part) * series.places[at].deflection_mm).abs() > tolerance
+            })
+        };
+        let truth = (1..=60).find(|part| leaves(*part)).unwrap();
+        let mut first = None;
+        for (part, batch) in each(&series, tolerance) {
+            let state = batch.states.last().unwrap();
+            all += 1;
+            inside += usize::from((state.force_level.value - shop.level(part)).abs() <= 2.0 * state.force_level.sigma);
+            let told = batch.alarms.iter().find_map(|alarm| match alarm {
+                Alarm::Leaving { part, .. } | Alarm::OutOfTolerance { part, .. } => Some(*part),
+                _ => None,
+            });
+            if first.is_none() && told.is_some() {
+                first = Some((part, told.unwrap()));
+            }
+        }
+        let (when, told) = first.unwrap();
+        off.push(i64::from(told) - i64::from(truth));
+        ahead.push(i64::from(truth) - i64::from(when));
+    }
+    off.sort_unstable();
+    println!("level within 2 sigma {inside} of {all}; told − true: {off:?}, parts ahead: {ahead:?}");
+    // A single reading may be out by its noise before.
+    assert!(ahead.iter().all(|parts| *parts >= 0), "{ahead:?}");
+    assert!(inside * 100 >= all * 88, "{inside} of {all}");
+    assert!(off[2] >= -6 && off[17] <= 6, "{off:?}");
+}
+
+#[test]
+fn a_new_cutter_that_is_told_is_no_alarm_and_one_that_is_not_is() {
+    let with = |told: bool, seed: u64| {
+        let series = Shop { wear: 0.004, cutter: Some((25, told)), ..Shop::default() }.mill(27, seed);
+        let all = each(&series, 0.2).into_iter();
+        all.flat_map(|(_, b)| b.alarms).filter(|a| matches!(a, Alarm::Step { part: 25..=27, .. })).count()
+    };
+    let silent = (400..410).map(|seed| with(true, seed)).sum::<usize>();
+    let heard = (400..410).filter(|seed| with(false, *seed) > 0).count();
+    println!("{silent} {heard}");
+    assert!(silent == 0 && heard >= 9, "{silent} {heard}");
+}
+
+#[test]
+fn every_fifth_part_touched_still_follows() {
+    let shop = Shop { wear: 0.003, every: 5, ..Shop::default() };
+    let (mut inside, mut all) = (0, 0);
+    for seed in 500..510 {
+        for (part, batch) in each(&shop.mill(51, seed), 0.2) {
+            let known = batch.states.last().unwrap().force_level;
+            all += 1;
+            inside += usize::from((known.value - shop.level(part)).abs() <= 2.0 * known.sigma);
+            assert!(known.sigma < 0.02, "{known:?}");
+        }
+    }
+    println!("{inside} of {all}");
+    assert!(inside * 100 >= all * 88, "{inside} of {all}");
+}
+
+#[test]
+fn a_wild_touch_is_set_aside_and_moves_nothing() {
+    let series = Shop::default().mill(12, 7);
+    let mut wild = series.clone();
+    wild.parts[10].readings[3].1 += 0.2;
+    let [plain, with] = [&series, &wild].map(|s| followed(s, 0.1));
+    let [a, b] = [&plain, &with].map(|batch| batch.states[10].clone());
+    assert_eq!((a.wild, b.wild, b.step), (0, 1, false));
+    assert!((a.force_level.value - b.force_level.value).abs() < 0.3 * a.force_level.sigma);
+}
+
+#[test]
+fn chart_and_capability_are_those_of_the_book() {
+    // Montgomery's individuals: mean, mean moving range over 1.128, three of them to either side.
+    let deviations = [0.001, 0.003, 0.002, 0.004, 0.002, 0.003];
+    let chart = Chart::of(&deviations, Some([-0.01, 0.01]), 100.0).unwrap();
+    let sigma = (0.002 + 0.001 + 0.002 + 0.002 + 0.001) / 5.0 / 1.128;
+    assert!((chart.mean_mm - 0.0025).abs() < 1e-12 && (chart.sigma_mm - sigma).abs() < 1e-12);
+    assert!((chart.limits_mm[1] - (0.0025 + 3.0 * sigma)).abs() < 1e-12);
+    let capable = chart.capability.unwrap();
+    assert!((capable.cp - 0.02 / (6.0 * sigma)).abs() < 1e-9);
+    assert!((capable.cpk - 0.0075 / (3.0 * sigma)).abs() < 1e-9);
+    assert!(capable.cpk_95[0] < capable.cpk && capable.cpk < capable.cpk_95[1]);
+    assert!(Chart::of(&deviations[..4], None, 100.0).is_none());
+}

@@ -1,0 +1,4 @@
+//! Batches drawn at random, against what was drawn.
+
+mod drawn;
+mod followed;
