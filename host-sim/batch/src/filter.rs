@@ -32,9 +32,9 @@ const WALK: [f64; OWN] = [0.004, 0.0003, 0.0002, 2e-5, 0.002, 0.002];
 /// Standard deviations at the first part; level and size are counted from it.
 const FIRST: [f64; OWN] = [0.0, 0.004, 0.0, 2e-4, 0.01, 0.01];
 /// What a new cutter may change: level, slope, size, slope.
-const NEW_CUTTER: [f64; OWN] = [0.1, 0.004, 0.01, 2e-4, 0.0, 0.0];
+const NEW_CUTTER: [f64; OWN] = [0.15, 0.004, 0.01, 2e-4, 0.0, 0.0];
 /// What another lot may change.
-const NEW_LOT: [f64; OWN] = [0.06, 0.0, 0.0, 0.0, 0.0, 0.0];
+const NEW_LOT: [f64; OWN] = [0.1, 0.0, 0.0, 0.0, 0.0, 0.0];
 /// What a new set-up may change.
 const NEW_SETUP: [f64; OWN] = [0.0, 0.0, 0.0, 0.0, 0.03, 0.03];
 /// What a part that does not go on as those before may have changed.
@@ -42,7 +42,7 @@ const STEP: [f64; OWN] = [0.15, 0.0, 0.01, 0.0, 0.03, 0.03];
 /// Standard deviation of a place's own offset, mm.
 const OFFSET: f64 = 0.05;
 /// A wall is not pushed in proportion to the force: share of a change of the level by which a place may answer otherwise.
-const UNEVEN: f64 = 0.1;
+const UNEVEN: f64 = 0.15;
 /// A reading farther from its expectation is wild, standard deviations; several of a part are none.
 const WILD: f64 = 4.5;
 /// Parts whose misfit says what the noise is, from the first on that has one before it.
@@ -168,14 +168,13 @@ fn run(series: &Series, noise_mm: f64, rarely: f64) -> Filtered {
         }
         before = Some(part.number);
         for event in &part.events {
-            widen(
-                &mut covariance,
-                match event {
-                    Event::Cutter => &NEW_CUTTER,
-                    Event::Lot => &NEW_LOT,
-                    Event::Setup => &NEW_SETUP,
-                },
-            );
+            let by = match event {
+                Event::Cutter => &NEW_CUTTER,
+                Event::Lot => &NEW_LOT,
+                Event::Setup => &NEW_SETUP,
+            };
+            widen(&mut covariance, by);
+            uneven(series, &mut covariance, by[LEVEL]);
         }
         let expected = (mean.clone(), covariance.clone());
         let (mut wild, mut innovation) = update(series, part, noise_mm, (&mut mean, &mut covariance), &[]);

@@ -182,7 +182,8 @@ fn of_wall(
             s_mm: rounded(s_mm, 3),
             height_mm: rounded(float(contact.height) * depth, 3),
             normal: [float(contact.normal.x), float(contact.normal.y)],
-            deflection_mm: along.map_or(0.0, |along| at(along, s_mm)),
+            // The table has the mean over the height; what a height differs by stands on the first part that was cut with it.
+            deflection_mm: along.map_or(0.0, |along| at(along, s_mm) + mm(contact.error)),
         };
         Reading { place, error_mm: mm(contact.error) }
     });

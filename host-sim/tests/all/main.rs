@@ -1,5 +1,6 @@
 //! The commands as a user calls them: what they write, what they say and what they refuse.
 
+mod batch;
 mod bore_command;
 mod command_line;
 mod depths;
