@@ -17,7 +17,7 @@ use truepath_program::{BlockEdit, Purpose, RewriteOptions, Rewritten, rewrite_pr
 
 use crate::codes::P023;
 use crate::edits::add;
-use crate::first_pass::{SHARP, every_pass};
+use crate::first_pass::{Along, SHARP, every_pass};
 use crate::written_out::written_out;
 
 /// An arc of a smaller radius is not worth writing, mm.
@@ -45,45 +45,42 @@ pub struct Corner {
     pub left_mm: f64,
 }
 
-/// The path with its arcs.
+/// The path with its arcs, line by line, and its corners, one for every pass over it, in the order of the program.
 #[derive(Clone, Debug, Default)]
-pub struct Filleted {
-    /// It, line by line.
-    pub edits: Vec<BlockEdit>,
-    /// Its corners, in the order of the program; the same one for every pass over it.
-    pub corners: Vec<Corner>,
+struct Filleted {
+    edits: Vec<BlockEdit>,
+    corners: Vec<Corner>,
 }
 
-/// Every pass of the feature with arcs of `radius` on the cutter's path in its sharp inside corners, or of as much as the lines beside a
-/// corner have room for.
-///
-/// # Errors
-/// What is wrong with a pass.
-pub fn filleted(pass: &Pass, radius: Offset) -> Result<Filleted, Failure> {
-    let mut filleted = Filleted::default();
-    for (along, _) in every_pass(pass)? {
-        filleted.add(&along, mm(radius));
-    }
-    Ok(filleted)
-}
-
-/// The program with the arcs, its corners, and what has to be said about it.
+/// The program with the arcs, its corners, and what has to be said about it: of every contour, in every pass over it, with `radius` on
+/// the cutter's path or as much as the lines beside a corner have room for.
 ///
 /// # Errors
 /// `P023` where no arc has room, and what is wrong with program or pass.
-pub fn rewritten(pass: &Pass, radius: Offset) -> Result<(Rewritten, Vec<Corner>, Option<String>), Failure> {
-    match written(pass, radius) {
+pub fn rewritten(contours: &[&Pass], radius: Offset) -> Result<(Rewritten, Vec<Corner>, Option<String>), Failure> {
+    match written(contours, radius) {
         Ok((text, corners)) => Ok((text, corners, None)),
         Err(failure) => {
-            let (flat, said) = written_out(&[pass], &failure).ok_or(failure)?;
-            let flat = flat.first().ok_or_else(|| Failure::Internal("a program of no contour".to_owned()))?;
-            written(flat, radius).map(|(text, corners)| (text, corners, Some(said)))
+            let (flat, said) = written_out(contours, &failure).ok_or(failure)?;
+            let flat: Vec<&Pass> = flat.iter().collect();
+            written(&flat, radius).map(|(text, corners)| (text, corners, Some(said)))
         }
     }
 }
 
-fn written(pass: &Pass, radius: Offset) -> Result<(Rewritten, Vec<Corner>), Failure> {
-    let Filleted { edits, corners } = filleted(pass, radius)?;
+fn written(contours: &[&Pass], radius: Offset) -> Result<(Rewritten, Vec<Corner>), Failure> {
+    let pass = contours.first().ok_or_else(|| Failure::Internal("a program of no contour".to_owned()))?;
+    let mut passes: Vec<Along> = Vec::new();
+    for contour in contours {
+        passes.extend(every_pass(contour)?);
+    }
+    // Several contours may be cut in turn, depth by depth.
+    passes.sort_by_key(|(along, _)| along.job.numbers.part.map_or([0, 0], |part| [part.run, part.first_block]));
+    let mut filleted = Filleted::default();
+    for (along, _) in &passes {
+        filleted.add(along, mm(radius));
+    }
+    let Filleted { edits, corners } = filleted;
     if corners.iter().all(|corner| corner.radius_mm == 0.0) {
         let found = match corners.first() {
             None => "no sharp inside corner on the contour".to_owned(),

@@ -93,7 +93,7 @@ fn predicted(pass: &Pass, identified: &Identification, radius: f64) -> Result<Op
     if !pass.job.features.is_empty() || pass.job.measured_stock().is_some() {
         return Ok(None);
     }
-    let (written, corners, _) = fillet::rewritten(pass, nm(radius))?;
+    let (written, corners, _) = fillet::rewritten(&[pass], nm(radius))?;
     if corners.iter().any(|corner| corner.radius_mm < radius) {
         return Ok(None);
     }

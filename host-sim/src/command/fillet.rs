@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use truepath_correction::fillet::{Corner, rewritten};
+use truepath_correction::summary::name_with;
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFolder;
@@ -17,8 +18,6 @@ use truepath_job::pass::Pass;
 use crate::command::rewritten_job::job_of;
 use crate::terminal::Terminal;
 
-/// The program with arcs.
-const PROGRAM: &str = "filleted.nc";
 /// Its job.
 const JOB: &str = "filleted.toml";
 /// Radii that arcs may have on the path, mm.
@@ -33,10 +32,10 @@ pub struct Options {
     /// path, best by a third of the cutter's or more.
     #[arg(long, value_name = "MM")]
     pub corner_radius: f64,
-    /// Folder for filleted.nc and filleted.toml.
+    /// Folder for the program, part.filleted.nc by the name of the original, and filleted.toml.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-    /// The feature of the job, or of the markers in the program; needed when there are several to correct.
+    /// The feature of the job, or of the markers in the program; otherwise every contour gets arcs.
     #[arg(long, value_name = "ID")]
     pub feature: Option<String>,
     /// Replace the files of an earlier run.
@@ -93,7 +92,9 @@ fn words(report: &Report) -> String {
 pub fn run(options: &Options) -> Result<Report, Failure> {
     let mut job = JobFile::read(&options.job)?;
     job.which.feature.clone_from(&options.feature);
-    let pass = Pass::read(job)?;
+    let contours = Pass::every(job)?;
+    let passes: Vec<&Pass> = contours.iter().collect();
+    let Some(pass) = passes.first() else { return Err(Failure::Internal("a program of no contour".to_owned())) };
     let cutter = mm(pass.core.setup.radius);
     let radius = options.corner_radius - cutter;
     if !(RADII[0]..=RADII[1]).contains(&radius) {
@@ -102,17 +103,25 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
         let help = "give the radius of the wall's corners that the drawing allows; a cutter that is as wide as they are leaves them sharp on its path";
         return Err(InputError::new(C001, found, format!("{least} to {most} mm"), help).into());
     }
-    let (written, corners, said) = rewritten(&pass, nm(radius))?;
-    let mut warnings = pass.warnings.clone();
+    let (written, corners, said) = rewritten(&passes, nm(radius))?;
+    let mut warnings: Vec<String> = Vec::new();
+    for said in contours.iter().flat_map(|contour| &contour.warnings) {
+        if !warnings.contains(said) {
+            warnings.push(said.clone());
+        }
+    }
     warnings.extend(said);
     warnings.extend(corners.iter().filter_map(|corner| beside(corner, radius)));
-    let folder = OutputFolder::create(&options.output, options.force, &[PROGRAM, JOB])?;
+    let name = name_with(pass.program.name(), "filleted");
+    let side = pass.core.setup.wall;
+    let wall = passes.iter().all(|other| other.core.setup.wall == side).then_some(side);
+    let folder = OutputFolder::create(&options.output, options.force, &["*.filleted*", JOB])?;
     let said = "The program with arcs on its sharp inside corners, written by truepath fillet";
-    let text = job_of(&pass, &written, (PROGRAM, &options.output), None, said)?;
-    folder.write(PROGRAM, &written.text)?;
+    let text = job_of(pass, &written, (&name, &options.output), None, wall, said)?;
+    folder.write(&name, &written.text)?;
     folder.write(JOB, text.as_bytes())?;
     folder.commit()?;
-    Ok(Report { program: options.output.join(PROGRAM), job: options.output.join(JOB), corners, warnings })
+    Ok(Report { program: options.output.join(&name), job: options.output.join(JOB), corners, warnings })
 }
 
 /// What is said of a corner that did not get the radius.

@@ -107,7 +107,10 @@ pub fn run(options: &Options) -> Result<Split, Failure> {
     folder.write(PROGRAM, &written.text)?;
     let said =
         format!("The first of two passes; the second is corrected with: truepath correct ... --first-pass {JOB}");
-    folder.write(JOB, job_of(&pass, &written, (PROGRAM, &options.output), Some(half), &said)?.as_bytes())?;
+    folder.write(
+        JOB,
+        job_of(&pass, &written, (PROGRAM, &options.output), Some(half), Some(pass.core.setup.wall), &said)?.as_bytes(),
+    )?;
     folder.commit()?;
     Ok(Split {
         program: options.output.join(PROGRAM),

@@ -6,6 +6,7 @@ mod command_line;
 mod depths;
 mod dimensions;
 mod features;
+mod fillet;
 mod forces_command;
 mod init;
 mod inspection;

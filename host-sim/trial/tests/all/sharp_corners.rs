@@ -125,7 +125,7 @@ fn the_corrected_path_has_no_step_in_a_sharp_corner() {
 
 /// The program with corners of a radius on the wall, as a pass.
 fn rounded(whole: &Pass, job: &str, radius_mm: f64) -> (Pass, Vec<fillet::Corner>) {
-    let (written, corners, _) = fillet::rewritten(whole, nm(radius_mm)).unwrap();
+    let (written, corners, _) = fillet::rewritten(&[whole], nm(radius_mm)).unwrap();
     (pass(job, std::str::from_utf8(&written.text).unwrap()), corners)
 }
 
@@ -167,7 +167,7 @@ fn an_arc_touches_a_leg_that_is_an_arc_itself() {
 fn arcs_turn_with_the_part() {
     let text = |program: &str, wall: &str| {
         let job = JOB.replace("left", wall);
-        let (written, ..) = fillet::rewritten(&pass(&job, &format!("{HEAD}{program}")), nm(2.0)).unwrap();
+        let (written, ..) = fillet::rewritten(&[&pass(&job, &format!("{HEAD}{program}"))], nm(2.0)).unwrap();
         let (written, _) = (String::from_utf8(written.text).unwrap(), ());
         let blocks = pass(&job, &written).blocks;
         blocks.iter().map(|b| [b.curve.end().x.nm(), b.curve.end().y.nm()]).collect::<Vec<[i64; 2]>>()
@@ -185,7 +185,7 @@ fn arcs_turn_with_the_part() {
 
 #[test]
 fn without_a_sharp_corner_or_room_there_is_nothing_to_round() {
-    let refused = |program: &str| match fillet::rewritten(&pass(JOB, &format!("{HEAD}{program}")), nm(2.0)) {
+    let refused = |program: &str| match fillet::rewritten(&[&pass(JOB, &format!("{HEAD}{program}"))], nm(2.0)) {
         Err(Failure::Input(error)) => (error.code().to_owned(), error.found().to_owned()),
         other => panic!("{other:?}"),
     };
@@ -196,7 +196,7 @@ fn without_a_sharp_corner_or_room_there_is_nothing_to_round() {
     assert!(code == "P023" && found.contains("too short"), "{found}");
     // As much as there is room for.
     let tight = "G0 X-60 Y0 Z5\nG1 Z-20 F1000\nG1 X-1 Y0 F300\nX0 Y-1\nY-40\nG0 Z5\nM2\n";
-    let (_, corners, _) = fillet::rewritten(&pass(JOB, &format!("{HEAD}{tight}")), nm(2.0)).unwrap();
+    let (_, corners, _) = fillet::rewritten(&[&pass(JOB, &format!("{HEAD}{tight}"))], nm(2.0)).unwrap();
     // Half of the chamfer over the tangent of half of the turn.
     let most = 0.5 * 2f64.sqrt() / 22.5f64.to_radians().tan();
     assert!(corners.iter().all(|c| c.radius_mm > 0.9 * most && c.radius_mm <= most), "{corners:?}");
