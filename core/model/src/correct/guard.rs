@@ -5,7 +5,7 @@
 //! deviations. These follow from the fit and the correction, so the contour is first designed without guard; where that
 //! goes too deep it is designed again with three standard deviations kept free beside every sample, and once more when
 //! these have changed. What a design leaves of it is taken back at the places. Limits: the standard deviation is that of the fit's parameters; a sharp inside corner, where the
-//! correction is held, is not guarded; the laws kept for comparison know no guard.
+//! correction never goes nearer to the wall than beside it, is not guarded; the laws kept for comparison know no guard.
 
 use super::design::{Design, DesignStep, DesignWorkspace, Law, Predicted, copy, design, pass, worst};
 use super::node::Node;
