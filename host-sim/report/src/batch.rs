@@ -12,6 +12,9 @@ use truepath_chart::view::View;
 use truepath_ground::diagnostics::Failure;
 
 const STYLE: &str = include_str!("planned.css");
+/// Places come first, and all columns of theirs are numbers.
+const OWN_STYLE: &str = ".places th:first-child, .places td:first-child { text-align: left; white-space: normal; min-width: 9rem } \
+    .places th:last-child, .places td:last-child { text-align: right; white-space: nowrap; min-width: 0 } figure svg { background: #fff }";
 /// The axis of the charts.
 const PARTS: &str = "part";
 
@@ -29,7 +32,7 @@ pub fn batch_page(batch: &Batch, name: &str) -> Result<String, Failure> {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { "Batch: " (name) }
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(OWN_STYLE)) }
             }
             body {
                 main {
@@ -144,7 +147,7 @@ fn text(svg: Vec<u8>) -> Result<String, Failure> {
 
 fn places(batch: &Batch) -> Markup {
     html! {
-        table {
+        table.places {
             thead { tr {
                 th { "place" } th { "parts" } th { "mean, µm" } th { "sigma, µm" } th { "next, µm" } th { "Cp" } th { "Cpk" } th { "Cpk, 95 %" }
             } }
