@@ -38,7 +38,7 @@ pub struct Known {
     pub sigma: f64,
 }
 
-/// What moved until a part, since the first one or what was put in new.
+/// What moved until a part, since the first one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct State {
     /// Number of the part.
@@ -95,14 +95,27 @@ pub enum Alarm {
         /// By how much.
         change: Known,
     },
+    /// Readings of the last part that fit to nothing before.
+    Wild {
+        /// The part.
+        part: u32,
+        /// How many.
+        readings: usize,
+        /// The first of them.
+        place: Place,
+        /// Its deviation, mm.
+        error_mm: f64,
+    },
     /// The tolerance will be left.
     Leaving {
         /// First part that is more likely out than in.
         part: u32,
         /// Where.
         place: Place,
-        /// What moves there most.
+        /// What moves there towards the limit, with its change per part; `Place` where nothing does for certain.
         cause: Cause,
+        /// Change of the deviation there per part, mm.
+        per_part_mm: f64,
     },
 }
 
@@ -125,7 +138,7 @@ pub struct Batch {
     /// First part that is more likely out of tolerance than in it, by how things go; absent where none within 200 parts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub leaves_at_part: Option<u32>,
-    /// Probability that all places of the next part are in tolerance, each for itself: that of the worst.
+    /// Probability that the next part is in tolerance at every place, at least: 1 less the sum of what every place may be out with.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next_in_tolerance: Option<f64>,
     /// Places with their charts.
@@ -160,24 +173,31 @@ impl Batch {
                 }
             })
             .collect();
-        let leaving = request.tolerance_mm.and_then(|tolerance| leaving(series, last, tolerance));
-        let mut alarms: Vec<Alarm> = request.tolerance_mm.and_then(|t| out_of(series, last, t)).into_iter().collect();
+        let (milled, new) = series.milled.clone().unwrap_or((last_part, Vec::new()));
+        // Behind a new cutter or another lot nothing goes on as it went.
+        let goes_on = !new.iter().any(|event| matches!(event, Event::Cutter | Event::Lot));
+        let leaving = request.tolerance_mm.filter(|_| goes_on).and_then(|tolerance| leaving(series, last, tolerance));
+        let out = request.tolerance_mm.and_then(|t| out_of(series, t));
+        let is_out = out.is_some();
+        let mut alarms: Vec<Alarm> = out.into_iter().collect();
         alarms.extend(
             steps.last().filter(|alarm| matches!(alarm, Alarm::Step { part, .. } if *part == last_part)).cloned(),
         );
-        if let Some((part, at)) = leaving
-            && part <= last_part + request.ahead
-            && !alarms.iter().any(|alarm| matches!(alarm, Alarm::OutOfTolerance { .. }))
+        alarms.extend(wild(series, last));
+        if let Some(Leaves { part, place, .. }) = leaving
+            && part <= milled.saturating_add(request.ahead)
+            && !is_out
         {
-            let (place, cause) = (series.places[at].clone(), moving(last, &series.places[at]));
-            alarms.push(Alarm::Leaving { part, place, cause });
+            let place = &series.places[place];
+            let (cause, per_part_mm) = moving(last, place);
+            alarms.push(Alarm::Leaving { part, place: place.clone(), cause, per_part_mm });
         }
-        let in_tolerance = request.tolerance_mm.map(|[low, high]| {
-            let of = |p: &PlaceChart| {
+        let in_tolerance = request.tolerance_mm.filter(|_| goes_on).map(|[low, high]| {
+            let out = |p: &PlaceChart| {
                 let Known { value, sigma } = p.next_mm;
-                share_below((high - value) / sigma) - share_below((low - value) / sigma)
+                share_below((low - value) / sigma) + 1.0 - share_below((high - value) / sigma)
             };
-            places.iter().map(of).fold(1.0, f64::min)
+            (1.0 - places.iter().map(out).sum::<f64>()).max(0.0)
         });
         Some(Self {
             parts: [first_part, last_part],
@@ -186,7 +206,7 @@ impl Batch {
             tolerance_mm: request.tolerance_mm,
             states: states(series, &filtered),
             wear_per_part: known(last, LEVEL_SLOPE),
-            leaves_at_part: leaving.map(|(part, _)| part),
+            leaves_at_part: leaving.map(|leaves| leaves.part),
             next_in_tolerance: in_tolerance,
             places,
             alarms,
@@ -206,32 +226,27 @@ impl Batch {
         self.places.iter().min_by(|a, b| margin(a).total_cmp(&margin(b)))
     }
 
-    /// What was put in new last, and before which part.
-    fn since(&self) -> (u32, Option<Event>) {
-        let newest =
-            self.states.iter().rev().find_map(|s| Some((s.part, *s.events.iter().find(|e| **e != Event::Setup)?)));
-        newest.map_or((self.parts[0], None), |(part, event)| (part, Some(event)))
-    }
-
     /// How the batch stands, in a few sentences: what moves, and for how long it goes well.
     pub fn words(&self) -> Vec<String> {
         let mut said: Vec<String> = self.alarms.iter().map(Alarm::words).collect();
         let Some(now) = self.states.last() else { return said };
-        let (since, _) = self.since();
-        if now.force_level.value.abs() > 2.0 * now.force_level.sigma && now.force_level.value.abs() > 0.01 {
-            let why = if now.force_level.value > 0.0 { "the cutter wears" } else { "the cutter cuts more easily" };
+        let (since, pushed) = (self.parts[0], self.places.iter().any(|p| p.place.deflection_mm != 0.0));
+        let Known { value, sigma } = now.force_level;
+        if pushed && value.abs() > 2.0 * sigma && value.abs() > 0.01 {
+            let why = if value > 0.0 {
+                "the cutter wears, or the material is harder"
+            } else {
+                "a sharper cutter, or softer material"
+            };
             said.push(format!(
-                "force level {:+.0} ± {:.0} % since part {since}: {why}, or the material is another",
-                100.0 * now.force_level.value,
-                200.0 * now.force_level.sigma
+                "force level {:+.0} ± {:.0} % (2 sigma) since part {since}: {why}",
+                100.0 * value,
+                200.0 * sigma
             ));
         }
-        if now.radius_lost_mm.value.abs() > 2.0 * now.radius_lost_mm.sigma && now.radius_lost_mm.value.abs() > 0.001 {
-            said.push(format!(
-                "the cutter's radius is {:.1} ± {:.1} µm smaller than at part {since}",
-                1e3 * now.radius_lost_mm.value,
-                2e3 * now.radius_lost_mm.sigma
-            ));
+        let Known { value, sigma } = now.radius_lost_mm;
+        if value.abs() > 2.0 * sigma && value.abs() > 0.001 {
+            said.push(format!("{} than at part {since}", smaller(value, sigma, pushed)));
         }
         let said_already =
             self.alarms.iter().any(|a| matches!(a, Alarm::OutOfTolerance { .. } | Alarm::Leaving { .. }));
@@ -257,11 +272,13 @@ impl Alarm {
                     Cause::ForceLevel => {
                         format!("force level {:+.0} ± {:.0} % at once", 100.0 * change.value, 200.0 * change.sigma)
                     }
-                    Cause::Radius => format!(
-                        "the cutter's radius is {:.1} ± {:.1} µm smaller at once: another cutter, or a chipped one",
-                        1e3 * change.value,
-                        2e3 * change.sigma
-                    ),
+                    Cause::Radius => {
+                        format!(
+                            "{} at once: another cutter, or a chipped one",
+                            smaller(change.value, change.sigma, true)
+                        )
+                    }
+                    Cause::RadiusOrForce => smaller(change.value, change.sigma, false) + " at once",
                     Cause::Datum => format!(
                         "the datum moved by {:.1} ± {:.1} µm: clamping, probe or temperature",
                         1e3 * change.value.abs(),
@@ -273,16 +290,43 @@ impl Alarm {
                 };
                 format!("part {part} does not go on as those before: {by}")
             }
-            Self::Leaving { part, place, cause } => {
+            Self::Wild { part, readings, place, error_mm } => {
+                let touches =
+                    if *readings == 1 { "a reading fits".to_owned() } else { format!("{readings} readings fit") };
+                format!(
+                    "part {part}: {touches} to nothing before, {:+.1} µm at {}: a chip under the ball, or a wall that is another there; touch it again",
+                    1e3 * error_mm,
+                    place.words()
+                )
+            }
+            Self::Leaving { part, place, cause, per_part_mm } => {
                 let why = match cause {
-                    Cause::ForceLevel => "the force level grows",
-                    Cause::Radius => "the cutter gets smaller",
+                    Cause::ForceLevel if *per_part_mm > 0.0 => "the force level grows",
+                    Cause::ForceLevel => "the force level falls",
+                    Cause::Radius if *per_part_mm > 0.0 => "the cutter gets smaller",
+                    Cause::Radius => "the cutter gets larger",
+                    Cause::RadiusOrForce => "the cutter wears",
                     Cause::Datum | Cause::Place => "it is near its limit",
                 };
-                format!("the tolerance is left at about part {part}, first at {}: {why}", place.words())
+                format!(
+                    "the tolerance is left at about part {part}, first at {}: {why} ({:+.2} µm a part there)",
+                    place.words(),
+                    1e3 * per_part_mm
+                )
             }
         }
     }
+}
+
+/// A radius that was lost, in words; without a known deflection a larger force looks the same.
+fn smaller(lost_mm: f64, sigma_mm: f64, pushed: bool) -> String {
+    let which = if lost_mm > 0.0 { "smaller" } else { "larger" };
+    let by = format!("{:.1} ± {:.1} µm (2 sigma) {which}", 1e3 * lost_mm.abs(), 2e3 * sigma_mm);
+    if pushed {
+        return format!("the cutter's radius is {by}");
+    }
+    let force = if lost_mm > 0.0 { "higher" } else { "lower" };
+    format!("the cutter's radius is {by}, or the force {force}, which are one without --from")
 }
 
 fn known(estimate: &Estimate, state: usize) -> Known {
@@ -308,38 +352,57 @@ fn step(estimate: &Estimate) -> Option<Alarm> {
     Some(Alarm::Step { part: estimate.number, cause, change: Known { value: change, sigma } })
 }
 
-/// The worst reading of the last part, where it is out of tolerance. Wild ones are not looked at.
-fn out_of(series: &Series, last: &Estimate, [low, high]: [f64; 2]) -> Option<Alarm> {
+/// The worst reading of the last part, where it is out of tolerance.
+fn out_of(series: &Series, [low, high]: [f64; 2]) -> Option<Alarm> {
     let part = series.parts.last()?;
-    let readings =
-        part.readings.iter().enumerate().filter(|(at, _)| !last.wild.contains(at)).map(|(_, reading)| reading);
     let beyond = |error: f64| (error - high).max(low - error);
-    let (place, error) = readings.max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1)))?;
+    let (place, error) = part.readings.iter().max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1)))?;
     let place = series.places[*place].clone();
     (beyond(*error) > 0.0).then_some(Alarm::OutOfTolerance { part: part.number, place, error_mm: *error })
 }
 
+/// Readings of the last part that were set aside.
+fn wild(series: &Series, last: &Estimate) -> Option<Alarm> {
+    let (place, error_mm) = *series.parts.last()?.readings.get(*last.wild.first()?)?;
+    let place = series.places[place].clone();
+    Some(Alarm::Wild { part: last.number, readings: last.wild.len(), place, error_mm })
+}
+
+/// When and where the tolerance is left.
+#[derive(Clone, Copy, Debug)]
+struct Leaves {
+    part: u32,
+    place: usize,
+}
+
 /// The first part of which a place is more likely out of tolerance than in it, and the place.
-fn leaving(series: &Series, last: &Estimate, [low, high]: [f64; 2]) -> Option<(u32, usize)> {
+fn leaving(series: &Series, last: &Estimate, [low, high]: [f64; 2]) -> Option<Leaves> {
     let out = |at: usize, parts: u32| {
         let (mean, _) = last.forecast(at, &series.places[at], parts);
         mean > high || mean < low
     };
     // A slope that may as well be none leads nowhere.
-    let sloped = [LEVEL_SLOPE, SIZE_SLOPE].iter().any(|s| last.mean[*s].abs() > quantile(0.975) * last.sigma(*s));
+    let sloped = [LEVEL_SLOPE, SIZE_SLOPE].iter().any(|state| is_sloped(last, *state));
     HORIZON.take_while(|parts| sloped || *parts == 1).find_map(|parts| {
-        let at = (0..series.places.len()).find(|at| out(*at, parts))?;
-        Some((last.number + parts, at))
+        let place = (0..series.places.len()).find(|at| out(*at, parts))?;
+        Some(Leaves { part: last.number.saturating_add(parts), place })
     })
 }
 
-/// What moves a place most.
-fn moving(last: &Estimate, place: &Place) -> Cause {
-    let level = (place.deflection_mm * last.mean[LEVEL_SLOPE]).abs();
-    let size = last.mean[SIZE_SLOPE].abs();
-    match level.max(size) {
-        most if most < 5e-5 => Cause::Place,
-        most if most == level => Cause::ForceLevel,
-        _ => Cause::Radius,
-    }
+fn is_sloped(last: &Estimate, state: usize) -> bool {
+    last.mean[state].abs() > quantile(0.975) * last.sigma(state)
+}
+
+/// What moves a place most, and by how much it moves per part, mm.
+fn moving(last: &Estimate, place: &Place) -> (Cause, f64) {
+    let whole = last.mean[LEVEL_SLOPE] * place.deflection_mm + last.mean[SIZE_SLOPE];
+    let pushed = place.deflection_mm != 0.0;
+    let kinds = [
+        (Cause::ForceLevel, LEVEL_SLOPE, last.mean[LEVEL_SLOPE] * place.deflection_mm),
+        (if pushed { Cause::Radius } else { Cause::RadiusOrForce }, SIZE_SLOPE, last.mean[SIZE_SLOPE]),
+    ];
+    let sense = if whole >= 0.0 { 1.0 } else { -1.0 };
+    let towards = kinds.into_iter().filter(|(_, state, change)| change * sense > 0.0 && is_sloped(last, *state));
+    let most = towards.max_by(|a, b| (a.2 * sense).total_cmp(&(b.2 * sense)));
+    (most.map_or(Cause::Place, |(cause, ..)| cause), whole)
 }

@@ -84,6 +84,8 @@ pub enum Cause {
     ForceLevel,
     /// The cutter's radius.
     Radius,
+    /// The cutter's radius or the force: without a known deflection they are one.
+    RadiusOrForce,
     /// The datum: clamping, temperature.
     Datum,
     /// None of these alone.
@@ -95,7 +97,7 @@ impl Cause {
     const fn states(self) -> &'static [usize] {
         match self {
             Self::ForceLevel => &[LEVEL],
-            Self::Radius => &[SIZE],
+            Self::Radius | Self::RadiusOrForce => &[SIZE],
             Self::Datum => &[DATUM, DATUM + 1],
             Self::Place => &[],
         }
@@ -120,11 +122,11 @@ impl Estimate {
     /// Deviation at a place so many parts later, and its standard deviation without noise, mm.
     pub fn forecast(&self, place: usize, of: &Place, parts: u32) -> (f64, f64) {
         let mut h = row(place, of, self.mean.len());
+        let walked_by = h.clone();
         h[LEVEL_SLOPE] = h[LEVEL] * f64::from(parts);
         h[SIZE_SLOPE] = h[SIZE] * f64::from(parts);
         let mean = h.iter().zip(&self.mean).map(|(h, x)| h * x).sum();
-        let walked: f64 =
-            h.iter().take(OWN).zip(WALK).map(|(h, walk)| (h * walk).powi(2)).sum::<f64>() * f64::from(parts);
+        let walked: f64 = walked_by.iter().take(OWN).zip(walked(parts)).map(|(h, walked)| h * h * walked).sum();
         let variance: f64 = product(&self.covariance, &h).iter().zip(&h).map(|(a, h)| a * h).sum();
         (mean, (variance.max(0.0) + walked).sqrt())
     }
@@ -133,26 +135,30 @@ impl Estimate {
 /// Follows a batch. `noise_mm` is the standard deviation of one reading where the parts say nothing of it yet; a part counts as a step
 /// that chance would make once in `rarely` parts.
 pub fn follow(series: &Series, noise_mm: f64, rarely: f64) -> Filtered {
-    let first = run(series, noise_mm, rarely);
-    // The median is not moved by the parts that differ.
-    let mut seen: Vec<f64> = first
-        .estimates
-        .iter()
-        .skip(1)
-        .filter(|e| e.innovation.1 > 0 && e.step.is_none())
-        .map(|e| e.innovation.0 / e.innovation.1 as f64)
-        .collect();
-    if seen.len() < LEAST_PARTS {
-        return first;
+    let mut noise = noise_mm;
+    for _ in 0..2 {
+        // Nothing is set aside: what the noise says is wild depends on the noise that is sought. The median is not moved by
+        // the parts that differ.
+        let all = run(series, noise, None);
+        let misfit = |e: &Estimate| {
+            let (sum, count, _) = e.innovation;
+            Some(sum / ChiSquared::new(count as f64).ok()?.inverse_cdf(0.5))
+        };
+        let mut seen: Vec<f64> = all.estimates.iter().skip(1).filter_map(misfit).collect();
+        if seen.len() < LEAST_PARTS {
+            break;
+        }
+        seen.sort_by(f64::total_cmp);
+        let factor = seen[seen.len() / 2].sqrt().clamp(0.2, 10.0);
+        // Of few parts the expected noise counts as four of them.
+        let weight = seen.len() as f64 / (seen.len() + LEAST_PARTS) as f64;
+        noise *= 1.0 + (factor - 1.0) * weight;
     }
-    seen.sort_by(f64::total_cmp);
-    let factor = seen[seen.len() / 2].sqrt().clamp(0.3, 5.0);
-    // Of fewer parts the expected noise counts as four of them.
-    let weight = seen.len() as f64 / (seen.len() + LEAST_PARTS) as f64;
-    run(series, noise_mm * (1.0 + (factor - 1.0) * weight), rarely)
+    run(series, noise, Some(rarely))
 }
 
-fn run(series: &Series, noise_mm: f64, rarely: f64) -> Filtered {
+/// `rarely` as in [`follow`]; `None` sets nothing aside and takes no part for a step.
+fn run(series: &Series, noise_mm: f64, rarely: Option<f64>) -> Filtered {
     let count = OWN + series.places.len();
     let mut mean = vec![0.0; count];
     let mut covariance = vec![vec![0.0; count]; count];
@@ -160,6 +166,7 @@ fn run(series: &Series, noise_mm: f64, rarely: f64) -> Filtered {
     (OWN..count).for_each(|at| covariance[at][at] = OFFSET * OFFSET);
     let mut before: Option<u32> = None;
     let mut estimates = Vec::new();
+    let mut wild_before: Vec<usize> = Vec::new();
     for part in &series.parts {
         if let Some(before) = before {
             advance(&mut mean, &mut covariance, part.number.saturating_sub(before));
@@ -167,7 +174,8 @@ fn run(series: &Series, noise_mm: f64, rarely: f64) -> Filtered {
             uneven(series, &mut covariance, moved);
         }
         before = Some(part.number);
-        for event in &part.events {
+        // Level and size are counted from the first part, whatever was new then.
+        for event in part.events.iter().filter(|_| !estimates.is_empty()) {
             let by = match event {
                 Event::Cutter => &NEW_CUTTER,
                 Event::Lot => &NEW_LOT,
@@ -177,18 +185,28 @@ fn run(series: &Series, noise_mm: f64, rarely: f64) -> Filtered {
             uneven(series, &mut covariance, by[LEVEL]);
         }
         let expected = (mean.clone(), covariance.clone());
-        let (mut wild, mut innovation) = update(series, part, noise_mm, (&mut mean, &mut covariance), &[]);
+        // Nothing before says what the first part should be: no reading of it is wild, and it is no step.
+        let gated = rarely.filter(|_| !estimates.is_empty());
+        let (mut wild, mut innovation) =
+            update(series, part, noise_mm, (&mut mean, &mut covariance), &[], gated.is_some());
         let mut step = None;
-        // Offsets of places that no part before has told of absorb everything: the first part cannot be a step.
-        if !estimates.is_empty() && differs(innovation, wild.len(), part.readings.len(), rarely) {
+        if let Some(rarely) = gated
+            && differs(innovation, wild.len(), part.readings.len(), rarely)
+        {
             (mean, covariance) = expected.clone();
             step = Some(cause_of(series, part, noise_mm, &expected));
             widen(&mut covariance, &STEP);
             uneven(series, &mut covariance, STEP[LEVEL]);
             let of_step;
-            (wild, of_step) = update(series, part, noise_mm, (&mut mean, &mut covariance), &[]);
+            (wild, of_step) = update(series, part, noise_mm, (&mut mean, &mut covariance), &[], true);
             innovation.1 = of_step.1;
         }
+        // A place that is wild part after part is another place now.
+        let wild_places: Vec<usize> = wild.iter().map(|at| part.readings[*at].0).collect();
+        for place in wild_places.iter().filter(|place| wild_before.contains(place)) {
+            covariance[OWN + place][OWN + place] += OFFSET * OFFSET;
+        }
+        wild_before = wild_places;
         let (mean, covariance) = (mean.clone(), covariance.clone());
         estimates.push(Estimate { number: part.number, mean, covariance, wild, innovation, step });
     }
@@ -199,8 +217,11 @@ fn run(series: &Series, noise_mm: f64, rarely: f64) -> Filtered {
 /// which it changes. None where they fit under no single one.
 fn cause_of(series: &Series, part: &Part, noise_mm: f64, (mean, covariance): &(Vec<f64>, Vec<Vec<f64>>)) -> Step {
     let pushed = series.places.iter().any(|place| place.deflection_mm != 0.0);
-    let causes = [Cause::ForceLevel, Cause::Radius, Cause::Datum].into_iter();
-    let tried = causes.filter(|cause| pushed || *cause != Cause::ForceLevel).map(|cause| {
+    let causes: &[Cause] = match pushed {
+        true => &[Cause::ForceLevel, Cause::Radius, Cause::Datum],
+        false => &[Cause::RadiusOrForce, Cause::Datum],
+    };
+    let tried = causes.iter().map(|&cause| {
         let (mut mean, mut covariance) = (mean.clone(), covariance.clone());
         let first = mean.len();
         for state in cause.states() {
@@ -211,7 +232,10 @@ fn cause_of(series: &Series, part: &Part, noise_mm: f64, (mean, covariance): &(V
                 *cell = STEP[*state] * STEP[*state];
             }
         }
-        let (wild, fit) = update(series, part, noise_mm, (&mut mean, &mut covariance), cause.states());
+        if cause == Cause::ForceLevel {
+            uneven(series, &mut covariance, STEP[LEVEL]);
+        }
+        let (wild, fit) = update(series, part, noise_mm, (&mut mean, &mut covariance), cause.states(), true);
         let change = mean[first..].iter().fold(0.0, |sum: f64, v| sum.hypot(*v));
         let signed = if cause == Cause::Datum { change } else { mean[first] };
         let sigma = (first..mean.len()).map(|at| covariance[at][at].max(0.0).sqrt()).fold(0.0, f64::max);
@@ -228,7 +252,7 @@ fn cause_of(series: &Series, part: &Part, noise_mm: f64, (mean, covariance): &(V
 
 /// Whether a part differs from what was expected by more than chance.
 fn differs((sum, count, _): Fit, wild: usize, readings: usize, rarely: f64) -> bool {
-    let many = wild * 4 > readings && wild >= 2;
+    let many = wild * 4 >= readings && wild >= 2 || wild == readings;
     let limit =
         |count: usize| ChiSquared::new(count as f64).map_or(f64::MAX, |chi| chi.inverse_cdf(1.0 - 1.0 / rarely));
     many || (count > 0 && sum > limit(count))
@@ -237,13 +261,14 @@ fn differs((sum, count, _): Fit, wild: usize, readings: usize, rarely: f64) -> b
 /// Sum of squared normalised innovations, how many, and the sum of the logarithms of their variances, mm².
 pub type Fit = (f64, usize, f64);
 
-/// One part's readings, one by one; wild ones are set aside. `changed` are states that have a change of their own behind the places.
+/// One part's readings, one by one; wild ones are set aside where they are `gated`. `changed` are states that have a change of their own behind the places.
 fn update(
     series: &Series,
     part: &Part,
     noise_mm: f64,
     (mean, covariance): (&mut [f64], &mut [Vec<f64>]),
     changed: &[usize],
+    gated: bool,
 ) -> (Vec<usize>, Fit) {
     let (mut wild, mut sum, mut count, mut logarithms) = (Vec::new(), 0.0, 0, 0.0);
     let first = OWN + series.places.len();
@@ -256,13 +281,14 @@ fn update(
         let variance = gain.iter().zip(&h).map(|(a, h)| a * h).sum::<f64>() + noise_mm * noise_mm;
         let off = error - h.iter().zip(mean.iter()).map(|(h, x)| h * x).sum::<f64>();
         let square = off * off / variance;
-        if square > WILD * WILD {
+        // What is set aside counts as improbable as well.
+        logarithms += variance.ln();
+        if gated && square > WILD * WILD {
             wild.push(at);
             continue;
         }
         sum += square;
         count += 1;
-        logarithms += variance.ln();
         for (i, x) in mean.iter_mut().enumerate() {
             *x += gain[i] * off / variance;
         }
@@ -316,7 +342,22 @@ fn advance(mean: &mut [f64], covariance: &mut [Vec<f64>], parts: u32) {
             line[state] += k * line[slope];
         }
     }
-    for (at, walk) in WALK.iter().enumerate() {
-        covariance[at][at] += walk * walk * k;
+    for (at, walked) in walked(parts).into_iter().enumerate() {
+        covariance[at][at] += walked;
     }
+    for (state, slope) in [(LEVEL, LEVEL_SLOPE), (SIZE, SIZE_SLOPE)] {
+        let both = WALK[slope].powi(2) * k * (k - 1.0) / 2.0;
+        covariance[state][slope] += both;
+        covariance[slope][state] += both;
+    }
+}
+
+/// Variance that walks add over some parts; level and size have what their slopes walked in between as well.
+fn walked(parts: u32) -> [f64; OWN] {
+    let k = f64::from(parts);
+    let mut walked = WALK.map(|walk| walk * walk * k);
+    for (state, slope) in [(LEVEL, LEVEL_SLOPE), (SIZE, SIZE_SLOPE)] {
+        walked[state] += WALK[slope].powi(2) * (k * (k - 1.0) * (2.0 * k - 1.0)).max(0.0) / 6.0;
+    }
+    walked
 }

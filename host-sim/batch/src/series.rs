@@ -58,6 +58,8 @@ pub struct Series {
     pub places: Vec<Place>,
     /// Parts, in order.
     pub parts: Vec<Part>,
+    /// The last part that was milled, where that is another than the last touched one, and what happened before it.
+    pub milled: Option<(u32, Vec<Event>)>,
 }
 
 impl Series {

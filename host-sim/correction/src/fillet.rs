@@ -8,7 +8,7 @@
 //! The centre of an arc lies as far from one leg as from the other; legs that are arcs themselves are followed by Newton's
 //! method on both distances. Reckoned in floating point from the corner, so that nothing depends on where the part lies.
 
-use truepath_core::geometry::{Block, Curve, Point, Shape, Side};
+use truepath_core::geometry::{Block, Contour, Curve, FACET_TURN_LIMIT, Point, Shape, Side};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{float, mm, nm};
@@ -17,7 +17,7 @@ use truepath_program::{BlockEdit, Purpose, RewriteOptions, Rewritten, rewrite_pr
 
 use crate::codes::P023;
 use crate::edits::add;
-use crate::first_pass::{Along, SHARP, every_pass};
+use crate::first_pass::{Along, every_pass};
 use crate::written_out::written_out;
 
 /// An arc of a smaller radius is not worth writing, mm.
@@ -57,18 +57,19 @@ struct Filleted {
 ///
 /// # Errors
 /// `P023` where no arc has room, and what is wrong with program or pass.
-pub fn rewritten(contours: &[&Pass], radius: Offset) -> Result<(Rewritten, Vec<Corner>, Option<String>), Failure> {
+pub fn rewritten(contours: &[&Pass], radius: Offset) -> Result<(Rewritten, Vec<Corner>, Vec<String>), Failure> {
     match written(contours, radius) {
-        Ok((text, corners)) => Ok((text, corners, None)),
+        Ok((text, corners, said)) => Ok((text, corners, said.into_iter().collect())),
         Err(failure) => {
-            let (flat, said) = written_out(contours, &failure).ok_or(failure)?;
+            let (flat, written_out) = written_out(contours, &failure).ok_or(failure)?;
             let flat: Vec<&Pass> = flat.iter().collect();
-            written(&flat, radius).map(|(text, corners)| (text, corners, Some(said)))
+            let (text, corners, said) = written(&flat, radius)?;
+            Ok((text, corners, said.into_iter().chain([written_out]).collect()))
         }
     }
 }
 
-fn written(contours: &[&Pass], radius: Offset) -> Result<(Rewritten, Vec<Corner>), Failure> {
+fn written(contours: &[&Pass], radius: Offset) -> Result<(Rewritten, Vec<Corner>, Option<String>), Failure> {
     let pass = contours.first().ok_or_else(|| Failure::Internal("a program of no contour".to_owned()))?;
     let mut passes: Vec<Along> = Vec::new();
     for contour in contours {
@@ -81,13 +82,23 @@ fn written(contours: &[&Pass], radius: Offset) -> Result<(Rewritten, Vec<Corner>
         filleted.add(along, mm(radius));
     }
     let Filleted { edits, corners } = filleted;
+    // Where a contour begins there is no room between its moves and those that lead to it.
+    let at_start = passes.iter().find_map(|(along, _)| {
+        let blocks = &along.blocks;
+        let (first, last) = (blocks.first()?, blocks.last()?);
+        let closed = Contour::new(blocks)?.is_closed();
+        sharp(last, first, along.core.setup.wall).filter(|_| closed).map(|_| first.line)
+    });
+    let said = at_start.map(|line| {
+        format!("the contour begins and ends in a sharp inside corner (line {line}), which stays sharp: begin it on a straight stretch")
+    });
     if corners.iter().all(|corner| corner.radius_mm == 0.0) {
         let found = match corners.first() {
             None => "no sharp inside corner on the contour".to_owned(),
             Some(corner) => format!("the lines beside the corner of line {} are too short for an arc", corner.line),
         };
         let line = corners.first().map(|corner| corner.line).or_else(|| pass.blocks.first().map(|block| block.line));
-        let expected = "a corner of more than 3 degrees on the side of the wall, between two moves of the contour";
+        let expected = "a corner of more than 15 degrees on the side of the wall, between two moves of the contour";
         let error = P023.error(found, expected);
         return Err(match line {
             Some(line) => error.at(&pass.program, pass.program.line_span(line)),
@@ -103,7 +114,7 @@ fn written(contours: &[&Pass], radius: Offset) -> Result<(Rewritten, Vec<Corner>
         purpose: Purpose::Fillets { radius },
         ..RewriteOptions::default()
     };
-    Ok((rewrite_program(&pass.program, &edits, &options)?, corners))
+    Ok((rewrite_program(&pass.program, &edits, &options)?, corners, said))
 }
 
 impl Filleted {
@@ -247,7 +258,7 @@ fn sharp(before: &Block, behind: &Block, wall: Side) -> Option<(Arc, f64)> {
     // Turning away from the wall is an inside corner of the part.
     let inside = |turns_left: bool| turns_left == (wall == Side::Right);
     let turn = from.cross(to);
-    if turn.abs() <= SHARP || !inside(turn > Real::ZERO) {
+    if from.dot(to) >= FACET_TURN_LIMIT || !inside(turn > Real::ZERO) {
         return None;
     }
     let at = behind.curve.start();

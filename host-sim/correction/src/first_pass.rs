@@ -20,7 +20,7 @@ use crate::codes::{P020, P021};
 use crate::edits::carried_edits;
 
 /// Sine of the turn between two blocks from which on a corner counts as sharp: about 3 degrees.
-pub(crate) const SHARP: Real = Real::ratio(5, 100);
+const SHARP: Real = Real::ratio(5, 100);
 
 /// A cut this much nearer than half of the allowance is none: rounding of programs.
 const ROUNDING: Offset = Offset::from_um(5);

@@ -16,7 +16,7 @@ const SHARE: f64 = 1.0 / 3.0;
 /// The sharp inside corners of a contour, of the target quantity.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct SharpCorners {
-    /// Line of the program that ends in the first.
+    /// Line of the program that begins in the first.
     pub line: u32,
     /// How many there are.
     pub count: usize,
@@ -26,6 +26,8 @@ pub struct SharpCorners {
     pub after_mm: f64,
     /// Material that the correction leaves in a corner's own rounding, mm: it lets no cutter into a wall beside it.
     pub left_in_corner_mm: f64,
+    /// How far the cutter goes too deep there, mm: as far as it is sent into both walls, where it springs back.
+    pub cut_into_corner_mm: f64,
     /// What arcs would leave; absent where that was not reckoned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub with_arcs: Option<WithArcs>,
@@ -46,34 +48,46 @@ impl SharpCorners {
     /// Of a corrected contour; `None` where it has none.
     pub fn of(pass: &Pass, path: &Path, correction: &Correction) -> Option<Self> {
         let samples = path.samples().get(path.first()..).unwrap_or_default();
-        let first = samples.iter().find(|sample| sample.near_corner)?;
+        samples.iter().find(|sample| sample.near_corner)?;
+        // Behind the turn on the spot the next line begins.
+        let turns = correction.turning.iter().position(|turning| *turning).unwrap_or(0);
+        let behind = turns + correction.turning.iter().skip(turns).take_while(|turning| **turning).count();
         let target = correction.wanted.target;
         let near = || correction.walls().filter(|(at, _)| samples.get(*at).is_some_and(|s| s.near_corner));
-        let in_corner = correction.predicted.iter().zip(&correction.turning).filter(|(_, turning)| **turning);
+        let in_corner = || {
+            let turning = correction.predicted.iter().zip(&correction.turning).filter(|(_, turning)| **turning);
+            turning.map(|(p, _)| p.after.aim(target, None))
+        };
         let largest = |values: &mut dyn Iterator<Item = Offset>| mm(values.max().unwrap_or_default()).max(0.0);
         Some(Self {
-            line: pass.blocks.get(first.block as usize).map_or(0, |block| block.line),
+            line: samples.get(behind).and_then(|s| pass.blocks.get(s.block as usize)).map_or(0, |block| block.line),
             count: correction.turning.windows(2).filter(|pair| *pair == [false, true]).count(),
             before_mm: largest(&mut near().map(|(_, p)| p.before.aim(target, None).abs())),
             after_mm: largest(&mut near().map(|(_, p)| p.after.aim(target, None).abs())),
-            left_in_corner_mm: largest(&mut in_corner.map(|(p, _)| p.after.aim(target, None))),
+            left_in_corner_mm: largest(&mut in_corner()),
+            cut_into_corner_mm: largest(&mut in_corner().map(|error| -error)),
             with_arcs: None,
         })
     }
 
     /// In words.
     pub fn text(&self) -> String {
-        let Self { line, count, before_mm, after_mm, left_in_corner_mm, .. } = self;
+        let Self { line, count, before_mm, after_mm, left_in_corner_mm, cut_into_corner_mm, .. } = self;
         let corners = match count {
-            0 | 1 => format!("a sharp inside corner near line {line}"),
-            count => format!("{count} sharp inside corners, the first near line {line}"),
+            0 | 1 => format!("a sharp inside corner at line {line}"),
+            count => format!("{count} sharp inside corners, the first at line {line}"),
+        };
+        let rounding = if cut_into_corner_mm > left_in_corner_mm {
+            format!("the corner itself is cut {cut_into_corner_mm:.3} mm too deep where the cutter springs back")
+        } else {
+            format!("{left_in_corner_mm:.3} mm stay in the corner itself")
         };
         let mut text = format!(
-            "{corners}: the load ends there the moment the direction changes, so the walls beside are predicted to be {before_mm:.3} mm off before and {after_mm:.3} mm after, and {left_in_corner_mm:.3} mm stay in the corner itself"
+            "{corners}: the load ends there the moment the direction changes, so the walls beside are predicted to be {before_mm:.3} mm off without and {after_mm:.3} mm with the correction, and {rounding}"
         );
         if let Some(WithArcs { corner_radius_mm, after_mm, .. }) = self.with_arcs {
             text += &format!(
-                "; if the drawing allows corners of {corner_radius_mm} mm, truepath fillet --corner-radius {corner_radius_mm} puts arcs there, with which {after_mm:.3} mm are predicted along the whole contour"
+                "; if the drawing allows corners of {corner_radius_mm} mm, truepath fillet JOB --corner-radius {corner_radius_mm} -o DIR puts arcs there, with which {after_mm:.3} mm are predicted along the whole contour"
             );
         }
         text
@@ -99,6 +113,8 @@ fn predicted(pass: &Pass, identified: &Identification, radius: f64) -> Result<Op
     }
     let mut job = pass.job.clone();
     job.which.pass = pass.plan.as_ref().map(|_| pass.level());
+    // The program with arcs has no G41 or G42 that says it.
+    job.numbers.wall = Some(pass.core.setup.wall);
     let other = pass.of_text(job, Source::new(pass.program.name(), written.text))?;
     let mut buffer = PathBuffer::default();
     let path = other.sample(&mut buffer)?.with_law(identified.law());

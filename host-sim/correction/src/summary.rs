@@ -253,7 +253,7 @@ pub fn correct_summary(
         axial_form_error_mm,
         floor_mm: floor.mm(),
         floor,
-        worst_gouge_mm: largest(correction.walls().map(|(_, p)| -p.after.deepest())).max(0.0),
+        worst_gouge_mm: largest(correction.predicted.iter().map(|p| -p.after.deepest())).max(0.0),
         sharp_corners: None,
         guard: guard_summary(path, correction),
         damped: damped_summary(path, correction),

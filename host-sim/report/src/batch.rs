@@ -23,8 +23,13 @@ const PARTS: &str = "part";
 /// # Errors
 /// Internal, when a chart cannot be drawn.
 pub fn batch_page(batch: &Batch, name: &str) -> Result<String, Failure> {
-    let (level, worst) = (moves(batch)?, batch.worst());
-    let chart = worst.map(|place| control_chart(batch, place)).transpose()?;
+    let worst = batch.worst();
+    // A chart of one part has no width.
+    let level = if batch.states.len() > 1 { Some(moves(batch)?) } else { None };
+    let chart =
+        worst.filter(|place| place.deviations_mm.len() > 1).map(|place| control_chart(batch, place)).transpose()?;
+    let nearest =
+        if batch.tolerance_mm.is_some() { "The place nearest to its limit" } else { "The place that is farthest off" };
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -43,10 +48,12 @@ pub fn batch_page(batch: &Batch, name: &str) -> Result<String, Failure> {
                         (batch.touched) " parts touched, " (batch.parts[0]) " to " (batch.parts[1]) "; a reading repeats to ± "
                         (um(2.0 * batch.noise_mm)) " µm (2 sigma) beside what is told here"
                     }
-                    h2 { "What moves from part to part" }
-                    figure { (PreEscaped(level)) figcaption { "with two standard deviations to either side; since the first part" } }
+                    @if let Some(svg) = level {
+                        h2 { "What moves from part to part" }
+                        figure { (PreEscaped(svg)) figcaption { "with two standard deviations to either side; since the first part" } }
+                    }
                     @if let (Some(place), Some(svg)) = (worst, chart) {
-                        h2 { "The place nearest to its limit" }
+                        h2 { (nearest) }
                         figure { (PreEscaped(svg)) figcaption { (place.place.words()) ", individuals and exponentially weighted mean" } }
                     }
                     h2 { "Every place" }
@@ -55,7 +62,7 @@ pub fn batch_page(batch: &Batch, name: &str) -> Result<String, Failure> {
                     div.scroll tabindex="0" role="region" aria-label="Part by part" { (parts(batch)) }
                     p.soft {
                         "Standard deviations of places are those from part to part (moving range); limits are exceeded by chance once in thousands of parts. "
-                        "Cpk with the interval that holds it with 95 %. Force level and radius count from the first part of the batch."
+                        "Cpk with the interval that holds it with 95 %. Force level and radius count from the first part of the batch; ± is two standard deviations."
                     }
                 }
             }
@@ -72,9 +79,17 @@ fn verdict(batch: &Batch) -> String {
     let parts = batch.alarms.len();
     match (parts, batch.next_in_tolerance, batch.leaves_at_part) {
         (0, Some(share), Some(part)) => {
-            format!("Go on: the next part holds its tolerance with {:.0} %, until about part {part}.", 100.0 * share)
+            let percent = (100.0 * share).floor().min(99.0);
+            format!(
+                "Go on: the next part holds its tolerance everywhere with at least {percent:.0} %, until about part {part}."
+            )
         }
-        (0, Some(share), None) => format!("Go on: the next part holds its tolerance with {:.0} %.", 100.0 * share),
+        (0, Some(share), None) => {
+            format!(
+                "Go on: the next part holds its tolerance everywhere with at least {:.0} %.",
+                (100.0 * share).floor().min(99.0)
+            )
+        }
         (0, None, _) => "Nothing asks for action. With a tolerance the page would say how long it is held.".to_owned(),
         (1, ..) => "Look at this batch before the next part:".to_owned(),
         (count, ..) => format!("Look at this batch before the next part, for {count} reasons:"),
@@ -106,7 +121,10 @@ fn moves(batch: &Batch) -> Result<String, Failure> {
     let datum: [(&str, Ink, fn(&State) -> Known); 2] =
         [("X", INK_AFTER, |s| s.datum_mm[0]), ("Y", INK_BEFORE, |s| s.datum_mm[1])];
     rows.push(of_state(batch, "datum (µm)", 1e3, &datum));
-    text(panels_over(&View { title: Some(String::new()), ..View::default() }, "", PARTS, &rows)?)
+    text(
+        panels_over(&View { title: Some(String::new()), ..View::default() }, "", PARTS, &rows)?,
+        "Force level, radius and datum over the parts",
+    )
 }
 
 /// Individuals with their limits, and the weighted mean with its own.
@@ -136,13 +154,17 @@ fn control_chart(batch: &Batch, place: &PlaceChart) -> Result<String, Failure> {
     } else {
         rows.push(Panel { marks, ..Panel::new("deviation (µm)", singles) });
     }
-    text(panels_over(&View { title: Some(String::new()), ..View::default() }, "", PARTS, &rows)?)
+    text(
+        panels_over(&View { title: Some(String::new()), ..View::default() }, "", PARTS, &rows)?,
+        "Deviations of one place over the parts, with their limits",
+    )
 }
 
-fn text(svg: Vec<u8>) -> Result<String, Failure> {
+/// A chart as an element of the page, with its name for who cannot see it.
+fn text(svg: Vec<u8>, name: &str) -> Result<String, Failure> {
     let svg = String::from_utf8(svg).map_err(|e| Failure::Internal(format!("a chart is no text: {e}")))?;
-    // Within a page it is an element of it.
-    Ok(svg.find("<svg").map_or_else(String::new, |at| svg[at..].to_owned()))
+    let element = svg.find("<svg").map_or("", |at| &svg[at..]);
+    Ok(element.replacen("<title></title>", &format!("<title>{name}</title>"), 1))
 }
 
 fn places(batch: &Batch) -> Markup {
@@ -171,6 +193,7 @@ fn places(batch: &Batch) -> Markup {
 }
 
 fn parts(batch: &Batch) -> Markup {
+    let pushed = batch.places.iter().any(|p| p.place.deflection_mm != 0.0);
     let event = |e: &Event| match e {
         Event::Cutter => "new cutter",
         Event::Lot => "new lot",
@@ -178,12 +201,14 @@ fn parts(batch: &Batch) -> Markup {
     };
     html! {
         table {
-            thead { tr { th { "part" } th { "force level" } th { "radius lost, µm" } th { "datum X, µm" } th { "datum Y, µm" } th { "remarks" } } }
+            thead { tr { th { "part" } @if pushed { th { "force level" } } th { "radius lost, µm" } th { "datum X, µm" } th { "datum Y, µm" } th { "remarks" } } }
             tbody {
                 @for s in &batch.states {
                     tr {
                         td { (s.part) }
-                        td { (format!("{:+.1} ± {:.1} %", 100.0 * s.force_level.value, 200.0 * s.force_level.sigma)) }
+                        @if pushed {
+                            td { (format!("{:+.1} ± {:.1} %", 100.0 * s.force_level.value, 200.0 * s.force_level.sigma)) }
+                        }
                         @for known in [&s.radius_lost_mm, &s.datum_mm[0], &s.datum_mm[1]] {
                             td { (um(known.value)) " ± " (um(2.0 * known.sigma)) }
                         }

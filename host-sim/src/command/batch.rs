@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use truepath_batch::batch::{Batch, Request};
+use truepath_batch::batch::{Alarm, Batch, Cause, Request};
 use truepath_batch::codes::{Q011, Q012};
 use truepath_batch::series::{Event, Place, Reading, Series};
-use truepath_core::probe::CutWith;
+use truepath_core::probe::{CutWith, Rejected};
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::{OutputFolder, json};
 use truepath_ground::units::{float, mm, rounded};
@@ -38,7 +38,7 @@ pub struct Options {
     #[arg(long, value_name = "DIR")]
     pub from: Option<PathBuf>,
     /// Parts ahead for which the tolerance has to be held.
-    #[arg(long, value_name = "PARTS", default_value_t = 5)]
+    #[arg(long, value_name = "PARTS", default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=200))]
     pub ahead: u32,
     /// Folder for batch.html and summary.json.
     #[arg(short, long, value_name = "DIR")]
@@ -89,15 +89,24 @@ fn words(report: &Report, options: &Options) -> String {
         text += &format!("{said}\n");
     }
     if let Some(share) = batch.next_in_tolerance {
-        text += &format!("the next part is in tolerance with {:.0} %\n", 100.0 * share);
+        text += &format!(
+            "the next part is in tolerance everywhere with at least {:.0} %\n",
+            (100.0 * share).floor().min(99.0)
+        );
     }
     text += &format!("written to {}\n", report.page.display());
-    if !batch.alarms.is_empty() {
-        let from = options.from.as_ref().map_or_else(|| "DIR".to_owned(), |from| from.display().to_string());
-        text += &format!(
-            "next: put in a new cutter, or correct for what moved with the last part\u{2019}s points:\n  truepath learn {} --probe FILE --from {from} -o NEXT\n",
-            options.job.display()
-        );
+    let from = options.from.as_ref().map_or_else(|| "DIR".to_owned(), |from| from.display().to_string());
+    let job = options.job.display();
+    let next = batch.alarms.first().map(|alarm| match alarm {
+        Alarm::Step { cause: Cause::Datum, .. } => "look at clamping, probe and work offset before the next part".to_owned(),
+        Alarm::Step { cause: Cause::ForceLevel, .. } => {
+            format!("if it is another lot or another cutter, correct anew from one uncorrected part; else truepath learn {job} --probe FILE --from {from} -o NEXT")
+        }
+        Alarm::Wild { .. } => "touch the part again at these places".to_owned(),
+        _ => format!("put in a new cutter, or correct for what moved: truepath learn {job} --probe FILE --from {from} -o NEXT"),
+    });
+    if let Some(next) = next {
+        text += &format!("next: {next}\n");
     }
     text
 }
@@ -123,7 +132,7 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
     let mut warnings: Vec<String> = walls.iter().flat_map(|pass| pass.warnings.clone()).collect();
     let table = Source::read(&options.parts)?;
     let entries = entries(&table, options.parts.parent().unwrap_or(Path::new("")))?;
-    let pushed = options.from.as_ref().map(|from| deflections(from, &walls, several)).transpose()?;
+    let pushed = options.from.as_ref().map(|from| deflections(from, &walls, several, &mut warnings)).transpose()?;
     if pushed.is_none() {
         warnings.push("without --from DIR, the folder of the correction the parts were cut with, force level and cutter size cannot be told apart".to_owned());
     }
@@ -132,6 +141,7 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
     let mut noise: f64 = 0.0;
     // What happened before a part that nobody touched counts for the next one.
     let mut waiting: Vec<Event> = Vec::new();
+    let milled = entries.last().map(|entry| entry.number);
     for entry in entries {
         waiting.extend(entry.events);
         if entry.probe.as_os_str().is_empty() {
@@ -141,6 +151,13 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
         let mut readings = Vec::new();
         for (pass, measurement) in &measured {
             noise = noise.max(mm(measurement.noise));
+            let aside = measurement.rejected.iter().filter(|aside| aside.reason != Rejected::Superseded).count();
+            if aside > 0 && !measurement.contacts.is_empty() {
+                warnings.push(format!(
+                    "part {}: {aside} readings are not of this wall; truepath inspect says why",
+                    entry.number
+                ));
+            }
             readings.extend(of_wall(pass, measurement, several, pushed.as_ref()));
         }
         if readings.is_empty() {
@@ -149,6 +166,8 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
         }
         series.push(entry.number, std::mem::take(&mut waiting), readings);
     }
+    series.milled =
+        milled.filter(|number| series.parts.last().is_some_and(|last| last.number != *number)).map(|n| (n, waiting));
     // What a machine repeats to at best comes beside the probe.
     let request =
         Request { noise_mm: noise.hypot(0.001), tolerance_mm: tolerance, ahead: options.ahead, ..Request::default() };
@@ -197,11 +216,21 @@ fn at(along: &[(f64, f64)], s_mm: f64) -> f64 {
 }
 
 /// How far each wall would be off uncorrected, along it, from the folder of a correction.
-fn deflections(from: &Path, walls: &[Pass], several: bool) -> Result<BTreeMap<String, Vec<(f64, f64)>>, Failure> {
+fn deflections(
+    from: &Path,
+    walls: &[Pass],
+    several: bool,
+    warnings: &mut Vec<String>,
+) -> Result<BTreeMap<String, Vec<(f64, f64)>>, Failure> {
     let mut all = BTreeMap::new();
     for pass in walls {
         let table = from.join(format!("{}correction.csv", contour_place(pass, several)));
         if several && !truepath_ground::files::exists(&table) {
+            warnings.push(format!(
+                "{} is not there: how far {} is pushed is not known",
+                table.display(),
+                contour_name(pass)
+            ));
             continue;
         }
         let rows = read_correction(&Source::read(&table)?, None)?;
@@ -209,6 +238,20 @@ fn deflections(from: &Path, walls: &[Pass], several: bool) -> Result<BTreeMap<St
         all.insert(contour_name(pass), along);
     }
     Ok(all)
+}
+
+/// The line of a record, counted from 1: its place is that behind the record before, ahead of blank lines and comments.
+fn line_of(table: &Source, place: &csv::Position) -> u64 {
+    let bytes = table.bytes();
+    let mut at = usize::try_from(place.byte()).unwrap_or(usize::MAX).min(bytes.len());
+    while let Some(byte) = bytes.get(at) {
+        match byte {
+            b'\r' | b'\n' => at += 1,
+            b'#' => at += bytes[at..].iter().take_while(|b| **b != b'\n').count(),
+            _ => break,
+        }
+    }
+    1 + bytes[..at].iter().filter(|b| **b == b'\n').count() as u64
 }
 
 /// Reads the table of parts.
@@ -232,7 +275,7 @@ fn entries(table: &Source, folder: &Path) -> Result<Vec<Entry>, Failure> {
     let mut entries: Vec<Entry> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| unreadable(&e))?;
-        let line = record.position().map_or(1, csv::Position::line);
+        let line = record.position().map_or(1, |place| line_of(table, place));
         let field = |at: usize| record.get(at).unwrap_or_default();
         let number = field(part).parse::<u32>().ok().filter(|n| (1..=1_000_000).contains(n));
         let number =

@@ -115,6 +115,9 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
     let name = name_with(pass.program.name(), "filleted");
     let side = pass.core.setup.wall;
     let wall = passes.iter().all(|other| other.core.setup.wall == side).then_some(side);
+    if wall.is_none() && pass.job.numbers.wall.is_none() {
+        warnings.push("the contours have their walls on different sides, which G41 and G42 said that are no longer in the program: write wall into a [[feature]] for each of them in filleted.toml".to_owned());
+    }
     let folder = OutputFolder::create(&options.output, options.force, &["*.filleted*", JOB])?;
     let said = "The program with arcs on its sharp inside corners, written by truepath fillet";
     let text = job_of(pass, &written, (&name, &options.output), None, wall, said)?;
@@ -131,5 +134,10 @@ fn beside(corner: &Corner, wanted: f64) -> Option<String> {
         return Some(format!("line {line}: the lines beside this corner are too short for an arc: it stays sharp"));
     }
     let smaller = corner.radius_mm < wanted - 1e-6;
-    smaller.then(|| format!("line {line}: the lines beside this corner have room for {:.3} mm", corner.radius_mm))
+    smaller.then(|| {
+        format!(
+            "line {line}: this corner gets an arc of only {:.3} mm on the path, as the lines beside it are short",
+            corner.radius_mm
+        )
+    })
 }

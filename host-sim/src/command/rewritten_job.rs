@@ -31,9 +31,11 @@ pub(super) fn job_of(
     if let Some(wall) = wall.filter(|_| document.get("wall").is_none()) {
         document["wall"] = value(if wall == Side::Left { "left" } else { "right" });
     }
-    for (key, file) in [("probe", &pass.job.stock_probe), ("surface", &pass.job.surface)] {
-        if let Some(file) = file {
-            set(&mut document["stock"][key], relative(&folder.join(name), file)?);
+    let beside = Path::new(pass.job.source().name()).parent().unwrap_or(Path::new(""));
+    for (table, key) in [("stock", "probe"), ("stock", "surface"), ("force", "from"), ("tool", "runout_from")] {
+        let named = document.get(table).and_then(|table| table.get(key)).and_then(Item::as_str);
+        if let Some(file) = named.map(|file| beside.join(file)) {
+            set(&mut document[table][key], relative(&folder.join(name), &file)?);
         }
     }
     let chosen = pass.plan.as_ref().and_then(|plan| plan.id.as_deref());

@@ -88,9 +88,9 @@ fn a_harder_lot_is_noticed_on_its_first_part_and_a_told_one_is_none() {
     assert!((before.value - 0.021).abs() < 3.0 * before.sigma, "{before:?}");
     let told = shown(batch::run(&options(folder.path(), &table("lot"))));
     assert!(told.batch.alarms.is_empty(), "{:?}", told.batch.alarms);
-    // With a tolerance: capability of every place, and the share of the next part.
     let page = fs::read_to_string(folder.path().join("batch/batch.html")).unwrap();
     assert!(page.starts_with("<!DOCTYPE html>") && page.matches("<svg").count() == 2 && page.contains("new lot"));
+    assert!(page.contains("<title>Force level, radius and datum over the parts</title>"));
     let summary: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.path().join("batch/summary.json")).unwrap()).unwrap();
     assert_eq!((summary["touched"].as_u64(), summary["states"].as_array().map(Vec::len)), (Some(9), Some(9)));
@@ -111,6 +111,7 @@ fn a_table_that_says_something_else_is_refused_at_its_line() {
         ("part,probe\none,part-1.txt\n", Some(2), "`one`"),
         ("part,probe\n2,part-1.txt\n2,part-2.txt\n", Some(3), "behind part 2"),
         ("part,probe,event\n1,part-1.txt,\n2,part-2.txt,tool\n", Some(3), "`tool`"),
+        ("part,probe,event\r\n1,part-1.txt,\r\n# a remark\r\n\r\n2,part-2.txt,tool\r\n", Some(5), "`tool`"),
         ("part,probe,event\n1,,cutter\n", Some(1), "no part"),
     ];
     for (table, line, found) in cases {
@@ -139,4 +140,9 @@ fn exit_codes_say_whether_to_go_on() {
     };
     let table = "part,probe\n1,part-1.txt\n2,part-2.txt\n3,part-3.txt\n";
     assert_eq!((run(table, "0.5"), run(table, "0.0001"), run("part\n", "0.5")), (0, 3, 1));
+    // One part is a batch as well.
+    let one = "part,probe\n1,part-1.txt\n";
+    assert_eq!((run(one, "0.5"), run(one, "0.0001")), (0, 3));
+    let page = fs::read_to_string(folder.path().join("batch/batch.html")).unwrap();
+    assert!(page.contains("out of tolerance") && !page.contains("<svg"));
 }

@@ -12,8 +12,8 @@ use crate::cut::{Path, Sample};
 use truepath_units::geometry::{Direction, Side, Vector};
 use truepath_units::{Offset, Real};
 
-/// Sine of the turn from which on the correction of a corner is sought: between legs that are nearly parallel it lies far
-/// away, and the correction changes on the spot.
+/// Sine of the turn from which on the correction of a corner is sought: where the path nearly turns back it lies far away, and the
+/// correction changes on the spot.
 const TURN: Real = Real::ratio(1, 5);
 
 /// A correction across the wall and along it.
@@ -52,29 +52,52 @@ impl Parts {
 /// Leads a correction through all sharp inside corners of a path.
 pub(super) fn turn(path: &Path, nodes: &mut [Node]) {
     let samples = path.samples().get(path.first()..).unwrap_or_default();
+    let side = path.setup().wall;
     let near = |i: usize| samples.get(i).is_some_and(|s| s.near_corner);
+    let parts = |nodes: &[Node], i: usize| Some(Parts::of(nodes.get(i)?, samples.get(i)?, side));
     let mut at = 0usize;
     while at < nodes.len() {
         let end = (at..nodes.len()).find(|i| !near(*i)).unwrap_or(nodes.len());
-        if end > at {
-            through(path.setup().wall, samples, nodes, [at, end]);
+        if end == at {
+            at = at.saturating_add(1);
+            continue;
         }
-        at = end.saturating_add(1);
+        // Corners whose surroundings meet share the leg between them: its middle stands for its straight wall.
+        let mut before = at.checked_sub(1).and_then(|i| parts(nodes, i));
+        while at < end {
+            let corner = (at..end).find(|i| turned(samples, *i));
+            let start = corner.and_then(|corner| (corner..end).find(|i| !turned(samples, *i)));
+            let next = start.and_then(|start| (start..end).find(|i| turned(samples, *i)));
+            let middle = start.zip(next).map(|(start, next)| start.midpoint(next));
+            let behind = parts(nodes, middle.unwrap_or(end));
+            let until = middle.unwrap_or(end);
+            through(side, samples, nodes, [at, until], [before, behind]);
+            (before, at) = (behind, until.max(at.saturating_add(1)));
+        }
     }
 }
 
-/// Leads it through one corner, whose surroundings are the samples `at..end`.
-fn through(side: Side, samples: &[Sample], nodes: &mut [Node], [at, end]: [usize; 2]) {
-    let turned = |i: usize| {
-        // Both on the spot: the corner lies between them and the samples before.
-        matches!((samples.get(i), samples.get(i.saturating_add(1))), (Some(a), Some(b)) if a.point == b.point)
-    };
+/// Whether the centre stays from one sample to the next: the corner lies between them and the samples before.
+fn turned(samples: &[Sample], i: usize) -> bool {
+    matches!((samples.get(i), samples.get(i.saturating_add(1))), (Some(a), Some(b)) if a.point == b.point)
+}
+
+/// Leads it through one corner, whose surroundings are the samples `at..end`, between the straight walls before and behind.
+fn through(
+    side: Side,
+    samples: &[Sample],
+    nodes: &mut [Node],
+    [at, end]: [usize; 2],
+    [before, behind]: [Option<Parts>; 2],
+) {
     let parts = |nodes: &[Node], i: usize| Some(Parts::of(nodes.get(i)?, samples.get(i)?, side));
-    let before = at.checked_sub(1).and_then(|i| parts(nodes, i));
-    let behind = parts(nodes, end);
-    let Some([before, behind]) = before.or(behind).zip(behind.or(before)).map(|(a, b)| [a, b]) else { return };
-    let corner = (at..end).find(|i| turned(*i));
-    let start = corner.map(|corner| corner.saturating_add((corner..end).take_while(|i| turned(*i)).count()));
+    // Nowhere a straight wall: nothing is known of it.
+    let Some([before, behind]) = before.or(behind).zip(behind.or(before)).map(|(a, b)| [a, b]) else {
+        nodes.iter_mut().take(end).skip(at).for_each(|node| *node = Node::default());
+        return;
+    };
+    let corner = (at..end).find(|i| turned(samples, *i));
+    let start = corner.map(|corner| corner.saturating_add((corner..end).take_while(|i| turned(samples, *i)).count()));
     // Both ends of the turn on the spot; without one, all is beside the first wall.
     let [corner, start] = [corner.unwrap_or(end), start.unwrap_or(end)];
     for i in at..end.min(nodes.len()) {
@@ -92,7 +115,11 @@ fn through(side: Side, samples: &[Sample], nodes: &mut [Node], [at, end]: [usize
     let mut met = arriving;
     if sine.abs() >= TURN {
         let between = |own: [Offset; 2], other: [Offset; 2], sine: Real| {
-            let one = |own: Offset, other: Offset| (other - own.scaled(cosine)).scaled(Real::ONE / sine);
+            let one = |own: Offset, other: Offset| {
+                // Into an acute corner no farther than twice what either wall is moved by.
+                let most = own.abs().max(other.abs()) + own.abs().max(other.abs());
+                (other - own.scaled(cosine)).scaled(Real::ONE / sine).max(-most).min(most)
+            };
             let ([own_chip, own_edge], [chip, edge]) = (own, other);
             [one(own_chip, chip), one(own_edge, edge)]
         };

@@ -122,23 +122,32 @@ pub fn design<R: WallReader>(
         Law::Paper(transfer) => transfer.fill(machine, workspace.states, nodes),
     }
     let mut passage = Passage::default();
-    let (mut best, mut is_best) = (Offset::MAX, true);
-    let (mut milestone, mut since) = (Offset::MAX, 0usize);
+    let (mut best, mut least, mut is_best) = ([Offset::MAX; 2], Offset::MAX, true);
+    let (mut milestone, mut since) = ([Offset::MAX; 2], 0usize);
     for _ in 0..=REFINEMENTS {
         settle_ends(path, nodes);
         passage = pass(nodes, workspace, observe);
-        let largest = worst(wanted, path, workspace.profiles);
-        if largest < milestone.scaled(Real::ratio(9, 10)) {
-            (milestone, since) = (largest, 0);
+        let now = worst(wanted, path, workspace.profiles);
+        let [largest, beside] = now;
+        let tenth = |now: Offset, before: Offset| now < before.scaled(Real::ratio(9, 10));
+        if now.iter().zip(&milestone).any(|(now, before)| tenth(*now, *before)) {
+            (milestone, since) = (now, 0);
         } else {
             since = since.saturating_add(1);
         }
-        is_best = largest < best;
+        // What stays beside sharp corners decides where the rest is as good.
+        let [best_largest, best_beside] = best;
+        is_best = if beside == best_beside {
+            largest < best_largest
+        } else {
+            largest + SETTLED < best_largest || (largest <= least + SETTLED && beside < best_beside)
+        };
+        least = least.min(largest);
         if is_best {
-            best = largest;
+            best = now;
             copy(nodes, workspace.scratch);
         }
-        if wanted.law != Law::Model || largest < SETTLED || since > PATIENCE {
+        if wanted.law != Law::Model || largest.max(beside) < SETTLED || since > PATIENCE {
             break;
         }
         refine(path, (wanted.target, wanted.max_gouge), nodes, workspace.profiles, workspace.updates);
@@ -229,11 +238,18 @@ fn one_shot(machine: &Loop, band: Band, nodes: &mut [Node], mirror: bool, uncorr
     }
 }
 
-/// The largest error the target sees; near sharp inside corners the deepest, as material that is left there stays.
-pub(super) fn worst(wanted: &Design, path: &Path, profiles: &[Profile]) -> Offset {
-    let seen = profiles.iter().zip(path.samples().iter().skip(path.first())).map(|(p, sample)| {
+/// The largest error the target sees away from sharp inside corners, and the deepest beside them: material that is left there
+/// stays, and what the wall keeps in the corner itself is nobody's.
+pub(super) fn worst(wanted: &Design, path: &Path, profiles: &[Profile]) -> [Offset; 2] {
+    let mut worst = [Offset::ZERO; 2];
+    for (i, (p, sample)) in profiles.iter().zip(path.samples().iter().skip(path.first())).enumerate() {
         let error = p.aim(wanted.target, wanted.max_gouge);
-        if sample.near_corner { -error } else { error.abs() }
-    });
-    seen.max().unwrap_or_default().max(Offset::ZERO)
+        let [away, beside] = &mut worst;
+        if !sample.near_corner {
+            *away = (*away).max(error.abs());
+        } else if !path.is_pivot(path.first().saturating_add(i)) {
+            *beside = (*beside).max(-error);
+        }
+    }
+    worst
 }

@@ -71,7 +71,7 @@ pub fn guarded_design(
     let mut uncorrected = Offset::ZERO;
     let mut tell = |round: u16, before: u16, done: &mut u16, step: DesignStep<'_>| match step {
         DesignStep::Uncorrected(walls) if round == 0 => {
-            uncorrected = worst(&free, machine.path, walls);
+            [uncorrected, _] = worst(&free, machine.path, walls);
             observe(DesignStep::Uncorrected(walls));
         }
         DesignStep::Uncorrected(_) => (),

@@ -93,13 +93,19 @@ pub(crate) fn fill_gaps(updates: &mut [Update]) {
 /// sharp inside corners ([`corner`]).
 pub(crate) fn settle_ends(path: &Path, nodes: &mut [Node]) {
     round_corners(path, nodes);
+    close(path, nodes);
+    corner::turn(path, nodes);
+    close(path, nodes);
+}
+
+/// A closed correction ends as it begins.
+fn close(path: &Path, nodes: &mut [Node]) {
     if path.is_closed()
         && let Some(&first) = nodes.first()
         && let Some(last) = nodes.last_mut()
     {
         *last = first;
     }
-    corner::turn(path, nodes);
 }
 
 /// Round an outside corner the cutter makes no wall: from the end of one leg to the start of the other the correction

@@ -155,7 +155,7 @@ impl Loop<'_> {
             }
             if self.path.is_pivot(index) {
                 // Nothing is cut on the spot: the machine stands, and the cutter springs back to where it was sent.
-                *slot = State { commanded: commanded(index), normal: sample.normal, ..State::REST };
+                *slot = State { commanded: commanded(index), normal: sample.normal, chip_scale, ..State::REST };
                 continue;
             }
             let (state, iterations) = self.settle_about(index, commanded(index), guess, chip_scale, &mut exit);

@@ -12,7 +12,7 @@ fn followed(series: &Series, tolerance: f64) -> Batch {
 
 /// What is said after every part, as in a shop.
 fn each(series: &Series, tolerance: f64) -> Vec<(u32, Batch)> {
-    let upto = |n: usize| Series { places: series.places.clone(), parts: series.parts[..n].to_vec() };
+    let upto = |n: usize| Series { parts: series.parts[..n].to_vec(), ..series.clone() };
     (2..=series.parts.len()).map(|n| (series.parts[n - 1].number, followed(&upto(n), tolerance))).collect()
 }
 
@@ -100,6 +100,47 @@ fn wear_is_followed_and_the_part_that_leaves_the_tolerance_foretold() {
     assert!(off[2] >= -6 && off[17] <= 6, "{off:?}");
 }
 
+/// The probe may be better or worse than the job says.
+#[test]
+fn the_parts_say_how_noisy_they_are() {
+    for noise in [0.001, 0.006] {
+        let (mut alarms, mut last) = (0, 0.0);
+        for seed in 600..605 {
+            let shop = Shop { noise_mm: noise, ..Shop::default() };
+            let said = each(&shop.mill(40, seed), 0.2);
+            // From the tenth part on.
+            alarms += said.iter().filter(|(part, batch)| *part > 10 && !batch.alarms.is_empty()).count();
+            last = said.last().map_or(0.0, |(_, batch)| batch.noise_mm);
+        }
+        println!("{noise}: {last}, {alarms} alarms");
+        assert!((last / noise - 1.0).abs() < 0.35 && alarms <= 3, "{noise}: {last}, {alarms} alarms");
+    }
+}
+
+#[test]
+fn what_is_new_before_the_first_part_changes_nothing() {
+    let series = Shop { wear: 0.004, ..Shop::default() }.mill(12, 3);
+    let mut with = series.clone();
+    with.parts[0].events = vec![truepath_batch::series::Event::Cutter];
+    let [a, b] = [&series, &with].map(|s| followed(s, 0.2).states.pop().unwrap());
+    assert_eq!((a.force_level, a.radius_lost_mm), (b.force_level, b.radius_lost_mm));
+}
+
+#[test]
+fn parts_milled_since_count_and_a_new_cutter_ends_what_was_foretold() {
+    let series = Shop { wear: 0.003, ..Shop::default() }.mill(24, 300);
+    let leaves = |series: &Series| followed(series, 0.03).alarms.iter().any(|a| matches!(a, Alarm::Leaving { .. }));
+    let part = followed(&series, 0.03).leaves_at_part.unwrap();
+    let short = Series { parts: series.parts[..12].to_vec(), ..series.clone() };
+    assert!(part > 24 && !leaves(&short));
+    assert!(
+        leaves(&Series { milled: Some((part - 2, Vec::new())), ..short.clone() })
+            || followed(&short, 0.03).leaves_at_part.is_none()
+    );
+    let changed = Series { milled: Some((25, vec![truepath_batch::series::Event::Cutter])), ..series };
+    assert!(!leaves(&changed) && followed(&changed, 0.03).leaves_at_part.is_none());
+}
+
 #[test]
 fn a_new_cutter_that_is_told_is_no_alarm_and_one_that_is_not_is() {
     let with = |told: bool, seed: u64| {
@@ -137,6 +178,22 @@ fn a_wild_touch_is_set_aside_and_moves_nothing() {
     let [plain, with] = [&series, &wild].map(|s| followed(s, 0.1));
     let [a, b] = [&plain, &with].map(|batch| batch.states[10].clone());
     assert_eq!((a.wild, b.wild, b.step), (0, 1, false));
+    // It moves nothing, and is not passed over.
+    assert!(plain.alarms.is_empty());
+    let told = |wild: &Series| followed(wild, 0.1).alarms;
+    let last = |k: usize| Series { parts: wild.parts[..k].to_vec(), ..wild.clone() };
+    assert!(matches!(
+        told(&last(11))[..],
+        [Alarm::OutOfTolerance { part: 11, .. }, Alarm::Wild { part: 11, readings: 1, .. }]
+    ));
+    // Two places of eight that are off are no wild touches.
+    let mut two = Shop { places: 8, ..Shop::default() }.mill(12, 8);
+    two.parts[11].readings.iter_mut().take(2).for_each(|(_, error)| *error += 0.05);
+    assert!(told(&two).iter().any(|alarm| matches!(alarm, Alarm::Step { part: 12, .. })), "{:?}", told(&two));
+    // The only place of a part neither.
+    let mut only = Shop { places: 1, ..Shop::default() }.mill(12, 9);
+    only.parts[11].readings[0].1 += 0.05;
+    assert!(!told(&only).is_empty());
     assert!((a.force_level.value - b.force_level.value).abs() < 0.3 * a.force_level.sigma);
 }
 

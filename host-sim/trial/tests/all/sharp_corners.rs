@@ -53,7 +53,7 @@ const HEAD: &str = "G21 G90 G17\nT1 M6\nS3000 M3\n";
 /// Against the cutter's turn along the wall, and with it.
 const CONVENTIONAL: &str = "G0 X-60 Y-40 Z5\nG1 Z-20 F1000\nG1 X-60 Y0 F300\nX0\nY-40\nG0 Z5\nX-20\nM2\n";
 const CLIMB: &str = "G0 X0 Y-40 Z5\nG1 Z-20 F1000\nG1 X0 Y0 F300\nX-60\nY-40\nG0 Z5\nX-20\nM2\n";
-/// A corner of 63 degrees, and one between a line and an arc.
+/// A corner of 27 degrees, and one between a line and an arc.
 const ACUTE: &str = "G0 X-60 Y0 Z5\nG1 Z-20 F1000\nG1 X0 Y0 F300\nX-40 Y-20\nG0 Z5\nY-40\nM2\n";
 const ON_AN_ARC: &str = "G0 X-60 Y0 Z5\nG1 Z-20 F1000\nG1 X0 Y0 F300\nG3 X20 Y-20 I20 J0\nG0 Z5\nX0\nM2\n";
 /// Where the walls are touched, mm along the contour.
@@ -117,10 +117,26 @@ fn the_corrected_path_has_no_step_in_a_sharp_corner() {
     let steps = done.rows.windows(2).map(|w| (w[1].dx_mm - w[0].dx_mm).hypot(w[1].dy_mm - w[0].dy_mm));
     let largest = steps.fold(0.0, f64::max);
     assert!(largest < 0.05, "{largest}");
-    let (a, b) =
-        (done.rows.iter().rposition(|r| r.s_mm <= 40.0).unwrap(), done.rows.iter().position(|r| r.s_mm > 40.0));
-    let (a, b) = (&done.rows[a], &done.rows[b.unwrap()]);
-    assert!((a.dx_mm - b.dx_mm).hypot(a.dy_mm - b.dy_mm) < 0.003);
+    // From the end of one leg to the start of the other, over all that turns on the spot between them.
+    let at_end = done.rows.iter().position(|r| r.s_mm >= 40.0).unwrap();
+    let behind = done.rows.iter().rposition(|r| r.s_mm <= 40.0).unwrap();
+    assert!(behind > at_end + 10);
+    let (a, b) = (&done.rows[at_end], &done.rows[behind]);
+    assert!((a.dx_mm - b.dx_mm).hypot(a.dy_mm - b.dy_mm) < 0.003, "{a:?} {b:?}");
+}
+
+#[test]
+fn corners_of_a_slot_share_the_leg_between_them() {
+    // 13 mm apart: less than the surroundings of both.
+    let slot = "G0 X0 Y-40 Z5\nG1 Z-20 F1000\nG1 X0 Y0 F300\nX13\nY-40\nG0 Z5\nX20\nM2\n";
+    let (done, [before, after]) = way(&pass(JOB, &format!("{HEAD}{slot}")));
+    assert!(after < 0.7 * before, "{before} -> {after}");
+    for s_mm in [40.0, 53.0] {
+        let at_end = done.rows.iter().position(|r| r.s_mm >= s_mm).unwrap();
+        let behind = done.rows.iter().rposition(|r| r.s_mm <= s_mm).unwrap();
+        let (a, b) = (&done.rows[at_end], &done.rows[behind]);
+        assert!((a.dx_mm - b.dx_mm).hypot(a.dy_mm - b.dy_mm) < 0.003, "{a:?} {b:?}");
+    }
 }
 
 /// The program with corners of a radius on the wall, as a pass.
@@ -144,7 +160,7 @@ fn with_arcs_in_the_corners_nearly_all_goes() {
     let (sharp, _) = way(&whole);
     let foretold = sharp.summary.sharp_corners.unwrap().with_arcs.unwrap();
     assert!(foretold.corner_radius_mm == 8.0 && foretold.after_mm < 0.01, "{foretold:?}");
-    assert!(sharp.summary.warnings.iter().any(|text| text.contains("truepath fillet --corner-radius 8 ")));
+    assert!(sharp.summary.warnings.iter().any(|text| text.contains("truepath fillet JOB --corner-radius 8 -o DIR ")));
 }
 
 #[test]
@@ -153,7 +169,6 @@ fn an_arc_touches_a_leg_that_is_an_arc_itself() {
     let (filleted, corners) = rounded(&whole, JOB, 2.0);
     println!("{corners:?}");
     assert_eq!(corners.len(), 1);
-    // From the foot on the line to that on the arc the centre is 2 mm away from either.
     let arcs: Vec<_> =
         filleted.blocks.iter().filter(|b| b.curve.signed_radius().is_some_and(|r| r.abs().nm() < 3_000_000)).collect();
     assert!(!arcs.is_empty());
