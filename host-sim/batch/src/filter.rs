@@ -335,8 +335,9 @@ fn advance(mean: &mut [f64], covariance: &mut [Vec<f64>], parts: u32) {
     for (state, slope) in [(LEVEL, LEVEL_SLOPE), (SIZE, SIZE_SLOPE)] {
         mean[state] += k * mean[slope];
         // F·P·Fᵀ with F = 1 + k at (state, slope).
-        for column in 0..covariance.len() {
-            covariance[state][column] += k * covariance[slope][column];
+        let of_slope = covariance[slope].clone();
+        for (cell, of_slope) in covariance[state].iter_mut().zip(of_slope) {
+            *cell += k * of_slope;
         }
         for line in covariance.iter_mut() {
             line[state] += k * line[slope];

@@ -96,8 +96,11 @@ fn verdict(batch: &Batch) -> String {
     }
 }
 
+/// A curve: its name, its ink, and what of a state it shows.
+type OfState = (&'static str, Ink, fn(&State) -> Known);
+
 /// A state over the parts, with two standard deviations.
-fn of_state(batch: &Batch, unit: &str, scale: f64, curves: &[(&str, Ink, fn(&State) -> Known)]) -> Panel {
+fn of_state(batch: &Batch, unit: &str, scale: f64, curves: &[OfState]) -> Panel {
     let points =
         |of: fn(&State) -> Known| batch.states.iter().map(|s| (f64::from(s.part), scale * of(s).value)).collect();
     let lines = curves.iter().map(|(name, ink, of)| Curve::new(*name, *ink, points(*of))).collect();
@@ -118,8 +121,7 @@ fn moves(batch: &Batch) -> Result<String, Failure> {
         rows.push(of_state(batch, "force level (%)", 100.0, &[("", INK_BEFORE, |s| s.force_level)]));
     }
     rows.push(of_state(batch, "radius lost (µm)", 1e3, &[("", INK_AFTER, |s| s.radius_lost_mm)]));
-    let datum: [(&str, Ink, fn(&State) -> Known); 2] =
-        [("X", INK_AFTER, |s| s.datum_mm[0]), ("Y", INK_BEFORE, |s| s.datum_mm[1])];
+    let datum: [OfState; 2] = [("X", INK_AFTER, |s| s.datum_mm[0]), ("Y", INK_BEFORE, |s| s.datum_mm[1])];
     rows.push(of_state(batch, "datum (µm)", 1e3, &datum));
     text(
         panels_over(&View { title: Some(String::new()), ..View::default() }, "", PARTS, &rows)?,

@@ -84,9 +84,7 @@ fn wear_is_followed_and_the_part_that_leaves_the_tolerance_foretold() {
                 Alarm::Leaving { part, .. } | Alarm::OutOfTolerance { part, .. } => Some(*part),
                 _ => None,
             });
-            if first.is_none() && told.is_some() {
-                first = Some((part, told.unwrap()));
-            }
+            first = first.or(told.map(|told| (part, told)));
         }
         let (when, told) = first.unwrap();
         off.push(i64::from(told) - i64::from(truth));
