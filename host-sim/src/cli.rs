@@ -81,7 +81,7 @@ enum Command {
     Unpack(pack::UnpackOptions),
     /// For a single part: a program that cuts half of the allowance, to be probed then.
     Split(split::Options),
-    /// Many parts of one job: what moves from part to part, control charts, capability, alarms.
+    /// Many parts of one job: what moves, control charts, capability, alarms.
     Batch(batch::Options),
     /// Small arcs on sharp inside corners, where no correction reaches.
     Fillet(fillet::Options),
