@@ -69,7 +69,7 @@ fn at_a_sharp_inside_corner_the_wall_never_gets_worse_and_the_user_is_told() {
     assert!(after <= before, "{before} -> {after}");
     let straight = worst(&told.second, 8.0, 36.0).max(worst(&told.second, 64.0, 92.0));
     assert!(straight < 0.01, "{straight}");
-    assert!(told.corrected.summary.warnings.iter().any(|w| w.contains("sharp inside corner near line")));
+    assert!(told.corrected.summary.warnings.iter().any(|w| w.contains("sharp inside corner at line")));
 }
 
 #[test]
