@@ -1,9 +1,9 @@
 //! Small arcs on the sharp inside corners of a path, tangent to both its legs.
 //!
 //! At a sharp inside corner the load changes the moment the direction does, and the cutter cannot be on both sides of the
-//! change: a correction in place leaves half of the error there, and material in the corner. An arc of a third of the cutter's radius
-//! or more gives the correction a way to turn on. The price is material: the wall's corner becomes rounder than the cutter, by [`Corner::left`] where
-//! most is left, which the drawing has to allow.
+//! change: a correction in place leaves half of the error there, and material in the corner. An arc of a third of the cutter's
+//! radius or more gives the correction a way to turn on. The price is material: the wall's corner becomes rounder than the
+//! cutter, by [`Corner::left_mm`] where most is left, which the drawing has to allow.
 //!
 //! The centre of an arc lies as far from one leg as from the other; legs that are arcs themselves are followed by Newton's
 //! method on both distances. Reckoned in floating point from the corner, so that nothing depends on where the part lies.

@@ -17,6 +17,11 @@ pub const fn float(v: Real) -> f64 {
     v.bits() as f64 / 4_294_967_296.0
 }
 
+/// The nearest number of the model; the end of its range for one beyond.
+pub fn real(value: f64) -> Real {
+    Real::from_bits((value * 4_294_967_296.0).round() as i64)
+}
+
 /// A value rounded to so many decimals: nanometres and nanoradians are enough for any reader.
 pub fn rounded(v: f64, digits: i32) -> f64 {
     let scale = 10f64.powi(digits);

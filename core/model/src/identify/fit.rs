@@ -71,8 +71,8 @@ pub struct Cut<'a> {
 /// Both halves of a [pair](Observation::paired) are among the observations, each with those of its own cut, and no two pairs
 /// of all parts have one number. The observations are those of the cuts in their order: those of the `earlier` parts, one part behind the other, then
 /// those of the last. `commanded(cut, sample)` is the displacement that the program commanded at a sample of a cut, counted
-/// from 0. Every part has a datum of its own, which all its contours share; that of [`Fit::parameters`] is the last one's,
-/// the others are left in `earlier`. `observe` is told the share of the longest possible fit that is done, ‰, rising: a
+/// from 0. Every part has a datum and a level of force of its own, which all its contours share; those of
+/// [`Fit::parameters`] are the last one's, the others are left in `earlier`, which say what is believed of the levels. `observe` is told the share of the longest possible fit that is done, ‰, rising: a
 /// fit that settles early ends before 1000. On return the observations hold predictions, weights and sensitivities at
 /// the solution.
 pub fn identify(
@@ -133,7 +133,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         table.tabulate(prior.mean.coefficients.size_exponent);
         let mut theta = [Real::ZERO; COUNT];
         for part in earlier.iter_mut() {
-            *part = EarlierPart::new(part.points);
+            *part = EarlierPart::new(part.points, part.believed);
         }
         let mut points = Points { earlier, observations, predictor, come: None };
         spread::set(points.observations, Real::ONE);
@@ -162,7 +162,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         aim.least = SETTLED;
         let (information, cost, more) = self.settle(&mut table, &mut theta, aim, &mut points, quiet);
         steps = steps.saturating_add(more);
-        let taken_out = points.earlier.iter().fold(Real::ZERO, |sum, part| sum + part.eliminated.log2_determinant());
+        let taken_out = points.earlier.iter().fold(Real::ZERO, |sum, part| sum + part.log2_determinant());
         let ln_determinant = (information.log2_determinant() + taken_out) * Real::ratio(693_147_181, 1_000_000_000);
         let evidence = -((cost + ln_determinant + spread::cost(points.observations, factor)) * Real::HALF);
         let covariance = information.covariance();
@@ -212,7 +212,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
                 // Sensitivities of another place may have led astray.
                 points.come = None;
                 for part in points.earlier.iter_mut() {
-                    part.trial = part.datum;
+                    part.look_back();
                 }
                 cost = self.evaluate(table, theta, gate, points);
                 information = self.linearised(table, theta, points, &mut |k| observe(permille(steps, k)));
@@ -220,7 +220,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
             };
             *theta = accepted;
             for part in points.earlier.iter_mut() {
-                part.datum = part.trial;
+                part.stay();
             }
             points.come = points.come.map(|come| come + largest * share);
             let settled = largest < Real::ratio(1, 2000) || cost - new_cost < least;
@@ -235,19 +235,19 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
             }
         }
         for part in points.earlier.iter_mut() {
-            part.trial = part.datum;
+            part.look_back();
         }
         cost = self.evaluate(table, theta, gate, points);
         (information, cost, steps)
     }
 
-    /// Predicts the points of every cut with its own correction and the datum of its part.
+    /// Predicts the points of every cut with its own correction, and with what is its part's own.
     fn predict(&self, table: &ForceTable, parameters: &Parameters, points: &mut Points<impl Predictor>) {
         let mut rest = &mut *points.observations;
         for (k, cut) in self.cuts.iter().enumerate() {
-            let datum = points.earlier.get(cut.part).map_or(parameters.datum, |part| part.trial_datum(self.prior));
             let (own, others) = rest.split_at_mut(cut.points.min(rest.len()));
-            let parameters = Parameters { datum, ..*parameters };
+            let parameters =
+                points.earlier.get(cut.part).map_or(*parameters, |part| part.tried(self.prior, parameters));
             points.predictor.predict(&cut.path, table, &parameters, |i| (self.commanded)(k, i), own);
             rest = others;
         }
@@ -265,8 +265,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         let parameters = self.prior.at(theta);
         renew(table, &parameters);
         self.predict(table, &parameters, points);
-        let datums = points.earlier.iter().flat_map(|part| &part.trial);
-        let mut cost = datums.fold(tails::cost(theta), |sum, t| sum + *t * *t);
+        let mut cost = points.earlier.iter().fold(tails::cost(theta), |sum, part| sum + part.cost());
         for o in points.observations.iter_mut() {
             cost += o.weigh(gate);
         }
@@ -290,7 +289,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         let mut rest = &*points.observations;
         for part in points.earlier.iter_mut() {
             let (own, others) = rest.split_at(part.points.min(rest.len()));
-            part.inform(&mut information, own);
+            part.inform(&mut information, self.prior, own);
             rest = others;
         }
         for o in rest {

@@ -76,6 +76,6 @@ pub use law::{identify_law, speaks_for_mean};
 pub use neighbours::neighbours;
 pub use observation::{Observation, PredictionWorkspace, Predictor, join_pairs, predict};
 pub use parameters::{COUNT, Parameter, Parameters, Prior};
-pub use part::{EarlierPart, Eliminated};
+pub use part::{EarlierPart, Eliminated, EliminatedLevel, Level};
 pub use solve::{Information, Matrix, square_root};
 pub use tails::weights as prior_weights;

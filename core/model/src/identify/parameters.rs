@@ -304,6 +304,18 @@ impl Parameters {
         Loop { path, table, coefficients, compliance, undersize }
     }
 
+    /// The same where every force is larger by a factor, given by its natural logarithm: the compliance carries the scale of both.
+    #[must_use]
+    pub fn with_force(mut self, level: Real) -> Self {
+        if level != Real::ZERO {
+            let factor = exp(level.max(-FURTHEST).min(FURTHEST));
+            let Compliance { mean, difference, cross, bend } = self.compliance;
+            self.compliance =
+                Compliance { mean: mean * factor, difference: difference * factor, cross: cross * factor, bend };
+        }
+        self
+    }
+
     /// Values in the order of the fit; units by [`Parameter::unit`].
     pub fn values(&self) -> [Real; COUNT] {
         let (k, c) = (&self.coefficients, &self.compliance);

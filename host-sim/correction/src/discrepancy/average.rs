@@ -138,6 +138,17 @@ impl Along {
     }
 }
 
+/// Expected discrepancy at a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct AtPoint {
+    /// All of it, mm.
+    pub(super) all: f64,
+    /// What of that a millimetre more of allowance does, mm.
+    pub(super) per_stock: f64,
+    /// What a level of force larger by one does, natural logarithm, mm.
+    pub(super) per_level: f64,
+}
+
 /// How large the kinds are, root mean square over the kernels by their shares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Sizes {
@@ -236,10 +247,21 @@ impl Discrepancy {
         path.samples().iter().map(|sample| -nm(self.more_stock(contour, mm(sample.s)))).collect()
     }
 
-    /// Expected discrepancy at every point that was given, in their order, mm; that of its own part, its level of force
-    /// included. With it, what of that a millimetre more of allowance does.
-    pub(super) fn at_points(&self) -> Vec<(f64, f64)> {
-        let mut all = vec![(0.0, 0.0); self.points.given];
+    /// Expected level of force of every one of so many parts before the last over that of the next, natural logarithm.
+    pub(super) fn levels(&self, earlier: usize) -> Vec<f64> {
+        let level = |part: usize| {
+            let parts_ago = earlier + 1 - part;
+            self.mean_over(|factored| {
+                let level = |row: &Row| factored.kernel.with_level(&row.feature, [row.parts_ago, parts_ago]);
+                factored.mean(&self.rows().map(level).collect::<Vec<f64>>())
+            })
+        };
+        (0..earlier).map(level).collect()
+    }
+
+    /// Expected discrepancy at every point that was given, in their order; that of its own part, its level of force included.
+    pub(super) fn at_points(&self) -> Vec<AtPoint> {
+        let mut all = vec![AtPoint::default(); self.points.given];
         for row in &self.points.rows {
             let value = self.mean_over(|factored| {
                 let covariance: Vec<f64> =
@@ -247,7 +269,7 @@ impl Discrepancy {
                 factored.mean(&covariance)
             });
             for slot in row.points.clone().chain(row.other_half) {
-                all[slot] = (value, row.feature.stock);
+                all[slot] = AtPoint { all: value, per_stock: row.feature.stock, per_level: row.feature.load };
             }
         }
         all

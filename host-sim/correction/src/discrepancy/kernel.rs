@@ -157,11 +157,26 @@ impl Kernel {
         sum
     }
 
+    /// Covariance of a place of one part with the level of force of another over that of the next, natural logarithm, mm; the parts lie
+    /// so many before the next one (1 for the newest).
+    pub(super) fn with_level(&self, place: &Feature, parts_ago: [usize; 2]) -> f64 {
+        place.load * self.levels(parts_ago)
+    }
+
+    /// Covariance of the levels of force of two parts.
+    fn levels(&self, parts_ago: [usize; 2]) -> f64 {
+        let own = if parts_ago[0] == parts_ago[1] { BLANK.powi(2) } else { 0.0 };
+        self.wear.powi(2) * shared(parts_ago) + own
+    }
+
     /// Covariance of two places by the level of force and the size of the cutter on their parts, which lie so many parts
     /// before the next one (1 for the newest), mm².
     pub(super) fn between_parts(&self, a: &Feature, b: &Feature, parts_ago: [usize; 2]) -> f64 {
-        let shared = parts_ago[0].min(parts_ago[1]) as f64;
-        let own = if parts_ago[0] == parts_ago[1] { BLANK.powi(2) } else { 0.0 };
-        (a.load * b.load) * (self.wear.powi(2) * shared + own) + SIZE.powi(2) * shared
+        (a.load * b.load) * self.levels(parts_ago) + SIZE.powi(2) * shared(parts_ago)
     }
+}
+
+/// How many steps of a walk that is counted back from the next part two parts have in common.
+fn shared(parts_ago: [usize; 2]) -> f64 {
+    parts_ago[0].min(parts_ago[1]) as f64
 }

@@ -33,5 +33,5 @@ mod relieved;
 pub use average::{Along, Discrepancy, Sizes, ln_probability_elsewhere};
 pub use feature::{Engagement, Feature, Sensitivity};
 pub use kernel::{Kernel, least_change};
-pub use points::{CutPoints, Points, stock_sensitivities};
-pub use relieved::{PartCut, Relieved, datums, is_fitted, ln_evidence, plain, relieved};
+pub use points::{CutPoints, Own, Points, stock_sensitivities};
+pub use relieved::{PartCut, Relieved, is_fitted, ln_evidence, own, plain, relieved};

@@ -5,7 +5,7 @@ use truepath_core::cut::{Path, State};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{COUNT, Observation, Parameter, PredictionWorkspace, predict};
 use truepath_core::job;
-use truepath_ground::units::{float, mm};
+use truepath_ground::units::{float, mm, real};
 
 use super::feature::{Engagement, Feature, Sensitivity};
 use super::kernel::{Extent, Kernel};
@@ -18,6 +18,15 @@ const MOST_POINTS: usize = 120;
 const MOST_PLACES: usize = 160;
 /// Parameters that all parts share; the other two are the datum of each.
 pub(super) const SHARED: usize = COUNT - 2;
+
+/// What a part has of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Own {
+    /// Its datum, prior standard deviations.
+    pub datum: [f64; 2],
+    /// Its level of force over that of the next part, natural logarithm, where it is fitted: that of the last part is not.
+    pub level: f64,
+}
 
 /// The points of one contour of one part, as a fit has left them.
 #[derive(Clone, Copy, Debug)]
@@ -34,8 +43,8 @@ pub struct CutPoints<'a> {
     pub observations: &'a [Observation],
     /// By how much the allowance of that stock is larger than the job says at the points, mm; empty for nowhere.
     pub more: &'a [f64],
-    /// The datum of the part, prior standard deviations.
-    pub datum: [f64; 2],
+    /// What the part has of its own.
+    pub own: Own,
 }
 
 /// A point, or the mean of the points of a place.
@@ -45,8 +54,8 @@ pub(super) struct Row {
     /// The wall across, where the point is a width: the mean of both. It may be on another contour.
     pub(super) across: Option<Feature>,
     pub(super) parts_ago: usize,
-    /// Measured − predicted where no parameter is known better than before and the stock is even, mm: the residual of the fit and
-    /// what the fitted parameters and the stock have explained.
+    /// Measured − predicted where no parameter is known better than before, the stock is even and all parts have one level of force,
+    /// mm: the residual of the fit and what all of these have explained.
     pub(super) unexplained: f64,
     /// Variance of each of its points by the stated noise, mm².
     pub(super) noise: f64,
@@ -97,7 +106,8 @@ impl Points {
             extents[cut.contour] = Some(Extent::of(path));
             let working = path.working();
             let mut states = vec![State::REST; working.len()];
-            core.machine(path, &table).run(working.start, &mut states, |i| commanded(path, cut.nodes, i));
+            let parameters = core.fit.parameters.with_force(real(cut.own.level));
+            parameters.machine(path, &table).run(working.start, &mut states, |i| commanded(path, cut.nodes, i));
             engagements.push(Engagement::of(path, cut.contour, working.start, &states));
             stock.extend(stock_sensitivities(path, cut, core));
         }
@@ -151,14 +161,15 @@ fn row(
     let count = group.len() as f64;
     let mean = |f: &dyn Fn(&Observation) -> f64| group.iter().map(f).sum::<f64>() / count;
     let sensitivity: [f64; COUNT] = std::array::from_fn(|k| mean(&|o| float(o.sensitivity[k]) * mm(o.deviation())));
-    let fitted = |k: usize| if k < SHARED { theta[k] } else { cut.datum[k - SHARED] };
+    let fitted = |k: usize| if k < SHARED { theta[k] } else { cut.own.datum[k - SHARED] };
     let shared: f64 = (0..SHARED).map(|k| sensitivity[k] * fitted(k)).sum();
     // The two components of a vector are added first: their order is lost.
     let datum = sensitivity[SHARED] * fitted(SHARED) + sensitivity[SHARED + 1] * fitted(SHARED + 1);
     let by_stock = stock.iter().zip(more).map(|(per, more)| per * more).sum::<f64>() / count;
-    let unexplained = mean(&|o| mm(o.error - o.predicted)) + (shared + datum) + by_stock;
-    let stated = mean(&|o| (mm(o.deviation()) / float(o.spread)).powi(2));
     let of_load = Sensitivity { load: sensitivity[0] / level, stock: stock.iter().sum::<f64>() / count };
+    let by_level = of_load.load * cut.own.level;
+    let unexplained = mean(&|o| mm(o.error - o.predicted)) + (shared + datum) + by_stock + by_level;
+    let stated = mean(&|o| (mm(o.deviation()) / float(o.spread)).powi(2));
     let feature = engagement.at(group[0].s, group[0].normal, of_load);
     // Each of two walls bears as much of the load as both do in the mean.
     let across = group[0].across().map(|s| engagement.at(s, group[0].normal.reversed(), of_load));
@@ -168,13 +179,14 @@ fn row(
 
 /// Change of the error at the points of a cut per allowance, mm per mm.
 pub fn stock_sensitivities(path: &Path, cut: &CutPoints<'_>, core: &job::Identified) -> Vec<f64> {
+    let parameters = core.fit.parameters.with_force(real(cut.own.level));
     let predicted = |path: &Path| {
         let room = path.working().len() + 1;
         let (mut states, mut displacements) = (vec![State::REST; room], vec![Vector::ZERO; room]);
         let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
         let mut points = cut.observations.to_vec();
         let asked = |i: usize| commanded(path, cut.nodes, i);
-        predict(path, &core.table(), &core.fit.parameters, asked, &mut points, &mut workspace);
+        predict(path, &core.table(), &parameters, asked, &mut points, &mut workspace);
         points
     };
     let [more, less] = moved_stock(path).map(|(mut buffer, shift)| {

@@ -8,17 +8,17 @@ use truepath_core::correct::{Node, commanded};
 use truepath_core::cut::{Path, Sample, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{
-    Cut, EarlierPart, Observation, PredictionWorkspace, join_pairs, predict, speaks_for_mean,
+    Cut, EarlierPart, Level, Observation, PredictionWorkspace, join_pairs, predict, speaks_for_mean,
 };
 use truepath_core::job::{self, LawName};
 use truepath_core::units::Offset;
-use truepath_ground::units::{float, mm, nm};
+use truepath_ground::units::{float, mm, nm, real};
 use truepath_job::pass::Pass;
 
 use super::average::{Along, Discrepancy, ln_probability};
 use super::nominal::with_stock;
 use super::pairs::Pairs;
-use super::points::{CutPoints, Points};
+use super::points::{CutPoints, Own, Points};
 use crate::identification::{Found, Points as Asked, found, under_both};
 use crate::plausible::is_possible;
 
@@ -60,8 +60,8 @@ pub struct PartCut<'a> {
 pub struct Relieved {
     /// Machine and material; the points of the cuts stand one behind the other, with the errors that were measured.
     pub found: Found,
-    /// The datum of every part, prior standard deviations.
-    pub datums: Vec<[f64; 2]>,
+    /// What every part has of its own.
+    pub own: Vec<Own>,
     /// What is beside them; `None` where there are no points.
     pub discrepancy: Option<Discrepancy>,
     /// What is beside them at every point, mm.
@@ -83,10 +83,10 @@ pub fn is_fitted(pass: &Pass) -> bool {
 pub fn plain(pass: &Pass, law: Option<WallLaw>, cuts: &[PartCut<'_>], progress: &mut dyn FnMut(f64)) -> Found {
     let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
     if let Some(law) = law {
-        return fitted(&pass.core, law, cuts, &measured, progress);
+        return fitted(&pass.core, law, cuts, &measured, &[], progress);
     }
     let by_program = |cut: usize, sample: usize| by_program(cuts, cut, sample);
-    let (mean, helical) = asked(cuts, &measured, |points| under_both(&pass.core, points, by_program, progress));
+    let (mean, helical) = asked(cuts, &measured, &[], |points| under_both(&pass.core, points, by_program, progress));
     let is_mean = speaks_for_mean(&mean.core.fit, &helical.core.fit)
         // Points that other stock or another size would explain under the helical law are no reason by themselves.
         && (!is_fitted(pass)
@@ -95,16 +95,17 @@ pub fn plain(pass: &Pass, law: Option<WallLaw>, cuts: &[PartCut<'_>], progress: 
     if is_mean { mean } else { helical }
 }
 
-/// As [`plain()`], under a law, to observations in place of those of the cuts.
+/// As [`plain()`], under a law, to observations in place of those of the cuts, at known levels of force of the parts.
 fn fitted(
     pass: &job::ContourPass,
     law: WallLaw,
     cuts: &[PartCut<'_>],
     observations: &[Observation],
+    levels: &[f64],
     progress: &mut dyn FnMut(f64),
 ) -> Found {
     let by_program = |cut: usize, sample: usize| by_program(cuts, cut, sample);
-    asked(cuts, observations, |points| found(pass, Some(law), points, by_program, progress))
+    asked(cuts, observations, levels, |points| found(pass, Some(law), points, by_program, progress))
 }
 
 /// The displacement that the program commanded at a sample of a cut.
@@ -112,18 +113,26 @@ fn by_program(cuts: &[PartCut<'_>], cut: usize, sample: usize) -> Vector {
     cuts.get(cut).map_or(Vector::ZERO, |cut| commanded(&cut.path, cut.nodes, sample))
 }
 
-/// Observations of cuts as a fit takes them.
-fn asked<T>(parts: &[PartCut<'_>], observations: &[Observation], fit: impl FnOnce(Asked<'_>) -> T) -> T {
+/// Observations of cuts as a fit takes them, at known levels of force of the parts; a part without one may have any.
+fn asked<T>(
+    parts: &[PartCut<'_>],
+    observations: &[Observation],
+    levels: &[f64],
+    fit: impl FnOnce(Asked<'_>) -> T,
+) -> T {
     let cuts: Vec<Cut> =
         parts.iter().map(|cut| Cut { path: cut.path, points: cut.observations.len(), part: cut.part }).collect();
     let count = |part: usize| parts.iter().filter(|cut| cut.part == part).map(|cut| cut.observations.len()).sum();
-    let earlier: Vec<EarlierPart> = (0..last_part(parts)).map(|part| EarlierPart::new(count(part))).collect();
+    let level = |part: usize| levels.get(part).map_or(Level::ANY, |level| Level::known(real(*level)));
+    let earlier: Vec<EarlierPart> =
+        (0..last_part(parts)).map(|part| EarlierPart::new(count(part), level(part))).collect();
     fit(Asked { cuts: &cuts, earlier: &earlier, observations })
 }
 
 /// What the parts show beside machine and material, which are fitted again to the points relieved of it; `found` is their
 /// [`plain()`] fit. `progress` is told the share done.
 ///
+/// A level of force of an earlier part is not linear either: the fit is about that which is expected.
 /// Where stock differs, other teeth cut at other times, which is not linear. Machine and material are therefore fitted a second
 /// time, about the stock that is expected, and believed where the points are clearly more probable so.
 pub fn relieved(
@@ -133,7 +142,7 @@ pub fn relieved(
     progress: &mut dyn FnMut(f64),
 ) -> Relieved {
     let task = Task { pass, law: found.core.law, cuts };
-    let first = About::of(found, cuts, Beside::none(cuts), None);
+    let first = About::of(found.clone(), cuts, Beside::none(cuts, &found), None);
     let even = task.even(first.clone(), &mut |share| progress(0.5 * share));
     let is_stock = |about: &About| about.shown(cuts) > LEAST_STOCK;
     let stocked = is_stock(&even)
@@ -244,7 +253,7 @@ impl About {
 
     /// What the discrepancy says is beside machine and material.
     fn next(&self, cuts: &[PartCut<'_>], stock_step: f64) -> Beside {
-        let Some(discrepancy) = &self.discrepancy else { return Beside::none(cuts) };
+        let Some(discrepancy) = &self.discrepancy else { return Beside::none(cuts, &self.found) };
         let stock: Vec<Vec<f64>> = cuts
             .iter()
             .zip(&self.beside.stock)
@@ -263,10 +272,15 @@ impl About {
         };
         let mut more: Vec<f64> = cuts.iter().zip(&stock).flat_map(at_points).collect();
         Pairs::of(cuts.iter().flat_map(|cut| cut.observations)).join(&mut more);
-        let all = discrepancy.at_points();
-        let rest = all.iter().zip(&more).map(|((all, per_stock), more)| all - per_stock * more).collect();
-        let by_stock = all.iter().map(|(_, per_stock)| *per_stock).collect();
-        Beside { stock, more, by_stock, rest, is_any: true }
+        let levels = discrepancy.levels(last_part(cuts));
+        let level = at_every_point(cuts, &levels);
+        let (mut rest, mut by_stock, mut by_level) = (Vec::new(), Vec::new(), Vec::new());
+        for ((at, more), level) in discrepancy.at_points().iter().zip(&more).zip(&level) {
+            rest.push(at.all - at.per_stock * more - at.per_level * level);
+            by_stock.push(at.per_stock);
+            by_level.push(at.per_level);
+        }
+        Beside { stock, more, by_stock, levels, level, by_level, rest, is_any: true }
     }
 }
 
@@ -279,23 +293,44 @@ struct Beside {
     more: Vec<f64>,
     /// What a millimetre more does to every point, mm.
     by_stock: Vec<f64>,
-    /// What is at every point beside the stock, mm.
+    /// The level of force of every part before the last over that of the next, natural logarithm.
+    levels: Vec<f64>,
+    /// That of its part at every point, 0 on the last part.
+    level: Vec<f64>,
+    /// What it does to every point, mm per unit.
+    by_level: Vec<f64>,
+    /// What is at every point beside both, mm.
     rest: Vec<f64>,
     /// Whether it was found: points were relieved of it.
     is_any: bool,
 }
 
 impl Beside {
-    fn none(cuts: &[PartCut<'_>]) -> Self {
+    /// Nothing beside a fit.
+    fn none(cuts: &[PartCut<'_>], found: &Found) -> Self {
         let points = vec![0.0; cuts.iter().map(|cut| cut.observations.len()).sum()];
         let stock = cuts.iter().map(|cut| vec![0.0; cut.path.samples().len()]).collect();
-        Self { stock, more: points.clone(), by_stock: points.clone(), rest: points, is_any: false }
+        let levels: Vec<f64> = found.earlier.iter().map(|part| float(part.level())).collect();
+        Self {
+            stock,
+            more: points.clone(),
+            by_stock: points.clone(),
+            level: at_every_point(cuts, &levels),
+            levels,
+            by_level: points.clone(),
+            rest: points,
+            is_any: false,
+        }
     }
 
     /// How far it moves a point at most from where it was, mm.
     fn moved(&self, before: &Self) -> f64 {
         let each = 0..self.rest.len();
-        let by = |k: usize| self.rest[k] - before.rest[k] + self.by_stock[k] * (self.more[k] - before.more[k]);
+        let by = |k: usize| {
+            let stock = self.by_stock[k] * (self.more[k] - before.more[k]);
+            let level = self.by_level[k] * (self.level[k] - before.level[k]);
+            self.rest[k] - before.rest[k] + stock + level
+        };
         each.map(|k| by(k).abs()).fold(0.0, f64::max)
     }
 
@@ -306,6 +341,8 @@ impl Beside {
         };
         self.stock.iter_mut().zip(&before.stock).for_each(|(now, before)| come(now, before));
         come(&mut self.more, &before.more);
+        come(&mut self.levels, &before.levels);
+        come(&mut self.level, &before.level);
         come(&mut self.rest, &before.rest);
     }
 
@@ -340,7 +377,7 @@ impl Beside {
             o.error -= nm(*rest);
         }
         // From the prior again: from the last fit it may stay with points of something else.
-        let mut found = self.stocked(cuts, |cuts| fitted(pass, law, cuts, &relieved, progress));
+        let mut found = self.stocked(cuts, |cuts| fitted(pass, law, cuts, &relieved, &self.levels, progress));
         for (o, measured) in found.observations.iter_mut().zip(measured()) {
             o.error = measured.error;
         }
@@ -350,7 +387,12 @@ impl Beside {
     /// What the parts say, the predictions of their points those of even stock.
     fn relieved(self, mut found: Found, discrepancy: Option<Discrepancy>, cuts: &[PartCut<'_>]) -> Relieved {
         let mut at_points: Vec<f64> = match &discrepancy {
-            Some(discrepancy) => discrepancy.at_points().iter().map(|(all, _)| *all).collect(),
+            Some(discrepancy) => discrepancy
+                .at_points()
+                .iter()
+                .zip(&self.level)
+                .map(|(at, level)| at.all - at.per_level * level)
+                .collect(),
             None => vec![0.0; self.rest.len()],
         };
         let in_stock = self.stocked(cuts, |cuts| predictions(&found, cuts));
@@ -363,12 +405,18 @@ impl Beside {
             o.predicted -= by_its_stock;
             *beside += mm(by_its_stock) - more * by_stock;
         }
-        let datums = datums(&found, last_part(cuts) + 1);
-        Relieved { found, datums, discrepancy, at_points, is_any: self.is_any }
+        let own = own(&found, last_part(cuts) + 1);
+        Relieved { found, own, discrepancy, at_points, is_any: self.is_any }
     }
 }
 
-/// What the machine leaves at the points of the cuts, all in the datum of the last part.
+/// A value of every part before the last at every point of the cuts, 0 at those of the last.
+fn at_every_point(cuts: &[PartCut<'_>], values: &[f64]) -> Vec<f64> {
+    let of = |cut: &PartCut<'_>| values.get(cut.part).copied().unwrap_or_default();
+    cuts.iter().flat_map(|cut| std::iter::repeat_n(of(cut), cut.observations.len())).collect()
+}
+
+/// What the machine leaves at the points of the cuts, all in the datum and at the level of force of the last part.
 fn predictions(found: &Found, cuts: &[PartCut<'_>]) -> Vec<Offset> {
     let core = &found.core;
     let of_cut = |cut: &PartCut<'_>| {
@@ -408,7 +456,7 @@ pub fn ln_evidence(found: &Found, cuts: &[PartCut<'_>]) -> Option<f64> {
 /// The points as the discrepancy takes them; the allowance is `more` than the job says at each.
 fn points(parts: &[PartCut<'_>], found: &Found, more: &[f64]) -> Points {
     let last = last_part(parts);
-    let datums = datums(found, last + 1);
+    let every_own = own(found, last + 1);
     let (mut rest, mut more) = (&found.observations[..], more);
     let cuts: Vec<CutPoints> = parts
         .iter()
@@ -417,20 +465,21 @@ fn points(parts: &[PartCut<'_>], found: &Found, more: &[f64]) -> Points {
             let (observations, others) = rest.split_at(count.min(rest.len()));
             let (more_here, more_there) = more.split_at(count.min(more.len()));
             (rest, more) = (others, more_there);
-            let datum = datums.get(cut.part).copied().unwrap_or_default();
+            let own = every_own.get(cut.part).copied().unwrap_or_default();
             let parts_ago = last + 1 - cut.part;
             let (path, contour, nodes) = (&cut.path, cut.contour, cut.nodes);
-            CutPoints { path, contour, parts_ago, nodes, observations, more: more_here, datum }
+            CutPoints { path, contour, parts_ago, nodes, observations, more: more_here, own }
         })
         .collect();
     Points::of(&cuts, &found.core)
 }
 
-/// The datum of every part, prior standard deviations.
-pub fn datums(found: &Found, parts: usize) -> Vec<[f64; 2]> {
+/// What every part of a fit has of its own.
+pub fn own(found: &Found, parts: usize) -> Vec<Own> {
     let job::Identified { prior, fit, .. } = &found.core;
     let [.., sigma_x, sigma_y] = prior.sigma.map(float);
     let shares = |d: Vector| [mm(d.x) / sigma_x.max(1e-9), mm(d.y) / sigma_y.max(1e-9)];
-    let last = [fit.parameters.datum];
-    found.earlier.iter().map(|part| part.datum(prior)).chain(last).take(parts).map(shares).collect()
+    let last = Own { datum: shares(fit.parameters.datum), level: 0.0 };
+    let earlier = found.earlier.iter().map(|part| Own { datum: shares(part.datum(prior)), level: float(part.level()) });
+    earlier.chain([last]).take(parts).collect()
 }

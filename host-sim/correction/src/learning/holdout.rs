@@ -13,7 +13,7 @@ use truepath_core::units::Real;
 use truepath_ground::units::{float, mm};
 
 use super::joint::{Joint, PartPoints};
-use crate::discrepancy::{CutPoints, Engagement, Sensitivity, stock_sensitivities};
+use crate::discrepancy::{CutPoints, Engagement, Own, Sensitivity, stock_sensitivities};
 
 /// Which places are held out.
 #[derive(Clone, Debug)]
@@ -77,7 +77,7 @@ pub(super) fn missed(path: &Path, part: &PartPoints, points: &[Observation], mod
         Some(beside) => beside.discrepancy.stocked(path, 0, &mut buffer),
         None => *path,
     };
-    let states = predicted(path, part, model, &mut points);
+    let states = predicted(path, part, model, &model.core.fit.parameters, &mut points);
     let path = path.with_law(model.core.law);
     let loads = loads(&path, part, model, &points);
     let cut = CutPoints {
@@ -87,7 +87,7 @@ pub(super) fn missed(path: &Path, part: &PartPoints, points: &[Observation], mod
         nodes: &part.nodes,
         observations: &points,
         more: &[],
-        datum: [0.0; 2],
+        own: Own::default(),
     };
     let stocks = stock_sensitivities(&path, &cut, &model.core);
     let engagement = Engagement::of(&path, 0, path.working().start, &states);
@@ -113,15 +113,21 @@ pub(super) fn seen_alone(points: &[Observation]) -> Vec<Observation> {
     points.iter().filter(|o| o.pair().is_none()).copied().collect()
 }
 
-/// Predicts points of a part by a model, without a datum shift: that of another clamping is not known. Returns the
-/// cutter's states along the path.
-pub(super) fn predicted(path: &Path, part: &PartPoints, model: &Joint, points: &mut [Observation]) -> Vec<State> {
-    let parameters = Parameters { datum: Vector::ZERO, ..model.core.fit.parameters };
+/// Predicts points of a part by a model with the parameters given, without a datum shift: that of another clamping is not known.
+/// Returns the cutter's states along the path.
+pub(super) fn predicted(
+    path: &Path,
+    part: &PartPoints,
+    model: &Joint,
+    parameters: &Parameters,
+    points: &mut [Observation],
+) -> Vec<State> {
+    let parameters = Parameters { datum: Vector::ZERO, ..*parameters };
     predict_points(path, part, model, &parameters, points);
     let path = path.with_law(model.core.law);
     let (working, table) = (path.working(), model.core.table());
     let mut states = vec![State::REST; working.len()];
-    model.core.machine(&path, &table).run(working.start, &mut states, |i| commanded(&path, &part.nodes, i));
+    parameters.machine(&path, &table).run(working.start, &mut states, |i| commanded(&path, &part.nodes, i));
     states
 }
 

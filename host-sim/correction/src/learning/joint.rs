@@ -1,7 +1,7 @@
 //! Machine and material from the points of all parts together.
 //!
 //! Machine, cutter and material are the same for all parts; the correction each was cut with is known, and each has a
-//! datum of its own ([`identify`](truepath_core::identify::identify)). A part that was cut with a good correction shows a small error, and is as
+//! datum and a level of force of its own ([`identify`](truepath_core::identify::identify)). A part that was cut with a good correction shows a small error, and is as
 //! trustworthy as the model is for the deflection that the correction cancelled: a hundredth of it counts as noise.
 
 use std::collections::{HashMap, HashSet};
@@ -15,7 +15,7 @@ use truepath_ground::units::nm;
 use truepath_job::pass::Pass;
 
 use super::history::Part;
-use crate::discrepancy::{Along, Discrepancy, PartCut, datums, plain, relieved};
+use crate::discrepancy::{Along, Discrepancy, Own, PartCut, own, plain, relieved};
 use crate::identification::asked;
 
 /// A part as the fit takes it.
@@ -38,8 +38,8 @@ pub struct Joint {
     pub core: job::Identified,
     /// The points of every part with predictions, weights and sensitivities.
     pub observations: Vec<Vec<Observation>>,
-    /// The datum of every part, prior standard deviations.
-    pub datums: Vec<[f64; 2]>,
+    /// What every part has of its own.
+    pub own: Vec<Own>,
     /// What they show beside the model; `None` where the job ignores it.
     pub beside: Option<Beside>,
 }
@@ -125,13 +125,13 @@ pub fn joint(
     }
     let law = law.or(asked(pass.core.job.force.model));
     let found = plain(pass, law, &cuts, &mut |share| progress(0.5 * share));
-    let (found, datums, beside) = if pass.job.discrepancy {
+    let (found, own, beside) = if pass.job.discrepancy {
         let relieved = relieved(&pass.core, found, &cuts, &mut |share| progress(0.5 + 0.5 * share));
         let along = relieved.along(path, 0);
-        (relieved.found, relieved.datums, relieved.discrepancy.map(|discrepancy| Beside { discrepancy, along }))
+        (relieved.found, relieved.own, relieved.discrepancy.map(|discrepancy| Beside { discrepancy, along }))
     } else {
-        let datums = datums(&found, parts.len());
-        (found, datums, None)
+        let own = own(&found, parts.len());
+        (found, own, None)
     };
     let mut rest = found.observations.into_iter();
     let mut observations: Vec<Vec<Observation>> = Vec::new();
@@ -141,7 +141,7 @@ pub fn joint(
             observations.push(own);
         }
     }
-    Joint { core: found.core, observations, datums, beside }
+    Joint { core: found.core, observations, own, beside }
 }
 
 /// The parts of a contour and of its companions, where a half of a pair tells nothing whose other half is in none of them: a part that

@@ -11,11 +11,12 @@
 use truepath_core::correct::{Law, Profile, Target};
 use truepath_core::cut::Path;
 use truepath_core::units::{Offset, Real};
-use truepath_ground::units::{float, mm};
+use truepath_ground::units::{float, mm, real};
 use truepath_job::pass::Pass;
 
 use super::joint::{Joint, PartPoints};
 use crate::correction::walls;
+use crate::discrepancy::Own;
 
 /// Error of the target quantity over some places.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -66,10 +67,12 @@ impl Monitor {
     pub fn of(pass: &Pass, path: &Path, parts: &[PartPoints], joint: &Joint) -> Self {
         let path = path.with_law(joint.core.law);
         let table = joint.core.table();
-        let machine = joint.core.machine(&path, &table);
         let wanted = pass.job.numbers.design(Law::Model);
-        let walls: Vec<Vec<Profile>> =
-            parts.iter().map(|part| walls(&machine, wanted.band, &part.nodes, &[]).0).collect();
+        let wall = |(part, own): (&PartPoints, &Own)| {
+            let parameters = joint.core.fit.parameters.with_force(real(own.level));
+            walls(&parameters.machine(&path, &table), wanted.band, &part.nodes, &[]).0
+        };
+        let walls: Vec<Vec<Profile>> = parts.iter().zip(&joint.own).map(wall).collect();
         let target = |k: usize, s: Offset| aim(&path, &walls[k], wanted.target, s);
         let places: Vec<Vec<Place>> = (0..parts.len()).map(|k| places(&parts[k], joint, k, &target)).collect();
         let each = |k: usize| PartError::of(parts[k].number, places[k].iter().map(|p| p.error));

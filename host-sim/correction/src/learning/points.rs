@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use truepath_core::geometry::Direction;
 use truepath_core::identify::Observation;
-use truepath_core::units::{Offset, Real};
-use truepath_ground::units::{float, mm, nm};
+use truepath_core::units::Offset;
+use truepath_ground::units::{float, mm, nm, real};
 
 /// A touched point of a part. Every number is exact: nanometres have six decimals, and the others fit into a `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,13 +64,10 @@ impl Point {
     }
 }
 
-fn real(v: f64) -> Real {
-    Real::from_bits((v * 4_294_967_296.0).round() as i64)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+    use truepath_core::units::Real;
 
     use super::*;
 

@@ -49,10 +49,12 @@ pub fn update(
 ) -> Result<Update, Failure> {
     let before = joint(pass, path, &earlier, companions, None, &mut |share| progress(0.3 * share));
     refuse_uncorrected(path, &newest, &before)?;
-    let moved = moved(path, &newest, &before);
     let mut parts = earlier;
     parts.push(newest);
     let after = joint(pass, path, &parts, companions, None, &mut |share| progress(0.3 + 0.3 * share));
+    // Levels are counted from that of the newest part.
+    let level = parts.len().checked_sub(2).and_then(|previous| after.own.get(previous)).map_or(0.0, |own| -own.level);
+    let moved = parts.last().and_then(|newest| moved(path, newest, &before, level));
     let holdout = Holdout::of(&parts).map(|held| {
         let less = held.without(&parts);
         let updated =
@@ -86,6 +88,7 @@ pub fn update(
     let beside = chosen.beside.take();
     verdict.residual = beside.as_ref().and_then(UnmodelledError::of);
     let beside = beside.map(|beside| beside.along).unwrap_or_default();
+    verdict.cut_with(level);
     verdict.say(moved);
     Ok(Update { joint: chosen, beside, kept, set_aside, verdict })
 }

@@ -10,6 +10,9 @@ use super::joint::{Beside, PartPoints};
 use super::monitor::{Monitor, PartError};
 use crate::discrepancy::Sizes;
 
+/// A change of the level of force from part to part that a machinist wants to know of, as a share.
+const TELLING: f64 = 0.04;
+
 /// How a part came out.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Verdict {
@@ -21,6 +24,8 @@ pub struct Verdict {
     pub previous_error_mm: PartError,
     /// The earlier parts, each at its own places.
     pub earlier_parts: Vec<PartError>,
+    /// Share by which it was cut with more force than the part before, as the points of both have it.
+    pub force_change: f64,
     /// What was promised for it.
     pub promise: Promise,
     /// Places that a first fit has not seen; absent when fewer than four were touched.
@@ -155,6 +160,7 @@ impl Verdict {
             measured_error_mm: now,
             previous_error_mm: before,
             earlier_parts,
+            force_change: 0.0,
             promise,
             holdout_residual_mm: holdout,
             residual: None,
@@ -162,6 +168,20 @@ impl Verdict {
             used_again,
             remarks,
         }
+    }
+
+    /// Notes its level of force over that of the part before, natural logarithm.
+    pub(super) fn cut_with(&mut self, level: f64) {
+        self.force_change = level.exp_m1();
+        if self.force_change.abs() < TELLING || self.used_again.is_some() {
+            return;
+        }
+        let (now, before) = (self.part, self.previous_error_mm.part);
+        let more = if self.force_change > 0.0 { "more" } else { "less" };
+        let percent = 100.0 * self.force_change.abs();
+        self.remarks.push(format!(
+            "part {now} was cut with {percent:.0} % {more} force than part {before}: another lot of the material, a worn cutter or a new one; the next correction is for parts like it"
+        ));
     }
 
     /// Adds a remark.

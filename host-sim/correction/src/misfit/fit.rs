@@ -8,8 +8,7 @@
 use truepath_core::cut::{ForceTable, Path, State};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::{COUNT, Observation, Parameter, PredictionWorkspace, Prior, predict};
-use truepath_core::units::Real;
-use truepath_ground::units::mm;
+use truepath_ground::units::{float, mm, real};
 
 use super::score::{expected_mm, loss, prior_cost, residual_mm, weight};
 use super::solve::solved;
@@ -32,10 +31,6 @@ pub(super) struct Fitting<'a> {
     pub(super) stocks: Vec<usize>,
 }
 
-pub(super) fn real(value: f64) -> Real {
-    Real::from_bits((value * 4_294_967_296.0).round() as i64)
-}
-
 impl Fitting<'_> {
     /// Goes downhill; the observations then hold the predictions there. Returns the parameters in prior standard
     /// deviations, and the cost.
@@ -44,7 +39,7 @@ impl Fitting<'_> {
         let (mut states, mut displacements) = (vec![State::REST; needed], vec![Vector::ZERO; needed]);
         let mut workspace = PredictionWorkspace { states: &mut states, displacements: &mut displacements };
         let table = ForceTable::new(self.prior.mean.coefficients.size_exponent);
-        let sigma = self.prior.sigma.map(truepath_ground::units::float);
+        let sigma = self.prior.sigma.map(float);
         let mut theta = [0.0; COUNT];
         let mut cost = self.cost(&theta, &table, &mut workspace);
         let mut damping = 1e-3;
@@ -146,8 +141,8 @@ impl Fitting<'_> {
             }
             let direct = |o: &Observation| match parameter {
                 Parameter::Undersize => Some(1.0),
-                Parameter::DatumX => Some(truepath_ground::units::float(o.by_datum()[0])),
-                Parameter::DatumY => Some(truepath_ground::units::float(o.by_datum()[1])),
+                Parameter::DatumX => Some(float(o.by_datum()[0])),
+                Parameter::DatumY => Some(float(o.by_datum()[1])),
                 _ => None,
             };
             if self.observations.iter().any(|o| direct(o).is_some()) {

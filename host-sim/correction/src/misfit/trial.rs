@@ -8,12 +8,12 @@ use truepath_core::job;
 use truepath_core::probe::{Contact, Contacts, Outcome, Rejected};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::units::{mm, nm};
+use truepath_ground::units::{mm, nm, real};
 use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use super::cause::{Altered, Cause};
-use super::fit::{Fitting, real};
+use super::fit::Fitting;
 use super::look::{NEAR_MM, is_of_one_depth};
 use super::score::{LOST, Score, residual_mm};
 use crate::discrepancy::{PartCut, ln_evidence, ln_probability_elsewhere, plain};

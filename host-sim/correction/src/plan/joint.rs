@@ -24,7 +24,7 @@ use truepath_core::job;
 use truepath_core::process::{ImmersionGrid, Mill, Slices};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::cholesky::Cholesky;
-use truepath_ground::units::{float, mm, nm};
+use truepath_ground::units::{float, mm, nm, real};
 
 use super::bench::{Bench, CutPass};
 use super::field::{Engagement, Field, Kernel, Place};
@@ -477,10 +477,6 @@ impl<'r> Task<'r> {
         });
         Some(Solved { theta, covariance, field, spread, residuals, weights, evidence })
     }
-}
-
-fn real(value: f64) -> Real {
-    Real::from_bits((value * 4_294_967_296.0).round() as i64)
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use truepath_core::cut::Path;
 use truepath_core::identify::Observation;
 use truepath_core::units::{Offset, Position};
 use truepath_ground::diagnostics::Failure;
-use truepath_ground::units::{mm, nm};
+use truepath_ground::units::{mm, nm, real};
 use truepath_job::dimension::{Axis, Crossing, Instrument, Kind, Walls};
 use truepath_job::pass::{Pass, PathBuffer};
 
@@ -22,7 +22,7 @@ use super::estimate::Estimate;
 use super::part_program::PartProgram;
 use super::plan::name;
 use super::reason::{self, Unknown};
-use super::sensitivity::{real, rows, wall_row};
+use super::sensitivity::{rows, wall_row};
 use crate::codes::V007;
 
 /// Dimensions, where the user does not say how many.

@@ -8,7 +8,7 @@ use truepath_core::cut::{ForceTable, Path, State};
 use truepath_core::geometry::{Direction, Vector};
 use truepath_core::identify::{COUNT, Observation, Parameter, PredictionWorkspace, predict};
 use truepath_core::units::{Offset, Real, hypot_nm};
-use truepath_ground::units::{float, mm};
+use truepath_ground::units::{float, mm, real};
 
 use super::candidates::Site;
 use super::covariance::Row;
@@ -108,10 +108,6 @@ fn direct(parameter: Parameter, touch: &Observation) -> f64 {
         Parameter::DatumY => float(touch.by_datum()[1]),
         _ => 1.0,
     }
-}
-
-pub(super) fn real(value: f64) -> Real {
-    Real::from_bits((value * 4_294_967_296.0).round() as i64)
 }
 
 /// Change of the wall: in mm, without what acts on the measurement alone.

@@ -17,7 +17,7 @@ use super::covariance::{Covariance, Row};
 use super::estimate::Estimate;
 use super::sensitivity::{rows, wall_row};
 use crate::correction::Identification;
-use crate::discrepancy::{CutPoints, stock_sensitivities};
+use crate::discrepancy::{CutPoints, Own, stock_sensitivities};
 
 /// Walls that differ by less, at one standard deviation, are alike for every instrument, mm.
 const ALIKE: f64 = 0.002;
@@ -89,8 +89,8 @@ fn touch(contact: &Contact) -> Observation {
 fn wall_rows(path: &Path, mut touches: Vec<Observation>, identified: &Identification) -> Vec<(Row, f64)> {
     let estimate = Estimate { prior: identified.prior(), theta: identified.fit().theta, nodes: &[] };
     let rows = rows(path, &estimate, &mut touches, &mut |_| ());
-    let cut =
-        CutPoints { path, contour: 0, parts_ago: 1, nodes: &[], observations: &touches, more: &[], datum: [0.0; 2] };
+    let own = Own::default();
+    let cut = CutPoints { path, contour: 0, parts_ago: 1, nodes: &[], observations: &touches, more: &[], own };
     let stock = stock_sensitivities(path, &cut, &identified.core);
     let rows = rows.iter().zip(&touches).map(|(row, touch)| wall_row(row, mm(touch.deviation())));
     rows.zip(stock).collect()

@@ -4,6 +4,7 @@ mod compensated_program;
 mod device_image;
 mod dimensions;
 mod feed;
+mod lots;
 mod probed_stock;
 mod roughing;
 mod runout;

@@ -24,6 +24,33 @@ proptest! {
     }
 
     #[test]
+    fn a_level_taken_out_steps_as_if_it_were_solved_with_the_others(
+        seed in prop::collection::vec(-3_000i32..3_000, (COUNT + 1) * 12)
+    ) {
+        let rows = observations(&seed);
+        let (ratio, at) = (Real::ratio(3, 10), Real::HALF);
+        let mut part = Information::of_part([Real::HALF, -Real::ONE]);
+        for (row, residual) in &rows {
+            part.add(row, *residual, Real::ONE);
+        }
+        let alone = part;
+        let level = part.take_level(ratio, at);
+        let mut whole = Information::prior(&[Real::ZERO; COUNT], &[Real::ONE; COUNT]);
+        let eliminated = whole.add_part(&part).with_level(level);
+        let x = whole.step();
+        let (level, datum) = eliminated.step(&x);
+        let step = |i: usize| if i < SCALARS { x[i] } else { datum[i - SCALARS] };
+        // What the level does is what the first parameter does: its equation, and those of the others.
+        let product = |i: usize| (0..COUNT).fold(alone.matrix[i][0] * ratio * level, |s, j| s + alone.matrix[i][j] * step(j));
+        let own = product(0) * ratio + level - (alone.gradient[0] * ratio - at);
+        prop_assert!(own.abs() < Real::ratio(1, 1000), "level {own:?}");
+        for i in 0..COUNT {
+            let prior = if i < SCALARS { x[i] } else { Real::ZERO };
+            prop_assert!((product(i) + prior - alone.gradient[i]).abs() < Real::ratio(1, 1000), "row {}", i);
+        }
+    }
+
+    #[test]
     fn eliminated_parts_step_as_if_all_were_solved_together(
         seed in prop::collection::vec(-3_000i32..3_000, (COUNT + 1) * 12)
     ) {
@@ -40,7 +67,7 @@ proptest! {
         let last = whole;
         let eliminated = whole.add_part(&part);
         let x = whole.step();
-        let d = eliminated.step(&x);
+        let (_, d) = eliminated.step(&x);
         // The equations of the shared parameters, of the part's datum and of the last datum.
         for i in 0..COUNT {
             let own = (0..COUNT).fold(Real::ZERO, |s, j| s + last.matrix[i][j] * x[j]);
@@ -72,11 +99,13 @@ proptest! {
             one.add(row, *residual, Real::HALF);
             other.add(&turn(row), *residual, Real::HALF);
         }
-        let (eliminated, other) = (whole.add_part(&part), turned.add_part(&turned_part));
+        let [level, turned_level] = [&mut part, &mut turned_part].map(|part| part.take_level(Real::HALF, Real::HALF));
+        let eliminated = whole.add_part(&part).with_level(level);
+        let other = turned.add_part(&turned_part).with_level(turned_level);
         let (x, y) = (whole.step(), turned.step());
         prop_assert_eq!(turn(&x), y);
-        let [dx, dy] = eliminated.step(&x);
-        prop_assert_eq!([-dy, dx], other.step(&y));
+        let (level, [dx, dy]) = eliminated.step(&x);
+        prop_assert_eq!((level, [-dy, dx]), other.step(&y));
         prop_assert_eq!(eliminated.log2_determinant(), other.log2_determinant());
     }
 
