@@ -65,6 +65,7 @@ fn with_cuts<T>(passes: &[Pass], together: bool, points: &Points<'_>, of: &Of<'_
             path: *path,
             contour,
             part,
+            parts_ago: u32::try_from(parts.len() - part).unwrap_or(u32::MAX),
             nodes: &told.nodes,
             observations: &told.observations,
         })

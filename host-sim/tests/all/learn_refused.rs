@@ -64,9 +64,14 @@ fn edit(file: &Path, from: &str, to: &str) {
 }
 
 fn run(folder: &Path, probe: &str, from: &str, out: &str) -> Result<LearnSummary, Failure> {
+    run_part(folder, probe, None, from, out)
+}
+
+fn run_part(folder: &Path, probe: &str, part: Option<u32>, from: &str, out: &str) -> Result<LearnSummary, Failure> {
     let options = learn::Options {
         job: folder.join("job.toml"),
         probe: Some(folder.join(probe)),
+        part,
         from: folder.join(from),
         output: folder.join(out),
         ..learn::Options::default()
@@ -104,6 +109,25 @@ fn a_whole_folder_is_written_and_the_next_part_goes_on_from_it() {
     // The corrected program is made from the original one.
     let text = String::from_utf8(read("corrected.nc")).unwrap();
     assert_eq!(text.matches("(TRUEPATH CORRECTED").count(), 1);
+}
+
+#[test]
+fn a_part_may_be_touched_after_others_that_were_not_and_never_before_one_that_was() {
+    let (_guard, folder) = copy();
+    let Err(Failure::Input(error)) = run_part(&folder, "part-2.txt", Some(1), "first", "second") else {
+        panic!("part 1 is known already")
+    };
+    assert_eq!(error.code(), "C001");
+    assert!(error.to_string().contains("a number above 1"), "{error}");
+    assert!(!folder.join("second").exists());
+    let next = run(&folder, "part-2.txt", "first", "second").unwrap();
+    let seventh = run_part(&folder, "part-2.txt", Some(7), "first", "seventh").unwrap();
+    assert_eq!((next.verdict.part, seventh.verdict.part), (2, 7));
+    // The more parts lie between two, the more the level of force may have moved, and the more is put down to that.
+    let change = |summary: &LearnSummary| summary.verdict.force_change.abs();
+    assert!(change(&seventh) > change(&next), "{} {}", seventh.verdict.force_change, next.verdict.force_change);
+    let history = Source::new("history.json", fs::read(folder.join("seventh/history.json")).unwrap());
+    assert_eq!(truepath_correction::learning::History::read(&history).unwrap().next_number(), 8);
 }
 
 #[test]

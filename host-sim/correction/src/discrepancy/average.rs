@@ -247,16 +247,12 @@ impl Discrepancy {
         path.samples().iter().map(|sample| -nm(self.more_stock(contour, mm(sample.s)))).collect()
     }
 
-    /// Expected level of force of every one of so many parts before the last over that of the next, natural logarithm.
-    pub(super) fn levels(&self, earlier: usize) -> Vec<f64> {
-        let level = |part: usize| {
-            let parts_ago = earlier + 1 - part;
-            self.mean_over(|factored| {
-                let level = |row: &Row| factored.kernel.with_level(&row.feature, [row.parts_ago, parts_ago]);
-                factored.mean(&self.rows().map(level).collect::<Vec<f64>>())
-            })
-        };
-        (0..earlier).map(level).collect()
+    /// Expected level of force over that of the next part of one that was cut so many parts before it, natural logarithm.
+    pub(super) fn level(&self, parts_ago: u32) -> f64 {
+        self.mean_over(|factored| {
+            let level = |row: &Row| factored.kernel.with_level(&row.feature, [row.parts_ago, parts_ago]);
+            factored.mean(&self.rows().map(level).collect::<Vec<f64>>())
+        })
     }
 
     /// Expected discrepancy at every point that was given, in their order; that of its own part, its level of force included.

@@ -48,6 +48,8 @@ pub struct Kernel {
 const BLANK: f64 = 0.01;
 /// Walk of the cutter's size from part to part, mm.
 const SIZE: f64 = 0.001;
+/// Parts after which a walk goes no farther: cutters are replaced.
+const LONGEST: u32 = 100;
 /// Engagements nearer than this are alike, rad.
 const ALIKE: f64 = 0.15;
 /// Length over which a wall yields otherwise, in cutter radii.
@@ -159,24 +161,24 @@ impl Kernel {
 
     /// Covariance of a place of one part with the level of force of another over that of the next, natural logarithm, mm; the parts lie
     /// so many before the next one (1 for the newest).
-    pub(super) fn with_level(&self, place: &Feature, parts_ago: [usize; 2]) -> f64 {
+    pub(super) fn with_level(&self, place: &Feature, parts_ago: [u32; 2]) -> f64 {
         place.load * self.levels(parts_ago)
     }
 
     /// Covariance of the levels of force of two parts.
-    fn levels(&self, parts_ago: [usize; 2]) -> f64 {
+    fn levels(&self, parts_ago: [u32; 2]) -> f64 {
         let own = if parts_ago[0] == parts_ago[1] { BLANK.powi(2) } else { 0.0 };
         self.wear.powi(2) * shared(parts_ago) + own
     }
 
     /// Covariance of two places by the level of force and the size of the cutter on their parts, which lie so many parts
     /// before the next one (1 for the newest), mm².
-    pub(super) fn between_parts(&self, a: &Feature, b: &Feature, parts_ago: [usize; 2]) -> f64 {
+    pub(super) fn between_parts(&self, a: &Feature, b: &Feature, parts_ago: [u32; 2]) -> f64 {
         (a.load * b.load) * self.levels(parts_ago) + SIZE.powi(2) * shared(parts_ago)
     }
 }
 
 /// How many steps of a walk that is counted back from the next part two parts have in common.
-fn shared(parts_ago: [usize; 2]) -> f64 {
-    parts_ago[0].min(parts_ago[1]) as f64
+fn shared(parts_ago: [u32; 2]) -> f64 {
+    f64::from(parts_ago[0].min(parts_ago[1]).min(LONGEST))
 }

@@ -36,7 +36,7 @@ pub struct CutPoints<'a> {
     /// Its number among the contours of the part.
     pub contour: usize,
     /// How many parts before the next one it was cut: 1 for the newest.
-    pub parts_ago: usize,
+    pub parts_ago: u32,
     /// The correction it was cut with; empty for none.
     pub nodes: &'a [Node],
     /// The points.
@@ -53,7 +53,7 @@ pub(super) struct Row {
     pub(super) feature: Feature,
     /// The wall across, where the point is a width: the mean of both. It may be on another contour.
     pub(super) across: Option<Feature>,
-    pub(super) parts_ago: usize,
+    pub(super) parts_ago: u32,
     /// Measured − predicted where no parameter is known better than before, the stock is even and all parts have one level of force,
     /// mm: the residual of the fit and what all of these have explained.
     pub(super) unexplained: f64,

@@ -49,6 +49,8 @@ pub struct PartCut<'a> {
     pub contour: usize,
     /// The part, counted from 0; the cuts of a part stand together, in the order of the parts.
     pub part: usize,
+    /// How many parts before the next one it was cut: 1 for the newest. There may be more of them than are here.
+    pub parts_ago: u32,
     /// The correction it was cut with; empty for none.
     pub nodes: &'a [Node],
     /// Its points.
@@ -272,7 +274,8 @@ impl About {
         };
         let mut more: Vec<f64> = cuts.iter().zip(&stock).flat_map(at_points).collect();
         Pairs::of(cuts.iter().flat_map(|cut| cut.observations)).join(&mut more);
-        let levels = discrepancy.levels(last_part(cuts));
+        let earlier = cuts.chunk_by(|a, b| a.part == b.part).take(last_part(cuts));
+        let levels: Vec<f64> = earlier.map(|part| discrepancy.level(part[0].parts_ago)).collect();
         let level = at_every_point(cuts, &levels);
         let (mut rest, mut by_stock, mut by_level) = (Vec::new(), Vec::new(), Vec::new());
         for ((at, more), level) in discrepancy.at_points().iter().zip(&more).zip(&level) {
@@ -466,8 +469,7 @@ fn points(parts: &[PartCut<'_>], found: &Found, more: &[f64]) -> Points {
             let (more_here, more_there) = more.split_at(count.min(more.len()));
             (rest, more) = (others, more_there);
             let own = every_own.get(cut.part).copied().unwrap_or_default();
-            let parts_ago = last + 1 - cut.part;
-            let (path, contour, nodes) = (&cut.path, cut.contour, cut.nodes);
+            let (path, contour, nodes, parts_ago) = (&cut.path, cut.contour, cut.nodes, cut.parts_ago);
             CutPoints { path, contour, parts_ago, nodes, observations, more: more_here, own }
         })
         .collect();

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use truepath_core::checksum::crc32;
 use truepath_core::probe::CutWith;
 use truepath_core::units::Offset;
+use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 use truepath_ground::units::mm;
 use truepath_job::measurement::Measurement;
@@ -34,13 +35,16 @@ pub struct History {
     pub parts: Vec<Part>,
     /// The correction the next part is cut with.
     pub next: Next,
+    /// The number of the part that is measured next, where it is [said](Self::of_part).
+    #[serde(skip)]
+    said: Option<u32>,
 }
 
 /// A measured part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
-    /// Its number, from 1.
+    /// Its number, from 1, in the order the parts were cut; those between two of a history were not touched.
     pub number: u32,
     /// CRC-32 of its probe file.
     pub probe_crc32: String,
@@ -85,7 +89,7 @@ impl History {
     /// Internal, when the points cannot be held.
     pub fn first(pass: &Pass, measurement: &Measurement, corrected: &CorrectedPass) -> Result<Self, Failure> {
         let part = Part::new(1, measurement, None)?;
-        Ok(Self { version: VERSION, facts: Facts::of(pass), parts: vec![part], next: Next::of(corrected) })
+        Ok(Self { version: VERSION, facts: Facts::of(pass), parts: vec![part], next: Next::of(corrected), said: None })
     }
 
     /// After one more part.
@@ -95,7 +99,7 @@ impl History {
         parts.push(part);
         let dropped = parts.len().saturating_sub(MOST_PARTS);
         parts.drain(..dropped);
-        Self { version: VERSION, facts: self.facts.clone(), parts, next: Next::of(corrected) }
+        Self { version: VERSION, facts: self.facts.clone(), parts, next: Next::of(corrected), said: None }
     }
 
     /// Reads the file.
@@ -132,9 +136,30 @@ impl History {
         Ok(sealed(&body))
     }
 
-    /// The number of the part that is cut next.
+    /// The number of the part that is measured next: the one that is cut next, where it is not said.
     pub fn next_number(&self) -> u32 {
-        self.parts.last().map_or(1, |part| part.number.saturating_add(1))
+        self.said.unwrap_or_else(|| self.last_number().saturating_add(1))
+    }
+
+    fn last_number(&self) -> u32 {
+        self.parts.last().map_or(0, |part| part.number)
+    }
+
+    /// The same, of which a part of a given number is measured next: those between were cut with the same correction and not
+    /// touched.
+    ///
+    /// # Errors
+    /// `C001` where that part was cut before the last one that it holds.
+    pub fn of_part(self, number: Option<u32>) -> Result<Self, InputError> {
+        let last = self.last_number();
+        match number {
+            Some(number) if number <= last => {
+                let help = "give the number of the part in the order they were cut, or leave it out for the next one";
+                let expected = format!("a number above {last}, that of the last part which was learned from");
+                Err(InputError::new(C001, format!("--part {number}"), expected, help))
+            }
+            number => Ok(Self { said: number, ..self }),
+        }
     }
 
     /// CRC-32 of the files that hold the correction of the next part.

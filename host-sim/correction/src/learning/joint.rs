@@ -113,6 +113,7 @@ pub fn joint(
     let (parts, others) = &whole(parts, companions);
     let companions: Vec<Companion<'_>> =
         companions.iter().zip(others).map(|(of, parts)| Companion { parts, ..*of }).collect();
+    let newest = parts.last().map_or(0, |part| part.number);
     let mut cuts: Vec<PartCut<'_>> = Vec::new();
     for (part, own) in parts.iter().enumerate() {
         let others = companions.iter().enumerate().filter_map(|(k, companion)| {
@@ -120,7 +121,9 @@ pub fn joint(
             Some((k + 1, *companion.path, points))
         });
         for (contour, path, points) in std::iter::once((0, *path, own)).chain(others) {
-            cuts.push(PartCut { path, contour, part, nodes: &points.nodes, observations: &points.observations });
+            let parts_ago = newest.saturating_sub(own.number).saturating_add(1);
+            let (nodes, observations) = (&points.nodes[..], &points.observations[..]);
+            cuts.push(PartCut { path, contour, part, parts_ago, nodes, observations });
         }
     }
     let law = law.or(asked(pass.core.job.force.model));

@@ -43,6 +43,10 @@ pub struct Options {
     /// Widths, diameters and distances measured on that part, beside the probe file or in its place.
     #[arg(long, group = "measured", value_name = "FILE.toml")]
     pub dimensions: Option<PathBuf>,
+    /// Number of that part in the order they were cut, where those between it and the last that was learned from were not touched: it
+    /// tells how far the cutter may have worn.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub part: Option<u32>,
     /// Folder that truepath correct, truepath plan or truepath learn wrote that correction into.
     #[arg(long, value_name = "DIR")]
     pub from: PathBuf,
@@ -74,6 +78,10 @@ pub struct Options {
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     if holds_planned(&options.from) {
         refuse_same_folder(options)?;
+        if let Some(part) = options.part {
+            let help = "leave it out: a plan is learned from part after part";
+            return Err(InputError::new(C001, format!("--part {part}"), "no number for planned passes", help).into());
+        }
         let mut job = options.said.read(&options.job)?;
         job.signer = options.sign.signer()?;
         job.override_part(&PartFlags { tolerance: options.tolerance.clone(), ..PartFlags::default() })?;
@@ -172,10 +180,10 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
         Ok([only]) => only,
         Err(walls) => {
             let to = (options.output.as_path(), options.force, options.route);
-            return several::run(walls, (&readings, &options.from), to, progress);
+            return several::run(walls, (&readings, &options.from, options.part), to, progress);
         }
     };
-    let history = history_in(&options.from, &options.from)?;
+    let history = history_in(&options.from, &options.from)?.of_part(options.part)?;
     let level = history.facts.level().filter(|_| options.said.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
     let measurement = readings.of_corrected(&pass)?;

@@ -26,7 +26,7 @@ use super::super::readings::Readings;
 /// Learns from every contour that has a history.
 pub(super) fn run(
     walls: Vec<Pass>,
-    (readings, from): (&Readings, &FilePath),
+    (readings, from, part): (&Readings, &FilePath, Option<u32>),
     (output, force, route): (&FilePath, bool, Option<Route>),
     progress: &mut dyn FnMut(f64),
 ) -> Result<LearnSummary, Failure> {
@@ -37,7 +37,7 @@ pub(super) fn run(
             left.push(contour_name(&pass));
             continue;
         }
-        let history = history_in(&folder, from)?;
+        let history = history_in(&folder, from)?.of_part(part)?;
         let level = history.facts.level().filter(|_| pass.job.which.pass.is_none() && pass.plan.is_some());
         let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass);
         passes.push(pass.cut_with(history.cut_with()));

@@ -249,8 +249,9 @@ impl Place {
                 (Command::Learn, Some(from)) => {
                     let from = then.join(from);
                     let output = output.clone();
+                    let part = part_of(story, step);
                     let options =
-                        learn::Options { job, probe, dimensions, from, output, route, said, ..Default::default() };
+                        learn::Options { job, probe, dimensions, part, from, output, route, said, ..Default::default() };
                     made.came_out = Some(CameOut::of(&learn::run(&options, progress)?));
                 }
                 _ => {
@@ -272,6 +273,12 @@ impl Place {
         }
         Ok(made)
     }
+}
+
+/// The number of the part that a correction was learned from, as its summary has it.
+fn part_of(story: &Story, step: &Step) -> Option<u32> {
+    let summary: Value = serde_json::from_slice(story.files.get(&inside(&step.output, SUMMARY))?).ok()?;
+    summary.get("part")?.as_u64()?.try_into().ok()
 }
 
 /// Takes a text out of bytes, wherever it stands.

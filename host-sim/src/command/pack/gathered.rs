@@ -303,7 +303,7 @@ impl Corrected {
     fn follows(&self, other: &Self) -> bool {
         let follows = |own: &History, other: &History| {
             let Some(newest) = own.parts.last() else { return false };
-            newest.number == other.next_number() && newest.correction.as_ref() == Some(&other.next.correction)
+            newest.number >= other.next_number() && newest.correction.as_ref() == Some(&other.next.correction)
         };
         !self.histories.is_empty()
             && self.histories.iter().all(|own| other.histories.iter().any(|other| follows(own, other)))
