@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::control::{Chart, quantile, share_below};
 pub use crate::filter::Cause;
 use crate::filter::{DATUM, Estimate, Filtered, LEVEL, LEVEL_SLOPE, SIZE, SIZE_SLOPE, Step, follow};
-use crate::series::{Event, Place, Series};
+use crate::series::{Event, Place, Series, any_is_pushed};
 
 /// What is asked of a batch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -226,11 +226,16 @@ impl Batch {
         self.places.iter().min_by(|a, b| margin(a).total_cmp(&margin(b)))
     }
 
+    /// Whether the deflection is known at any place: without it a level of force looks like a radius.
+    pub fn is_pushed(&self) -> bool {
+        any_is_pushed(self.places.iter().map(|chart| &chart.place))
+    }
+
     /// How the batch stands, in a few sentences: what moves, and for how long it goes well.
     pub fn words(&self) -> Vec<String> {
         let mut said: Vec<String> = self.alarms.iter().map(Alarm::words).collect();
         let Some(now) = self.states.last() else { return said };
-        let (since, pushed) = (self.parts[0], self.places.iter().any(|p| p.place.deflection_mm != 0.0));
+        let (since, pushed) = (self.parts[0], self.is_pushed());
         let Known { value, sigma } = now.force_level;
         if pushed && value.abs() > 2.0 * sigma && value.abs() > 0.01 {
             let why = if value > 0.0 {

@@ -12,7 +12,7 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::series::{Event, Part, Place, Series};
+use crate::series::{Event, Part, Place, Series, any_is_pushed};
 
 /// States before those of the places.
 pub const OWN: usize = 6;
@@ -216,7 +216,7 @@ fn run(series: &Series, noise_mm: f64, rarely: Option<f64>) -> Filtered {
 /// The one cause under which the readings of a part are most probable: what it changes is a state of its own then, beside that
 /// which it changes. None where they fit under no single one.
 fn cause_of(series: &Series, part: &Part, noise_mm: f64, (mean, covariance): &(Vec<f64>, Vec<Vec<f64>>)) -> Step {
-    let pushed = series.places.iter().any(|place| place.deflection_mm != 0.0);
+    let pushed = any_is_pushed(&series.places);
     let causes: &[Cause] = match pushed {
         true => &[Cause::ForceLevel, Cause::Radius, Cause::Datum],
         false => &[Cause::RadiusOrForce, Cause::Datum],

@@ -87,6 +87,11 @@ impl Series {
     }
 }
 
+/// Whether the deflection is known at any of the places: without it a level of force looks like a radius.
+pub(crate) fn any_is_pushed<'p>(places: impl IntoIterator<Item = &'p Place>) -> bool {
+    places.into_iter().any(|place| place.deflection_mm != 0.0)
+}
+
 impl Place {
     fn is_at(&self, other: &Self) -> bool {
         self.contour == other.contour

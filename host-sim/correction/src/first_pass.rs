@@ -58,7 +58,7 @@ pub(crate) fn every_pass(pass: &Pass) -> Result<Vec<Along>, Failure> {
         if !against(&same.blocks, &pass.path_contour()) {
             return Ok((same, one.leads.clone()));
         }
-        let along = pass.along(one, pass.job.numbers.wall.map(opposite))?;
+        let along = pass.along(one, pass.job.numbers.wall.map(Side::other))?;
         Ok((along, one.leads.clone()))
     };
     plan.passes.iter().map(one).collect()
@@ -75,13 +75,6 @@ fn moved(pass: &Pass, leads: [&[Block]; 2], by: Offset) -> Result<Vec<BlockEdit>
 fn away(path: &Path, by: Offset) -> Vec<Node> {
     let contour = &path.samples()[path.first()..path.first() + path.count()];
     contour.iter().map(|sample| Node { chip: -sample.normal.times(by), ..Node::default() }).collect()
-}
-
-const fn opposite(side: Side) -> Side {
-    match side {
-        Side::Left => Side::Right,
-        Side::Right => Side::Left,
-    }
 }
 
 /// Whether a pass over the same path runs the other way, by the middle of its longest block.

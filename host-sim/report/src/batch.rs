@@ -115,7 +115,7 @@ fn of_state(batch: &Batch, unit: &str, scale: f64, curves: &[OfState]) -> Panel 
 }
 
 fn moves(batch: &Batch) -> Result<String, Failure> {
-    let known = batch.places.iter().any(|p| p.place.deflection_mm != 0.0);
+    let known = batch.is_pushed();
     let mut rows = Vec::new();
     if known {
         rows.push(of_state(batch, "force level (%)", 100.0, &[("", INK_BEFORE, |s| s.force_level)]));
@@ -195,7 +195,7 @@ fn places(batch: &Batch) -> Markup {
 }
 
 fn parts(batch: &Batch) -> Markup {
-    let pushed = batch.places.iter().any(|p| p.place.deflection_mm != 0.0);
+    let pushed = batch.is_pushed();
     let event = |e: &Event| match e {
         Event::Cutter => "new cutter",
         Event::Lot => "new lot",

@@ -14,7 +14,8 @@ use truepath_program::Rewritten;
 use crate::command::relative::relative;
 
 /// The text of the original job, comments included, about the program `name`, and with another allowance of the pass where one is
-/// given, and with its `wall` where the job leaves that to the program; it lies in `folder`, where the files it names are named from. Features are named by their lines in the new program, which has more of them. `said` is its first line.
+/// given, and with its `wall` where the job leaves that to the program; it lies in `folder`, where the files it names are named from.
+/// Features are named by their lines in the new program, which has more of them. `said` is its first line.
 pub(super) fn job_of(
     pass: &Pass,
     written: &Rewritten,

@@ -71,7 +71,8 @@ pub(super) fn turn(path: &Path, nodes: &mut [Node]) {
             let middle = start.zip(next).map(|(start, next)| start.midpoint(next));
             let behind = parts(nodes, middle.unwrap_or(end));
             let until = middle.unwrap_or(end);
-            through(side, samples, nodes, [at, until], [before, behind]);
+            let turn = [corner.unwrap_or(until), start.unwrap_or(until)];
+            through(side, samples, nodes, [at, until], turn, [before, behind]);
             (before, at) = (behind, until.max(at.saturating_add(1)));
         }
     }
@@ -82,12 +83,14 @@ fn turned(samples: &[Sample], i: usize) -> bool {
     matches!((samples.get(i), samples.get(i.saturating_add(1))), (Some(a), Some(b)) if a.point == b.point)
 }
 
-/// Leads it through one corner, whose surroundings are the samples `at..end`, between the straight walls before and behind.
+/// Leads it through one corner, whose surroundings are the samples `at..end`, between the straight walls before and behind. It turns
+/// on the spot from sample `corner` to `start`; where it does not, both are `end`, and all is beside the first wall.
 fn through(
     side: Side,
     samples: &[Sample],
     nodes: &mut [Node],
     [at, end]: [usize; 2],
+    [corner, start]: [usize; 2],
     [before, behind]: [Option<Parts>; 2],
 ) {
     let parts = |nodes: &[Node], i: usize| Some(Parts::of(nodes.get(i)?, samples.get(i)?, side));
@@ -96,10 +99,6 @@ fn through(
         nodes.iter_mut().take(end).skip(at).for_each(|node| *node = Node::default());
         return;
     };
-    let corner = (at..end).find(|i| turned(samples, *i));
-    let start = corner.map(|corner| corner.saturating_add((corner..end).take_while(|i| turned(samples, *i)).count()));
-    // Both ends of the turn on the spot; without one, all is beside the first wall.
-    let [corner, start] = [corner.unwrap_or(end), start.unwrap_or(end)];
     for i in at..end.min(nodes.len()) {
         let held = if i <= corner { before } else { behind };
         let Some((own, sample)) = parts(nodes, i).zip(samples.get(i)) else { continue };

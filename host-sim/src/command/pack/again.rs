@@ -250,8 +250,17 @@ impl Place {
                     let from = then.join(from);
                     let output = output.clone();
                     let part = part_of(story, step);
-                    let options =
-                        learn::Options { job, probe, dimensions, part, from, output, route, said, ..Default::default() };
+                    let options = learn::Options {
+                        job,
+                        probe,
+                        dimensions,
+                        part,
+                        from,
+                        output,
+                        route,
+                        said,
+                        ..Default::default()
+                    };
                     made.came_out = Some(CameOut::of(&learn::run(&options, progress)?));
                 }
                 _ => {
