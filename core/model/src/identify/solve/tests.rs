@@ -44,8 +44,8 @@ proptest! {
         let product = |i: usize| (0..COUNT).fold(alone.matrix[i][0] * ratio * level, |s, j| s + alone.matrix[i][j] * step(j));
         let own = product(0) * ratio + level - (alone.gradient[0] * ratio - at);
         prop_assert!(own.abs() < Real::ratio(1, 1000), "level {own:?}");
-        for i in 0..COUNT {
-            let prior = if i < SCALARS { x[i] } else { Real::ZERO };
+        for (i, shared) in x.into_iter().enumerate() {
+            let prior = if i < SCALARS { shared } else { Real::ZERO };
             prop_assert!((product(i) + prior - alone.gradient[i]).abs() < Real::ratio(1, 1000), "row {}", i);
         }
     }
