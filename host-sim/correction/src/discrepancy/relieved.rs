@@ -80,15 +80,18 @@ pub fn is_fitted(pass: &Pass) -> bool {
     pass.job.discrepancy && pass.job.numbers.correct.law == LawName::Model
 }
 
-/// Fits machine and material to the points of the cuts, without any discrepancy; without a law under the one they speak for.
-/// `progress` is told the share done.
+/// Fits machine and material to the points of the cuts, without any discrepancy; without a law under the one they speak for. All parts
+/// begin at one level of force where a discrepancy is to find it, which knows how levels move from part to part; else every part has
+/// its own. `progress` is told the share done.
 pub fn plain(pass: &Pass, law: Option<WallLaw>, cuts: &[PartCut<'_>], progress: &mut dyn FnMut(f64)) -> Found {
     let measured: Vec<Observation> = cuts.iter().flat_map(|cut| cut.observations).copied().collect();
+    let levels = if is_fitted(pass) { vec![0.0; last_part(cuts)] } else { Vec::new() };
     if let Some(law) = law {
-        return fitted(&pass.core, law, cuts, &measured, &[], progress);
+        return fitted(&pass.core, law, cuts, &measured, &levels, progress);
     }
     let by_program = |cut: usize, sample: usize| by_program(cuts, cut, sample);
-    let (mean, helical) = asked(cuts, &measured, &[], |points| under_both(&pass.core, points, by_program, progress));
+    let (mean, helical) =
+        asked(cuts, &measured, &levels, |points| under_both(&pass.core, points, by_program, progress));
     let is_mean = speaks_for_mean(&mean.core.fit, &helical.core.fit)
         // Points that other stock or another size would explain under the helical law are no reason by themselves.
         && (!is_fitted(pass)
@@ -144,7 +147,8 @@ pub fn relieved(
     progress: &mut dyn FnMut(f64),
 ) -> Relieved {
     let task = Task { pass, law: found.core.law, cuts };
-    let first = About::of(found.clone(), cuts, Beside::none(cuts, &found), None);
+    let nothing = Beside::none(cuts, &found);
+    let first = About::of(found, cuts, nothing, None);
     let even = task.even(first.clone(), &mut |share| progress(0.5 * share));
     let is_stock = |about: &About| about.shown(cuts) > LEAST_STOCK;
     let stocked = is_stock(&even)
