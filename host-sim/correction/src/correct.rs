@@ -151,14 +151,7 @@ fn beside(
         .iter()
         .zip(&observations)
         .enumerate()
-        .map(|(contour, (cut, observations))| PartCut {
-            path: *cut.path,
-            contour,
-            part: 0,
-            parts_ago: 1,
-            nodes: &[],
-            observations,
-        })
+        .map(|(contour, (cut, observations))| PartCut::uncorrected(*cut.path, contour, observations))
         .collect();
     let found = Found { core: known.core, earlier: Vec::new(), observations: observations.concat() };
     let relieved = relieved(&cut.pass.core, found, &parts, &mut progress);

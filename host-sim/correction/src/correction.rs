@@ -101,14 +101,7 @@ pub fn identify_together(
         .iter()
         .zip(&measured)
         .enumerate()
-        .map(|(contour, (cut, observations))| PartCut {
-            path: *cut.path,
-            contour,
-            part: 0,
-            parts_ago: 1,
-            nodes: &[],
-            observations,
-        })
+        .map(|(contour, (cut, observations))| PartCut::uncorrected(*cut.path, contour, observations))
         .collect();
     let Found { core, observations, .. } = plain(first.pass, law, &parts, &mut progress);
     let mut rest = observations.into_iter();

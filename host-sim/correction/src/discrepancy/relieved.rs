@@ -57,6 +57,13 @@ pub struct PartCut<'a> {
     pub observations: &'a [Observation],
 }
 
+impl<'a> PartCut<'a> {
+    /// A contour of the only part, cut without a correction.
+    pub const fn uncorrected(path: Path<'a>, contour: usize, observations: &'a [Observation]) -> Self {
+        Self { path, contour, part: 0, parts_ago: 1, nodes: &[], observations }
+    }
+}
+
 /// What parts say of machine, material, and what is beside both.
 #[derive(Clone, Debug)]
 pub struct Relieved {

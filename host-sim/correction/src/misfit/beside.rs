@@ -61,7 +61,7 @@ fn is_allowed(pass: &Pass, measurement: &Measurement, core: &job::Identified, me
     let mut buffer = PathBuffer::default();
     let Ok(path) = pass.sample(&mut buffer) else { return false };
     let found = Found { core: *core, earlier: Vec::new(), observations: measured.to_vec() };
-    let cut = PartCut { path, contour: 0, part: 0, parts_ago: 1, nodes: &[], observations: measured };
+    let cut = PartCut::uncorrected(path, 0, measured);
     let relieved = relieved(&pass.core, found, &[cut], &mut |_| ());
     let mut points = relieved.found.observations.clone();
     for (o, beside) in points.iter_mut().zip(&relieved.at_points) {

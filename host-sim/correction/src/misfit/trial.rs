@@ -132,7 +132,7 @@ impl Trial {
         }
         let (pass, mut buffer) = (&altered.pass, PathBuffer::default());
         let path = pass.sample(&mut buffer).ok()?;
-        let cut = PartCut { path, contour: 0, part: 0, parts_ago: 1, nodes: &[], observations: &observations };
+        let cut = PartCut::uncorrected(path, 0, &observations);
         let found = plain(pass, asked(pass.core.job.force.model), &[cut], &mut |_| ());
         let elsewhere = lost as f64 * ln_probability_elsewhere();
         Some(ln_evidence(&found, &[cut])? + elsewhere - 0.5 * FREEDOM * self.cause.freedom())
