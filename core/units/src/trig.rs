@@ -24,9 +24,9 @@ const fn mul(a: i64, b: i64) -> i64 {
 /// (sine, cosine) of an angle in radians, any angle a [`Real`] can hold.
 pub fn sin_cos(angle: Real) -> (Real, Real) {
     let magnitude = angle.bits().unsigned_abs();
-    // Quarter turns below the angle: estimated from the top, then removed exactly in units of 2⁻⁹¹.
+    // Quarter turns below the angle are removed exactly, in units of 2⁻⁹¹.
     let scaled = (magnitude as i128) << 59;
-    let turns = scaled.checked_div(FRAC_PI_2_Q91).unwrap_or(0);
+    let turns = quarter_turns(scaled);
     let rest_q91 = scaled.saturating_sub(turns.saturating_mul(FRAC_PI_2_Q91));
     let rest = shift_rounded(rest_q91, 31) as i64;
     let (s, c) = if rest > FRAC_PI_2 / 2 {
@@ -44,27 +44,46 @@ pub fn sin_cos(angle: Real) -> (Real, Real) {
     (if angle.bits() < 0 { -s } else { s }, c)
 }
 
+/// Whole quarter turns in an angle in units of 2⁻⁹¹, not negative: most are counted, because a division of 128 bits is a routine.
+fn quarter_turns(scaled: i128) -> i128 {
+    let mut turns = 0i128;
+    let mut end = FRAC_PI_2_Q91;
+    while turns < 4 {
+        if scaled < end {
+            return turns;
+        }
+        end = end.saturating_add(FRAC_PI_2_Q91);
+        turns = turns.saturating_add(1);
+    }
+    scaled.checked_div(FRAC_PI_2_Q91).unwrap_or(0)
+}
+
 /// Taylor series of sine and cosine on 0…π/4; the first term left out is below 2⁻⁶².
 fn first_octant(x: i64) -> (Real, Real) {
     let square = mul(x, x);
-    let mut sine = 0i64;
-    let mut cosine = 0i64;
-    let mut k = 9i64;
-    while k >= 1 {
-        let n = k.saturating_mul(2);
-        let below = n.saturating_mul(n.saturating_sub(1));
-        let above = n.saturating_mul(n.saturating_add(1));
-        // 1 − x²/(a·b)·(…): Horner over both series at once.
-        cosine = step(square, ONE.saturating_add(cosine), below);
-        sine = step(square, ONE.saturating_add(sine), above);
-        k = k.saturating_sub(1);
-    }
+    // 1 − x²/(a·b)·(…): Horner over both series at once.
+    let terms = step::<306, 342>(square, (0, 0));
+    let terms = step::<240, 272>(square, terms);
+    let terms = step::<182, 210>(square, terms);
+    let terms = step::<132, 156>(square, terms);
+    let terms = step::<90, 110>(square, terms);
+    let terms = step::<56, 72>(square, terms);
+    let terms = step::<30, 42>(square, terms);
+    let terms = step::<12, 20>(square, terms);
+    let (cosine, sine) = step::<2, 6>(square, terms);
     let to_real = |v: i64| Real::from_bits(shift_rounded(v as i128, Q - Real::FRACTION_BITS) as i64);
     (to_real(mul(x, ONE.saturating_add(sine))), to_real(ONE.saturating_add(cosine)))
 }
 
-fn step(square: i64, inner: i64, divisor: i64) -> i64 {
-    div_rounded(mul(square, inner) as i128, divisor as i128).saturating_neg() as i64
+/// The next terms of cosine and sine; their divisors are constants, so that nothing is divided.
+#[inline]
+fn step<const COSINE: u64, const SINE: u64>(square: i64, (cosine, sine): (i64, i64)) -> (i64, i64) {
+    let term = |inner: i64| mul(square, ONE.saturating_add(inner)).cast_unsigned();
+    // Neither factor is negative.
+    let divided = |term: u64, by: u64| term.saturating_add(by / 2).checked_div(by).unwrap_or(0).cast_signed();
+    let cosine = divided(term(cosine), COSINE);
+    let sine = divided(term(sine), SINE);
+    (cosine.saturating_neg(), sine.saturating_neg())
 }
 
 /// atan(k/16), k = 0…16, in units of 2⁻⁶⁰.
@@ -86,6 +105,16 @@ const ATAN_SIXTEENTHS: [i64; 17] = [
     828_754_564_720_302_567,
     868_324_308_043_507_300,
     905_502_432_259_640_355,
+];
+
+/// 1/11, 1/9 … 1/1 in units of 2⁻⁶⁰.
+const ODD_PARTS: [i64; 6] = [
+    div_rounded(ONE as i128, 11) as i64,
+    div_rounded(ONE as i128, 9) as i64,
+    div_rounded(ONE as i128, 7) as i64,
+    div_rounded(ONE as i128, 5) as i64,
+    div_rounded(ONE as i128, 3) as i64,
+    ONE,
 ];
 
 /// The angle of the vector (x, y) against the x axis, radians, −π…π; 0 for the zero vector. The unit of x and y does
@@ -118,12 +147,7 @@ fn atan_unit(q: i64) -> i64 {
     let denominator = (ONE as i128).saturating_add(mul(q, node) as i128);
     let rest = div_rounded((q.saturating_sub(node) as i128) << Q, denominator) as i64;
     let square = mul(rest, rest);
-    let mut series = 0i64;
-    let mut k = 11i64;
-    while k >= 1 {
-        series = div_rounded(ONE as i128, k as i128).saturating_sub(mul(square, series) as i128) as i64;
-        k = k.saturating_sub(2);
-    }
+    let series = ODD_PARTS.iter().fold(0i64, |series, part| part.saturating_sub(mul(square, series)));
     ATAN_SIXTEENTHS.get(index).copied().unwrap_or(0).saturating_add(mul(rest, series))
 }
 
@@ -134,6 +158,30 @@ mod tests {
     use proptest::prelude::*;
 
     const STEP: f64 = 1.0 / 4_294_967_296.0;
+
+    /// The series as it is written, every division done.
+    fn divided(x: i64) -> (Real, Real) {
+        let square = mul(x, x);
+        let (mut sine, mut cosine) = (0i64, 0i64);
+        let step = |inner: i64, divisor: i64| -(div_rounded(mul(square, inner) as i128, divisor as i128) as i64);
+        for k in (1..=9i64).rev() {
+            cosine = step(ONE + cosine, 2 * k * (2 * k - 1));
+            sine = step(ONE + sine, 2 * k * (2 * k + 1));
+        }
+        let to_real = |v: i64| Real::from_bits(shift_rounded(v as i128, Q - Real::FRACTION_BITS) as i64);
+        (to_real(mul(x, ONE + sine)), to_real(ONE + cosine))
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_is_divided_and_every_bit_is_that_of_the_division(x in 0..=FRAC_PI_2 / 2, angle in any::<i64>()) {
+            prop_assert_eq!(first_octant(x), divided(x));
+            for angle in [angle, angle >> 26, angle >> 28, angle >> 29] {
+                let scaled = (angle.unsigned_abs() as i128) << 59;
+                prop_assert_eq!(quarter_turns(scaled), scaled / FRAC_PI_2_Q91);
+            }
+        }
+    }
 
     #[test]
     fn sine_and_cosine_are_right_to_the_last_bit_over_a_dense_sweep() {

@@ -143,6 +143,11 @@ impl Walk {
         let inside = square.wrapping_sub(radius);
         // The largest distance was rounded.
         let stride = self.stride.saturating_add(1);
+        // |d − r| = |d² − r²|/(d + r), and d + r is 2 radii at most inside, √2 + 1 at most below √2 radii. In strides, by reciprocals:
+        // a division of 64 bits is slow on a PC and a routine on the microcontroller. Rounded down, which steps over less.
+        let (double, near) = (radius.wrapping_mul(2), radius.wrapping_mul(5) / 2);
+        let (within, beyond) = (per(double.saturating_mul(stride)), per(near.saturating_add(1).saturating_mul(stride)));
+        let radii = radius.checked_div(stride).unwrap_or(0).unsigned_abs();
         let (mut last, mut at) = (None, start);
         while let Some(sample) = samples.get(at) {
             if sample.s > self.end {
@@ -150,25 +155,23 @@ impl Walk {
             }
             let spoke = sample.stock.from(self.centre);
             let (x, y) = (spoke.x.nm(), spoke.y.nm());
-            // |d − r| = |d² − r²|/(d + r).
-            let away = if x.saturating_abs().max(y.saturating_abs()) >= REACH.nm() {
+            let skip = if x.saturating_abs().max(y.saturating_abs()) >= REACH.nm() {
                 0
             } else {
                 let distance = x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y));
                 if distance <= inside {
                     last = Some(at);
-                    square.wrapping_sub(distance).checked_div(radius.wrapping_mul(2)).unwrap_or(0)
+                    times(square.wrapping_sub(distance), within)
                 } else if distance < square.wrapping_mul(2) {
-                    // √2 + 1 radii at most.
-                    distance.wrapping_sub(square).saturating_mul(2).checked_div(radius.wrapping_mul(5)).unwrap_or(0)
+                    times(distance.wrapping_sub(square), beyond)
                 } else if distance < square.wrapping_mul(4) {
-                    radius.wrapping_mul(2) / 5
+                    // 0.41 radii at least.
+                    radii.wrapping_mul(2) / 5
                 } else {
-                    radius
+                    radii
                 }
             };
-            let skip = away.checked_div(stride).unwrap_or(0).max(1);
-            at = at.saturating_add(skip.unsigned_abs() as usize);
+            at = at.saturating_add(skip.max(1) as usize);
         }
         last
     }
@@ -196,6 +199,16 @@ impl Walk {
     }
 }
 
+/// 2⁶⁴ over a positive number, rounded down.
+fn per(divisor: i64) -> u64 {
+    u64::MAX.checked_div(divisor.unsigned_abs()).unwrap_or(0)
+}
+
+/// A number that is not negative times such a reciprocal, rounded down: at most the quotient.
+const fn times(number: i64, reciprocal: u64) -> u64 {
+    ((number.unsigned_abs() as u128).wrapping_mul(reciprocal as u128) >> 64) as u64
+}
+
 /// Newton steps for the crossing of the circle with the curved stock between two samples.
 const CROSSING_STEPS: usize = 4;
 
@@ -211,9 +224,15 @@ fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
     let root = isqrt_rounded(discriminant.unsigned_abs()) as i128;
     let u = Real::narrow(truepath_units::div_rounded(root.saturating_sub(q) << Real::FRACTION_BITS, p));
     let u = u.max(Real::ZERO).min(Real::ONE);
-    let turn = a.normal.cross(b.normal);
-    let Some(along) = chord.direction() else { return a.stock };
-    let sagitta = along.right().times(chord.length().scaled(turn * Real::ratio(1, 8)));
+    let bulge = a.normal.cross(b.normal) * Real::ratio(1, 8);
+    let sagitta = if bulge == Real::ZERO {
+        Vector::ZERO
+    } else {
+        chord.direction().map_or(Vector::ZERO, |along| along.right().times(chord.length().scaled(bulge)))
+    };
+    if chord == Vector::ZERO {
+        return a.stock;
+    }
     let at = |u: Real| a.stock + chord.scaled(u) + sagitta.scaled(u * (Real::ONE - u) * Real::from_int(4));
     // The chord gives the start; where stock and circle meet at a small angle its bulge takes a few Newton steps. A step
     // that changes nothing is the last: every further one would be the same.
