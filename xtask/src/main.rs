@@ -328,7 +328,7 @@ fn test(report: &mut Report, all: bool) {
     });
 }
 
-/// What of everything only builds and computes, at low priority. First what the other steps wait for; last what would keep them from
+/// What of everything only builds and computes, at low priority; that benchmarks build, `lint` looks at. First what the other steps wait for; last what would keep them from
 /// the build folder.
 fn builds(report: &mut Report) {
     repository::stand_back();
@@ -337,7 +337,6 @@ fn builds(report: &mut Report) {
     report.run(Step::new("device", device::check));
     report.run(Step::new("web build", || web::module(web::Build::Tests).map(|_| step::Passed::Done)));
     report.run(Step::new("fuzz build", || fuzz::build().map(|_| step::Passed::Done)));
-    report.run(Step::new("bench", || bench::time(true, false, &[])));
     report.run(Step::new("bench --count", || bench::count(bench::Counts::Compare)));
     report.run(Step::new("lint", checks::lint));
     report.run(Step::new("doc", checks::doc));
