@@ -328,8 +328,8 @@ fn test(report: &mut Report, all: bool) {
     });
 }
 
-/// What of everything only builds and computes, at low priority; that benchmarks build, `lint` looks at. First what the other steps wait for; last what would keep them from
-/// the build folder.
+/// What of everything only builds and computes, at low priority. First what the other steps wait for; last what would keep them from
+/// the build folder. That the benchmarks build is seen by `lint`, which looks at all targets.
 fn builds(report: &mut Report) {
     repository::stand_back();
     report.run(Step::new("firmware", || firmware::build(&Board::ALL, false)));

@@ -380,75 +380,43 @@ const PARTS: [(&str, u64, &str); 3] = [
 ];
 
 #[test]
-#[ignore = "slow: a third of the wrong data, each with all alternatives, a minute"]
-fn a_third_of_the_table_of_wrong_data_is_that_of_the_document() {
-    let (_, document, _) = documented();
-    let lines: Vec<&str> = document.lines().skip(HEAD).collect();
-    assert_eq!(lines.len(), ALL.len());
-    let parts = parts();
-    for (wrong, line) in ALL.into_iter().zip(lines).step_by(3) {
-        assert_eq!(line, row(wrong, &parts), "docs/wrong-data.md");
-    }
-}
-
-#[test]
-#[ignore = "campaign: 87 wrong data, each with all alternatives, minutes; BLESS=1 renews docs/wrong-data.md"]
-fn campaign_the_table_of_wrong_data_is_that_of_the_document() {
-    let parts = parts();
+#[ignore = "slow: 87 wrong data, each with all alternatives, minutes; BLESS=1 renews docs/wrong-data.md"]
+fn the_table_of_wrong_data_is_that_of_the_document() {
+    let shops: Vec<Shop> = PARTS.iter().map(|(family, seed, _)| Shop::new(family, *seed).unwrap()).collect();
     let mut table = String::from("| wrong |");
     for (_, _, heading) in PARTS {
         write!(table, " {heading} |").unwrap();
     }
     table += "\n|---|---|---|---|\n";
     for wrong in ALL {
-        writeln!(table, "{}", row(wrong, &parts)).unwrap();
+        write!(table, "| {} |", wrong.name()).unwrap();
+        for shop in &shops {
+            let outcome = outcome(shop, wrong);
+            let named = wrong.is_named(&outcome);
+            let word = match (&outcome, named) {
+                (Outcome::Passed, true) => "is read as what it is".to_owned(),
+                (Outcome::Passed, false) => "goes on".to_owned(),
+                (Outcome::Refused(code), true) => format!("stops, named ({code})"),
+                (Outcome::Refused(code), false) => format!("stops ({code})"),
+                (Outcome::Stopped(_), true) => "stops, named".to_owned(),
+                (Outcome::Stopped(misfit), false) if misfit.causes.is_empty() => "stops, no cause found".to_owned(),
+                (Outcome::Stopped(_), false) => "stops, **another cause named**".to_owned(),
+            };
+            write!(table, " {word} |").unwrap();
+        }
+        table.push('\n');
     }
-    let (before, document, behind) = documented();
-    if std::env::var_os("BLESS").is_some() && document != table {
-        std::fs::write(place(), [before, table, behind].concat()).unwrap();
-        return;
-    }
-    assert!(document == table, "docs/wrong-data.md (BLESS=1 renews it) has another table:\n{table}");
-}
-
-/// Lines of the table before its rows.
-const HEAD: usize = 2;
-
-fn place() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/wrong-data.md")
-}
-
-/// The table of the document, with what is before and behind it.
-fn documented() -> (String, String, String) {
-    let document = std::fs::read_to_string(place()).unwrap();
+    let place = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/wrong-data.md");
+    let document = std::fs::read_to_string(&place).unwrap();
     let (from, to) = ("<!-- wrong data begin -->\n", "<!-- wrong data end -->");
     let from = document.find(from).unwrap() + from.len();
     let to = document.find(to).unwrap();
-    (document[..from].to_owned(), document[from..to].to_owned(), document[to..].to_owned())
-}
-
-fn parts() -> Vec<Shop> {
-    PARTS.iter().map(|(family, seed, _)| Shop::new(family, *seed).unwrap()).collect()
-}
-
-/// What becomes of wrong data of every part, as a row of the table.
-fn row(wrong: Wrong, parts: &[Shop]) -> String {
-    let mut row = format!("| {} |", wrong.name());
-    for shop in parts {
-        let outcome = outcome(shop, wrong);
-        let named = wrong.is_named(&outcome);
-        let word = match (&outcome, named) {
-            (Outcome::Passed, true) => "is read as what it is".to_owned(),
-            (Outcome::Passed, false) => "goes on".to_owned(),
-            (Outcome::Refused(code), true) => format!("stops, named ({code})"),
-            (Outcome::Refused(code), false) => format!("stops ({code})"),
-            (Outcome::Stopped(_), true) => "stops, named".to_owned(),
-            (Outcome::Stopped(misfit), false) if misfit.causes.is_empty() => "stops, no cause found".to_owned(),
-            (Outcome::Stopped(_), false) => "stops, **another cause named**".to_owned(),
-        };
-        write!(row, " {word} |").unwrap();
+    if std::env::var_os("BLESS").is_some() && document[from..to] != table {
+        let renewed = [&document[..from], &table, &document[to..]].concat();
+        std::fs::write(&place, renewed).unwrap();
+        return;
     }
-    row
+    assert!(document[from..to] == table, "docs/wrong-data.md (BLESS=1 renews it) has another table:\n{table}");
 }
 
 #[test]

@@ -224,15 +224,13 @@ fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
     let root = isqrt_rounded(discriminant.unsigned_abs()) as i128;
     let u = Real::narrow(truepath_units::div_rounded(root.saturating_sub(q) << Real::FRACTION_BITS, p));
     let u = u.max(Real::ZERO).min(Real::ONE);
-    let bulge = a.normal.cross(b.normal) * Real::ratio(1, 8);
-    let sagitta = if bulge == Real::ZERO {
-        Vector::ZERO
-    } else {
-        chord.direction().map_or(Vector::ZERO, |along| along.right().times(chord.length().scaled(bulge)))
-    };
     if chord == Vector::ZERO {
         return a.stock;
     }
+    // A straight stock, as most is, has no bulge and needs no direction.
+    let bulge = a.normal.cross(b.normal) * Real::ratio(1, 8);
+    let along = if bulge == Real::ZERO { None } else { chord.direction() };
+    let sagitta = along.map_or(Vector::ZERO, |along| along.right().times(chord.length().scaled(bulge)));
     let at = |u: Real| a.stock + chord.scaled(u) + sagitta.scaled(u * (Real::ONE - u) * Real::from_int(4));
     // The chord gives the start; where stock and circle meet at a small angle its bulge takes a few Newton steps. A step
     // that changes nothing is the last: every further one would be the same.
@@ -250,4 +248,50 @@ fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
         point = at(u);
     }
     point
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::arithmetic_side_effects, clippy::float_arithmetic, clippy::indexing_slicing)]
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Small and large cutters, fine and coarse steps, stock straight or round, on either side of the circle and far away.
+        #[test]
+        fn no_stock_inside_the_circle_is_stepped_over(
+            radius in prop_oneof![1i64..5_000, 10_000i64..20_000_000, 900_000_000i64..1_000_000_000],
+            step in 0.001f64..0.4,
+            turn in -0.01f64..0.01,
+            away in (-3.0f64..3.0, -3.0f64..3.0),
+            start in 0usize..40,
+        ) {
+            let length = (radius as f64 * step).max(1.0);
+            let (mut x, mut y, mut heading) = (0.0, 0.0, 0.0f64);
+            let mut samples = std::vec::Vec::new();
+            for k in 0..400i64 {
+                let stock = Point::from_nm(x as i64, y as i64);
+                samples.push(Sample { stock, s: Offset::from_nm(k * length as i64), ..Sample::BLANK });
+                (x, y, heading) = (x + length * heading.cos(), y + length * heading.sin(), heading + turn);
+            }
+            let stride = samples.windows(2).map(|pair| pair[0].stock.distance(pair[1].stock).nm()).max().unwrap_or(1).max(1);
+            let at = |share: f64| (share * radius as f64) as i64;
+            let walk = Walk {
+                centre: Point::from_nm(at(away.0), at(away.1)),
+                heading: Direction::X,
+                radius: Offset::from_nm(radius),
+                stride,
+                end: Offset::MAX,
+            };
+            let is_inside = |sample: &Sample| {
+                let spoke = sample.stock.from(walk.centre);
+                let [x, y] = [spoke.x, spoke.y].map(|v| i128::from(v.nm()));
+                x * x + y * y <= i128::from(radius) * i128::from(radius - 1)
+            };
+            // The stock of a path is continued until it is out of reach.
+            prop_assume!(samples.last().is_some_and(|last| !is_inside(last)));
+            let every = (start..samples.len()).rfind(|k| is_inside(&samples[*k]));
+            prop_assert_eq!(walk.last_of_stocked(&samples, start), every);
+        }
+    }
 }
