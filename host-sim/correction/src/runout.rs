@@ -3,7 +3,9 @@
 //! Every holder is some micrometres off. The tooth that reaches farthest then makes the wall alone, and where the chip is thin the
 //! others lift off and lose their edge force: that lowers the error, most where it is largest, and changes its shape over the
 //! height. No stiffness says the same; a fit without it makes the cutter smaller than it is. A few offsets are tried, each believed in
-//! as far as holders have it, and the most probable is taken as if the job had stated it.
+//! as far as holders have it, then those between the most probable one and its neighbours: an offset a few micrometres too large is made
+//! up for by a machine half as stiff again, which only the belief in the stated stiffness tells from the truth. The most probable is
+//! taken as if the job had stated it.
 
 use rayon::prelude::*;
 use truepath_core::cut::{Runout, WallLaw};
@@ -19,6 +21,8 @@ use crate::plausible::is_possible;
 const TRIED: [(i32, f64); 6] = [(0, -0.7), (2, -1.6), (4, -1.9), (7, -2.5), (11, -3.5), (16, -4.5)];
 /// So many of them are tried at once.
 const SMALL: usize = 3;
+/// Times that offsets half way to the neighbours of the most probable one are tried.
+const HALVINGS: usize = 2;
 /// By how much one must be more probable than a cutter that runs true, natural logarithm: 400 : 1, as wear and stock look alike, and
 /// 20 : 1 where a cutter that runs true would have a size, or a machine, that cannot be.
 const DECISIVE: [f64; 2] = [6.0, 3.0];
@@ -63,20 +67,12 @@ pub fn found(groups: &[(&Pass, Vec<PartCut<'_>>)]) -> Option<Found> {
     if groups.is_empty() || !groups.iter().all(|(pass, _)| is_open(pass)) {
         return None;
     }
-    let probable = |(um, belief): &(i32, f64)| {
-        let offset = Offset::from_um(i64::from(*um));
-        let each = groups.iter().map(|(pass, cuts)| ln_probability(pass, cuts, offset));
-        let all: Option<Vec<(f64, bool)>> = each.collect();
-        all.map(|all| Tried {
-            offset,
-            ln: belief + all.iter().map(|(ln, _)| ln).sum::<f64>(),
-            is_possible: all.iter().all(|(_, is_possible)| *is_possible),
-        })
-    };
-    let (small, large) = TRIED.split_at(SMALL);
+    let probable = |at: &(Offset, f64)| Tried::of(*at, groups);
+    let known: Vec<(Offset, f64)> =
+        TRIED.iter().map(|(um, belief)| (Offset::from_um(i64::from(*um)), *belief)).collect();
+    let (small, large) = known.split_at(SMALL);
     let mut tried: Vec<Tried> = small.par_iter().filter_map(probable).collect();
     let runs_true = *tried.iter().find(|one| one.offset == Offset::ZERO)?;
-    let best = |tried: &[Tried]| tried.iter().copied().max_by(|a, b| a.ln.total_cmp(&b.ln));
     // A larger one only where the largest so far is the most probable.
     for larger in large {
         if best(&tried)?.offset != tried.last()?.offset {
@@ -84,20 +80,54 @@ pub fn found(groups: &[(&Pass, Vec<PartCut<'_>>)]) -> Option<Found> {
         }
         tried.push(probable(larger)?);
     }
-    let best = best(&tried)?;
-    let ln_odds = best.ln - runs_true.ln;
     let decisive = DECISIVE[usize::from(!runs_true.is_possible)];
-    (best.offset != Offset::ZERO && ln_odds > decisive).then_some(Found { offset: best.offset, ln_odds })
+    let is_told = |best: &Tried| best.offset != Offset::ZERO && best.ln - runs_true.ln > decisive;
+    best(&tried).filter(is_told)?;
+    for _ in 0..HALVINGS {
+        let between: Vec<Tried> = beside_best(&tried)?.par_iter().filter_map(probable).collect();
+        tried.extend(between);
+        tried.sort_by_key(|one| one.offset);
+    }
+    let best = best(&tried)?;
+    Some(Found { offset: best.offset, ln_odds: best.ln - runs_true.ln })
+}
+
+fn best(tried: &[Tried]) -> Option<Tried> {
+    tried.iter().copied().max_by(|a, b| a.ln.total_cmp(&b.ln))
+}
+
+/// Half way from the most probable of some offsets, which ascend, to its neighbours, and what is believed there.
+fn beside_best(tried: &[Tried]) -> Option<Vec<(Offset, f64)>> {
+    let best = best(tried)?;
+    let at = tried.iter().position(|one| one.offset == best.offset)?;
+    let neighbours = [at.checked_sub(1), Some(at + 1)].into_iter().flatten().filter_map(|at| tried.get(at));
+    let half_way = |other: &Tried| {
+        let offset = Offset::from_nm((best.offset.nm() + other.offset.nm()) / 2);
+        (offset, 0.5 * (best.belief + other.belief))
+    };
+    Some(neighbours.map(half_way).collect())
 }
 
 /// An offset that was tried.
 #[derive(Clone, Copy, Debug)]
 struct Tried {
     offset: Offset,
+    /// What is believed of it, natural logarithm.
+    belief: f64,
     /// How probable the points are with it, and it by itself, natural logarithm.
     ln: f64,
     /// Whether cutter and machine that the points then have can be.
     is_possible: bool,
+}
+
+impl Tried {
+    /// An offset, and what is believed of it, by groups of cuts.
+    fn of((offset, belief): (Offset, f64), groups: &[(&Pass, Vec<PartCut<'_>>)]) -> Option<Self> {
+        let each = groups.iter().map(|(pass, cuts)| ln_probability(pass, cuts, offset));
+        let all: Vec<(f64, bool)> = each.collect::<Option<_>>()?;
+        let ln = belief + all.iter().map(|(ln, _)| ln).sum::<f64>();
+        Some(Self { offset, belief, ln, is_possible: all.iter().all(|(_, is_possible)| *is_possible) })
+    }
 }
 
 /// The passes of walls with the cutter that their points speak for; as they are where these do not.
@@ -116,4 +146,23 @@ fn ln_probability(pass: &Pass, cuts: &[PartCut<'_>], offset: Offset) -> Option<(
     let law = if offset == Offset::ZERO { asked(pass.core.job.force.model) } else { Some(WallLaw::Helical) };
     let found = plain(pass, law, &cuts, &mut |_| ());
     Some((ln_evidence(&found, &cuts)?, is_possible(&found.core)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn between_the_most_probable_offset_and_its_neighbours_is_looked_half_way() {
+        let tried = |um, belief, ln| Tried { offset: Offset::from_um(um), belief, ln, is_possible: true };
+        let nanometres = |tried: &[Tried]| {
+            beside_best(tried).map(|all| all.iter().map(|(offset, _)| offset.nm()).collect::<Vec<i64>>())
+        };
+        let mut all = vec![tried(0, -0.7, 1.0), tried(4, -1.9, 5.0), tried(7, -2.5, 9.0), tried(11, -3.5, 8.0)];
+        assert_eq!(beside_best(&all).map(|all| all[0].1), Some(-2.2));
+        assert_eq!(nanometres(&all), Some(vec![5500, 9000]));
+        all.pop();
+        assert_eq!(nanometres(&all), Some(vec![5500]), "nothing is tried beyond the largest");
+        assert_eq!(nanometres(&[]), None);
+    }
 }

@@ -67,5 +67,6 @@ fn going_back_to_the_first_part_is_said_to_be_no_correction() {
     let (fresh, _) = shop.first(&WITH_CORNER);
     let [again, fresh, uncorrected] = [Some(&again.corrected), Some(&fresh), None].map(|part| shop.error(part));
     println!("{again:.4} {fresh:.4} {uncorrected:.4}");
-    assert!(again < 1.2 * fresh && again < uncorrected / 15.0, "{again} {fresh} {uncorrected}");
+    // Two draws of the noise differ by that much.
+    assert!(again < fresh + 0.012 && again < uncorrected / 15.0, "{again} {fresh} {uncorrected}");
 }
