@@ -16,7 +16,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
 
 use crate::correction::{Correction, DesignRequest, Identification, MeasuredCut, design_correction, identify_together};
-use crate::discrepancy::{Along, PartCut, is_fitted, relieved};
+use crate::discrepancy::{Along, Discrepancy, PartCut, is_fitted, relieved};
 use crate::edits::block_edits;
 use crate::feeds;
 use crate::identification::Found;
@@ -100,7 +100,7 @@ pub fn correct_every(
     let cuts = both.map(|(wall, path)| MeasuredCut { pass: wall.pass, path, measurement: wall.measurement });
     let cuts: Vec<MeasuredCut> = cuts.collect();
     let identified = identify_together(&cuts, |share| progress(0.1 * share))?;
-    let (identified, along) = beside(&cuts, identified, |share| progress(0.1 + 0.1 * share));
+    let (identified, along, _) = beside(&cuts, identified, |share| progress(0.1 + 0.1 * share));
     let identified =
         walls.iter().zip(&sampled).zip(identified).zip(&along).map(|(((wall, path), identified), along)| {
             let remarks = Remarks::of(wall.measurement, wall.remarks, MeasuredPart::Uncorrected);
@@ -122,6 +122,24 @@ pub fn as_its_points_tell(pass: Pass, measurement: &Measurement) -> Result<Pass,
     Ok(passes.into_iter().next().unwrap_or(pass))
 }
 
+/// Machine and material of an uncorrected part, and what is beside them: along the contour, and at any place, where the job wants it.
+///
+/// # Errors
+/// As [`identify_together`].
+pub fn identify_beside(
+    pass: &Pass,
+    path: &Path,
+    measurement: &Measurement,
+    mut progress: impl FnMut(f64),
+) -> Result<(Identification, Along, Option<Discrepancy>), Failure> {
+    let cuts = [MeasuredCut { pass, path, measurement }];
+    let identified = identify_together(&cuts, |share| progress(0.5 * share))?;
+    let (identified, along, discrepancy) = beside(&cuts, identified, |share| progress(0.5 + 0.5 * share));
+    let none = || Failure::Internal("a cut without what its points say".to_owned());
+    let identified = identified.into_iter().next().ok_or_else(none)?;
+    Ok((identified, along.into_iter().next().unwrap_or_default(), discrepancy))
+}
+
 /// The passes of walls of an uncorrected part as their points have them: [`told`].
 ///
 /// # Errors
@@ -134,17 +152,17 @@ fn as_told(walls: &[MeasuredWall<'_>]) -> Result<Vec<Pass>, Failure> {
     })
 }
 
-/// What the walls of an uncorrected part show beside the machine, which is then known better: it with its points, and the
-/// discrepancy along each.
+/// What the walls of an uncorrected part show beside the machine, which is then known better: it with its points, the
+/// discrepancy along each, and at any place.
 fn beside(
     cuts: &[MeasuredCut<'_>],
     identified: Vec<Identification>,
     mut progress: impl FnMut(f64),
-) -> (Vec<Identification>, Vec<Along>) {
-    let (Some(cut), Some(known)) = (cuts.first(), identified.first()) else { return (identified, Vec::new()) };
+) -> (Vec<Identification>, Vec<Along>, Option<Discrepancy>) {
+    let (Some(cut), Some(known)) = (cuts.first(), identified.first()) else { return (identified, Vec::new(), None) };
     if !is_fitted(cut.pass) {
         let none = vec![Along::default(); identified.len()];
-        return (identified, none);
+        return (identified, none, None);
     }
     let observations: Vec<Vec<Observation>> = identified.iter().map(|one| one.observations.clone()).collect();
     let parts: Vec<PartCut> = cuts
@@ -159,7 +177,7 @@ fn beside(
     let core = relieved.found.core;
     let mut rest = relieved.found.observations.into_iter();
     let own = |own: &Vec<Observation>| Identification { core, observations: rest.by_ref().take(own.len()).collect() };
-    (observations.iter().map(own).collect(), along)
+    (observations.iter().map(own).collect(), along, relieved.discrepancy)
 }
 
 /// A wall and what is known of the machine that cuts it.

@@ -16,6 +16,7 @@
 //! | the next part | [`learning`], [`learn`], [`as_milled`] |
 //! | planned passes as a program | [`planned`] |
 //! | where to touch, and the program that does | [`verification`] |
+//! | where to touch next, by what was measured | [`further`] |
 //! | accuracy from the measurement alone | [`inspection`] |
 
 pub mod as_milled;
@@ -29,6 +30,7 @@ pub mod feeds;
 pub mod fillet;
 pub mod first_pass;
 pub mod floor;
+pub mod further;
 pub mod guard;
 pub mod identification;
 pub mod inspection;

@@ -5,6 +5,7 @@
 
 use std::path::Path as FilePath;
 
+use truepath_correction::learning::History;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::units::mm;
 use truepath_job::job::JobFile;
@@ -136,7 +137,7 @@ impl Case {
         let mut more_mm = places::more(&part.contour, trim);
         if id.touches == Touches::Chosen {
             (places_mm, levels) = places::chosen(&pass)?;
-            more_mm = Vec::new();
+            more_mm = Vec::new(); // those of `probe --next`
         }
         Ok(Self {
             id: id.clone(),
@@ -154,18 +155,29 @@ impl Case {
         })
     }
 
-    /// Places at which part `number` is touched, mm along the contour.
-    pub fn places_of(&self, number: u64) -> Vec<f64> {
-        if number > 1 { places::together(&self.places_mm, &self.more_mm) } else { self.places_mm.clone() }
+    /// Places at which the part cut with a correction is touched, mm along the contour: where the first part was and a few more, or
+    /// where `truepath probe --next` would have it touched.
+    ///
+    /// # Errors
+    /// What planning the touches refuses.
+    pub fn next_places(&self, history: &History) -> Result<Vec<f64>, Failure> {
+        match self.id.touches {
+            Touches::Family => Ok(places::together(&self.places_mm, &self.more_mm)),
+            Touches::Chosen => places::chosen_next(&self.pass, history),
+        }
     }
 
     /// The machine while part `number` (1, 2, …) is cut: the same, with another blank and other noise of the probe, and with
     /// the nuisances as that part has them.
     pub fn machine_of(&self, number: u64) -> Machine {
+        self.machine_touched(number, self.places_mm.len())
+    }
+
+    /// The same of a part that is touched at so many places.
+    pub fn machine_touched(&self, number: u64, places: usize) -> Machine {
         let machine = Machine { seed: self.machine.seed.wrapping_add(number - 1), ..self.machine.clone() };
-        let touches = self.places_of(number).len() * self.levels.len();
         match &self.nuisances {
-            Some(nuisances) => nuisances.on(&machine, number, touches),
+            Some(nuisances) => nuisances.on(&machine, number, places * self.levels.len()),
             None => machine,
         }
     }

@@ -1,6 +1,8 @@
 //! Where a user touches the part: the middle of straight walls, the thirds of long ones, seldom a corner, four or so places
 //! round a curve. After the first correction three more, where the contour bends most. Or where `truepath probe` would have them.
 
+use truepath_correction::further::next_part;
+use truepath_correction::learning::History;
 use truepath_correction::verification::{Settings, plan};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::rows::ascending;
@@ -49,6 +51,16 @@ pub fn chosen(pass: &Pass) -> Result<(Vec<f64>, Vec<f64>), Failure> {
     let heights = plan.places.first().map(|place| place.heights.as_slice()).unwrap_or_default();
     let levels = heights.iter().map(|height| height.above_tip_mm / depth).collect();
     Ok((plan.places.iter().map(|place| place.s_mm).collect(), levels))
+}
+
+/// The places of the next part that `truepath probe --next` would touch, given the parts of a history, mm along the contour.
+///
+/// # Errors
+/// A contour that cannot be touched.
+pub fn chosen_next(pass: &Pass, history: &History) -> Result<Vec<f64>, Failure> {
+    let settings = Settings { exactly: true, ..Settings::default() };
+    let plan = next_part(pass, history, None, &settings, &mut |_| ())?;
+    Ok(plan.places.iter().map(|place| place.s_mm).collect())
 }
 
 /// `count` places spread evenly over the contour.

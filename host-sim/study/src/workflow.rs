@@ -88,7 +88,7 @@ pub fn described(case: &Case) -> Outcome {
 /// # Errors
 /// What probing or the correction refuse.
 pub fn first(case: &Case, outcome: &mut Outcome) -> Result<FirstPart, Failure> {
-    let probe = case.probe(1, &case.first, &case.places_of(1))?;
+    let probe = case.probe(1, &case.first, &case.places_mm)?;
     let measurement = measured(case, "probe.txt", &probe)?;
     let begun = Instant::now();
     let corrected = correct_pass(&case.pass, &measurement, &[], &[Route::Program], &mut |_| ())?;
@@ -125,14 +125,17 @@ pub fn first(case: &Case, outcome: &mut Outcome) -> Result<FirstPart, Failure> {
     Ok(FirstPart { probe, measurement, corrected, milled, after })
 }
 
-/// One more part: the corrected one is touched where the first was and in three more places, and learned from.
+/// One more part: the corrected one is touched, where [`Case::next_places`] says, and learned from.
 ///
 /// # Errors
 /// What probing or learning refuse.
 pub fn second(case: &Case, first_part: &FirstPart, outcome: &mut Outcome) -> Result<SecondPart, Failure> {
-    let probe = case.probe(2, &first_part.milled, &case.places_of(2))?;
-    let measurement = measured(case, "probe-2.txt", &probe)?;
     let history = History::first(&case.pass, &first_part.measurement, &first_part.corrected)?;
+    let places = case.next_places(&history)?;
+    let mut milled = first_part.milled.clone();
+    milled.machine = case.machine_touched(2, places.len());
+    let probe = case.probe(2, &milled, &places)?;
+    let measurement = measured(case, "probe-2.txt", &probe)?;
     let begun = Instant::now();
     let learned = learn(&case.pass, &history, &measurement, &[], &[Route::Program], &mut |_| ())?;
     outcome.learn_s = some(begun.elapsed().as_secs_f64());

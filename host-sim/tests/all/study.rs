@@ -110,12 +110,12 @@ fn a_nuisance_leaves_the_case_beneath_as_it_is() {
         assert_eq!((&case.job, &case.program, &case.machine), (&plain.job, &plain.program, &plain.machine));
         assert_eq!(case.places_mm, plain.places_mm);
         assert_eq!(case.before != plain.before, differs, "{id}");
-        let touched = |case: &Case| case.probe(1, &case.first, &case.places_of(1)).expect("a wall");
+        let touched = |case: &Case| case.probe(1, &case.first, &case.places_mm).expect("a wall");
         let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
         let apart = lines(&touched(&case)).iter().zip(lines(&touched(&plain))).filter(|(a, b)| **a != *b).count();
         // One wild touch; a step moves what lies behind it, and a little before it.
         assert!(if differs { apart > 2 } else { apart == 1 }, "{id}: {apart}");
     }
     let chosen = draw("pocket-climb/1001/chosen");
-    assert_eq!((chosen.places_of(2).len(), chosen.levels.len()), (8, 3));
+    assert_eq!((chosen.places_mm.len(), chosen.levels.len()), (8, 3));
 }

@@ -9,7 +9,7 @@ use truepath_ground::units::{float, mm, nm};
 use super::allowance::Allowance;
 use super::evidence::{Factored, Task, discrepancy};
 use super::feature::{Engagement, Feature, Sensitivity};
-use super::kernel::Kernel;
+use super::kernel::{Extent, Kernel};
 use super::nominal::{by_stock, sensitivities, stock_sensitivities, with_stock};
 use super::points::{Points, Row, SHARED};
 
@@ -201,8 +201,19 @@ impl Discrepancy {
         per_point(&self.points, &self.used, heights.fold(f64::NEG_INFINITY, f64::max))
     }
 
-    fn rows(&self) -> impl Iterator<Item = &Row> {
+    /// The rows that are of the wall.
+    pub(super) fn rows(&self) -> impl Iterator<Item = &Row> {
         self.used.iter().map(|k| &self.points.rows[*k])
+    }
+
+    /// Kernels with their shares.
+    pub(super) fn kernels(&self) -> &[(f64, Factored)] {
+        &self.kernels
+    }
+
+    /// The contours of the part.
+    pub(super) fn extents(&self) -> &[Extent] {
+        &self.points.extents
     }
 
     /// Mean of a quantity over the kernels.
@@ -277,20 +288,8 @@ impl Discrepancy {
         let even = path.with_law(core.law);
         let mut buffer = Vec::new();
         let path = self.stocked(&even, contour, &mut buffer);
-        let table = core.table();
-        let machine = core.machine(&path, &table);
-        let engagement = Engagement::nominal(&machine, contour);
-        let sensitivity = sensitivities(&path, core);
-        let stock = stock_sensitivities(&path, core);
-        let level = float(core.prior.sigma[0]).max(1e-9);
-        let samples = &path.samples()[path.first()..path.first() + path.count()];
-        let features: Vec<Feature> = samples
-            .iter()
-            .zip(sensitivity.iter().zip(stock))
-            .map(|(sample, (row, stock))| {
-                engagement.at(sample.s, sample.normal, Sensitivity { load: row[0] / level, stock })
-            })
-            .collect();
+        let (features, sensitivity): (Vec<Feature>, Vec<[f64; COUNT]>) =
+            looks(&path, contour, core).into_iter().unzip();
         let rest: Vec<Offset> = features.iter().map(|feature| nm(self.rest_at(feature))).collect();
         let (mean, rest, stock) = if self.allowance.is_even() {
             (rest, Vec::new(), Vec::new())
@@ -311,6 +310,13 @@ impl Discrepancy {
         };
         let (sigma, repeat) = (0..features.len()).map(deviation).map(|[sigma, repeat]| (sigma, repeat)).unzip();
         Along { mean, rest, stock, sigma, repeat }
+    }
+
+    /// How the places beside every sample of a contour look to the kernels, in the stock that is expected, and what the parameters do to
+    /// the wall there, mm per prior standard deviation.
+    pub(super) fn features(&self, path: &Path, contour: usize, core: &job::Identified) -> Vec<(Feature, [f64; COUNT])> {
+        let even = path.with_law(core.law);
+        looks(&self.stocked(&even, contour, &mut Vec::new()), contour, core)
     }
 
     /// Standard deviations at a place of the next part, mm: of parameters and discrepancy together, without that which the
@@ -356,6 +362,24 @@ impl Discrepancy {
             level_share: square(|k| k.wear),
         }
     }
+}
+
+/// How the places beside every sample of a contour look to a kernel, where the correction leads the cutter to its nominal place, and
+/// what the parameters do to the wall there, mm per prior standard deviation.
+fn looks(path: &Path, contour: usize, core: &job::Identified) -> Vec<(Feature, [f64; COUNT])> {
+    let table = core.table();
+    let machine = core.machine(path, &table);
+    let engagement = Engagement::nominal(&machine, contour);
+    let level = float(core.prior.sigma[0]).max(1e-9);
+    let samples = &path.samples()[path.first()..path.first() + path.count()];
+    let by = sensitivities(path, core).into_iter().zip(stock_sensitivities(path, core));
+    samples
+        .iter()
+        .zip(by)
+        .map(|(sample, (row, stock))| {
+            (engagement.at(sample.s, sample.normal, Sensitivity { load: row[0] / level, stock }), row)
+        })
+        .collect()
 }
 
 /// The most probable kernel of some points.

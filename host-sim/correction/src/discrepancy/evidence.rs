@@ -73,6 +73,11 @@ impl Factored {
         self.factor.halfway(covariance).iter().map(|v| v * v).sum()
     }
 
+    /// L⁻¹ times a covariance with the rows, LLᵀ theirs: the product of two of these is what the rows know of both.
+    pub(super) fn halfway(&self, covariance: &[f64]) -> Vec<f64> {
+        self.factor.halfway(covariance)
+    }
+
     /// Every row as the others predict it: (residual, variance).
     pub(super) fn left_out(&self) -> Vec<(f64, f64)> {
         let n = self.weights.len();

@@ -62,7 +62,7 @@ pub(super) fn choose(
             };
             let ranked = (0..sites.len())
                 .filter(allowed)
-                .map(|k| (k, known.after_all(&sensitivities[k].rows)))
+                .map(|k| (k, known.after_all(&sensitivities[k].touches(None))))
                 .min_by(|a, b| a.1.total(&wall).total_cmp(&b.1.total(&wall)));
             let Some((site, after)) = ranked else {
                 if apart <= least {

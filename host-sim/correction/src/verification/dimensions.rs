@@ -175,12 +175,12 @@ pub fn plan_dimensions(
     let before = sigma(&known);
     let mut dimensions: Vec<PlannedDimension> = Vec::new();
     while dimensions.len() < count as usize && !candidates.is_empty() {
-        let left = |candidate: &Candidate| known.after(&candidate.row).total(&total);
+        let left = |candidate: &Candidate| known.after_all(&[candidate.row.into()]).total(&total);
         let left: Vec<f64> = candidates.iter().map(left).collect();
         let Some(best) = (0..left.len()).min_by(|a, b| left[*a].total_cmp(&left[*b])) else { break };
         let Candidate { planned, row } = candidates.swap_remove(best);
-        let after = known.after(&row);
-        let why = reason::tells([&known, &after], &prior);
+        let after = known.after_all(&[row.into()]);
+        let why = reason::tells([&known, &after], [0.0; 2], &prior);
         dimensions.push(PlannedDimension { why, ..planned });
         known = after;
     }

@@ -10,21 +10,24 @@
 
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
+use truepath_core::units::Offset;
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{float, mm};
 use truepath_job::pass::Pass;
 
 use super::approach::{Xy, along};
-use super::choice_next::{Gain, choose_next, largest};
-use super::covariance::Covariance;
+use super::candidates::Site;
+use super::choice_next::{Gain, Limits, Task, choose_next, largest};
+use super::covariance::{Covariance, Thing};
 use super::estimate::Estimate;
 use super::plan::{Gained, Place, Plan};
 use super::probing_setup::ProbingSetup;
 use super::reason;
-use super::sensitivity::sensitivities;
+use super::sensitivity::{Sensitivity, sensitivities};
 use super::settings::Settings;
 use super::wall_sensitivity::WallSensitivity;
 use crate::correction::Identification;
+use crate::discrepancy::Open;
 
 /// What was measured, and which part will be touched.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +44,8 @@ pub struct Measured<'a> {
     pub wall: &'a WallSensitivity,
     /// Places touched on the same part already, along the contour, mm.
     pub touched_mm: &'a [f64],
+    /// What the points at hand leave open beside the model; `None` where nothing is believed to be there.
+    pub open: Option<&'a Open>,
 }
 
 /// Plans the touches of further places. `progress` is told the share done, 0…1.
@@ -59,12 +64,25 @@ pub fn plan_next(
     let estimate = Estimate { prior, theta: fit.theta, nodes: measured.nodes };
     let (sites, kept_off) = setup.sites(pass, path, &estimate, (true, &[]))?;
     let sensitivities = sensitivities(path, &estimate, &sites, &setup.heights, setup.probe.noise, progress);
+    let (sites, sensitivities) = without_ramps(sites, sensitivities, 2.0 * mm(path.setup().radius));
     let known = Covariance::of(&fit.covariance, measured.is_next);
+    let known = measured.open.map_or(known.clone(), |open| known.beside(open));
+    let beside = |s_mm: f64| measured.open.and_then(|open| open.nearest(s_mm));
+    let touches: Vec<Vec<Thing>> =
+        sites.iter().zip(&sensitivities).map(|(site, touches)| touches.touches(beside(mm(site.s)))).collect();
+    let wall: Vec<(f64, Thing)> = measured
+        .wall
+        .rows
+        .iter()
+        .map(|(s, row)| (*s, Thing { row: *row, beside: beside(*s).map(|at| (at, 1.0)) }))
+        .collect();
     let noise = mm(setup.probe.noise);
-    let touched: Vec<Xy> = measured.touched_mm.iter().map(|s| wall(path, *s)).collect();
-    let limits = (settings.places as usize, setup.apart(), noise);
-    let before = largest(&known, measured.wall).0;
-    let gains = choose_next(&sites, &sensitivities, measured.wall, known.clone(), &touched, limits);
+    let touched: Vec<Xy> = measured.touched_mm.iter().map(|s| wall_at(path, *s)).collect();
+    let worth = if settings.exactly { 0.0 } else { noise };
+    let limits = Limits { count: settings.places as usize, apart: setup.apart(), worth };
+    let before = largest(&known, &wall).0;
+    let task = Task { sites: &sites, touches: &touches, wall: &wall, touched: &touched };
+    let gains = choose_next(&task, known.clone(), limits);
     let after = gains.last().map_or(&known, |gain| &gain.choice.after);
     let place = |(rank, gain): (usize, &Gain)| Place {
         gain: Some(Gained {
@@ -73,13 +91,13 @@ pub fn plan_next(
             worst_s_mm: gain.worst_s,
             worth_it: gain.is_worth_it(noise),
         }),
-        ..Place::of(&sites[gain.choice.site], &gain.choice, rank, prior, &setup.heights)
+        ..Place::of(&sites[gain.choice.site], &gain.choice, gain.beside, (rank, prior), &setup.heights)
     };
     let places: Vec<Place> = gains.iter().enumerate().map(place).collect();
     let mut plan = Plan {
         kept_off,
         unknowns: reason::unknowns(after, prior),
-        wall_sigma_mm: [before, largest(after, measured.wall).0],
+        wall_sigma_mm: [before, largest(after, &wall).0],
         ..Plan::of(setup, pass, settings, places)
     };
     plan.warnings.extend(doubt(&gains, settings, noise));
@@ -87,18 +105,35 @@ pub fn plan_next(
     Ok(plan)
 }
 
+/// A place of the same load where it is steady, as a share.
+const ALIKE: f64 = 0.9;
+
+/// Without places where the load changes, if it is as high at a steady one within `near` mm: what is read on the way up tells of that way.
+fn without_ramps(sites: Vec<Site>, sensitivities: Vec<Sensitivity>, near: f64) -> (Vec<Site>, Vec<Sensitivity>) {
+    let load = |of: &Sensitivity| of.wall.iter().map(|row| row[0].abs()).sum::<f64>();
+    let steady: Vec<(f64, f64)> = sites
+        .iter()
+        .zip(&sensitivities)
+        .filter(|(site, _)| site.unsteady == Offset::ZERO)
+        .map(|(site, of)| (mm(site.s), load(of)))
+        .collect();
+    let is_kept = |(site, of): &(Site, Sensitivity)| {
+        let as_high = |(s, other): &(f64, f64)| (s - mm(site.s)).abs() <= near && *other >= ALIKE * load(of);
+        site.unsteady == Offset::ZERO || !steady.iter().any(as_high)
+    };
+    sites.into_iter().zip(sensitivities).filter(is_kept).unzip()
+}
+
 /// Nominal wall at a place along the contour, mm.
-fn wall(path: &Path, s_mm: f64) -> Xy {
-    let sample = &path.samples()[path.index_at(truepath_core::units::Offset::from_nm((s_mm * 1e6).round() as i64))];
+fn wall_at(path: &Path, s_mm: f64) -> Xy {
+    let sample = &path.samples()[path.index_at(Offset::from_nm((s_mm * 1e6).round() as i64))];
     let centre = [sample.point.x, sample.point.y].map(|p| p.nm() as f64 / 1e6);
     along(centre, [float(sample.normal.x), float(sample.normal.y)], mm(path.setup().radius))
 }
 
 /// What the user should know: when more touches are not worth it.
 fn doubt(gains: &[Gain], settings: &Settings, noise: f64) -> Option<String> {
-    let below = format!(
-        "would move the least certain place of the corrected wall by less than the noise of a reading, {noise} mm"
-    );
+    let below = format!("would move the corrected wall nowhere by more than the noise of a reading, {noise} mm");
     match gains {
         [] => Some("no further place may be touched that far from those touched already".to_owned()),
         [first, ..] if !first.is_worth_it(noise) => {

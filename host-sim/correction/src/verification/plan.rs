@@ -59,8 +59,14 @@ pub struct Gained {
 }
 
 impl Place {
-    /// A chosen site with its reasons.
-    pub(super) fn of(site: &Site, choice: &Choice, rank: usize, prior: &Prior, heights: &[Height]) -> Self {
+    /// A chosen site with its reasons; what is `beside` the model there has a standard deviation before and after its touches, mm.
+    pub(super) fn of(
+        site: &Site,
+        choice: &Choice,
+        beside: [f64; 2],
+        (rank, prior): (usize, &Prior),
+        heights: &[Height],
+    ) -> Self {
         Self {
             contour: None,
             s_mm: mm(site.s),
@@ -68,7 +74,7 @@ impl Place {
             wall: site.wall,
             normal: site.normal.map(|v| -v),
             what: reason::place(site),
-            why: reason::tells([&choice.before, &choice.after], prior),
+            why: reason::tells([&choice.before, &choice.after], beside, prior),
             rank,
             gain: None,
             heights: heights.to_vec(),
@@ -244,7 +250,7 @@ pub fn plan_every(passes: &[Pass], settings: &Settings, progress: &mut dyn FnMut
     for (rank, choice) in chosen.choices.iter().enumerate() {
         let owner = owners[choice.site];
         let heights = &walls[owner].setup.heights;
-        places.push((owner, Place::of(&sites[choice.site], choice, rank, &prior, heights)));
+        places.push((owner, Place::of(&sites[choice.site], choice, [0.0; 2], (rank, &prior), heights)));
     }
     let several = passes.len() > 1;
     let mut plans: Vec<Plan> = Vec::new();

@@ -21,6 +21,8 @@ pub struct Unknown {
 
 /// An unknown counts as told by a place that takes this share of what is uncertain about it.
 const TOLD: f64 = 0.15;
+/// What is beside the model is named from this standard deviation on, mm.
+const WORTH_NAMING: f64 = 0.0005;
 /// Unknowns named for one place at most.
 const NAMED: usize = 3;
 
@@ -73,8 +75,8 @@ fn facing(normal: [f64; 2]) -> String {
 }
 
 /// What the touches there tell: `tells stiffness 100 -> 12 %, …`, the share of its uncertainty
-/// before and after.
-pub(super) fn tells([before, after]: [&Covariance; 2], prior: &Prior) -> String {
+/// before and after; and what stock and wall do there that no parameter says, the standard deviation before and after, mm.
+pub(super) fn tells([before, after]: [&Covariance; 2], beside: [f64; 2], prior: &Prior) -> String {
     let mut told: Vec<(f64, String)> = open(prior)
         .map(|(k, parameter)| (before.remaining(k), after.remaining(k), parameter))
         .filter(|(before, after, _)| 1.0 - after / before > TOLD)
@@ -84,7 +86,12 @@ pub(super) fn tells([before, after]: [&Covariance; 2], prior: &Prior) -> String 
         })
         .collect();
     told.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let names: Vec<String> = told.into_iter().take(NAMED).map(|(_, text)| text).collect();
+    let of_parameters = told.into_iter().take(NAMED).map(|(_, text)| text);
+    let [open, left] = beside;
+    let is_told = 1.0 - left / open > TOLD && open >= WORTH_NAMING;
+    let of_place = is_told
+        .then(|| format!("what only this place has (uneven stock, a wall that yields) {open:.4} -> {left:.4} mm"));
+    let names: Vec<String> = of_parameters.chain(of_place).collect();
     if names.is_empty() {
         "sharpens what the others tell, and shows when one of them is wrong".to_owned()
     } else {

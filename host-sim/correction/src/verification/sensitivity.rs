@@ -11,7 +11,7 @@ use truepath_core::units::{Offset, Real, hypot_nm};
 use truepath_ground::units::{float, mm, real};
 
 use super::candidates::Site;
-use super::covariance::Row;
+use super::covariance::{Row, Thing};
 use super::estimate::{Estimate, of_measurement};
 use super::heights::Height;
 
@@ -20,8 +20,19 @@ use super::heights::Height;
 pub(super) struct Sensitivity {
     /// Sensitivities of the readings, one row a height.
     pub(super) rows: Vec<Row>,
+    /// Standard deviations of the readings, mm, one a height.
+    pub(super) deviations: Vec<f64>,
     /// Change of the wall itself, mm, one row a height: without the unknowns of the measurement.
     pub(super) wall: Vec<Row>,
+}
+
+impl Sensitivity {
+    /// The touches, where something is beside the model at a place of the wall.
+    pub(super) fn touches(&self, beside: Option<usize>) -> Vec<Thing> {
+        let touch =
+            |(row, deviation): (&Row, &f64)| Thing { row: *row, beside: beside.map(|at| (at, 1.0 / deviation)) };
+        self.rows.iter().zip(&self.deviations).map(touch).collect()
+    }
 }
 
 /// Step of the difference quotients, in standard deviations of what the job states.
@@ -47,7 +58,7 @@ pub(super) fn sensitivities(
     let deviations: Vec<f64> = touches.iter().map(|o| mm(o.deviation())).collect();
     let sensitivity = |(rows, deviations): (&[Row], &[f64])| {
         let wall = rows.iter().zip(deviations).map(|(row, deviation)| wall_row(row, *deviation)).collect();
-        Sensitivity { rows: rows.to_vec(), wall }
+        Sensitivity { rows: rows.to_vec(), deviations: deviations.to_vec(), wall }
     };
     rows.chunks(heights.len()).zip(deviations.chunks(heights.len())).map(sensitivity).collect()
 }

@@ -12,6 +12,9 @@ pub struct Settings {
     /// Places along the contour; how many are usual depends on what is known.
     #[arg(skip = Settings::default().places)]
     pub places: u32,
+    /// Whether further places are that many even where more are not worth touching.
+    #[arg(skip = false)]
+    pub exactly: bool,
     /// Heights at each place [default: 3; up to 5 where the profile of the wall is asked for or it is taller than one axial
     /// contact ratio].
     #[arg(long, value_name = "N")]
@@ -58,6 +61,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             places: 8,
+            exactly: false,
             heights: None,
             tolerance: None,
             clearance: 2.0,

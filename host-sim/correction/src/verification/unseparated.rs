@@ -111,7 +111,7 @@ fn left_open(paths: &[Path<'_>], widths: &[Between<'_>], identified: &Identifica
         let (Some((one, by_stock)), Some((other, by_other_stock))) = (first, second) else { continue };
         let [uneven, other_uneven] = touches.map(|(wall, _)| UNEVEN * mm(paths[wall].setup().allowance));
         let difference: Row = std::array::from_fn(|k| one[k] - other[k]);
-        let left = known.sigma(&difference).hypot((uneven * by_stock).hypot(other_uneven * by_other_stock));
+        let left = known.sigma(&difference.into()).hypot((uneven * by_stock).hypot(other_uneven * by_other_stock));
         let along = placed.dimension.along;
         if left < ALIKE || worst.iter().any(|(axis, most, _)| *axis == along && *most >= left) {
             continue;

@@ -3,8 +3,6 @@
 mod dimensions;
 mod next;
 
-pub use next::{next, next_part};
-
 use std::fmt::Write as _;
 use std::io::Write;
 use std::path::{Path as FilePath, PathBuf};
@@ -70,7 +68,7 @@ pub struct Options {
     #[command(flatten)]
     pub which: Which,
     /// Places along the contour, on several together, with two at least on each; each place is touched at every height; how many dimensions
-    /// [default: 8; with --next at most 4; with --stock by the length of the contour].
+    /// [default: 8; with --next 4, fewer where more are not worth touching; with --stock by the length of the contour].
     #[arg(long, value_name = "N")]
     pub points: Option<u32>,
     /// Choices about the program.
@@ -265,7 +263,8 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failu
     let file = options.output.as_ref().map(|out| OutputFile::create(out, options.force)).transpose()?;
     let usual = if options.next { FURTHER } else { options.settings.places };
     let heights = options.settings.heights.or(options.stock.then_some(STOCK_HEIGHTS));
-    let settings = Settings { places: options.points.unwrap_or(usual), heights, ..options.settings.clone() };
+    let (places, exactly) = (options.points.unwrap_or(usual), options.points.is_some());
+    let settings = Settings { places, exactly, heights, ..options.settings.clone() };
     let mut job = JobFile::read(&options.job)?;
     job.which = options.which.clone();
     let dialect = match options.dialect {
