@@ -38,7 +38,7 @@ pub struct Cost {
 /// Measures, and compares with the budget or renews it.
 pub fn check(write: bool) -> Outcome {
     let toolchain = Toolchain::find()?;
-    let elf = IMAGE.build(&toolchain, &[])?;
+    let elf = IMAGE.build(&toolchain)?;
     let mut command = emulator::command()?;
     command.args(["-no-reboot", "-icount", "shift=10,sleep=off", "-serial", "stdio"]);
     command.args(["-serial", "null", "-serial", "null", "-serial", "null", "-kernel"]).arg(&elf);

@@ -48,12 +48,12 @@ impl Board {
 }
 
 impl Image {
-    /// Builds it, and puts it into `target/firmware`; `extra` goes to the compiler of the binary itself, and an image with
-    /// that gets a name of its own.
+    /// Builds it, and puts it into `target/firmware`. The file also holds what the compiler says about stack frames, in a section that no
+    /// board gets: so one image is weighed, proved and run.
     ///
     /// # Errors
     /// When it does not build.
-    pub fn build(self, toolchain: &Toolchain, extra: &[&str]) -> Result<PathBuf, Failure> {
+    pub fn build(self, toolchain: &Toolchain) -> Result<PathBuf, Failure> {
         // A directory of its own: another compiler and other flags would rebuild everything else.
         let directory = target().join("device");
         let mut command = toolchain.cargo();
@@ -62,15 +62,12 @@ impl Image {
         command
             .arg("--config")
             .arg(format!("target.{TARGET}.rustflags=[\"--remap-path-prefix={}=/cargo\"]", cargo_home()));
-        if !extra.is_empty() {
-            // `-Z` options of the stable compiler; only this binary's own compilation sees them.
-            command.env("RUSTC_BOOTSTRAP", "1").arg("--").args(extra);
-        }
+        // A `-Z` option of the stable compiler; only this binary's own compilation sees it.
+        command.env("RUSTC_BOOTSTRAP", "1").args(["--", "-Zemit-stack-sizes", "-Clink-arg=-Tstack-sizes.x"]);
         linker::provide(toolchain, &mut command)?;
         run(&mut command)?;
         let folder = target().join("firmware");
-        let name = if extra.is_empty() { self.bin.to_owned() } else { format!("{}-examined", self.bin) };
-        let (from, to) = (directory.join(TARGET).join("firmware").join(self.bin), folder.join(name));
+        let (from, to) = (directory.join(TARGET).join("firmware").join(self.bin), folder.join(self.bin));
         let copied = std::fs::create_dir_all(&folder).and_then(|()| std::fs::copy(&from, &to));
         copied.map_err(|e| Failure::found(format!("{} to {}: {e}", from.display(), to.display())))?;
         Ok(to)

@@ -25,7 +25,7 @@ pub fn build(boards: &[Board], write: bool) -> Outcome {
     let mut rows = Vec::new();
     println!("{:<14} {:>10} {:>10} {:>10} {:>10} {:>10}", "board", "text", "data", "bss", "flash", "RAM");
     for &board in boards {
-        let elf: PathBuf = board.image().build(&toolchain, &[])?;
+        let elf: PathBuf = board.image().build(&toolchain)?;
         let sizes = Sizes::read(&elf)?;
         let numbers = [sizes.text, sizes.data, sizes.bss, sizes.flash(), sizes.ram()].map(thousands);
         let [text, data, bss, flash, ram] = &numbers;

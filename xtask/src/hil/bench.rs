@@ -52,7 +52,7 @@ impl Bench {
     /// Something does not build, or the emulator is missing.
     pub fn set_up(release: bool) -> Result<Self, Failure> {
         emulator::command()?;
-        let elf = Board::Virtual.image().build(&Toolchain::find()?, &[])?;
+        let elf = Board::Virtual.image().build(&Toolchain::find()?)?;
         let debug = Program::build(false)?;
         let release = release.then(|| Program::build(true)).transpose()?;
         let parts = Parts::make(&debug)?;

@@ -40,7 +40,7 @@ pub fn check(boards: &[Board], write: bool) -> Outcome {
 
 /// The rows of a board, and what is wrong with its stack.
 fn stack_of(board: Board, toolchain: &Toolchain) -> Result<(Vec<Vec<String>>, Vec<String>), Failure> {
-    let elf = board.image().build(toolchain, &["-Zemit-stack-sizes", "-Clink-arg=-Tstack-sizes.x"])?;
+    let elf = board.image().build(toolchain)?;
     let graph = Graph::read(&elf)?;
     let mut search = Search::new(&graph, INDIRECT, recursion(board));
     let row = |name: &str, bytes: u32| vec![format!("{}: {name}", board.name()), thousands(bytes.into())];

@@ -15,7 +15,7 @@ const ROOTS: [&str; 3] = ["realtime_receive", "realtime_frame", "realtime_watch"
 /// # Errors
 /// A panic is reachable, or the image holds something forbidden.
 pub fn check(toolchain: &Toolchain) -> Result<usize, Failure> {
-    let elf = IMAGE.build(toolchain, &[]).map_err(|failure| match failure {
+    let elf = IMAGE.build(toolchain).map_err(|failure| match failure {
         Failure::Found(said) => {
             Failure::found(format!("{said}\nan undefined truepath_panic_is_reachable: a panic can be reached"))
         }

@@ -45,7 +45,7 @@ impl VirtualBoard {
     /// # Errors
     /// The firmware does not build or does not come up, or the emulator is missing.
     pub fn start(sample: &Sample, truepath: &Path, images: &[PathBuf], machine: &[String]) -> Result<Self, Failure> {
-        let elf = Board::Virtual.image().build(&Toolchain::find()?, &[])?;
+        let elf = Board::Virtual.image().build(&Toolchain::find()?)?;
         for file in [&elf, &root().join("firmware/boards/run.sh")] {
             sample.put(file)?;
         }
