@@ -19,6 +19,8 @@ truepath_ground::codes! {
         / "write format in [probe], or --format: docs/probe-formats.md shows each of them",
     J044 => "a probe file in UTF-16"
         / "save it as UTF-8 or as plain text (in Windows: save as, encoding UTF-8), and give it again",
+    J045 => "a password in a job"
+        / "take it out of the URL: PGPASSFILE, ~/.pgpass or PGPASSWORD give it to whoever may have it",
     K002 => "the surface of the stock does not lie along the contour, or not between wall and cutter"
         / "check frame and unit of the surface, and that it belongs to this program",
     M040 => "more probe points than are taken at once"

@@ -78,7 +78,7 @@ pub fn probe(bytes: &[u8]) -> Option<Vec<u8>> {
     Some(kept.copied().collect())
 }
 
-/// A job without comments and without the names of `[part]`, which names other files. `renamed` gives the new name for each old
+/// A job without comments, without the names of `[part]` and without `[store]`, which names other files. `renamed` gives the new name for each old
 /// one: program, stock surface, stock probe, measured forces.
 ///
 /// # Errors
@@ -88,6 +88,8 @@ pub fn job(text: &str, renamed: impl Fn(&str) -> String) -> Result<String, toml:
     if let Some(Value::Table(part)) = table.get_mut("part") {
         NAMES.iter().for_each(|key| drop(part.remove(*key)));
     }
+    // Nothing of it says how a part is cut.
+    table.remove("store");
     for (section, key) in FILES {
         let place = match section {
             "" => Some(&mut table),
@@ -138,7 +140,7 @@ mod tests {
     #[test]
     fn a_job_keeps_its_numbers_and_loses_names() {
         let text = "# Miller\nversion = 1\nprogram = \"../acme/b.nc\"\n[stock]\nallowance_mm = 0.8\nprobe = \"s.txt\" # own\n\
-                    [part]\nname = \"bracket\"\ntolerance_mm = 0.02\n";
+                    [part]\nname = \"bracket\"\ntolerance_mm = 0.02\n[store]\nurl = \"postgres://Miller@acme/own\"\n";
         assert_eq!(named(text), [("program", "../acme/b.nc".to_owned()), ("probe", "s.txt".to_owned())]);
         let bare = job(text, |old| format!("new-{}", old.len())).expect("TOML");
         for gone in ["Miller", "acme", "bracket", "own"] {

@@ -23,6 +23,7 @@ use super::check_plan::plan;
 use super::check_pocket::{Mode, pocket};
 use super::check_probe::probe;
 use super::check_stock::{Stock, stock};
+use super::check_store::store;
 use super::check_tool::{reach, tool};
 use super::material::MATERIALS;
 use super::measured;
@@ -120,6 +121,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     let feed = feed(root.section("feed")?.as_ref())?;
     let (plan, plan_cutters) = plan(root.section("plan")?.as_ref(), &tool)?;
     let part = part(&source, root.section("part")?.as_ref())?;
+    let store = store(&source, root.section("store")?.as_ref(), folder)?;
     root.close()?;
     let program = path;
     let Stock { allowance, surface, probe: stock_probe, roughing } = stock;
@@ -152,6 +154,7 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
         plan,
         plan_cutters,
         part,
+        store,
         pocket,
         shank,
         surface,

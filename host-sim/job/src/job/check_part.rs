@@ -12,7 +12,7 @@ use truepath_ground::limits::Limits;
 
 /// Longest text, characters.
 const LONGEST: usize = 100;
-const TEXT_EXPECTED: &str = "1 to 100 characters on one line, none of them invisible";
+pub(super) const TEXT_EXPECTED: &str = "1 to 100 characters on one line, none of them invisible";
 const HALF_WIDTH: Limits = Limits::within("0.0001", "10", "mm");
 const LIMIT: Limits = Limits::within("-10", "10", "mm");
 
@@ -113,7 +113,7 @@ impl PartFlags {
 
 /// Whether a text can stand in one line of a report: nothing in it is unseen, so that two parts whose names look the same are the
 /// same.
-fn is_text(text: &str) -> bool {
+pub(super) fn is_text(text: &str) -> bool {
     let letters = || text.chars().zip(std::iter::once(' ').chain(text.chars()));
     let unseen = letters().any(|(c, before)| c.is_control() || is_unseen(c) || (is_joiner(c) && before.is_ascii()));
     !text.trim().is_empty() && text.chars().count() <= LONGEST && !unseen

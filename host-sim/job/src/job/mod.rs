@@ -16,6 +16,7 @@ mod check_plan;
 mod check_pocket;
 mod check_probe;
 mod check_stock;
+mod check_store;
 mod check_tool;
 mod material;
 mod measured;
@@ -43,6 +44,7 @@ pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
 pub use check_plan::{CutterStiffness, PlanCutter, PlanTable};
 pub use check_pocket::{Mode, PerSection, PocketTable};
 pub use check_probe::{FORMATS, ProbeFlags, columns, one_of};
+pub use check_store::{StoreNames, StorePlace, StoreTable, has_password, without_password};
 pub use check_tool::Shank;
 pub use material::{MATERIALS, Material};
 pub use open::{Assumed, DIALECTS, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, WORD_DIALECTS, dialect_name};
@@ -88,6 +90,8 @@ pub struct JobFile {
     pub plan_cutters: Vec<PlanCutter>,
     /// What the customer of the part is told; empty without `[part]`.
     pub part: PartTable,
+    /// The shop store its parts go into; empty without `[store]`.
+    pub store: StoreTable,
     /// What `truepath pocket` cuts; `None` without `[pocket]`.
     pub pocket: Option<PocketTable>,
     /// The cutter's shape as a beam, beside stick-out and material.

@@ -15,7 +15,7 @@ use truepath_job::job::JobFile;
 const JOBS: [&str; 3] = [
     "version = 1\nprogram = \"p.nc\"\n[stock]\nallowance_mm = 0.5\nprobe = \"stock.txt\"\n[tool]\ndiameter_mm = 10\nmeasured_diameter_mm = 10\nteeth = 4\n\
      [cut]\naxial_depth_mm = 5\n[force]\nmaterial = \"steel-40\"\n[machine]\n[probe]\nball_diameter_mm = 6\nformat = \"columns\"\n\
-     [correct]\n[feed]\nmin_percent = 50\n[plan]\n[[plan.cutter]]\nnumber = 2\nhelix_deg = 40\n[part]\nlower_mm = -0.1\nupper_mm = 0.1\n[pocket]\n\
+     [correct]\n[feed]\nmin_percent = 50\n[plan]\n[[plan.cutter]]\nnumber = 2\nhelix_deg = 40\n[part]\nlower_mm = -0.1\nupper_mm = 0.1\n[pocket]\n[store]\npath = \"shop.db\"\n\
      [[feature]]\nid = \"a\"\nallowance_mm = 0.4\n",
     "version = 1\nprogram = \"p.nc\"\n[stock]\nsurface = \"s.csv\"\n[tool]\ndiameter_mm = 10\nteeth = 4\n\
      [cut]\naxial_depth_mm = 5\n[force]\nktc_n_per_mm2 = 1\nkrc_n_per_mm2 = 1\nkte_n_per_mm = 1\nkre_n_per_mm = 1\n\
@@ -202,6 +202,19 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("part.uncertainty_mm", "none", "expanded uncertainty (k = 2) of a deviation"),
     ("part.reach_mm", "the cutter's diameter", "how far along the contour a point speaks for the wall"),
     ("part.reach_height_mm", "a quarter of the depth", "how far up and down it does"),
+    ("store", "", "the shop store that its parts go into: [store](store.md)"),
+    ("store.path", "`TRUEPATH_STORE`, else none", "a file, relative to this one"),
+    (
+        "store.url",
+        "`TRUEPATH_STORE`, else none",
+        "in its place: `postgres://user@host/database`; the password comes from PGPASSFILE, `~/.pgpass` or PGPASSWORD",
+    ),
+    ("store.machine", "none", "the machine; 1 to 100 characters on one line, as the five below"),
+    ("store.holder", "none", "the holder of the cutter"),
+    ("store.cutter", "none", "the article number of the cutter"),
+    ("store.material", "none", "the material"),
+    ("store.lot", "part.material_batch", "the lot of the material"),
+    ("store.serial", "part.serial", "serial number of the part that is measured"),
     ("pocket", "", "what `truepath pocket` cuts: [pockets](pocket.md)"),
     ("pocket.mode", "wall", "a finishing pass along a wall, or a slot"),
     ("pocket.tolerance_mm", "0.02", "half of the width of the band the walls may lie in"),
