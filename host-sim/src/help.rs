@@ -9,14 +9,14 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("See it", &["demo"]),
     ("Correct a part", &["init", "probe", "inspect", "correct", "learn", "plan", "split", "fillet", "batch"]),
     ("Look closer", &["simulate", "compare", "plot", "canon", "forces"]),
-    ("Keep and share", &["pack", "unpack", "study"]),
+    ("Keep and share", &["store", "pack", "unpack", "study"]),
     ("Coprocessor", &["image", "key", "replay", "hil", "device"]),
     ("Without a probe, other processes", &["pocket", "bore", "multiaxis"]),
     ("This program", &["completions", "man", "help"]),
 ];
 
 /// Command lines of each command, and what they do.
-const EXAMPLES: [(&str, &[(&str, &str)]); 28] = [
+const EXAMPLES: [(&str, &[(&str, &str)]); 29] = [
     ("demo", &[("truepath demo", "three parts, reports and programs in out/demo")]),
     (
         "init",
@@ -60,6 +60,16 @@ const EXAMPLES: [(&str, &[(&str, &str)]); 28] = [
     ),
     ("learn", &[("truepath learn job.toml --probe part2.txt --from out -o out3", "the next part, from the last one")]),
     ("pack", &[("truepath pack out -o part.tpk", "job, program, readings and corrections in one file")]),
+    (
+        "store",
+        &[
+            ("truepath store init --store shop.db", "a new store in one file"),
+            ("truepath store import parts --store shop.db", "every part in and below a folder, each once"),
+            ("truepath store status --store postgres://ann@db/shop", "what is in it, on a server of the shop"),
+            ("truepath store export job.toml --store shop.db -o out", "history.json again, byte for byte"),
+            ("truepath learn job.toml --probe part2.txt --from out -o out3 --store shop.db", "the part goes in"),
+        ],
+    ),
     ("unpack", &[("truepath unpack part.tpk -o part", "as a folder again")]),
     ("split", &[("truepath split job.toml -o out", "cuts half of the allowance first")]),
     ("batch", &[("truepath batch job.toml parts.csv --from out -o batch", "many parts: what moves, and when to act")]),

@@ -43,4 +43,6 @@ mod rewritten_job;
 pub mod simulate;
 pub mod split;
 #[cfg(not(target_family = "wasm"))]
+pub mod store;
+#[cfg(not(target_family = "wasm"))]
 pub mod study;

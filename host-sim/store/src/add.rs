@@ -77,7 +77,8 @@ struct Stored {
 pub(crate) fn add(on: &mut dyn Backend, found: &Found, setup: &Setup) -> Result<Added, Failure> {
     let rows = HistoryRows::of(&found.history)?;
     // What the rows cannot give back is kept as it is: a file of an older version, or one that a rounding has touched.
-    let original = if rows.text()? == found.bytes { None } else { Some(String::from_utf8_lossy(&found.bytes).into_owned()) };
+    let original =
+        if rows.text()? == found.bytes { None } else { Some(String::from_utf8_lossy(&found.bytes).into_owned()) };
     let facts = FactTexts::of(&found.history)?;
     let by = [("hash", facts.hash().into())];
     let more = [
@@ -255,16 +256,12 @@ fn readings(on: &mut dyn Backend, measurement: i64, part: &PartRows) -> Result<(
 }
 
 /// What was identified, with the measurements it follows from: all of the history that were not set aside.
-fn estimate(
-    on: &mut dyn Backend,
-    (job, history): (i64, i64),
-    found: &Found,
-    stored: &[Stored],
-) -> Result<(), Failure> {
+fn estimate(on: &mut dyn Backend, (job, history): (i64, i64), found: &Found, stored: &[Stored]) -> Result<(), Failure> {
     if found.identified.is_empty() {
         return Ok(());
     }
-    let mean: std::collections::BTreeMap<_, _> = found.identified.iter().map(|(name, (value, _))| (name, value)).collect();
+    let mean: std::collections::BTreeMap<_, _> =
+        found.identified.iter().map(|(name, (value, _))| (name, value)).collect();
     // summary.json says standard deviations; what lies beside the diagonal is not known.
     let variance = |(name, (_, sigma)): (&String, &(f64, f64))| {
         let variance = std::collections::BTreeMap::from([(name.clone(), sigma * sigma)]);

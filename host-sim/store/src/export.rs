@@ -28,9 +28,8 @@ pub(crate) fn choices(on: &mut dyn Backend, facts: &Facts) -> Result<Vec<Choice>
                   (SELECT 1 FROM history n WHERE n.job = h.job AND n.cut_with = h.correction AND n.last_number > h.last_number) \
                   ORDER BY h.id DESC";
     let rows = on.rows(newest, &values![sha256(json(facts)?.as_bytes())])?;
-    let choice = |row: &Row| {
-        Ok(Choice { history: row.integer(0)?, last_part: row.integer(1)?, stored: utc(row.integer(2)?) })
-    };
+    let choice =
+        |row: &Row| Ok(Choice { history: row.integer(0)?, last_part: row.integer(1)?, stored: utc(row.integer(2)?) });
     rows.iter().map(choice).collect()
 }
 
@@ -46,7 +45,9 @@ pub(crate) fn file_of(on: &mut dyn Backend, place: &Place, number: i64) -> Resul
                   JOIN job j ON j.id = h.job JOIN correction c ON c.id = h.correction WHERE h.id = $1";
     let rows = on.rows(select, &values![number])?;
     let Some(row) = rows.first() else {
-        return Err(O006.error(format!("{place} has no history of the number {number}"), "the number of a history").into());
+        return Err(O006
+            .error(format!("{place} has no history of the number {number}"), "the number of a history")
+            .into());
     };
     let bytes = match row.some_text(5)? {
         Some(original) => original.as_bytes().to_vec(),

@@ -117,7 +117,8 @@ fn subfolders(folder: &Path) -> Vec<PathBuf> {
 /// What `summary.json` says was identified; nothing where there is none, as it is not what a part is known by.
 fn identified(folder: &Path) -> BTreeMap<String, (f64, f64)> {
     let read = || {
-        let summary: serde_json::Value = serde_json::from_slice(&files::read(&folder.join("summary.json")).ok()?).ok()?;
+        let summary: serde_json::Value =
+            serde_json::from_slice(&files::read(&folder.join("summary.json")).ok()?).ok()?;
         let of = |(name, of): (&String, &serde_json::Value)| {
             Some((name.clone(), (of.get("value")?.as_f64()?, of.get("sigma")?.as_f64()?)))
         };

@@ -68,7 +68,8 @@ mod tests {
 
     #[test]
     fn a_password_is_never_shown() {
-        for url in ["postgres://ann:se:c@ret@db/shop", "postgresql://db/shop?user=ann&password=secret&sslmode=require"] {
+        for url in ["postgres://ann:se:c@ret@db/shop", "postgresql://db/shop?user=ann&password=secret&sslmode=require"]
+        {
             let shown = format!("{} {:?}", Place::of(url), Place::of(url));
             assert!(!shown.contains("ret") && !shown.contains("secret") && shown.contains("ann"), "{shown}");
         }

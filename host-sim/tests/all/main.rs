@@ -37,6 +37,7 @@ mod several;
 mod shop_corners;
 mod signed_images;
 mod split_allowance;
+mod store;
 mod study;
 mod target_and_guard;
 mod verification;

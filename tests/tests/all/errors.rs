@@ -7,7 +7,7 @@ use std::path::Path;
 use truepath_ground::codes::Row;
 
 /// The rooms of the host with their rows, in the order of the document; those of the core follow.
-const CATALOGUES: [(&str, &[Row]); 14] = [
+const CATALOGUES: [(&str, &[Row]); 15] = [
     ("Files, tables and the command line", truepath_ground::codes::CATALOGUE),
     ("The job and its features", truepath_job::codes::CATALOGUE),
     ("Programs and machine tables", truepath_program::codes::CATALOGUE),
@@ -17,6 +17,7 @@ const CATALOGUES: [(&str, &[Row]); 14] = [
     ("Tables that are drawn", truepath_report::codes::CATALOGUE),
     ("Bench and board", truepath_bench::codes::CATALOGUE),
     ("Stories of parts", truepath_story::codes::CATALOGUE),
+    ("The shop store", truepath_store::codes::CATALOGUE),
     ("Studies", truepath_study::codes::CATALOGUE),
     ("Bores", truepath_bore::codes::CATALOGUE),
     ("Measured forces", truepath_forces::codes::CATALOGUE),

@@ -52,11 +52,7 @@ pub struct StoreNames {
 }
 
 /// What the table says; relative paths start at `folder`.
-pub(super) fn store(
-    source: &Source,
-    section: Option<&Section<'_>>,
-    folder: &Path,
-) -> Result<StoreTable, InputError> {
+pub(super) fn store(source: &Source, section: Option<&Section<'_>>, folder: &Path) -> Result<StoreTable, InputError> {
     let Some(section) = section else { return Ok(StoreTable::default()) };
     let text = |key| match section.text(key)? {
         None => Ok(None),

@@ -25,6 +25,8 @@ use super::correction_files::{FILES, HISTORY, commit, write_contour, write_progr
 use super::history::refuse_replacing;
 use super::pocket;
 use super::readings::{Readings, apart};
+#[cfg(not(target_family = "wasm"))]
+use super::store::keep::keep;
 use crate::terminal::Terminal;
 use truepath_report::next::after_correction;
 
@@ -56,6 +58,11 @@ pub struct Options {
     /// holds it.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, conflicts_with = "no_probe")]
     pub tolerance: Option<String>,
+    /// The shop store that the part goes into: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then [store] of
+    /// the job.
+    #[cfg(not(target_family = "wasm"))]
+    #[arg(long, value_name = "PATH|URL")]
+    pub store: Option<String>,
     /// Replace the files of an earlier run.
     #[arg(long)]
     pub force: bool,
@@ -76,6 +83,8 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     }
     let summary = terminal.watch("correcting", |progress| run(options, progress))?;
     terminal.warn_all(&summary.warnings);
+    #[cfg(not(target_family = "wasm"))]
+    keep((job, options.store.as_deref()), output, "correct", terminal);
     terminal.tell(&summary, || words(&summary, output) + &after_correction(&summary, job, Some(output)).to_string())
 }
 

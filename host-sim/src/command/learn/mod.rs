@@ -28,6 +28,8 @@ use super::correction_files::{FILES, HISTORY, MILLED, commit, write_contour, wri
 use super::history::{history_in, holds_planned};
 use super::plan_files::PLAN_HISTORY;
 use super::readings::Readings;
+#[cfg(not(target_family = "wasm"))]
+use super::store::keep::keep;
 use crate::terminal::Terminal;
 use truepath_report::next::after_correction;
 
@@ -63,6 +65,11 @@ pub struct Options {
     /// Of a part cut with planned passes: search for passes anew, instead of designing the same ones anew.
     #[arg(long)]
     pub replan: bool,
+    /// The shop store that the part goes into: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then [store] of
+    /// the job.
+    #[cfg(not(target_family = "wasm"))]
+    #[arg(long, value_name = "PATH|URL")]
+    pub store: Option<String>,
     /// Replace the files of an earlier run.
     #[arg(long)]
     pub force: bool,
@@ -94,7 +101,10 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
             let help = "touch it with a probe: planned passes are learned from points at several heights";
             return Err(InputError::new(C001, found, "--probe", help).into());
         };
-        return planned::main(job, (probe, &options.from), to, wish, terminal);
+        planned::main(job, (probe, &options.from), to, wish, terminal)?;
+        #[cfg(not(target_family = "wasm"))]
+        keep((&options.job, options.store.as_deref()), &options.output, "learn", terminal);
+        return Ok(());
     }
     if options.replan {
         let found = format!("--replan, and {} holds no {PLAN_HISTORY}", options.from.display());
@@ -104,6 +114,8 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     let summary = terminal.watch("learning", |progress| run(options, progress))?;
     terminal.warn_all(&summary.correct.warnings);
     let (job, output) = (&options.job, &options.output);
+    #[cfg(not(target_family = "wasm"))]
+    keep((job, options.store.as_deref()), output, "learn", terminal);
     terminal.tell(&summary, || {
         words(&summary)
             + &correction(&summary.correct, output)

@@ -24,8 +24,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// The lock of a store: any number that nobody else takes.
 const LOCK: i64 = 0x7472_7565_7061_7468;
 /// How long a writer waits for the others, and a statement may take at most.
-const SETTINGS: &str =
-    "SET application_name = 'truepath'; SET client_min_messages = warning; SET lock_timeout = '30s'";
+const SETTINGS: &str = "SET application_name = 'truepath'; SET client_min_messages = warning; SET lock_timeout = '30s'";
 
 /// A connection to a server.
 pub(super) struct Postgres {
@@ -44,7 +43,9 @@ impl Postgres {
         if config.get_connect_timeout().is_none() {
             config.connect_timeout(PATIENCE);
         }
-        if config.get_password().is_none() && let Some(password) = password(&config) {
+        if config.get_password().is_none()
+            && let Some(password) = password(&config)
+        {
             config.password(password);
         }
         let connect = || {
@@ -111,11 +112,7 @@ fn parameters(values: &[Value]) -> Vec<&(dyn ToSql + Sync)> {
 }
 
 impl ToSql for Value {
-    fn to_sql(
-        &self,
-        kind: &Type,
-        out: &mut BytesMut,
-    ) -> Result<IsNull, Box<dyn std::error::Error + Sync + Send>> {
+    fn to_sql(&self, kind: &Type, out: &mut BytesMut) -> Result<IsNull, Box<dyn std::error::Error + Sync + Send>> {
         match self {
             Self::Null => Ok(IsNull::Yes),
             Self::Integer(value) => value.to_sql(kind, out),

@@ -81,7 +81,8 @@ impl Backend for Sqlite {
     }
 
     fn has_table(&mut self, name: &str) -> Result<bool, Failure> {
-        let found = self.rows("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = $1", &[Value::from(name)])?;
+        let found =
+            self.rows("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = $1", &[Value::from(name)])?;
         Ok(!found.is_empty())
     }
 
@@ -130,9 +131,8 @@ fn failure(path: &Path, error: &Error) -> Failure {
         }
         Some(ErrorCode::NotADatabase) => O002.error(format!("{place} is another file ({why})"), "a store"),
         Some(ErrorCode::DatabaseCorrupt) => O008.error(format!("{place} is damaged ({why})"), "a store"),
-        Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => {
-            O001.error(format!("{place} is held by others ({why})"), "a store that can be written to within half a minute")
-        }
+        Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => O001
+            .error(format!("{place} is held by others ({why})"), "a store that can be written to within half a minute"),
         Some(ErrorCode::CannotOpen) => O001.error(format!("{place} cannot be opened ({why})"), "a store"),
         _ => return Failure::Internal(format!("{place}: {why}")),
     };

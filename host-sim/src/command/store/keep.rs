@@ -1,0 +1,64 @@
+//! A part goes into the store after `correct` or `learn` has written its folder.
+//!
+//! The folder is what counts: whatever is wrong with the store, the command has done its work, and `truepath store import` takes
+//! the folder later.
+
+use std::path::Path as FilePath;
+
+use truepath_ground::diagnostics::Failure;
+use truepath_job::job::{JobFile, StoreNames};
+use truepath_store::{Added, PartFolder, Place, Setup, Store};
+
+use super::place;
+use crate::terminal::Terminal;
+
+/// Puts the part of a folder into the store that is named, if any is.
+pub(in crate::command) fn keep(
+    (job, given): (&FilePath, Option<&str>),
+    output: &FilePath,
+    by: &'static str,
+    terminal: &Terminal,
+) {
+    // It was read a moment ago; if it has gone since, only the command line and the environment name a store.
+    let job = JobFile::read(job).ok();
+    let Ok(place) = place(given, job.as_ref()) else { return };
+    match stored(&place, job.as_ref(), output, by) {
+        Ok(None) => terminal.note(&format!(
+            "nothing went into the store {place}: a second pass and planned passes have no history there"
+        )),
+        Ok(Some(added)) => {
+            for one in added {
+                let new = if one.known { "was already" } else { "is" };
+                let (part, history) = (one.last_part, one.history);
+                terminal.note(&format!("part {part} {new} in the store {place}, as history {history}"));
+            }
+        }
+        Err(failure) => terminal.warn(&format!(
+            "the part is not in the store: {failure}. Nothing else is wrong: its folder is written, and truepath store import {} takes it later",
+            output.display()
+        )),
+    }
+}
+
+fn stored(
+    place: &Place,
+    job: Option<&JobFile>,
+    output: &FilePath,
+    by: &'static str,
+) -> Result<Option<Vec<Added>>, Failure> {
+    let Some(part) = PartFolder::read(output)? else { return Ok(None) };
+    Store::open(place)?.add(&part, &setup(job, by)).map(Some)
+}
+
+/// What the job says of the shop; serial number and lot may stand in `[part]`.
+fn setup(job: Option<&JobFile>, by: &'static str) -> Setup {
+    let Some(job) = job else { return Setup { by, ..Setup::default() } };
+    let (names, part) = (job.store.names.clone(), &job.part.names);
+    let names = StoreNames {
+        lot: names.lot.or_else(|| part.material_batch.clone()),
+        serial: names.serial.or_else(|| part.serial.clone()),
+        ..names
+    };
+    let stickout_nm = job.numbers.tool.cantilever.map_or(0, |cutter| cutter.length.nm());
+    Setup { names, stickout_nm, by }
+}

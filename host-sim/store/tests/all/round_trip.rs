@@ -1,0 +1,188 @@
+//! What goes in comes out, once.
+
+use std::fs;
+use std::path::Path;
+
+use truepath_correction::learning::History;
+use truepath_ground::diagnostics::Source;
+use truepath_store::{Choice, PartFolder, Place, Setup, Store, VERSION};
+
+use crate::support::{code, file_in, folder, history, setup, shown};
+
+/// Puts a folder in.
+fn add(store: &mut Store, folder: &Path, setup: &Setup) -> Vec<truepath_store::Added> {
+    let part = shown(PartFolder::read(folder)).expect("a history");
+    shown(store.add(&part, setup))
+}
+
+fn newest(store: &mut Store, history: &[u8]) -> Vec<Choice> {
+    let history = History::read(&Source::new("history.json", history.to_vec())).expect("a history");
+    shown(store.newest(&history.facts))
+}
+
+/// The whole way on any back end; `at` is a folder for the files.
+pub fn whole_way(place: &Place, at: &Path) {
+    let mut store = shown(Store::open(place));
+    let mut files = Vec::new();
+    for parts in [1, 2, 3, 4, 9, 10] {
+        let bytes = history(7, parts, 70);
+        let folder = folder(at, &format!("part-{parts}"), &bytes);
+        files.push((parts, folder, bytes));
+    }
+    // In any order, and all of them twice.
+    let mut numbers = Vec::new();
+    for round in 0..2 {
+        for k in [3, 0, 5, 1, 4, 2] {
+            let (parts, folder, bytes) = &files[k];
+            let added = add(&mut store, folder, &setup());
+            assert_eq!((added.len(), added[0].known, u64::from(added[0].last_part)), (1, round == 1, *parts));
+            assert!(round == 0 || (added[0].new_parts, added[0].new_readings) == (0, 0));
+            assert!(shown(store.history(added[0].history)) == *bytes, "part {parts} comes out otherwise");
+            numbers.push((*parts, added[0].history));
+        }
+    }
+    assert_eq!(numbers[..6], numbers[6..]);
+    let status = shown(store.status(3));
+    // Nine and ten parts leave 2 to 10 and 3 to 10.
+    assert_eq!((status.jobs, status.parts, status.readings, status.histories), (1, 10, 700, 6));
+    assert_eq!((status.machines, status.holders, status.cutters, status.materials), (1, 1, 1, 1));
+    assert_eq!((status.schema_version, status.last_parts.len()), (VERSION, 3));
+    assert_eq!((status.last_parts[0].machine.as_deref(), status.last_parts[0].readings), (Some("VF2"), 70));
+    assert_eq!(shown(store.check()), 6);
+    // Parts 5 to 8 never came as the last one, but 10 goes on from 9, and 4 from 3, 2 and 1.
+    let heads: Vec<i64> = newest(&mut store, &files[5].2).iter().map(|choice| choice.last_part).collect();
+    assert!(heads.contains(&10) && !heads.contains(&9) && !heads.contains(&3), "{heads:?}");
+    assert!(newest(&mut store, &history(8, 1, 3)).is_empty());
+    assert_eq!(code(store.history(999)), "O006");
+}
+
+#[test]
+fn a_history_comes_back_byte_for_byte_and_only_once() {
+    let at = tempfile::tempdir().expect("a folder");
+    whole_way(&file_in(at.path()), at.path());
+}
+
+#[test]
+fn a_file_that_rows_cannot_give_back_is_kept_as_it_is() {
+    let at = tempfile::tempdir().expect("a folder");
+    let mut store = shown(Store::open(&file_in(at.path())));
+    // A number that no program of ours would have written: the last bit of it is another.
+    let text = String::from_utf8(history(7, 2, 5)).expect("text");
+    let body = text.replacen("\"height\":0.", "\"height\":0.000000000000000000", 1);
+    let body = body.split_once(',').expect("a seal").1;
+    let sealed = truepath_sealed(body);
+    let added = add(&mut store, &folder(at.path(), "odd", &sealed), &setup());
+    assert!(shown(store.history(added[0].history)) == sealed);
+    assert_eq!(shown(store.check()), 1);
+}
+
+/// A file with its checksum before it.
+fn truepath_sealed(rest: &str) -> Vec<u8> {
+    let crc = truepath_core::checksum::crc32(rest.as_bytes());
+    format!("{{\"crc32\":\"{crc:08x}\",{rest}").into_bytes()
+}
+
+#[test]
+fn names_come_later_and_never_change() {
+    let at = tempfile::tempdir().expect("a folder");
+    let mut store = shown(Store::open(&file_in(at.path())));
+    let folder = folder(at.path(), "out", &history(1, 2, 6));
+    add(&mut store, &folder, &Setup::default());
+    assert_eq!(shown(store.status(1)).last_parts[0].machine, None);
+    let mut named = setup();
+    named.names.serial = Some("17".to_owned());
+    add(&mut store, &folder, &named);
+    named.names.machine = Some("another".to_owned());
+    named.names.serial = Some("18".to_owned());
+    add(&mut store, &folder, &named);
+    let last = &shown(store.status(1)).last_parts[0];
+    assert_eq!((last.machine.as_deref(), last.serial.as_deref(), last.part), (Some("VF2"), Some("17"), 2));
+}
+
+#[test]
+fn several_contours_of_a_part_go_in_together_or_not_at_all() {
+    let at = tempfile::tempdir().expect("a folder");
+    let mut store = shown(Store::open(&file_in(at.path())));
+    for (name, job) in [("contours/a", 1), ("contours/b", 2)] {
+        folder(&at.path().join("part"), name, &history(job, 1, 6));
+    }
+    assert_eq!(shown(PartFolder::every(&[at.path().to_owned()])), [at.path().join("part")]);
+    let added = add(&mut store, &at.path().join("part"), &setup());
+    assert_eq!(added.iter().map(|one| one.new_readings).sum::<usize>(), 12);
+    fs::write(at.path().join("part/contours/b/history.json"), "damaged").expect("written");
+    assert_eq!(code(PartFolder::read(&at.path().join("part"))), "Q001");
+    assert_eq!(code(PartFolder::every(&[at.path().join("none")])), "O005");
+}
+
+#[test]
+fn what_is_no_store_of_this_version_is_refused() {
+    let at = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| Place::File(at.path().join(name));
+    assert_eq!(code(Store::open(&file("none.db"))), "O002");
+    fs::write(
+        at.path().join("text.db"),
+        "this is a text, and longer than the head of a file of SQLite, which has a hundred bytes; so it goes on.",
+    )
+    .expect("written");
+    assert_eq!(code(Store::open(&file("text.db"))), "O002");
+    fs::write(at.path().join("empty.db"), "").expect("written");
+    assert_eq!(code(Store::open(&file("empty.db"))), "O002");
+    assert_eq!(code(Store::migrate(&file("empty.db"))), "O002");
+    assert_eq!(code(Store::init(&file("no/folder/shop.db"), false)), "O001");
+    assert_eq!(code(Store::init(&file("roles.db"), true)), "O001");
+
+    let place = file_in(at.path());
+    let again = shown(Store::init(&place, false));
+    assert_eq!((again.before, again.version), (Some(VERSION), VERSION));
+    assert_eq!(shown(Store::migrate(&place)).before, Some(VERSION));
+    let other = |version: i64| {
+        let file = rusqlite::Connection::open(at.path().join("shop.db")).expect("the file");
+        file.execute("UPDATE schema_version SET version = ?1", [version]).expect("changed");
+        code(Store::open(&place))
+    };
+    assert_eq!((other(VERSION - 1), other(VERSION + 1)), ("O003".to_owned(), "O003".to_owned()));
+    assert_eq!(code(Store::migrate(&place)), "O003");
+}
+
+#[test]
+fn a_store_that_was_changed_says_so() {
+    let at = tempfile::tempdir().expect("a folder");
+    let place = file_in(at.path());
+    let mut store = shown(Store::open(&place));
+    let number = add(&mut store, &folder(at.path(), "out", &history(1, 2, 6)), &setup())[0].history;
+    let file = rusqlite::Connection::open(at.path().join("shop.db")).expect("the file");
+    let kept: i64 =
+        file.query_row("SELECT count(*) FROM history WHERE original IS NOT NULL", [], |row| row.get(0)).expect("read");
+    assert_eq!(kept, 0, "the rows give back what they were made from");
+    file.execute("UPDATE counter SET value = value + 1 WHERE name = 'reading'", []).expect("changed");
+    assert_eq!(code(store.check()), "O008");
+    file.execute("UPDATE counter SET value = value - 1 WHERE name = 'reading'", []).expect("changed");
+    file.execute("UPDATE reading SET error_nm = error_nm + 1 WHERE position = 3", []).expect("changed");
+    assert_eq!((code(store.check()), code(store.history(number))), ("O008".to_owned(), "O008".to_owned()));
+}
+
+#[test]
+fn a_full_store_takes_nothing_of_a_part_and_all_of_it_later() {
+    let at = tempfile::tempdir().expect("a folder");
+    let place = file_in(at.path());
+    let folder = folder(at.path(), "out", &history(1, 3, 500));
+    let part = shown(PartFolder::read(&folder)).expect("a history");
+    let rights = |read_only: bool| {
+        let file = rusqlite::Connection::open(at.path().join("shop.db")).expect("the file");
+        // A trigger refuses as a full disk does: in the middle of the part.
+        let words = if read_only {
+            "CREATE TRIGGER full BEFORE INSERT ON history BEGIN SELECT RAISE(ABORT, 'full'); END"
+        } else {
+            "DROP TRIGGER full"
+        };
+        file.execute_batch(words).expect("changed");
+    };
+    rights(true);
+    let mut store = shown(Store::open(&place));
+    assert!(store.add(&part, &setup()).is_err());
+    let status = shown(store.status(1));
+    assert_eq!((status.parts, status.readings, status.jobs, status.machines), (0, 0, 0, 0));
+    rights(false);
+    assert_eq!(shown(store.add(&part, &setup()))[0].new_parts, 3);
+    assert_eq!(shown(store.check()), 1);
+}

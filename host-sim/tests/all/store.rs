@@ -1,0 +1,145 @@
+//! The shop store at the command line: what `correct` and `learn` wrote goes in once and comes out byte for byte; with a store
+//! that is missing everything else is done as without one.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use truepath_job::job::JobFile;
+use truepath_job::pass::Pass;
+use truepath_plant::Machine;
+use truepath_trial::virtual_mill;
+
+use crate::workplace::{Workplace, text};
+
+/// The helical corner of the demonstration with the probe file of its first part.
+fn desk() -> Workplace {
+    let desk = Workplace::demo("corner-helix", &["program.nc", "job.toml", "plant.toml"]);
+    touched(&desk, None, "part-1.txt");
+    desk
+}
+
+/// The touches of a part, as it was programmed or as a corrected program cuts it.
+fn touched(desk: &Workplace, program: Option<&str>, name: &str) {
+    let machine: Machine = toml::from_str(&desk.read("plant.toml")).expect("a machine");
+    let pass = Pass::read(JobFile::read(&desk.path().join("job.toml")).expect("a job")).expect("a pass");
+    let commanded =
+        program.map(|program| virtual_mill::commanded(&pass, desk.read(program).as_bytes()).expect("a program"));
+    let milled = virtual_mill::mill(&pass, &machine, commanded.as_deref()).expect("milled");
+    let places = [20.0, 32.0, 68.0, 80.0];
+    desk.write(name, virtual_mill::probe(&pass, &milled, &places, &[0.1, 0.5, 0.9], 6.0).expect("touched"));
+}
+
+/// Runs the program with `TRUEPATH_STORE`.
+fn with_store(desk: &Workplace, store: &str, arguments: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_truepath"));
+    command.args(arguments.split(' ')).env("TRUEPATH_STORE", store).current_dir(desk.path()).output().expect("it runs")
+}
+
+fn same(desk: &Workplace, one: &str, other: &str) -> bool {
+    let read = |name: &str| fs::read(desk.path().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    read(one) == read(other)
+}
+
+/// The files of two folders, byte for byte.
+fn same_folders(one: &Path, other: &Path) {
+    let names = |folder: &Path| {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("one").file_name()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names(one), names(other));
+    for name in names(one) {
+        assert!(fs::read(one.join(&name)).ok() == fs::read(other.join(&name)).ok(), "{}", name.display());
+    }
+}
+
+#[test]
+fn parts_go_into_a_store_and_come_out_as_they_were() {
+    let desk = desk();
+    desk.call("correct job.toml --probe part-1.txt -o first");
+    assert!(desk.run("store status").expect_err("no store is named").contains("O007"));
+    assert!(desk.run("store status --store shop.db").expect_err("none there").contains("O002"));
+    assert_eq!(desk.call("store init --store shop.db")["schema_version"], 1);
+    let imported = desk.call("store import . --store shop.db --machine VF2 --cutter A20");
+    assert_eq!((&imported["new_parts"], &imported["known"]), (&1.into(), &0.into()));
+    let again = desk.call("store import first . --store shop.db");
+    assert_eq!((&again["new_parts"], &again["new_readings"], &again["known"]), (&0.into(), &0.into(), &1.into()));
+    let status = desk.call("store status --check --store shop.db");
+    let counts =
+        ["machines", "cutters", "jobs", "parts", "readings", "histories"].map(|key| status[key].as_u64().expect(key));
+    assert_eq!(counts, [1, 1, 1, 1, 12, 1], "{status}");
+    assert_eq!((&status["schema_version"], &status["last_parts"][0]["machine"]), (&1.into(), &"VF2".into()));
+
+    // The next part goes in by itself; what is written is what is written without a store.
+    touched(&desk, Some("first/corrected.nc"), "part-2.txt");
+    desk.call("learn job.toml --probe part-2.txt --from first -o plain");
+    let learn = "learn job.toml --probe part-2.txt --from first -o second";
+    let kept = with_store(&desk, "shop.db", learn);
+    let said = text(&kept.stderr);
+    assert!(kept.status.success() && said.contains("part 2 is in the store shop.db, as history 2"), "{said}");
+    same_folders(&desk.path().join("plain"), &desk.path().join("second"));
+    let status = desk.call("store status --check --store shop.db");
+    assert_eq!((&status["parts"], &status["readings"]), (&2.into(), &24.into()));
+
+    // The rows give both back, that of the job is the newer.
+    let store = backup(&desk);
+    for (what, out, of) in [("1", "out-1", "first"), ("2", "out-2", "second"), ("job.toml", "out-job", "second")] {
+        desk.call(&format!("store export {what} -o {out} --store {store}"));
+        assert!(same(&desk, &format!("{out}/history.json"), &format!("{of}/history.json")), "{what}");
+    }
+    assert!(desk.run("store export 3 -o none --store shop.db").expect_err("no such history").contains("O006"));
+    // What came out is gone on from as from the folder itself.
+    fs::copy(desk.path().join("first/corrected.nc"), desk.path().join("out-1/corrected.nc")).expect("a copy");
+    desk.call("learn job.toml --probe part-2.txt --from out-1 -o again");
+    assert!(same(&desk, "again/history.json", "second/history.json"));
+}
+
+/// A backup as docs/store.md says: the file itself, while nobody writes.
+fn backup(desk: &Workplace) -> &'static str {
+    fs::copy(desk.path().join("shop.db"), desk.path().join("backup.db")).expect("a copy");
+    "backup.db"
+}
+
+#[test]
+fn without_its_store_a_command_does_its_work_and_says_how_the_part_comes_in_later() {
+    let desk = desk();
+    desk.call("correct job.toml --probe part-1.txt -o plain");
+    for (k, store) in ["missing.db", "plant.toml", "postgres://ann@127.0.0.1:1/shop"].into_iter().enumerate() {
+        let kept = with_store(&desk, store, &format!("correct job.toml --probe part-1.txt -o out-{k}"));
+        let said = text(&kept.stderr);
+        assert_eq!(kept.status.code(), Some(0), "{said}");
+        let later = format!("truepath store import out-{k} takes it later");
+        assert!(said.contains("warning: the part is not in the store") && said.contains(&later), "{said}");
+        same_folders(&desk.path().join("plain"), &desk.path().join(format!("out-{k}")));
+    }
+    assert!(!desk.path().join("missing.db").exists(), "only init makes a store");
+}
+
+#[test]
+fn a_job_names_its_store_and_never_a_password() {
+    let desk = desk();
+    let job = desk.read("job.toml");
+    let own = "[store]\npath = \"shop.db\"\nmachine = \"VF2\"\nmaterial = \"42CrMo4\"\n[part]\nserial = \"17\"\nmaterial_batch = \"L7\"\n";
+    desk.write("job.toml", format!("{job}\n{own}"));
+    desk.call("store init --store shop.db");
+    desk.call("correct job.toml --probe part-1.txt -o out");
+    let status = desk.call("store status --store shop.db");
+    let last = &status["last_parts"][0];
+    assert_eq!((&last["serial"], &last["machine"], &status["materials"]), (&"17".into(), &"VF2".into(), &1.into()));
+    desk.call("store export job.toml -o copy");
+    assert!(same(&desk, "copy/history.json", "out/history.json"));
+
+    for url in ["postgres://ann:secret@db/shop", "postgres://db/shop?password=secret"] {
+        desk.write("job.toml", format!("{job}\n[store]\nurl = \"{url}\"\n"));
+        let said = desk.run("correct job.toml --probe part-1.txt -o none").expect_err("a password");
+        assert!(said.contains("J045") && said.contains("PGPASSFILE") && !said.contains("secret"), "{said}");
+    }
+    for (wrong, code) in
+        [("path = \"a\"\nurl = \"postgres://h/d\"", "J008"), ("url = \"mysql://h\"", "J006"), ("pth = \"a\"", "J003")]
+    {
+        desk.write("job.toml", format!("{job}\n[store]\n{wrong}\n"));
+        assert!(desk.run("correct job.toml --probe part-1.txt -o none").expect_err(wrong).contains(code), "{wrong}");
+    }
+}
