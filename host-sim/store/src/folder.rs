@@ -1,6 +1,6 @@
 //! What a folder holds for the store: the histories of one part, one for each of its contours, and what lies beside them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use truepath_correction::learning::History;
@@ -85,7 +85,9 @@ impl PartFolder {
                 return Err(O005.error(found, "the history of a part").in_file(folder).into());
             }
         }
-        all.dedup();
+        // A folder that was named and lies below another one comes once.
+        let mut known = BTreeSet::new();
+        all.retain(|folder| known.insert(files::canonical(folder).unwrap_or_else(|_| folder.clone())));
         Ok(all)
     }
 }

@@ -2,11 +2,12 @@
 
 use serde::Serialize;
 use truepath_correction::learning::Facts;
+use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 
 use crate::add::{Added, Setup, add};
 use crate::backend::{Backend, Make, open, whole};
-use crate::codes::{O001, O008};
+use crate::codes::O008;
 use crate::export::{Choice, choices, file_of};
 use crate::folder::PartFolder;
 use crate::place::Place;
@@ -32,14 +33,15 @@ impl Store {
     /// Makes a store, or brings the one that is there up; `roles` also makes the roles of a server.
     ///
     /// # Errors
-    /// `O001` where it cannot be reached, `O003` for a store of a newer program, `O004` where nothing can be written.
+    /// `O001` where it cannot be reached, `O003` for a store of a newer program, `O004` where nothing can be written,
+    /// `C001` for roles in a file.
     pub fn init(place: &Place, roles: bool) -> Result<Migrated, Failure> {
-        let mut on = open(place, Make::New)?;
-        if roles && !on.has_roles() {
+        if roles && place.file().is_some() {
             let help = "leave --roles out: who may read or write a file is said by the rights of the file";
             let found = format!("--roles, and {place} is a file");
-            return Err(InputError::new(O001, found, "a database of a server", help).into());
+            return Err(InputError::new(C001, found, "a database of a server", help).into());
         }
+        let mut on = open(place, Make::New)?;
         let (before, version) = migrate(on.as_mut(), place, MIGRATIONS)?;
         if roles {
             whole(on.as_mut(), |on| on.script(ROLES))?;

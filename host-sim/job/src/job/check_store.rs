@@ -63,7 +63,7 @@ pub(super) fn store(source: &Source, section: Option<&Section<'_>>, folder: &Pat
     };
     let place = match (section.text("path")?, section.text("url")?) {
         (None, None) => None,
-        (Some((path, value)), None) if path.is_empty() => {
+        (Some(("", value)), None) => {
             return Err(section.out_of_range(&value, "the name of a file", "name the store, relative to this file"));
         }
         (Some((path, _)), None) => Some(StorePlace::File(folder.join(path))),

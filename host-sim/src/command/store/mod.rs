@@ -1,20 +1,22 @@
 //! `truepath store`: the parts of a shop in one place.
 
 pub(super) mod keep;
+mod place;
 mod words;
 
 use std::path::{Path as FilePath, PathBuf};
 
 use clap::{Args, Subcommand};
-use serde::Serialize;
 use truepath_correction::learning::Facts;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFolder;
 use truepath_job::job::{JobFile, StoreNames};
 use truepath_job::pass::Pass;
-use truepath_store::codes::{O005, O006, O007};
+use truepath_store::codes::{O005, O006};
 use truepath_store::{Added, Choice, Migrated, PartFolder, Place, Setup, Store};
 
+use self::place::place;
+use self::words::{Exported, Imported};
 use super::correction_files::{CONTOURS, HISTORY, contour_place};
 use crate::terminal::Terminal;
 
@@ -70,24 +72,6 @@ enum Task {
     Migrate,
 }
 
-/// What was imported.
-#[derive(Clone, Debug, Serialize)]
-struct Imported {
-    store: String,
-    folders: usize,
-    histories: usize,
-    known: usize,
-    new_parts: usize,
-    new_readings: usize,
-}
-
-/// A history that was written.
-#[derive(Clone, Debug, Serialize)]
-struct Exported {
-    history: i64,
-    file: PathBuf,
-}
-
 /// Does it and prints what came of it.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     let given = options.store.as_deref();
@@ -119,16 +103,6 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
             terminal.tell(&written, || words::exported(&written))
         }
     }
-}
-
-/// The store that is meant: of the command line, of the environment, of the job.
-///
-/// # Errors
-/// `O007` where none is named.
-fn place(given: Option<&str>, job: Option<&JobFile>) -> Result<Place, InputError> {
-    let place = given.map(Place::of).or_else(Place::of_environment);
-    let place = place.or_else(|| job.and_then(|job| job.store.place.as_ref()).map(Place::of_job));
-    place.ok_or_else(|| O007.error("no store is named", "a file, or a database of a server"))
 }
 
 fn made(place: &Place, done: Migrated, terminal: &Terminal) -> Result<(), Failure> {

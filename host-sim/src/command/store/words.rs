@@ -1,10 +1,28 @@
-//! What `truepath store` says in words.
+//! What came of `truepath store`, and its words.
 
 use std::fmt::Write;
+use std::path::PathBuf;
 
+use serde::Serialize;
 use truepath_store::{Migrated, Place, Status};
 
-use super::{Exported, Imported};
+/// What was imported.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Imported {
+    pub(super) store: String,
+    pub(super) folders: usize,
+    pub(super) histories: usize,
+    pub(super) known: usize,
+    pub(super) new_parts: usize,
+    pub(super) new_readings: usize,
+}
+
+/// A history that was written.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Exported {
+    pub(super) history: i64,
+    pub(super) file: PathBuf,
+}
 
 pub(super) fn made(place: &Place, done: Migrated) -> String {
     let Migrated { before, version } = done;

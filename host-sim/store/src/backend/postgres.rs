@@ -14,8 +14,9 @@ use postgres::{Client, Config, Error, NoTls, Statement};
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_job::job::without_password;
 
+use super::connection::{Backend, refuses};
 use super::passwords::password;
-use super::{Backend, refuses};
+
 use crate::codes::O001;
 use crate::value::{Row, Value};
 
@@ -100,10 +101,6 @@ impl Backend for Postgres {
     fn damage(&mut self) -> Result<Option<String>, Failure> {
         // A server sees to its pages itself.
         Ok(None)
-    }
-
-    fn has_roles(&self) -> bool {
-        true
     }
 }
 

@@ -10,7 +10,7 @@ use rusqlite::types::{ToSqlOutput, Value as Held, ValueRef};
 use rusqlite::{Connection, Error, ErrorCode, OpenFlags, ToSql, params_from_iter};
 use truepath_ground::diagnostics::Failure;
 
-use super::{Backend, Make, refuses};
+use super::connection::{Backend, Make, refuses};
 use crate::codes::{O001, O002, O008};
 use crate::value::{Row, Value};
 
@@ -90,10 +90,6 @@ impl Backend for Sqlite {
         let said = self.rows("PRAGMA integrity_check", &[])?;
         let said = said.iter().map(|row| row.text(0)).collect::<Result<Vec<&str>, Failure>>()?.join("; ");
         Ok((said != "ok").then_some(said))
-    }
-
-    fn has_roles(&self) -> bool {
-        false
     }
 }
 

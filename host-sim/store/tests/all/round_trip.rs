@@ -129,7 +129,8 @@ fn what_is_no_store_of_this_version_is_refused() {
     assert_eq!(code(Store::open(&file("empty.db"))), "O002");
     assert_eq!(code(Store::migrate(&file("empty.db"))), "O002");
     assert_eq!(code(Store::init(&file("no/folder/shop.db"), false)), "O001");
-    assert_eq!(code(Store::init(&file("roles.db"), true)), "O001");
+    assert_eq!(code(Store::init(&file("roles.db"), true)), "C001");
+    assert!(!at.path().join("roles.db").exists());
 
     let place = file_in(at.path());
     let again = shown(Store::init(&place, false));
@@ -162,27 +163,27 @@ fn a_store_that_was_changed_says_so() {
 }
 
 #[test]
-fn a_full_store_takes_nothing_of_a_part_and_all_of_it_later() {
+fn a_part_that_is_refused_in_the_middle_leaves_nothing() {
     let at = tempfile::tempdir().expect("a folder");
     let place = file_in(at.path());
     let folder = folder(at.path(), "out", &history(1, 3, 500));
     let part = shown(PartFolder::read(&folder)).expect("a history");
-    let rights = |read_only: bool| {
+    let refusing = |refuses: bool| {
         let file = rusqlite::Connection::open(at.path().join("shop.db")).expect("the file");
-        // A trigger refuses as a full disk does: in the middle of the part.
-        let words = if read_only {
+        // The history comes last, behind all its readings.
+        let words = if refuses {
             "CREATE TRIGGER full BEFORE INSERT ON history BEGIN SELECT RAISE(ABORT, 'full'); END"
         } else {
             "DROP TRIGGER full"
         };
         file.execute_batch(words).expect("changed");
     };
-    rights(true);
+    refusing(true);
     let mut store = shown(Store::open(&place));
     assert!(store.add(&part, &setup()).is_err());
     let status = shown(store.status(1));
     assert_eq!((status.parts, status.readings, status.jobs, status.machines), (0, 0, 0, 0));
-    rights(false);
+    refusing(false);
     assert_eq!(shown(store.add(&part, &setup()))[0].new_parts, 3);
     assert_eq!(shown(store.check()), 1);
 }
