@@ -33,15 +33,16 @@ fn child_puts_parts_in() {
     }
 }
 
-/// Kills a process so many times at moments that differ, and looks at the store after each.
-fn kills(times: u64, longest: Duration) {
+/// Kills a process so many times, each at another moment of a part that is going in, and looks at the store after each.
+fn kills(times: u64) {
     let at = tempfile::tempdir().expect("a folder");
     let place = file_in(at.path());
     let file = at.path().join("shop.db");
     let mut reported: Vec<String> = Vec::new();
     for k in 0..times {
         let first = (k + 1) * 100_000;
-        let lines = killed_after(&file, first, longest.mul_f64((k * 37 % 101) as f64 / 100.0));
+        let moment = ((k % 3) as usize, (k * 37 % 101) as f64 / 100.0);
+        let lines = killed_at(&file, first, moment);
         reported.extend(lines.iter().filter_map(|line| line.strip_prefix("stored ").map(str::to_owned)));
         // The journal that was left behind is rolled back by whoever comes first.
         let mut store = shown(Store::open(&place));
@@ -50,14 +51,9 @@ fn kills(times: u64, longest: Duration) {
         let sound = rusqlite::Connection::open(&file).expect("the file");
         let said: String = sound.query_row("PRAGMA integrity_check", [], |row| row.get(0)).expect("an answer");
         assert_eq!(said, "ok", "after kill {k}");
-        let mut known = sound
-            .prepare("SELECT count(*) FROM part p JOIN job j ON j.id = p.job WHERE j.program_crc32 = ?1")
-            .expect("read");
-        for job in reported.iter().rev().take(200) {
-            let parts: i64 = known.query_row([job], |row| row.get(0)).expect("an answer");
-            assert_eq!(parts, 1, "the part of {job} was reported before kill {k}");
-        }
+        are_there(&sound, reported.iter().rev().take(20));
     }
+    are_there(&rusqlite::Connection::open(&file).expect("the file"), reported.iter());
     let mut store = shown(Store::open(&place));
     let parts = shown(store.status(1)).parts as usize;
     // Of each child one more may have gone in unreported.
@@ -67,8 +63,18 @@ fn kills(times: u64, longest: Duration) {
     println!("{times} kills, {parts} parts, {} of them reported", reported.len());
 }
 
-/// What a child has said until it was killed, `after` it was ready.
-fn killed_after(file: &Path, first: u64, after: Duration) -> Vec<String> {
+/// Parts that were reported are in the store, once.
+fn are_there<'a>(store: &rusqlite::Connection, jobs: impl Iterator<Item = &'a String>) {
+    let count = "SELECT count(*) FROM part p JOIN job j ON j.id = p.job WHERE j.program_crc32 = ?1";
+    let mut known = store.prepare(count).expect("read");
+    for job in jobs {
+        let parts: i64 = known.query_row([job], |row| row.get(0)).expect("an answer");
+        assert_eq!(parts, 1, "the part of {job} was reported");
+    }
+}
+
+/// What a child has said until it was killed: when it had put some parts in, and a share of the time that one takes after it.
+fn killed_at(file: &Path, first: u64, (parts, share): (usize, f64)) -> Vec<String> {
     let mut child = Command::new(std::env::current_exe().expect("this program"))
         .args(["--ignored", "--exact", "killed::child_puts_parts_in", "--nocapture", "--test-threads=1"])
         .env(PLACE, file)
@@ -85,15 +91,17 @@ fn killed_after(file: &Path, first: u64, after: Duration) -> Vec<String> {
         }
     });
     let patience = Instant::now() + Duration::from_secs(60);
-    let mut lines = Vec::new();
-    while let Ok(line) = told.recv_timeout(patience.saturating_duration_since(Instant::now())) {
-        let ready = line.ends_with("ready");
-        lines.push(line);
-        if ready {
-            break;
+    let mut lines: Vec<String> = Vec::new();
+    let (mut ready, mut last, mut took) = (false, Instant::now(), Duration::from_millis(10));
+    while !ready || lines.len() <= parts {
+        let Ok(line) = told.recv_timeout(patience.saturating_duration_since(Instant::now())) else { break };
+        if line.starts_with("stored ") || line.ends_with("ready") {
+            took = if ready { last.elapsed() } else { took };
+            (ready, last) = (true, Instant::now());
+            lines.push(line);
         }
     }
-    std::thread::sleep(after);
+    std::thread::sleep(took.mul_f64(share));
     child.kill().expect("killed");
     child.wait().expect("ended");
     reader.join().expect("its lines");
@@ -104,11 +112,11 @@ fn killed_after(file: &Path, first: u64, after: Duration) -> Vec<String> {
 
 #[test]
 fn twenty_kills_lose_no_part_that_was_reported() {
-    kills(20, Duration::from_millis(120));
+    kills(20);
 }
 
 #[test]
 #[ignore = "slow: cargo xtask test --all"]
 fn a_thousand_kills_lose_no_part_that_was_reported() {
-    kills(1000, Duration::from_millis(120));
+    kills(1000);
 }
