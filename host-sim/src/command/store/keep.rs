@@ -9,7 +9,7 @@ use truepath_ground::diagnostics::Failure;
 use truepath_job::job::{JobFile, StoreNames};
 use truepath_store::{Added, PartFolder, Place, Setup, Store};
 
-use super::place::place;
+use super::chosen::place;
 use crate::terminal::Terminal;
 
 /// Puts the part of a folder into the store that is named, if any is.

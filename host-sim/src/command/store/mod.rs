@@ -1,7 +1,7 @@
 //! `truepath store`: the parts of a shop in one place.
 
+mod chosen;
 pub(super) mod keep;
-mod place;
 mod words;
 
 use std::path::{Path as FilePath, PathBuf};
@@ -15,7 +15,7 @@ use truepath_job::pass::Pass;
 use truepath_store::codes::{O005, O006};
 use truepath_store::{Added, Choice, Migrated, PartFolder, Place, Setup, Store};
 
-use self::place::place;
+use self::chosen::place;
 use self::words::{Exported, Imported};
 use super::correction_files::{CONTOURS, HISTORY, contour_place};
 use crate::terminal::Terminal;
