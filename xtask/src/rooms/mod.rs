@@ -146,6 +146,19 @@ mod tests {
     }
 
     #[test]
+    fn a_name_that_is_also_its_modules_leads_into_the_module() {
+        for path in ["b::b", "self::b::b"] {
+            let root = format!("mod b;\nmod c;\npub use {path};");
+            let said = circles(&[
+                ("lib.rs", &root),
+                ("b.rs", "use super::c::Y;\npub fn b() {}"),
+                ("c.rs", "use crate::b;\nfn f() { b() }\npub struct Y;"),
+            ]);
+            assert_eq!(heads(&said), ["a: b → c → b"], "{path}");
+        }
+    }
+
+    #[test]
     fn a_glob_leads_to_where_its_names_come_from() {
         let said = circles(&[
             ("lib.rs", "mod b;\nmod c;\nmod p;"),

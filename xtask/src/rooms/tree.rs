@@ -311,13 +311,14 @@ impl Forest {
                 }
                 Member::Import(import) => {
                     let mut found = Places::new();
-                    let path = [import.as_slice(), rest].concat();
-                    if import.first() != Some(first) {
-                        self.follow(module, &path, seen, &mut found);
+                    let within = import.first().is_some_and(|first| first == "self");
+                    let path = [&import[usize::from(within)..], rest].concat();
+                    if path.first() != Some(first) {
+                        self.follow(module, &[import.as_slice(), rest].concat(), seen, &mut found);
                     } else {
-                        // `use check::check`: its first name is not the one it brings in.
+                        // `use check::check` and `use self::check::check`: its first name is not the one it brings in.
                         let mut modules = members.iter().filter_map(Member::module).peekable();
-                        if modules.peek().is_none() {
+                        if modules.peek().is_none() && !within {
                             self.follow_crate(module, &path, seen, &mut found);
                         }
                         for child in modules {
