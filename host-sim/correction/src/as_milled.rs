@@ -27,7 +27,7 @@ pub struct AsMilled {
 }
 
 /// Its largest error.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct WholeContour {
     /// Magnitude, mm.
     pub max_mm: f64,

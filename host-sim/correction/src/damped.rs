@@ -6,7 +6,7 @@ use truepath_ground::units::{float, mm};
 use crate::correction::Correction;
 
 /// The stretch of the contour whose wall is known least.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct DampedSummary {
     /// The least share of the correction that is applied, 0...1.
     pub least_share: f64,

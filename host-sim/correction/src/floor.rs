@@ -29,7 +29,7 @@ const LEAST: usize = 4;
 const SAME: [f64; 2] = [0.2, 0.02];
 
 /// Where the repeatability of the machine is known from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum KnownFrom {
     /// The job states it.
@@ -42,7 +42,7 @@ pub enum KnownFrom {
 }
 
 /// A floor in its parts, mm.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Floor {
     /// What the machine repeats to: standard deviation of one place from part to part.
     pub machine_mm: f64,

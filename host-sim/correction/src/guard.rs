@@ -13,7 +13,7 @@ const LEAST: Offset = Offset::from_um(1);
 const APART: Offset = Offset::from_um(1_000);
 
 /// A stretch of the contour on which the guard holds the cutter back.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct HeldBack {
     /// Its start, mm along the contour.
     pub from_s_mm: f64,
@@ -35,7 +35,7 @@ impl HeldBack {
 }
 
 /// The guard of a correction.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct GuardSummary {
     /// The deepest cut allowed at any height of the engaged depth, mm.
     pub max_gouge_mm: f64,

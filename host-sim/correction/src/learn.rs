@@ -32,7 +32,7 @@ pub struct Learned {
 }
 
 /// Summary of `learn`: that of `correct`, and the verdict on the part.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, serde::Serialize, schemars::JsonSchema)]
 pub struct LearnSummary {
     /// Of the correction for the next part.
     #[serde(flatten)]
@@ -52,7 +52,7 @@ pub struct LearnSummary {
 }
 
 /// One of several contours that were learned from together.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, serde::Serialize, schemars::JsonSchema)]
 pub struct ContourLearned {
     /// Its name.
     pub contour: String,

@@ -19,8 +19,9 @@ use crate::plausible::is_possible;
 
 /// Offsets that are tried, µm, with what is believed of each (natural logarithm): most holders are good ones.
 const TRIED: [(i32, f64); 6] = [(0, -0.7), (2, -1.6), (4, -1.9), (7, -2.5), (11, -3.5), (16, -4.5)];
-/// So many of them are tried at once.
-const SMALL: usize = 3;
+/// So many of them are tried at once, whatever they say: a cutter that runs out by more is told from one that runs true by the smallest
+/// offset already, and a fit with one is the dearest part of a correction.
+const SMALL: usize = 2;
 /// Times that offsets half way to the neighbours of the most probable one are tried.
 const HALVINGS: usize = 2;
 /// By how much one must be more probable than a cutter that runs true, natural logarithm: 400 : 1, as wear and stock look alike, and

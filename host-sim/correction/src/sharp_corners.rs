@@ -14,7 +14,7 @@ use crate::fillet;
 const SHARE: f64 = 1.0 / 3.0;
 
 /// The sharp inside corners of a contour, of the target quantity.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, serde::Serialize, schemars::JsonSchema)]
 pub struct SharpCorners {
     /// Line of the program that begins in the first.
     pub line: u32,
@@ -34,7 +34,7 @@ pub struct SharpCorners {
 }
 
 /// What is predicted for the same contour with arcs in its sharp inside corners.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
+#[derive(Clone, Copy, Debug, serde::Serialize, schemars::JsonSchema)]
 pub struct WithArcs {
     /// Radius of the wall's corners, mm.
     pub corner_radius_mm: f64,

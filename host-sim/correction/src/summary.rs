@@ -20,7 +20,7 @@ use crate::sharp_corners::SharpCorners;
 use crate::surface::expected::Surfaces;
 
 /// An identified quantity.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Parameter {
     /// Its value.
     pub value: f64,
@@ -37,7 +37,7 @@ pub struct Parameter {
 }
 
 /// Summary of `correct`.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, serde::Serialize, schemars::JsonSchema)]
 pub struct CorrectSummary {
     /// Version of this file.
     pub version: u32,
@@ -123,7 +123,7 @@ pub struct CorrectSummary {
 }
 
 /// One of several contours that were corrected together.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, serde::Serialize, schemars::JsonSchema)]
 pub struct ContourSummary {
     /// Its name.
     pub contour: String,

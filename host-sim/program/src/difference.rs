@@ -13,7 +13,7 @@ use super::survey::Move;
 use super::vector::length;
 
 /// The largest displacement of the contour.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Shift {
     /// How far the corrected path is from the programmed one, mm.
     pub mm: f64,
@@ -26,7 +26,7 @@ pub struct Shift {
 }
 
 /// The difference between a program and its corrected text.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Difference {
     /// Lines of the original program.
     pub program_lines: usize,

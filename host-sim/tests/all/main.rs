@@ -39,6 +39,7 @@ mod signed_images;
 mod split_allowance;
 mod store;
 mod study;
+mod summary_schema;
 mod target_and_guard;
 mod verification;
 mod whole_wall;

@@ -5,29 +5,16 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use truepath_job::job::JobFile;
-use truepath_job::pass::Pass;
-use truepath_plant::Machine;
-use truepath_trial::virtual_mill;
-
 use crate::workplace::{Workplace, text};
+
+/// Where a part is touched, mm along the contour.
+const PLACES: [f64; 4] = [20.0, 32.0, 68.0, 80.0];
 
 /// The helical corner of the demonstration with the probe file of its first part.
 fn desk() -> Workplace {
     let desk = Workplace::demo("corner-helix", &["program.nc", "job.toml", "plant.toml"]);
-    touched(&desk, None, "part-1.txt");
+    desk.touch(&PLACES, None, "part-1.txt");
     desk
-}
-
-/// The touches of a part, as it was programmed or as a corrected program cuts it.
-fn touched(desk: &Workplace, program: Option<&str>, name: &str) {
-    let machine: Machine = toml::from_str(&desk.read("plant.toml")).expect("a machine");
-    let pass = Pass::read(JobFile::read(&desk.path().join("job.toml")).expect("a job")).expect("a pass");
-    let commanded =
-        program.map(|program| virtual_mill::commanded(&pass, desk.read(program).as_bytes()).expect("a program"));
-    let milled = virtual_mill::mill(&pass, &machine, commanded.as_deref()).expect("milled");
-    let places = [20.0, 32.0, 68.0, 80.0];
-    desk.write(name, virtual_mill::probe(&pass, &milled, &places, &[0.1, 0.5, 0.9], 6.0).expect("touched"));
 }
 
 /// Runs the program with `TRUEPATH_STORE`.
@@ -73,7 +60,7 @@ fn parts_go_into_a_store_and_come_out_as_they_were() {
     assert_eq!((&status["schema_version"], &status["last_parts"][0]["machine"]), (&1.into(), &"VF2".into()));
 
     // The next part goes in by itself; what is written is what is written without a store.
-    touched(&desk, Some("first/corrected.nc"), "part-2.txt");
+    desk.touch(&PLACES, Some("first/corrected.nc"), "part-2.txt");
     desk.call("learn job.toml --probe part-2.txt --from first -o plain");
     let learn = "learn job.toml --probe part-2.txt --from first -o second";
     let kept = with_store(&desk, "shop.db", learn);

@@ -5,6 +5,10 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use serde_json::Value;
+use truepath_job::job::JobFile;
+use truepath_job::pass::Pass;
+use truepath_plant::Machine;
+use truepath_trial::virtual_mill;
 
 /// Runs the program.
 pub fn truepath(folder: &Path, arguments: &[&str]) -> Output {
@@ -67,6 +71,17 @@ impl Workplace {
     /// Runs a command that has to succeed; its summary.
     pub fn call(&self, arguments: &str) -> Value {
         self.run(arguments).unwrap_or_else(|said| panic!("{arguments}: {said}"))
+    }
+
+    /// Touches a part that the machine of plant.toml mills by job.toml, as it was programmed or by a corrected program: at these places,
+    /// mm along the contour, at three heights. Writes the probe file.
+    pub fn touch(&self, places: &[f64], program: Option<&str>, name: &str) {
+        let machine: Machine = toml::from_str(&self.read("plant.toml")).expect("a machine");
+        let pass = Pass::read(JobFile::read(&self.path().join("job.toml")).expect("a job")).expect("a pass");
+        let commanded =
+            program.map(|program| virtual_mill::commanded(&pass, self.read(program).as_bytes()).expect("a program"));
+        let milled = virtual_mill::mill(&pass, &machine, commanded.as_deref()).expect("milled");
+        self.write(name, virtual_mill::probe(&pass, &milled, places, &[0.1, 0.5, 0.9], 6.0).expect("touched"));
     }
 }
 

@@ -150,7 +150,7 @@ pub(super) struct AtPoint {
 }
 
 /// How large the kinds are, root mean square over the kernels by their shares.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Sizes {
     /// Share of the allowance that differs along the contour.
     pub stock_share: f64,

@@ -24,7 +24,7 @@ pub struct Holdout {
 }
 
 /// Root mean square of measured − predicted at the held-out places, mean over the heights of a place, mm.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, serde::Serialize, schemars::JsonSchema)]
 pub struct Residuals {
     /// Where the places are, mm along the contour.
     #[serde(rename = "places_s_mm")]

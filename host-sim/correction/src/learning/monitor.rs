@@ -19,7 +19,7 @@ use crate::correction::walls;
 use crate::discrepancy::Own;
 
 /// Error of the target quantity over some places.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct PartError {
     /// Number of the part.
     pub part: u32,

@@ -14,7 +14,7 @@ use crate::discrepancy::Sizes;
 const TELLING: f64 = 0.04;
 
 /// How a part came out.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, serde::Serialize, schemars::JsonSchema)]
 pub struct Verdict {
     /// Its number; the correction is that of the next one.
     pub part: u32,
@@ -45,7 +45,7 @@ pub struct Verdict {
 }
 
 /// What a part was cut with and the next one is cut with again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 pub struct UsedAgain {
     /// Number of the part.
     pub part: u32,
@@ -54,7 +54,7 @@ pub struct UsedAgain {
 }
 
 /// A prediction held against the measurement.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Promise {
     /// Largest predicted magnitude at the places, mm.
     pub max_mm: f64,
@@ -67,7 +67,7 @@ pub struct Promise {
 }
 
 /// The wall error that parts have shown beside the model.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct UnmodelledError {
     /// Largest magnitude along the contour, mm.
     pub max_mm: f64,

@@ -5,7 +5,7 @@
 
 /// The error at the worst place of a wall in its parts, mm, material left positive: the first three add up to it; the others are
 /// standard deviations of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Causes {
     /// The mean over the height there: what a shift in x and y cures.
     pub mean_mm: f64,
@@ -63,7 +63,7 @@ impl Causes {
 
 /// The error at the worst place of a wall that was cut, in its parts, mm, material left positive: the first two add up to it. What a
 /// helix makes of the second and what bending, no measurement alone tells apart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct MeasuredCauses {
     /// The mean over the heights that were seen there: what a shift in x and y cures.
     pub mean_mm: f64,

@@ -23,7 +23,7 @@ use super::wall::judged;
 const DRAWN: usize = 400;
 
 /// The predicted profile error.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Predicted {
     /// Its mean over the machines that the points allow, mm.
     pub profile_mm: f64,

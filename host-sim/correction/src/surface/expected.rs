@@ -7,7 +7,7 @@ use super::causes::Causes;
 use super::draws::{Draws, Predicted, Uncertain};
 
 /// The predicted error of a whole wall, at every height, mm. Values are means over the machines that the points allow.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Surface {
     /// The largest error anywhere, the sign aside: the profile error.
     #[serde(flatten)]
@@ -29,7 +29,7 @@ pub struct Surface {
 }
 
 /// The wall of a pass without and with a correction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Surfaces {
     /// Without it.
     pub before: Surface,

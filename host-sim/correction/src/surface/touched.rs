@@ -11,7 +11,7 @@ use truepath_job::pass::Pass;
 use super::causes::MeasuredCauses;
 
 /// The largest measured error at any touched height beside the largest mean over the touched heights of a place, mm.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct TouchedSurface {
     /// The largest deviation of a point, the sign aside.
     pub profile_mm: f64,

@@ -7,7 +7,7 @@ use truepath_ground::units::mm;
 pub(super) const CONTOUR: &str = "contour-";
 
 /// One run of cutting moves and what it is taken for.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Row {
     /// `finish`, `spring`, `semi`, `rough`, `travel`, `facing` or `other tool`.
     pub role: &'static str,
@@ -32,7 +32,7 @@ pub struct Row {
 }
 
 /// One pass of the feature.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct PassRow {
     /// Level, from 1.
     pub pass: u32,
@@ -47,7 +47,7 @@ pub struct PassRow {
 }
 
 /// The feature a command was about.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct FeatureSummary {
     /// Its name, when it has one.
     pub id: Option<String>,

@@ -8,7 +8,7 @@ use super::force::Wanted;
 use super::schedule::Schedule;
 
 /// What a schedule does, for people and for machines.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct FeedSummary {
     /// Largest mean force over a revolution that was allowed, N.
     pub limit_n: f64,
@@ -35,7 +35,7 @@ pub struct FeedSummary {
 }
 
 /// A correction at the feeds of the program, to compare with; lengths in mm.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
 pub struct Unscheduled {
     /// Largest predicted wall error of the target quantity.
     pub max_error_after_mm: f64,

@@ -17,7 +17,7 @@ use super::material::MATERIALS;
 use crate::post::{Post, ToolNote};
 
 /// A value that the job does not give.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 pub struct Assumed {
     /// Its key with the table.
     pub key: &'static str,
