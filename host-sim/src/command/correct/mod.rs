@@ -58,8 +58,8 @@ pub struct Options {
     /// holds it.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, conflicts_with = "no_probe")]
     pub tolerance: Option<String>,
-    /// The shop store that the part goes into: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then [store] of
-    /// the job.
+    /// The shop store that the part goes into: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that
+    /// the job names.
     #[cfg(not(target_family = "wasm"))]
     #[arg(long, value_name = "PATH|URL")]
     pub store: Option<String>,

@@ -65,8 +65,8 @@ pub struct Options {
     /// Of a part cut with planned passes: search for passes anew, instead of designing the same ones anew.
     #[arg(long)]
     pub replan: bool,
-    /// The shop store that the part goes into: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then [store] of
-    /// the job.
+    /// The shop store that the part goes into: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that
+    /// the job names.
     #[cfg(not(target_family = "wasm"))]
     #[arg(long, value_name = "PATH|URL")]
     pub store: Option<String>,

@@ -23,7 +23,7 @@ use crate::terminal::Terminal;
 /// What is done with a store.
 #[derive(Clone, Debug, Args)]
 pub struct Options {
-    /// The store: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then [store] of the job.
+    /// The store: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that the job names.
     #[arg(long, global = true, value_name = "PATH|URL")]
     store: Option<String>,
     #[command(subcommand)]
