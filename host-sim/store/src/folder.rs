@@ -42,7 +42,7 @@ pub struct PartFolder {
 }
 
 impl Found {
-    /// Reads a history and what lies beside it; `above` is the folder of all contours of the part.
+    /// Reads the history of a folder and what lies beside it.
     ///
     /// # Errors
     /// `F001` and those of [`History::read`].
