@@ -31,6 +31,9 @@ pub struct ContourPass {
     pub cut_with: CutWith,
     /// Least and greatest feed along the contour as the program says it, mm/min, whatever the job says.
     pub written_feeds: [Real; 2],
+    /// What other parts of the shop say of machine and material, under the helical law; `None`, unless the caller says it, for what
+    /// the job states.
+    pub believed: Option<Prior>,
 }
 
 impl ContourPass {
@@ -66,6 +69,7 @@ impl ContourPass {
             setup,
             cut_with: CutWith::Nothing,
             written_feeds,
+            believed: None,
         })
     }
 
@@ -134,8 +138,13 @@ impl ContourPass {
         })
     }
 
-    /// The prior of machine and material for a wall law; a wide one of what the user did not state.
+    /// The prior of machine and material for a wall law: what the shop believes, or what the job states.
     pub fn prior(&self, law: WallLaw) -> Prior {
+        self.believed.filter(|_| law == WallLaw::Helical).unwrap_or_else(|| self.stated_prior(law))
+    }
+
+    /// The prior of what the job states for a wall law; a wide one of what it does not.
+    pub fn stated_prior(&self, law: WallLaw) -> Prior {
         let mut prior = Prior::around(self.coefficients(), self.compliance(), law);
         if !self.job.force.stated {
             prior = prior.without_material();

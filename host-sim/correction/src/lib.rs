@@ -2,6 +2,7 @@
 //!
 //! | step | where |
 //! |---|---|
+//! | machine and material as other jobs of a shop let expect them | [`shop`] |
 //! | cutter and stock as the points have them: runout, roughing that was pushed away | `told`: [`runout`], `roughing` |
 //! | machine and material from the points | [`identification`] |
 //! | the correction of an identified machine | [`correction`] |
@@ -48,6 +49,7 @@ pub mod runout;
 mod seal;
 pub mod second_pass;
 pub mod sharp_corners;
+pub mod shop;
 pub mod summary;
 pub mod surface;
 mod told;

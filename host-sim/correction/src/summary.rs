@@ -17,6 +17,7 @@ use crate::damped::{DampedSummary, damped_summary};
 use crate::floor::Floor;
 use crate::guard::{GuardSummary, guard_summary};
 use crate::sharp_corners::SharpCorners;
+use crate::shop::Said;
 use crate::surface::expected::Surfaces;
 
 /// An identified quantity.
@@ -90,6 +91,9 @@ pub struct CorrectSummary {
     pub milling: &'static str,
     /// Identification quantities by name.
     pub identified: BTreeMap<&'static str, Parameter>,
+    /// What the points say of what jobs have in common, whatever was believed before: for the shop store. Not under the mean law.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points_say: Option<Said>,
     /// Contacts used.
     pub points_used: usize,
     /// Contacts the fit set aside.
@@ -262,6 +266,7 @@ pub fn correct_summary(
         wall_law: wall_law_name(identified.law()),
         milling: milling_name(pass.core.setup.milling),
         identified: parameters(identified),
+        points_say: Said::of(&identified.core, &pass.core.stated_prior(WallLaw::Helical)),
         points_used: observations.len(),
         points_outlying: identified.outlying(),
         points_rejected: rejected,

@@ -1,4 +1,5 @@
-//! Passes as their points have them, before machine and material are found: the cutter's runout and what roughing left.
+//! Passes as their points have them, before machine and material are found: whether the shop's belief holds, the cutter's runout and
+//! what roughing left.
 
 use truepath_core::correct::Node;
 use truepath_core::cut::Path;
@@ -7,6 +8,7 @@ use truepath_ground::diagnostics::Failure;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::discrepancy::PartCut;
+use crate::shop::{Agreement, after, agreement};
 use crate::{roughing, runout};
 
 /// Stock and machine are found in turn so often at most.
@@ -29,6 +31,9 @@ pub struct Told {
 /// What `points` answers, and what is wrong with a program.
 pub fn passes(walls: &[&Pass], together: bool, points: &Points<'_>) -> Result<Vec<Pass>, Failure> {
     let mut passes: Vec<Pass> = walls.iter().map(|pass| (*pass).clone()).collect();
+    if walls.iter().any(|pass| pass.core.believed.is_some()) {
+        passes = with_cuts(&passes, together, points, &|walls, groups| Ok(as_they_agree(walls, groups)))?;
+    }
     if walls.iter().any(|pass| pass.is_roughed_by_its_cutter()) {
         for _ in 0..ROUNDS {
             let found = with_cuts(&passes, together, points, &|walls, groups| roughing::pushed(walls, groups))?;
@@ -43,6 +48,12 @@ pub fn passes(walls: &[&Pass], together: bool, points: &Points<'_>) -> Result<Ve
         }
     }
     with_cuts(&passes, together, points, &|walls, groups| Ok(runout::passes(walls, groups)))
+}
+
+/// Passes that begin at what the shop believes only where the points of their group agree with it.
+fn as_they_agree(walls: &[&Pass], groups: &[Group<'_>]) -> Vec<Pass> {
+    let each: Vec<Option<Agreement>> = groups.iter().map(|(pass, cuts)| agreement(pass, cuts)).collect();
+    walls.iter().enumerate().map(|(k, pass)| after(pass, each.get(k).or(each.first()).copied().flatten())).collect()
 }
 
 /// Gives the parts of a wall, told by its number and path.

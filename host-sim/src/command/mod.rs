@@ -40,6 +40,8 @@ mod readings;
 mod relative;
 pub mod replay;
 mod rewritten_job;
+#[cfg(not(target_family = "wasm"))]
+mod shop_study;
 pub mod simulate;
 pub mod split;
 #[cfg(not(target_family = "wasm"))]

@@ -20,12 +20,15 @@ use truepath_study::page::page;
 use truepath_study::plan::summary::words as words_of_plans;
 use truepath_study::reference::{Reached, reference as goals, words as words_of_goals};
 use truepath_study::seeds::Set;
+use truepath_study::shop::summary::words as words_of_shop;
+use truepath_study::shop::workflow::ShopStudy;
 use truepath_study::summary::{Row, Summary, summary};
 use truepath_study::{export, parallel, workflow};
 
 use super::pack;
 use super::pack::again::again;
 use super::plan_study::{self, PlanStudy};
+use super::shop_study;
 use crate::terminal::Terminal;
 
 /// File of the reference goals.
@@ -110,6 +113,9 @@ pub struct Options {
     /// Plans instead: the wall at every height of the part that the recommended program cuts, a case a seed.
     #[arg(long, conflicts_with_all = ["case", "families", "axis", "random", "reference", "first"])]
     pub plan: bool,
+    /// A shop of so many machines instead: the first corrections of its jobs, with and without what the others say (30 are usual).
+    #[arg(long, value_name = "MACHINES", conflicts_with_all = ["case", "families", "axis", "random", "reference", "first", "plan", "nuisance", "set", "seeds"])]
+    pub shop: Option<u64>,
     /// Put the tables into a Markdown file, between its two marks.
     #[arg(long, value_name = "FILE.md")]
     pub write: Option<PathBuf>,
@@ -166,6 +172,12 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
         let summary = plan_study::run(&asked, progress)?;
         drop(bar);
         return terminal.tell(&summary, || words_of_plans(&summary));
+    }
+    if let Some(machines) = options.shop {
+        let asked = ShopStudy { seed: 1, machines, threads: options.threads(), touches: options.touches };
+        let summary = shop_study::run(options.out(), options.force, options.write.as_deref(), &asked, progress)?;
+        drop(bar);
+        return terminal.tell(&summary, || words_of_shop(&summary));
     }
     if options.reference {
         let reached = reference(options, progress)?;

@@ -18,5 +18,6 @@ GRANT truepath_operator TO truepath_engineer;
 -- What storing a part changes beside the rows it adds.
 GRANT UPDATE (value) ON counter TO truepath_operator;
 GRANT UPDATE (cut_nm) ON cutter TO truepath_operator;
+GRANT UPDATE (make) ON machine TO truepath_operator;
 GRANT UPDATE (parent) ON correction TO truepath_operator;
 GRANT UPDATE (serial, machine, holder, cutter, material) ON part TO truepath_operator;

@@ -134,7 +134,7 @@ pub(crate) fn add(on: &mut dyn Backend, found: &Found, setup: &Setup) -> Result<
 
 /// Rows of machine, holder, cutter and material.
 fn shop(on: &mut dyn Backend, facts: &FactTexts, setup: &Setup) -> Result<Shop, Failure> {
-    let StoreNames { machine, holder, cutter, material, lot, serial: _ } = &setup.names;
+    let StoreNames { make, machine, holder, cutter, material, lot, serial: _ } = &setup.names;
     let cutter = match cutter {
         None => None,
         Some(article) => {
@@ -155,12 +155,11 @@ fn shop(on: &mut dyn Backend, facts: &FactTexts, setup: &Setup) -> Result<Shop, 
             Some(known(on, "material", &[("name", text(name)), ("lot", text(lot))], &[], true)?.0)
         }
     };
-    Ok(Shop {
-        machine: named(on, "machine", machine.as_ref())?,
-        holder: named(on, "holder", holder.as_ref())?,
-        cutter,
-        material,
-    })
+    let machine = named(on, "machine", machine.as_ref())?;
+    if let (Some(machine), Some(make)) = (machine, make) {
+        on.change("UPDATE machine SET make = $1 WHERE id = $2 AND make IS NULL", &values![make, machine])?;
+    }
+    Ok(Shop { machine, holder: named(on, "holder", holder.as_ref())?, cutter, material })
 }
 
 /// The number of a correction.
@@ -278,6 +277,7 @@ fn estimate(on: &mut dyn Backend, (job, history): (i64, i64), found: &Found, sto
         ("covariance", covariance.into()),
         ("parts", (used.len() as i64).into()),
         ("model_version", PROGRAM.into()),
+        ("said", found.said.clone().into()),
         ("stored", now().into()),
     ];
     let (estimate, new) = known(on, "estimate", &by, &more, false)?;

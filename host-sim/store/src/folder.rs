@@ -4,11 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use truepath_correction::learning::History;
+use truepath_correction::shop::Said;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::files;
 use truepath_ground::units::nm;
 
 use crate::codes::O005;
+use crate::rows::json;
 
 /// The file of a history.
 pub const HISTORY: &str = "history.json";
@@ -28,6 +30,8 @@ pub struct Found {
     pub history: History,
     /// What was identified from its parts, by name: value and one standard deviation.
     pub identified: BTreeMap<String, (f64, f64)>,
+    /// What their points say whatever was believed before, as JSON; `None` where nothing beside it says so.
+    pub said: Option<String>,
     /// The length of the contour, nm; 0 where no table beside it says it.
     pub cut_nm: i64,
 }
@@ -51,7 +55,9 @@ impl Found {
         let source = Source::read(&path)?;
         let history = History::read(&source)?;
         let bytes = source.bytes().to_vec();
-        Ok(Self { bytes, history, identified: identified(folder), cut_nm: cut_nm(folder), path })
+        let summary = summary(folder).unwrap_or_default();
+        let (identified, said) = (identified(&summary).unwrap_or_default(), said(&summary));
+        Ok(Self { bytes, history, identified, said, cut_nm: cut_nm(folder), path })
     }
 }
 
@@ -116,17 +122,23 @@ fn subfolders(folder: &Path) -> Vec<PathBuf> {
     inner
 }
 
-/// What `summary.json` says was identified; nothing where there is none, as it is not what a part is known by.
-fn identified(folder: &Path) -> BTreeMap<String, (f64, f64)> {
-    let read = || {
-        let summary: serde_json::Value =
-            serde_json::from_slice(&files::read(&folder.join("summary.json")).ok()?).ok()?;
-        let of = |(name, of): (&String, &serde_json::Value)| {
-            Some((name.clone(), (of.get("value")?.as_f64()?, of.get("sigma")?.as_f64()?)))
-        };
-        Some(summary.get("identified")?.as_object()?.iter().filter_map(of).collect())
+/// `summary.json`; `None` where there is none, as it is not what a part is known by.
+fn summary(folder: &Path) -> Option<serde_json::Value> {
+    serde_json::from_slice(&files::read(&folder.join("summary.json")).ok()?).ok()
+}
+
+/// What a summary says was identified.
+fn identified(summary: &serde_json::Value) -> Option<BTreeMap<String, (f64, f64)>> {
+    let of = |(name, of): (&String, &serde_json::Value)| {
+        Some((name.clone(), (of.get("value")?.as_f64()?, of.get("sigma")?.as_f64()?)))
     };
-    read().unwrap_or_default()
+    Some(summary.get("identified")?.as_object()?.iter().filter_map(of).collect())
+}
+
+/// What its points say.
+fn said(summary: &serde_json::Value) -> Option<String> {
+    let said: Said = serde_json::from_value(summary.get("points_say")?.clone()).ok()?;
+    json(&said).ok()
 }
 
 /// The last arc length of `correction.csv`, nm; 0 where there is none.

@@ -9,6 +9,7 @@
 //! | a history as rows, and as its file again | `rows` |
 //! | a part goes in, once, whole or not at all | `add` |
 //! | `history.json` comes out, byte for byte | `export` |
+//! | what other jobs let a job expect | `members` |
 //! | what is in it, without counting | `status` |
 //!
 //! `docs/store.md` is for whoever sets one up or audits it.
@@ -19,6 +20,7 @@ mod clock;
 pub mod codes;
 mod export;
 mod folder;
+mod members;
 mod names;
 mod place;
 mod rows;
@@ -30,6 +32,7 @@ mod value;
 pub use add::{Added, Setup};
 pub use export::Choice;
 pub use folder::{Found, HISTORY, PartFolder};
+pub use members::setting;
 pub use place::{Place, VARIABLE};
 pub use schema::VERSION;
 pub use status::{LastPart, Status};

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 use truepath_core::units::Offset;
-use truepath_correction::learning::{History, Part, Point};
+use truepath_correction::learning::{Facts, History, Part, Point};
 use truepath_ground::diagnostics::Failure;
 use truepath_ground::units::{mm, nm};
 
@@ -31,7 +31,11 @@ pub(crate) struct FactTexts {
 
 impl FactTexts {
     pub(crate) fn of(history: &History) -> Result<Self, Failure> {
-        let json = json(&history.facts)?;
+        Self::of_facts(&history.facts)
+    }
+
+    pub(crate) fn of_facts(facts: &Facts) -> Result<Self, Failure> {
+        let json = json(facts)?;
         let pairs = of_json(&json)?;
         Ok(Self { json, pairs })
     }

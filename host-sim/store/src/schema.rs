@@ -12,10 +12,11 @@ use crate::value::{Value, values};
 pub(crate) type Migration = (i64, &'static str);
 
 /// All of them in their order.
-pub(crate) const MIGRATIONS: &[Migration] = &[(1, include_str!("../migrations/0001_tables.sql"))];
+pub(crate) const MIGRATIONS: &[Migration] =
+    &[(1, include_str!("../migrations/0001_tables.sql")), (2, include_str!("../migrations/0002_said.sql"))];
 
 /// The version this program works with.
-pub const VERSION: i64 = 1;
+pub const VERSION: i64 = 2;
 
 /// The statements that make the roles of PostgreSQL; may be given again and again.
 pub(crate) const ROLES: &str = include_str!("../migrations/roles.sql");

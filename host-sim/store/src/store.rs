@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use truepath_correction::learning::Facts;
+use truepath_correction::shop::{Setting, Shop};
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 
@@ -10,6 +11,7 @@ use crate::backend::{Backend, Make, open, whole};
 use crate::codes::O008;
 use crate::export::{Choice, choices, file_of};
 use crate::folder::PartFolder;
+use crate::members::members;
 use crate::place::Place;
 use crate::schema::{MIGRATIONS, ROLES, migrate, refuse_other};
 use crate::status::{Status, count_again, status};
@@ -87,6 +89,15 @@ impl Store {
     /// `O001` where the store does not answer.
     pub fn newest(&mut self, facts: &Facts) -> Result<Vec<Choice>, Failure> {
         choices(self.on.as_mut(), facts)
+    }
+
+    /// What the jobs of other programs say that were cut on this machine or make, or from this material, and the number of the newest
+    /// estimate among them.
+    ///
+    /// # Errors
+    /// `O001` where the store does not answer.
+    pub fn shop(&mut self, facts: &Facts, wanted: &Setting) -> Result<(Shop, Option<i64>), Failure> {
+        members(self.on.as_mut(), facts, wanted)
     }
 
     /// The `history.json` of a number, byte for byte.

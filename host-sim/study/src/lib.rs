@@ -26,6 +26,7 @@ pub mod plots;
 pub mod prior;
 pub mod reference;
 pub mod seeds;
+pub mod shop;
 pub mod statistics;
 pub mod summary;
 pub mod text;

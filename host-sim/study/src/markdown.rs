@@ -18,6 +18,9 @@ pub const RESULTS: Marks = ("<!-- results of truepath study -->", "<!-- end of r
 /// Of the nuisances.
 pub const NUISANCES: Marks = ("<!-- nuisances of truepath study -->", "<!-- end of nuisances -->");
 
+/// Of a shop.
+pub const SHOP: Marks = ("<!-- shop of truepath study -->", "<!-- end of shop -->");
+
 /// The text of a file with what lies between two marks replaced.
 ///
 /// # Errors
@@ -159,7 +162,7 @@ mod tests {
     #[test]
     fn results_replace_what_lay_between_the_marks() {
         let file = |text: &str| Source::new("study.md", text.as_bytes().to_vec());
-        for (begin, end) in [RESULTS, NUISANCES] {
+        for (begin, end) in [RESULTS, NUISANCES, SHOP] {
             let old = file(&format!("a\n{begin}\nold\n{end}\nb\n"));
             let text = written_into(&old, (begin, end), "new\n").expect("marks");
             assert_eq!(text, format!("a\n{begin}\n\nnew\n\n{end}\nb\n"));

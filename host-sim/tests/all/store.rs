@@ -5,6 +5,11 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use truepath_job::job::JobFile;
+use truepath_job::pass::Pass;
+use truepath_plant::Machine;
+use truepath_trial::virtual_mill;
+
 use crate::workplace::{Workplace, text};
 
 /// Where a part is touched, mm along the contour.
@@ -48,7 +53,7 @@ fn parts_go_into_a_store_and_come_out_as_they_were() {
     desk.call("correct job.toml --probe part-1.txt -o first");
     assert!(desk.run("store status").expect_err("no store is named").contains("O007"));
     assert!(desk.run("store status --store shop.db").expect_err("none there").contains("O002"));
-    assert_eq!(desk.call("store init --store shop.db")["schema_version"], 1);
+    assert_eq!(desk.call("store init --store shop.db")["schema_version"], 2);
     let imported = desk.call("store import . --store shop.db --machine VF2 --cutter A20");
     assert_eq!((&imported["new_parts"], &imported["known"]), (&1.into(), &0.into()));
     let again = desk.call("store import first . --store shop.db");
@@ -57,7 +62,7 @@ fn parts_go_into_a_store_and_come_out_as_they_were() {
     let counts =
         ["machines", "cutters", "jobs", "parts", "readings", "histories"].map(|key| status[key].as_u64().expect(key));
     assert_eq!(counts, [1, 1, 1, 1, 12, 1], "{status}");
-    assert_eq!((&status["schema_version"], &status["last_parts"][0]["machine"]), (&1.into(), &"VF2".into()));
+    assert_eq!((&status["schema_version"], &status["last_parts"][0]["machine"]), (&2.into(), &"VF2".into()));
 
     // The next part goes in by itself; what is written is what is written without a store.
     desk.touch(&PLACES, Some("first/corrected.nc"), "part-2.txt");
@@ -129,4 +134,60 @@ fn a_job_names_its_store_and_never_a_password() {
         desk.write("job.toml", format!("{job}\n[store]\n{wrong}\n"));
         assert!(desk.run("correct job.toml --probe part-1.txt -o none").expect_err(wrong).contains(code), "{wrong}");
     }
+}
+
+/// The largest error of the wall that a corrected program of the job leaves, mean over the height, mm.
+fn left_mm(desk: &Workplace, corrected: &str) -> f64 {
+    let machine: Machine = toml::from_str(&desk.read("plant.toml")).expect("a machine");
+    let pass = Pass::read(JobFile::read(&desk.path().join("job.toml")).expect("a job")).expect("a pass");
+    let commanded = virtual_mill::commanded(&pass, desk.read(corrected).as_bytes()).expect("a program");
+    virtual_mill::mill(&pass, &machine, Some(&commanded)).expect("milled").judge().score.max_error_mm
+}
+
+#[test]
+fn what_a_machine_has_shown_on_one_job_is_worth_something_on_the_next() {
+    let desk = desk();
+    let (job, program) = (desk.read("job.toml"), desk.read("program.nc"));
+    let own = |more: &str| {
+        format!(
+            "{job}\n[store]\npath = \"shop.db\"\nmachine = \"VF2\"\ncutter = \"A20\"\nmaterial = \"42CrMo4\"\n{more}\n"
+        )
+    };
+    desk.write("job.toml", own("prior = \"shop\""));
+    desk.call("store init --store shop.db");
+    let first = desk.call("correct job.toml --probe part-1.txt -o first");
+    assert!(first["warnings"].to_string().contains("knows nothing of this machine"), "{}", first["warnings"]);
+    // Another job of the same machine, touched on one of its walls only.
+    desk.write("program.nc", program.replacen('%', "%\n(another part)", 1));
+    desk.touch(&[20.0, 28.0], None, "few.txt");
+    let shop = desk.call("correct job.toml --probe few.txt -o shop");
+    let began = "the fit began at what 1 other parts of the store shop.db say";
+    assert!(shop["warnings"].to_string().contains(began), "{}", shop["warnings"]);
+    desk.write("job.toml", own(""));
+    let alone = desk.call("correct job.toml --probe few.txt -o alone");
+    assert!(!alone["warnings"].to_string().contains("the store"), "{}", alone["warnings"]);
+    let sigma = |summary: &serde_json::Value| summary["identified"]["compliance"]["sigma"].as_f64().expect("a number");
+    assert!(sigma(&shop) < 0.8 * sigma(&alone), "{} {}", sigma(&shop), sigma(&alone));
+    let [with, without] = ["shop", "alone"].map(|folder| left_mm(&desk, &format!("{folder}/corrected.nc")));
+    assert!(with < 0.5 * without, "{with} {without}");
+
+    // A third job, of a machine that gives way a quarter as far: wrongly named.
+    let stiff = "compliance_mm_per_n = [[0.0002, 0.00002], [0.00002, 0.00026]]";
+    let plant = desk.read("plant.toml");
+    let plant: String =
+        plant.lines().map(|l| if l.starts_with("compliance") { stiff } else { l }).collect::<Vec<_>>().join("\n");
+    desk.write("plant.toml", plant);
+    desk.write("program.nc", program.replacen('%', "%\n(a third part)", 1));
+    desk.touch(&PLACES, None, "third.txt");
+    desk.call("correct job.toml --probe third.txt -o third-alone");
+    desk.write("job.toml", own("prior = \"shop\""));
+    let third = desk.call("correct job.toml --probe third.txt -o third");
+    let contradicted = "contradict what other jobs of the shop say, most of all about how far the machine gives way";
+    assert!(third["warnings"].to_string().contains(contradicted), "{}", third["warnings"]);
+    assert!(same(&desk, "third/correction.csv", "third-alone/correction.csv"));
+
+    // A store that does not answer keeps nobody waiting.
+    let away = desk.call("correct job.toml --probe third.txt -o away --store missing.db");
+    assert!(away["warnings"].to_string().contains("the store does not answer"), "{}", away["warnings"]);
+    assert!(same(&desk, "away/correction.csv", "third-alone/correction.csv"));
 }

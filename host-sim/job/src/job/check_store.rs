@@ -17,7 +17,22 @@ pub struct StoreTable {
     pub place: Option<StorePlace>,
     /// What the parts were cut on, with and from.
     pub names: StoreNames,
+    /// Where the fit to the points begins.
+    pub prior: PriorOf,
 }
+
+/// Where the fit to the points of a part begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PriorOf {
+    /// At what the job states of machine and material.
+    #[default]
+    Job,
+    /// At what other jobs of the store say of them.
+    Shop,
+}
+
+/// Where it may begin, by name.
+const PRIORS: [(&str, PriorOf); 2] = [("job", PriorOf::Job), ("shop", PriorOf::Shop)];
 
 /// Where a store is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,6 +46,9 @@ pub enum StorePlace {
 /// What a part was cut on, with and from, as the shop calls it; texts of 1 to 100 characters in a job.
 #[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
 pub struct StoreNames {
+    /// The make of the machine: machines of one make are more alike.
+    #[arg(long, value_name = "NAME")]
+    pub make: Option<String>,
     /// The machine.
     #[arg(long, value_name = "NAME")]
     pub machine: Option<String>,
@@ -85,6 +103,7 @@ pub(super) fn store(source: &Source, section: Option<&Section<'_>>, folder: &Pat
         }
     };
     let names = StoreNames {
+        make: text("make")?,
         machine: text("machine")?,
         holder: text("holder")?,
         cutter: text("cutter")?,
@@ -92,8 +111,9 @@ pub(super) fn store(source: &Source, section: Option<&Section<'_>>, folder: &Pat
         lot: text("lot")?,
         serial: text("serial")?,
     };
+    let prior = section.choice("prior", &PRIORS)?.unwrap_or_default();
     section.close()?;
-    Ok(StoreTable { place, names })
+    Ok(StoreTable { place, names, prior })
 }
 
 /// Whether the URL of a server holds a password.

@@ -44,7 +44,7 @@ pub use check_part::{PartFlags, PartNames, PartTable, Tolerance};
 pub use check_plan::{CutterStiffness, PlanCutter, PlanTable};
 pub use check_pocket::{Mode, PerSection, PocketTable};
 pub use check_probe::{FORMATS, ProbeFlags, columns, one_of};
-pub use check_store::{StoreNames, StorePlace, StoreTable, has_password, without_password};
+pub use check_store::{PriorOf, StoreNames, StorePlace, StoreTable, has_password, without_password};
 pub use check_tool::Shank;
 pub use material::{MATERIALS, Material};
 pub use open::{Assumed, DIALECTS, USUAL_FORCE, USUAL_HELIX, USUAL_STIFFNESS, WORD_DIALECTS, dialect_name};

@@ -209,7 +209,17 @@ const MEANINGS: &[(&str, &str, &str)] = &[
         "`TRUEPATH_STORE`, else none",
         "in its place: `postgres://user@host/database`; the password comes from PGPASSFILE, `~/.pgpass` or PGPASSWORD",
     ),
-    ("store.machine", "none", "the machine; 1 to 100 characters on one line, as the five below"),
+    (
+        "store.prior",
+        "`\"job\"`",
+        "where the fit to the points begins: at what this job states of machine and material, or at what other jobs of the store say of them; the points decide, and are fitted without the others where they contradict them",
+    ),
+    (
+        "store.make",
+        "none",
+        "the make of the machine: those of one make are more alike; 1 to 100 characters on one line, as the six below",
+    ),
+    ("store.machine", "none", "the machine"),
     ("store.holder", "none", "the holder of the cutter"),
     ("store.cutter", "none", "the article number of the cutter"),
     ("store.material", "none", "the material"),

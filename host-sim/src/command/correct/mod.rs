@@ -26,7 +26,7 @@ use super::history::refuse_replacing;
 use super::pocket;
 use super::readings::{Readings, apart};
 #[cfg(not(target_family = "wasm"))]
-use super::store::keep::keep;
+use super::store::{believe::believing, keep::keep};
 use crate::terminal::Terminal;
 use truepath_report::next::after_correction;
 
@@ -58,7 +58,7 @@ pub struct Options {
     /// holds it.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, conflicts_with = "no_probe")]
     pub tolerance: Option<String>,
-    /// The shop store that the part goes into: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that
+    /// The shop store that the part goes into, and that says what other jobs know where the job wants it: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that
     /// the job names.
     #[cfg(not(target_family = "wasm"))]
     #[arg(long, value_name = "PATH|URL")]
@@ -168,6 +168,8 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<CorrectSu
         Some(_) => Pass::read(job)?,
         None => {
             let walls = Pass::every(job)?;
+            #[cfg(not(target_family = "wasm"))]
+            let walls = believing(walls, options.store.as_deref());
             match <[Pass; 1]>::try_from(walls) {
                 Ok([only]) => only,
                 Err(walls) => {

@@ -29,7 +29,7 @@ use super::history::{history_in, holds_planned};
 use super::plan_files::PLAN_HISTORY;
 use super::readings::Readings;
 #[cfg(not(target_family = "wasm"))]
-use super::store::keep::keep;
+use super::store::{believe::believing, keep::keep};
 use crate::terminal::Terminal;
 use truepath_report::next::after_correction;
 
@@ -65,7 +65,7 @@ pub struct Options {
     /// Of a part cut with planned passes: search for passes anew, instead of designing the same ones anew.
     #[arg(long)]
     pub replan: bool,
-    /// The shop store that the part goes into: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that
+    /// The shop store that the part goes into, and that says what other jobs know where the job wants it: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that
     /// the job names.
     #[cfg(not(target_family = "wasm"))]
     #[arg(long, value_name = "PATH|URL")]
@@ -192,12 +192,16 @@ pub fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<LearnSumm
         Ok([only]) => only,
         Err(walls) => {
             let to = (options.output.as_path(), options.force, options.route);
+            #[cfg(not(target_family = "wasm"))]
+            let walls = believing(walls, options.store.as_deref());
             return several::run(walls, (&readings, &options.from, options.part), to, progress);
         }
     };
     let history = history_in(&options.from, &options.from)?.of_part(options.part)?;
     let level = history.facts.level().filter(|_| options.said.which.pass.is_none() && pass.plan.is_some());
     let pass = level.map(|level| pass.at_level(level)).transpose()?.unwrap_or(pass).cut_with(history.cut_with());
+    #[cfg(not(target_family = "wasm"))]
+    let pass = believing(vec![pass], options.store.as_deref()).swap_remove(0);
     let measurement = readings.of_corrected(&pass)?;
     let folder = OutputFolder::create(&options.output, options.force, FILES)?;
     let remarks = measurement.remarks(&measurement.source);

@@ -1,5 +1,6 @@
 //! `truepath store`: the parts of a shop in one place.
 
+pub(super) mod believe;
 mod chosen;
 pub(super) mod keep;
 mod words;

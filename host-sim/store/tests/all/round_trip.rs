@@ -1,11 +1,12 @@
 //! What goes in comes out, once.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use truepath_correction::learning::History;
+use truepath_correction::shop::{QUANTITIES, Said};
 use truepath_ground::diagnostics::Source;
-use truepath_store::{Choice, PartFolder, Place, Setup, Store, VERSION};
+use truepath_store::{Choice, PartFolder, Place, Setup, Store, VERSION, setting};
 
 use crate::support::{code, file_in, folder, history, setup, shown};
 
@@ -138,7 +139,8 @@ fn what_is_no_store_of_this_version_is_refused() {
     assert_eq!(shown(Store::migrate(&place)).before, Some(VERSION));
     let other = |version: i64| {
         let file = rusqlite::Connection::open(at.path().join("shop.db")).expect("the file");
-        file.execute("UPDATE schema_version SET version = ?1", [version]).expect("changed");
+        file.execute("DELETE FROM schema_version", []).expect("emptied");
+        file.execute("INSERT INTO schema_version (version, applied) VALUES (?1, 0)", [version]).expect("changed");
         code(Store::open(&place))
     };
     assert_eq!((other(VERSION - 1), other(VERSION + 1)), ("O003".to_owned(), "O003".to_owned()));
@@ -186,4 +188,96 @@ fn a_part_that_is_refused_in_the_middle_leaves_nothing() {
     refusing(false);
     assert_eq!(shown(store.add(&part, &setup()))[0].new_parts, 3);
     assert_eq!(shown(store.check()), 1);
+}
+
+#[test]
+fn a_store_of_the_first_version_is_brought_up_and_loses_nothing() {
+    let at = tempfile::tempdir().expect("a folder");
+    let file = at.path().join("old.db");
+    let place = Place::File(file.clone());
+    // As the first version wrote it: three parts of a job.
+    let old = rusqlite::Connection::open(&file).expect("a file");
+    old.execute_batch("PRAGMA foreign_keys = OFF").expect("tables come in the order of their names");
+    old.execute_batch(include_str!("../data/version-1.sql")).expect("its statements");
+    drop(old);
+    assert_eq!(code(Store::open(&place)), "O003");
+    let migrated = shown(Store::migrate(&place));
+    assert_eq!((migrated.before, migrated.version), (Some(1), VERSION));
+    let mut store = shown(Store::open(&place));
+    assert_eq!(shown(store.check()), 1);
+    let status = shown(store.status(1));
+    assert_eq!((status.parts, status.readings, status.last_parts[0].machine.as_deref()), (3, 15, Some("VF2")));
+    assert!(shown(store.history(1)) == history(7, 3, 5));
+    // What it knows already it knows, and more goes in.
+    let added = add(&mut store, &folder(at.path(), "known", &history(7, 3, 5)), &setup());
+    assert_eq!((added[0].known, added[0].new_parts), (true, 0));
+    assert_eq!(add(&mut store, &folder(at.path(), "new", &history(8, 1, 4)), &setup())[0].new_parts, 1);
+}
+
+/// What the points of a job say of the yield alone.
+fn said(off: f64) -> Said {
+    let mut information = [[0.0; QUANTITIES]; QUANTITIES];
+    information[0][0] = 400.0;
+    let mut pull = [0.0; QUANTITIES];
+    pull[0] = 400.0 * off;
+    let stated = [-1.0, 0.0, 0.0, -1.2, -4.0, 0.1, 0.12, 0.15];
+    Said { stated, stated_ln_ktc: 7.0, sigma: [0.5, 0.35, 0.08, 0.26, 0.5, 0.28, 0.1, 0.1], information, pull }
+}
+
+/// A folder whose summary says so.
+fn saying(at: &Path, name: &str, history: &[u8], off: f64) -> PathBuf {
+    let folder = folder(at, name, history);
+    let said = serde_json::to_string(&said(off)).expect("numbers");
+    let identified = r#""identified": { "compliance": { "value": 0.25, "sigma": 0.01 } }"#;
+    fs::write(folder.join("summary.json"), format!("{{ {identified}, \"points_say\": {said} }}")).expect("written");
+    folder
+}
+
+/// What a store lets expect; on any back end.
+pub fn what_others_say(place: &Place, at: &Path) {
+    let mut store = shown(Store::open(place));
+    let facts = |job| History::read(&Source::new("history.json", history(job, 1, 3))).expect("a history").facts;
+    let on = |machine: &str, material: &str| {
+        let mut setup = setup();
+        (setup.names.machine, setup.names.material) = (Some(machine.to_owned()), Some(material.to_owned()));
+        setup
+    };
+    let expected = |store: &mut Store, job, setup: &Setup| {
+        let (shop, newest) = shown(store.shop(&facts(job), &setting(&setup.names, setup.stickout_nm)));
+        let says: Vec<f64> = shop.members.iter().map(|member| member.said.pull[0] / 400.0).collect();
+        (says, newest.is_some())
+    };
+    // Three parts of job 101, each learned from the one before: the last says all of it.
+    for parts in 1..=3 {
+        let folder = saying(at, &format!("says-{parts}"), &history(101, parts, 4), 0.1 * parts as f64);
+        add(&mut store, &folder, &on("VF2", "42CrMo4"));
+    }
+    add(&mut store, &saying(at, "says-4", &history(102, 1, 4), 0.7), &on("DMU", "Ti64"));
+    add(&mut store, &folder(at, "says-nothing", &history(103, 1, 4)), &on("VF2", "42CrMo4"));
+    let near = |found: (Vec<f64>, bool), wanted: &[f64]| {
+        let alike = found.0.len() == wanted.len() && found.0.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-9);
+        assert!(alike && found.1 != wanted.is_empty(), "{found:?} in place of {wanted:?}");
+    };
+    near(expected(&mut store, 104, &on("VF2", "7075")), &[0.7, 0.3]);
+    let mut other = on("Mikron", "7075");
+    other.names.make = None;
+    near(expected(&mut store, 104, &other), &[]);
+    other.names.material = Some("Ti64".to_owned());
+    near(expected(&mut store, 104, &other), &[0.7]);
+    // Not what its own program says, whatever the machine.
+    near(expected(&mut store, 102, &on("VF2", "7075")), &[0.3]);
+    // The walls of one part were fitted together.
+    for (name, job) in [("contours/a", 105), ("contours/b", 106)] {
+        let text = String::from_utf8(history(job, 1, 4)).expect("text");
+        let body = text.split_once(',').expect("a seal").1.replacen(&format!("{:08x}", job * 4096 + 1), "0badcafe", 1);
+        saying(&at.join("walls"), name, &truepath_sealed(&body), 0.9);
+    }
+    add(&mut store, &at.join("walls"), &on("Mikron", "Ti64"));
+    near(expected(&mut store, 104, &other), &[0.9, 0.7]);
+}
+
+#[test]
+fn other_jobs_say_what_their_last_part_says_once_and_never_their_own_program() {
+    let at = tempfile::tempdir().expect("a folder");
+    what_others_say(&file_in(at.path()), at.path());
 }

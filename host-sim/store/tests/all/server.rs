@@ -132,6 +132,7 @@ fn a_server_does_what_a_file_does() {
     let Some(server) = Server::start() else { return };
     let at = tempfile::tempdir().expect("a folder");
     round_trip::whole_way(&server.store("whole"), at.path());
+    round_trip::what_others_say(&server.store("others"), at.path());
     writers::thirty_writers(&server.store("writers"), at.path());
     a_reader_reads_only(&server, at.path());
     what_is_wrong_with_a_server_is_told(&server);

@@ -105,6 +105,7 @@ pub fn file_in(at: &Path) -> Place {
 pub fn setup() -> Setup {
     let text = |text: &str| Some(text.to_owned());
     let names = StoreNames {
+        make: text("Haas"),
         machine: text("VF2"),
         holder: text("ER32-1"),
         cutter: text("A20-6"),

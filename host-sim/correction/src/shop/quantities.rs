@@ -1,0 +1,131 @@
+//! The quantities that jobs have in common, in a form that no job's own statement is in.
+//!
+//! A fit holds the tangential chip coefficient at what the job states, and its compliance carries the scale of both. What two jobs
+//! can compare is their product; and the edge coefficients over the tangential one.
+
+use truepath_core::cut::Compliance;
+use truepath_core::identify::{Parameter, Parameters, Prior};
+use truepath_core::units::Real;
+use truepath_ground::units::{float, real};
+
+/// How many there are.
+pub const QUANTITIES: usize = 8;
+
+/// Values of all, in the order of [`Quantity::ALL`].
+pub type Quantities = [f64; QUANTITIES];
+
+/// A quantity that jobs have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// ln of mean compliance times tangential chip coefficient: how far the machine gives way in this material.
+    Yield,
+    /// Half the difference of the compliances along x and y, as a share of their mean.
+    Difference,
+    /// Cross compliance as a share of the mean.
+    Cross,
+    /// ln of the radial over the tangential chip coefficient.
+    RadialRatio,
+    /// ln of the tangential edge over the tangential chip coefficient, mm.
+    EdgeLevel,
+    /// ln of the radial over the tangential edge coefficient.
+    EdgeRatio,
+    /// Bending of the cutter over the engaged depth.
+    Bend,
+    /// Size exponent of the chip.
+    SizeExponent,
+}
+
+impl Quantity {
+    /// All, in the order of [`Quantities`]; that of a fit's parameters, which end with the cutter's undersize and the datum of a part.
+    pub const ALL: [Self; QUANTITIES] = [
+        Self::Yield,
+        Self::Difference,
+        Self::Cross,
+        Self::RadialRatio,
+        Self::EdgeLevel,
+        Self::EdgeRatio,
+        Self::Bend,
+        Self::SizeExponent,
+    ];
+
+    /// The parameter of a fit that it follows from.
+    pub const fn parameter(self) -> Parameter {
+        Parameter::ALL[self as usize]
+    }
+
+    /// What it is called in a sentence.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Yield => "how far the machine gives way in this material",
+            Self::Difference => "the difference between the stiffnesses along X and Y",
+            Self::Cross => "how far the machine gives way across the force",
+            Self::RadialRatio => "the radial over the tangential force",
+            Self::EdgeLevel => "the force of the edges",
+            Self::EdgeRatio => "the direction of the force of the edges",
+            Self::Bend => "the bending of the cutter",
+            Self::SizeExponent => "how the force grows with the chip",
+        }
+    }
+}
+
+/// The quantities of parameters, in float. That of an edge force that is not there is 0, and no job says anything of it.
+pub(super) fn of(parameters: &Parameters) -> Quantities {
+    let (k, c) = (&parameters.coefficients, &parameters.compliance);
+    let [ktc, krc, kte] = [k.ktc, k.krc, k.kte].map(float);
+    let ln = |value: f64| if value > 0.0 { value.ln() } else { 0.0 };
+    let mean = float(c.mean);
+    [
+        ln(mean * ktc),
+        float(c.difference) / mean,
+        float(c.cross) / mean,
+        ln(krc / ktc),
+        ln(kte / ktc),
+        ln(float(parameters.edge_ratio)),
+        float(c.bend),
+        float(k.size_exponent),
+    ]
+}
+
+/// One standard deviation of each under a prior; 0 where it is held.
+pub(super) fn sigmas(prior: &Prior) -> Quantities {
+    Quantity::ALL.map(|quantity| float(prior.sigma[quantity as usize]))
+}
+
+/// A prior with other expected values and standard deviations of some quantities, `None` for those that stay.
+pub(super) fn narrowed(stated: &Prior, by: &[Option<[f64; 2]>; QUANTITIES]) -> Prior {
+    let mut prior = *stated;
+    let mut values = of(&stated.mean);
+    for ((value, sigma), new) in values.iter_mut().zip(&mut prior.sigma).zip(by) {
+        if let Some([mean, deviation]) = new {
+            (*value, *sigma) = (*mean, real(*deviation));
+        }
+    }
+    let [level, difference, cross, radial, edge, edge_ratio, bend, exponent] = values;
+    let mean = &mut prior.mean;
+    let (ktc, kte) = (float(mean.coefficients.ktc), float(mean.coefficients.kte));
+    let new = |quantity: Quantity| by[quantity as usize].is_some();
+    if new(Quantity::Yield) || new(Quantity::Difference) || new(Quantity::Cross) || new(Quantity::Bend) {
+        let compliance = level.exp() / ktc;
+        let part = |share: f64| real(share * compliance);
+        mean.compliance =
+            Compliance { mean: part(1.0), difference: part(difference), cross: part(cross), bend: real(bend) };
+    }
+    if new(Quantity::RadialRatio) {
+        mean.coefficients.krc = real(radial.exp() * ktc);
+    }
+    if new(Quantity::EdgeLevel) && kte > 0.0 {
+        let stated = mean.coefficients.kte;
+        mean.coefficients.kte = real(edge.exp() * ktc);
+        mean.edge_level = mean.edge_level * (mean.coefficients.kte / stated);
+    }
+    if new(Quantity::EdgeRatio) {
+        mean.edge_ratio = real(edge_ratio.exp());
+    }
+    if mean.coefficients.kre != Real::ZERO && kte > 0.0 {
+        mean.coefficients.kre = mean.coefficients.kte * mean.edge_ratio;
+    }
+    if new(Quantity::SizeExponent) {
+        mean.coefficients.size_exponent = real(exponent.max(0.0));
+    }
+    prior
+}

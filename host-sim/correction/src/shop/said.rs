@@ -1,0 +1,68 @@
+//! What the points of one job say, whatever was believed before.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use truepath_core::cut::WallLaw;
+use truepath_core::identify::{Prior, prior_weights};
+use truepath_core::job;
+use truepath_ground::cholesky::Cholesky;
+use truepath_ground::units::float;
+
+use super::quantities::{QUANTITIES, Quantities, of, sigmas};
+
+/// A square matrix of the quantities.
+pub(super) type Square = [Quantities; QUANTITIES];
+
+/// What the points of a job say of the quantities: a Gaussian whose information matrix need not have full rank, as points may say
+/// nothing of some of them. Values are in the order of [`super::Quantity::ALL`] and in their units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Said {
+    /// What the job states.
+    pub stated: Quantities,
+    /// ln of the tangential chip coefficient that it states, N/mm²: the material's share of the yield.
+    pub stated_ln_ktc: f64,
+    /// One standard deviation of what it states; 0 for what is held, of which the points say nothing.
+    pub sigma: Quantities,
+    /// The inverse of the covariance.
+    pub information: Square,
+    /// The information matrix times the difference between what the points say and what the job states.
+    pub pull: Quantities,
+}
+
+impl Said {
+    /// Of a fit that began at `identified.prior`, in a job that states another or the same. `None` under the mean law, whose parameters
+    /// mean something else, and where the covariance of the fit is none.
+    pub fn of(identified: &job::Identified, stated: &Prior) -> Option<Self> {
+        if identified.law != WallLaw::Helical {
+            return None;
+        }
+        let (prior, fit) = (&identified.prior, &identified.fit);
+        let sigma = sigmas(prior);
+        let free: Vec<usize> = (0..QUANTITIES).filter(|k| sigma[*k] > 0.0).collect();
+        let covariance: Vec<Vec<f64>> =
+            free.iter().map(|i| free.iter().map(|j| float(fit.covariance[*i][*j])).collect()).collect();
+        let factor = Cholesky::new(&covariance)?;
+        let weights = prior_weights(&fit.theta);
+        // In prior standard deviations the belief is the unit matrix, or less where it has long tails.
+        let mut information = Square::default();
+        let mut pull = Quantities::default();
+        for (b, j) in free.iter().enumerate() {
+            let mut unit = vec![0.0; free.len()];
+            unit[b] = 1.0;
+            let column = factor.solve(&unit);
+            for (i, all) in free.iter().zip(column) {
+                let scale = sigma[*i] * sigma[*j];
+                let believed = if i == j { float(weights[*i]) } else { 0.0 };
+                information[*i][*j] = (all - believed) / scale;
+                pull[*i] += all * float(fit.theta[*j]) / sigma[*i];
+            }
+        }
+        // From where the fit began to what the job states.
+        let (began, stated_at) = (of(&prior.mean), of(&stated.mean));
+        for i in &free {
+            pull[*i] += (0..QUANTITIES).map(|j| information[*i][j] * (began[j] - stated_at[j])).sum::<f64>();
+        }
+        let stated_ln_ktc = float(stated.mean.coefficients.ktc).ln();
+        Some(Self { stated: stated_at, stated_ln_ktc, sigma: sigmas(stated), information, pull })
+    }
+}

@@ -1,0 +1,44 @@
+//! The fit to the points of a part begins at what other jobs of the store say, where its job wants that.
+
+use truepath_core::cut::WallLaw;
+use truepath_correction::learning::Facts;
+use truepath_ground::diagnostics::Failure;
+use truepath_job::job::{JobFile, PriorOf};
+use truepath_job::pass::Pass;
+use truepath_store::{Place, Store, setting};
+
+use super::chosen::place;
+
+/// Passes of one job with what the store that is named says of machine and material. Without an answer of the store they stay as they
+/// are and say so: a part is not kept waiting for a server.
+pub(in crate::command) fn believing(mut passes: Vec<Pass>, given: Option<&str>) -> Vec<Pass> {
+    let Some(job) = passes.first().map(|pass| pass.job.clone()).filter(|job| job.store.prior == PriorOf::Shop) else {
+        return passes;
+    };
+    let asked = place(given, Some(&job)).map_err(Failure::from);
+    let told = asked.and_then(|place| passes.iter_mut().try_for_each(|pass| believe(pass, &job, &place)));
+    if let Err(failure) = told {
+        for pass in &mut passes {
+            pass.core.believed = None;
+            pass.warnings.push(format!(
+                "[store] prior = \"shop\", and the store does not answer: {failure}. The fit began at what the job states"
+            ));
+        }
+    }
+    passes
+}
+
+fn believe(pass: &mut Pass, job: &JobFile, place: &Place) -> Result<(), Failure> {
+    let stickout_nm = job.numbers.tool.cantilever.map_or(0, |cutter| cutter.length.nm());
+    let setting = setting(&job.store.names, stickout_nm);
+    let (shop, newest) = Store::open(place)?.shop(&Facts::of(pass), &setting)?;
+    let believed = shop.believed(&setting, &pass.core.stated_prior(WallLaw::Helical));
+    pass.warnings.push(match (&believed, newest) {
+        (Some((_, jobs)), Some(newest)) => format!(
+            "the fit began at what {jobs} other parts of the store {place} say of machine and material (estimates up to {newest})"
+        ),
+        _ => format!("the store {place} knows nothing of this machine or material that the job does not"),
+    });
+    pass.core.believed = believed.map(|(prior, _)| prior);
+    Ok(())
+}
