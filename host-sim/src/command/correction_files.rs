@@ -13,10 +13,10 @@ use truepath_report::pages::REPORT;
 use truepath_report::plot::predicted_error;
 use truepath_report::{correction_csv, points_csv, wall_csv};
 
+pub(super) use truepath_correction::learning::HISTORY;
+
 use super::readings::{DIMENSIONS, PROBE, Readings};
 
-/// The parts so far; see [`learning`](truepath_correction::learning).
-pub(super) const HISTORY: &str = "history.json";
 /// The measured part as it was milled; `learn` writes it.
 pub(super) const MILLED: &str = "milled.csv";
 /// Files that these commands may write.

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use truepath_correction::learning::History;
+use truepath_correction::learning::{HISTORY, History};
 use truepath_correction::shop::Said;
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::files;
@@ -12,8 +12,6 @@ use truepath_ground::units::nm;
 use crate::codes::O005;
 use crate::rows::json;
 
-/// The file of a history.
-pub const HISTORY: &str = "history.json";
 /// The folder of several contours.
 const CONTOURS: &str = "contours";
 /// Folders below a given one that are looked through.

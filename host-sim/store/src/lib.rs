@@ -31,7 +31,7 @@ mod value;
 
 pub use add::{Added, Setup};
 pub use export::Choice;
-pub use folder::{Found, HISTORY, PartFolder};
+pub use folder::{Found, PartFolder};
 pub use members::setting;
 pub use place::{Place, VARIABLE};
 pub use schema::VERSION;

@@ -18,6 +18,8 @@ use crate::correct::CorrectedPass;
 use crate::correction::Correction;
 use crate::seal::{sealed, unsealed};
 
+/// Its name in the folder of a part, or of one of its contours.
+pub const HISTORY: &str = "history.json";
 /// Parts a history keeps: when there are more, the oldest is dropped, and the summary says so.
 pub const MOST_PARTS: usize = 8;
 /// Version of the file.

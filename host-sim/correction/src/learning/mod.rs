@@ -38,7 +38,7 @@ mod update;
 mod verdict;
 
 pub use facts::Facts;
-pub use history::{History, MOST_PARTS, Next, Part, WrittenFile};
+pub use history::{HISTORY, History, MOST_PARTS, Next, Part, WrittenFile};
 pub use holdout::Residuals;
 pub use joint::{Beside, Companion, Joint, PartPoints, joint};
 pub use monitor::PartError;
