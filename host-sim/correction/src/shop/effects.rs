@@ -176,7 +176,7 @@ impl Shop {
         let factor = Cholesky::new(&matrix)?;
         let effects = factor.solve(&right);
         let scatter = setting.scatter(&sigma);
-        let centre = centres.of_job(setting, &of(&stated.mean), float(stated.mean.coefficients.ktc).ln());
+        let centre = centres.of_job(setting, &of(&stated.mean), libm::log(float(stated.mean.coefficients.ktc)));
         let mut by = [None; QUANTITIES];
         for (k, by) in by.iter_mut().enumerate().filter(|(k, _)| sigma[*k] > 0.0) {
             let mut of_it = vec![0.0; count];
@@ -339,7 +339,7 @@ mod tests {
     fn member(machine: &str, material: &str, prior: &Prior, says: &[(Quantity, f64, f64)]) -> Member {
         let mut said = Said {
             stated: of(&prior.mean),
-            stated_ln_ktc: float(prior.mean.coefficients.ktc).ln(),
+            stated_ln_ktc: libm::log(float(prior.mean.coefficients.ktc)),
             sigma: sigmas(prior),
             information: Square::default(),
             pull: Quantities::default(),

@@ -1,7 +1,8 @@
 //! The quantities that jobs have in common, in a form that no job's own statement is in.
 //!
 //! A fit holds the tangential chip coefficient at what the job states, and its compliance carries the scale of both. What two jobs
-//! can compare is their product; and the edge coefficients over the tangential one.
+//! can compare is their product; and the edge coefficients over the tangential one. Logarithms are those of `libm`, whose bits are the
+//! same in a browser.
 
 use truepath_core::cut::Compliance;
 use truepath_core::identify::{Parameter, Parameters, Prior};
@@ -72,7 +73,7 @@ impl Quantity {
 pub(super) fn of(parameters: &Parameters) -> Quantities {
     let (k, c) = (&parameters.coefficients, &parameters.compliance);
     let [ktc, krc, kte] = [k.ktc, k.krc, k.kte].map(float);
-    let ln = |value: f64| if value > 0.0 { value.ln() } else { 0.0 };
+    let ln = |value: f64| if value > 0.0 { libm::log(value) } else { 0.0 };
     let mean = float(c.mean);
     [
         ln(mean * ktc),
@@ -105,21 +106,21 @@ pub(super) fn narrowed(stated: &Prior, by: &[Option<[f64; 2]>; QUANTITIES]) -> P
     let (ktc, kte) = (float(mean.coefficients.ktc), float(mean.coefficients.kte));
     let new = |quantity: Quantity| by[quantity as usize].is_some();
     if new(Quantity::Yield) || new(Quantity::Difference) || new(Quantity::Cross) || new(Quantity::Bend) {
-        let compliance = level.exp() / ktc;
+        let compliance = libm::exp(level) / ktc;
         let part = |share: f64| real(share * compliance);
         mean.compliance =
             Compliance { mean: part(1.0), difference: part(difference), cross: part(cross), bend: real(bend) };
     }
     if new(Quantity::RadialRatio) {
-        mean.coefficients.krc = real(radial.exp() * ktc);
+        mean.coefficients.krc = real(libm::exp(radial) * ktc);
     }
     if new(Quantity::EdgeLevel) && kte > 0.0 {
         let stated = mean.coefficients.kte;
-        mean.coefficients.kte = real(edge.exp() * ktc);
+        mean.coefficients.kte = real(libm::exp(edge) * ktc);
         mean.edge_level = mean.edge_level * (mean.coefficients.kte / stated);
     }
     if new(Quantity::EdgeRatio) {
-        mean.edge_ratio = real(edge_ratio.exp());
+        mean.edge_ratio = real(libm::exp(edge_ratio));
     }
     if mean.coefficients.kre != Real::ZERO && kte > 0.0 {
         mean.coefficients.kre = mean.coefficients.kte * mean.edge_ratio;

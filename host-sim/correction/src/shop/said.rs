@@ -62,7 +62,7 @@ impl Said {
         for i in &free {
             pull[*i] += (0..QUANTITIES).map(|j| information[*i][j] * (began[j] - stated_at[j])).sum::<f64>();
         }
-        let stated_ln_ktc = float(stated.mean.coefficients.ktc).ln();
+        let stated_ln_ktc = libm::log(float(stated.mean.coefficients.ktc));
         Some(Self { stated: stated_at, stated_ln_ktc, sigma: sigmas(stated), information, pull })
     }
 }
