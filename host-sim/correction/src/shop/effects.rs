@@ -80,7 +80,7 @@ impl Effect<'_> {
 }
 
 impl Setting {
-    /// The effects on a job that are shared with others. What has no name is like nothing else: see [`Unknowns::own`].
+    /// The effects on a job that are shared with others. What has no name is like nothing else, and part of its scatter.
     fn effects(&self) -> Vec<Effect<'_>> {
         let mut effects = vec![Effect::MachinesOfShop, Effect::MaterialsOfShop];
         if !self.make.is_empty() {

@@ -5,7 +5,7 @@
 //! same in a browser.
 
 use truepath_core::cut::Compliance;
-use truepath_core::identify::{Parameter, Parameters, Prior};
+use truepath_core::identify::{Parameters, Prior};
 use truepath_core::units::Real;
 use truepath_ground::units::{float, real};
 
@@ -48,11 +48,6 @@ impl Quantity {
         Self::Bend,
         Self::SizeExponent,
     ];
-
-    /// The parameter of a fit that it follows from.
-    pub const fn parameter(self) -> Parameter {
-        Parameter::ALL[self as usize]
-    }
 
     /// What it is called in a sentence.
     pub const fn words(self) -> &'static str {
