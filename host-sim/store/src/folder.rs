@@ -133,9 +133,10 @@ fn identified(summary: &serde_json::Value) -> Option<BTreeMap<String, (f64, f64)
     Some(summary.get("identified")?.as_object()?.iter().filter_map(of).collect())
 }
 
-/// What its points say.
+/// What its points say; `None` where it cannot be what points say.
 fn said(summary: &serde_json::Value) -> Option<String> {
     let said: Said = serde_json::from_value(summary.get("points_say")?.clone()).ok()?;
+    said.check().ok()?;
     json(&said).ok()
 }
 

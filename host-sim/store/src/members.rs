@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use truepath_correction::learning::Facts;
-use truepath_correction::shop::{Member, Setting, Shop};
+use truepath_correction::shop::{Member, Said, Setting, Shop};
 use truepath_ground::diagnostics::Failure;
 use truepath_job::job::StoreNames;
 
@@ -51,7 +51,11 @@ pub(crate) fn members(on: &mut dyn Backend, facts: &Facts, wanted: &Setting) -> 
             material: text(7)?,
             ..StoreNames::default()
         };
-        let said = of_json(row.text(1)?)?;
+        let said: Said = of_json(row.text(1)?)?;
+        said.check().map_err(|wrong| {
+            let estimate = row.integer(0).unwrap_or_default();
+            Failure::Internal(format!("estimate {estimate} of the store is damaged: what the points say {wrong}"))
+        })?;
         Ok::<_, Failure>(Member { setting: setting(&names, row.some_integer(6)?.unwrap_or(0)), said })
     };
     // The walls of one part were fitted together: what one of them says is said by all.

@@ -142,7 +142,7 @@ impl<'s> Unknowns<'s> {
 
 impl Shop {
     /// What to expect of a job in a setting that states `stated` under the helical law; `None` where nothing of it is known better than
-    /// from the statement alone.
+    /// from the statement alone, and where it would be farther from the statement than any machine is.
     ///
     /// The last value is the number of jobs that say so.
     pub fn believed(&self, setting: &Setting, stated: &Prior) -> Option<(Prior, usize)> {
@@ -176,13 +176,17 @@ impl Shop {
         let factor = Cholesky::new(&matrix)?;
         let effects = factor.solve(&right);
         let scatter = setting.scatter(&sigma);
-        let centre = centres.of_job(setting, &of(&stated.mean), libm::log(float(stated.mean.coefficients.ktc)));
+        let at = of(&stated.mean);
+        let centre = centres.of_job(setting, &at, libm::log(float(stated.mean.coefficients.ktc)));
         let mut by = [None; QUANTITIES];
         for (k, by) in by.iter_mut().enumerate().filter(|(k, _)| sigma[*k] > 0.0) {
             let mut of_it = vec![0.0; count];
             own.iter().filter(|(_, quantity)| *quantity == k).for_each(|(i, _)| of_it[*i] = 1.0);
             let mean: f64 = centre[k] + of_it.iter().zip(&effects).map(|(one, effect)| one * effect).sum::<f64>();
             let variance: f64 = factor.halfway(&of_it).iter().map(|v| v * v).sum::<f64>() + scatter[k];
+            if (mean - at[k]).abs() > FARTHEST * sigma[k] {
+                return None;
+            }
             if variance.sqrt() < NARROWER * sigma[k] {
                 *by = Some([mean, variance.sqrt()]);
             }
@@ -203,6 +207,8 @@ impl Shop {
 
 /// A quantity is taken from the shop where its standard deviation is less than this share of the statement's.
 const NARROWER: f64 = 0.95;
+/// Farther from what a job states than this many of its standard deviations is nothing to begin at.
+const FARTHEST: f64 = 6.0;
 
 impl Member {
     /// What a job says of the effects, about a centre: its information with its own scatter beside it, and the pull.
@@ -387,6 +393,18 @@ mod tests {
         // A machine that nobody has seen is known less, and no better than machines differ.
         let [_, unknown] = expected(&shop, &setting("E", "X"), &prior, Quantity::Yield);
         assert!(unknown > 1.8 * sigma && unknown < 0.5, "{unknown}");
+    }
+
+    #[test]
+    fn a_shop_that_says_what_no_machine_can_be_is_not_asked() {
+        let prior = stated(3000, 1000);
+        let says = |off: f64| {
+            let members = vec![member("A", "X", &prior, &[(Quantity::Yield, off, 0.01)])];
+            Shop { members }.believed(&setting("A", "X"), &prior)
+        };
+        let sigma = sigmas(&prior)[Quantity::Yield as usize];
+        assert!(says(3.0 * sigma).is_some());
+        assert_eq!(says(9.0 * sigma), None);
     }
 
     #[test]

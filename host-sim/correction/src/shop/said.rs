@@ -29,7 +29,44 @@ pub struct Said {
     pub pull: Quantities,
 }
 
+/// Largest standard deviation that a job states of any quantity is far below this, and so is what it states of the quantities themselves
+/// (the largest is the logarithm of mm/N times N/mm²).
+const LARGEST: f64 = 30.0;
+
 impl Said {
+    /// Whether it can be what points say: what is read from a store may be damaged or written by another hand, and a prior is made of it.
+    ///
+    /// # Errors
+    /// What is wrong, to be put behind "what the points say".
+    pub fn check(&self) -> Result<(), &'static str> {
+        let Self { stated, stated_ln_ktc, sigma, information, pull } = self;
+        let within = |values: &[f64], least: f64, largest: f64| values.iter().all(|v| (least..=largest).contains(v));
+        if !within(stated, -LARGEST, LARGEST) || !within(&[*stated_ln_ktc], -LARGEST, LARGEST) {
+            return Err("states what no job can");
+        }
+        if !within(sigma, 0.0, LARGEST) {
+            return Err("has a standard deviation that no job states");
+        }
+        // Points that are a thousand million times as sure as the statement are none.
+        let surest = 1e9;
+        let scaled = |i: usize, j: usize| information[i][j] * sigma[i] * sigma[j];
+        let free: Vec<usize> = (0..QUANTITIES).filter(|k| sigma[*k] > 0.0).collect();
+        let are_sane = |i: usize| {
+            free.iter().all(|j| scaled(i, *j).abs() <= surest && (scaled(i, *j) - scaled(*j, i)).abs() <= 1e-6 * surest.sqrt())
+                && (pull[i] * sigma[i]).abs() <= surest
+        };
+        let is_held = |k: &usize| information[*k].iter().all(|v| *v == 0.0) && pull[*k] == 0.0;
+        if !free.iter().all(|k| are_sane(*k)) || !(0..QUANTITIES).filter(|k| sigma[*k] == 0.0).all(|k| is_held(&k)) {
+            return Err("is no information matrix");
+        }
+        // With the statement they make a Gaussian; alone they may say nothing of some quantities.
+        let posterior: Vec<Vec<f64>> = free
+            .iter()
+            .map(|i| free.iter().map(|j| scaled(*i, *j) + if i == j { 1.01 } else { 0.0 }).collect())
+            .collect();
+        Cholesky::new(&posterior).map(|_| ()).ok_or("has a variance below zero")
+    }
+
     /// Of a fit that began at `identified.prior`, in a job that states another or the same. `None` under the mean law, whose parameters
     /// mean something else, and where the covariance of the fit is none.
     pub fn of(identified: &job::Identified, stated: &Prior) -> Option<Self> {

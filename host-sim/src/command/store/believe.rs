@@ -15,8 +15,10 @@ pub(in crate::command) fn believing(mut passes: Vec<Pass>, given: Option<&str>) 
     let Some(job) = passes.first().map(|pass| pass.job.clone()).filter(|job| job.store.prior == PriorOf::Shop) else {
         return passes;
     };
-    let asked = place(given, Some(&job)).map_err(Failure::from);
-    let told = asked.and_then(|place| passes.iter_mut().try_for_each(|pass| believe(pass, &job, &place)));
+    let told = place(given, Some(&job)).map_err(Failure::from).and_then(|place| {
+        let mut store = Store::open(&place)?;
+        passes.iter_mut().try_for_each(|pass| believe(pass, &job, &place, &mut store))
+    });
     if let Err(failure) = told {
         for pass in &mut passes {
             pass.core.believed = None;
@@ -28,10 +30,10 @@ pub(in crate::command) fn believing(mut passes: Vec<Pass>, given: Option<&str>) 
     passes
 }
 
-fn believe(pass: &mut Pass, job: &JobFile, place: &Place) -> Result<(), Failure> {
+fn believe(pass: &mut Pass, job: &JobFile, place: &Place, store: &mut Store) -> Result<(), Failure> {
     let stickout_nm = job.numbers.tool.cantilever.map_or(0, |cutter| cutter.length.nm());
     let setting = setting(&job.store.names, stickout_nm);
-    let (shop, newest) = Store::open(place)?.shop(&Facts::of(pass), &setting)?;
+    let (shop, newest) = store.shop(&Facts::of(pass), &setting)?;
     let believed = shop.believed(&setting, &pass.core.stated_prior(WallLaw::Helical));
     pass.warnings.push(match (&believed, newest) {
         (Some((_, jobs)), Some(newest)) => format!(

@@ -281,3 +281,41 @@ fn other_jobs_say_what_their_last_part_says_once_and_never_their_own_program() {
     let at = tempfile::tempdir().expect("a folder");
     what_others_say(&file_in(at.path()), at.path());
 }
+
+#[test]
+fn what_points_cannot_say_is_neither_taken_in_nor_believed() {
+    let at = tempfile::tempdir().expect("a folder");
+    let place = file_in(at.path());
+    let mut store = shown(Store::open(&place));
+    let facts = History::read(&Source::new("history.json", history(2, 1, 3))).expect("a history").facts;
+    // A folder that says what cannot be is a folder that says nothing.
+    let folder = saying(at.path(), "wrong", &history(1, 1, 4), 1e12);
+    add(&mut store, &folder, &setup());
+    let members = |store: &mut Store| {
+        let setup = setup();
+        store.shop(&facts, &setting(&setup.names, setup.stickout_nm)).map(|(shop, _)| shop.members.len())
+    };
+    assert_eq!(members(&mut store).expect("read"), 0);
+    add(&mut store, &saying(at.path(), "right", &history(3, 1, 4), 0.2), &setup());
+    assert_eq!(members(&mut store).expect("read"), 1);
+    // Damaged in the store: the estimate is named and the shop is not asked.
+    let good = serde_json::to_value(said(0.2)).expect("numbers");
+    let damages: [(&str, fn(&mut serde_json::Value)); 6] = [
+        ("no information matrix", |said| said["information"][0][3] = 50.0.into()),
+        ("no information matrix", |said| said["pull"][0] = 1e300.into()),
+        ("a variance below zero", |said| said["information"][0][0] = (-400.0).into()),
+        ("no job states", |said| said["sigma"][0] = (-0.5).into()),
+        ("states what no job can", |said| said["stated"][0] = 710.0.into()),
+        ("JSON of the store", |said| said["stated"] = serde_json::json!([1.0])),
+    ];
+    let path = at.path().join("shop.db");
+    for (words, damage) in damages {
+        let mut bad = good.clone();
+        damage(&mut bad);
+        let file = rusqlite::Connection::open(&path).expect("a file");
+        let changed = file.execute("UPDATE estimate SET said = ?1 WHERE said IS NOT NULL", [bad.to_string()]);
+        assert_eq!(changed.expect("written"), 1);
+        let failure = members(&mut store).expect_err(words).to_string();
+        assert!(failure.contains(words), "{failure} in place of {words}");
+    }
+}
