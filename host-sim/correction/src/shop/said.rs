@@ -52,7 +52,8 @@ impl Said {
         let scaled = |i: usize, j: usize| information[i][j] * sigma[i] * sigma[j];
         let free: Vec<usize> = (0..QUANTITIES).filter(|k| sigma[*k] > 0.0).collect();
         let are_sane = |i: usize| {
-            free.iter().all(|j| scaled(i, *j).abs() <= surest && (scaled(i, *j) - scaled(*j, i)).abs() <= 1e-6 * surest.sqrt())
+            free.iter()
+                .all(|j| scaled(i, *j).abs() <= surest && (scaled(i, *j) - scaled(*j, i)).abs() <= 1e-6 * surest.sqrt())
                 && (pull[i] * sigma[i]).abs() <= surest
         };
         let is_held = |k: &usize| information[*k].iter().all(|v| *v == 0.0) && pull[*k] == 0.0;

@@ -3,6 +3,7 @@
 //! Everything above is written once, in statements that both understand. Parameters are `$1`, `$2` and so on.
 
 mod connection;
+mod encryption;
 mod passwords;
 mod postgres;
 mod sqlite;

@@ -10,11 +10,12 @@ use std::time::Duration;
 use postgres::error::SqlState;
 use postgres::types::private::BytesMut;
 use postgres::types::{IsNull, ToSql, Type, to_sql_checked};
-use postgres::{Client, Config, Error, NoTls, Statement};
+use postgres::{Client, Config, Error, Statement};
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_job::job::without_password;
 
 use super::connection::{Backend, refuses};
+use super::encryption::{Encryption, Failed};
 use super::passwords::password;
 
 use crate::codes::O001;
@@ -37,10 +38,12 @@ pub(super) struct Postgres {
 impl Postgres {
     pub(super) fn open(url: &str) -> Result<Self, Failure> {
         let place = without_password(url);
-        let mut config: Config = url.parse().map_err(|e: Error| {
+        let no_url = |why: &str| {
             let help = "write it as postgres://user@host:5432/database";
-            InputError::new(O001, format!("{place} is no URL of a server ({})", reason(&e)), "a URL", help)
-        })?;
+            InputError::new(O001, format!("{place} is no URL of a server ({why})"), "a URL", help)
+        };
+        let (url, encryption) = Encryption::of(url).map_err(|why| no_url(&why))?;
+        let mut config: Config = url.parse().map_err(|e: Error| no_url(&reason(&e)))?;
         if config.get_connect_timeout().is_none() {
             config.connect_timeout(PATIENCE);
         }
@@ -49,12 +52,15 @@ impl Postgres {
         {
             config.password(password);
         }
-        let connect = || {
-            let mut client = config.connect(NoTls)?;
+        let mut connect = || {
+            let mut client = encryption.connect(&mut config)?;
             client.batch_execute(SETTINGS)?;
             Ok(client)
         };
-        let client = connect().map_err(|e| unreachable(&place, &e))?;
+        let client = connect().map_err(|failed| match failed {
+            Failed::Server(e) => unreachable(&place, &e),
+            Failed::Roots(why) => cannot_be_reached(&place, &why, UNTRUSTED),
+        })?;
         Ok(Self { place, client, prepared: HashMap::new() })
     }
 
@@ -150,9 +156,22 @@ fn reason(error: &Error) -> String {
     text
 }
 
+/// What to do where nobody vouches for the server.
+const UNTRUSTED: &str = "name the certificate of who vouches for the server by sslrootcert=FILE behind the ? of the URL; sslmode=disable goes without encryption";
+
 fn unreachable(place: &str, error: &Error) -> Failure {
-    let help = "check name, server and rights; the password comes from PGPASSFILE, ~/.pgpass or PGPASSWORD, and truepath store init makes a new store";
-    let found = format!("{place} cannot be reached ({})", reason(error));
+    let why = reason(error);
+    // The kind of an error shows in its words only.
+    let help = if why.contains("TLS") {
+        UNTRUSTED
+    } else {
+        "check name, server and rights; the password comes from PGPASSFILE, ~/.pgpass or PGPASSWORD, and truepath store init makes a new store"
+    };
+    cannot_be_reached(place, &why, help)
+}
+
+fn cannot_be_reached(place: &str, why: &str, help: &str) -> Failure {
+    let found = format!("{place} cannot be reached ({why})");
     InputError::new(O001, found, "a server that answers within 5 s", help).into()
 }
 

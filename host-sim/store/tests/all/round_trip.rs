@@ -300,7 +300,8 @@ fn what_points_cannot_say_is_neither_taken_in_nor_believed() {
     assert_eq!(members(&mut store).expect("read"), 1);
     // Damaged in the store: the estimate is named and the shop is not asked.
     let good = serde_json::to_value(said(0.2)).expect("numbers");
-    let damages: [(&str, fn(&mut serde_json::Value)); 6] = [
+    type Damage = fn(&mut serde_json::Value);
+    let damages: [(&str, Damage); 6] = [
         ("no information matrix", |said| said["information"][0][3] = 50.0.into()),
         ("no information matrix", |said| said["pull"][0] = 1e300.into()),
         ("a variance below zero", |said| said["information"][0][0] = (-400.0).into()),

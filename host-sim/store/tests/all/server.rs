@@ -89,6 +89,18 @@ impl Server {
         Place::of(&format!("postgres://{user}:{password}@127.0.0.1:{}/{database}", self.port))
     }
 
+    /// Gives it a file that only the server may read.
+    fn write(&self, name: &str, text: &str) {
+        use std::os::unix::fs::PermissionsExt;
+        let path = self.data().join(name);
+        fs::write(&path, text).expect("written");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).expect("its rights");
+        if is_root() {
+            let given = Command::new("chown").arg(format!("{NOBODY}:{NOBODY}")).arg(&path).status();
+            assert!(given.expect("chown").success());
+        }
+    }
+
     fn say(&self, database: &str, statements: &str) {
         let url = format!("postgres://admin:geheim@127.0.0.1:{}/{database}", self.port);
         let mut client = postgres::Client::connect(&url, postgres::NoTls).expect("the server");
@@ -136,6 +148,94 @@ fn a_server_does_what_a_file_does() {
     writers::thirty_writers(&server.store("writers"), at.path());
     a_reader_reads_only(&server, at.path());
     what_is_wrong_with_a_server_is_told(&server);
+    what_is_encrypted_is_checked(&server);
+}
+
+/// A certificate that vouches for others, and one that it vouches for, of a server that is called so; in PEM, with the key.
+fn certificates(name: &str) -> (String, String, String) {
+    let mut of_shop = rcgen::CertificateParams::default();
+    of_shop.is_ca = rcgen::IsCa::Ca(rcgen::BasicConstraints::Unconstrained);
+    let key = rcgen::KeyPair::generate().expect("a key");
+    let authority = of_shop.self_signed(&key).expect("a certificate").pem();
+    let issuer = rcgen::Issuer::new(of_shop, key);
+    let own = rcgen::KeyPair::generate().expect("a key");
+    let server = rcgen::CertificateParams::new([name.to_owned()]).expect("a name");
+    let server = server.signed_by(&own, &issuer).expect("a certificate");
+    (authority, server.pem(), own.serialize_pem())
+}
+
+/// The server of the test is on this computer, where nothing is encrypted unless asked for.
+fn what_is_encrypted_is_checked(server: &Server) {
+    let plain = server.store("encrypted");
+    let place = |query: &str| Place::of(&format!("postgres://admin:geheim@{query}"));
+    let at = |host: &str, query: &str| place(&format!("{host}:{}/encrypted?{query}", server.port));
+    let roots = |name: &str| format!("sslrootcert={}", server.folder.path().join(name).display());
+    // A server that offers nothing is refused where encryption is demanded, and taken where it is preferred.
+    let said = |place: &Place| Store::open(place).err().map(|failure| failure.to_string()).unwrap_or_default();
+    assert!(
+        said(&at("localhost", "sslmode=verify-full")).contains("TLS"),
+        "{}",
+        said(&at("localhost", "sslmode=require"))
+    );
+    shown(Store::open(&at("localhost", "sslmode=prefer")));
+
+    let (authority, certificate, key) = certificates("localhost");
+    fs::write(server.folder.path().join("shop.pem"), authority).expect("written");
+    fs::write(server.folder.path().join("other.pem"), certificates("localhost").0).expect("written");
+    fs::write(server.folder.path().join("none.pem"), "no certificate\n").expect("written");
+    server.write("server.crt", &certificate);
+    server.write("server.key", &key);
+    server.say("postgres", "ALTER SYSTEM SET ssl = on");
+    assert!(server.control(&["reload"]));
+    let reached = |roots: &str| {
+        let encrypted = at("localhost", &format!("sslmode=verify-full&{roots}"));
+        let start = Instant::now();
+        loop {
+            match Store::open(&encrypted) {
+                Err(_) if start.elapsed() < Duration::from_secs(10) => std::thread::sleep(Duration::from_millis(50)),
+                opened => break shown(opened),
+            }
+        }
+    };
+    let mut store = reached(&roots("shop.pem"));
+    // It works, and the server knows it as encrypted; not so what nobody asked to be.
+    assert_eq!(shown(store.status(1)).parts, 0);
+    let encrypted_now = || {
+        let url = format!("postgres://admin:geheim@127.0.0.1:{}/postgres", server.port);
+        let mut client = postgres::Client::connect(&url, postgres::NoTls).expect("the server");
+        let count = "SELECT count(*) FROM pg_stat_ssl s JOIN pg_stat_activity a USING (pid) WHERE s.ssl AND a.application_name = 'truepath'";
+        client.query_one(count, &[]).expect("an answer").get::<_, i64>(0)
+    };
+    assert_eq!(encrypted_now(), 1);
+    drop(store);
+    let mut unasked = shown(Store::open(&plain));
+    assert_eq!(shown(unasked.status(1)).parts, 0);
+    let ended = Instant::now();
+    while encrypted_now() != 0 {
+        assert!(ended.elapsed() < Duration::from_secs(10), "encrypted without being asked");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    // By another's word, by nobody's, and under another name there is no connection, and what to do is said.
+    for (host, query) in [
+        ("localhost", format!("sslmode=verify-full&{}", roots("other.pem"))),
+        ("localhost", "sslmode=prefer".to_owned()),
+        ("127.0.0.1", format!("sslmode=require&{}", roots("shop.pem"))),
+        ("localhost", format!("sslmode=require&{}", roots("none.pem"))),
+        ("localhost", format!("sslmode=require&{}", roots("missing.pem"))),
+    ] {
+        let refused = Store::open(&at(host, &query));
+        assert_eq!(code(refused), "O001", "{host} {query}");
+    }
+    shown(Store::open(&at("localhost", "sslmode=disable")));
+    // A certificate that vouches for itself, as Debian makes one for its server, does where it is named.
+    let key = rcgen::KeyPair::generate().expect("a key");
+    let own =
+        rcgen::CertificateParams::new(["localhost".to_owned()]).expect("a name").self_signed(&key).expect("signed");
+    fs::write(server.folder.path().join("own.pem"), own.pem()).expect("written");
+    server.write("server.crt", &own.pem());
+    server.write("server.key", &key.serialize_pem());
+    assert!(server.control(&["reload"]));
+    assert_eq!(shown(reached(&roots("own.pem")).status(1)).parts, 0);
 }
 
 fn a_reader_reads_only(server: &Server, at: &Path) {
