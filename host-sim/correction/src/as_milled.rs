@@ -10,7 +10,7 @@ use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::correct::CorrectedPass;
 use crate::correction::{Correction, DesignRequest, evaluate};
-use crate::discrepancy::Along;
+use crate::discrepancy::{Along, ByLoad};
 use crate::learning::History;
 use crate::rows::{CorrectionRow, correction_rows};
 use crate::surface::expected::Surface;
@@ -48,7 +48,8 @@ impl AsMilled {
         let table = done.identified.table();
         let machine = done.identified.machine(&path, &table);
         // The part is there: what the next one will do otherwise does not count.
-        let beside = Along { repeat: Vec::new(), ..done.beside.clone() };
+        let beside = done.beside.clone();
+        let beside = Along { repeat: Vec::new(), by_load: ByLoad { level: 0.0, ..beside.by_load }, ..beside };
         let request = DesignRequest { law: Law::Model, beside: &beside, kept: None };
         let nodes = history.next.correction.nodes().unwrap_or_default();
         let correction = evaluate(pass, &machine, &done.identified, &nodes, &request);

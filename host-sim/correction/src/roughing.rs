@@ -74,7 +74,7 @@ fn along(path: &Path, machine: &Identified) -> Vec<(usize, f64)> {
     let spacing = (mm(path.length()) / path.count().max(1) as f64).max(1e-3);
     let every = ((APART_MM / spacing) as usize).max(1);
     let places: Vec<usize> = (path.first()..path.first() + path.count()).step_by(every).collect();
-    let all = errors(&cut, &[], &[], &places);
+    let all = errors(&cut, &[], &places);
     let mean = |column: &[f64]| column.iter().sum::<f64>() / COUNT as f64;
     places.iter().copied().zip(all.chunks(COUNT).map(mean)).collect()
 }

@@ -121,12 +121,36 @@ pub struct Along {
     pub sigma: Vec<Offset>,
     /// Standard deviation by what the next part does otherwise than the last: level of force, size of the cutter.
     pub repeat: Vec<Offset>,
+    /// What differs by the load, which is more at some heights and less at others.
+    pub by_load: ByLoad,
+}
+
+/// What the load does of what is beside every sample of a contour.
+#[derive(Clone, Debug, Default)]
+pub struct ByLoad {
+    /// Its part of the expected discrepancy, that of other stock not included.
+    pub mean: Vec<Offset>,
+    /// Its part of the variance that the points leave open, 0…1.
+    pub share: Vec<f64>,
+    /// Standard deviation of the level of force of the next part over that of the last, natural logarithm.
+    pub level: f64,
+}
+
+impl ByLoad {
+    /// Nothing.
+    const NONE: Self = Self { mean: Vec::new(), share: Vec::new(), level: 0.0 };
 }
 
 impl Along {
     /// Nothing.
-    pub const NONE: Self =
-        Self { mean: Vec::new(), rest: Vec::new(), stock: Vec::new(), sigma: Vec::new(), repeat: Vec::new() };
+    pub const NONE: Self = Self {
+        mean: Vec::new(),
+        rest: Vec::new(),
+        stock: Vec::new(),
+        sigma: Vec::new(),
+        repeat: Vec::new(),
+        by_load: ByLoad::NONE,
+    };
 
     /// A path in the stock that is expected, in a buffer, and what is beside a machine that cuts it.
     pub fn in_stock<'a>(&self, path: &Path<'a>, buffer: &'a mut Vec<Sample>) -> (Path<'a>, Self) {
@@ -223,11 +247,29 @@ impl Discrepancy {
 
     /// Expected discrepancy at a place of the next part, mm.
     pub fn at(&self, place: &Feature) -> f64 {
+        self.by_kernels(place, |kernel| *kernel)
+    }
+
+    /// The part of it that some kinds of every kernel make.
+    fn by_kernels(&self, place: &Feature, kinds: impl Fn(&Kernel) -> Kernel) -> f64 {
         self.mean_over(|factored| {
+            let kernel = kinds(&factored.kernel);
             let covariance: Vec<f64> =
-                self.rows().map(|row| row.lasting(&factored.kernel, &self.points.extents, place)).collect();
+                self.rows().map(|row| row.lasting(&kernel, &self.points.extents, place)).collect();
             factored.mean(&covariance)
         })
+    }
+
+    /// What is [beside the path with its stock](Self::rest_at) because the load differs, mm.
+    fn by_load_at(&self, place: &Feature) -> f64 {
+        self.by_kernels(place, Kernel::of_load) - place.stock * self.more_stock(place.contour, place.s)
+    }
+
+    /// The share of the variance of a place that the load has, before any points, 0…1.
+    fn share_of_load(&self, place: &Feature) -> f64 {
+        let variance = |kernel: &Kernel| kernel.lasting(&self.points.extents, place, place);
+        let all = self.mean_over(|of| variance(&of.kernel));
+        if all > 0.0 { self.mean_over(|of| variance(&of.kernel.of_load())) / all } else { 0.0 }
     }
 
     /// The same with all stock among the discrepancy: none is expected of the path.
@@ -309,7 +351,12 @@ impl Discrepancy {
             [0, 1].map(|which| nm(from[which] + share * (to[which] - from[which])))
         };
         let (sigma, repeat) = (0..features.len()).map(deviation).map(|[sigma, repeat]| (sigma, repeat)).unzip();
-        Along { mean, rest, stock, sigma, repeat }
+        let by_load = ByLoad {
+            mean: features.iter().map(|feature| nm(self.by_load_at(feature))).collect(),
+            share: features.iter().map(|feature| self.share_of_load(feature)).collect(),
+            level: self.mean_over(|of| of.kernel.next_level().powi(2)).sqrt(),
+        };
+        Along { mean, rest, stock, sigma, repeat, by_load }
     }
 
     /// How the places beside every sample of a contour look to the kernels, in the stock that is expected, and what the parameters do to

@@ -159,6 +159,16 @@ impl Kernel {
         sum
     }
 
+    /// The same without what is not of the load: stock, and force or compliance.
+    pub(super) const fn of_load(&self) -> Self {
+        Self { drift: 0.0, local: 0.0, keyed: 0.0, ..*self }
+    }
+
+    /// Standard deviation of the level of force of the next part over that of the last, natural logarithm.
+    pub(super) fn next_level(&self) -> f64 {
+        self.levels([1, 1]).sqrt()
+    }
+
     /// Covariance of a place of one part with the level of force of another over that of the next, natural logarithm, mm; the parts lie
     /// so many before the next one (1 for the newest).
     pub(super) fn with_level(&self, place: &Feature, parts_ago: [u32; 2]) -> f64 {

@@ -31,7 +31,7 @@ mod pairs;
 mod points;
 mod relieved;
 
-pub use average::{Along, Discrepancy, Sizes, ln_probability_elsewhere};
+pub use average::{Along, ByLoad, Discrepancy, Sizes, ln_probability_elsewhere};
 pub use feature::{Engagement, Feature, Sensitivity};
 pub use kernel::{Kernel, least_change};
 pub use open::Open;

@@ -15,7 +15,7 @@ use truepath_core::units::Offset;
 use truepath_ground::units::{float, mm, nm, real};
 use truepath_job::pass::Pass;
 
-use super::average::{Along, Discrepancy, ln_probability};
+use super::average::{Along, ByLoad, Discrepancy, ln_probability};
 use super::nominal::with_stock;
 use super::pairs::Pairs;
 use super::points::{CutPoints, Own, Points};
@@ -452,7 +452,11 @@ impl Relieved {
     /// What is beside a contour, for the next part.
     pub fn along(&self, path: &Path, contour: usize) -> Along {
         let along = self.discrepancy.as_ref().map(|d| d.along(path, contour, &self.found.core)).unwrap_or_default();
-        if self.is_any { along } else { Along { sigma: along.sigma, repeat: along.repeat, ..Along::NONE } }
+        if self.is_any {
+            return along;
+        }
+        let by_load = ByLoad { mean: Vec::new(), ..along.by_load };
+        Along { sigma: along.sigma, repeat: along.repeat, by_load, ..Along::NONE }
     }
 }
 

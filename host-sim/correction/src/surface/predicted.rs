@@ -7,14 +7,14 @@ use rayon::prelude::*;
 use truepath_core::correct::{Band, HEIGHTS, Node, commanded};
 use truepath_core::cut::{Envelope, ForceTable, Loop, State};
 use truepath_core::geometry::Vector;
-use truepath_core::identify::{Parameters, neighbours};
+use truepath_core::identify::{Fit, Parameter, Parameters, Prior, neighbours, prior_weights};
 use truepath_core::units::Offset;
 use truepath_ground::rows::largest;
-use truepath_ground::units::{float, mm};
+use truepath_ground::units::{float, mm, real};
 
 use super::draws::{Beside, Uncertain};
 use super::expected::Surface;
-use super::unmodelled::{unbent, unmodelled};
+use super::unmodelled::{SOFTER, lack, unbent, unmodelled};
 use super::wall::{WallFigures, judged};
 use crate::correction::Identification;
 use crate::discrepancy::Along;
@@ -31,7 +31,14 @@ impl Surface {
         let (first, depth_mm) = (path.first(), float(path.setup().axial_depth));
         let places: Vec<(usize, f64)> = judged(path).collect();
         let indices: Vec<usize> = places.iter().map(|(index, _)| *index).collect();
-        let all = errors(machine, nodes, &beside.mean, &indices);
+        let found = &known.fit().parameters;
+        let mut all = errors(machine, nodes, &indices);
+        let load = Load::of(machine, nodes, &all, &indices, found);
+        for ((column, per_load), index) in all.chunks_mut(COUNT).zip(load.over_mean()).zip(&indices) {
+            let of = |residual: &[Offset]| residual.get(index - first).copied().map_or(0.0, mm);
+            let (rest, by_load) = (of(&beside.mean), of(&beside.by_load.mean));
+            column.iter_mut().zip(per_load).for_each(|(wall, beyond)| *wall += rest + by_load * beyond);
+        }
         let columns: Vec<&[f64]> = all.chunks(COUNT).collect();
         let figures = WallFigures::over(places.iter().zip(&columns).map(|((_, s), c)| (*s, c.to_vec())));
 
@@ -46,22 +53,25 @@ impl Surface {
         let kept: Vec<usize> = (0..places.len()).step_by(stretch).filter_map(worst_of).collect();
         let drawn: Vec<usize> = kept.iter().map(|at| indices[*at]).collect();
         let base: Vec<f64> = kept.iter().flat_map(|at| columns[*at].iter().copied()).collect();
+        let alone: Vec<f64> = kept.iter().flat_map(|at| load.machine_at(*at).iter().copied()).collect();
 
-        let found = &known.fit().parameters;
+        let tail = in_the_tail(known.prior(), known.fit()).map(|other| (Origin::Points, other, 1.0));
         let noise = neighbours(known.prior(), known.fit()).map(|(other, share)| (Origin::Points, other, float(share)));
-        let lacking = unmodelled(found).map(|other| (Origin::Model, other, 1.0));
-        let machines: Vec<_> = noise.chain(lacking).chain([(Origin::Unbent, unbent(found), 1.0)]).collect();
+        let others = unmodelled(found).enumerate().filter(|(which, _)| *which != SOFTER);
+        let lacking = others.map(|(_, other)| (Origin::Model, other, 1.0));
+        let machines: Vec<_> = noise.chain(tail).chain(lacking).chain([(Origin::Unbent, unbent(found), 1.0)]).collect();
         let cut = |(origin, other, share): &(Origin, Parameters, f64)| {
             let exponent = other.coefficients.size_exponent;
             let own = (exponent != machine.table.size_exponent()).then(|| Box::new(ForceTable::new(exponent)));
             let other = other.machine(path, own.as_deref().unwrap_or(machine.table));
             // Some columns move nothing but the datum of the part that was probed.
             let moves = !other.cuts_as(machine);
-            let walls = moves.then(|| errors(&other, nodes, &beside.mean, &drawn))?;
-            Some((*origin, walls.iter().zip(&base).map(|(wall, base)| (wall - base) * share).collect::<Vec<f64>>()))
+            let walls = moves.then(|| errors(&other, nodes, &drawn))?;
+            Some((*origin, walls.iter().zip(&alone).map(|(wall, alone)| (wall - alone) * share).collect::<Vec<f64>>()))
         };
         let changes: Vec<_> = machines.par_iter().filter_map(cut).collect();
-        let mut uncertain = Uncertain { heights: COUNT, base, ..Uncertain::default() };
+        let softer = kept.iter().flat_map(|at| load.at(*at)).map(|per_load| per_load * lack(Parameter::Compliance));
+        let mut uncertain = Uncertain { heights: COUNT, base, lacking: vec![softer.collect()], ..Uncertain::default() };
         for (origin, change) in changes {
             match origin {
                 Origin::Points => uncertain.noise.push(change),
@@ -70,15 +80,34 @@ impl Surface {
             }
         }
         let of = |sigmas: &[Offset], index: usize| sigmas.get(index - first).copied().map_or(0.0, mm);
-        let sigma = |index: usize| of(&beside.sigma, index);
+        let loads: Vec<&[f64]> = kept.iter().map(|at| load.at(*at)).collect();
         if !beside.repeat.is_empty() {
             // The level of force is one for the whole part.
-            uncertain.lacking.push(drawn.iter().flat_map(|index| [of(&beside.repeat, *index); COUNT]).collect());
+            let column = |(index, load): (&usize, &&[f64])| {
+                let (mean, repeat) = (mean(load), of(&beside.repeat, *index));
+                let even = if mean < 0.0 { -repeat } else { repeat };
+                load.iter()
+                    .map(|load| not_less(even + beside.by_load.level * (load - mean), even))
+                    .collect::<Vec<f64>>()
+            };
+            uncertain.lacking.push(drawn.iter().zip(&loads).flat_map(column).collect());
         }
-        uncertain.beside = (!beside.sigma.is_empty()).then(|| Beside {
-            places: kept.iter().map(|at| places[*at]).map(|(index, s)| (s, sigma(index))).collect(),
-            reach_mm: mm(path.setup().radius),
-        });
+        if !beside.sigma.is_empty() {
+            let share = |index: usize| beside.by_load.share.get(index - first).copied().unwrap_or_default();
+            let by_load = |(index, at): (&usize, &usize)| {
+                let sigma = of(&beside.sigma, *index) * share(*index).sqrt();
+                load.beyond(*at).map(|beyond| not_less(sigma * (1.0 + beyond), sigma)).collect::<Vec<f64>>()
+            };
+            let even = |at: &usize| {
+                let (index, s) = places[*at];
+                (s, of(&beside.sigma, index) * (1.0 - share(index)).max(0.0).sqrt())
+            };
+            uncertain.beside = Some(Beside {
+                places: kept.iter().map(even).collect(),
+                load: drawn.iter().zip(&kept).flat_map(by_load).collect(),
+                reach_mm: mm(path.setup().radius),
+            });
+        }
         let worst = worst_place / stretch * COUNT + figures.worst % COUNT;
         let place = (figures.worst_s_mm, figures.worst_fraction * depth_mm);
         Self::of(&uncertain, worst, place).0
@@ -96,9 +125,84 @@ enum Origin {
     Unbent,
 }
 
+/// The machine with a cutter of another size that is as far away as the long tails of what is believed of that allow and the points
+/// do not forbid, and with all that goes with it: a fit counts a cutter that the points hardly see as if it were known.
+fn in_the_tail(prior: &Prior, fit: &Fit) -> Option<Parameters> {
+    let size = Parameter::Undersize as usize;
+    let covariance = fit.covariance.map(|row| row.map(float));
+    let variance = covariance[size][size];
+    let weight = float(prior_weights(&fit.theta)[size]);
+    let by_points = (1.0 / variance.max(1e-9) - weight).max(0.0);
+    let farther = 1.0 / (by_points + TAIL.powi(-2)) - variance;
+    (farther > 0.0).then(|| {
+        let step = farther.sqrt() / variance;
+        let mut theta = fit.theta;
+        theta.iter_mut().zip(&covariance).for_each(|(theta, row)| *theta += real(row[size] * step));
+        prior.at(&theta)
+    })
+}
+
+/// Half of the distance within which Student's t with two degrees of freedom is in 95 of 100 cases, in terms of its scale.
+const TAIL: f64 = 2.15;
+
+/// What a larger load does to a wall at every height: the helix and the bending cutter make it more at some and less at others, and what
+/// differs along a contour or from part to part by the load does so too.
+struct Load {
+    /// The errors that the machine leaves, mm, place by place, all heights of a place side by side.
+    machine: Vec<f64>,
+    /// Their change per unit of the natural logarithm of the load, mm.
+    per_load: Vec<f64>,
+}
+
+/// A mean over the height that is a smaller share of the largest change at any height is no measure of a load.
+const LEAST_MEAN: f64 = 0.3;
+
+impl Load {
+    fn of(machine: &Loop, nodes: &[Node], alone: &[f64], indices: &[usize], found: &Parameters) -> Self {
+        let softer = unmodelled(found).nth(SOFTER).unwrap_or(*found).machine(machine.path, machine.table);
+        let by = lack(Parameter::Compliance);
+        let walls = errors(&softer, nodes, indices);
+        let per_load = walls.iter().zip(alone).map(|(wall, alone)| (wall - alone) / by).collect();
+        Self { machine: alone.to_vec(), per_load }
+    }
+
+    /// The change at all heights of a place.
+    fn at(&self, place: usize) -> &[f64] {
+        self.per_load.get(place * COUNT..(place + 1) * COUNT).unwrap_or_default()
+    }
+
+    /// The errors at all heights of a place.
+    fn machine_at(&self, place: usize) -> &[f64] {
+        self.machine.get(place * COUNT..(place + 1) * COUNT).unwrap_or_default()
+    }
+
+    /// By how much the change at every height of a place is beyond that of the mean over the height, in terms of it.
+    fn beyond(&self, place: usize) -> impl Iterator<Item = f64> {
+        let column = self.at(place);
+        let mean = mean(column);
+        let measure = mean.abs().max(LEAST_MEAN * largest(column)).max(1e-9);
+        let measure = if mean < 0.0 { -measure } else { measure };
+        column.iter().map(move |change| (change - mean) / measure)
+    }
+
+    /// The same of all places.
+    fn over_mean(&self) -> impl Iterator<Item = impl Iterator<Item = f64>> {
+        (0..self.per_load.len() / COUNT).map(|place| self.beyond(place))
+    }
+}
+
+/// A deviation at a height: where the model expects the load to do next to nothing it does not know that so well.
+fn not_less(at_height: f64, even: f64) -> f64 {
+    if at_height.abs() < even.abs() { even } else { at_height }
+}
+
+fn mean(column: &[f64]) -> f64 {
+    column.iter().sum::<f64>() / column.len().max(1) as f64
+}
+
 /// The wall errors that a machine leaves with a correction, empty for none, at samples of its path, mm: sample by sample, in each at
 /// [`COUNT`] even heights from the tip up; zero where no wall stands.
-pub fn errors(machine: &Loop, nodes: &[Node], residual: &[Offset], places: &[usize]) -> Vec<f64> {
+pub fn errors(machine: &Loop, nodes: &[Node], places: &[usize]) -> Vec<f64> {
     let path = machine.path;
     let start = path.working().start;
     let mut states = vec![State::REST; path.working().len()];
@@ -112,8 +216,7 @@ pub fn errors(machine: &Loop, nodes: &[Node], residual: &[Offset], places: &[usi
         let beside = |index: &usize| {
             let wall = envelope.error(*index, index.saturating_add_signed(ahead))?;
             ahead = wall.made_by as isize - *index as isize;
-            let residual = residual.get(index - path.first()).copied().unwrap_or_default();
-            Some(mm(wall.error + machine.undersize + residual))
+            Some(mm(wall.error + machine.undersize))
         };
         places.iter().map(beside).map(Option::unwrap_or_default).collect::<Vec<f64>>()
     };

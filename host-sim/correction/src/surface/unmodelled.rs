@@ -16,6 +16,9 @@ const LACK: [(Parameter, i64); 6] = [
     (Parameter::Undersize, 2),
 ];
 
+/// Which of [the machines beside](unmodelled) has another load: it is softer by [this share](lack) and nothing else.
+pub const SOFTER: usize = 0;
+
 /// What a model lacks of a parameter, one standard deviation: of the logarithm for factors, else in its unit.
 pub fn lack(parameter: Parameter) -> f64 {
     let steps = LACK.iter().find(|(of, _)| *of == parameter).map_or(0, |(_, steps)| *steps);

@@ -29,7 +29,7 @@ pub fn identified(machine: &Loop, known: &Identification, wanted: &Design, nodes
         highest_mm: mm(whole.highest.max(whole.tip)),
     };
     let indices: Vec<usize> = (machine.path.first()..).take(machine.path.count()).collect();
-    let all = errors(machine, nodes, &[], &indices);
+    let all = errors(machine, nodes, &indices);
     Walls {
         places: samples.zip(&inside).zip(&whole).map(place).collect(),
         over_height_mm: all.chunks(COUNT).map(<[f64]>::to_vec).collect(),
