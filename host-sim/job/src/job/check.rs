@@ -121,7 +121,11 @@ fn job(source: Source, folder: &Path) -> Result<JobFile, InputError> {
     let feed = feed(root.section("feed")?.as_ref())?;
     let (plan, plan_cutters) = plan(root.section("plan")?.as_ref(), &tool)?;
     let part = part(&source, root.section("part")?.as_ref())?;
-    let store = store(&source, root.section("store")?.as_ref(), folder)?;
+    let mut store = store(&source, root.section("store")?.as_ref(), folder)?;
+    if store.names.material.is_none() {
+        let of_force = root.section("force")?.map(|section| section.text("material")).transpose()?.flatten();
+        store.names.material = of_force.map(|(name, _)| name.to_owned());
+    }
     root.close()?;
     let program = path;
     let Stock { allowance, surface, probe: stock_probe, roughing } = stock;

@@ -222,7 +222,7 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("store.machine", "none", "the machine"),
     ("store.holder", "none", "the holder of the cutter"),
     ("store.cutter", "none", "the article number of the cutter"),
-    ("store.material", "none", "the material"),
+    ("store.material", "`force.material`, else none", "the material"),
     ("store.lot", "part.material_batch", "the lot of the material"),
     ("store.serial", "part.serial", "serial number of the part that is measured"),
     ("pocket", "", "what `truepath pocket` cuts: [pockets](pocket.md)"),

@@ -10,3 +10,4 @@ mod probe_files;
 mod probe_formats;
 mod probe_refused;
 mod runout;
+mod store;
