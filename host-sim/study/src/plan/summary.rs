@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::outcome::PlanOutcome;
-use crate::statistics::{Spread, quantile};
+use crate::statistics::{Spread, number, percent, quantile};
 
 /// Several cases taken together.
 #[derive(Clone, Debug, Serialize)]
@@ -113,14 +113,6 @@ fn row(name: &str, cases: &[&PlanOutcome]) -> PlanRow {
 /// The rows of the table: all cases first.
 fn rows(summary: &PlanSummary) -> impl Iterator<Item = &PlanRow> {
     std::iter::once(&summary.all).chain(&summary.groups)
-}
-
-fn number(value: Option<f64>, decimals: usize) -> String {
-    value.map_or_else(|| "-".to_owned(), |v| format!("{v:.decimals$}"))
-}
-
-fn percent(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), |v| format!("{:.0} %", 100.0 * v))
 }
 
 /// The columns of a row: factor median, P10, worst, within, time ratio median and largest, in 2 sigma, sigma over prediction.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::outcome::ShopOutcome;
-use crate::statistics::Spread;
+use crate::statistics::{Spread, number, percent};
 
 /// A correction is worse than the one by itself when it leaves more than this times as much, and more by a micrometre.
 const WORSE: f64 = 1.05;
@@ -75,12 +75,11 @@ pub fn summary(program: &str, outcomes: &[ShopOutcome]) -> ShopSummary {
 const HEADS: [&str; 6] = ["median", "P10", "worst", "in 2 sg", "worse", "contradicted"];
 
 fn columns(row: &ShopRow) -> [String; 6] {
-    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.1}"));
     [
-        number(row.factor.map(|f| f.median)),
-        number(row.factor.map(|f| f.p10)),
-        number(row.factor.map(|f| f.worst)),
-        row.coverage.map_or_else(|| "-".to_owned(), |share| format!("{:.0} %", 100.0 * share)),
+        number(row.factor.map(|f| f.median), 1),
+        number(row.factor.map(|f| f.p10), 1),
+        number(row.factor.map(|f| f.worst), 1),
+        percent(row.coverage),
         row.worse.to_string(),
         row.contradicted.to_string(),
     ]
