@@ -2,6 +2,8 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use time::OffsetDateTime;
+
 /// Now. A clock that stands before 1970 gives 0.
 pub(crate) fn now() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
@@ -10,18 +12,13 @@ pub(crate) fn now() -> i64 {
 
 /// A time in words, `2026-11-27 18:35`, UTC; years 1970…9999.
 pub(crate) fn utc(seconds: i64) -> String {
-    let seconds = seconds.clamp(0, 253_402_300_799);
-    let (days, minutes) = (seconds / 86_400, seconds / 60 % 1440);
-    // Days of the calendar that begins on 1 March of the year 0, in eras of 400 years.
-    let days = days + 719_468;
-    let (era, day) = (days / 146_097, days % 146_097);
-    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
-    let day = day - (365 * year + year / 4 - year / 100);
-    let month = (5 * day + 2) / 153;
-    let day = day - (153 * month + 2) / 5 + 1;
-    let (year, month) = (400 * era + year + i64::from(month >= 10), if month < 10 { month + 3 } else { month - 9 });
-    format!("{year:04}-{month:02}-{day:02} {:02}:{:02}", minutes / 60, minutes % 60)
+    let at = OffsetDateTime::from_unix_timestamp(seconds.clamp(0, LAST)).unwrap_or(OffsetDateTime::UNIX_EPOCH);
+    let (month, day) = (u8::from(at.month()), at.day());
+    format!("{:04}-{month:02}-{day:02} {:02}:{:02}", at.year(), at.hour(), at.minute())
 }
+
+/// The last second of the year 9999.
+const LAST: i64 = 253_402_300_799;
 
 #[cfg(test)]
 mod tests {
@@ -35,6 +32,8 @@ mod tests {
             (951_782_400, "2000-02-29 00:00"),
             (1_795_804_501, "2026-11-27 18:35"),
             (4_107_542_400, "2100-03-01 00:00"),
+            (-1, "1970-01-01 00:00"),
+            (i64::MAX, "9999-12-31 23:59"),
         ];
         for (seconds, text) in known {
             assert_eq!(utc(seconds), text);
