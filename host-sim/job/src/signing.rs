@@ -11,7 +11,9 @@ use ed25519_dalek::{Signer as _, SigningKey};
 use truepath_core::image::{DeviceClass, DeviceClasses, PublicKey, sign, signed_bytes};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
-use crate::codes::{K020, K021, K022};
+#[cfg(unix)]
+use crate::codes::K022;
+use crate::codes::{K020, K021};
 
 /// The word before a seed.
 const PRIVATE: &str = "ed25519-seed";

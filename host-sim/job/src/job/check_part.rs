@@ -12,7 +12,7 @@ use truepath_ground::limits::Limits;
 
 /// Longest text, characters.
 const LONGEST: usize = 100;
-pub(super) const TEXT_EXPECTED: &str = "1 to 100 characters on one line, none of them invisible";
+const TEXT_EXPECTED: &str = "1 to 100 characters on one line, none of them invisible";
 const HALF_WIDTH: Limits = Limits::within("0.0001", "10", "mm");
 const LIMIT: Limits = Limits::within("-10", "10", "mm");
 
@@ -113,10 +113,21 @@ impl PartFlags {
 
 /// Whether a text can stand in one line of a report: nothing in it is unseen, so that two parts whose names look the same are the
 /// same.
-pub(super) fn is_text(text: &str) -> bool {
+fn is_text(text: &str) -> bool {
     let letters = || text.chars().zip(std::iter::once(' ').chain(text.chars()));
     let unseen = letters().any(|(c, before)| c.is_control() || is_unseen(c) || (is_joiner(c) && before.is_ascii()));
     !text.trim().is_empty() && text.chars().count() <= LONGEST && !unseen
+}
+
+/// The text of a key that [can stand in one line](is_text).
+pub(super) fn line(section: &Section<'_>, key: &'static str) -> Result<Option<String>, InputError> {
+    match section.text(key)? {
+        None => Ok(None),
+        Some((text, _)) if is_text(text) => Ok(Some(text.to_owned())),
+        Some((_, value)) => {
+            Err(section.out_of_range(&value, TEXT_EXPECTED, "write it shorter, on one line, or leave the key away"))
+        }
+    }
 }
 
 /// Letters that take no room or show nothing, and marks that turn the direction of writing: with them a text could look like
@@ -138,13 +149,7 @@ const fn is_joiner(c: char) -> bool {
 /// What the table says.
 pub(super) fn part(source: &Source, section: Option<&Section<'_>>) -> Result<PartTable, InputError> {
     let Some(section) = section else { return Ok(PartTable::default()) };
-    let text = |key| match section.text(key)? {
-        None => Ok(None),
-        Some((text, _)) if is_text(text) => Ok(Some(text.to_owned())),
-        Some((_, value)) => {
-            Err(section.out_of_range(&value, TEXT_EXPECTED, "write it shorter, on one line, or leave the key away"))
-        }
-    };
+    let text = |key| line(section, key);
     let length = |key, limits| Ok::<_, InputError>(section.number(key, limits)?.map(Decimal::as_mm));
     let names = PartNames {
         name: text("name")?,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use truepath_ground::diagnostics::{InputError, Source};
 use truepath_ground::document::Section;
 
-use super::check_part::{TEXT_EXPECTED, is_text};
+use super::check_part::line;
 use crate::codes::J045;
 
 /// What the table says.
@@ -72,13 +72,6 @@ pub struct StoreNames {
 /// What the table says; relative paths start at `folder`.
 pub(super) fn store(source: &Source, section: Option<&Section<'_>>, folder: &Path) -> Result<StoreTable, InputError> {
     let Some(section) = section else { return Ok(StoreTable::default()) };
-    let text = |key| match section.text(key)? {
-        None => Ok(None),
-        Some((text, _)) if is_text(text) => Ok(Some(text.to_owned())),
-        Some((_, value)) => {
-            Err(section.out_of_range(&value, TEXT_EXPECTED, "write it shorter, on one line, or leave the key away"))
-        }
-    };
     let place = match (section.text("path")?, section.text("url")?) {
         (None, None) => None,
         (Some(("", value)), None) => {
@@ -103,13 +96,13 @@ pub(super) fn store(source: &Source, section: Option<&Section<'_>>, folder: &Pat
         }
     };
     let names = StoreNames {
-        make: text("make")?,
-        machine: text("machine")?,
-        holder: text("holder")?,
-        cutter: text("cutter")?,
-        material: text("material")?,
-        lot: text("lot")?,
-        serial: text("serial")?,
+        make: line(section, "make")?,
+        machine: line(section, "machine")?,
+        holder: line(section, "holder")?,
+        cutter: line(section, "cutter")?,
+        material: line(section, "material")?,
+        lot: line(section, "lot")?,
+        serial: line(section, "serial")?,
     };
     let prior = section.choice("prior", &PRIORS)?.unwrap_or_default();
     section.close()?;
