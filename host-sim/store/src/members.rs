@@ -20,7 +20,13 @@ pub fn setting(names: &StoreNames, stickout_nm: i64) -> Setting {
     let (holder, cutter) = (text(&names.holder), text(&names.cutter));
     let is_known = !holder.is_empty() || !cutter.is_empty();
     let mounting = if is_known { format!("{holder}\n{cutter}\n{}", mm_of(stickout_nm)) } else { String::new() };
-    Setting { make: text(&names.make), machine: text(&names.machine), mounting, material: text(&names.material) }
+    Setting {
+        make: text(&names.make),
+        machine: text(&names.machine),
+        mounting,
+        material: text(&names.material),
+        lot: text(&names.lot),
+    }
 }
 
 /// What the newest measured parts of every other program say that were cut on this machine or make, or from this material, each part
@@ -29,7 +35,7 @@ pub fn setting(names: &StoreNames, stickout_nm: i64) -> Setting {
 /// Those of this program are left out: they may be of the same points.
 pub(crate) fn members(on: &mut dyn Backend, facts: &Facts, wanted: &Setting) -> Result<(Shop, Option<i64>), Failure> {
     let facts = FactTexts::of_facts(facts)?;
-    let select = "SELECT e.id, e.said, ma.make, ma.name, ho.name, cu.article, cu.stickout_nm, mt.name, p.probe_crc32 FROM estimate e \
+    let select = "SELECT e.id, e.said, ma.make, ma.name, ho.name, cu.article, cu.stickout_nm, mt.name, mt.lot, p.probe_crc32 FROM estimate e \
          JOIN job j ON j.id = e.job JOIN history h ON h.id = e.history \
          JOIN history_part hp ON hp.history = h.id AND hp.position = (SELECT max(position) FROM history_part WHERE history = h.id) \
          JOIN measurement me ON me.id = hp.measurement JOIN part p ON p.id = me.part \
@@ -49,6 +55,7 @@ pub(crate) fn members(on: &mut dyn Backend, facts: &Facts, wanted: &Setting) -> 
             holder: text(4)?,
             cutter: text(5)?,
             material: text(7)?,
+            lot: text(8)?,
             ..StoreNames::default()
         };
         let said: Said = of_json(row.text(1)?)?;
@@ -62,7 +69,7 @@ pub(crate) fn members(on: &mut dyn Backend, facts: &Facts, wanted: &Setting) -> 
     let mut parts = BTreeSet::new();
     let mut members = Vec::new();
     for row in &rows {
-        if parts.insert(row.text(8)?) {
+        if parts.insert(row.text(9)?) {
             members.push(member(row)?);
         }
     }

@@ -20,6 +20,8 @@ pub struct Setting {
     pub mounting: String,
     /// The material.
     pub material: String,
+    /// The lot of the material.
+    pub lot: String,
 }
 
 /// A job that was measured.
@@ -48,7 +50,10 @@ const MACHINE_OF_YIELD: f64 = 0.7;
 /// What scatters from job to job on one machine in one material, one standard deviation: wear, lots, clamping, and what the model lacks.
 const SCATTER: Quantities = [0.10, 0.03, 0.02, 0.08, 0.20, 0.12, 0.03, 0.03];
 
-/// A random effect on the quantities: the quantities it acts on, and its share of their variance.
+/// What of this is a lot of the material by itself, one standard deviation: another one cuts some per cent harder.
+const OF_LOT: Quantities = [0.05, 0.0, 0.0, 0.04, 0.10, 0.06, 0.0, 0.015];
+
+/// A random effect on the quantities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Effect<'s> {
     MachinesOfShop,
@@ -58,10 +63,19 @@ enum Effect<'s> {
     Machine(&'s str, bool),
     Mounting(&'s str, &'s str),
     Material(&'s str),
+    Lot(&'s str, &'s str),
 }
 
 impl Effect<'_> {
-    /// Its share of the variance of a quantity; 0 for one that it does not act on.
+    /// Its variance in a quantity of which a job states one standard deviation; 0 for one that it does not act on.
+    fn variance(self, quantity: Quantity, sigma: f64) -> f64 {
+        match self {
+            Self::Lot(..) if sigma > 0.0 => OF_LOT[quantity as usize].powi(2),
+            _ => self.share(quantity) * sigma * sigma,
+        }
+    }
+
+    /// Its share of the variance that a statement has; 0 for a quantity that it does not act on, and for one that is no part of it.
     fn share(self, quantity: Quantity) -> f64 {
         let machine = match quantity {
             Quantity::Yield => MACHINE_OF_YIELD,
@@ -75,6 +89,7 @@ impl Effect<'_> {
             Self::Mounting(..) => machine * OF_MACHINE[3],
             Self::MaterialsOfShop => (1.0 - machine) * OF_MATERIAL[0],
             Self::Material(_) => (1.0 - machine) * OF_MATERIAL[1],
+            Self::Lot(..) => 0.0,
         }
     }
 }
@@ -94,6 +109,9 @@ impl Setting {
         }
         if !self.material.is_empty() {
             effects.push(Effect::Material(&self.material));
+            if !self.lot.is_empty() {
+                effects.push(Effect::Lot(&self.material, &self.lot));
+            }
         }
         effects
     }
@@ -104,7 +122,8 @@ impl Setting {
         let own = |quantity: Quantity| {
             let named: f64 = shared.iter().map(|effect| effect.share(quantity)).sum();
             let k = quantity as usize;
-            SCATTER[k] * SCATTER[k] + (1.0 - named).max(0.0) * sigma[k] * sigma[k]
+            let of_lot = if shared.iter().any(|effect| matches!(effect, Effect::Lot(..))) { OF_LOT[k] } else { 0.0 };
+            SCATTER[k] * SCATTER[k] - of_lot * of_lot + (1.0 - named).max(0.0) * sigma[k] * sigma[k]
         };
         Quantity::ALL.map(own)
     }
@@ -124,14 +143,15 @@ impl<'s> Unknowns<'s> {
         let mut found = Vec::new();
         for effect in setting.effects() {
             for quantity in Quantity::ALL {
-                let (k, share) = (quantity as usize, effect.share(quantity));
-                if share == 0.0 || sigma[k] == 0.0 {
+                let k = quantity as usize;
+                let variance = effect.variance(quantity, sigma[k]);
+                if variance == 0.0 {
                     continue;
                 }
                 let next = self.variances.len();
                 let number = *self.numbers.entry((effect, k)).or_insert(next);
                 if number == next {
-                    self.variances.push(share * sigma[k] * sigma[k]);
+                    self.variances.push(variance);
                 }
                 found.push((number, k));
             }
@@ -338,6 +358,7 @@ mod tests {
             machine: machine.to_owned(),
             mounting: "short".to_owned(),
             material: material.to_owned(),
+            lot: String::new(),
         }
     }
 
@@ -393,6 +414,28 @@ mod tests {
         // A machine that nobody has seen is known less, and no better than machines differ.
         let [_, unknown] = expected(&shop, &setting("E", "X"), &prior, Quantity::Yield);
         assert!(unknown > 1.8 * sigma && unknown < 0.5, "{unknown}");
+    }
+
+    #[test]
+    fn a_lot_is_known_from_the_jobs_of_that_lot() {
+        let prior = stated(3000, 1000);
+        let of_lot = |lot: &str| Setting { lot: lot.to_owned(), ..setting("A", "X") };
+        // Lot 1 is harder by 0.12, the others are not.
+        let jobs = [("1", 0.12), ("1", 0.12), ("1", 0.12), ("2", 0.0), ("3", 0.0), ("", 0.0)];
+        let job = |(lot, off): (&str, f64)| Member {
+            setting: of_lot(lot),
+            ..member("A", "X", &prior, &[(Quantity::Yield, off, 0.02)])
+        };
+        let shop = Shop { members: jobs.map(job).to_vec() };
+        let of = |lot: &str| expected(&shop, &of_lot(lot), &prior, Quantity::Yield);
+        let ([one, sure], [two, _], [new, unsure], [none, _]) = (of("1"), of("2"), of("4"), of(""));
+        assert!(one > new + 0.02 && two < new - 0.005, "{one} {two} {new}");
+        assert!(sure < unsure && (new - none).abs() < 1e-9, "{sure} {unsure} {new} {none}");
+        // The same number under another material is another lot.
+        let elsewhere = Setting { material: "Y".to_owned(), ..of_lot("1") };
+        let other = Setting { material: "Y".to_owned(), ..of_lot("9") };
+        let [a, b] = [elsewhere, other].map(|setting| expected(&shop, &setting, &prior, Quantity::Yield)[0]);
+        assert!((a - b).abs() < 1e-9, "{a} {b}");
     }
 
     #[test]

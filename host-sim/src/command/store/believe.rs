@@ -5,9 +5,10 @@ use truepath_correction::learning::Facts;
 use truepath_ground::diagnostics::Failure;
 use truepath_job::job::{JobFile, PriorOf};
 use truepath_job::pass::Pass;
-use truepath_store::{Place, Store, setting};
+use truepath_store::{Place, Setup, Store, setting};
 
 use super::chosen::place;
+use super::keep::setup;
 
 /// Passes of one job with what the store that is named says of machine and material. Without an answer of the store they stay as they
 /// are and say so: a part is not kept waiting for a server.
@@ -31,8 +32,8 @@ pub(in crate::command) fn believing(mut passes: Vec<Pass>, given: Option<&str>) 
 }
 
 fn believe(pass: &mut Pass, job: &JobFile, place: &Place, store: &mut Store) -> Result<(), Failure> {
-    let stickout_nm = job.numbers.tool.cantilever.map_or(0, |cutter| cutter.length.nm());
-    let setting = setting(&job.store.names, stickout_nm);
+    let Setup { names, stickout_nm, .. } = setup(Some(job), "correct");
+    let setting = setting(&names, stickout_nm);
     let (shop, newest) = store.shop(&Facts::of(pass), &setting)?;
     let believed = shop.believed(&setting, &pass.core.stated_prior(WallLaw::Helical));
     pass.warnings.push(match (&believed, newest) {

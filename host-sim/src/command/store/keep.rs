@@ -51,7 +51,7 @@ fn stored(
 }
 
 /// What the job says of the shop; serial number and lot may stand in `[part]`.
-fn setup(job: Option<&JobFile>, by: &'static str) -> Setup {
+pub(super) fn setup(job: Option<&JobFile>, by: &'static str) -> Setup {
     let Some(job) = job else { return Setup { by, ..Setup::default() } };
     let (names, part) = (job.store.names.clone(), &job.part.names);
     let names = StoreNames {

@@ -128,6 +128,7 @@ impl ShopCase {
             machine: format!("machine {machine}"),
             mounting: format!("cutter {cutter}"),
             material: format!("material {of_material}"),
+            lot: String::new(),
         };
         for attempt in 0..DRAWS {
             let draw = &mut Draw::new(&format!("shop/part/{attempt}"), seed);
