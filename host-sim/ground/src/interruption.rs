@@ -143,7 +143,9 @@ mod signals {
             WATCHED.fetch_add(1, Ordering::SeqCst);
             let watch = Self(());
             let handle = LISTENING.get().ok_or(io::ErrorKind::Other)?;
-            [SIGHUP, SIGQUIT].into_iter().try_for_each(|signal| handle.add_signal(signal))?;
+            // Under `nohup` a hang-up stays ignored.
+            let hang_up = (!ignores_hang_up()).then_some(SIGHUP);
+            hang_up.into_iter().chain([SIGQUIT]).try_for_each(|signal| handle.add_signal(signal))?;
             Ok(watch)
         }
         /// The signal that came, if one did.
