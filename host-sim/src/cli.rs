@@ -23,7 +23,7 @@ use crate::command::{
     pocket, probe, replay, simulate, split,
 };
 #[cfg(not(target_family = "wasm"))]
-use crate::command::{device, hil, key, manual, pack, store, study};
+use crate::command::{device, hil, key, manual, pack, publish, store, study};
 use crate::help;
 use crate::streams;
 use crate::terminal::Terminal;
@@ -82,6 +82,9 @@ enum Command {
     /// The parts of a shop in one place: machines, cutters, readings, corrections.
     #[cfg(not(target_family = "wasm"))]
     Store(store::Options),
+    /// State, parts and alarms of batches to a broker of MQTT, and to agents of MTConnect.
+    #[cfg(not(target_family = "wasm"))]
+    Publish(publish::Options),
     /// For a single part: a program that cuts half of the allowance, to be probed then.
     Split(split::Options),
     /// Many parts of one job: what moves, control charts, capability, alarms.
@@ -194,6 +197,8 @@ fn dispatch(command: Command, terminal: &Terminal) -> Result<(), Failure> {
         Command::Unpack(options) => pack::unpack(&options, terminal),
         #[cfg(not(target_family = "wasm"))]
         Command::Store(options) => store::main(&options, terminal),
+        #[cfg(not(target_family = "wasm"))]
+        Command::Publish(options) => publish::main(&options, terminal),
         Command::Batch(options) => batch::main(&options, terminal),
         Command::Fillet(options) => fillet::main(&options, terminal),
         Command::Split(options) => split::main(&options, terminal),

@@ -9,14 +9,14 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("See it", &["demo"]),
     ("Correct a part", &["init", "probe", "inspect", "correct", "learn", "plan", "split", "fillet", "batch"]),
     ("Look closer", &["simulate", "compare", "plot", "canon", "forces"]),
-    ("Keep and share", &["store", "pack", "unpack", "study"]),
+    ("Keep and share", &["store", "publish", "pack", "unpack", "study"]),
     ("Coprocessor", &["image", "key", "replay", "hil", "device"]),
     ("Without a probe, other processes", &["pocket", "bore", "multiaxis"]),
     ("This program", &["completions", "man", "help"]),
 ];
 
 /// Command lines of each command, and what they do.
-const EXAMPLES: [(&str, &[(&str, &str)]); 29] = [
+const EXAMPLES: [(&str, &[(&str, &str)]); 30] = [
     ("demo", &[("truepath demo", "three parts, reports and programs in out/demo")]),
     (
         "init",
@@ -68,6 +68,15 @@ const EXAMPLES: [(&str, &[(&str, &str)]); 29] = [
             ("truepath store status --store postgres://ann@db/shop", "what is in it, on a server of the shop"),
             ("truepath store export job.toml --store shop.db -o out", "history.json again, byte for byte"),
             ("truepath learn job.toml --probe part2.txt --from out -o out3 --store shop.db", "the part goes in"),
+        ],
+    ),
+    (
+        "publish",
+        &[
+            ("truepath publish batch --machine vf2 --mqtt mqtt://127.0.0.1", "what changes in a batch, to a broker"),
+            ("truepath publish batch --machine vf2 --mqtt mqtts://ann@broker.shop --ca shop.pem", "encrypted"),
+            ("truepath publish batch --machine vf2 --mtconnect 7878", "agents of MTConnect read it"),
+            ("truepath publish batch --machine vf2 --mqtt mqtt://127.0.0.1 --once", "everything once, then the end"),
         ],
     ),
     ("unpack", &[("truepath unpack part.tpk -o part", "as a folder again")]),

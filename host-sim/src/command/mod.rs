@@ -36,6 +36,8 @@ mod plan_study;
 pub mod plot;
 pub mod pocket;
 pub mod probe;
+#[cfg(not(target_family = "wasm"))]
+pub mod publish;
 mod readings;
 mod relative;
 pub mod replay;

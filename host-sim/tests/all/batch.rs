@@ -94,6 +94,16 @@ fn a_harder_lot_is_noticed_on_its_first_part_and_a_told_one_is_none() {
     let summary: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.path().join("batch/summary.json")).unwrap()).unwrap();
     assert_eq!((summary["touched"].as_u64(), summary["states"].as_array().map(Vec::len)), (Some(9), Some(9)));
+    // What is published of it is what was written.
+    let stepped = shown(batch::run(&options(folder.path(), &table(""))));
+    let file = folder.path().join("batch/summary.json");
+    let read = truepath_publish::summary::Summary::parse(&fs::read(&file).unwrap(), &file).unwrap();
+    let words = |alarms: &[Alarm]| alarms.iter().map(Alarm::words).collect::<Vec<_>>();
+    assert_eq!((words(&read.alarms), &read.next), (words(&stepped.batch.alarms), &stepped.next));
+    assert!(read.next.as_ref().is_some_and(|next| next.contains("another lot")) && read.is_pushed());
+    let worst = |state: &truepath_batch::batch::State| state.worst.as_ref().map(|worst| worst.error_mm);
+    let last = read.states.last().and_then(worst).unwrap();
+    assert!(stepped.batch.places.iter().all(|place| place.deviations_mm[8].1.abs() <= last.abs() + 1e-9), "{last}");
 }
 
 #[test]

@@ -27,6 +27,11 @@ mod pocket_plant;
 mod pocket_slot;
 mod probe_command;
 mod process;
+#[cfg(unix)]
+mod publish;
+#[cfg(unix)]
+#[path = "../../publish/tests/all/support/mod.rs"]
+mod publish_support;
 mod qif;
 mod recorded;
 mod rehearsal;

@@ -7,7 +7,7 @@ use std::path::Path;
 use truepath_ground::codes::Row;
 
 /// The rooms of the host with their rows, in the order of the document; those of the core follow.
-const CATALOGUES: [(&str, &[Row]); 15] = [
+const CATALOGUES: [(&str, &[Row]); 17] = [
     ("Files, tables and the command line", truepath_ground::codes::CATALOGUE),
     ("The job and its features", truepath_job::codes::CATALOGUE),
     ("Programs and machine tables", truepath_program::codes::CATALOGUE),
@@ -15,9 +15,11 @@ const CATALOGUES: [(&str, &[Row]); 15] = [
     ("The virtual machine and recorded setpoints", truepath_trial::codes::CATALOGUE),
     ("Pictures", truepath_chart::codes::CATALOGUE),
     ("Tables that are drawn", truepath_report::codes::CATALOGUE),
+    ("Batches of parts", truepath_batch::codes::CATALOGUE),
     ("Bench and board", truepath_bench::codes::CATALOGUE),
     ("Stories of parts", truepath_story::codes::CATALOGUE),
     ("The shop store", truepath_store::codes::CATALOGUE),
+    ("Publishing", truepath_publish::codes::CATALOGUE),
     ("Studies", truepath_study::codes::CATALOGUE),
     ("Bores", truepath_bore::codes::CATALOGUE),
     ("Measured forces", truepath_forces::codes::CATALOGUE),
