@@ -1,4 +1,4 @@
-//! What people install: an archive and Debian packages, with manual pages, completions, licences, a list of all parts
+//! What people install: an archive, Debian packages and a wheel, with manual pages, completions, licences, a list of all parts
 //! (CycloneDX) and checksums, in `target/packages`.
 //!
 //! | file | what |
@@ -6,7 +6,9 @@
 //! | `truepath-VERSION-x86_64-linux.tar.gz` | the program, linked statically, and what belongs to it |
 //! | `truepath_VERSION_amd64.deb` | the same for Debian and Ubuntu |
 //! | `truepath-linuxcnc_VERSION_amd64.deb` | component, M-codes and the operator's side for LinuxCNC, built for the installed one |
+//! | `truepath-VERSION-cp39-abi3-….whl` | the package for Python ([`wheel`](crate::wheel)) |
 //! | `truepath-VERSION.cdx.json` | every crate that is linked in, with version and licence |
+//! | `truepath-python-VERSION.cdx.json` | the same of the wheel |
 //! | `SHA256SUMS` | of all of them |
 //!
 //! [`check`] does the same with the program of the tests, which is there already, then installs the packages into a root
@@ -21,6 +23,7 @@ use serde_json::{Value, json};
 use crate::linuxcnc;
 use crate::repository::{self, Profile, cargo, copy, make_folder, program, read, root, run, target, write};
 use crate::step::{Failure, Outcome, Passed};
+use crate::wheel;
 
 /// The triple that the packages are for.
 const TRIPLE: &str = "x86_64-unknown-linux-gnu";
@@ -58,7 +61,10 @@ pub fn check() -> Outcome {
     for entry in sorted(&folder)?.iter().filter(|entry| entry.extension().is_some_and(|e| e == "deb")) {
         installed_used_removed(entry, &place)?;
     }
-    unpacked_used(&folder)
+    unpacked_used(&folder)?;
+    let wheel = wheel::in_folder(&folder).ok_or_else(|| Failure::Missing(wheel::remedy()))?;
+    wheel::check(&wheel, &folder.join(archived()).join("bin/truepath"))?;
+    Ok(Passed::Done)
 }
 
 /// All of them, in a new folder.
@@ -69,10 +75,10 @@ fn packages(folder: &Path, build: Build) -> Result<(), Failure> {
     let binary = binary(build)?;
     let stage = folder.join("stage");
     let bill = folder.join(format!("truepath-{version}.cdx.json"));
-    write(&bill, &serde_json::to_vec_pretty(&bill_of_materials(version)?).unwrap_or_default())?;
+    write(&bill, &serde_json::to_vec_pretty(&bill_of_materials("truepath", version)?).unwrap_or_default())?;
 
     // The archive: as below /usr/local.
-    let name = format!("truepath-{version}-x86_64-linux");
+    let name = archived();
     let usr = stage.join(&name);
     filled(&usr, &binary, &bill)?;
     let archive = folder.join(format!("{name}.tar.gz"));
@@ -94,6 +100,13 @@ fn packages(folder: &Path, build: Build) -> Result<(), Failure> {
         let needs = format!("truepath (= {version}), linuxcnc-uspace (= {modules}), python3");
         let file = folder.join(format!("truepath-linuxcnc_{version}_amd64.deb"));
         deb(&stage.join("linuxcnc"), &file, "truepath-linuxcnc", &needs, about)?;
+    }
+    let bill = folder.join(format!("truepath-python-{version}.cdx.json"));
+    write(&bill, &serde_json::to_vec_pretty(&bill_of_materials("truepath-python", version)?).unwrap_or_default())?;
+    let profile = if build == Build::Dev { "dev" } else { "dist" };
+    if wheel::packaged(folder, profile, &bill)?.is_none() {
+        eprintln!("    no wheel: {}", wheel::remedy());
+        fs::remove_file(&bill).map_err(|e| Failure::found(e.to_string()))?;
     }
     fs::remove_dir_all(&stage).map_err(|e| Failure::found(e.to_string()))?;
     let names: Vec<_> = sorted(folder)?.iter().filter_map(|entry| entry.file_name().map(ToOwned::to_owned)).collect();
@@ -161,9 +174,14 @@ fn deb(tree: &Path, file: &Path, name: &str, needs: &str, about: &str) -> Result
     run(program("dpkg-deb").args(["--root-owner-group", "--build"]).arg(tree).arg(file).env("SOURCE_DATE_EPOCH", "0"))
 }
 
-/// Every crate that is linked into the program, as CycloneDX 1.5 has it.
-fn bill_of_materials(version: &str) -> Result<Value, Failure> {
-    let tree = ["tree", "--package", "truepath", "--edges", "normal", "--prefix", "none", "--no-dedupe", "--locked"];
+/// What the archive holds is in a folder of this name.
+fn archived() -> String {
+    format!("truepath-{}-x86_64-linux", env!("CARGO_PKG_VERSION"))
+}
+
+/// Every crate that is linked into the program or the module of a package, as CycloneDX 1.5 has it.
+fn bill_of_materials(of_package: &str, version: &str) -> Result<Value, Failure> {
+    let tree = ["tree", "--package", of_package, "--edges", "normal", "--prefix", "none", "--no-dedupe", "--locked"];
     let text = read(cargo().args(tree).args(["--target", TRIPLE, "--format", "{p}|{l}"]))?;
     let mut rows: Vec<(&str, &str, &str)> = Vec::new();
     for line in text.lines() {
@@ -179,7 +197,7 @@ fn bill_of_materials(version: &str) -> Result<Value, Failure> {
     rows.dedup();
     let components: Vec<Value> = rows
         .into_iter()
-        .filter(|(name, ..)| *name != "truepath")
+        .filter(|(name, ..)| *name != of_package)
         .map(|(name, of, licence)| {
             let place = format!("pkg:cargo/{name}@{of}");
             json!({
@@ -192,7 +210,7 @@ fn bill_of_materials(version: &str) -> Result<Value, Failure> {
     Ok(json!({
         "bomFormat": "CycloneDX", "specVersion": "1.5", "version": 1,
         "metadata": { "component": {
-            "type": "application", "bom-ref": "truepath", "name": "truepath", "version": version,
+            "type": if of_package == "truepath" { "application" } else { "library" }, "bom-ref": of_package, "name": of_package, "version": version,
             "licenses": [{ "expression": "MIT OR Apache-2.0" }],
         } },
         "components": components,
@@ -230,12 +248,11 @@ fn installed_used_removed(package: &Path, place: &Path) -> Result<(), Failure> {
 }
 
 /// Unpacks the archive and uses it.
-fn unpacked_used(folder: &Path) -> Outcome {
-    let archive = format!("truepath-{}-x86_64-linux", env!("CARGO_PKG_VERSION"));
+fn unpacked_used(folder: &Path) -> Result<(), Failure> {
+    let archive = archived();
     let name = folder.join(format!("{archive}.tar.gz"));
     run(program("tar").arg("--extract").arg("--file").arg(name).arg("--directory").arg(folder))?;
-    used(&folder.join(archive))?;
-    Ok(Passed::Done)
+    used(&folder.join(archive))
 }
 
 /// A stranger's first minutes with what lies there: a page of the manual, completions, and a corrected part.
@@ -288,7 +305,7 @@ mod tests {
 
     #[test]
     fn the_bill_names_the_crates_that_are_linked_in_once_each_with_a_licence() {
-        let bill = bill_of_materials("1.2.3").unwrap();
+        let bill = bill_of_materials("truepath", "1.2.3").unwrap();
         let parts = bill["components"].as_array().unwrap();
         let names: Vec<&str> = parts.iter().filter_map(|part| part["name"].as_str()).collect();
         assert!(["truepath-core", "clap", "serde"].iter().all(|name| names.contains(name)), "{names:?}");

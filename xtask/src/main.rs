@@ -24,6 +24,7 @@ mod step;
 mod table;
 mod toolchain;
 mod web;
+mod wheel;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -204,7 +205,7 @@ enum Task {
         #[arg(long)]
         fast: bool,
     },
-    /// Packages to install: archive, Debian packages, checksums and a list of all parts, in target/packages.
+    /// Packages to install: archive, Debian packages, a wheel for Python, checksums and a list of all parts, in target/packages.
     Dist {
         /// With the program of the tests instead: makes, installs, uses and removes them.
         #[arg(long)]

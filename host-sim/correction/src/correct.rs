@@ -99,8 +99,7 @@ pub fn correct_every(
     let both = walls.iter().zip(&sampled);
     let cuts = both.map(|(wall, path)| MeasuredCut { pass: wall.pass, path, measurement: wall.measurement });
     let cuts: Vec<MeasuredCut> = cuts.collect();
-    let identified = identify_together(&cuts, |share| progress(0.1 * share))?;
-    let (identified, along, _) = beside(&cuts, identified, |share| progress(0.1 + 0.1 * share));
+    let (identified, along) = identify_cuts(&cuts, |share| progress(0.2 * share))?;
     let identified =
         walls.iter().zip(&sampled).zip(identified).zip(&along).map(|(((wall, path), identified), along)| {
             let remarks = Remarks::of(wall.measurement, wall.remarks, MeasuredPart::Uncorrected);
@@ -111,6 +110,37 @@ pub fn correct_every(
             IdentifiedWall { pass: wall.pass, path, identified, request, remarks }
         });
     correct_identified(identified.collect(), routes, progress)
+}
+
+/// Machine and material from the points of the walls of one uncorrected part, as [`correct_every`] takes them: one result for each
+/// wall, with its own points.
+///
+/// # Errors
+/// What is wrong with program or measurement, and points that do not fit the job.
+pub fn identify_every(
+    walls: &[MeasuredWall<'_>],
+    progress: &mut dyn FnMut(f64),
+) -> Result<Vec<Identification>, Failure> {
+    let passes = as_told(walls)?;
+    let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
+    let mut sampled = Vec::new();
+    for (pass, buffer) in passes.iter().zip(&mut buffers) {
+        sampled.push(pass.sample(buffer)?);
+    }
+    let parts = walls.iter().zip(&passes).zip(&sampled);
+    let cuts = parts.map(|((wall, pass), path)| MeasuredCut { pass, path, measurement: wall.measurement });
+    let cuts: Vec<MeasuredCut> = cuts.collect();
+    Ok(identify_cuts(&cuts, progress)?.0)
+}
+
+/// Machine and material of an uncorrected part with the points of each wall, and what is beside them along each.
+fn identify_cuts(
+    cuts: &[MeasuredCut<'_>],
+    mut progress: impl FnMut(f64),
+) -> Result<(Vec<Identification>, Vec<Along>), Failure> {
+    let identified = identify_together(cuts, |share| progress(0.5 * share))?;
+    let (identified, along, _) = beside(cuts, identified, |share| progress(0.5 + 0.5 * share));
+    Ok((identified, along))
 }
 
 /// A pass as the points of an uncorrected part have it: its cutter's runout, the stock that roughing left.

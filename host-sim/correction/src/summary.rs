@@ -285,7 +285,8 @@ pub fn correct_summary(
 /// A value that lies farther than this many prior standard deviations from what was believed is what the points say.
 const MOVED: f64 = 2.0;
 
-fn parameters(identified: &Identification) -> BTreeMap<&'static str, Parameter> {
+/// What was identified, by name.
+pub fn parameters(identified: &Identification) -> BTreeMap<&'static str, Parameter> {
     let (fitted, believed) = (&identified.fit().parameters, &identified.prior().mean);
     let (values, prior) = (fitted.values(), believed.values());
     let (sigma, prior_sigma) = (identified.prior().deviations(fitted), identified.prior().deviations(believed));

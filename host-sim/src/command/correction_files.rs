@@ -20,7 +20,7 @@ use super::readings::{DIMENSIONS, PROBE, Readings};
 /// The measured part as it was milled; `learn` writes it.
 pub(super) const MILLED: &str = "milled.csv";
 /// Files that these commands may write.
-pub(super) const FILES: &[&str] = &[
+pub const FILES: &[&str] = &[
     HISTORY,
     "corrected.nc",
     "*.corrected*",

@@ -74,6 +74,9 @@ pub struct ProbeFlags {
     /// Go on although the points do not fit the job (Q009).
     #[arg(long)]
     pub force_data: bool,
+    /// Whether columns are in millimetres whatever the job says. No flag: for programs that hand over numbers of their own.
+    #[arg(skip)]
+    pub millimetres: bool,
 }
 
 impl ProbeFlags {
@@ -106,7 +109,7 @@ impl ProbeFlags {
             decimal: self.decimal.unwrap_or(said.decimal),
             frame: self.frame.unwrap_or(said.frame),
             point: self.point.unwrap_or(said.point),
-            unit: said.unit,
+            unit: if self.millimetres { LengthUnit::Millimetre } else { said.unit },
         };
         let probe = Probe { format, layout: Some(layout), ..probe };
         contradiction(&probe).map_or(Ok(probe), |wrong| Err(refused(wrong)))

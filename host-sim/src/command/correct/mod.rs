@@ -1,5 +1,6 @@
 //! `correct`: from a probe file to the corrected program or the correction image.
 
+mod identify;
 mod several;
 
 use std::path::{Path as FilePath, PathBuf};
@@ -21,13 +22,15 @@ use truepath_report::page::render;
 use truepath_report::pages;
 use truepath_report::pages::{Points, REPORT};
 
-use super::correction_files::{FILES, HISTORY, commit, write_contour, write_program};
+pub use super::correction_files::FILES;
+use super::correction_files::{HISTORY, commit, write_contour, write_program};
 use super::history::refuse_replacing;
 use super::pocket;
 use super::readings::{Readings, apart};
 #[cfg(not(target_family = "wasm"))]
 use super::store::{believe::believing, keep::keep};
 use crate::terminal::Terminal;
+pub use identify::{Identified, Point, identify};
 use truepath_report::next::after_correction;
 
 /// What is corrected.
