@@ -188,8 +188,7 @@ class Arrays(Wheel):
         for part in ["corner-helix", "plate"]:
             job, probe = truepath.Job.read(PARTS / part / "job.toml"), PARTS / part / "probe.txt"
             found, done = truepath.identify(job, probe), truepath.correct(job, probe)
-            summary = done.summary if part != "plate" else done.summary["contours"][0]["summary"]
-            told = {name: truepath.Parameter(**values) for name, values in summary["identified"].items()}
+            told = {name: truepath.Parameter(**values) for name, values in done.summary["identified"].items()}
             self.assertEqual(found.parameters, told)
             np.testing.assert_allclose(found.residual_mm, found.measured_mm - found.predicted_mm, atol=1e-9)
             self.assertLess(np.sqrt(np.mean(found.residual_mm**2)), 0.1)
