@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::control::{Chart, quantile, share_below};
 pub use crate::filter::Cause;
 use crate::filter::{DATUM, Estimate, Filtered, LEVEL, LEVEL_SLOPE, SIZE, SIZE_SLOPE, Step, follow};
-use crate::series::{Event, Place, Series, any_is_pushed};
+use crate::series::{Event, Part, Place, Series, any_is_pushed};
 
 /// What is asked of a batch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ impl Default for Request {
 }
 
 /// A value and its standard deviation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Known {
     /// The value.
     pub value: f64,
@@ -38,8 +38,20 @@ pub struct Known {
     pub sigma: f64,
 }
 
+/// The worst reading of a part: farthest beyond a limit or nearest to one, without a tolerance the largest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Worst {
+    /// Where.
+    pub place: Place,
+    /// Deviation there, mm.
+    pub error_mm: f64,
+    /// Whether all readings of the part are in tolerance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub in_tolerance: Option<bool>,
+}
+
 /// What moved until a part, since the first one.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Number of the part.
     pub part: u32,
@@ -49,12 +61,17 @@ pub struct State {
     pub radius_lost_mm: Known,
     /// Datum along X and Y, mm.
     pub datum_mm: [Known; 2],
+    /// Its readings.
+    pub readings: usize,
+    /// The worst of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub worst: Option<Worst>,
     /// Readings set aside as wild.
     pub wild: usize,
     /// Whether it did not go on as the parts before.
     pub step: bool,
     /// What happened before it.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<Event>,
 }
 
@@ -74,7 +91,7 @@ pub struct PlaceChart {
 }
 
 /// What asks for action.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Alarm {
     /// A reading of the last part is out of tolerance.
@@ -204,7 +221,7 @@ impl Batch {
             touched: series.parts.len(),
             noise_mm: filtered.noise_mm,
             tolerance_mm: request.tolerance_mm,
-            states: states(series, &filtered),
+            states: states(series, &filtered, request.tolerance_mm),
             wear_per_part: known(last, LEVEL_SLOPE),
             leaves_at_part: leaving.map(|leaves| leaves.part),
             next_in_tolerance: in_tolerance,
@@ -338,12 +355,14 @@ fn known(estimate: &Estimate, state: usize) -> Known {
     Known { value: estimate.mean[state], sigma: estimate.sigma(state) }
 }
 
-fn states(series: &Series, filtered: &Filtered) -> Vec<State> {
-    let one = |(estimate, part): (&Estimate, &crate::series::Part)| State {
+fn states(series: &Series, filtered: &Filtered, tolerance: Option<[f64; 2]>) -> Vec<State> {
+    let one = |(estimate, part): (&Estimate, &Part)| State {
         part: estimate.number,
         force_level: known(estimate, LEVEL),
         radius_lost_mm: known(estimate, SIZE),
         datum_mm: [known(estimate, DATUM), known(estimate, DATUM + 1)],
+        readings: part.readings.len(),
+        worst: worst(series, part, tolerance),
         wild: estimate.wild.len(),
         step: estimate.step.is_some(),
         events: part.events.clone(),
@@ -357,13 +376,19 @@ fn step(estimate: &Estimate) -> Option<Alarm> {
     Some(Alarm::Step { part: estimate.number, cause, change: Known { value: change, sigma } })
 }
 
+/// The worst reading of a part.
+fn worst(series: &Series, part: &Part, tolerance: Option<[f64; 2]>) -> Option<Worst> {
+    let beyond = |error: f64| tolerance.map_or(error.abs(), |[low, high]| (error - high).max(low - error));
+    let (place, error_mm) = *part.readings.iter().max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1)))?;
+    let in_tolerance = tolerance.map(|_| beyond(error_mm) <= 0.0);
+    Some(Worst { place: series.places[place].clone(), error_mm, in_tolerance })
+}
+
 /// The worst reading of the last part, where it is out of tolerance.
-fn out_of(series: &Series, [low, high]: [f64; 2]) -> Option<Alarm> {
+fn out_of(series: &Series, tolerance: [f64; 2]) -> Option<Alarm> {
     let part = series.parts.last()?;
-    let beyond = |error: f64| (error - high).max(low - error);
-    let (place, error) = part.readings.iter().max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1)))?;
-    let place = series.places[*place].clone();
-    (beyond(*error) > 0.0).then_some(Alarm::OutOfTolerance { part: part.number, place, error_mm: *error })
+    let Worst { place, error_mm, in_tolerance } = worst(series, part, Some(tolerance))?;
+    (in_tolerance == Some(false)).then_some(Alarm::OutOfTolerance { part: part.number, place, error_mm })
 }
 
 /// Readings of the last part that were set aside.

@@ -4,7 +4,7 @@
 const SAME: [f64; 2] = [1.0, 1.0];
 
 /// A place of the wall that is touched on several parts.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Place {
     /// The contour, where there are several.
     #[serde(skip_serializing_if = "Option::is_none")]

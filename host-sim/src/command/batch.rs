@@ -62,6 +62,9 @@ pub struct Report {
     pub batch: Batch,
     /// The same in words, the most urgent first.
     pub words: Vec<String>,
+    /// What to do about the most urgent alarm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<String>,
     /// The page.
     pub page: PathBuf,
     /// What the user should know.
@@ -72,7 +75,7 @@ pub struct Report {
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     let report = run(options)?;
     terminal.warn_all(&report.warnings);
-    terminal.tell(&report, || words(&report, options))?;
+    terminal.tell(&report, || words(&report))?;
     match report.batch.alarms.first() {
         None => Ok(()),
         Some(alarm) => {
@@ -82,7 +85,7 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
     }
 }
 
-fn words(report: &Report, options: &Options) -> String {
+fn words(report: &Report) -> String {
     let batch = &report.batch;
     let mut text = format!("{} parts touched, {} to {}\n", batch.touched, batch.parts[0], batch.parts[1]);
     for said in &report.words {
@@ -95,20 +98,24 @@ fn words(report: &Report, options: &Options) -> String {
         );
     }
     text += &format!("written to {}\n", report.page.display());
+    if let Some(next) = &report.next {
+        text += &format!("next: {next}\n");
+    }
+    text
+}
+
+/// What to do about the most urgent alarm.
+fn next(batch: &Batch, options: &Options) -> Option<String> {
     let from = options.from.as_ref().map_or_else(|| "DIR".to_owned(), |from| from.display().to_string());
     let job = options.job.display();
-    let next = batch.alarms.first().map(|alarm| match alarm {
+    batch.alarms.first().map(|alarm| match alarm {
         Alarm::Step { cause: Cause::Datum, .. } => "look at clamping, probe and work offset before the next part".to_owned(),
         Alarm::Step { cause: Cause::ForceLevel, .. } => {
             format!("if it is another lot or another cutter, correct anew from one uncorrected part; else truepath learn {job} --probe FILE --from {from} -o NEXT")
         }
         Alarm::Wild { .. } => "touch the part again at these places".to_owned(),
         _ => format!("put in a new cutter, or correct for what moved: truepath learn {job} --probe FILE --from {from} -o NEXT"),
-    });
-    if let Some(next) = next {
-        text += &format!("next: {next}\n");
-    }
-    text
+    })
 }
 
 /// One line of the table.
@@ -178,7 +185,8 @@ pub fn run(options: &Options) -> Result<Report, Failure> {
         pass.job.part.names.name.clone().unwrap_or_else(|| pass.program.name().to_owned())
     });
     folder.write("batch.html", batch_page(&batch, &name)?.as_bytes())?;
-    let report = Report { words: batch.words(), batch, page: options.output.join("batch.html"), warnings };
+    let (words, next) = (batch.words(), next(&batch, options));
+    let report = Report { words, next, batch, page: options.output.join("batch.html"), warnings };
     folder.write("summary.json", &json(&report)?)?;
     folder.commit()?;
     Ok(report)
