@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use truepath_ground::diagnostics::{Failure, InputError};
@@ -186,8 +186,10 @@ impl Publisher {
 
     /// Says that nobody follows any more, where somebody did, and ends; it may take so long.
     pub fn end(mut self, within: Duration) -> Counts {
-        self.adapter.take().into_iter().for_each(|adapter| adapter.close(within));
-        self.broker.take().map_or_else(Counts::default, |broker| broker.close(within).1)
+        let begin = Instant::now();
+        self.adapter.take().into_iter().for_each(|adapter| adapter.close(within / 2));
+        let left = within.saturating_sub(begin.elapsed());
+        self.broker.take().map_or_else(Counts::default, |broker| broker.close(left).1)
     }
 
     /// Waits until the broker has everything that was sent once.
