@@ -6,7 +6,7 @@
 //! | `truepath-VERSION-x86_64-linux.tar.gz` | the program, linked statically, and what belongs to it |
 //! | `truepath_VERSION_amd64.deb` | the same for Debian and Ubuntu |
 //! | `truepath-linuxcnc_VERSION_amd64.deb` | component, M-codes and the operator's side for LinuxCNC, built for the installed one |
-//! | `truepath-VERSION-cp39-abi3-….whl` | the package for Python ([`wheel`](crate::wheel)) |
+//! | `truepath-VERSION-cp39-abi3-….whl` | the package for Python ([`wheel`]) |
 //! | `truepath-VERSION.cdx.json` | every crate that is linked in, with version and licence |
 //! | `truepath-python-VERSION.cdx.json` | the same of the wheel |
 //! | `SHA256SUMS` | of all of them |
