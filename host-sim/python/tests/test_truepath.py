@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import signal
 import threading
 import time
 import unittest
@@ -304,6 +305,9 @@ class AtWork(Wheel):
             truepath.correct(self.job, self.probe, progress=enough)
 
     def test_ctrl_c_is_heard(self):
+        # What is started in the background of a shell ignores it, and Python then does not listen.
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGINT, before)
         timer = threading.Timer(0.1, interrupt_main)
         timer.start()
         began = time.monotonic()

@@ -4,7 +4,7 @@ use truepath_core::cut::{Path, Sample};
 use truepath_core::identify::COUNT;
 use truepath_core::job;
 use truepath_core::units::Offset;
-use truepath_ground::units::{float, mm, nm};
+use truepath_ground::units::{float, mm, nm, rounded};
 
 use super::allowance::Allowance;
 use super::evidence::{Factored, Task, discrepancy};
@@ -353,8 +353,9 @@ impl Discrepancy {
         let (sigma, repeat) = (0..features.len()).map(deviation).map(|[sigma, repeat]| (sigma, repeat)).unzip();
         let by_load = ByLoad {
             mean: features.iter().map(|feature| nm(self.by_load_at(feature))).collect(),
-            share: features.iter().map(|feature| self.share_of_load(feature)).collect(),
-            level: self.mean_over(|of| of.kernel.next_level().powi(2)).sqrt(),
+            // The exponentials of a browser have other last bits than those of a system.
+            share: features.iter().map(|feature| rounded(self.share_of_load(feature), 9)).collect(),
+            level: rounded(self.mean_over(|of| of.kernel.next_level().powi(2)).sqrt(), 9),
         };
         Along { mean, rest, stock, sigma, repeat, by_load }
     }

@@ -102,9 +102,9 @@ impl Uncertain {
         let beside = self.beside.as_ref().map_or(0.0, |beside| {
             let even =
                 at.checked_div(self.heights).and_then(|place| beside.places.get(place)).map_or(0.0, |place| place.1);
-            even.hypot(beside.load.get(at).copied().unwrap_or_default())
+            together(even, beside.load.get(at).copied().unwrap_or_default())
         });
-        [square(&self.noise).sqrt(), square(&self.lacking).sqrt().hypot(beside)]
+        [square(&self.noise).sqrt(), together(square(&self.lacking).sqrt(), beside)]
     }
 
     /// Draws the largest error.
@@ -161,10 +161,15 @@ impl Beside {
             let (knot, u) = ((s / self.reach_mm) as usize, (s / self.reach_mm).fract());
             let [before, behind] = [knot, knot + 1].map(|k| knots.get(k).copied().unwrap_or_default());
             // Between two knots the deviation is that at them.
-            (before * (1.0 - u) + behind * u) / (1.0 - u).hypot(u)
+            (before * (1.0 - u) + behind * u) / together(1.0 - u, u)
         };
         self.places.iter().map(at).collect()
     }
+}
+
+/// Two deviations together; the `hypot` of a browser has other last bits than that of a system.
+fn together(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
 }
 
 /// Draws of a quantity.
