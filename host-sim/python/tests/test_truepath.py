@@ -7,10 +7,10 @@ import json
 import math
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
-import signal
 import threading
 import time
 import unittest
