@@ -134,7 +134,7 @@ fn in_the_tail(prior: &Prior, fit: &Fit) -> Option<Parameters> {
     let weight = float(prior_weights(&fit.theta)[size]);
     let by_points = (1.0 / variance.max(1e-9) - weight).max(0.0);
     let farther = 1.0 / (by_points + TAIL.powi(-2)) - variance;
-    (farther > 0.0).then(|| {
+    (farther > 0.0 && variance > 0.0).then(|| {
         let step = farther.sqrt() / variance;
         let mut theta = fit.theta;
         theta.iter_mut().zip(&covariance).for_each(|(theta, row)| *theta += real(row[size] * step));
