@@ -134,7 +134,7 @@ pub(crate) fn add(on: &mut dyn Backend, found: &Found, setup: &Setup) -> Result<
 
 /// Rows of machine, holder, cutter and material.
 fn shop(on: &mut dyn Backend, facts: &FactTexts, setup: &Setup) -> Result<Shop, Failure> {
-    let StoreNames { make, machine, holder, cutter, material, lot, serial: _ } = &setup.names;
+    let StoreNames { make, machine, holder, cutter, material, lot, cutter_serial: _, serial: _ } = &setup.names;
     let cutter = match cutter {
         None => None,
         Some(article) => {
@@ -179,6 +179,7 @@ fn add_part(
 ) -> Result<Stored, Failure> {
     let cut_with = part.correction.as_ref().map(|nodes| correction(on, job, nodes)).transpose()?;
     let serial = setup.names.serial.as_ref().filter(|_| last);
+    let very_cutter = setup.names.cutter_serial.as_ref();
     let by =
         [("job", job.into()), ("number", i64::from(part.number).into()), ("probe_crc32", (&part.probe_crc32).into())];
     let more = [
@@ -187,6 +188,7 @@ fn add_part(
         ("machine", shop.machine.into()),
         ("holder", shop.holder.into()),
         ("cutter", shop.cutter.into()),
+        ("cutter_serial", very_cutter.into()),
         ("material", shop.material.into()),
         ("cut_nm", cut_nm.into()),
         ("stored", now().into()),
@@ -203,8 +205,8 @@ fn add_part(
             on.change(cut, &values![row.integer(0)?, cutter])?;
         }
         let say = "UPDATE part SET serial = COALESCE(serial, $1), machine = COALESCE(machine, $2), holder = COALESCE(holder, $3), \
-                   cutter = COALESCE(cutter, $4), material = COALESCE(material, $5) WHERE id = $6";
-        on.change(say, &values![serial, shop.machine, shop.holder, shop.cutter, shop.material, id])?;
+                   cutter = COALESCE(cutter, $4), material = COALESCE(material, $5), cutter_serial = COALESCE(cutter_serial, $6) WHERE id = $7";
+        on.change(say, &values![serial, shop.machine, shop.holder, shop.cutter, shop.material, very_cutter, id])?;
     }
     let by = [("part", id.into()), ("hash", part.hash().into())];
     let more = [("sigma_nm", part.sigma_nm.into()), ("readings", (part.readings.len() as i64).into())];

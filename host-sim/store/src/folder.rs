@@ -135,8 +135,7 @@ fn identified(summary: &serde_json::Value) -> Option<BTreeMap<String, (f64, f64)
 
 /// What its points say; `None` where it cannot be what points say.
 fn said(summary: &serde_json::Value) -> Option<String> {
-    let said: Said = serde_json::from_value(summary.get("points_say")?.clone()).ok()?;
-    said.check().ok()?;
+    let said = Said::read(summary.get("points_say")?.clone()).ok()?;
     json(&said).ok()
 }
 

@@ -35,9 +35,12 @@ impl FactTexts {
     }
 
     pub(crate) fn of_facts(facts: &Facts) -> Result<Self, Failure> {
-        let json = json(facts)?;
-        let pairs = of_json(&json)?;
-        Ok(Self { json, pairs })
+        Self::read(&json(facts)?)
+    }
+
+    /// Of a row of the store.
+    pub(crate) fn read(json: &str) -> Result<Self, Failure> {
+        Ok(Self { json: json.to_owned(), pairs: of_json(json)? })
     }
 
     /// A fact; empty where there is none.

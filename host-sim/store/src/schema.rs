@@ -12,11 +12,14 @@ use crate::value::{Value, values};
 pub(crate) type Migration = (i64, &'static str);
 
 /// All of them in their order.
-pub(crate) const MIGRATIONS: &[Migration] =
-    &[(1, include_str!("../migrations/0001_tables.sql")), (2, include_str!("../migrations/0002_said.sql"))];
+pub(crate) const MIGRATIONS: &[Migration] = &[
+    (1, include_str!("../migrations/0001_tables.sql")),
+    (2, include_str!("../migrations/0002_said.sql")),
+    (3, include_str!("../migrations/0003_cutter_serial.sql")),
+];
 
 /// The version this program works with.
-pub const VERSION: i64 = 2;
+pub const VERSION: i64 = 3;
 
 /// The statements that make the roles of PostgreSQL; may be given again and again.
 pub(crate) const ROLES: &str = include_str!("../migrations/roles.sql");

@@ -53,7 +53,7 @@ fn parts_go_into_a_store_and_come_out_as_they_were() {
     desk.call("correct job.toml --probe part-1.txt -o first");
     assert!(desk.run("store status").expect_err("no store is named").contains("O007"));
     assert!(desk.run("store status --store shop.db").expect_err("none there").contains("O002"));
-    assert_eq!(desk.call("store init --store shop.db")["schema_version"], 2);
+    assert_eq!(desk.call("store init --store shop.db")["schema_version"], 3);
     let imported = desk.call("store import . --store shop.db --machine VF2 --cutter A20");
     assert_eq!((&imported["new_parts"], &imported["known"]), (&1.into(), &0.into()));
     let again = desk.call("store import first . --store shop.db");
@@ -161,9 +161,18 @@ fn what_a_machine_has_shown_on_one_job_is_worth_something_on_the_next() {
     desk.write("program.nc", program.replacen('%', "%\n(another part)", 1));
     desk.touch(&[20.0, 28.0], None, "few.txt");
     let shop = desk.call("correct job.toml --probe few.txt -o shop");
-    let began = "the fit began at what 1 other parts of the store shop.db say";
+    let began = "the fit begins at what 1 other parts of the store shop.db say";
     assert!(shop["warnings"].to_string().contains(began), "{}", shop["warnings"]);
+    // Where to touch it follows from what is left open.
+    let open = |more: &str| {
+        let plan = desk.call(&format!("probe job.toml --dialect linuxcnc -o touch.ngc --points 4 --force{more}"));
+        (plan["wall_sigma_before_mm"].as_f64().expect("a number"), plan["warnings"].to_string())
+    };
+    let ((open_to_shop, said), (_, away)) = (open(""), open(" --store missing.db"));
+    assert!(said.contains(began) && away.contains("the store does not answer"), "{said} {away}");
     desk.write("job.toml", own(""));
+    let (open_alone, said) = open("");
+    assert!(open_to_shop < 0.5 * open_alone && !said.contains("store"), "{open_to_shop} {open_alone} {said}");
     let alone = desk.call("correct job.toml --probe few.txt -o alone");
     assert!(!alone["warnings"].to_string().contains("the store"), "{}", alone["warnings"]);
     let sigma = |summary: &serde_json::Value| summary["identified"]["compliance"]["sigma"].as_f64().expect("a number");

@@ -278,7 +278,7 @@ impl Prior {
                 mean * (c.cross / c.mean + cross),
                 (c.bend + bend).max(-Real::HALF),
             ),
-            undersize: Offset::from_mm(radius),
+            undersize: self.mean.undersize + Offset::from_mm(radius),
             datum: Vector { x: Offset::from_mm(dx), y: Offset::from_mm(dy) },
         }
     }

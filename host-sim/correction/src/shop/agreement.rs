@@ -73,7 +73,7 @@ impl Agreement {
     fn words(&self) -> String {
         let (quantity, sigmas) = self.farthest;
         format!(
-            "{CONTRADICTED}, most of all about {} (by {sigmas:.1} standard deviations): the correction follows the points; see that machine, holder and material in [store] are those of this part",
+            "{CONTRADICTED}, most of all about {} (by {sigmas:.1} standard deviations): the correction follows the points; see that machine, holder, cutter and material in [store] are those of this part",
             quantity.words()
         )
     }

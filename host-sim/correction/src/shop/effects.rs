@@ -22,6 +22,8 @@ pub struct Setting {
     pub material: String,
     /// The lot of the material.
     pub lot: String,
+    /// The very cutter, with the size that is stated of it: ground again, it is another one.
+    pub cutter: String,
 }
 
 /// A job that was measured.
@@ -48,10 +50,12 @@ const OF_MATERIAL: [f64; 2] = [0.3, 0.7];
 /// The machine's share of what is not known of the yield; the rest is the material's.
 const MACHINE_OF_YIELD: f64 = 0.7;
 /// What scatters from job to job on one machine in one material, one standard deviation: wear, lots, clamping, and what the model lacks.
-const SCATTER: Quantities = [0.10, 0.03, 0.02, 0.08, 0.20, 0.12, 0.03, 0.03];
-
-/// What of this is a lot of the material by itself, one standard deviation: another one cuts some per cent harder.
-const OF_LOT: Quantities = [0.05, 0.0, 0.0, 0.04, 0.10, 0.06, 0.0, 0.015];
+/// A cutter wears, and runs out otherwise each time it is clamped.
+const SCATTER: Quantities = [0.10, 0.03, 0.02, 0.08, 0.20, 0.12, 0.03, 0.03, 0.002];
+/// What of this is a very cutter by itself, one standard deviation: how far it is worn, its edges above all.
+const OF_CUTTER: Quantities = [0.05, 0.0, 0.0, 0.0, 0.12, 0.0, 0.0, 0.0, 0.0];
+/// What of it is a lot of the material by itself, one standard deviation: another one cuts some per cent harder.
+const OF_LOT: Quantities = [0.05, 0.0, 0.0, 0.04, 0.10, 0.06, 0.0, 0.015, 0.0];
 
 /// A random effect on the quantities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,14 +68,21 @@ enum Effect<'s> {
     Mounting(&'s str, &'s str),
     Material(&'s str),
     Lot(&'s str, &'s str),
+    Cutter(&'s str),
 }
 
 impl Effect<'_> {
     /// Its variance in a quantity of which a job states one standard deviation; 0 for one that it does not act on.
     fn variance(self, quantity: Quantity, sigma: f64) -> f64 {
+        if sigma > 0.0 { self.of_scatter(quantity) + self.share(quantity) * sigma * sigma } else { 0.0 }
+    }
+
+    /// Its part of what otherwise scatters from job to job, as a variance.
+    fn of_scatter(self, quantity: Quantity) -> f64 {
         match self {
-            Self::Lot(..) if sigma > 0.0 => OF_LOT[quantity as usize].powi(2),
-            _ => self.share(quantity) * sigma * sigma,
+            Self::Lot(..) => OF_LOT[quantity as usize].powi(2),
+            Self::Cutter(_) => OF_CUTTER[quantity as usize].powi(2),
+            _ => 0.0,
         }
     }
 
@@ -81,6 +92,8 @@ impl Effect<'_> {
             Quantity::Yield => MACHINE_OF_YIELD,
             Quantity::Difference | Quantity::Cross | Quantity::Bend => 1.0,
             Quantity::RadialRatio | Quantity::EdgeLevel | Quantity::EdgeRatio | Quantity::SizeExponent => 0.0,
+            // The size of a cutter is neither machine's nor material's.
+            Quantity::Undersize => return if matches!(self, Self::Cutter(_)) { 1.0 } else { 0.0 },
         };
         match self {
             Self::MachinesOfShop => machine * OF_MACHINE[0],
@@ -89,7 +102,7 @@ impl Effect<'_> {
             Self::Mounting(..) => machine * OF_MACHINE[3],
             Self::MaterialsOfShop => (1.0 - machine) * OF_MATERIAL[0],
             Self::Material(_) => (1.0 - machine) * OF_MATERIAL[1],
-            Self::Lot(..) => 0.0,
+            Self::Lot(..) | Self::Cutter(_) => 0.0,
         }
     }
 }
@@ -113,6 +126,9 @@ impl Setting {
                 effects.push(Effect::Lot(&self.material, &self.lot));
             }
         }
+        if !self.cutter.is_empty() {
+            effects.push(Effect::Cutter(&self.cutter));
+        }
         effects
     }
 
@@ -121,9 +137,9 @@ impl Setting {
         let shared = self.effects();
         let own = |quantity: Quantity| {
             let named: f64 = shared.iter().map(|effect| effect.share(quantity)).sum();
+            let of_scatter: f64 = shared.iter().map(|effect| effect.of_scatter(quantity)).sum();
             let k = quantity as usize;
-            let of_lot = if shared.iter().any(|effect| matches!(effect, Effect::Lot(..))) { OF_LOT[k] } else { 0.0 };
-            SCATTER[k] * SCATTER[k] - of_lot * of_lot + (1.0 - named).max(0.0) * sigma[k] * sigma[k]
+            SCATTER[k] * SCATTER[k] - of_scatter + (1.0 - named).max(0.0) * sigma[k] * sigma[k]
         };
         Quantity::ALL.map(own)
     }
@@ -278,6 +294,8 @@ fn apart(stated: &Quantities, ln_ktc: f64) -> Apart {
             Quantity::RadialRatio | Quantity::EdgeLevel | Quantity::EdgeRatio | Quantity::SizeExponent => {
                 apart[0][k] = 0.0;
             }
+            // A cutter is known with its stated size.
+            Quantity::Undersize => (apart[0][k], apart[1][k]) = (0.0, 0.0),
         }
     }
     apart
@@ -359,6 +377,7 @@ mod tests {
             mounting: "short".to_owned(),
             material: material.to_owned(),
             lot: String::new(),
+            cutter: String::new(),
         }
     }
 
@@ -436,6 +455,34 @@ mod tests {
         let other = Setting { material: "Y".to_owned(), ..of_lot("9") };
         let [a, b] = [elsewhere, other].map(|setting| expected(&shop, &setting, &prior, Quantity::Yield)[0]);
         assert!((a - b).abs() < 1e-9, "{a} {b}");
+    }
+
+    #[test]
+    fn the_size_of_a_cutter_is_known_from_what_it_cut_elsewhere() {
+        let prior = stated(3000, 1000);
+        let with = |cutter: &str, machine: &str| Setting { cutter: cutter.to_owned(), ..setting(machine, "X") };
+        // Cutter 1 is 12 µm smaller than stated, and worn; 2 is neither; one without a number is as stated.
+        let job = |(cutter, machine, small, worn): (&str, &str, f64, f64)| Member {
+            setting: with(cutter, machine),
+            ..member(machine, "X", &prior, &[(Quantity::Undersize, small, 0.002), (Quantity::EdgeLevel, worn, 0.05)])
+        };
+        let jobs = [("1", "A", 0.012, 0.2), ("1", "B", 0.012, 0.2), ("2", "A", 0.0, 0.0), ("", "B", 0.0, 0.0)];
+        let shop = Shop { members: jobs.map(job).to_vec() };
+        let of = |cutter: &str, quantity| expected(&shop, &with(cutter, "C"), &prior, quantity);
+        let [small, sure] = of("1", Quantity::Undersize);
+        assert!((small - 0.0105).abs() < 0.0015, "{small}");
+        // As one standard deviation of a Gaussian; less than what is believed of a cutter that nobody knows.
+        assert!(sure < 0.85 * sigmas(&prior)[Quantity::Undersize as usize], "{sure}");
+        assert!(of("2", Quantity::Undersize)[0].abs() < 0.002);
+        for unknown in ["3", ""] {
+            assert_eq!(of(unknown, Quantity::Undersize), [0.0, sigmas(&prior)[Quantity::Undersize as usize]]);
+        }
+        let edges = |cutter| of(cutter, Quantity::EdgeLevel)[0];
+        assert!(edges("1") > edges("3") + 0.02 && edges("3") > edges("2") + 0.005, "{} {}", edges("1"), edges("2"));
+        // The fit begins there.
+        let (prior, _) = shop.believed(&with("1", "C"), &prior).expect("something is known");
+        let undersize = prior.at(&Default::default()).undersize;
+        assert!((truepath_ground::units::mm(undersize) - small).abs() < 1e-6);
     }
 
     #[test]

@@ -6,11 +6,11 @@
 
 use truepath_core::cut::Compliance;
 use truepath_core::identify::{Parameters, Prior};
-use truepath_core::units::Real;
-use truepath_ground::units::{float, real};
+use truepath_core::units::{Offset, Real};
+use truepath_ground::units::{float, mm, real};
 
 /// How many there are.
-pub const QUANTITIES: usize = 8;
+pub const QUANTITIES: usize = 9;
 
 /// Values of all, in the order of [`Quantity::ALL`].
 pub type Quantities = [f64; QUANTITIES];
@@ -34,10 +34,12 @@ pub enum Quantity {
     Bend,
     /// Size exponent of the chip.
     SizeExponent,
+    /// How much smaller than stated the cutter is, mm.
+    Undersize,
 }
 
 impl Quantity {
-    /// All, in the order of [`Quantities`]; that of a fit's parameters, which end with the cutter's undersize and the datum of a part.
+    /// All, in the order of [`Quantities`]; that of a fit's parameters, which end with the datum of a part.
     pub const ALL: [Self; QUANTITIES] = [
         Self::Yield,
         Self::Difference,
@@ -47,6 +49,7 @@ impl Quantity {
         Self::EdgeRatio,
         Self::Bend,
         Self::SizeExponent,
+        Self::Undersize,
     ];
 
     /// What it is called in a sentence.
@@ -60,6 +63,7 @@ impl Quantity {
             Self::EdgeRatio => "the direction of the force of the edges",
             Self::Bend => "the bending of the cutter",
             Self::SizeExponent => "how the force grows with the chip",
+            Self::Undersize => "the size of the cutter",
         }
     }
 }
@@ -79,24 +83,40 @@ pub(super) fn of(parameters: &Parameters) -> Quantities {
         ln(float(parameters.edge_ratio)),
         float(c.bend),
         float(k.size_exponent),
+        mm(parameters.undersize),
     ]
+}
+
+/// The size of cutters is believed with Student's t of two degrees of freedom, of which 95 % lie within 4.3 scales: as many as within two
+/// standard deviations of a Gaussian this many times as wide.
+const LONG_TAILED: f64 = 2.2;
+
+impl Quantity {
+    /// How wide a Gaussian is that holds it within two standard deviations as surely as what is believed of it, over the scale of that.
+    const fn widening(self) -> f64 {
+        match self {
+            Self::Undersize => LONG_TAILED,
+            _ => 1.0,
+        }
+    }
 }
 
 /// One standard deviation of each under a prior; 0 where it is held.
 pub(super) fn sigmas(prior: &Prior) -> Quantities {
-    Quantity::ALL.map(|quantity| float(prior.sigma[quantity as usize]))
+    Quantity::ALL.map(|quantity| quantity.widening() * float(prior.sigma[quantity as usize]))
 }
 
 /// A prior with other expected values and standard deviations of some quantities, `None` for those that stay.
 pub(super) fn narrowed(stated: &Prior, by: &[Option<[f64; 2]>; QUANTITIES]) -> Prior {
     let mut prior = *stated;
     let mut values = of(&stated.mean);
-    for ((value, sigma), new) in values.iter_mut().zip(&mut prior.sigma).zip(by) {
-        if let Some([mean, deviation]) = new {
-            (*value, *sigma) = (*mean, real(*deviation));
+    for quantity in Quantity::ALL {
+        let k = quantity as usize;
+        if let Some([mean, deviation]) = by[k] {
+            (values[k], prior.sigma[k]) = (mean, real(deviation / quantity.widening()));
         }
     }
-    let [level, difference, cross, radial, edge, edge_ratio, bend, exponent] = values;
+    let [level, difference, cross, radial, edge, edge_ratio, bend, exponent, undersize] = values;
     let mean = &mut prior.mean;
     let (ktc, kte) = (float(mean.coefficients.ktc), float(mean.coefficients.kte));
     let new = |quantity: Quantity| by[quantity as usize].is_some();
@@ -122,6 +142,9 @@ pub(super) fn narrowed(stated: &Prior, by: &[Option<[f64; 2]>; QUANTITIES]) -> P
     }
     if new(Quantity::SizeExponent) {
         mean.coefficients.size_exponent = real(exponent.max(0.0));
+    }
+    if new(Quantity::Undersize) {
+        mean.undersize = Offset::from_mm(real(undersize));
     }
     prior
 }

@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use truepath_core::cut::WallLaw;
 use truepath_core::identify::{Prior, prior_weights};
 use truepath_core::job;
@@ -33,12 +34,38 @@ pub struct Said {
 /// (the largest is the logarithm of mm/N times N/mm²).
 const LARGEST: f64 = 30.0;
 
+/// What was written before the size of cutters was among the quantities says nothing of it.
+fn completed(mut written: Value) -> Value {
+    let without_size = QUANTITIES - 1;
+    let complete = |list: &mut Value, nothing: Value| {
+        if let Some(list) = list.as_array_mut().filter(|list| list.len() == without_size) {
+            list.push(nothing);
+        }
+    };
+    for name in ["stated", "sigma", "pull", "information"] {
+        let Some(list) = written.get_mut(name) else { continue };
+        if name == "information" {
+            list.as_array_mut().into_iter().flatten().for_each(|row| complete(row, Value::from(0.0)));
+            complete(list, Value::from(vec![0.0; QUANTITIES]));
+        } else {
+            complete(list, Value::from(0.0));
+        }
+    }
+    written
+}
+
 impl Said {
-    /// Whether it can be what points say: what is read from a store may be damaged or written by another hand, and a prior is made of it.
+    /// Reads what a summary or a store holds, of this version of the program or an earlier one.
     ///
     /// # Errors
-    /// What is wrong, to be put behind "what the points say".
-    pub fn check(&self) -> Result<(), &'static str> {
+    /// What is no such thing, to be put behind "what the points say".
+    pub fn read(written: Value) -> Result<Self, String> {
+        let said: Self = serde_json::from_value(completed(written)).map_err(|e| format!("cannot be read: {e}"))?;
+        said.check().map(|()| said).map_err(str::to_owned)
+    }
+
+    /// Whether it can be what points say: what is read may be damaged or written by another hand, and a prior is made of it.
+    fn check(&self) -> Result<(), &'static str> {
         let Self { stated, stated_ln_ktc, sigma, information, pull } = self;
         let within = |values: &[f64], least: f64, largest: f64| values.iter().all(|v| (least..=largest).contains(v));
         if !within(stated, -LARGEST, LARGEST) || !within(&[*stated_ln_ktc], -LARGEST, LARGEST) {
@@ -75,7 +102,7 @@ impl Said {
             return None;
         }
         let (prior, fit) = (&identified.prior, &identified.fit);
-        let sigma = sigmas(prior);
+        let sigma = prior.sigma.map(float);
         let free: Vec<usize> = (0..QUANTITIES).filter(|k| sigma[*k] > 0.0).collect();
         let covariance: Vec<Vec<f64>> =
             free.iter().map(|i| free.iter().map(|j| float(fit.covariance[*i][*j])).collect()).collect();

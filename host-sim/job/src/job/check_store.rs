@@ -58,6 +58,9 @@ pub struct StoreNames {
     /// The article number of the cutter.
     #[arg(long, value_name = "ARTICLE")]
     pub cutter: Option<String>,
+    /// The very cutter: what is engraved on it, or its number in the tool crib.
+    #[arg(long, value_name = "TEXT")]
+    pub cutter_serial: Option<String>,
     /// The material.
     #[arg(long, value_name = "NAME")]
     pub material: Option<String>,
@@ -100,6 +103,7 @@ pub(super) fn store(source: &Source, section: Option<&Section<'_>>, folder: &Pat
         machine: line(section, "machine")?,
         holder: line(section, "holder")?,
         cutter: line(section, "cutter")?,
+        cutter_serial: line(section, "cutter_serial")?,
         material: line(section, "material")?,
         lot: line(section, "lot")?,
         serial: line(section, "serial")?,

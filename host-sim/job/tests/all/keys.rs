@@ -217,11 +217,16 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     (
         "store.make",
         "none",
-        "the make of the machine: those of one make are more alike; 1 to 100 characters on one line, as the six below",
+        "the make of the machine: those of one make are more alike; 1 to 100 characters on one line, as the seven below",
     ),
     ("store.machine", "none", "the machine"),
     ("store.holder", "none", "the holder of the cutter"),
     ("store.cutter", "none", "the article number of the cutter"),
+    (
+        "store.cutter_serial",
+        "none",
+        "the very cutter, engraved on it or its number in the tool crib: what other jobs say of its size is of this one",
+    ),
     ("store.material", "`force.material`, else none", "the material"),
     ("store.lot", "part.material_batch", "the lot of the material"),
     ("store.serial", "part.serial", "serial number of the part that is measured"),

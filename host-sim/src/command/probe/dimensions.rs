@@ -10,45 +10,24 @@ use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::output::OutputFile;
 use truepath_ground::units::nm;
-use truepath_job::dimension::Instrument;
-use truepath_job::job::{JobFile, Which};
-use truepath_job::pass::Pass;
+use truepath_job::job::JobFile;
 
+use super::Options;
 use crate::terminal::Terminal;
-
-/// What is asked for.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Request<'a> {
-    /// The job.
-    pub(super) job: &'a FilePath,
-    /// Which cut of the program.
-    pub(super) which: &'a Which,
-    /// Name of the sheet, and with another extension of the file to type into.
-    pub(super) output: &'a FilePath,
-    /// Replace them.
-    pub(super) force: bool,
-    /// How many dimensions.
-    pub(super) count: Option<u32>,
-    /// What they are taken with.
-    pub(super) instrument: Instrument,
-    /// What a reading of it stays within, ±, mm; otherwise that of the instrument.
-    pub(super) uncertainty: Option<f64>,
-    /// The largest that the instrument takes, mm; otherwise what is usual.
-    pub(super) reach: Option<f64>,
-}
 
 /// Most dimensions of a sheet.
 const MOST: u32 = 64;
 /// The largest that any instrument takes, as a dimension of the file, mm.
 const MOST_MM: f64 = 4000.0;
 
-/// Plans, writes both files and prints the dimensions.
-pub(super) fn main(request: &Request<'_>, terminal: &Terminal) -> Result<(), Failure> {
-    let plan = terminal.watch("choosing dimensions", |progress| run(request, progress))?;
-    terminal.tell(&plan, || words(&plan, request))
+/// Plans, writes both files and prints the dimensions. `output` is the name of the sheet, and with another extension of the file to type
+/// into.
+pub(super) fn main(options: &Options, output: &FilePath, terminal: &Terminal) -> Result<(), Failure> {
+    let plan = terminal.watch("choosing dimensions", |progress| run(options, output, progress))?;
+    terminal.tell(&plan, || words(&plan, output))
 }
 
-fn words(plan: &DimensionPlan, request: &Request<'_>) -> String {
+fn words(plan: &DimensionPlan, output: &FilePath) -> String {
     let mut text = String::from(" no.                                        Z mm  nominal mm\n");
     for (k, d) in plan.dimensions.iter().enumerate() {
         // Writing to a string cannot fail.
@@ -64,27 +43,27 @@ fn words(plan: &DimensionPlan, request: &Request<'_>) -> String {
     }
     let [before, after] = plan.wall_sigma_mm;
     let _ = writeln!(text, "\npredicted wall, one sigma: {before:.4} mm before the dimensions, {after:.4} mm after");
-    for path in files(request) {
+    for path in files(output) {
         let _ = writeln!(text, "written to {}", path.display());
     }
     text
 }
 
 /// The sheet and the file to type into, beside each other.
-fn files(request: &Request<'_>) -> [PathBuf; 2] {
-    ["html", "toml"].map(|extension| request.output.with_extension(extension))
+fn files(output: &FilePath) -> [PathBuf; 2] {
+    ["html", "toml"].map(|extension| output.with_extension(extension))
 }
 
-fn run(request: &Request<'_>, progress: &mut dyn FnMut(f64)) -> Result<DimensionPlan, Failure> {
-    let count = request.count.unwrap_or(USUAL_DIMENSIONS);
+fn run(options: &Options, output: &FilePath, progress: &mut dyn FnMut(f64)) -> Result<DimensionPlan, Failure> {
+    let count = options.points.unwrap_or(USUAL_DIMENSIONS);
     if !(1..=MOST).contains(&count) {
         let found = format!("--points is {count}");
         return Err(
             InputError::new(C001, found, format!("1 to {MOST} dimensions"), "give --points such a number").into()
         );
     }
-    let uncertainty = match request.uncertainty {
-        None => request.instrument.uncertainty(),
+    let uncertainty = match options.uncertainty {
+        None => options.instrument.uncertainty(),
         Some(mm) if mm > 0.0 && mm <= 1.0 => nm(mm),
         Some(mm) => {
             let found = format!("--uncertainty is {mm}");
@@ -92,22 +71,22 @@ fn run(request: &Request<'_>, progress: &mut dyn FnMut(f64)) -> Result<Dimension
             return Err(InputError::new(C001, found, "above 0, up to 1 mm", help).into());
         }
     };
-    if let Some(mm) = request.reach.filter(|mm| !(*mm > 0.0 && *mm <= MOST_MM)) {
+    if let Some(mm) = options.reach.filter(|mm| !(*mm > 0.0 && *mm <= MOST_MM)) {
         let help = "give the largest dimension that the instrument takes, in millimetres: 150 for a calliper";
         return Err(
             InputError::new(C001, format!("--reach is {mm}"), format!("above 0, up to {MOST_MM} mm"), help).into()
         );
     }
-    let paths = files(request);
+    let paths = files(output);
     // Targets that may not be written are refused before the work.
     let [mut page, mut typed] = {
-        let [page, typed] = paths.each_ref().map(|path| OutputFile::create(path, request.force));
+        let [page, typed] = paths.each_ref().map(|path| OutputFile::create(path, options.force));
         [page?, typed?]
     };
-    let mut job = JobFile::read(request.job)?;
-    job.which = request.which.clone();
-    let passes = Pass::every(job)?;
-    let (instrument, reach_mm) = (request.instrument, request.reach);
+    let mut job = JobFile::read(&options.job)?;
+    job.which = options.which.clone();
+    let passes = options.walls(job)?;
+    let (instrument, reach_mm) = (options.instrument, options.reach);
     let settings = DimensionSettings { count, instrument, uncertainty, reach_mm };
     let plan = plan_dimensions(&passes, &settings, progress)?;
     let title = passes.first().map_or("", |pass| pass.program.name());

@@ -18,6 +18,8 @@ use truepath_job::dimension::{INSTRUMENTS, Instrument};
 use truepath_job::job::{Assumed, JobFile, ProbeFlags, Which, one_of};
 use truepath_job::pass::Pass;
 
+#[cfg(not(target_family = "wasm"))]
+use super::store::believe::believing;
 use crate::terminal::Terminal;
 use truepath_report::next::{after_verification, shown};
 
@@ -61,6 +63,11 @@ pub struct Options {
     /// Folder of correct, plan or learn: touched is the part cut with the correction in it, its history is known.
     #[arg(long, value_name = "DIR", requires = "next", group = "measured")]
     pub from: Option<PathBuf>,
+    /// The shop store that says what other jobs know of machine, cutter and material where the job wants it, so that touches go where
+    /// these leave most open: a file, or postgres://user@host/database; otherwise TRUEPATH_STORE, then the one that the job names.
+    #[cfg(not(target_family = "wasm"))]
+    #[arg(long, value_name = "PATH|URL", conflicts_with_all = ["next", "stock"])]
+    pub store: Option<String>,
     /// Replace the file if it exists.
     #[arg(long)]
     pub force: bool,
@@ -79,16 +86,23 @@ pub struct Options {
     pub probe_flags: ProbeFlags,
 }
 
+impl Options {
+    /// The walls of the job, with what other jobs say of them where it wants that.
+    fn walls(&self, job: JobFile) -> Result<Vec<Pass>, Failure> {
+        let walls = Pass::every(job)?;
+        #[cfg(not(target_family = "wasm"))]
+        let walls = believing(walls, self.store.as_deref());
+        Ok(walls)
+    }
+}
+
 /// Further places that are looked for, when the user does not say how many.
 const FURTHER: u32 = 4;
 
 /// Plans, and prints the places.
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     if let (true, Some(output)) = (options.dimensions, &options.output) {
-        let Options { job, which, force, points, instrument, uncertainty, reach, .. } = options;
-        let (force, count, instrument, uncertainty, reach) = (*force, *points, *instrument, *uncertainty, *reach);
-        let request = dimensions::Request { job, which, output, force, count, instrument, uncertainty, reach };
-        return dimensions::main(&request, terminal);
+        return dimensions::main(options, output, terminal);
     }
     let report = terminal.watch("choosing places", |progress| run(options, progress))?;
     terminal.warn_all(&report.warnings);
@@ -279,7 +293,7 @@ fn run(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, Failu
         job.stock_probe = None;
         plan_stock(&Pass::every(job)?, &settings, (options.points, options.stock_margin))?
     } else {
-        plan_every(&Pass::every(job)?, &settings, progress)?
+        plan_every(&options.walls(job)?, &settings, progress)?
     };
     if let (Some(dialect), Some(out), Some(mut file)) = (dialect, &options.output, file) {
         let text = write(&plan, dialect, &log_name(out))?;

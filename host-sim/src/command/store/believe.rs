@@ -24,7 +24,7 @@ pub(in crate::command) fn believing(mut passes: Vec<Pass>, given: Option<&str>) 
         for pass in &mut passes {
             pass.core.believed = None;
             pass.warnings.push(format!(
-                "[store] prior = \"shop\", and the store does not answer: {failure}. The fit began at what the job states"
+                "[store] prior = \"shop\", and the store does not answer: {failure}. The fit begins at what the job states"
             ));
         }
     }
@@ -33,14 +33,15 @@ pub(in crate::command) fn believing(mut passes: Vec<Pass>, given: Option<&str>) 
 
 fn believe(pass: &mut Pass, job: &JobFile, place: &Place, store: &mut Store) -> Result<(), Failure> {
     let Setup { names, stickout_nm, .. } = setup(Some(job), "correct");
-    let setting = setting(&names, stickout_nm);
-    let (shop, newest) = store.shop(&Facts::of(pass), &setting)?;
+    let facts = Facts::of(pass);
+    let setting = setting(&names, stickout_nm, &facts)?;
+    let (shop, newest) = store.shop(&facts, &setting)?;
     let believed = shop.believed(&setting, &pass.core.stated_prior(WallLaw::Helical));
     pass.warnings.push(match (&believed, newest) {
         (Some((_, jobs)), Some(newest)) => format!(
-            "the fit began at what {jobs} other parts of the store {place} say of machine and material (estimates up to {newest})"
+            "the fit begins at what {jobs} other parts of the store {place} say of machine, cutter and material (estimates up to {newest})"
         ),
-        _ => format!("the store {place} knows nothing of this machine or material that the job does not"),
+        _ => format!("the store {place} knows nothing of this machine, cutter or material that the job does not"),
     });
     pass.core.believed = believed.map(|(prior, _)| prior);
     Ok(())

@@ -1,18 +1,16 @@
 //! Whether the way to a server is encrypted, and whose word the server's name is taken on.
 //!
 //! `sslmode` and `sslrootcert` of the URL, else `PGSSLMODE` and `PGSSLROOTCERT`, as every program of PostgreSQL takes them. Stricter than
-//! those in one thing: what is encrypted is checked, certificate and name, because encryption towards anybody who answers
-//! protects from nobody who can.
+//! those in one thing: what is encrypted is checked, certificate and name.
 
+use std::fmt::Display;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use postgres::config::{Host, SslMode};
 use postgres::{Config, NoTls};
-use rustls::pki_types::CertificateDer;
-use rustls::pki_types::pem::PemObject;
-use rustls::{ClientConfig, RootCertStore};
+use rustls::ClientConfig;
 use tokio_postgres_rustls::MakeRustlsConnect;
+use truepath_tls::trusting;
 
 /// What is asked of the way to a server.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -71,31 +69,16 @@ impl Encryption {
         if mode == SslMode::Disable {
             return Ok(config.connect(NoTls)?);
         }
-        let provider = Arc::new(rustls::crypto::ring::default_provider());
-        let tls = ClientConfig::builder_with_provider(provider).with_safe_default_protocol_versions();
-        let tls = tls.map_err(|e| Failed::Roots(e.to_string()))?;
-        let tls = tls.with_root_certificates(self.trusted().map_err(Failed::Roots)?).with_no_client_auth();
+        let tls = self.trusting().map_err(Failed::Roots)?;
         Ok(config.connect(MakeRustlsConnect::new(tls))?)
     }
 
     /// Who may vouch for a server.
-    fn trusted(&self) -> Result<RootCertStore, String> {
-        let mut store = RootCertStore::empty();
-        let Some(file) = &self.roots else {
-            // Of many some may be in an odd form: they vouch for nobody then.
-            store.add_parsable_certificates(rustls_native_certs::load_native_certs().certs);
-            return Ok(store);
-        };
-        let name = file.display();
-        let certificates = CertificateDer::pem_file_iter(file).map_err(|e| format!("sslrootcert {name}: {e}"))?;
-        for certificate in certificates {
-            let certificate = certificate.map_err(|e| format!("sslrootcert {name}: {e}"))?;
-            store.add(certificate).map_err(|e| format!("sslrootcert {name}: {e}"))?;
-        }
-        if store.is_empty() {
-            return Err(format!("sslrootcert {name} holds no certificate in PEM"));
-        }
-        Ok(store)
+    fn trusting(&self) -> Result<ClientConfig, String> {
+        let Some(file) = &self.roots else { return trusting(None) };
+        let named = |why: &dyn Display| format!("sslrootcert {}: {why}", file.display());
+        let authorities = std::fs::read(file).map_err(|e| named(&e))?;
+        trusting(Some(&authorities)).map_err(|why| named(&why))
     }
 }
 

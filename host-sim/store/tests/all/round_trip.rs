@@ -220,8 +220,9 @@ fn said(off: f64) -> Said {
     information[0][0] = 400.0;
     let mut pull = [0.0; QUANTITIES];
     pull[0] = 400.0 * off;
-    let stated = [-1.0, 0.0, 0.0, -1.2, -4.0, 0.1, 0.12, 0.15];
-    Said { stated, stated_ln_ktc: 7.0, sigma: [0.5, 0.35, 0.08, 0.26, 0.5, 0.28, 0.1, 0.1], information, pull }
+    let stated = [-1.0, 0.0, 0.0, -1.2, -4.0, 0.1, 0.12, 0.15, 0.0];
+    let sigma = [0.5, 0.35, 0.08, 0.26, 0.5, 0.28, 0.1, 0.1, 0.0044];
+    Said { stated, stated_ln_ktc: 7.0, sigma, information, pull }
 }
 
 /// A folder whose summary says so.
@@ -243,7 +244,8 @@ pub fn what_others_say(place: &Place, at: &Path) {
         setup
     };
     let expected = |store: &mut Store, job, setup: &Setup| {
-        let (shop, newest) = shown(store.shop(&facts(job), &setting(&setup.names, setup.stickout_nm)));
+        let setting = shown(setting(&setup.names, setup.stickout_nm, &facts(job)));
+        let (shop, newest) = shown(store.shop(&facts(job), &setting));
         let says: Vec<f64> = shop.members.iter().map(|member| member.said.pull[0] / 400.0).collect();
         (says, newest.is_some())
     };
@@ -260,12 +262,18 @@ pub fn what_others_say(place: &Place, at: &Path) {
     };
     near(expected(&mut store, 104, &on("VF2", "7075")), &[0.7, 0.3]);
     let mut other = on("Mikron", "7075");
-    other.names.make = None;
+    (other.names.make, other.names.cutter_serial) = (None, None);
     near(expected(&mut store, 104, &other), &[]);
     other.names.material = Some("Ti64".to_owned());
     near(expected(&mut store, 104, &other), &[0.7]);
     // Not what its own program says, whatever the machine.
     near(expected(&mut store, 102, &on("VF2", "7075")), &[0.3]);
+    // The very cutter was on another machine, in another material.
+    other.names.material = Some("7075".to_owned());
+    near(expected(&mut store, 104, &other), &[]);
+    other.names.cutter_serial = setup().names.cutter_serial;
+    near(expected(&mut store, 104, &other), &[0.7, 0.3]);
+    (other.names.cutter_serial, other.names.material) = (None, Some("Ti64".to_owned()));
     // The walls of one part were fitted together.
     for (name, job) in [("contours/a", 105), ("contours/b", 106)] {
         let text = String::from_utf8(history(job, 1, 4)).expect("text");
@@ -293,13 +301,29 @@ fn what_points_cannot_say_is_neither_taken_in_nor_believed() {
     add(&mut store, &folder, &setup());
     let members = |store: &mut Store| {
         let setup = setup();
-        store.shop(&facts, &setting(&setup.names, setup.stickout_nm)).map(|(shop, _)| shop.members.len())
+        let setting = shown(setting(&setup.names, setup.stickout_nm, &facts));
+        store.shop(&facts, &setting).map(|(shop, _)| shop.members.len())
     };
     assert_eq!(members(&mut store).expect("read"), 0);
     add(&mut store, &saying(at.path(), "right", &history(3, 1, 4), 0.2), &setup());
     assert_eq!(members(&mut store).expect("read"), 1);
-    // Damaged in the store: the estimate is named and the shop is not asked.
+    let path = at.path().join("shop.db");
+    let write = |said: &serde_json::Value| {
+        let file = rusqlite::Connection::open(&path).expect("a file");
+        let changed = file.execute("UPDATE estimate SET said = ?1 WHERE said IS NOT NULL", [said.to_string()]);
+        assert_eq!(changed.expect("written"), 1);
+    };
+    // Before the size of the cutter was among the quantities there were eight.
     let good = serde_json::to_value(said(0.2)).expect("numbers");
+    let shorter = |value: &serde_json::Value| serde_json::Value::from(value.as_array().expect("a list")[..8].to_vec());
+    let mut earlier = good.clone();
+    for name in ["stated", "sigma", "pull", "information"] {
+        earlier[name] = shorter(&earlier[name]);
+    }
+    earlier["information"].as_array_mut().expect("rows").iter_mut().for_each(|row| *row = shorter(row));
+    write(&earlier);
+    assert_eq!(members(&mut store).expect("read"), 1);
+    // Damaged in the store: the estimate is named and the shop is not asked.
     type Damage = fn(&mut serde_json::Value);
     let damages: [(&str, Damage); 6] = [
         ("no information matrix", |said| said["information"][0][3] = 50.0.into()),
@@ -307,15 +331,12 @@ fn what_points_cannot_say_is_neither_taken_in_nor_believed() {
         ("a variance below zero", |said| said["information"][0][0] = (-400.0).into()),
         ("no job states", |said| said["sigma"][0] = (-0.5).into()),
         ("states what no job can", |said| said["stated"][0] = 710.0.into()),
-        ("JSON of the store", |said| said["stated"] = serde_json::json!([1.0])),
+        ("cannot be read", |said| said["stated"] = serde_json::json!([1.0])),
     ];
-    let path = at.path().join("shop.db");
     for (words, damage) in damages {
         let mut bad = good.clone();
         damage(&mut bad);
-        let file = rusqlite::Connection::open(&path).expect("a file");
-        let changed = file.execute("UPDATE estimate SET said = ?1 WHERE said IS NOT NULL", [bad.to_string()]);
-        assert_eq!(changed.expect("written"), 1);
+        write(&bad);
         let failure = members(&mut store).expect_err(words).to_string();
         assert!(failure.contains(words), "{failure} in place of {words}");
     }

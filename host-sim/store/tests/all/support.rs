@@ -109,6 +109,7 @@ pub fn setup() -> Setup {
         machine: text("VF2"),
         holder: text("ER32-1"),
         cutter: text("A20-6"),
+        cutter_serial: text("A20-6/17"),
         material: text("42CrMo4"),
         lot: text("L7"),
         serial: None,

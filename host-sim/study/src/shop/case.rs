@@ -31,8 +31,13 @@ const SPOILT_MM: [f64; 2] = [0.045, 0.6];
 const SPOILT_SHARE: f64 = 0.35;
 /// Farthest that the cutter is pushed, mm.
 const PUSHED_MM: f64 = 0.6;
-/// Standard deviation of ln of what differs from job to job of one machine and material: wear of the chip force, and of the edges.
-const WEAR: [f64; 2] = [0.06, 0.15];
+/// Cutters of the shop; each goes to any machine.
+const CUTTERS: u64 = 20;
+/// Standard deviation of ln of what differs from cutter to cutter, and from job to job with one of them: wear of the chip force, and of
+/// the edges.
+const WEAR: [[f64; 2]; 2] = [[0.04, 0.1], [0.045, 0.11]];
+/// Standard deviation of what a cutter is smaller by than stated, and of what that differs by from job to job, mm.
+const UNDERSIZE_MM: [f64; 2] = [0.006, 0.0015];
 
 /// A material as it is, and as a table has it.
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +94,21 @@ impl Yielding {
     }
 }
 
+/// A cutter as it is: its diameter is drawn with the part, what it is smaller by and how far it is worn are its own.
+#[derive(Clone, Copy, Debug)]
+struct Cutter {
+    undersize_mm: f64,
+    /// Factors of the chip force and of the edges.
+    worn: [f64; 2],
+}
+
+impl Cutter {
+    fn draw(shop: u64, number: u64) -> Self {
+        let draw = &mut Draw::new("shop/cutter", 1000 * shop + number);
+        Self { undersize_mm: draw.normal(UNDERSIZE_MM[0]), worn: WEAR[0].map(|sigma| draw.normal(sigma).exp()) }
+    }
+}
+
 fn three_figures(value: f64) -> f64 {
     let step = 10f64.powf(value.abs().log10().floor() - 2.0);
     rounded(value, step)
@@ -120,15 +140,18 @@ impl ShopCase {
         let draw = &mut Draw::new("shop/job", seed);
         let of_material = (draw.between(0.0, MATERIALS as f64) as u64).min(MATERIALS - 1);
         let material = Material::draw(shop, of_material);
-        let worn = [draw.normal(WEAR[0]).exp(), draw.normal(WEAR[1]).exp()];
-        let (compliance_mm_per_n, bend) = yielding.mounted(draw);
-        let cutter = seed % 1000;
+        let number = (draw.between(0.0, CUTTERS as f64) as u64).min(CUTTERS - 1);
+        let cutter = Cutter::draw(shop, number);
+        let worn: [f64; 2] = std::array::from_fn(|k| cutter.worn[k] * draw.normal(WEAR[1][k]).exp());
+        let mounting = &mut Draw::new("shop/mounting", 10_000 * shop + CUTTERS * machine + number);
+        let (compliance_mm_per_n, bend) = yielding.mounted(mounting);
         let setting = Setting {
             make: format!("make {}", machine % MAKES),
             machine: format!("machine {machine}"),
-            mounting: format!("cutter {cutter}"),
+            mounting: format!("cutter {number}"),
             material: format!("material {of_material}"),
             lot: String::new(),
+            cutter: format!("cutter {number}"),
         };
         for attempt in 0..DRAWS {
             let draw = &mut Draw::new(&format!("shop/part/{attempt}"), seed);
@@ -137,7 +160,7 @@ impl ShopCase {
             if part.plain || part.law == WallLaw::Mean {
                 continue;
             }
-            let radius_error = draw.normal(0.002);
+            let radius_error = draw.normal(UNDERSIZE_MM[1]) - cutter.undersize_mm;
             let runout = draw.between(0.0, 0.006);
             let [ktc, krc, kte, kre] = material.coefficients;
             let machine = Machine {
