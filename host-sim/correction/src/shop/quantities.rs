@@ -9,6 +9,8 @@ use truepath_core::identify::{Parameters, Prior};
 use truepath_core::units::{Offset, Real};
 use truepath_ground::units::{float, mm, real};
 
+use crate::surface::predicted::TAIL;
+
 /// How many there are.
 pub const QUANTITIES: usize = 9;
 
@@ -87,15 +89,12 @@ pub(super) fn of(parameters: &Parameters) -> Quantities {
     ]
 }
 
-/// The size of cutters is believed with Student's t of two degrees of freedom, of which 95 % lie within 4.3 scales: as many as within two
-/// standard deviations of a Gaussian this many times as wide.
-const LONG_TAILED: f64 = 2.2;
-
 impl Quantity {
-    /// How wide a Gaussian is that holds it within two standard deviations as surely as what is believed of it, over the scale of that.
+    /// How wide a Gaussian is that holds it within two standard deviations as surely as what is believed of it, over the scale of that: the
+    /// size of cutters is believed with long tails.
     const fn widening(self) -> f64 {
         match self {
-            Self::Undersize => LONG_TAILED,
+            Self::Undersize => TAIL,
             _ => 1.0,
         }
     }

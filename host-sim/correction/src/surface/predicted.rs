@@ -143,7 +143,7 @@ fn in_the_tail(prior: &Prior, fit: &Fit) -> Option<Parameters> {
 }
 
 /// Half of the distance within which Student's t with two degrees of freedom is in 95 of 100 cases, in terms of its scale.
-const TAIL: f64 = 2.15;
+pub(crate) const TAIL: f64 = 2.15;
 
 /// What a larger load does to a wall at every height: the helix and the bending cutter make it more at some and less at others, and what
 /// differs along a contour or from part to part by the load does so too.
@@ -222,4 +222,79 @@ pub fn errors(machine: &Loop, nodes: &[Node], places: &[usize]) -> Vec<f64> {
     };
     let rows: Vec<Vec<f64>> = (0..COUNT).into_par_iter().map(row).collect();
     (0..places.len()).flat_map(|at| rows.iter().map(move |row| row[at])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use truepath_core::cut::{Coefficients, Compliance, WallLaw};
+    use truepath_core::units::Real;
+
+    use super::*;
+
+    fn prior() -> Prior {
+        let coefficients = Coefficients {
+            ktc: Real::from_int(1000),
+            krc: Real::from_int(300),
+            kte: Real::from_int(12),
+            kre: Real::from_int(14),
+            size_exponent: Real::ZERO,
+        };
+        Prior::around(
+            coefficients,
+            Compliance::from_stiffness(Real::from_int(3000), Real::from_int(3000)),
+            WallLaw::Helical,
+        )
+    }
+
+    /// A fit whose points have left so much of the cutter's size open, a variance in prior standard deviations, and found it with the
+    /// compliance.
+    fn fit(prior: &Prior, variance: Real, with_compliance: Real) -> Fit {
+        let (size, compliance) = (Parameter::Undersize as usize, Parameter::Compliance as usize);
+        let theta = [Real::ZERO; Parameter::ALL.len()];
+        let mut covariance = [theta; Parameter::ALL.len()];
+        covariance[size][size] = variance;
+        (covariance[size][compliance], covariance[compliance][size]) = (with_compliance, with_compliance);
+        let (cost, evidence) = (Real::ZERO, Real::ZERO);
+        Fit { parameters: prior.at(&theta), theta, covariance, cost, steps: 0, outliers: 0, evidence }
+    }
+
+    #[test]
+    fn a_cutter_that_the_points_hardly_see_may_be_as_far_off_as_its_long_tail_and_takes_along_what_goes_with_it() {
+        let prior = prior();
+        let off = |variance: Real, with| {
+            let other = in_the_tail(&prior, &fit(&prior, variance, with))?;
+            Some((mm(other.undersize), float(other.compliance.mean) * 3.0))
+        };
+        // Believed in with a scale of 2 µm, of which the points take a tenth: 1/1.1 of 2/3, the variance that the fit counts.
+        let unseen = Real::ONE / (Real::ratio(3, 2) + Real::ratio(1, 10));
+        let (size, compliance) = off(unseen, Real::ZERO).expect("a tail");
+        let whole = 1.0 / (0.1 + TAIL.powi(-2));
+        assert!((size - 0.002 * (whole - 1.0 / 1.6).sqrt()).abs() < 1e-5, "{size}");
+        assert!((compliance - 1.0).abs() < 1e-6, "{compliance}");
+        // Half as much of the compliance, in its 50 % of the logarithm, goes the same way.
+        let (size, compliance) = off(unseen, unseen * Real::HALF).expect("a tail");
+        assert!((compliance.ln() - 0.5 * 0.5 * size / 0.002).abs() < 1e-4, "{size} {compliance}");
+        // Points that see it ten times as sharply leave next to nothing, and one that is held has no tail.
+        let (size, _) = off(Real::ratio(1, 100), Real::ZERO).expect("a little");
+        assert!(size < 0.0003, "{size}");
+        assert_eq!(off(Real::ZERO, Real::ZERO), None);
+    }
+
+    #[test]
+    fn what_a_load_does_at_a_height_is_told_beyond_its_mean() {
+        let columns = |heights: &dyn Fn(usize) -> f64| (0..COUNT).map(heights).collect::<Vec<f64>>();
+        let even = columns(&|_| 0.3);
+        let ramp = columns(&|k| 0.21 - 0.4 * k as f64 / (COUNT - 1) as f64);
+        let more = columns(&|k| -0.1 - 0.2 * k as f64 / (COUNT - 1) as f64);
+        let load = Load { machine: Vec::new(), per_load: [even, ramp, more, vec![0.0; COUNT]].concat() };
+        let of = |place| load.beyond(place).collect::<Vec<f64>>();
+        assert!(of(0).iter().chain(&of(3)).all(|beyond| beyond.abs() < 1e-12));
+        // Its mean is next to nothing: the largest change is the measure.
+        let (ramp, more) = (of(1), of(2));
+        assert!((ramp[0] - 0.2 / (0.21 * LEAST_MEAN)).abs() < 1e-9, "{ramp:?}");
+        assert!((ramp[0] + ramp[COUNT - 1]).abs() < 1e-9, "{ramp:?}");
+        // A load that cuts deeper: half less and half more than the mean of −0.2 mm.
+        assert!((more[0] + 0.5).abs() < 1e-9 && (more[COUNT - 1] - 0.5).abs() < 1e-9, "{more:?}");
+        assert_eq!(load.over_mean().count(), 4);
+    }
 }

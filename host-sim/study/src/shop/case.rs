@@ -37,7 +37,7 @@ const CUTTERS: u64 = 20;
 /// the edges.
 const WEAR: [[f64; 2]; 2] = [[0.04, 0.1], [0.045, 0.11]];
 /// Standard deviation of what a cutter is smaller by than stated, and of what that differs by from job to job, mm.
-const UNDERSIZE_MM: [f64; 2] = [0.006, 0.0015];
+const UNDERSIZE_MM: [f64; 2] = [0.01, 0.0015];
 
 /// A material as it is, and as a table has it.
 #[derive(Clone, Copy, Debug)]
