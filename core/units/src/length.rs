@@ -6,7 +6,7 @@ use core::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::root::rounded_64;
-use super::round::{products_to_real, symmetric};
+use super::round::{difference, products_to_real, sum, symmetric};
 use super::{Real, div_rounded, isqrt_rounded};
 
 /// An absolute coordinate, nanometres, ±9.2 × 10⁹ m (the machine uses ±4 m). Arithmetic saturates at ±(2⁶³ − 1).
@@ -136,35 +136,35 @@ impl Sub for Position {
     type Output = Offset;
     #[inline]
     fn sub(self, other: Self) -> Offset {
-        Offset::from_nm(self.0.saturating_sub(other.0))
+        Offset(difference(self.0, other.0))
     }
 }
 impl Add<Offset> for Position {
     type Output = Self;
     #[inline]
     fn add(self, by: Offset) -> Self {
-        Self::from_nm(self.0.saturating_add(by.0))
+        Self(sum(self.0, by.0))
     }
 }
 impl Sub<Offset> for Position {
     type Output = Self;
     #[inline]
     fn sub(self, by: Offset) -> Self {
-        Self::from_nm(self.0.saturating_sub(by.0))
+        Self(difference(self.0, by.0))
     }
 }
 impl Add for Offset {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
-        Self::from_nm(self.0.saturating_add(other.0))
+        Self(sum(self.0, other.0))
     }
 }
 impl Sub for Offset {
     type Output = Self;
     #[inline]
     fn sub(self, other: Self) -> Self {
-        Self::from_nm(self.0.saturating_sub(other.0))
+        Self(difference(self.0, other.0))
     }
 }
 impl Neg for Offset {

@@ -46,6 +46,6 @@ mod trig;
 pub use length::{Millimetres, Offset, Position, hypot_nm};
 pub use power::{exp2, log2, pow};
 pub use real::Real;
-pub use root::isqrt_rounded;
+pub use root::{isqrt_near, isqrt_rounded, part};
 pub use round::{div_rounded, shift_rounded, shift_rounded_i31, shift_rounded_i63, shift_rounded_i64};
 pub use trig::{atan2, sin_cos};

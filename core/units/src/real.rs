@@ -6,7 +6,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 use fixed::types::I32F32;
 
 use super::div_rounded;
-use super::round::{products_to_real, symmetric, within_64};
+use super::round::{difference, products_rounded, products_to_real, sum, symmetric, within_64};
 
 /// A fixed-point number with 31 integer and 32 fraction bits (Q31.32): range ±2.1 × 10⁹, step 2.3 × 10⁻¹⁰.
 ///
@@ -69,6 +69,12 @@ impl Real {
     pub const fn times(self, other: Self) -> Self {
         Self(I32F32::from_bits(products_to_real((self.bits() as i128).wrapping_mul(other.bits() as i128))))
     }
+    /// The same where the product is known to be within the range; beyond it wraps.
+    #[inline]
+    pub const fn times_within(self, other: Self) -> Self {
+        let product = (self.bits() as i128).wrapping_mul(other.bits() as i128);
+        Self(I32F32::from_bits(products_rounded(product, 32) as i64))
+    }
     /// `self / other`, rounded once, saturating; 0/0 = 0.
     #[inline]
     pub const fn over(self, other: Self) -> Self {
@@ -113,14 +119,14 @@ impl Add for Real {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
-        Self::from_bits(self.bits().saturating_add(other.bits()))
+        Self(I32F32::from_bits(sum(self.bits(), other.bits())))
     }
 }
 impl Sub for Real {
     type Output = Self;
     #[inline]
     fn sub(self, other: Self) -> Self {
-        Self::from_bits(self.bits().saturating_sub(other.bits()))
+        Self(I32F32::from_bits(difference(self.bits(), other.bits())))
     }
 }
 impl Mul for Real {

@@ -13,6 +13,22 @@ pub const fn isqrt_rounded(value: u128) -> u128 {
     rounded_128(value)
 }
 
+/// [`isqrt_rounded`] of a number from 1 to 2⁶² − 1, sooner found where it is nearly the square of `near`, below 2³¹: `per_double` is 2⁶³
+/// over twice that or a number near it. One step of Newton's, proved by what is left.
+#[inline]
+pub const fn isqrt_near(value: i64, near: i64, per_double: i64) -> i64 {
+    let root = near.wrapping_add(part(value.wrapping_sub(near.wrapping_mul(near)), per_double));
+    // The nearest is the one with −root < value − root² ≤ root.
+    let left = value.wrapping_sub(root.wrapping_mul(root));
+    if root >> 31 == 0 && left > root.wrapping_neg() && left <= root { root } else { rounded_64(value as u64) as i64 }
+}
+
+/// A number over another, to about a unit, by 2⁶³ over that.
+#[inline]
+pub const fn part(number: i64, per: i64) -> i64 {
+    (number as i128).wrapping_mul(per as i128).wrapping_add(1 << 62).wrapping_shr(63) as i64
+}
+
 /// [`isqrt_rounded`] of 64 bits.
 pub(crate) const fn rounded_64(value: u64) -> u64 {
     let root = floor_64(value);
@@ -154,6 +170,18 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4096))]
+        #[test]
+        fn a_root_found_from_one_nearby_or_far_off_is_the_same(
+            value in 1i64..1 << 62, drop in 0u32..61, near in 0i64..1 << 31, off in -2000i64..2000, per in any::<i64>()
+        ) {
+            let value = (value >> drop).max(1);
+            let root = expected(value as u128) as i64;
+            let beside = (root + off).clamp(1, (1 << 31) - 1);
+            for (near, per) in [(near, per), (beside, (1 << 62) / beside), (root, 0)] {
+                prop_assert_eq!(isqrt_near(value, near, per), root);
+            }
+        }
+
         #[test]
         fn root_is_the_nearest_integer(v in any::<u128>(), drop in 0u32..127) {
             let v = v >> drop;

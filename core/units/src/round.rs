@@ -9,6 +9,31 @@ pub(crate) const fn symmetric(value: i64) -> i64 {
     if value == i64::MIN { i64::MAX.wrapping_neg() } else { value }
 }
 
+/// The sum of two numbers within ±(2⁶³ − 1), saturated to that range: almost none leaves it, so that is a branch never taken.
+#[inline]
+pub(crate) const fn sum(a: i64, b: i64) -> i64 {
+    match a.overflowing_add(b) {
+        (sum, false) if sum != i64::MIN => sum,
+        _ => end_on_the_side_of(a),
+    }
+}
+
+/// The same of their difference.
+#[inline]
+pub(crate) const fn difference(a: i64, b: i64) -> i64 {
+    match a.overflowing_sub(b) {
+        (difference, false) if difference != i64::MIN => difference,
+        _ => end_on_the_side_of(a),
+    }
+}
+
+/// What leaves the range does so on the side of its first number.
+#[cold]
+#[inline(never)]
+const fn end_on_the_side_of(a: i64) -> i64 {
+    if a < 0 { i64::MAX.wrapping_neg() } else { i64::MAX }
+}
+
 /// Saturates to ±(2⁶³ − 1).
 #[inline]
 pub(crate) const fn within_64(value: i128) -> i64 {
@@ -136,6 +161,16 @@ mod tests {
     #[test]
     fn division_by_zero_saturates_instead_of_panicking() {
         assert_eq!([div_rounded(0, 0), div_rounded(1, 0), div_rounded(-1, 0)], [0, i128::MAX, -i128::MAX]);
+    }
+
+    #[test]
+    fn sums_and_differences_end_where_saturating_ones_do() {
+        let ends = [0, 1, 2, i64::MAX / 2, i64::MAX / 2 + 1, i64::MAX - 1, i64::MAX];
+        let all = ends.into_iter().chain(ends.map(|v| -v));
+        for (a, b) in all.clone().flat_map(|a| all.clone().map(move |b| (a, b))) {
+            assert_eq!(sum(a, b), symmetric(a.saturating_add(b)), "{a} + {b}");
+            assert_eq!(difference(a, b), symmetric(a.saturating_sub(b)), "{a} - {b}");
+        }
     }
 
     proptest! {

@@ -141,8 +141,12 @@ pub fn add_residual(profiles: &mut [Profile], residual: &[Offset]) {
 /// as `states`.
 pub fn profile(machine: &Loop, states: &[State], band: Band, displacements: &mut [Vector], profiles: &mut [Profile]) {
     begin(machine, profiles);
-    read_slices(machine, states, band, 0..HEIGHTS, displacements, profiles);
-    finish(machine, states, displacements, profiles);
+    for k in 0..HEIGHTS {
+        Envelope::displace(machine, states, band.at(k), displacements);
+        read_slice(machine, k, displacements, profiles);
+    }
+    Envelope::displace(machine, states, Real::ZERO, displacements);
+    finish(machine, displacements, profiles);
 }
 
 /// Begins to read profiles: nothing is known of the walls but where there are any.
@@ -153,32 +157,23 @@ pub fn begin(machine: &Loop, profiles: &mut [Profile]) {
     }
 }
 
-/// Reads some of the [`HEIGHTS`] slices of the band. They do not depend on each other: read in parts and
-/// [joined](Profile::join) they are the same.
-pub fn read_slices(
-    machine: &Loop,
-    states: &[State],
-    band: Band,
-    slices: core::ops::Range<i64>,
-    displacements: &mut [Vector],
-    profiles: &mut [Profile],
-) {
-    for k in slices {
-        read(machine, states, band.at(k), displacements, profiles, |index, p, wall| {
-            if let Some(slot) = p.made_by.get_mut(k as usize) {
-                let shift = (wall.made_by as i64).saturating_sub(index as i64);
-                *slot = shift.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-            }
-            p.mean += wall.error;
-            p.lowest = p.lowest.min(wall.error);
-            p.highest = p.highest.max(wall.error);
-        });
-    }
+/// Reads one of the [`HEIGHTS`] slices of the band off the cutter positions at its height. They do not depend on each other: read in
+/// parts and [joined](Profile::join) they are the same.
+pub fn read_slice(machine: &Loop, slice: i64, displacements: &[Vector], profiles: &mut [Profile]) {
+    read(machine, displacements, profiles, |index, p, wall| {
+        if let Some(slot) = p.made_by.get_mut(slice as usize) {
+            let shift = (wall.made_by as i64).saturating_sub(index as i64);
+            *slot = shift.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+        }
+        p.mean += wall.error;
+        p.lowest = p.lowest.min(wall.error);
+        p.highest = p.highest.max(wall.error);
+    });
 }
 
-/// Ends with the tip, when all slices are read.
-pub fn finish(machine: &Loop, states: &[State], displacements: &mut [Vector], profiles: &mut [Profile]) {
-    read(machine, states, Real::ZERO, displacements, profiles, |_, p, wall| {
+/// Ends with the tip, by the cutter positions there, when all slices are read.
+pub fn finish(machine: &Loop, displacements: &[Vector], profiles: &mut [Profile]) {
+    read(machine, displacements, profiles, |_, p, wall| {
         p.tip = wall.error;
         p.deepen(wall.error);
     });
@@ -203,21 +198,19 @@ pub(super) fn deepen(
     let outside = |h: &Real| *h < band.from || *h > band.to;
     let heights = (0..HEIGHTS).map(|k| Band::WHOLE.at(k)).filter(outside);
     for height in heights.chain([Real::ONE]) {
-        read(machine, states, height, displacements, profiles, |_, p, wall| p.deepen(wall.error));
+        Envelope::displace(machine, states, height, displacements);
+        read(machine, displacements, profiles, |_, p, wall| p.deepen(wall.error));
     }
 }
 
-/// Hands the wall error at a height to every profile where a wall stands, with the index of its sample.
+/// Hands the wall error at the height of cutter positions to every profile where a wall stands, with the index of its sample.
 fn read(
     machine: &Loop,
-    states: &[State],
-    height: Real,
-    displacements: &mut [Vector],
+    displacements: &[Vector],
     profiles: &mut [Profile],
     mut take: impl FnMut(usize, &mut Profile, &WallError),
 ) {
     let path = machine.path;
-    Envelope::displace(machine, states, height, displacements);
     let envelope = Envelope::new(path, path.working().start, displacements);
     let mut guess = path.first();
     for (i, p) in profiles.iter_mut().enumerate() {

@@ -6,7 +6,7 @@
 //! left; the iteration is bounded and cannot hang.
 
 use super::compliance::Compliance;
-use super::force::{Flutes, ForceTable, SplitForce, stretches};
+use super::force::{Basis, Flutes, ForceTable, SplitForce, stretches};
 use super::path::Path;
 use super::setup::{Coefficients, Runout, WallLaw};
 use super::teeth::Teeth;
@@ -55,6 +55,22 @@ pub struct Passage {
     pub unsettled: u32,
     /// The largest residual.
     pub worst_residual: Offset,
+}
+
+/// Heights at which walls are read together, as fractions 0…1 of the engaged depth above the tip, and what is kept of them from place to
+/// place, of one machine.
+#[derive(Clone, Debug)]
+pub struct Heights<const N: usize> {
+    fractions: [Real; N],
+    flutes: [Flutes; N],
+    teeth: Teeth,
+}
+
+impl<const N: usize> Heights<N> {
+    /// Of no place yet.
+    pub const fn new(fractions: [Real; N]) -> Self {
+        Self { fractions, flutes: [Flutes::NONE; N], teeth: Teeth::BLANK }
+    }
 }
 
 /// Iterations of the loop at one sample.
@@ -188,6 +204,28 @@ impl Loop<'_> {
         state.commanded + self.displaced(state, fraction, force.total(state.chip_scale)) + reach
     }
 
+    /// [`at_height`](Self::at_height) at several heights of a place, which cost less together.
+    pub fn at_heights<const N: usize>(&self, heights: &mut Heights<N>, state: &State) -> [Vector; N] {
+        self.deflections(heights, state).map(|deflection| state.commanded + deflection)
+    }
+
+    /// What the cutter is deflected by at several heights of a place, with the reach of the tooth that makes the wall.
+    pub fn deflections<const N: usize>(&self, heights: &mut Heights<N>, state: &State) -> [Vector; N] {
+        let Heights { fractions, flutes, teeth } = heights;
+        let is_true = self.path.setup().runout == Runout::NONE;
+        let (mut end, mut known) = (None, [Vector::ZERO; N]);
+        let heading = self.path.setup().wall.heading(state.normal);
+        for ((slot, fraction), flutes) in known.iter_mut().zip(fractions).zip(flutes) {
+            let alike = self.force_at((flutes, &mut end), state, *fraction);
+            let (force, reach) =
+                if is_true { (alike, Vector::ZERO) } else { self.longest(teeth, state, *fraction, alike) };
+            let force = force.total(state.chip_scale);
+            let push = self.compliance.displacement(state.normal, heading, force);
+            *slot = push.scaled(self.compliance.height_factor(*fraction)) + reach;
+        }
+        known
+    }
+
     /// Deflection at a height: (its chip part, the whole with the reach of the tooth that makes the wall).
     pub fn deflection_parts(&self, teeth: &mut Teeth, state: &State, fraction: Real) -> (Vector, Vector) {
         let (force, reach) = self.made_by(teeth, state, fraction);
@@ -198,12 +236,16 @@ impl Loop<'_> {
 
     /// The force at the instant the wall at a height is made, and how much farther the tooth reaches that makes it.
     fn made_by(&self, teeth: &mut Teeth, state: &State, fraction: Real) -> (SplitForce, Vector) {
-        let setup = self.path.setup();
-        let alike = self.force_at(&mut teeth.flutes, state, fraction);
-        if setup.runout == Runout::NONE {
+        let alike = self.force_at((&mut teeth.flutes, &mut None), state, fraction);
+        if self.path.setup().runout == Runout::NONE {
             return (alike, Vector::ZERO);
         }
-        let helix = self.path.helix();
+        self.longest(teeth, state, fraction, alike)
+    }
+
+    /// The same where teeth do not reach equally far; `alike` is the force if they did.
+    fn longest(&self, teeth: &mut Teeth, state: &State, fraction: Real, alike: SplitForce) -> (SplitForce, Vector) {
+        let (setup, helix) = (self.path.setup(), self.path.helix());
         teeth.set(setup, &self.coefficients, state.chip_scale);
         if setup.law == WallLaw::Helical && state.chip_scale > Real::ZERO {
             teeth.immerse(setup, stretches((setup, helix), state.engaged, setup.axial_depth * fraction));
@@ -220,7 +262,7 @@ impl Loop<'_> {
     }
 
     /// The force at the instant the wall at a height is made.
-    fn force_at(&self, flutes: &mut Flutes, state: &State, fraction: Real) -> SplitForce {
+    fn force_at(&self, known: (&mut Flutes, &mut Option<Basis>), state: &State, fraction: Real) -> SplitForce {
         let setup = self.path.setup();
         match setup.law {
             WallLaw::Mean => self.mean(state.engaged),
@@ -229,7 +271,7 @@ impl Loop<'_> {
                 &self.coefficients,
                 state.engaged,
                 setup.axial_depth * fraction,
-                flutes,
+                known,
             ),
         }
     }

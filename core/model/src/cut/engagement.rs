@@ -36,7 +36,7 @@ impl Path<'_> {
         if shares(samples.get(index.saturating_add(1))) || shares(index.checked_sub(1).and_then(|i| samples.get(i))) {
             return Some(Frame { normal: own.normal, heading: self.setup().wall.heading(own.normal), index });
         }
-        let mut at = index;
+        let (mut at, mut found) = (index, None);
         for _ in 0..FRAME_STEPS {
             let here = samples.get(at)?;
             let heading = self.setup().wall.heading(here.normal);
@@ -54,13 +54,15 @@ impl Path<'_> {
             } else if along > gap && gap > Offset::ZERO {
                 at = at.saturating_add(1);
             } else {
+                found = Some((along, gap));
                 break;
             }
         }
         let (here, next) = (samples.get(at)?, samples.get(at.saturating_add(1)).or(samples.get(at))?);
-        let heading = self.setup().wall.heading(here.normal);
-        let gap = next.point.from(here.point).along(heading);
-        let along = centre.from(here.point).along(heading);
+        let (along, gap) = found.unwrap_or_else(|| {
+            let heading = self.setup().wall.heading(here.normal);
+            (centre.from(here.point).along(heading), next.point.from(here.point).along(heading))
+        });
         let u = along.over(gap).max(Real::ZERO).min(Real::ONE);
         let blend = |a: Real, b: Real| Real::dot(a, Real::ONE - u, b, u);
         let normal = Direction { x: blend(here.normal.x, next.normal.x), y: blend(here.normal.y, next.normal.y) };
@@ -110,6 +112,9 @@ impl Path<'_> {
 /// Radius and components whose squares add up in 64 bits.
 const REACH: Offset = Offset::from_um(1_000_000);
 
+/// Components within this have squares that add up in 62 bits, nm.
+const WITHIN: i64 = 1 << 30;
+
 /// A walk along the stock ahead of a cutter.
 struct Walk {
     centre: Point,
@@ -148,14 +153,16 @@ impl Walk {
         let (double, near) = (radius.wrapping_mul(2), radius.wrapping_mul(5) / 2);
         let (within, beyond) = (per(double.saturating_mul(stride)), per(near.saturating_add(1).saturating_mul(stride)));
         let radii = radius.checked_div(stride).unwrap_or(0).unsigned_abs();
+        let (centre_x, centre_y) = (self.centre.x.nm(), self.centre.y.nm());
         let (mut last, mut at) = (None, start);
         while let Some(sample) = samples.get(at) {
             if sample.s > self.end {
                 break;
             }
-            let spoke = sample.stock.from(self.centre);
-            let (x, y) = (spoke.x.nm(), spoke.y.nm());
-            let skip = if x.saturating_abs().max(y.saturating_abs()) >= REACH.nm() {
+            // Of places within 4 · 10⁹ m.
+            let x = sample.stock.x.nm().wrapping_sub(centre_x);
+            let y = sample.stock.y.nm().wrapping_sub(centre_y);
+            let skip = if (x.wrapping_add(WITHIN) | y.wrapping_add(WITHIN)) as u64 >> 31 != 0 {
                 0
             } else {
                 let distance = x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y));
@@ -219,8 +226,8 @@ fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
     let spoke = a.stock.from(centre);
     // |spoke + u·chord|² = r²
     let (p, q) = (chord.dot(chord), spoke.dot(chord));
-    let c = spoke.dot(spoke).saturating_sub(i128::from(radius.nm()).saturating_mul(radius.nm().into()));
-    let discriminant = q.saturating_mul(q).saturating_sub(p.saturating_mul(c)).max(0);
+    let c = spoke.dot(spoke).wrapping_sub(i128::from(radius.nm()).wrapping_mul(radius.nm().into()));
+    let discriminant = product(q, q).saturating_sub(product(p, c)).max(0);
     let root = isqrt_rounded(discriminant.unsigned_abs()) as i128;
     let u = Real::narrow(truepath_units::div_rounded(root.saturating_sub(q) << Real::FRACTION_BITS, p));
     let u = u.max(Real::ZERO).min(Real::ONE);
@@ -248,6 +255,15 @@ fn crossing(a: &Sample, b: &Sample, centre: Point, radius: Offset) -> Point {
         point = at(u);
     }
     point
+}
+
+/// A product, saturated; of two numbers of 64 bits one multiplication.
+#[inline]
+fn product(a: i128, b: i128) -> i128 {
+    match (i64::try_from(a), i64::try_from(b)) {
+        (Ok(a), Ok(b)) => i128::from(a).wrapping_mul(b.into()),
+        _ => a.saturating_mul(b),
+    }
 }
 
 #[cfg(test)]

@@ -186,10 +186,20 @@ impl ForceTable {
         };
         // Cubic Hermite interpolation: the slope of the sum is the density.
         let v = Real::ONE - u;
-        let (u2, v2) = (u * u, v * v);
-        let (wa, wb) = (v2 * (Real::ONE + u + u), u2 * (Real::ONE + v + v));
-        let (wda, wdb) = (INTERVAL * u * v2, -(INTERVAL * v * u2));
-        a.scaled(wa).plus(b.scaled(wb)).plus(da.scaled(wda)).plus(db.scaled(wdb))
+        let times = Real::times_within;
+        let (u2, v2) = (times(u, u), times(v, v));
+        let (wa, wb) = (times(v2, Real::ONE + u + u), times(u2, Real::ONE + v + v));
+        let (wda, wdb) = (times(times(INTERVAL, u), v2), -times(times(INTERVAL, v), u2));
+        let sum = |of: fn(&Basis) -> Real| {
+            let parts = [(&a, wa), (&b, wb), (&da, wda), (&db, wdb)].map(|(basis, weight)| times(of(basis), weight));
+            parts.into_iter().fold(Real::ZERO, |sum, part| sum + part)
+        };
+        Basis {
+            chip_sine: sum(|b| b.chip_sine),
+            chip_cosine: sum(|b| b.chip_cosine),
+            sine: sum(|b| b.sine),
+            cosine: sum(|b| b.cosine),
+        }
     }
 
     /// ∫₀^φ of the force of one tooth over the immersion angle, for a unit of depth, N/mm·rad.
@@ -216,17 +226,18 @@ impl ForceTable {
         height: Real,
     ) -> SplitForce {
         let mut nothing = Flutes::NONE;
-        self.at_height_again(cutter, coefficients, engaged, height, &mut nothing)
+        self.at_height_again(cutter, coefficients, engaged, height, (&mut nothing, &mut None))
     }
 
-    /// The same, from the sum that was made at the place before; of another table or cutter it is of no use.
+    /// The same, from the sum that was made at the place before, and with the antiderivatives at the end of the arc, which are those of
+    /// all heights of a place; of another table or cutter they are of no use.
     pub(super) fn at_height_again(
         &self,
         cutter: (&CutSetup, &Helix),
         coefficients: &Coefficients,
         engaged: Real,
         height: Real,
-        known: &mut Flutes,
+        (known, end): (&mut Flutes, &mut Option<Basis>),
     ) -> SplitForce {
         if engaged <= Real::ZERO {
             return SplitForce::default();
@@ -235,11 +246,12 @@ impl ForceTable {
         if known.height != height || engaged <= above || engaged > to {
             *known = self.summed(cutter, engaged, height);
         }
+        let mut at_the_end = || *end.get_or_insert_with(|| self.antiderivative(engaged));
         let sum = match known.cut_off {
             0 => known.whole,
-            1 => known.whole.plus(self.antiderivative(engaged)),
+            1 => known.whole.plus(at_the_end()),
             // Exact: a whole number of times.
-            times => known.whole.plus(self.antiderivative(engaged).scaled(Real::from_int(times))),
+            times => known.whole.plus(at_the_end().scaled(Real::from_int(times))),
         };
         sum.scaled(cutter.1.mm_per_lag).force(cutter.0.milling, coefficients)
     }

@@ -4,20 +4,67 @@
 //! `e = min over centres a of (v·n − √(r² − (v·t)²))`, v = W − a. Positive: material left. It is not the deflection
 //! along n: where that changes along the path by g per unit length the envelope lies about r·g²/2 above it.
 
-use super::elastic::{Loop, State};
+use super::elastic::{Heights, Loop, State};
 use super::path::Path;
 use super::sample::Sample;
 use super::teeth::Teeth;
 use truepath_units::geometry::{Direction, Point, Vector};
-use truepath_units::{Offset, Real, isqrt_rounded};
+use truepath_units::{Offset, Real, isqrt_near, isqrt_rounded, part};
 
 /// Cutter positions at one height, in the order of the path, ready for the wall to be read off.
 #[derive(Clone, Copy, Debug)]
-pub struct Envelope<'a> {
+pub struct Envelope<'a, D = &'a [Vector]> {
     path: &'a Path<'a>,
     /// Displacements of the cutter from the nominal centre, one per sample from `from` on.
-    displacements: &'a [Vector],
+    displacements: D,
     from: usize,
+    /// 2⁶³ over the cutter's diameter in nm; 0 for one whose square takes more than 62 bits.
+    per_diameter: i64,
+}
+
+/// Who knows how far the cutter is displaced.
+pub trait Displacements {
+    /// At a sample, counted from the first that is known; `None` beyond the last.
+    fn displacement(&mut self, slot: usize) -> Option<Vector>;
+}
+
+impl Displacements for &[Vector] {
+    #[inline]
+    fn displacement(&mut self, slot: usize) -> Option<Vector> {
+        self.get(slot).copied()
+    }
+}
+
+/// Displacements at a height, each computed when it is first asked for: of a few walls side by side an envelope looks at less than half.
+#[derive(Debug)]
+pub(crate) struct Sought<'a> {
+    machine: &'a Loop<'a>,
+    states: &'a [State],
+    fraction: Real,
+    teeth: Teeth,
+    known: &'a mut [Vector],
+}
+
+impl<'a> Sought<'a> {
+    /// A displacement that nobody has asked for.
+    const UNKNOWN: Vector = Vector { x: Offset::MAX, y: Offset::MAX };
+
+    /// Of a machine at a fraction of the engaged depth; `known` is as long as `states`.
+    pub(crate) fn new(machine: &'a Loop<'a>, states: &'a [State], fraction: Real, known: &'a mut [Vector]) -> Self {
+        known.fill(Self::UNKNOWN);
+        Self { machine, states, fraction, teeth: Teeth::BLANK, known }
+    }
+}
+
+impl Displacements for Sought<'_> {
+    #[inline]
+    fn displacement(&mut self, slot: usize) -> Option<Vector> {
+        let known = self.known.get_mut(slot)?;
+        if *known == Self::UNKNOWN {
+            *known = self.machine.at_height(&mut self.teeth, self.states.get(slot)?, self.fraction);
+        }
+        Some(*known)
+    }
 }
 
 /// The wall error at a sample.
@@ -32,7 +79,7 @@ pub struct WallError {
 impl<'a> Envelope<'a> {
     /// Takes the displacements of samples `from..from + displacements.len()`.
     pub const fn new(path: &'a Path<'a>, from: usize, displacements: &'a [Vector]) -> Self {
-        Self { path, displacements, from }
+        Self::of(path, from, displacements)
     }
 
     /// Fills `displacements` with the cutter's displacement at a height (fraction of the engaged depth).
@@ -43,12 +90,48 @@ impl<'a> Envelope<'a> {
         }
     }
 
+    /// The same at several heights, which cost less together: one row of displacements each.
+    pub fn displace_all<const N: usize>(
+        machine: &Loop,
+        states: &[State],
+        fractions: [Real; N],
+        mut rows: [&mut [Vector]; N],
+    ) {
+        let mut heights = Heights::new(fractions);
+        for (at, state) in states.iter().enumerate() {
+            for (row, displacement) in rows.iter_mut().zip(machine.at_heights(&mut heights, state)) {
+                if let Some(slot) = row.get_mut(at) {
+                    *slot = displacement;
+                }
+            }
+        }
+    }
+
     /// The wall error beside sample `index`. `guess` is where to look first: the sample that made the wall beside the
     /// neighbour. The search is bounded: a coarse look half a radius to both sides, then a descent to the nearest
     /// minimum.
     pub fn error(&self, index: usize, guess: usize) -> Option<WallError> {
+        let mut envelope = *self;
+        envelope.read(index, guess)
+    }
+}
+
+impl<'a, D: Displacements> Envelope<'a, D> {
+    /// Of the displacements of samples from `from` on.
+    pub(crate) const fn of(path: &'a Path<'a>, from: usize, displacements: D) -> Self {
+        let radius = path.setup().radius.nm();
+        let per_diameter = match (1i64 << 62).checked_div(radius) {
+            Some(per) if radius >> 31 == 0 => per,
+            _ => 0,
+        };
+        Self { path, displacements, from, per_diameter }
+    }
+
+    /// As [`error`](Envelope::error).
+    pub(crate) fn read(&mut self, index: usize, guess: usize) -> Option<WallError> {
+        let path = self.path;
         let mut look = Look::beside(self, index, guess)?;
-        let far = if self.path.is_crowded() { look.by_arc_length(index) } else { look.by_samples(index) };
+        let far = if path.is_crowded() { look.by_arc_length(index) } else { look.by_samples(index) };
         // Descent with halving strides.
         let mut stride = (far / EIGHTHS).max(1);
         while stride > 0 {
@@ -66,12 +149,6 @@ impl<'a> Envelope<'a> {
         };
         Some(WallError { error, made_by: at })
     }
-
-    /// Where the cutter is at a sample.
-    fn centre(&self, at: usize) -> Option<Point> {
-        let displacement = self.displacements.get(at.checked_sub(self.from)?)?;
-        Some(self.path.samples().get(at)?.point + *displacement)
-    }
 }
 
 /// Places of the coarse look to either side.
@@ -83,8 +160,8 @@ const EIGHTHS: usize = 8;
 /// above `lowered`, the wall point less the lowest gap, when its centre is farther from it than the radius, on the far side
 /// of the wall. Where the distance does not leave a few nanometres to spare, what counts are the rounded components along
 /// and across the normal: the shorter way only leaves out what they would.
-struct Look<'e, 'a> {
-    envelope: &'e Envelope<'a>,
+struct Look<'e, 'a, D> {
+    envelope: &'e mut Envelope<'a, D>,
     /// Samples from that of the first displacement on.
     samples: &'a [Sample],
     wall: Point,
@@ -99,18 +176,20 @@ struct Look<'e, 'a> {
     clear: i64,
 }
 
-impl<'e, 'a> Look<'e, 'a> {
+impl<'e, 'a, D: Displacements> Look<'e, 'a, D> {
     /// Begins with the cutter position at the sample beside the wall point and that of a guess; of two that end alike it
     /// is the first.
-    fn beside(envelope: &'e Envelope<'a>, index: usize, guess: usize) -> Option<Self> {
+    fn beside(envelope: &'e mut Envelope<'a, D>, index: usize, guess: usize) -> Option<Self> {
         let (path, sample) = (envelope.path, envelope.path.samples().get(index)?);
         let (wall, normal) = (path.wall(sample), sample.normal);
         let radius = path.setup().radius.nm();
         // Rounding of the components and of the place, and a normal that is not quite one long.
         let beyond = radius.saturating_add(radius >> 20).saturating_add(4);
+        let samples = path.samples().get(envelope.from..).unwrap_or_default();
+        let own = envelope.displacements.displacement(index.checked_sub(envelope.from)?)?;
         let mut look = Self {
             envelope,
-            samples: path.samples().get(envelope.from..).unwrap_or_default(),
+            samples,
             wall,
             normal,
             coarse: [normal.x, normal.y].map(|v| v.bits() >> 2),
@@ -119,13 +198,13 @@ impl<'e, 'a> Look<'e, 'a> {
             lowered: wall,
             clear: beyond.saturating_mul(beyond),
         };
-        let own = envelope.displacements.get(index.checked_sub(envelope.from)?)?;
         // A circle that passes beside its own wall point makes none; that takes a displacement as large as the radius.
         let is_near = own.x.abs() + own.y.abs() < path.setup().radius;
         match look.gap(guess).filter(|_| is_near) {
             Some(gap) => {
                 look.take(guess, gap);
-                if !look.is_above(index)
+                if guess != index
+                    && !look.is_above(index)
                     && let gap = look.gap(index)?
                     && gap <= look.lowest
                 {
@@ -192,10 +271,10 @@ impl<'e, 'a> Look<'e, 'a> {
 
     /// Whether the circle at sample `at` certainly ends above the lowest gap, or there is none.
     #[inline]
-    fn is_above(&self, at: usize) -> bool {
+    fn is_above(&mut self, at: usize) -> bool {
         const WITHIN: i64 = 1 << 31;
         let slot = at.wrapping_sub(self.envelope.from);
-        let (Some(sample), Some(by)) = (self.samples.get(slot), self.envelope.displacements.get(slot)) else {
+        let (Some(sample), Some(by)) = (self.samples.get(slot), self.envelope.displacements.displacement(slot)) else {
             return true;
         };
         // Of places within 4 · 10⁹ m.
@@ -213,24 +292,26 @@ impl<'e, 'a> Look<'e, 'a> {
     }
 
     /// How far the circle at sample `at` ends short of the wall point, along the normal; `None` when it passes beside.
-    fn gap(&self, at: usize) -> Option<Offset> {
-        self.envelope.centre(at).and_then(|centre| self.reach(centre)).map(|(ahead, square)| ahead - root(square))
+    fn gap(&mut self, at: usize) -> Option<Offset> {
+        let slot = at.wrapping_sub(self.envelope.from);
+        let (sample, by) = (self.samples.get(slot)?, self.envelope.displacements.displacement(slot)?);
+        // On which side it is beside the normal does not matter: to the right as far as along the heading or against it.
+        let (ahead, beside) = self.wall.from(sample.point + by).along_and_right(self.normal);
+        let (r, beside, per_diameter) =
+            (self.envelope.path.setup().radius.nm(), beside.nm(), self.envelope.per_diameter);
+        let beside = beside.saturating_mul(beside);
+        let square = r.saturating_mul(r).saturating_sub(beside);
+        if square <= 0 {
+            return None;
+        }
+        let root = if per_diameter > 0 {
+            // Beside a wall it is short of the radius by beside²/2r and little more.
+            isqrt_near(square, r.wrapping_sub(part(beside, per_diameter)), per_diameter)
+        } else {
+            isqrt_rounded(square.unsigned_abs().into()) as i64
+        };
+        Some(ahead - Offset::from_nm(root))
     }
-
-    /// Of the circle about a centre: distance of the wall point from it along the normal, and r² − beside², nm²; `None`
-    /// when it passes beside.
-    fn reach(&self, centre: Point) -> Option<(Offset, i64)> {
-        let setup = self.envelope.path.setup();
-        let v = self.wall.from(centre);
-        let beside = v.along(setup.wall.heading(self.normal)).nm();
-        let r = setup.radius.nm();
-        let square = r.saturating_mul(r).saturating_sub(beside.saturating_mul(beside));
-        (square > 0).then(|| (v.along(self.normal), square))
-    }
-}
-
-fn root(square: i64) -> Offset {
-    Offset::from_nm(isqrt_rounded(square.unsigned_abs().into()) as i64)
 }
 
 /// Lowest point of the parabola through three even places, the middle one being the lowest.

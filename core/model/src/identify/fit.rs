@@ -108,6 +108,8 @@ struct Points<'p, P> {
     predictor: &'p mut P,
     /// How far the fit has come at most from where the sensitivities were taken; `None` where there are none.
     come: Option<Real>,
+    /// Whether the predictions are those at the place where the fit is.
+    is_predicted: bool,
 }
 
 /// How far downhill a fit goes.
@@ -135,7 +137,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         for part in earlier.iter_mut() {
             *part = EarlierPart::new(part.points, part.believed);
         }
-        let mut points = Points { earlier, observations, predictor, come: None };
+        let mut points = Points { earlier, observations, predictor, come: None, is_predicted: false };
         spread::set(points.observations, Real::ONE);
         let mut aim = Aim { gate: Real::MAX, least: ROUGHLY };
         let (mut information, _, mut steps) = self.settle(&mut table, &mut theta, aim, &mut points, observe);
@@ -179,7 +181,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         points: &mut Points<impl Predictor>,
         observe: &mut dyn FnMut(u16),
     ) -> (Information, Real, u32) {
-        let mut cost = self.evaluate(table, theta, gate, points);
+        let mut cost = self.cost(table, theta, gate, points);
         let mut steps = 0;
         let mut information = self.linearised(table, theta, points, &mut |k| observe(permille(0, k)));
         while steps < MAX_STEPS {
@@ -196,8 +198,10 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
                 for part in points.earlier.iter_mut() {
                     part.look(&step, share);
                 }
+                points.is_predicted = false;
                 let trial_cost = self.evaluate(table, &trial, gate, points);
                 if trial_cost <= cost {
+                    points.is_predicted = true;
                     break (Some(trial), trial_cost);
                 }
                 share = share * Real::HALF;
@@ -214,7 +218,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
                 for part in points.earlier.iter_mut() {
                     part.look_back();
                 }
-                cost = self.evaluate(table, theta, gate, points);
+                cost = self.cost(table, theta, gate, points);
                 information = self.linearised(table, theta, points, &mut |k| observe(permille(steps, k)));
                 continue;
             };
@@ -237,8 +241,23 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         for part in points.earlier.iter_mut() {
             part.look_back();
         }
-        cost = self.evaluate(table, theta, gate, points);
+        cost = self.cost(table, theta, gate, points);
         (information, cost, steps)
+    }
+
+    /// The robust cost where the fit is, whose predictions may be there; sets the weights of the points.
+    fn cost(
+        &self,
+        table: &mut ForceTable,
+        theta: &[Real; COUNT],
+        gate: Real,
+        points: &mut Points<impl Predictor>,
+    ) -> Real {
+        if points.is_predicted {
+            return weighed(theta, gate, points);
+        }
+        points.is_predicted = true;
+        self.evaluate(table, theta, gate, points)
     }
 
     /// Predicts the points of every cut with its own correction, and with what is its part's own.
@@ -265,11 +284,7 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
         let parameters = self.prior.at(theta);
         renew(table, &parameters);
         self.predict(table, &parameters, points);
-        let mut cost = points.earlier.iter().fold(tails::cost(theta), |sum, part| sum + part.cost());
-        for o in points.observations.iter_mut() {
-            cost += o.weigh(gate);
-        }
-        cost
+        weighed(theta, gate, points)
     }
 
     /// The normal equations at a point just evaluated, with sensitivities taken anew where the last are too far; `observe` is told how
@@ -351,6 +366,15 @@ impl<C: Fn(usize, usize) -> Vector + Copy + Sync> Task<'_, C> {
             }
         }
     }
+}
+
+/// The robust cost of the points as they are predicted; sets their weights.
+fn weighed<P>(theta: &[Real; COUNT], gate: Real, points: &mut Points<P>) -> Real {
+    let mut cost = points.earlier.iter().fold(tails::cost(theta), |sum, part| sum + part.cost());
+    for o in points.observations.iter_mut() {
+        cost += o.weigh(gate);
+    }
+    cost
 }
 
 fn set(observation: &mut Observation, k: usize, value: Real) {

@@ -1,7 +1,7 @@
 //! What was probed, and what the model says the probe should have found there.
 
 use super::parameters::{COUNT, Parameters};
-use crate::cut::{Envelope, ForceTable, Loop, Path, State};
+use crate::cut::{Envelope, ForceTable, Loop, Path, Sought, State};
 use truepath_units::geometry::{Direction, Vector};
 use truepath_units::{Offset, Real, hypot_nm};
 
@@ -267,17 +267,16 @@ impl Neighbourhood {
         };
         let states = workspace.states.get(..count).unwrap_or_default();
         let displacements = workspace.displacements.get_mut(..count).unwrap_or_default();
-        Envelope::displace(machine, states, height, displacements);
-        wall_at(path, from, displacements, s)
+        wall_at(path, from, Sought::new(machine, states, height, displacements), s)
     }
 }
 
 /// The wall error at an arc length, between the two samples that enclose it.
-fn wall_at(path: &Path, from: usize, displacements: &[Vector], s: Offset) -> Offset {
-    let envelope = Envelope::new(path, from, displacements);
+fn wall_at(path: &Path, from: usize, displacements: Sought<'_>, s: Offset) -> Offset {
+    let mut envelope = Envelope::of(path, from, displacements);
     let after = path.samples().partition_point(|x| x.s <= s);
     let before = after.saturating_sub(1);
-    let at = |i: usize| envelope.error(i, i).map(|e| e.error);
+    let mut at = |i: usize| envelope.read(i, i).map(|e| e.error);
     let (Some(a), Some(b)) = (path.samples().get(before), path.samples().get(after)) else {
         return at(before).unwrap_or_default();
     };

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Neg, Sub};
 
-use crate::{Offset, Position, Real, div_rounded, hypot_nm, isqrt_rounded, shift_rounded_i63, sin_cos};
+use crate::{Offset, Position, Real, hypot_nm, isqrt_rounded, shift_rounded_i63, sin_cos};
 
 /// A place in the plane, nanometres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -115,14 +115,15 @@ impl Vector {
     /// The scalar product with another displacement, nm², exact.
     #[inline]
     pub const fn dot(self, other: Self) -> i128 {
-        let p = (self.x.nm() as i128).saturating_mul(other.x.nm() as i128);
-        p.saturating_add((self.y.nm() as i128).saturating_mul(other.y.nm() as i128))
+        // Two products of 63 bits.
+        let p = (self.x.nm() as i128).wrapping_mul(other.x.nm() as i128);
+        p.wrapping_add((self.y.nm() as i128).wrapping_mul(other.y.nm() as i128))
     }
     /// The vector product (z component) with another displacement, nm², exact.
     #[inline]
     pub const fn cross(self, other: Self) -> i128 {
-        let p = (self.x.nm() as i128).saturating_mul(other.y.nm() as i128);
-        p.saturating_sub((self.y.nm() as i128).saturating_mul(other.x.nm() as i128))
+        let p = (self.x.nm() as i128).wrapping_mul(other.y.nm() as i128);
+        p.wrapping_sub((self.y.nm() as i128).wrapping_mul(other.x.nm() as i128))
     }
     /// Its component along a direction, rounded to the nanometre.
     #[inline]
@@ -134,6 +135,20 @@ impl Vector {
         }
         self.x.blend(direction.x, self.y, direction.y)
     }
+    /// Its components along a direction and to the right of it, each rounded to the nanometre.
+    #[inline]
+    pub fn along_and_right(self, direction: Direction) -> (Offset, Offset) {
+        let (x, y) = (self.x.nm(), self.y.nm());
+        if is_short(x) && is_short(y) {
+            let part = |a: Real, b: Real| {
+                let sum = x.wrapping_mul(a.bits()).wrapping_add(y.wrapping_mul(b.bits()));
+                Offset::from_nm(shift_rounded_i63(sum, Real::FRACTION_BITS))
+            };
+            let right = direction.right();
+            return (part(direction.x, direction.y), part(right.x, right.y));
+        }
+        (self.along(direction), self.along(direction.right()))
+    }
     /// Times a number.
     #[inline]
     pub fn scaled(self, factor: Real) -> Self {
@@ -141,18 +156,16 @@ impl Vector {
     }
     /// Its direction; `None` for the zero vector. Components are good to one step of 2⁻³².
     pub fn direction(self) -> Option<Direction> {
-        let (x, y) = (i128::from(self.x.nm()), i128::from(self.y.nm()));
-        let largest = x.unsigned_abs().max(y.unsigned_abs());
+        let [x, y] = [self.x.nm().unsigned_abs(), self.y.nm().unsigned_abs()];
         // Scale up so that the length carries 60 significant bits.
-        let shift = 60u32.saturating_sub(128u32.saturating_sub(largest.leading_zeros()));
-        let (x, y) = (x << shift, y << shift);
-        let (ax, ay) = (x.unsigned_abs(), y.unsigned_abs());
-        let length = isqrt_rounded(ax.saturating_mul(ax).saturating_add(ay.saturating_mul(ay)));
-        if length == 0 {
-            return None;
-        }
-        let part = |v: i128| Real::narrow(div_rounded(v << Real::FRACTION_BITS, length as i128));
-        Some(Direction { x: part(x), y: part(y) })
+        let shift = 60u32.saturating_sub(64u32.saturating_sub(x.max(y).leading_zeros()));
+        let [x, y] = [x, y].map(|v| u128::from(v << shift));
+        let length = isqrt_rounded(x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y)));
+        let part = |magnitude: u128, of: Offset| {
+            let share = (magnitude << Real::FRACTION_BITS).wrapping_add(length >> 1).checked_div(length)? as i64;
+            Some(Real::from_bits(if of < Offset::ZERO { share.wrapping_neg() } else { share }))
+        };
+        Some(Direction { x: part(x, self.x)?, y: part(y, self.y)? })
     }
     /// Turned by an angle with the given sine and cosine (counter-clockwise), each component rounded once.
     pub fn turned(self, sine: Real, cosine: Real) -> Self {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use truepath_core::correct::Band;
-use truepath_core::cut::{ForceTable, Loop, Path, Sample, State, Teeth};
+use truepath_core::cut::{ForceTable, Heights, Loop, Path, Sample, State};
 use truepath_core::identify::{COUNT, Parameter, Parameters};
 use truepath_core::job;
 use truepath_core::units::{Offset, Real};
@@ -92,13 +92,11 @@ fn deflections(path: &Path, engaged: &[State], parameters: &Parameters) -> Vec<O
         }
         State { chip_scale: scale.1, ..*state }
     });
-    let states: Vec<State> = states.collect();
-    // Height by height: the flutes in the stock are mostly those of the sample before.
-    let (mut sums, mut teeth) = (vec![Offset::ZERO; states.len()], Teeth::BLANK);
-    for height in (0..HEIGHTS).map(|k| Band::WHOLE.at(k)) {
-        for ((sum, state), sample) in sums.iter_mut().zip(&states).zip(samples) {
-            *sum += machine.deflection_parts(&mut teeth, state, height).1.along(sample.normal);
-        }
-    }
-    sums.iter().map(|sum| -sum.scaled(Real::ratio(1, HEIGHTS))).collect()
+    let mut heights: Heights<{ HEIGHTS as usize }> = Heights::new(std::array::from_fn(|k| Band::WHOLE.at(k as i64)));
+    let mean = |(state, sample): (State, &Sample)| {
+        let deflections = machine.deflections(&mut heights, &state);
+        let sum = deflections.iter().fold(Offset::ZERO, |sum, deflection| sum + deflection.along(sample.normal));
+        -sum.scaled(Real::ratio(1, HEIGHTS))
+    };
+    states.zip(samples).map(mean).collect()
 }

@@ -18,6 +18,7 @@ use super::unmodelled::{SOFTER, lack, unbent, unmodelled};
 use super::wall::{WallFigures, judged};
 use crate::correction::Identification;
 use crate::discrepancy::Along;
+use crate::parallel_walls::displace;
 
 /// Places whose walls are drawn, at most.
 const DRAWN_PLACES: usize = 500;
@@ -207,10 +208,11 @@ pub fn errors(machine: &Loop, nodes: &[Node], places: &[usize]) -> Vec<f64> {
     let start = path.working().start;
     let mut states = vec![State::REST; path.working().len()];
     machine.run(start, &mut states, |index| commanded(path, nodes, index));
-    let row = |k: usize| {
-        let mut displacements = vec![Vector::ZERO; states.len()];
-        Envelope::displace(machine, &states, Band::WHOLE.at(k as i64), &mut displacements);
-        let envelope = Envelope::new(path, start, &displacements);
+    let mut displacements: [Vec<Vector>; COUNT] = std::array::from_fn(|_| vec![Vector::ZERO; states.len()]);
+    let heights = std::array::from_fn(|k| Band::WHOLE.at(k as i64));
+    displace(machine, &states, heights, displacements.each_mut().map(Vec::as_mut_slice));
+    let row = |displacements: &Vec<Vector>| {
+        let envelope = Envelope::new(path, start, displacements);
         // The wall beside a place is made about as far before or behind it as beside the place before.
         let mut ahead = 0isize;
         let beside = |index: &usize| {
@@ -220,7 +222,7 @@ pub fn errors(machine: &Loop, nodes: &[Node], places: &[usize]) -> Vec<f64> {
         };
         places.iter().map(beside).map(Option::unwrap_or_default).collect::<Vec<f64>>()
     };
-    let rows: Vec<Vec<f64>> = (0..COUNT).into_par_iter().map(row).collect();
+    let rows: Vec<Vec<f64>> = displacements.par_iter().map(row).collect();
     (0..places.len()).flat_map(|at| rows.iter().map(move |row| row[at])).collect()
 }
 
