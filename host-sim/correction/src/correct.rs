@@ -15,7 +15,9 @@ use truepath_job::measurement::Measurement;
 use truepath_job::pass::{Pass, PathBuffer};
 use truepath_program::{BlockEdit, Origin, RewriteOptions, Rewritten, rewrite_program};
 
-use crate::correction::{Correction, DesignRequest, Identification, MeasuredCut, design_correction, identify_together};
+use crate::correction::{
+    Correction, DesignRequest, Identification, MeasuredCut, design_correction, identify_together, identify_with,
+};
 use crate::discrepancy::{Along, Discrepancy, PartCut, is_fitted, relieved};
 use crate::edits::block_edits;
 use crate::feeds;
@@ -25,7 +27,7 @@ use crate::rows::{CorrectionRow, correction_rows};
 use crate::sharp_corners::{self, SharpCorners};
 use crate::summary::{CorrectSummary, correct_summary, corrected_name};
 use crate::surface::expected::{Surface, Surfaces};
-use crate::told::{self, Told};
+use crate::told::{self, Heard, Told};
 use crate::warnings::{beyond_tolerance, cut_corrected, kinked, model_warnings};
 use crate::written_out::written_out;
 
@@ -88,7 +90,7 @@ pub fn correct_every(
     routes: &[Route],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Vec<CorrectedPass>, Failure> {
-    let passes = as_told(walls)?;
+    let Heard { passes, fits } = as_told(walls)?;
     let walls: Vec<MeasuredWall> =
         walls.iter().zip(&passes).map(|(wall, pass)| MeasuredWall { pass, ..*wall }).collect();
     let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
@@ -99,7 +101,7 @@ pub fn correct_every(
     let both = walls.iter().zip(&sampled);
     let cuts = both.map(|(wall, path)| MeasuredCut { pass: wall.pass, path, measurement: wall.measurement });
     let cuts: Vec<MeasuredCut> = cuts.collect();
-    let (identified, along) = identify_cuts(&cuts, |share| progress(0.2 * share))?;
+    let (identified, along) = identify_cuts(&cuts, fits.into_iter().next(), |share| progress(0.2 * share))?;
     let identified =
         walls.iter().zip(&sampled).zip(identified).zip(&along).map(|(((wall, path), identified), along)| {
             let remarks = Remarks::of(wall.measurement, wall.remarks, MeasuredPart::Uncorrected);
@@ -121,7 +123,7 @@ pub fn identify_every(
     walls: &[MeasuredWall<'_>],
     progress: &mut dyn FnMut(f64),
 ) -> Result<Vec<Identification>, Failure> {
-    let passes = as_told(walls)?;
+    let Heard { passes, fits } = as_told(walls)?;
     let mut buffers: Vec<PathBuffer> = walls.iter().map(|_| PathBuffer::default()).collect();
     let mut sampled = Vec::new();
     for (pass, buffer) in passes.iter().zip(&mut buffers) {
@@ -130,15 +132,17 @@ pub fn identify_every(
     let parts = walls.iter().zip(&passes).zip(&sampled);
     let cuts = parts.map(|((wall, pass), path)| MeasuredCut { pass, path, measurement: wall.measurement });
     let cuts: Vec<MeasuredCut> = cuts.collect();
-    Ok(identify_cuts(&cuts, progress)?.0)
+    Ok(identify_cuts(&cuts, fits.into_iter().next(), progress)?.0)
 }
 
-/// Machine and material of an uncorrected part with the points of each wall, and what is beside them along each.
+/// Machine and material of an uncorrected part with the points of each wall, and what is beside them along each; their plain fit may be
+/// there.
 fn identify_cuts(
     cuts: &[MeasuredCut<'_>],
+    fit: Option<Found>,
     mut progress: impl FnMut(f64),
 ) -> Result<(Vec<Identification>, Vec<Along>), Failure> {
-    let identified = identify_together(cuts, |share| progress(0.5 * share))?;
+    let identified = identify_with(cuts, fit, |share| progress(0.5 * share))?;
     let (identified, along, _) = beside(cuts, identified, |share| progress(0.5 + 0.5 * share));
     Ok((identified, along))
 }
@@ -148,7 +152,7 @@ fn identify_cuts(
 /// # Errors
 /// What is wrong with program or measurement.
 pub fn as_its_points_tell(pass: Pass, measurement: &Measurement) -> Result<Pass, Failure> {
-    let passes = as_told(&[MeasuredWall { pass: &pass, measurement, remarks: &[] }])?;
+    let passes = as_told(&[MeasuredWall { pass: &pass, measurement, remarks: &[] }])?.passes;
     Ok(passes.into_iter().next().unwrap_or(pass))
 }
 
@@ -174,7 +178,7 @@ pub fn identify_beside(
 ///
 /// # Errors
 /// What is wrong with program or measurement.
-fn as_told(walls: &[MeasuredWall<'_>]) -> Result<Vec<Pass>, Failure> {
+fn as_told(walls: &[MeasuredWall<'_>]) -> Result<Heard, Failure> {
     let passes: Vec<&Pass> = walls.iter().map(|wall| wall.pass).collect();
     told::passes(&passes, true, &|k, _| {
         let wall = walls.get(k).ok_or_else(|| Failure::Internal("points of no wall".to_owned()))?;
@@ -306,7 +310,8 @@ fn design<'a>(
     }
     warnings.extend(feeds.warnings(mm(correction.sigma_by_points.iter().copied().max().unwrap_or_default())));
     let wall = |nodes| Surface::predicted(&machine, &identified, request.beside, nodes);
-    let surface = Surfaces { before: wall(&[]), after: wall(&correction.nodes) };
+    let (before, after) = rayon::join(|| wall(&[]), || wall(&correction.nodes));
+    let surface = Surfaces { before, after };
     warnings.extend(beyond_tolerance(pass, &remarks, &surface.after));
     Ok(Designed {
         sharp_corners,

@@ -17,7 +17,7 @@ use truepath_job::pass::Pass;
 use crate::discrepancy::{Along, PartCut, plain};
 use crate::identification::{Found, asked};
 use crate::misfit::refuse_misfit;
-use crate::parallel_walls::ParallelWalls;
+use crate::parallel_walls::{ParallelWalls, run};
 
 /// What the probe points say about machine and material.
 #[derive(Clone, Debug)]
@@ -90,8 +90,17 @@ pub struct MeasuredCut<'a> {
 ///
 /// # Errors
 /// As [`identify`], of all points together.
-pub fn identify_together(
+pub fn identify_together(cuts: &[MeasuredCut<'_>], progress: impl FnMut(f64)) -> Result<Vec<Identification>, Failure> {
+    identify_with(cuts, None, progress)
+}
+
+/// The same where their [`plain()`] fit may be there already.
+///
+/// # Errors
+/// As [`identify_together`].
+pub(crate) fn identify_with(
     cuts: &[MeasuredCut<'_>],
+    fit: Option<Found>,
     mut progress: impl FnMut(f64),
 ) -> Result<Vec<Identification>, Failure> {
     let Some(first) = cuts.first() else { return Ok(Vec::new()) };
@@ -103,7 +112,8 @@ pub fn identify_together(
         .enumerate()
         .map(|(contour, (cut, observations))| PartCut::uncorrected(*cut.path, contour, observations))
         .collect();
-    let Found { core, observations, .. } = plain(first.pass, law, &parts, &mut progress);
+    let fitted = fit.unwrap_or_else(|| plain(first.pass, law, &parts, &mut progress));
+    let Found { core, observations, .. } = fitted;
     let mut rest = observations.into_iter();
     let own = |own: &Vec<Observation>| Identification { core, observations: rest.by_ref().take(own.len()).collect() };
     let identified: Vec<Identification> = measured.iter().map(own).collect();
@@ -278,7 +288,7 @@ pub fn walls(machine: &Loop, band: Band, nodes: &[Node], residual: &[Offset]) ->
     let path = machine.path;
     let working = path.working();
     let mut states = vec![State::REST; working.len()];
-    let passage = machine.run(working.start, &mut states, |i| commanded(path, nodes, i));
+    let passage = run(machine, working.start, &mut states, &|i| commanded(path, nodes, i));
     let mut displacements = vec![Vector::ZERO; working.len()];
     let mut walls = vec![Profile::default(); path.count()];
     ParallelWalls::of(path).profile(machine, &states, band, &mut displacements, &mut walls);

@@ -187,6 +187,7 @@ fn as_told(walls: &[CorrectedWall<'_>], newest: &[Part]) -> Result<Vec<Pass>, Fa
         let parts = part_points(wall.history, part, path)?;
         Ok(parts.into_iter().map(|part| Told { nodes: part.nodes, observations: part.observations }).collect())
     })
+    .map(|heard| heard.passes)
 }
 
 /// The parts of a history that count, then the newest.

@@ -14,7 +14,7 @@ use truepath_ground::units::mm;
 use truepath_job::pass::Pass;
 
 use crate::discrepancy::{PartCut, is_fitted, ln_evidence, plain};
-use crate::identification::asked;
+use crate::identification::{Found as Fit, asked};
 use crate::plausible::is_possible;
 
 /// Offsets that are tried, µm, with what is believed of each (natural logarithm): most holders are good ones.
@@ -63,16 +63,19 @@ pub fn is_open(pass: &Pass) -> bool {
 }
 
 /// What the points of cuts say of the runout of their cutter, by groups of cuts that are fitted each by themselves: of all that
-/// belong together. `None` where they do not speak for any.
-pub fn found(groups: &[(&Pass, Vec<PartCut<'_>>)]) -> Option<Found> {
+/// belong together. `None` where they do not speak for any. `fits` are left the [`plain()`] fits of a cutter that runs true, where it is
+/// asked for.
+pub fn found(groups: &[(&Pass, Vec<PartCut<'_>>)], fits: &mut Vec<Fit>) -> Option<Found> {
     if groups.is_empty() || !groups.iter().all(|(pass, _)| is_open(pass)) {
         return None;
     }
-    let probable = |at: &(Offset, f64)| Tried::of(*at, groups);
+    let probable = |at: &(Offset, f64)| Tried::of(*at, groups).map(|(tried, _)| tried);
     let known: Vec<(Offset, f64)> =
         TRIED.iter().map(|(um, belief)| (Offset::from_um(i64::from(*um)), *belief)).collect();
     let (small, large) = known.split_at(SMALL);
-    let mut tried: Vec<Tried> = small.par_iter().filter_map(probable).collect();
+    let each: Vec<(Tried, Vec<Fit>)> = small.par_iter().filter_map(|at| Tried::of(*at, groups)).collect();
+    let (mut tried, of_each): (Vec<Tried>, Vec<Vec<Fit>>) = each.into_iter().unzip();
+    *fits = tried.iter().zip(of_each).find(|(one, _)| one.offset == Offset::ZERO).map(|(_, fits)| fits)?;
     let runs_true = *tried.iter().find(|one| one.offset == Offset::ZERO)?;
     // A larger one only where the largest so far is the most probable.
     for larger in large {
@@ -123,30 +126,34 @@ struct Tried {
 
 impl Tried {
     /// An offset, and what is believed of it, by groups of cuts.
-    fn of((offset, belief): (Offset, f64), groups: &[(&Pass, Vec<PartCut<'_>>)]) -> Option<Self> {
-        let each = groups.iter().map(|(pass, cuts)| ln_probability(pass, cuts, offset));
-        let all: Vec<(f64, bool)> = each.collect::<Option<_>>()?;
-        let ln = belief + all.iter().map(|(ln, _)| ln).sum::<f64>();
-        Some(Self { offset, belief, ln, is_possible: all.iter().all(|(_, is_possible)| *is_possible) })
+    fn of((offset, belief): (Offset, f64), groups: &[(&Pass, Vec<PartCut<'_>>)]) -> Option<(Self, Vec<Fit>)> {
+        let each = groups.iter().map(|(pass, cuts)| with_offset(pass, cuts, offset));
+        let (lns, fits): (Vec<f64>, Vec<Fit>) = each.collect::<Option<Vec<_>>>()?.into_iter().unzip();
+        let ln = belief + lns.iter().sum::<f64>();
+        let is_possible = fits.iter().all(|fit| is_possible(&fit.core));
+        Some((Self { offset, belief, ln, is_possible }, fits))
     }
 }
 
-/// The passes of walls with the cutter that their points speak for; as they are where these do not.
-pub fn passes(walls: &[&Pass], groups: &[(&Pass, Vec<PartCut<'_>>)]) -> Vec<Pass> {
-    let found = found(groups);
-    let with =
-        |pass: &&Pass| found.map_or_else(|| (*pass).clone(), |found| pass.running_out(found.offset, found.words()));
-    walls.iter().map(with).collect()
+/// The passes of walls with the cutter that their points speak for; as they are where these do not, with the [`plain()`] fits of their
+/// groups where these were made.
+pub fn passes(walls: &[&Pass], groups: &[(&Pass, Vec<PartCut<'_>>)]) -> (Vec<Pass>, Vec<Fit>) {
+    let mut fits = Vec::new();
+    match found(groups, &mut fits) {
+        Some(found) => (walls.iter().map(|pass| pass.running_out(found.offset, found.words())).collect(), Vec::new()),
+        None => (walls.iter().map(|pass| (*pass).clone()).collect(), fits),
+    }
 }
 
-fn ln_probability(pass: &Pass, cuts: &[PartCut<'_>], offset: Offset) -> Option<(f64, bool)> {
+/// How probable the points are with an offset, natural logarithm, and their fit.
+fn with_offset(pass: &Pass, cuts: &[PartCut<'_>], offset: Offset) -> Option<(f64, Fit)> {
     let runout = Runout { offset, behind: Real::ZERO };
     let cuts: Vec<PartCut<'_>> =
         cuts.iter().map(|cut| PartCut { path: cut.path.with_runout(runout), ..*cut }).collect();
     // The mean law knows no tooth: one that runs out is of the helical law.
     let law = if offset == Offset::ZERO { asked(pass.core.job.force.model) } else { Some(WallLaw::Helical) };
     let found = plain(pass, law, &cuts, &mut |_| ());
-    Some((ln_evidence(&found, &cuts)?, is_possible(&found.core)))
+    Some((ln_evidence(&found, &cuts)?, found))
 }
 
 #[cfg(test)]

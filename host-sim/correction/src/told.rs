@@ -8,6 +8,7 @@ use truepath_ground::diagnostics::Failure;
 use truepath_job::pass::{Pass, PathBuffer};
 
 use crate::discrepancy::PartCut;
+use crate::identification::Found;
 use crate::shop::{Agreement, after, agreement};
 use crate::{roughing, runout};
 
@@ -24,12 +25,21 @@ pub struct Told {
     pub observations: Vec<Observation>,
 }
 
+/// The passes of walls, and what is known of their machine already.
+#[derive(Clone, Debug)]
+pub struct Heard {
+    /// The passes.
+    pub passes: Vec<Pass>,
+    /// The [`plain`](crate::discrepancy::plain) fit of each group that is fitted together; empty where they were not made.
+    pub fits: Vec<Found>,
+}
+
 /// The passes of walls with the cutter and over the stock that their points speak for. `points` gives the parts of a wall, told by its
 /// number and path; with `together` the walls are those of one part and have one machine.
 ///
 /// # Errors
 /// What `points` answers, and what is wrong with a program.
-pub fn passes(walls: &[&Pass], together: bool, points: &Points<'_>) -> Result<Vec<Pass>, Failure> {
+pub fn passes(walls: &[&Pass], together: bool, points: &Points<'_>) -> Result<Heard, Failure> {
     let mut passes: Vec<Pass> = walls.iter().map(|pass| (*pass).clone()).collect();
     if walls.iter().any(|pass| pass.core.believed.is_some()) {
         passes = with_cuts(&passes, together, points, &|walls, groups| Ok(as_they_agree(walls, groups)))?;
@@ -47,7 +57,8 @@ pub fn passes(walls: &[&Pass], together: bool, points: &Points<'_>) -> Result<Ve
             pass.say_roughing();
         }
     }
-    with_cuts(&passes, together, points, &|walls, groups| Ok(runout::passes(walls, groups)))
+    let (passes, fits) = with_cuts(&passes, together, points, &|walls, groups| Ok(runout::passes(walls, groups)))?;
+    Ok(Heard { passes, fits })
 }
 
 /// Passes that begin at what the shop believes only where the points of their group agree with it.

@@ -188,10 +188,10 @@ pub(super) fn pass(
 ) -> Passage {
     let path = machine.path;
     let working = path.working();
-    let passage = machine.run(working.start, workspace.states, |i| {
-        let done = i.saturating_sub(working.start).saturating_mul(1000);
+    let by_nodes = |index| commanded(path, nodes, index);
+    let passage = workspace.reader.run(machine, working.start, workspace.states, by_nodes, &mut |index| {
+        let done = index.saturating_sub(working.start).saturating_mul(1000);
         observe(done.checked_div(working.len()).unwrap_or(0).min(1000) as u16);
-        commanded(path, nodes, i)
     });
     walls(machine, wanted, workspace);
     passage

@@ -1,14 +1,24 @@
-//! Who reads the walls of a design: one height after the other, or several at once.
+//! Who runs the cutter and reads the walls of a design: one sample and one height after the other, or several at once.
 //!
 //! A design reads the wall at thirteen heights on every pass of the cutter, and most of its time goes there. The heights do
 //! not depend on each other, so whoever has more than one processor may read them at the same time; the core has one.
 
 use super::profile::{Band, Profile, profile};
-use crate::cut::{Loop, State};
+use crate::cut::{Loop, Passage, State};
 use truepath_units::geometry::Vector;
 
-/// Reads the profile of the walls off the states of a pass, to the last bit as [`profile`] does.
+/// Runs the cutter to the last bit as [`Loop::run`] does, and reads the profile of the walls off its states as [`profile`] does.
 pub trait WallReader {
+    /// As [`Loop::run`]; `observe` is told samples that it comes to, in their order.
+    fn run(
+        &mut self,
+        machine: &Loop,
+        from: usize,
+        states: &mut [State],
+        commanded: impl Fn(usize) -> Vector + Sync,
+        observe: &mut dyn FnMut(usize),
+    ) -> Passage;
+
     /// As [`profile`].
     fn profile(
         &mut self,
@@ -25,6 +35,17 @@ pub trait WallReader {
 pub struct InOrder;
 
 impl<R: WallReader> WallReader for &mut R {
+    fn run(
+        &mut self,
+        machine: &Loop,
+        from: usize,
+        states: &mut [State],
+        commanded: impl Fn(usize) -> Vector + Sync,
+        observe: &mut dyn FnMut(usize),
+    ) -> Passage {
+        (**self).run(machine, from, states, commanded, observe)
+    }
+
     fn profile(
         &mut self,
         machine: &Loop,
@@ -38,6 +59,20 @@ impl<R: WallReader> WallReader for &mut R {
 }
 
 impl WallReader for InOrder {
+    fn run(
+        &mut self,
+        machine: &Loop,
+        from: usize,
+        states: &mut [State],
+        commanded: impl Fn(usize) -> Vector + Sync,
+        observe: &mut dyn FnMut(usize),
+    ) -> Passage {
+        machine.run(from, states, |index| {
+            observe(index);
+            commanded(index)
+        })
+    }
+
     fn profile(
         &mut self,
         machine: &Loop,

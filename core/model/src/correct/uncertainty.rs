@@ -63,7 +63,8 @@ fn spread(
             table.tabulate(parameters.coefficients.size_exponent);
         }
         let displaced = parameters.machine(path, &table);
-        displaced.run(path.working().start, workspace.states, |i| commanded(path, nodes, i));
+        let by_nodes = |index| commanded(path, nodes, index);
+        workspace.reader.run(&displaced, path.working().start, workspace.states, by_nodes, &mut |_| ());
         walls(&displaced, wanted, workspace);
         workspace.profiles.iter().enumerate().for_each(|(index, wall)| take(index, wall, share));
     }

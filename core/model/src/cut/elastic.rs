@@ -80,6 +80,18 @@ const TOLERANCE: Offset = Offset::from_nm(5);
 /// Residual above which a sample is reported as unsettled.
 const UNSETTLED: Offset = Offset::from_nm(500);
 
+impl Passage {
+    /// Of these samples and others.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            iterations: self.iterations.saturating_add(other.iterations),
+            unsettled: self.unsettled.saturating_add(other.unsettled),
+            worst_residual: self.worst_residual.max(other.worst_residual),
+        }
+    }
+}
+
 impl State {
     /// Before any sample was solved.
     pub const REST: Self = Self {
@@ -113,12 +125,19 @@ impl Loop<'_> {
         let mut state = State { commanded, chip_scale, ..State::REST };
         for iteration in 1..=MAX_ITERATIONS {
             let Some((engaged, normal, push)) = self.push(index, commanded + x, chip_scale, exit) else {
+                if let Some((_, residual)) = before {
+                    state.residual = residual.length();
+                }
                 return (state, iteration);
             };
             let residual = push - x;
-            state = State { displacement: push, engaged, normal, residual: residual.length(), ..state };
-            if state.residual <= TOLERANCE {
-                return (state, iteration);
+            state = State { displacement: push, engaged, normal, ..state };
+            // Longer than the tolerance is what is longer along an axis: roots are needed only near the end.
+            if residual.x.abs().max(residual.y.abs()) <= TOLERANCE || iteration == MAX_ITERATIONS {
+                state.residual = residual.length();
+                if state.residual <= TOLERANCE {
+                    return (state, iteration);
+                }
             }
             let step = match before {
                 None => residual,
@@ -156,9 +175,21 @@ impl Loop<'_> {
     }
 
     /// Runs the loop over samples `from..from + states.len()`; `commanded` gives the commanded displacement of each.
-    pub fn run(&self, from: usize, states: &mut [State], mut commanded: impl FnMut(usize) -> Vector) -> Passage {
-        let mut passage = Passage::default();
+    pub fn run(&self, from: usize, states: &mut [State], commanded: impl FnMut(usize) -> Vector) -> Passage {
         let mut guess = Vector::ZERO;
+        self.run_on(from, &mut guess, states, commanded)
+    }
+
+    /// The same behind samples that were run before: `guess` is the deflection with which they ended, and becomes that with which
+    /// these end.
+    pub fn run_on(
+        &self,
+        from: usize,
+        guess: &mut Vector,
+        states: &mut [State],
+        mut commanded: impl FnMut(usize) -> Vector,
+    ) -> Passage {
+        let mut passage = Passage::default();
         let mut feed = None;
         let mut chip_scale = Real::ZERO;
         let mut exit = 0;
@@ -174,8 +205,8 @@ impl Loop<'_> {
                 *slot = State { commanded: commanded(index), normal: sample.normal, chip_scale, ..State::REST };
                 continue;
             }
-            let (state, iterations) = self.settle_about(index, commanded(index), guess, chip_scale, &mut exit);
-            guess = state.displacement;
+            let (state, iterations) = self.settle_about(index, commanded(index), *guess, chip_scale, &mut exit);
+            *guess = state.displacement;
             passage.iterations = passage.iterations.saturating_add(iterations);
             passage.unsettled = passage.unsettled.saturating_add(u32::from(state.residual > UNSETTLED));
             passage.worst_residual = passage.worst_residual.max(state.residual);

@@ -72,6 +72,14 @@ struct Primitive {
     sine: Real,
 }
 
+/// An angle with its sine and cosine.
+#[derive(Clone, Copy, Debug)]
+struct Angle {
+    angle: Real,
+    sine: Real,
+    cosine: Real,
+}
+
 /// Sums over the immersion, of which each pair belongs to a sine and a cosine.
 #[derive(Clone, Copy, Debug)]
 struct More {
@@ -105,6 +113,12 @@ impl Primitive {
     }
 }
 
+impl Angle {
+    fn primitive(self) -> Primitive {
+        Primitive::of(self.angle, self.sine, self.cosine)
+    }
+}
+
 impl Weight {
     /// For a size exponent; within 0.05 from sin φ = 0.3 up, for exponents up to 0.2.
     const fn of(size_exponent: Real) -> Self {
@@ -118,9 +132,9 @@ impl Piece {
     const NONE: Self = Self { angle: 0, sine: 0, cosine: 0, offset: 0, times: 0 };
 
     /// Its lower end on the way in and on the way out.
-    fn ends(&self) -> (Primitive, Primitive) {
+    fn ends(&self) -> (Angle, Angle) {
         let (angle, sine, cosine) = (from_fine(self.angle), from_fine(self.sine), from_fine(self.cosine));
-        (Primitive::of(angle, sine, cosine), Primitive::of(Real::PI - angle, sine, -cosine))
+        (Angle { angle, sine, cosine }, Angle { angle: Real::PI - angle, sine, cosine: -cosine })
     }
 }
 
@@ -144,6 +158,17 @@ impl More {
             self.reach.0 += Real::dot(sine, weight.even, -square, weight.falling) * offset;
             self.reach.1 += Real::dot(cosine, weight.even, -product, weight.falling) * offset;
         }
+    }
+
+    /// Adds another.
+    fn join(&mut self, other: &Self) {
+        let pair = |own: &mut (Real, Real), other: (Real, Real)| {
+            own.0 += other.0;
+            own.1 += other.1;
+        };
+        pair(&mut self.chip, other.chip);
+        pair(&mut self.reach, other.reach);
+        pair(&mut self.edge, other.edge);
     }
 
     /// The force of it, N for a basis in mm/rad.
@@ -204,25 +229,26 @@ impl Tooth {
 
     /// Adds to a sum what it cuts more between two angles within 0…π than a tooth of a cutter that runs true.
     fn cut(&self, low: &Primitive, high: &Primitive, weight: &Weight, sum: &mut More) {
-        let mut between = |from: &Primitive, to: &Primitive, times: u8, offset: Real| {
-            let from = if low.angle > from.angle { low } else { from };
-            let to = if high.angle < to.angle { high } else { to };
-            if to.angle > from.angle {
-                sum.add(from, to, times, (offset, weight));
+        let mut between = |from: Angle, to: Angle, times: u8, offset: Real| {
+            if high.angle.min(to.angle) > low.angle.max(from.angle) {
+                // Of most pieces neither end lies between.
+                let from = if low.angle > from.angle { *low } else { from.primitive() };
+                let to = if high.angle < to.angle { *high } else { to.primitive() };
+                sum.add(&from, &to, times, (offset, weight));
             }
         };
         // From the middle of the arc outwards on both sides; what is left at the ends is out of contact.
-        let middle = Primitive::of(Real::FRAC_PI_2, Real::ONE, Real::ZERO);
+        let middle = Angle { angle: Real::FRAC_PI_2, sine: Real::ONE, cosine: Real::ZERO };
         let (mut inner, mut outer) = (middle, middle);
         for piece in self.pieces.iter().take_while(|piece| piece.times > 0) {
             let (before, behind) = piece.ends();
             let offset = Real::from_bits(i64::from(piece.offset) << 6);
-            between(&before, &inner, piece.times, offset);
-            between(&outer, &behind, piece.times, offset);
+            between(before, inner, piece.times, offset);
+            between(outer, behind, piece.times, offset);
             (inner, outer) = (before, behind);
         }
-        between(&Primitive::of(Real::ZERO, Real::ZERO, Real::ONE), &inner, 0, Real::ZERO);
-        between(&outer, &Primitive::of(Real::PI, Real::ZERO, -Real::ONE), 0, Real::ZERO);
+        between(Angle { angle: Real::ZERO, sine: Real::ZERO, cosine: Real::ONE }, inner, 0, Real::ZERO);
+        between(outer, Angle { angle: Real::PI, sine: Real::ZERO, cosine: -Real::ONE }, 0, Real::ZERO);
     }
 }
 
@@ -275,9 +301,12 @@ impl Teeth {
                     Milling::Climb => maker.saturating_add(flute),
                     Milling::Conventional => maker.saturating_sub(flute),
                 };
-                let which = which.checked_rem_euclid(count).and_then(|j| self.teeth.get(j as usize)).copied();
-                if let (Some(cutting), Some(maker)) = (which, self.teeth.get_mut(maker as usize)) {
-                    cutting.cut(&low, &high, &weight, &mut maker.more);
+                let which = which.checked_rem_euclid(count).and_then(|j| self.teeth.get(j as usize));
+                let Some(cutting) = which else { continue };
+                let mut more = More::NOTHING;
+                cutting.cut(&low, &high, &weight, &mut more);
+                if let Some(maker) = self.teeth.get_mut(maker as usize) {
+                    maker.more.join(&more);
                 }
             }
         }

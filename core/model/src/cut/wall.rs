@@ -230,10 +230,15 @@ impl<'e, 'a, D: Displacements> Look<'e, 'a, D> {
         let path = self.envelope.path;
         let reach = path.setup().radius.nm() / 2;
         let far = reach.checked_div(path.step().nm()).unwrap_or(0).unsigned_abs() as usize;
-        for eighth in 1..=EIGHTHS {
-            let stride = far.saturating_mul(eighth) / EIGHTHS;
-            self.at(index.saturating_add(stride));
-            self.at(index.saturating_sub(stride));
+        let strides = (1..=EIGHTHS).map(|eighth| far.saturating_mul(eighth) / EIGHTHS);
+        // Mostly all of them end above the lowest gap, and nothing is taken.
+        let mut places =
+            strides.clone().flat_map(|stride| [index.saturating_add(stride), index.saturating_sub(stride)]);
+        if !places.all(|at| self.is_above(at)) {
+            for stride in strides {
+                self.at(index.saturating_add(stride));
+                self.at(index.saturating_sub(stride));
+            }
         }
         far
     }

@@ -1,5 +1,6 @@
 //! Kernels by their evidence: points of something else, mean and standard deviation.
 
+use rayon::prelude::*;
 use truepath_core::cut::{Path, Sample};
 use truepath_core::identify::COUNT;
 use truepath_core::job;
@@ -241,7 +242,7 @@ impl Discrepancy {
     }
 
     /// Mean of a quantity over the kernels.
-    fn mean_over(&self, of: impl Fn(&Factored) -> f64) -> f64 {
+    fn mean_over(&self, mut of: impl FnMut(&Factored) -> f64) -> f64 {
         self.kernels.iter().map(|(share, kernel)| share * of(kernel)).sum()
     }
 
@@ -252,12 +253,11 @@ impl Discrepancy {
 
     /// The part of it that some kinds of every kernel make.
     fn by_kernels(&self, place: &Feature, kinds: impl Fn(&Kernel) -> Kernel) -> f64 {
-        self.mean_over(|factored| {
-            let kernel = kinds(&factored.kernel);
-            let covariance: Vec<f64> =
-                self.rows().map(|row| row.lasting(&kernel, &self.points.extents, place)).collect();
-            factored.mean(&covariance)
-        })
+        let of = |kernel: &Kernel| -> Vec<f64> {
+            self.rows().map(|row| row.lasting(kernel, &self.points.extents, place)).collect()
+        };
+        let mut known = Lasting::of(of);
+        self.mean_over(|factored| factored.mean(known.at(&kinds(&factored.kernel))))
     }
 
     /// What is [beside the path with its stock](Self::rest_at) because the load differs, mm.
@@ -267,9 +267,9 @@ impl Discrepancy {
 
     /// The share of the variance of a place that the load has, before any points, 0…1.
     fn share_of_load(&self, place: &Feature) -> f64 {
-        let variance = |kernel: &Kernel| kernel.lasting(&self.points.extents, place, place);
-        let all = self.mean_over(|of| variance(&of.kernel));
-        if all > 0.0 { self.mean_over(|of| variance(&of.kernel.of_load())) / all } else { 0.0 }
+        let mut variance = Lasting::of(|kernel: &Kernel| kernel.lasting(&self.points.extents, place, place));
+        let all = self.mean_over(|of| *variance.at(&of.kernel));
+        if all > 0.0 { self.mean_over(|of| *variance.at(&of.kernel.of_load())) / all } else { 0.0 }
     }
 
     /// The same with all stock among the discrepancy: none is expected of the path.
@@ -332,7 +332,7 @@ impl Discrepancy {
         let path = self.stocked(&even, contour, &mut buffer);
         let (features, sensitivity): (Vec<Feature>, Vec<[f64; COUNT]>) =
             looks(&path, contour, core).into_iter().unzip();
-        let rest: Vec<Offset> = features.iter().map(|feature| nm(self.rest_at(feature))).collect();
+        let rest: Vec<Offset> = features.par_iter().map(|feature| nm(self.rest_at(feature))).collect();
         let (mean, rest, stock) = if self.allowance.is_even() {
             (rest, Vec::new(), Vec::new())
         } else {
@@ -340,11 +340,9 @@ impl Discrepancy {
             (all.collect(), rest, self.moved(&path, contour))
         };
         let stride = features.len().div_ceil(PLACES).max(1);
-        let known: Vec<[f64; 2]> = (0..features.len())
-            .step_by(stride)
-            .chain(features.len().checked_sub(1))
-            .map(|k| self.deviations(&features[k], &sensitivity[k], core))
-            .collect();
+        let places: Vec<usize> = (0..features.len()).step_by(stride).chain(features.len().checked_sub(1)).collect();
+        let known: Vec<[f64; 2]> =
+            places.par_iter().map(|k| self.deviations(&features[*k], &sensitivity[*k], core)).collect();
         let deviation = |k: usize| {
             let (at, share) = (k / stride, (k % stride) as f64 / stride as f64);
             let [from, to] = [at, at + 1].map(|at| known.get(at).or(known.last()).copied().unwrap_or_default());
@@ -352,9 +350,9 @@ impl Discrepancy {
         };
         let (sigma, repeat) = (0..features.len()).map(deviation).map(|[sigma, repeat]| (sigma, repeat)).unzip();
         let by_load = ByLoad {
-            mean: features.iter().map(|feature| nm(self.by_load_at(feature))).collect(),
+            mean: features.par_iter().map(|feature| nm(self.by_load_at(feature))).collect(),
             // The exponentials of a browser have other last bits than those of a system.
-            share: features.iter().map(|feature| rounded(self.share_of_load(feature), 9)).collect(),
+            share: features.par_iter().map(|feature| rounded(self.share_of_load(feature), 9)).collect(),
             level: rounded(self.mean_over(|of| of.kernel.next_level().powi(2)).sqrt(), 9),
         };
         Along { mean, rest, stock, sigma, repeat, by_load }
@@ -409,6 +407,27 @@ impl Discrepancy {
             keyed_mm: square(|k| k.keyed),
             level_share: square(|k| k.wear),
         }
+    }
+}
+
+/// What [`Kernel::lasting`] gives of a place: many kernels differ only in what is of no account there.
+struct Lasting<T, F> {
+    of: F,
+    known: Vec<(Kernel, T)>,
+}
+
+impl<T, F: Fn(&Kernel) -> T> Lasting<T, F> {
+    fn of(of: F) -> Self {
+        Self { of, known: Vec::new() }
+    }
+
+    fn at(&mut self, kernel: &Kernel) -> &T {
+        let kernel = kernel.of_one_part();
+        let at = self.known.iter().position(|(other, _)| *other == kernel).unwrap_or_else(|| {
+            self.known.push((kernel, (self.of)(&kernel)));
+            self.known.len() - 1
+        });
+        &self.known[at].1
     }
 }
 

@@ -164,6 +164,12 @@ impl Kernel {
         Self { drift: 0.0, local: 0.0, keyed: 0.0, ..*self }
     }
 
+    /// The same without what is not of two places of one part: [`lasting`](Self::lasting) does not see it.
+    pub(super) const fn of_one_part(&self) -> Self {
+        let Self { wear, height, noise, .. } = Self::EVEN;
+        Self { wear, height, noise, ..*self }
+    }
+
     /// Standard deviation of the level of force of the next part over that of the last, natural logarithm.
     pub(super) fn next_level(&self) -> f64 {
         self.levels([1, 1]).sqrt()

@@ -13,7 +13,7 @@ use rand_distr::{Distribution, StandardNormal};
 use truepath_core::cut::Path;
 use truepath_core::process::Slices;
 use truepath_core::units::Offset;
-use truepath_ground::rows::{add, add_scaled, largest};
+use truepath_ground::rows::{add, add_all_scaled, add_scaled, largest};
 use truepath_ground::units::mm;
 
 use super::causes::Causes;
@@ -123,10 +123,8 @@ impl Uncertain {
         let mut draws = std::array::from_fn(|_| Draws(Vec::with_capacity(DRAWN)));
         for _ in 0..DRAWN {
             wall.clone_from(&self.base);
-            for column in &columns {
-                let weight = normal();
-                add_scaled(&mut wall, column, weight);
-            }
+            let weighed: Vec<(&[f64], f64)> = columns.iter().map(|column| (column.as_slice(), normal())).collect();
+            add_all_scaled(&mut wall, &weighed);
             if let Some(beside) = &self.beside {
                 beside.draw(self.heights, &mut wall, &mut normal);
             }

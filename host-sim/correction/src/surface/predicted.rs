@@ -18,7 +18,7 @@ use super::unmodelled::{SOFTER, lack, unbent, unmodelled};
 use super::wall::{WallFigures, judged};
 use crate::correction::Identification;
 use crate::discrepancy::Along;
-use crate::parallel_walls::displace;
+use crate::parallel_walls::{displace, run};
 
 /// Places whose walls are drawn, at most.
 const DRAWN_PLACES: usize = 500;
@@ -207,7 +207,7 @@ pub fn errors(machine: &Loop, nodes: &[Node], places: &[usize]) -> Vec<f64> {
     let path = machine.path;
     let start = path.working().start;
     let mut states = vec![State::REST; path.working().len()];
-    machine.run(start, &mut states, |index| commanded(path, nodes, index));
+    run(machine, start, &mut states, &|index| commanded(path, nodes, index));
     let mut displacements: [Vec<Vector>; COUNT] = std::array::from_fn(|_| vec![Vector::ZERO; states.len()]);
     let heights = std::array::from_fn(|k| Band::WHOLE.at(k as i64));
     displace(machine, &states, heights, displacements.each_mut().map(Vec::as_mut_slice));

@@ -5,7 +5,7 @@ use std::path::Path;
 use truepath_core::correct::{
     Band, DesignWorkspace, Guarded, InOrder, Law, Node, Predicted, Profile, Scratch, WallReader, guarded_design,
 };
-use truepath_core::cut::{State, WallLaw};
+use truepath_core::cut::{Loop, State, WallLaw};
 use truepath_core::geometry::Vector;
 use truepath_core::identify::PredictionWorkspace;
 use truepath_core::job;
@@ -115,14 +115,15 @@ fn a_profile_read_in_halves_is_the_one_read_in_order_also_where_no_wall_stands()
     let mut states = vec![State::REST; working.len()];
     machine.run(working.start, &mut states, |_| Vector::ZERO);
     let mut buffers = Buffers::of(&path);
-    let read = |reader: &mut dyn WallReader| {
-        let mut walls = vec![Profile::default(); path.count()];
-        let mut displacements = vec![Vector::ZERO; working.len()];
-        reader.profile(&machine, &states, Band::WHOLE, &mut displacements, &mut walls);
-        walls
-    };
-    let in_order = read(&mut InOrder);
-    assert_eq!(read(buffers.workspace(&[]).reader), in_order);
+    let in_order = read(InOrder, &machine, &states);
+    assert_eq!(read(buffers.workspace(&[]).reader, &machine, &states), in_order);
     // Read again into the same memory.
-    assert_eq!(read(buffers.workspace(&[]).reader), in_order);
+    assert_eq!(read(buffers.workspace(&[]).reader, &machine, &states), in_order);
+}
+
+fn read(mut reader: impl WallReader, machine: &Loop, states: &[State]) -> Vec<Profile> {
+    let mut walls = vec![Profile::default(); machine.path.count()];
+    let mut displacements = vec![Vector::ZERO; states.len()];
+    reader.profile(machine, states, Band::WHOLE, &mut displacements, &mut walls);
+    walls
 }
