@@ -140,7 +140,7 @@ export function contourView(report: Report, among?: Among): ContourView {
       stage.showPlace(index);
       picture.scrollIntoView({ block: "nearest" });
     }) : null);
-  const unrolled = brief ? null : Unrolled.of(report, model, store, stage.touched, () => colours);
+  const unrolled = brief ? null : Unrolled.of(report, model, store, stage, () => colours);
   const chart = Chart.of(report);
   const rests = statements(report);
   const facts = brief ? null : job(report);

@@ -26,11 +26,7 @@ export interface Layer { id: string; keys: [string, string, PassName?][] }
 export function sceneBar(model: Model | null, store: Store, actions: SceneActions): HTMLElement {
   const bar = el("div", { class: "bar", role: "group", "aria-label": "Picture" });
   if (model && model.passes.length > 1) bar.append(segments(model, store));
-  const factor = el("select", { id: "magnify" }, ...FACTORS.map((f) => el("option", { value: String(f) }, `${f} ×`)));
-  factor.value = String(store.state.magnify);
-  factor.addEventListener("change", () => store.set({ magnify: Number(factor.value) }));
-  store.onChange((changed) => { if (changed.has("magnify")) factor.value = String(store.state.magnify); });
-  bar.append(el("label", { class: "field" }, "error drawn", factor));
+  bar.append(factorField(store, "magnify"));
   const heights = model?.report.heights;
   if (heights && heights.z_mm.length > 0) bar.append(heightSlider(heights.z_mm, store));
   const zoom = el("div", { class: "buttons" });
@@ -46,6 +42,15 @@ export function sceneBar(model: Model | null, store: Store, actions: SceneAction
   }
   bar.append(zoom);
   return bar;
+}
+
+/** How many times as large errors are drawn. */
+export function factorField(store: Store, id: string): HTMLElement {
+  const factor = el("select", { id }, ...FACTORS.map((f) => el("option", { value: String(f) }, `${f} ×`)));
+  factor.value = String(store.state.magnify);
+  factor.addEventListener("change", () => store.set({ magnify: Number(factor.value) }));
+  store.onChange((changed) => { if (changed.has("magnify")) factor.value = String(store.state.magnify); });
+  return el("label", { class: "field" }, "error drawn", factor);
 }
 
 /** What the lines and colours are; each can be hidden. */

@@ -22,7 +22,8 @@ export class Stage {
   readonly view: View;
   private readonly scenes: { name: PassName; scene: Scene }[];
   private readonly flag = el("div", { class: "flag", "aria-hidden": "true" });
-  private readonly wall: Trimmed | null;
+  /** The wall as it should be. */
+  readonly wall: Trimmed | null;
   private readonly stock: Line | null;
   private readonly outlines: { wall: Line[]; stock: Line[] };
   private readonly points: ProbePoint[];

@@ -1,129 +1,55 @@
 /**
- * The wall unrolled: error in colour over arc length and height, limits as lines on it, touches, two passes by a slider.
- *
- * Blue is cut too deep, white is nominal, orange is material left: told apart with any kind of colour blindness. Samples may lie
- * unevenly along the contour and over the height: between them the error is linear in both.
+ * The wall with its error in colour, limits as lines on it, touches, two passes by a slider: unrolled over arc length and height,
+ * or in 3D where the browser can.
  */
 
 import type { ProbePoint, Report } from "./data";
+import { factorField } from "./controls";
 import { card, el } from "./dom";
 import { fixed, LENGTH, signed } from "./format";
 import { limitsOf, standing, type Limits } from "./limits";
 import { drawMark } from "./marks";
-import type { Model, Pass } from "./model";
+import type { Model } from "./model";
 import type { Palette } from "./palette";
+import { colourOf, pixelOf, roundScale } from "./shades";
+import { Solid } from "./solid";
+import type { Stage } from "./stage";
 import type { Store } from "./state";
+import { Surface } from "./surface";
+import type { Trimmed } from "./trim";
 import { roundStep } from "./view";
 
 /** Edges of the drawing, pixels of the style sheet. */
 const EDGE = { left: 46, right: 12, top: 10, bottom: 24 };
-/** Colours of the scale from too deep over nominal to left: red, green, blue. */
-const DEEP = [8, 69, 148];
-const DEEPER_HALF = [107, 160, 214];
-const NOMINAL = [255, 255, 255];
-const LEFT_HALF = [247, 164, 84];
-const LEFT = [166, 54, 3];
-const SCALE = [DEEP, DEEPER_HALF, NOMINAL, LEFT_HALF, LEFT];
 /** Steps of the keys along the contour, as shares of it; with Shift ten of them. */
 const STEP = 1 / 400;
 
-/** Colour of an error as a share of the scale, −1 … 1; beyond it that of its end. */
-export function colourOf(share: number): [number, number, number] {
-  const at = (Math.min(1, Math.max(-1, share)) + 1) * 2;
-  const k = Math.min(3, Math.floor(at));
-  return [0, 1, 2].map((c) => Math.round(SCALE[k][c] + (SCALE[k + 1][c] - SCALE[k][c]) * (at - k))) as [number, number, number];
-}
+type Way = "map" | "3D";
 
-/** Colours from end to end of the scale, as pixels of a little-endian machine; nominal is in their middle. */
-const HALF = 512;
-const TABLE = Uint32Array.from({ length: 2 * HALF + 1 }, (_, k) => {
-  const [r, g, b] = colourOf(k / HALF - 1);
-  return ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
-});
+/** How the reader looks at walls, from one contour to the next. */
+let chosen: Way = "map";
 
-/** Errors of a pass over the face of its wall. */
-export class Face {
-  /** Heights in rising order, mm, and the errors at each of them, a value for every sample. */
-  private readonly z: number[];
-  private readonly rows: Float64Array[];
-
-  constructor(private readonly model: Model, readonly pass: Pass) {
-    const heights = (model.report.heights?.z_mm ?? []).flatMap((z, k) => {
-      const row = model.error(pass.name, k);
-      return row ? [{ z, row }] : [];
-    }).sort((a, b) => a.z - b.z);
-    this.z = heights.map(({ z }) => z);
-    this.rows = heights.map(({ row }) => row);
-  }
-
-  get known(): boolean {
-    return this.rows.length > 1;
-  }
-
-  /** At how many heights the error is known. */
-  get heights(): number {
-    return this.rows.length;
-  }
-
-  /** The largest size of an error, mm. */
-  largest(): number {
-    return this.rows.reduce((most, row) => row.reduce((m, e) => (Math.abs(e) > m ? Math.abs(e) : m), most), 0);
-  }
-
-  /** Share of the face within the limits, by length and height. */
-  within(limits: Limits): number {
-    let [inside, all] = [0, 0];
-    const s = this.model.s.values;
-    for (let k = 0; k < this.z.length; k++) {
-      const high = (this.z[Math.min(k + 1, this.z.length - 1)] - this.z[Math.max(0, k - 1)]) / 2;
-      for (let i = 0; i < s.length; i++) {
-        const e = this.rows[k][i];
-        if (Number.isNaN(e)) continue;
-        const area = high * (s[Math.min(i + 1, s.length - 1)] - s[Math.max(0, i - 1)]) / 2;
-        all += area;
-        if (e <= limits.upper && e >= limits.lower) inside += area;
-      }
-    }
-    return all > 0 ? inside / all : NaN;
-  }
-
-  /** The row below a height and how far it is to the next, 0…1. */
-  private level(z: number): [number, number] {
-    let k = 0;
-    while (k < this.z.length - 2 && this.z[k + 1] <= z) k++;
-    return [k, Math.min(1, Math.max(0, (z - this.z[k]) / (this.z[k + 1] - this.z[k])))];
-  }
-
-  /** The error at an arc length and a height; NaN where none is known. */
-  at(s: number, z: number): number {
-    return this.column(s, [z])[0];
-  }
-
-  /** The errors at an arc length and each of some heights. */
-  column(s: number, heights: ArrayLike<number>): Float64Array {
-    const values = this.model.s.values;
-    const i = this.model.indexAt(s);
-    const j = Math.min(i + 1, values.length - 1);
-    const step = values[j] - values[i];
-    const along = step > 0 ? Math.min(1, Math.max(0, (s - values[i]) / step)) : 0;
-    const here = this.rows.map((r) => (along === 0 ? r[i] : r[i] * (1 - along) + r[j] * along));
-    const errors = new Float64Array(heights.length);
-    for (let n = 0; n < heights.length; n++) {
-      const [k, up] = this.level(heights[n]);
-      errors[n] = up === 0 ? here[k] : here[k] * (1 - up) + here[k + 1] * up;
-    }
-    return errors;
-  }
-}
-
-/** A round scale that holds so large an error. */
-function roundScale(size: number): number {
-  return size > 0 ? roundStep(size) : 0.01;
-}
+const TITLES: Record<Way, string> = { map: "The wall unrolled", "3D": "The wall in 3D" };
+const KEYS: Record<Way, string> = {
+  map: "Arrows move over the wall, with Shift ten times as far; Home and End lead to its ends, Page Up and Page Down to its top and its tip; Enter puts the cutter there.",
+  "3D": "Arrows turn and tilt the wall, with Shift farther; plus and minus zoom, 0 shows all of it; comma and full stop step the cutter, with Shift ten samples; Page Up and Page Down read the error at the cutter higher and lower.",
+};
+/** What it says where it cannot draw in 3D. */
+const NONE = "This browser cannot draw in 3D (it has no WebGL); the map shows the same errors.";
+const LOST = "The 3D view was taken away by the graphics of this computer; the map shows the same errors.";
 
 export class Unrolled {
   readonly element: HTMLElement;
   private readonly stage = el("div", { class: "unrolled", tabindex: "0", role: "application", "aria-describedby": "unrolled-keys" });
+  private readonly keys = el("p", { class: "hidden", id: "unrolled-keys" });
+  /** Why there is no 3D view. */
+  private readonly problem = el("p", { class: "unrolled-problem", role: "status" });
+  private readonly ways = new Map<Way, HTMLInputElement>();
+  /** Buttons and choices of the 3D view. */
+  private readonly turns = el("div", { class: "unrolled-turns", role: "group", "aria-label": "3D view" });
+  private readonly touched: string;
+  private solid: Solid | null = null;
+  private due = false;
   private readonly canvas = el("canvas", { "aria-hidden": "true" });
   private readonly cross = el("div", { class: "cross", hidden: "" });
   private readonly told = el("p", { class: "unrolled-told", role: "status" });
@@ -133,7 +59,7 @@ export class Unrolled {
   private readonly lines = el("span", {});
   private readonly points: ProbePoint[];
   private readonly limits: Limits | undefined;
-  private readonly faces: Face[];
+  private readonly faces: Surface[];
   private readonly depth: number;
   /** Largest error that the colours tell, mm. */
   private scale: number;
@@ -143,13 +69,14 @@ export class Unrolled {
   private ratio = 1;
 
   /** Where the error over the height is known; otherwise there is nothing to unroll. */
-  static of(report: Report, model: Model | null, store: Store, touched: string, colours: () => Palette): Unrolled | null {
-    const faces = (model?.compared ?? []).map((pass) => new Face(model as Model, pass)).filter((face) => face.known);
-    return model && faces.length > 0 ? new Unrolled(report, model, store, faces, touched, colours) : null;
+  static of(report: Report, model: Model | null, store: Store, stage: Stage, colours: () => Palette): Unrolled | null {
+    const faces = (model?.compared ?? []).map((pass) => new Surface(model as Model, pass)).filter((face) => face.known);
+    return model && stage.wall && faces.length > 0 ? new Unrolled(report, model, store, faces, stage.wall, stage.touched, colours) : null;
   }
 
-  private constructor(report: Report, private readonly model: Model, private readonly store: Store, faces: Face[], private readonly touched: string, private readonly colours: () => Palette) {
+  private constructor(report: Report, private readonly model: Model, private readonly store: Store, faces: Surface[], private readonly wall: Trimmed, touched: string, private readonly colours: () => Palette) {
     this.faces = faces;
+    this.touched = touched;
     this.limits = limitsOf(report);
     this.points = (report.points ?? []).filter((p) => p.s_mm !== undefined && p.z_mm !== undefined && p.error_mm !== undefined);
     this.depth = Math.max(...(report.heights?.z_mm ?? [1]));
@@ -159,10 +86,67 @@ export class Unrolled {
     const key = el("p", { class: "chart-key unrolled-key" }, el("span", {}, this.ends[0], this.bar, this.ends[1]), this.lines,
       this.points.length ? el("span", {}, "marks: touched places, in the colour of what was measured") : null);
     this.stage.append(this.canvas, this.cross);
-    this.element = card("unrolled", "The wall unrolled", el("div", { class: "unrolled-bar" }, ...this.controls(largest)), this.stage, key, this.told, this.words,
-      el("p", { class: "hidden", id: "unrolled-keys" }, "Arrows move over the wall, with Shift ten times as far; Home and End lead to its ends, Page Up and Page Down to its top and its tip; Enter puts the cutter there."));
+    this.element = card("unrolled", TITLES.map, el("div", { class: "unrolled-bar" }, this.choice(), ...this.controls(largest), this.turns), this.problem, this.stage, key, this.told, this.words, this.keys);
+    this.turning();
     this.listen();
-    this.store.onChange((changed) => { if (changed.has("place") || changed.has("height")) this.follow(); });
+    this.store.onChange((changed) => {
+      if (changed.has("place") || changed.has("height")) this.follow();
+      if (this.solid && ["place", "magnify", "hidden"].some((key) => changed.has(key as "place"))) this.soon();
+    });
+    this.look(chosen);
+  }
+
+  private choice(): HTMLElement {
+    const group = el("div", { class: "segments", role: "radiogroup", "aria-label": "The wall as" });
+    for (const way of ["map", "3D"] as const) {
+      const input = el("input", { type: "radio", name: "wall-as", id: `wall-${way}`, value: way });
+      input.addEventListener("change", () => { this.look(way); this.draw(); });
+      this.ways.set(way, input);
+      group.append(input, el("label", { for: input.id }, way));
+    }
+    return group;
+  }
+
+  /** Shows the wall as a map or in 3D; as a map where it cannot be the other. */
+  private look(way: Way, problem = ""): void {
+    this.solid = null;
+    this.problem.textContent = problem;
+    if (way === "3D") {
+      try {
+        this.solid = new Solid(this.model, this.wall, this.faces, () => { this.look("map", LOST); this.draw(); });
+      } catch {
+        this.problem.textContent = NONE;
+      }
+    }
+    chosen = this.solid ? "3D" : "map";
+    for (const [name, input] of this.ways) input.checked = name === chosen;
+    this.turns.hidden = !this.solid;
+    this.stage.style.touchAction = "";
+    this.stage.classList.toggle("solid", this.solid !== null);
+    this.keys.textContent = KEYS[chosen];
+    const title = this.element.querySelector("h2");
+    if (title) title.textContent = TITLES[chosen];
+  }
+
+  /** The 3D view for who does not drag. */
+  private turning(): void {
+    const button = (text: string, name: string, run: (solid: Solid) => void) => {
+      const element = el("button", { type: "button", title: name, ...(/^[a-z]/.test(text) ? {} : { "aria-label": name }) }, text);
+      element.addEventListener("click", () => { if (this.solid) run(this.solid); this.draw(); });
+      return element;
+    };
+    this.turns.append(factorField(this.store, "wall-magnify"), el("div", { class: "buttons" },
+      button("←", "Turn the wall to the left", (solid) => solid.turn(15)), button("→", "Turn the wall to the right", (solid) => solid.turn(-15)),
+      button("↑", "Look from higher up", (solid) => solid.turn(0, 10)), button("↓", "Look from lower down", (solid) => solid.turn(0, -10)),
+      button("+", "Zoom the wall in", (solid) => solid.zoom(1.5)), button("−", "Zoom the wall out", (solid) => solid.zoom(1 / 1.5)),
+      button("whole", "Show all of the wall", (solid) => solid.fit()), button("cutter", "Turn the wall so that the place of the cutter faces you", (solid) => solid.face(this.store.state.place, this.at.z))));
+  }
+
+  /** Draws once before the next picture of the screen, however often it is asked for. */
+  private soon(): void {
+    if (this.due) return;
+    this.due = true;
+    requestAnimationFrame(() => { this.due = false; if (document.documentElement.dataset.printing === undefined) this.draw(); });
   }
 
   private controls(largest: number): HTMLElement[] {
@@ -203,7 +187,7 @@ export class Unrolled {
   }
 
   /** The pass that is shown at an arc length. */
-  private faceAt(s: number): Face {
+  private faceAt(s: number): Surface {
     const along = (s - this.model.s.values[0]) / (this.model.length || 1);
     return this.faces.length > 1 && along < this.share ? this.faces[1] : this.faces[0];
   }
@@ -220,10 +204,19 @@ export class Unrolled {
     c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     c.fillStyle = colours.ground;
     c.fillRect(0, 0, clientWidth, clientHeight);
-    this.fill(c, colours);
-    this.isolines(c);
-    this.axes(c, colours);
-    this.touches(c);
+    if (this.solid) {
+      const { state } = this.store;
+      const points = this.points.filter((p) => this.marked(p));
+      this.solid.draw(c, clientWidth, clientHeight, this.ratio, { state, share: this.share, surfaceAt: (s) => this.faceAt(s), points, limits: this.limits, scale: this.scale, levels: this.levels() }, colours);
+      // On a screen that is touched the page scrolls over a wall that is seen whole.
+      this.stage.style.touchAction = this.solid.fitted ? "pan-y" : "none";
+      this.stage.dataset.view = this.solid.view;
+    } else {
+      this.fill(c, colours);
+      this.isolines(c);
+      this.axes(c, colours);
+      this.touches(c);
+    }
     this.legend();
     this.tell();
     this.follow();
@@ -239,7 +232,7 @@ export class Unrolled {
       const s = this.model.s.values[0] + ((x + 0.5) / wide) * this.model.length;
       const errors = this.faceAt(s).column(s, heights);
       for (let y = 0; y < high; y++) {
-        if (!Number.isNaN(errors[y])) pixels[y * wide + x] = TABLE[Math.round((Math.min(1, Math.max(-1, errors[y] / this.scale)) + 1) * HALF)];
+        if (!Number.isNaN(errors[y])) pixels[y * wide + x] = pixelOf(errors[y] / this.scale);
       }
     }
     const map = document.createElement("canvas");
@@ -253,7 +246,7 @@ export class Unrolled {
   }
 
   /** The errors that have a line: the limits, or half of the scale to both sides. */
-  private levels(): number[] {
+  private levels(): [number, number] {
     return this.limits ? [this.limits.lower, this.limits.upper] : [-this.scale / 2, this.scale / 2];
   }
 
@@ -330,16 +323,18 @@ export class Unrolled {
     }
   }
 
+  /** Touches are of one of the passes, and stand where that is shown. */
+  private marked(p: ProbePoint): boolean {
+    return p.status === "used" && this.faceAt(p.s_mm as number).pass.name === this.touched;
+  }
+
   private touches(c: CanvasRenderingContext2D): void {
-    for (const p of this.points) {
-      const s = p.s_mm as number;
-      // They are of one of the passes, and stand where that is shown.
-      if (p.status !== "used" || this.faceAt(s).pass.name !== this.touched) continue;
+    for (const p of this.points.filter((point) => this.marked(point))) {
       const [r, g, b] = colourOf((p.error_mm as number) / this.scale);
       c.fillStyle = `rgb(${r}, ${g}, ${b})`;
       c.strokeStyle = "#111";
       c.lineWidth = 1.4;
-      drawMark(c, standing(p, this.limits), this.px(s), this.py(p.z_mm as number), 4);
+      drawMark(c, standing(p, this.limits), this.px(p.s_mm as number), this.py(p.z_mm as number), 4);
     }
   }
 
@@ -364,8 +359,12 @@ export class Unrolled {
       const share = this.limits ? `, ${fixed(100 * face.within(this.limits), 0)} % of it within tolerance` : "";
       return `${this.model.passes.length > 1 ? `${face.pass.title}: ` : ""}largest error at ${face.heights} heights ${fixed(face.largest(), LENGTH)} mm${share}`;
     });
-    this.words.textContent = `Height above the tip of the cutter, mm, over arc length. ${said.join("; ")}.`;
-    this.stage.setAttribute("aria-label", `The wall unrolled, ${fixed(this.model.length, 1)} mm long, ${fixed(this.depth, 1)} mm high. ${said.join("; ")}.`);
+    const { solid } = this;
+    const drawn = `errors ${this.store.state.magnify}\u00a0×${solid && solid.rise > 1 ? `, height ${solid.rise}\u00a0×` : ""}`;
+    const what = solid ? `What is left stands out from the black line of the wall as it should be, what is too deep lies behind it; seen from behind, through the part, the wall is pale; ${drawn}.` : "Height above the tip of the cutter, mm, over arc length.";
+    this.words.textContent = `${what} ${said.join("; ")}.`;
+    const seen = solid ? ` Seen ${solid.side}; ${drawn}.` : "";
+    this.stage.setAttribute("aria-label", `${TITLES[chosen]}, ${fixed(this.model.length, 1)} mm long, ${fixed(this.depth, 1)} mm high. ${said.join("; ")}.${seen}`);
   }
 
   /** Puts the cross where the cutter is, at the height shown. */
@@ -380,8 +379,9 @@ export class Unrolled {
   private point(): void {
     const { s, z } = this.at;
     this.cross.hidden = false;
-    this.cross.style.transform = `translate(${this.px(s).toFixed(1)}px, ${this.py(z).toFixed(1)}px)`;
     const face = this.faceAt(s);
+    const [px, py] = this.solid ? this.solid.pixels(s, z, face, this.store.state.magnify) : [this.px(s), this.py(z)];
+    this.cross.style.transform = `translate(${px.toFixed(1)}px, ${py.toFixed(1)}px)`;
     const e = face.at(s, z);
     const name = this.model.passes.length > 1 ? `${face.pass.title} ` : "";
     this.told.textContent = `s ${fixed(s, 1)} mm, ${fixed(z, 1)} mm above the tip: ${name}${Number.isNaN(e) ? "no wall" : `${signed(e, LENGTH)} mm`}`;
@@ -392,31 +392,122 @@ export class Unrolled {
   }
 
   private listen(): void {
-    const at = (event: PointerEvent) => {
+    const on = (event: MouseEvent): [number, number] => {
       const { left, top } = this.stage.getBoundingClientRect();
-      return this.place(event.clientX - left, event.clientY - top);
+      return [event.clientX - left, event.clientY - top];
     };
-    this.stage.addEventListener("pointermove", (event) => { this.at = at(event); this.point(); });
-    this.stage.addEventListener("pointerleave", () => this.follow());
-    this.stage.addEventListener("click", (event) => { this.at = at(event as PointerEvent); this.go(); });
-    this.stage.addEventListener("keydown", (event) => {
-      if (event.ctrlKey || event.metaKey || event.altKey) return;
-      const far = event.shiftKey ? 10 : 1;
-      const [first, last] = [this.model.s.values[0], this.model.s.values[this.model.count - 1]];
-      const along = far * STEP * this.model.length;
-      const up = far * (this.depth / 20);
-      const keys: Record<string, () => void> = {
-        ArrowLeft: () => { this.at.s -= along; }, ArrowRight: () => { this.at.s += along; },
-        ArrowUp: () => { this.at.z += up; }, ArrowDown: () => { this.at.z -= up; },
-        Home: () => { this.at.s = first; }, End: () => { this.at.s = last; },
-        PageUp: () => { this.at.z = this.depth; }, PageDown: () => { this.at.z = 0; },
-        Enter: () => this.go(),
-      };
-      if (!keys[event.key]) return;
-      event.preventDefault();
-      keys[event.key]();
-      this.at = { s: Math.min(last, Math.max(first, this.at.s)), z: Math.min(this.depth, Math.max(0, this.at.z)) };
-      this.point();
+    const at = (event: MouseEvent) => (this.solid ? this.solid.pick(...on(event)) : this.place(...on(event)));
+    const { stage } = this;
+    stage.addEventListener("pointermove", (event) => {
+      const place = this.hands.size > 0 ? null : at(event);
+      if (place) { this.at = place; this.point(); }
     });
+    stage.addEventListener("pointerleave", () => this.follow());
+    stage.addEventListener("click", (event) => {
+      const place = this.dragged ? null : at(event);
+      if (place) { this.at = place; this.go(); }
+    });
+    stage.addEventListener("keydown", (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (!(this.solid ? this.keyInSpace(event, this.solid) : this.keyOnMap(event))) return;
+      event.preventDefault();
+    });
+    this.turnedByHand();
+  }
+
+  /** Fingers, or the mouse while it is held down, on the 3D view; whether they have moved. */
+  private readonly hands = new Map<number, [number, number]>();
+  private dragged = false;
+
+  private turnedByHand(): void {
+    const { stage, hands } = this;
+    let from: [number, number] = [0, 0];
+    let back = () => {};
+    const on = (event: PointerEvent | WheelEvent): [number, number] => {
+      const { left, top } = stage.getBoundingClientRect();
+      return [event.clientX - left, event.clientY - top];
+    };
+    stage.addEventListener("wheel", (event) => {
+      // As over the picture: a wheel that passes by scrolls the page; a pinch of a touchpad comes with Ctrl.
+      if (!this.solid || (!event.ctrlKey && !event.metaKey && document.activeElement !== stage)) return;
+      event.preventDefault();
+      const lines = event.deltaMode === 1 ? 30 : 1;
+      this.solid.zoom(Math.exp(-Math.max(-300, Math.min(300, event.deltaY * lines)) * 0.0018), ...on(event));
+      this.soon();
+    }, { passive: false });
+    stage.addEventListener("pointerdown", (event) => {
+      this.dragged = hands.size > 0;
+      if (!this.solid || event.button !== 0) return;
+      stage.setPointerCapture(event.pointerId);
+      hands.set(event.pointerId, on(event));
+      from = on(event);
+      if (hands.size === 1) back = this.solid.remember();
+    });
+    stage.addEventListener("pointermove", (event) => {
+      const before = hands.get(event.pointerId);
+      if (!this.solid || !before) return;
+      const now = on(event);
+      if (Math.hypot(now[0] - from[0], now[1] - from[1]) > 4) this.dragged = true;
+      if (!this.dragged) return;
+      const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
+      const other = [...hands].find(([id]) => id !== event.pointerId)?.[1];
+      if (other) {
+        const [was, is] = [before, now].map((hand) => Math.hypot(hand[0] - other[0], hand[1] - other[1]));
+        this.solid.pan(dx / 2, dy / 2);
+        if (was > 0 && is > 0) this.solid.zoom(is / was, (now[0] + other[0]) / 2, (now[1] + other[1]) / 2);
+      } else if (event.shiftKey) {
+        this.solid.pan(dx, dy);
+      } else {
+        this.solid.drag(dx, dy);
+      }
+      hands.set(event.pointerId, now);
+      this.soon();
+    });
+    const release = (event: PointerEvent) => {
+      if (!hands.delete(event.pointerId)) return;
+      // The browser has taken the finger to scroll the page: what it turned before that is taken back.
+      if (event.type === "pointercancel") {
+        back();
+        this.soon();
+      }
+    };
+    stage.addEventListener("pointerup", release);
+    stage.addEventListener("pointercancel", release);
+    stage.addEventListener("dblclick", () => {
+      this.solid?.fit();
+      this.soon();
+    });
+  }
+
+  private keyInSpace(event: KeyboardEvent, solid: Solid): boolean {
+    const { place } = this.store.state;
+    const far = event.shiftKey ? 10 : 1;
+    const step: Record<string, number> = { ",": -far, ".": far, "<": -10, ">": 10 };
+    const up: Record<string, number> = { PageUp: this.depth / 20, PageDown: -this.depth / 20 };
+    if (event.key in step) this.store.set({ place: Math.min(this.model.count - 1, Math.max(0, Math.round(place) + step[event.key])), playing: false });
+    else if (event.key in up) this.at.z = Math.min(this.depth, Math.max(0, this.at.z + up[event.key]));
+    else if (solid.key(event)) this.draw();
+    else return false;
+    this.point();
+    return true;
+  }
+
+  private keyOnMap(event: KeyboardEvent): boolean {
+    const far = event.shiftKey ? 10 : 1;
+    const [first, last] = [this.model.s.values[0], this.model.s.values[this.model.count - 1]];
+    const along = far * STEP * this.model.length;
+    const up = far * (this.depth / 20);
+    const keys: Record<string, () => void> = {
+      ArrowLeft: () => { this.at.s -= along; }, ArrowRight: () => { this.at.s += along; },
+      ArrowUp: () => { this.at.z += up; }, ArrowDown: () => { this.at.z -= up; },
+      Home: () => { this.at.s = first; }, End: () => { this.at.s = last; },
+      PageUp: () => { this.at.z = this.depth; }, PageDown: () => { this.at.z = 0; },
+      Enter: () => this.go(),
+    };
+    if (!keys[event.key]) return false;
+    keys[event.key]();
+    this.at = { s: Math.min(last, Math.max(first, this.at.s)), z: Math.min(this.depth, Math.max(0, this.at.z)) };
+    this.point();
+    return true;
   }
 }

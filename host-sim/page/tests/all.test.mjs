@@ -11,6 +11,7 @@ import "./learn.test.mjs";
 import "./several.test.mjs";
 import "./first.test.mjs";
 import "./unrolled.test.mjs";
+import "./solid.test.mjs";
 import "./page.test.mjs";
 import "./partial.test.mjs";
 import "./inspection.test.mjs";

@@ -41,12 +41,12 @@ export function browser() {
   return launched;
 }
 
-/** A browser with no font but that of boxes, or with those of the system, too. */
-export async function launch({ system = false } = {}) {
+/** A browser with no font but that of boxes, or with those of the system, too; WebGL by the processor, or none. */
+export async function launch({ system = false, webgl = true } = {}) {
   return chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     env: { ...process.env, FONTCONFIG_FILE: await fontconfig(system) },
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+    args: ["--no-sandbox", "--disable-gpu", ...(webgl ? ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"] : ["--disable-3d-apis"]), "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
       "--disable-sync", "--disable-dev-shm-usage", "--font-render-hinting=none", "--disable-lcd-text", "--force-color-profile=srgb"],
   });
 }

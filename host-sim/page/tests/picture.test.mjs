@@ -123,29 +123,43 @@ async function settled(page) {
   assert.fail("the page never stands still");
 }
 
+/** Compares a picture with its reference, or renews that and the one of the README. */
+async function compared(t, now, file, shownInReadme) {
+  await writeFile(pictures + file, now.picture);
+  const desk = await easel();
+  if (process.env.TRUEPATH_BLESS) {
+    await mkdir(reference, { recursive: true });
+    await writeFile(reference + file, await halved(desk, now.picture));
+    if (shownInReadme) {
+      await mkdir(readme, { recursive: true });
+      await writeFile(readme + file, now.picture);
+    }
+  }
+  const share = await changed(desk, now, await readFile(reference + file));
+  t.diagnostic(`${percent(share)} differ`);
+  assert.ok(share.drawn <= CELLS.drawn && share.other <= CELLS.other, `${percent(share)} of ${pictures}${file} are not as in ${reference}${file}: look at both; cargo xtask page --write renews them`);
+  if (shownInReadme) assert.ok((await readFile(readme + file)).length < README, `${file} of the README is too large`);
+}
+
 for (const view of VIEWS) {
   const [name, kind, options, , , shownInReadme] = view;
   test(`${name} looks as before: ${kind}`, async (t) => {
     const { page, close } = await open(await fileOf(name), options);
     const now = await shot(page, view);
     await close();
-    const file = `${name.replaceAll("/", "-")}-${kind}.png`;
-    await writeFile(pictures + file, now.picture);
-    const desk = await easel();
-    if (process.env.TRUEPATH_BLESS) {
-      await mkdir(reference, { recursive: true });
-      await writeFile(reference + file, await halved(desk, now.picture));
-      if (shownInReadme) {
-        await mkdir(readme, { recursive: true });
-        await writeFile(readme + file, now.picture);
-      }
-    }
-    const share = await changed(desk, now, await readFile(reference + file));
-    t.diagnostic(`${percent(share)} differ`);
-    assert.ok(share.drawn <= CELLS.drawn && share.other <= CELLS.other, `${percent(share)} of ${pictures}${file} are not as in ${reference}${file}: look at both; cargo xtask page --write renews them`);
-    if (shownInReadme) assert.ok((await readFile(readme + file)).length < README, `${file} of the README is too large`);
+    await compared(t, now, `${name.replaceAll("/", "-")}-${kind}.png`, shownInReadme);
   });
 }
+
+test("the wall in 3D looks as before", async (t) => {
+  const { page, close } = await open(await report("demo/pocket"), SIZE);
+  await page.fill("#scrub", "560");
+  await page.click('label[for="wall-3D"]');
+  await page.mouse.move(0, 0);
+  const picture = await page.locator("#unrolled").screenshot();
+  await close();
+  await compared(t, { picture, scenes: [[0, 0.12, 1, 0.9]] }, "demo-pocket-3d.png", true);
+});
 
 test("the pictures are the same to the last pixel whatever fonts the system has", async () => {
   const view = VIEWS.find(([name, kind]) => name === "demo/pocket" && kind === "both");
