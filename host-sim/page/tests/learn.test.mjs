@@ -11,7 +11,7 @@ const curves = (page) => page.locator(".trace").first().locator(".entry span").a
 
 test("a page of learn opens with the part that was milled, beside the next one on demand", async () => {
   const { page, complaints, close } = await open(await report("learn"));
-  const choices = await page.locator(".segments label").allTextContents();
+  const choices = await page.locator(".picture .segments label").allTextContents();
   assert.deepEqual(choices, ["uncorrected", "part 2", "part 3", "side by side"]);
   assert.match((await captions(page)).join(), /^part 2: as milled with its correction, by the model of all parts/);
   assert.deepEqual(await curves(page), ["part 2"], "nothing of a pass that is not shown");
