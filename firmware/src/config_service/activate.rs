@@ -1,6 +1,7 @@
 //! Which image is in use, and whose turn it is with the image buffer.
 
 use embedded_storage::nor_flash::NorFlash;
+use truepath_core::image::Counted;
 use truepath_core::link::{ActiveImage, Denial, DeviceSettingsError, Reply, Slot};
 use truepath_core::rewrite::Settings;
 
@@ -19,7 +20,11 @@ impl From<LoadError> for Denial {
 }
 
 impl<'a, F: NorFlash> Handler<'a, F> {
-    /// Uses an image, after resets as well. An image that does not pass leaves everything as it was.
+    /// Uses an image, after resets as well, and no older one of its pass from then on. An image that does not pass leaves
+    /// everything as it was.
+    ///
+    /// Its counter is raised behind the record that makes it the image in use: when the power fails in between, the next
+    /// start raises it.
     pub fn activate<'s>(&mut self, wanted: ActiveImage, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         idle(servo)?;
         self.not_computing()?;
@@ -27,12 +32,28 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         let settings = self.settings().rewriter;
         let done = self
             .load(wanted, &settings, servo)
-            .and_then(|()| self.ledger.change(&mut self.flash, |now| now.active = Some(wanted)).map_err(Denial::from));
-        if let Err(denial) = done {
-            self.back_to(before, servo);
-            return Err(denial);
+            .and_then(|counted| {
+                self.ledger.change(&mut self.flash, |now| now.active = Some(wanted))?;
+                Ok(counted)
+            });
+        match done {
+            Ok(counted) => self.count(counted, servo).map(|()| Reply::Done),
+            Err(denial) => {
+                self.back_to(before, servo);
+                Err(denial)
+            }
         }
-        Ok(Reply::Done)
+    }
+
+    /// Raises the counter of the image that was put in use. If the flash does not take it, none is in use.
+    fn count(&mut self, counted: Option<Counted>, servo: &mut impl ServoAccess<'a>) -> Result<(), Denial> {
+        let Some(counted) = counted else { return Ok(()) };
+        if let Err(failed) = self.ledger.raise(&mut self.flash, &counted) {
+            self.active = None;
+            self.borrow_image(servo)?;
+            return Err(failed.into());
+        }
+        Ok(())
     }
 
     pub fn deactivate<'s>(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
@@ -54,23 +75,28 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         Ok(())
     }
 
-    /// Reads the image of a slot into the buffer and puts it in use.
+    /// Reads the image of a slot into the buffer and puts it in use; gives the counter of a signed one.
     pub fn load(
         &mut self,
         wanted: ActiveImage,
         settings: &Settings,
         servo: &mut impl ServoAccess<'a>,
-    ) -> Result<(), Denial> {
+    ) -> Result<Option<Counted>, Denial> {
         self.borrow_image(servo)?;
         self.active = None;
         let buffer = self.image.take().ok_or(Denial::Busy)?;
-        match slots::read(&mut self.flash, wanted.slot, wanted.crc, buffer) {
-            Ok(length) => {
-                if let Err(denial) = self.admit(buffer.get(..length).unwrap_or(&[])) {
-                    self.image = Some(buffer);
-                    return Err(denial);
-                }
+        let counted = match slots::read(&mut self.flash, wanted.slot, wanted.crc, buffer) {
+            Ok((length, binding)) => {
+                let image = buffer.get(..length).unwrap_or(&[]);
+                let counted = match self.ledger.admit(&mut self.flash, image, &binding, self.board.class) {
+                    Ok(counted) => counted,
+                    Err(error) => {
+                        self.image = Some(buffer);
+                        return Err(Denial::Untrusted(error));
+                    }
+                };
                 self.put_in_use(buffer, length, settings, servo)?;
+                counted
             }
             Err(denial) => {
                 self.image = Some(buffer);
@@ -81,9 +107,9 @@ impl<'a, F: NorFlash> Handler<'a, F> {
                 }
                 return Err(denial);
             }
-        }
+        };
         self.active = Some(wanted);
-        Ok(())
+        Ok(counted)
     }
 
     /// Makes the rewriter anew for other settings, from the image in the buffer.
@@ -103,7 +129,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         let settings = self.settings().rewriter;
         self.active = None;
         if let Some(before) = before {
-            let _ = self.load(before, &settings, servo);
+            let _ = self.load(before, &settings, servo).and_then(|counted| self.count(counted, servo));
         }
     }
 

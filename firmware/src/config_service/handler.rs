@@ -39,7 +39,7 @@ pub struct Board {
     pub last_reset: ResetCause,
     /// What kind of device it is: an image can be signed for some kinds only.
     pub class: DeviceClass,
-    /// Whether its button was held at the reset: somebody is there who may provision keys.
+    /// Whether its button was held at the reset: somebody is there who may provision and revoke keys.
     pub present: bool,
 }
 
@@ -74,13 +74,6 @@ impl<'a, F: NorFlash> Handler<'a, F> {
     /// The settings in force.
     pub fn settings(&self) -> DeviceSettings {
         self.ledger.now().settings_in_use()
-    }
-    /// Refused unless the image may be used here: any while no key is provisioned, else a signed one.
-    ///
-    /// Not inlined: the verification has frames of its own, which nothing else is to stand upon.
-    #[inline(never)]
-    pub fn admit(&self, image: &[u8]) -> Result<(), Denial> {
-        self.ledger.keys().admits(image, self.board.class).map_err(Denial::Untrusted)
     }
     /// Refused while a computation has the buffers.
     pub fn not_computing(&self) -> Result<(), Denial> {

@@ -1,10 +1,11 @@
 //! Whose images the device takes.
 //!
-//! Keys are added and never taken away; a device without one is open and takes every image. A key counts from the answer
-//! on, after resets as well: it has a write-once place in the flash, beside the ledger.
+//! Keys are added, and revoked for ever; a device that never had one is open and takes every image, one whose keys are all
+//! revoked takes none. Both count from the answer on, after resets as well: they have a write-once place in the flash,
+//! beside the ledger.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{KeyRingError, PublicKey};
+use truepath_core::image::{KeyId, KeyRingError, PublicKey};
 use truepath_core::link::{Denial, DeviceKeys, Reply};
 use truepath_core::rewrite::Mode;
 
@@ -29,14 +30,28 @@ impl<'a, F: NorFlash> Handler<'a, F> {
 
     /// Trusts one more key. An image in use that is not signed with one of the keys is in use no more.
     pub fn provision<'s>(&mut self, key: PublicKey, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+        self.attended(servo)?;
+        self.ledger.provision(&mut self.flash, key)?;
+        self.verify_again(servo)
+    }
+
+    /// Trusts a key no more. An image in use that is signed with it is in use no more.
+    pub fn revoke<'s>(&mut self, key: KeyId, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
+        self.attended(servo)?;
+        self.ledger.revoke(&mut self.flash, key)?;
+        self.verify_again(servo)
+    }
+
+    /// Refused unless in `Off`, with somebody at the device.
+    fn attended(&self, servo: &mut impl ServoAccess<'a>) -> Result<(), Denial> {
         match servo.with(|servo| servo.mode()) {
             Mode::Off => self.not_computing()?,
             mode => return Err(Denial::Mode(mode)),
         }
-        if !self.board.present {
-            return Err(Denial::NotPresent);
-        }
-        self.ledger.provision(&mut self.flash, key)?;
+        if self.board.present { Ok(()) } else { Err(Denial::NotPresent) }
+    }
+
+    fn verify_again<'s>(&mut self, servo: &mut impl ServoAccess<'a>) -> Result<Reply<'s>, Denial> {
         if self.active.is_some() {
             let before = self.active;
             self.borrow_image(servo)?;

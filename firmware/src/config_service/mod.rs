@@ -86,10 +86,8 @@ impl<'a, F: NorFlash> ConfigService<'a, F> {
             progress: Progress::default(),
             meter,
         };
-        if let Some(active) = handler.ledger.now().active {
-            // An image that cannot be used any more leaves the device without one; `Status` and `List` say so.
-            let _ = handler.load(active, &settings.rewriter, &mut servo);
-        }
+        // An image that cannot be used any more leaves the device without one; `Status` and `List` say so.
+        handler.back_to(handler.ledger.now().active, &mut servo);
         let service =
             Self { handler, deframer: Deframer::new(), answer: [0; PACKET_BYTES], answered: None, asked: Vec::new() };
         (service, servo)
@@ -224,6 +222,7 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             Ask::Restart { .. } => Ok(Reply::Done),
             Ask::Keys => Ok(Reply::Keys(self.keys())),
             Ask::Provision(key) => self.provision(key, servo),
+            Ask::Revoke(key) => self.revoke(key, servo),
         }
     }
 }

@@ -99,8 +99,10 @@ impl<'a, F: NorFlash> Handler<'a, F> {
             self.borrow_image(servo)?;
         }
         let buffer = self.image.as_deref_mut().ok_or(Denial::Busy)?;
-        let (keys, class) = (*self.ledger.keys(), self.board.class);
-        let done = upload.commit(&mut self.flash, buffer, &keys, class);
+        let (ledger, class) = (&self.ledger, self.board.class);
+        let done = upload.commit(&mut self.flash, buffer, |flash, bytes, binding| {
+            ledger.admit(flash, bytes, binding, class).map(|_| ())
+        });
         self.back_to(before, servo);
         self.slots[usize::from(upload.slot())] = match done {
             Ok(held) => held,

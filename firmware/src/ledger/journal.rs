@@ -6,7 +6,8 @@
 //! programmed is found again, a place that was begun is passed over, and a sector whose erase was interrupted is
 //! erased again before it is used, because the newest record is not in it.
 //!
-//! The last place of a sector is for the keys ([`keys`]), which are written before its first record.
+//! The last place of a sector is for the keys ([`keys`]), those before it for the counters of images ([`counters`]). What of
+//! them counts is written before its first record.
 //!
 //! A sector is good for 10,000 erases (DS12110), the journal so for 2.5 million records.
 //!
@@ -18,10 +19,10 @@
 //! 28 CRC-32 of the 28 bytes before.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{KeyRing, PublicKey, crc32};
+use truepath_core::image::{Counted, KeyId, KeyRing, PublicKey, crc32};
 
-use super::keys;
-use super::place::{PLACE_BYTES, PLACES};
+use super::place::{ALL_PLACES, PLACE_BYTES, PLACES};
+use super::{counters, keys};
 use crate::flash::{BLANK, LEDGER_SECTORS, SECTOR_BYTES, WORD_BYTES, Word, sector_start};
 
 /// Most bytes of a payload.
@@ -88,9 +89,9 @@ impl Journal {
     /// Finds the newest record and copies its payload; gives the journal and the length of the payload, if any.
     pub fn open<F: NorFlash>(flash: &mut F, payload: &mut [u8; PAYLOAD_BYTES]) -> (Self, Option<usize>) {
         let mut newest: Option<(Place, Head)> = None;
-        // In the last place there may be a record of a firmware that had no keys.
-        for place in (0..LEDGER_SECTORS.count).flat_map(|sector| (0..=PLACES).map(move |index| Place { sector, index }))
-        {
+        // In the places behind there may be a record of a firmware that had neither keys nor counters.
+        let places = |sector| (0..ALL_PLACES).map(move |index| Place { sector, index });
+        for place in (0..LEDGER_SECTORS.count).flat_map(places) {
             let Some(head) = read_head(flash, place) else { continue };
             let newer = newest.is_none_or(|(_, n)| head.sequence > n.sequence);
             if newer && read_payload(flash, place, head, payload) {
@@ -138,17 +139,27 @@ impl Journal {
     pub fn write_key<F: NorFlash>(&self, flash: &mut F, key: &PublicKey) -> bool {
         self.current.is_some_and(|sector| keys::write(flash, sector, key))
     }
+    /// Writes beside them that a key is taken back; whether that went well.
+    pub fn write_revoked<F: NorFlash>(&self, flash: &mut F, key: KeyId) -> bool {
+        self.current.is_some_and(|sector| keys::write_revoked(flash, sector, key))
+    }
+    /// Raises a counter in the sector of the newest record; whether that went well.
+    pub fn raise<F: NorFlash>(&self, flash: &mut F, to: &Counted) -> bool {
+        self.current.is_some_and(|sector| counters::raise(flash, sector, to))
+    }
     /// Lets the next record begin the other sector.
     pub fn leave_sector(&mut self) {
         self.next = None;
     }
 
-    /// Erases the sector that does not hold the newest record, and writes the keys there; slow, once in [`PLACES`] records.
+    /// Erases the sector that does not hold the newest record, and writes keys and counters there; slow, once in [`PLACES`]
+    /// records.
     fn begin_sector<F: NorFlash>(&mut self, flash: &mut F, keys: &KeyRing) -> Result<Place, JournalFailed> {
         let sector = self.current.map_or(0, |current| 1 - current);
         let start = sector_start(LEDGER_SECTORS.first + sector);
         flash.erase(start, start + SECTOR_BYTES as u32).map_err(|_| JournalFailed)?;
-        let written = keys.iter().all(|key| keys::write(flash, sector, key));
+        let written = keys::write_all(flash, sector, keys)
+            && self.current.is_none_or(|current| counters::copy(flash, current, sector));
         if written { Ok(Place { sector, index: 0 }) } else { Err(JournalFailed) }
     }
 }

@@ -1,19 +1,22 @@
 //! What the device remembers over resets: the active image, its settings, the armed passes of parts, its boots, the keys
-//! it trusts.
+//! it trusts and those it trusts no more, the counters of signed images that were in use.
 //!
-//! All of it but the keys is one record of the journal, so that every change is whole or has not happened. A copy in RAM
-//! is read; it changes only after the flash has taken the change. The keys have a page of their own (`keys`).
+//! All of it but keys and counters is one record of the journal, so that every change is whole or has not happened. A copy
+//! in RAM is read; it changes only after the flash has taken the change. Keys and counters have pages of their own (`keys`,
+//! `counters`); the counters have no copy in RAM.
 
+mod counters;
 mod journal;
 mod keys;
 mod place;
 
 use embedded_storage::nor_flash::NorFlash;
 use serde::{Deserialize, Serialize};
-use truepath_core::image::{KeyRing, KeyRingError, PublicKey};
+use truepath_core::image::{Binding, Counted, DeviceClass, KeyId, KeyRing, KeyRingError, PublicKey, SignatureError};
 use truepath_core::link::{ActiveImage, DeviceSettings};
 use truepath_core::rewrite::{Spent, SpentList};
 
+pub use counters::MOST_COUNTED;
 pub use journal::JournalFailed;
 use journal::{Journal, PAYLOAD_BYTES};
 pub use place::PLACES;
@@ -108,7 +111,7 @@ impl Ledger {
     pub const fn keys(&self) -> &KeyRing {
         &self.keys
     }
-    /// Trusts one more key, for ever. Takes two programmed words.
+    /// Trusts one more key, until it is revoked. Takes two programmed words.
     ///
     /// # Errors
     /// The key cannot be used or there is no room for it: nothing has changed. The flash did not take it: it is not
@@ -116,16 +119,79 @@ impl Ledger {
     pub fn provision<F: NorFlash>(&mut self, flash: &mut F, key: PublicKey) -> Result<(), NotProvisioned> {
         let before = self.keys;
         self.keys.add(key).map_err(NotProvisioned::Ring)?;
-        if self.keys == before || self.journal.write_key(flash, &key) {
+        let written = self.keys == before || self.journal.write_key(flash, &key);
+        self.keep_keys(flash, written, before)
+    }
+    /// Trusts a key no more, for ever. Takes one programmed word.
+    ///
+    /// # Errors
+    /// The key is not one that is trusted, or was: nothing has changed. The flash did not take it: the key is still
+    /// trusted now, and may not be after the next reset.
+    pub fn revoke<F: NorFlash>(&mut self, flash: &mut F, key: KeyId) -> Result<(), NotProvisioned> {
+        let before = self.keys;
+        if before.is_revoked(key) {
             return Ok(());
         }
-        // The page is worn or used: the keys go with a record to the other sector.
-        self.journal.leave_sector();
-        let now = self.now;
-        self.append(flash, &now).map_err(|failed| {
+        if before.iter().all(|trusted| trusted.id() != key) {
+            return Err(NotProvisioned::Ring(KeyRingError::Key(SignatureError::UnknownKey { key })));
+        }
+        self.keys.revoke(key).map_err(NotProvisioned::Ring)?;
+        let written = self.journal.write_revoked(flash, key);
+        self.keep_keys(flash, written, before)
+    }
+    /// What was not written into the page of keys, because it is worn or used up, goes with a record to the other sector.
+    fn keep_keys<F: NorFlash>(
+        &mut self,
+        flash: &mut F,
+        written: bool,
+        before: KeyRing,
+    ) -> Result<(), NotProvisioned> {
+        if written {
+            return Ok(());
+        }
+        self.change_sector(flash).map_err(|failed| {
             self.keys = before;
             NotProvisioned::Flash(failed)
         })
+    }
+    /// Writes all that is remembered into the other sector.
+    fn change_sector<F: NorFlash>(&mut self, flash: &mut F) -> Result<(), JournalFailed> {
+        self.journal.leave_sector();
+        let now = self.now;
+        self.append(flash, &now)
+    }
+
+    /// Refused unless an image may be used here: any while no key is provisioned, else one that is signed for this class
+    /// and not older than another of its pass that was in use. Gives its counter, of a signed one.
+    ///
+    /// Not inlined: the verification has frames of its own, which nothing else is to stand upon.
+    ///
+    /// # Errors
+    /// A [`SignatureError`].
+    #[inline(never)]
+    pub fn admit<F: NorFlash>(
+        &self,
+        flash: &mut F,
+        image: &[u8],
+        binding: &Binding,
+        class: DeviceClass,
+    ) -> Result<Option<Counted>, SignatureError> {
+        let Some(found) = self.keys.admits(image, class)? else { return Ok(None) };
+        let counted = Counted::of(binding, found);
+        let least = counters::least(flash, &counted);
+        if found < least { Err(SignatureError::RolledBack { found, least }) } else { Ok(Some(counted)) }
+    }
+    /// No image of this pass with a lower counter is taken any more. Takes up to two programmed words.
+    ///
+    /// # Errors
+    /// The flash did not take it.
+    pub fn raise<F: NorFlash>(&mut self, flash: &mut F, to: &Counted) -> Result<(), JournalFailed> {
+        if self.journal.raise(flash, to) {
+            return Ok(());
+        }
+        // The page is used up: what still counts goes to the other sector, and leaves room there.
+        self.change_sector(flash)?;
+        if self.journal.raise(flash, to) { Ok(()) } else { Err(JournalFailed) }
     }
 }
 

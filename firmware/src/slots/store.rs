@@ -1,7 +1,7 @@
 //! A slot in the flash: its head and commit word, what it holds after any history, and its image.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{DEVICE_NODES, Image, SIGNATURE_BYTES, crc32, image_bytes};
+use truepath_core::image::{Binding, DEVICE_NODES, Image, SIGNATURE_BYTES, crc32, image_bytes};
 use truepath_core::link::{Denial, Slot};
 
 use crate::flash::{Region, SECTOR_BYTES, SLOT_BYTES, SLOT_SECTORS, WORD_BYTES, Word};
@@ -160,18 +160,18 @@ pub fn survey<F: NorFlash>(flash: &mut F, slot: u8, scratch: &mut [u8]) -> Slot 
     }
 }
 
-/// Reads the committed image of a slot into `into` and checks it; gives its length.
+/// Reads the committed image of a slot into `into` and checks it; gives its length and what it belongs to.
 ///
 /// # Errors
 /// [`Denial::NoImage`], [`Denial::OtherImage`] if it is not the one with this checksum, [`Denial::Image`] or
 /// [`Denial::Flash`] if it does not pass the check any more.
-pub fn read<F: NorFlash>(flash: &mut F, slot: u8, crc: u32, into: &mut [u8]) -> Result<usize, Denial> {
+pub fn read<F: NorFlash>(flash: &mut F, slot: u8, crc: u32, into: &mut [u8]) -> Result<(usize, Binding), Denial> {
     let header = (slot < 2).then(|| FlashSlot(slot).committed(flash)).flatten().ok_or(Denial::NoImage { slot })?;
     if header.crc != crc {
         return Err(Denial::OtherImage { slot, expected: crc, found: header.crc });
     }
-    image(flash, FlashSlot(slot), &header, into)?;
-    Ok(header.length as usize)
+    let binding = image(flash, FlashSlot(slot), &header, into)?.settings().binding;
+    Ok((header.length as usize, binding))
 }
 
 /// The image of a slot, read and checked, whether committed or not.

@@ -1,7 +1,7 @@
 //! One upload into a slot, from `Begin` to the commit word.
 
 use embedded_storage::nor_flash::NorFlash;
-use truepath_core::image::{Binding, DeviceClass, KeyRing};
+use truepath_core::image::{Binding, SignatureError};
 use truepath_core::link::{Denial, Slot};
 
 use super::store::{FlashSlot, Header, Kind, image};
@@ -103,22 +103,22 @@ impl Upload {
         Ok(self.arrived)
     }
 
-    /// Reads the image back into `scratch`, checks it, and programs the commit word; gives what the slot then holds.
+    /// Reads the image back into `scratch`, checks it, asks whether it is admitted, and programs the commit word; gives what
+    /// the slot then holds.
     ///
     /// # Errors
     /// [`Denial::Incomplete`], with nothing changed; [`Denial::Image`], [`Denial::Checksum`] or [`Denial::Untrusted`]: no
-    /// usable image, another one, or one that the keys do not admit, and the slot is marked so; [`Denial::Flash`].
+    /// usable image, another one, or one that is not admitted, and the slot is marked so; [`Denial::Flash`].
     pub fn commit<F: NorFlash>(
         &mut self,
         flash: &mut F,
         scratch: &mut [u8],
-        keys: &KeyRing,
-        class: DeviceClass,
+        admit: impl FnOnce(&mut F, &[u8], &Binding) -> Result<(), SignatureError>,
     ) -> Result<Slot, Denial> {
         self.is_complete()?;
         let found = image(flash, self.place, &self.header, scratch).map(|image| image.settings().binding);
         let bytes = scratch.get(..self.header.length as usize).unwrap_or(&[]);
-        let found = found.and_then(|binding| match keys.admits(bytes, class) {
+        let found = found.and_then(|binding| match admit(flash, bytes, &binding) {
             Ok(()) => Ok(binding),
             Err(error) => Err(Denial::Untrusted(error)),
         });

@@ -3,7 +3,7 @@
 use crate::wire_support;
 
 use embedded_storage::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
-use truepath_core::image::{DeviceClass, KeyRing};
+use truepath_core::image::DeviceClass;
 use truepath_core::link::{Ask, Denial, DeviceSettings, ResetCause, Response, SetpointFrame, Slot, decode};
 use truepath_core::rewrite::{ArmRequest, Flags, Frame, Mode, Refusal, Setpoint};
 use truepath_fw::computation::ProgressMeter;
@@ -179,7 +179,7 @@ fn a_word_that_is_not_what_was_programmed_is_noticed_before_the_commit_word() {
         let upload = Upload::begin(&mut flash, &[Slot::Empty; 2], image.len() as u32, name(&image));
         let written = upload.map_err(|(_, denial)| denial).and_then(|mut upload| {
             upload.chunk(&mut flash, 0, &image)?;
-            upload.commit(&mut flash, &mut scratch, &KeyRing::default(), DeviceClass::Bench)
+            upload.commit(&mut flash, &mut scratch, |_, _, _| Ok(()))
         });
         assert!(matches!(written, Err(Denial::Flash { .. })), "word {wrong_after}: {written:?}");
     }
@@ -190,7 +190,7 @@ fn a_word_that_is_not_what_was_programmed_is_noticed_before_the_commit_word() {
         flash.rotten = Some(rotten);
         let mut other = upload;
         assert!(matches!(other.commit_equal(&mut flash, &image, binding), Err(Denial::Flash { .. })), "{rotten}");
-        assert!(upload.commit(&mut flash, &mut scratch, &KeyRing::default(), DeviceClass::Bench).is_err(), "{rotten}");
+        assert!(upload.commit(&mut flash, &mut scratch, |_, _, _| Ok(())).is_err(), "{rotten}");
         flash.rotten = None;
         assert!(!matches!(truepath_fw::slots::survey(&mut flash, 0, &mut scratch), Slot::Image { .. }));
     }

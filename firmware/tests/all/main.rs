@@ -8,6 +8,7 @@ mod job_support;
 mod ledger_records;
 mod ledger_series;
 mod wire_compute;
+mod wire_counted;
 mod wire_histories;
 mod wire_longest;
 mod wire_messages;

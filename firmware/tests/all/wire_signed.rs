@@ -100,7 +100,7 @@ fn a_key_needs_somebody_at_the_device_and_drives_that_are_off() {
 }
 
 #[test]
-fn keys_are_four_at_most_sound_and_never_taken_away() {
+fn keys_are_four_at_most_sound_and_stay() {
     let mut rig = provisioned(1);
     let weak = PublicKey([0; 32]);
     assert_eq!(rig.done(Ask::Provision(weak)), Err(Denial::Untrusted(SignatureError::Key { key: weak.id() })));

@@ -12,13 +12,16 @@
 //! The signature is over everything before it: head, nodes, classes, key number. The head holds format and length, so
 //! a signed image without its block is no image, and one made unsigned again has another head. The CRC-32 is over the
 //! signature too: signed and unsigned copies of an image have different names.
+//!
+//! The head of a signed image also holds its counter, in the word that is 0 in an unsigned one. An image that was signed
+//! before there were counters has 0 there, and so the least of all.
 
 use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::header::{CRC_BYTES, FORMAT, HEADER_BYTES, SIGNED_FORMAT};
-use super::{ImageError, read};
+use super::header::{COUNTER, CRC_BYTES, FORMAT, HEADER_BYTES, SIGNED_FORMAT};
+use super::{Binding, ImageError, read};
 
 /// Bytes of the block of the signature.
 pub const SIGNATURE_BYTES: usize = 80;
@@ -124,6 +127,8 @@ pub struct Signed<'a> {
     pub key: KeyId,
     /// The classes of device it names.
     pub classes: DeviceClasses,
+    /// Rises from one signing to the next: the time of the signing, seconds since 1970. See [`Counted`].
+    pub counter: u32,
 }
 
 impl<'a> Signed<'a> {
@@ -137,7 +142,36 @@ impl<'a> Signed<'a> {
         let block = content.last_chunk::<SIGNATURE_BYTES>()?;
         let classes = DeviceClasses::from_bits(read::u32_at(block, 4)).filter(|_| block.starts_with(&BLOCK))?;
         let key = KeyId(block.get(8..)?.first_chunk().copied()?);
-        Some(Self { message, signature, key, classes })
+        Some(Self { message, signature, key, classes, counter: read::u32_at(content, COUNTER) })
+    }
+}
+
+/// The counter of an image and the pass it counts for. Where keys are trusted, no image of a pass is taken with a lower
+/// counter than one that was in use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Counted {
+    /// CRC-32 of the program.
+    #[serde(with = "postcard::fixint::le")]
+    pub program_crc: u32,
+    /// Feature.
+    #[serde(with = "postcard::fixint::le")]
+    pub feature: u32,
+    /// Pass.
+    #[serde(with = "postcard::fixint::le")]
+    pub pass: u32,
+    /// Counter.
+    #[serde(with = "postcard::fixint::le")]
+    pub counter: u32,
+}
+
+impl Counted {
+    /// The counter of an image with this binding.
+    pub const fn of(binding: &Binding, counter: u32) -> Self {
+        Self { program_crc: binding.program_crc, feature: binding.feature, pass: binding.pass, counter }
+    }
+    /// Whether both count for the same pass.
+    pub const fn is_same_pass(&self, other: &Self) -> bool {
+        self.program_crc == other.program_crc && self.feature == other.feature && self.pass == other.pass
     }
 }
 

@@ -1,7 +1,7 @@
 //! The checked image.
 
 use super::block::{self, Signed};
-use super::header::{CRC_BYTES, FLAG_CLOSED, MAGIC, SEMANTICS};
+use super::header::{COUNTER, CRC_BYTES, FLAG_CLOSED, MAGIC, SEMANTICS};
 use super::{HEADER_BYTES, Header, ImageError, ImageSettings, NODE_BYTES, Node, SIGNATURE_BYTES, check, crc32, read};
 
 /// Bytes of an image with a number of nodes, not signed.
@@ -56,7 +56,8 @@ impl<'a> Image<'a> {
         if stored != computed {
             return Err(ImageError::Checksum { stored, computed });
         }
-        if read::u16_at(head, 10) != 0 || read::u32_at(head, 20) & !FLAG_CLOSED != 0 || read::u32_at(head, 268) != 0 {
+        let counter = if signed { 0 } else { read::u32_at(head, COUNTER) };
+        if read::u16_at(head, 10) != 0 || read::u32_at(head, 20) & !FLAG_CLOSED != 0 || counter != 0 {
             return Err(ImageError::Reserved);
         }
         let header = Header::decode(head);

@@ -17,9 +17,10 @@ pub fn dump(image: &Image<'_>, signed: Option<&Signed<'_>>, out: &mut impl Write
     writeln!(out, "format = {}", if signed.is_some() { SIGNED_FORMAT } else { FORMAT })?;
     writeln!(out, "semantics = {SEMANTICS}")?;
     writeln!(out, "crc = {:08x}", image.crc())?;
-    if let Some(Signed { key, classes, .. }) = signed {
+    if let Some(Signed { key, classes, counter, .. }) = signed {
         writeln!(out, "signature_key = {key}")?;
         writeln!(out, "signature_for = {classes}")?;
+        writeln!(out, "signature_counter = {counter}")?;
     }
     writeln!(out, "program_crc = {:08x}", b.program_crc)?;
     writeln!(out, "feature = {}", b.feature)?;

@@ -22,6 +22,8 @@ pub const SIGNED_FORMAT: u16 = 2;
 pub const SEMANTICS: u32 = 3;
 /// Bit of the flags word: the path ends where it starts.
 pub const FLAG_CLOSED: u32 = 1;
+/// Where the [counter](super::Signed::counter) of a signed image lies; 0 in one without a signature.
+pub(super) const COUNTER: usize = 268;
 /// Bytes of the checksum at the end.
 pub(super) const CRC_BYTES: usize = 4;
 /// Bytes of the head; the nodes follow.
@@ -134,7 +136,7 @@ impl Header {
         for entry in s.feed.factor {
             w.u32(entry); //                                         136 … 267, 2⁻²⁴
         }
-        w.u32(0); //                                                 268 reserved
+        w.u32(0); //                                                 268 counter, see COUNTER
         w.i64(self.origin.x.nm()); //                                272
         w.i64(self.origin.y.nm()); //                                280
         w.bytes

@@ -65,7 +65,7 @@ mod node;
 mod read;
 mod signature;
 
-pub use block::{DeviceClass, DeviceClasses, KeyId, SIGNATURE_BYTES, Signed};
+pub use block::{Counted, DeviceClass, DeviceClasses, KeyId, SIGNATURE_BYTES, Signed};
 pub use build::{build, peak};
 pub use check::{DEVICE_NODES, MAX_CLAMP_NM, MAX_NODES, MAX_SPACING_NM, MIN_SPACING_NM};
 pub use checked::{Image, image_bytes};
@@ -79,5 +79,7 @@ pub use header::{
     SIGNED_FORMAT,
 };
 pub use node::{ImageNode, NODE_BYTES, Node};
-pub use signature::{KeyRing, KeyRingError, MOST_KEYS, PublicKey, SignatureError, sign, signed_bytes, verify};
+pub use signature::{
+    KeyRing, KeyRingError, MOST_KEYS, MOST_KEYS_EVER, PublicKey, SignatureError, sign, signed_bytes, verify,
+};
 pub use truepath_units::checksum::crc32;

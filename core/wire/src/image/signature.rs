@@ -15,11 +15,13 @@ use serde::{Deserialize, Serialize};
 use truepath_units::errors;
 
 use super::block::{BLOCK, RAW_BYTES, SIGNATURE_BYTES};
-use super::header::CRC_BYTES;
+use super::header::{COUNTER, CRC_BYTES};
 use super::{DeviceClass, DeviceClasses, Image, ImageError, KeyId, SIGNED_FORMAT, Signed, crc32};
 
-/// Most keys a device trusts.
+/// Most keys a device trusts at a time.
 pub const MOST_KEYS: usize = 4;
+/// Most keys a device knows in its life, those that were revoked among them: each that is trusted can still be revoked.
+pub const MOST_KEYS_EVER: usize = 8;
 
 errors! {
     /// Why an image is not trusted. The sentence of each variant is the text shown.
@@ -54,6 +56,20 @@ errors! {
             key: KeyId,
         } = "I019", "key {key} cannot be used: it is no sound public key"
             => "copy the public key again, or make a new pair with truepath key new";
+        /// An image of this pass that was signed later was in use, or the pass was forgotten since.
+        RolledBack {
+            /// Counter of the image.
+            found: u32,
+            /// The least that is taken.
+            least: u32,
+        } = "I020", "the image has counter {found}, and a later one of its program was in use: less than {least} is not taken"
+            => "use the latest image; to go back on purpose, sign this one again with truepath image sign";
+        /// The key is trusted no more.
+        Revoked {
+            /// Its number.
+            key: KeyId,
+        } = "I021", "key {key} was revoked here, and signs nothing any more"
+            => "sign with another key that is provisioned, and find out what else this one has signed";
     }
 }
 
@@ -81,62 +97,96 @@ impl PublicKey {
     }
 }
 
-/// Verifies that one of the keys signed an image for a class of device; gives the number of the key.
+/// Verifies that one of the keys signed an image for a class of device; gives its signature.
 ///
 /// # Errors
 /// A [`SignatureError`]; whatever the bytes are.
 #[inline(never)]
-pub fn verify(image: &[u8], keys: &KeyRing, class: DeviceClass) -> Result<KeyId, SignatureError> {
-    let Signed { message, signature, key, classes } = Signed::of(image).ok_or(SignatureError::Missing)?;
-    let trusted = keys.iter().find(|trusted| trusted.id() == key).ok_or(SignatureError::UnknownKey { key })?;
+pub fn verify<'a>(image: &'a [u8], keys: &KeyRing, class: DeviceClass) -> Result<Signed<'a>, SignatureError> {
+    let signed = Signed::of(image).ok_or(SignatureError::Missing)?;
+    let Signed { message, signature, key, classes, .. } = signed;
+    let unknown =
+        if keys.is_revoked(key) { SignatureError::Revoked { key } } else { SignatureError::UnknownKey { key } };
+    let trusted = keys.iter().find(|trusted| trusted.id() == key).ok_or(unknown)?;
     let forged = |_| SignatureError::Forged { key };
     trusted.verifying()?.verify_strict(message, &Signature::from_bytes(signature)).map_err(forged)?;
     // Behind the signature, so that what is said of the classes is what the signer said.
-    if classes.holds(class) { Ok(key) } else { Err(SignatureError::OtherClass { found: classes, expected: class }) }
+    if classes.holds(class) { Ok(signed) } else { Err(SignatureError::OtherClass { found: classes, expected: class }) }
 }
 
-/// The keys that a device trusts. Without any, it is open: it takes every image.
+/// The keys that a device trusts, and those that were revoked. One that never had a key is open: it takes every image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct KeyRing([Option<PublicKey>; MOST_KEYS]);
+pub struct KeyRing {
+    trusted: [Option<PublicKey>; MOST_KEYS],
+    revoked: [Option<KeyId>; MOST_KEYS_EVER],
+}
 
 /// Why a key was not added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyRingError {
     /// It cannot be used.
     Key(SignatureError),
-    /// There are [`MOST_KEYS`] already.
+    /// There are [`MOST_KEYS`], or with the revoked ones [`MOST_KEYS_EVER`].
     Full,
 }
 
 impl KeyRing {
-    /// Its keys.
+    /// The keys that are trusted.
     pub fn iter(&self) -> impl Iterator<Item = &PublicKey> {
-        self.0.iter().flatten()
+        self.trusted.iter().flatten()
     }
-    /// Whether every image is taken, because no key is known.
+    /// The numbers of those that were revoked.
+    pub fn revoked(&self) -> impl Iterator<Item = KeyId> {
+        self.revoked.iter().copied().flatten()
+    }
+    /// Whether every image is taken, because there never was a key. With all keys revoked none is.
     pub fn is_open(&self) -> bool {
-        self.iter().next().is_none()
+        self.iter().next().is_none() && self.revoked().next().is_none()
     }
-    /// Adds a key; one that is there already changes nothing. Keys are never taken away.
+    /// Whether a key was revoked.
+    pub fn is_revoked(&self, key: KeyId) -> bool {
+        self.revoked().any(|revoked| revoked == key)
+    }
+    /// Adds a key; one that is there already changes nothing.
     ///
     /// # Errors
-    /// It cannot be used, or there is no room. A key with the number of another one counts as unusable.
+    /// It cannot be used, was revoked, or there is no room. A key with the number of another one counts as unusable.
     pub fn add(&mut self, key: PublicKey) -> Result<(), KeyRingError> {
         key.check().map_err(KeyRingError::Key)?;
-        if let Some(there) = self.iter().find(|there| there.id() == key.id()) {
-            let other = SignatureError::Key { key: key.id() };
+        let id = key.id();
+        if self.is_revoked(id) {
+            return Err(KeyRingError::Key(SignatureError::Revoked { key: id }));
+        }
+        if let Some(there) = self.iter().find(|there| there.id() == id) {
+            let other = SignatureError::Key { key: id };
             return if *there == key { Ok(()) } else { Err(KeyRingError::Key(other)) };
         }
-        let place = self.0.iter_mut().find(|place| place.is_none()).ok_or(KeyRingError::Full)?;
-        *place = Some(key);
+        let known = self.iter().count().saturating_add(self.revoked().count());
+        let place = self.trusted.iter_mut().find(|place| place.is_none() && known < MOST_KEYS_EVER);
+        *place.ok_or(KeyRingError::Full)? = Some(key);
         Ok(())
     }
-    /// Whether an image may be used on a device of a class: any while the ring is open, else one that [`verify`] passes.
+    /// Trusts a key no more, for ever, also one that was never trusted. There always is room for one that is.
+    ///
+    /// # Errors
+    /// There is no room.
+    pub fn revoke(&mut self, key: KeyId) -> Result<(), KeyRingError> {
+        if self.is_revoked(key) {
+            return Ok(());
+        }
+        *self.revoked.iter_mut().find(|place| place.is_none()).ok_or(KeyRingError::Full)? = Some(key);
+        for place in &mut self.trusted {
+            *place = place.filter(|trusted| trusted.id() != key);
+        }
+        Ok(())
+    }
+    /// Whether an image may be used on a device of a class: any while the ring is open, else one that [`verify`] passes,
+    /// whose counter it gives.
     ///
     /// # Errors
     /// As [`verify`].
-    pub fn admits(&self, image: &[u8], class: DeviceClass) -> Result<(), SignatureError> {
-        if self.is_open() { Ok(()) } else { verify(image, self, class).map(|_| ()) }
+    pub fn admits(&self, image: &[u8], class: DeviceClass) -> Result<Option<u32>, SignatureError> {
+        if self.is_open() { Ok(None) } else { verify(image, self, class).map(|signed| Some(signed.counter)) }
     }
 }
 
@@ -147,6 +197,7 @@ pub fn signed_bytes(image: &[u8]) -> usize {
 
 /// Writes the signed form of a checked image into a lent buffer and gives it back, checked; its bytes are the first
 /// [`signed_bytes`] of the buffer. An image that is signed already gets the new signature in place of the old one.
+/// Its counter is to be above that of every image of the same pass that was signed before ([`Counted`](super::Counted)).
 /// `sign` makes the signature of the key's owner.
 ///
 /// # Errors
@@ -155,6 +206,7 @@ pub fn sign<'b>(
     image: &[u8],
     key: &PublicKey,
     classes: DeviceClasses,
+    counter: u32,
     sign: impl FnOnce(&[u8]) -> [u8; RAW_BYTES],
     buffer: &'b mut [u8],
 ) -> Result<Image<'b>, ImageError> {
@@ -166,7 +218,8 @@ pub fn sign<'b>(
     let (message, signature) = content.split_last_chunk_mut::<RAW_BYTES>().ok_or(short)?;
     let (body, tail) = message.split_last_chunk_mut::<{ SIGNATURE_BYTES - RAW_BYTES }>().ok_or(short)?;
     body.copy_from_slice(image.get(..body.len()).ok_or(short)?);
-    for (at, field) in [(8, &SIGNED_FORMAT.to_le_bytes()[..]), (16, &(needed as u32).to_le_bytes()[..])] {
+    let [length, counter] = [needed as u32, counter].map(u32::to_le_bytes);
+    for (at, field) in [(8, &SIGNED_FORMAT.to_le_bytes()[..]), (16, &length[..]), (COUNTER, &counter[..])] {
         if let Some(place) = body.get_mut(at..).and_then(|rest| rest.get_mut(..field.len())) {
             place.copy_from_slice(field);
         }

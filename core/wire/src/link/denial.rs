@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::device::Item;
 use super::settings::DeviceSettingsError;
-use crate::image::{ImageError, MOST_KEYS, SignatureError};
+use crate::image::{ImageError, MOST_KEYS, MOST_KEYS_EVER, SignatureError};
 use crate::rewrite::{Mode, Refusal};
 
 /// Why a request had no effect; a mismatch carries both sides. The order of the variants is the number on the wire.
@@ -89,9 +89,9 @@ pub enum Denial {
     NotConfigured,
     /// A key is provisioned, and the image is not signed with it for this class of device; or the key itself is none.
     Untrusted(SignatureError),
-    /// A key can be provisioned only by somebody who is at the device: its button was not held at the last reset.
+    /// A key can be provisioned or revoked only by somebody who is at the device: its button was not held at the last reset.
     NotPresent,
-    /// There is no room for another key, and none is ever taken away.
+    /// There is no room for another key.
     KeysFull,
 }
 
@@ -123,7 +123,9 @@ impl fmt::Display for Denial {
             Self::NotConfigured => f.write_str("the device has no settings of its own: it is to be configured first"),
             Self::Untrusted(error) => error.fmt(f),
             Self::NotPresent => f.write_str("nobody is at the device: its button was not held at the last reset"),
-            Self::KeysFull => write!(f, "the device trusts {MOST_KEYS} keys already, and none is ever taken away"),
+            Self::KeysFull => {
+                write!(f, "the device trusts {MOST_KEYS} keys already, or has known {MOST_KEYS_EVER}, those revoked among them")
+            }
         }
     }
 }

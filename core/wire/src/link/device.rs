@@ -81,7 +81,7 @@ pub struct DeviceKeys {
     pub class: DeviceClass,
     /// Whether its button was held at the last reset: keys can be provisioned until the next one.
     pub present: bool,
-    /// The keys it trusts; none while it is open.
+    /// The keys it trusts and those that were revoked; neither while it is open.
     pub keys: KeyRing,
 }
 

@@ -10,7 +10,7 @@ use super::denial::Denial;
 use super::device::{DeviceKeys, DeviceStatus, Hello, Item, Progress, Slot};
 use super::settings::DeviceSettings;
 use super::trace::{TRACE_SAMPLES, TraceSample};
-use crate::image::PublicKey;
+use crate::image::{KeyId, PublicKey};
 use crate::rewrite::ArmRequest;
 
 /// Most bytes of a message with its CRC-32, before COBS.
@@ -110,8 +110,10 @@ pub enum Ask<'a> {
     },
     /// The keys whose signatures the device trusts.
     Keys,
-    /// Trusts one more key, for ever.
+    /// Trusts one more key, until it is revoked.
     Provision(PublicKey),
+    /// Trusts a key no more, for ever.
+    Revoke(KeyId),
 }
 
 /// The replies.

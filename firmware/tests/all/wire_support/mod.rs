@@ -48,8 +48,12 @@ pub fn public(key: &SigningKey) -> PublicKey {
 }
 /// An image signed for some classes of device.
 pub fn signed(image: &[u8], key: &SigningKey, classes: DeviceClasses) -> Vec<u8> {
+    counted(image, key, classes, 1_700_000_000)
+}
+/// The same with a counter.
+pub fn counted(image: &[u8], key: &SigningKey, classes: DeviceClasses, counter: u32) -> Vec<u8> {
     let mut bytes = vec![0; signed_bytes(image)];
-    sign(image, &public(key), classes, |message| key.sign(message).to_bytes(), &mut bytes).unwrap();
+    sign(image, &public(key), classes, counter, |message| key.sign(message).to_bytes(), &mut bytes).unwrap();
     bytes
 }
 

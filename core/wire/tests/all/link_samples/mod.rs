@@ -45,6 +45,7 @@ pub fn asks() -> Vec<(&'static str, Ask<'static>)> {
         Ask::Restart { watchdog: true },
         Ask::Keys,
         Ask::Provision(PublicKey([7; 32])),
+        Ask::Revoke(KeyId([7; 8])),
     ];
     all.into_iter().map(|ask| (ask_name(&ask), ask)).collect()
 }
@@ -74,6 +75,7 @@ fn ask_name(ask: &Ask<'_>) -> &'static str {
         Ask::Restart { .. } => "Restart",
         Ask::Keys => "Keys",
         Ask::Provision(_) => "Provision",
+        Ask::Revoke(_) => "Revoke",
     }
 }
 
