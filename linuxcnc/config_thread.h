@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 //
-// The configuration thread: reads the image, keeps the ledger on the disk. It has the scheduling of a normal program and shares
+// The configuration thread: reads the image, verifies whose it is, keeps the ledger on the disk. It has the scheduling of a normal program and shares
 // nothing with the servo thread but the queues of truepath.h and the counter of reloads.
 
 #ifndef TRUEPATH_CONFIG_THREAD_H
@@ -21,6 +21,8 @@ enum {
     CONFIG_IMAGE_BYTES = 64 << 20,
     // In use, waiting to be used, and come back: there are never more.
     CONFIG_IMAGES = 3,
+    // A few public keys with what is said about them.
+    CONFIG_KEYS_BYTES = 64 << 10,
     // Between two rounds. An arming waits for one of them and for the disk.
     CONFIG_ROUND_NS = 5000000,
     // All memory of a real-time process is locked, the thread's stack as well.
@@ -31,7 +33,7 @@ enum {
 enum { CONFIG_NOT_READ = 64 };
 
 struct config {
-    const char *image, *ledger;
+    const char *image, *ledger, *keys;
     struct truepath_config *side;
     // The parameters of the component, as they are now.
     void (*limits)(struct truepath_limits *limits);
@@ -41,7 +43,17 @@ struct config {
     atomic_bool end;
     pthread_t thread;
     unsigned char *images[CONFIG_IMAGES];
+    // The ledger that is written next.
+    unsigned char file[TRUEPATH_LEDGER_BYTES];
 };
+
+static atomic_bool config_halted;
+
+// Where a panic within the verification of a signature ends, should there be one: see abi/src/panic.rs.
+_Noreturn void truepath_halt(void) {
+    atomic_store(&config_halted, true);
+    for (;;) pause();
+}
 
 static void config_forget(struct config *config, const unsigned char *image) {
     for (int i = 0; i < CONFIG_IMAGES; i++) {
@@ -61,11 +73,25 @@ static bool config_keep(struct config *config, unsigned char *image) {
     return false;
 }
 
+// Writes it; `then`: what follows when that fails.
+static void config_write_ledger(struct config *config, size_t count, const char *then) {
+    int r = *config->ledger ? write_file(config->ledger, config->file, count) : -ENOENT;
+    if (r) rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s: %s; %s\n",
+        *config->ledger ? config->ledger : "(no file is named)", strerror(-r), then);
+    truepath_pc_written(config->side, !r);
+}
+
+// Writes the counter of a signed image into the ledger, before the image is offered. Without it the offer is refused.
+static void config_count(struct config *config, const unsigned char *bytes, size_t count) {
+    size_t used = truepath_pc_count(config->side, bytes, count, config->file);
+    if (used) config_write_ledger(config, used, "the signed image is not used");
+}
+
 // Offers what the image file holds now, or that there is none. `first`: a missing file is no error.
 static void config_offer(struct config *config, const struct truepath_limits *limits, bool first) {
     unsigned char *bytes = NULL;
     size_t count = 0;
-    int r = *config->image ? read_file(config->image, CONFIG_IMAGE_BYTES, &bytes, &count) : -ENOENT;
+    int r = *config->image ? read_file(config->image, CONFIG_IMAGE_BYTES, false, &bytes, &count) : -ENOENT;
     uint32_t error = 0;
     if (r) {
         error = first && r == -ENOENT ? 0 : CONFIG_NOT_READ;
@@ -74,7 +100,7 @@ static void config_offer(struct config *config, const struct truepath_limits *li
         error = CONFIG_NOT_READ;
         free(bytes);
         bytes = NULL;
-    } else if ((error = truepath_pc_offer(config->side, limits, bytes, count))) {
+    } else if (config_count(config, bytes, count), (error = truepath_pc_offer(config->side, limits, bytes, count))) {
         rtapi_print_msg(RTAPI_MSG_ERR, "truepath: image %s is not used: error %u, see docs/linuxcnc.md\n", config->image, error);
         config_forget(config, bytes);
         bytes = NULL;
@@ -82,13 +108,6 @@ static void config_offer(struct config *config, const struct truepath_limits *li
     // Never an image that is not the one in the file.
     if (!bytes) truepath_pc_offer(config->side, limits, NULL, 0);
     **config->error = error;
-}
-
-static void config_write_ledger(struct config *config, const unsigned char *file, size_t count) {
-    int r = *config->ledger ? write_file(config->ledger, file, count) : -ENOENT;
-    if (r) rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s: %s; nothing can be armed\n",
-        *config->ledger ? config->ledger : "(no file is named)", strerror(-r));
-    truepath_pc_written(config->side, !r);
 }
 
 static void *config_run(void *argument) {
@@ -100,9 +119,8 @@ static void *config_run(void *argument) {
     while (!atomic_load(&config->end)) {
         const unsigned char *back;
         while ((back = truepath_pc_returned(config->side))) config_forget(config, back);
-        unsigned char file[TRUEPATH_LEDGER_BYTES];
-        size_t count = truepath_pc_spend(config->side, file);
-        if (count) config_write_ledger(config, file, count);
+        size_t count = truepath_pc_spend(config->side, config->file);
+        if (count) config_write_ledger(config, count, "nothing can be armed");
         unsigned reloads = atomic_load(&config->reloads);
         memset(&now, 0, sizeof now);
         config->limits(&now);
@@ -117,11 +135,38 @@ static void *config_run(void *argument) {
     return NULL;
 }
 
+static bool config_has_keys(const struct config *config) {
+    return *config->keys && strcmp(config->keys, "none");
+}
+
+// Reads the keys, if a file of them is named. 0 or a negative errno: with keys that cannot be had nothing is corrected, rather
+// than by anybody's image.
+static int config_trust(struct config *config) {
+    if (!config_has_keys(config)) {
+        rtapi_print_msg(RTAPI_MSG_WARN, "truepath: OPEN: no file of keys is named ([TRUEPATH]KEYS), every image is taken\n");
+        return 0;
+    }
+    unsigned char *file = NULL;
+    size_t count = 0;
+    int r = read_file(config->keys, CONFIG_KEYS_BYTES, true, &file, &count);
+    if (r) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "truepath: keys %s: %s%s\n", config->keys, strerror(-r), r == -EPERM ? ": it has to "
+            "belong to root, or to the user who starts LinuxCNC, and nobody else may write to it (chmod go-w)" : "");
+        return r;
+    }
+    uint32_t line = truepath_pc_trust(config->side, file, count);
+    free(file);
+    if (line == UINT32_MAX) rtapi_print_msg(RTAPI_MSG_ERR, "truepath: keys %s holds no key\n", config->keys);
+    else if (line) rtapi_print_msg(RTAPI_MSG_ERR, "truepath: keys %s: line %u is no public key of truepath key new, one that "
+        "cannot be used, or one more than 4\n", config->keys, line);
+    return line ? -EINVAL : 0;
+}
+
 // Reads the ledger and fills the block. 0 or a negative errno.
 static int config_open(struct config *config, struct truepath_block *block, const uint8_t *axes, struct truepath_sides *sides) {
     unsigned char *file = NULL;
     size_t count = 0;
-    int r = *config->ledger ? read_file(config->ledger, TRUEPATH_LEDGER_BYTES, &file, &count) : -ENOENT;
+    int r = *config->ledger ? read_file(config->ledger, TRUEPATH_LEDGER_BYTES, false, &file, &count) : -ENOENT;
     if (r && r != -ENOENT) {
         rtapi_print_msg(RTAPI_MSG_ERR, "truepath: ledger %s: %s\n", config->ledger, strerror(-r));
         return r;
@@ -137,7 +182,7 @@ static int config_open(struct config *config, struct truepath_block *block, cons
     if (r && *config->ledger) rtapi_print_msg(RTAPI_MSG_WARN, "truepath: no ledger %s: no part was corrected on this machine "
         "before, as far as is known\n", config->ledger);
     config->side = sides->config;
-    return 0;
+    return config_trust(config);
 }
 
 static int config_start(struct config *config) {
@@ -162,7 +207,7 @@ static int config_start(struct config *config) {
 // Ends the thread, which takes as long as the disk.
 static void config_stop(struct config *config) {
     atomic_store(&config->end, true);
-    pthread_join(config->thread, NULL);
+    if (!atomic_load(&config_halted)) pthread_join(config->thread, NULL);
 }
 
 // Gives the memory of the images back, once the servo thread calls the component no more.

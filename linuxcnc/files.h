@@ -9,18 +9,26 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Reads a file of at most `most` bytes into memory that the caller frees. 0 or a negative errno.
-static int read_file(const char *path, size_t most, unsigned char **bytes, size_t *count) {
+// Who may have written a file: root or who started LinuxCNC, and nobody else.
+static bool is_own(const struct stat *about) {
+    return (about->st_uid == 0 || about->st_uid == getuid()) && !(about->st_mode & (S_IWGRP | S_IWOTH));
+}
+
+// Reads a file of at most `most` bytes into memory that the caller frees; `own`: -EPERM unless it is_own. 0 or a negative
+// errno.
+static int read_file(const char *path, size_t most, bool own, unsigned char **bytes, size_t *count) {
     int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0) return -errno;
     struct stat about;
     int r = fstat(fd, &about) ? -errno : !S_ISREG(about.st_mode) ? -EINVAL : about.st_size > (off_t)most ? -EFBIG : 0;
+    if (!r && own && !is_own(&about)) r = -EPERM;
     size_t size = r ? 0 : (size_t)about.st_size;
     unsigned char *into = r ? NULL : malloc(size + 1);
     if (!r && !into) r = -ENOMEM;

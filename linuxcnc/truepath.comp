@@ -84,6 +84,7 @@ pin out u32 armed-serial "Serial number of the part armed last";
 pin out bit image-ready "An image is in use";
 pin out u32 image-crc "Its CRC-32";
 pin out u32 image-error "Why the image file is not in use; 0: it is, or there is none";
+pin out bit image-open "Images of anybody are taken: no file of keys is named; with a board it is the board that decides";
 pin out u32 node "Place on the path: node of the image";
 pin out u32 sequence "Number of the cycle";
 pin out u32 flags "Flags that the core was given in this cycle";
@@ -110,7 +111,9 @@ RTAPI_MP_STRING(coordinates, "axis letter of each joint, for instance XYZ, or XY
 static char *image = "";
 RTAPI_MP_STRING(image, "file of the correction image");
 static char *ledger = "";
-RTAPI_MP_STRING(ledger, "file that remembers which parts were armed");
+RTAPI_MP_STRING(ledger, "file that remembers which parts were armed, and which images are too old");
+static char *keys = "";
+RTAPI_MP_STRING(keys, "file of public keys (truepath key new): only images signed with one of them are taken; none: every image");
 static char *port = "";
 RTAPI_MP_STRING(port, "serial port of the coprocessor; empty: the correction is computed here");
 static int baud = 921600;
@@ -203,6 +206,7 @@ FUNCTION(command) {
 int rtapi_app_main(void) {
     config.image = image;
     config.ledger = ledger;
+    config.keys = keys;
     config.limits = limits;
     int r = read_coordinates();
     board.axis_of_joint = axis_of_joint;
@@ -216,6 +220,7 @@ int rtapi_app_main(void) {
     if (!r) {
         component = __comp_first_inst;
         config.error = &component->image_error;
+        *component->image_open = !*port && !config_has_keys(&config);
         board.clamp_nm = &component->link_clamp_nm;
         r = *port ? board_start(&board, port, (unsigned)baud) : config_start(&config);
     }

@@ -31,13 +31,15 @@ pub struct Info {
 /// Whose images a device takes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Trust {
-    /// Every image, because it has no key.
+    /// Every image, because it never had a key.
     pub open: bool,
     /// The numbers of its keys.
     pub keys: Vec<String>,
+    /// The numbers of those that were revoked.
+    pub revoked: Vec<String>,
     /// What kind of device it is.
     pub class: &'static str,
-    /// Whether its button was held at its last reset, so that keys can be provisioned.
+    /// Whether its button was held at its last reset, so that keys can be provisioned and revoked.
     pub provisioning: bool,
 }
 
@@ -47,11 +49,17 @@ impl Trust {
         let class = self.class;
         let mut text = if self.open {
             format!("OPEN: takes every image, signed or not (class {class}, no key is provisioned)\n")
+        } else if self.keys.is_empty() {
+            "CLOSED: takes no image, every key was revoked; provision another one\n".to_owned()
         } else {
             format!("takes images signed for {class} with {}\n", self.keys.join(" or "))
         };
+        if !self.revoked.is_empty() {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "revoked for ever: {}", self.revoked.join(", "));
+        }
         if self.provisioning {
-            text += "the button was held at the last reset: keys can be provisioned until the next one\n";
+            text += "the button was held at the last reset: keys can be provisioned and revoked until the next one\n";
         }
         text
     }
@@ -66,6 +74,7 @@ pub fn trust<W: Wire>(client: &mut Client<W>) -> Result<Trust, BenchError> {
     Ok(Trust {
         open: keys.keys.is_open(),
         keys: keys.keys.iter().map(|key| key.id().to_string()).collect(),
+        revoked: keys.keys.revoked().map(|key| key.to_string()).collect(),
         class: keys.class.name(),
         provisioning: keys.present,
     })

@@ -13,7 +13,7 @@
 
 #define TRUEPATH_PC_WORDS 2048
 #define TRUEPATH_JOINTS 6
-#define TRUEPATH_LEDGER_BYTES 1024
+#define TRUEPATH_LEDGER_BYTES 2048
 #define TRUEPATH_NO_AXIS 255
 
 /* Bits of truepath_inputs.switches. */
@@ -105,17 +105,24 @@ struct truepath_limits {
 uint32_t truepath_pc_new(struct truepath_block *block, const uint8_t axis_of_joint[TRUEPATH_JOINTS], const uint8_t *ledger,
     size_t ledger_bytes, struct truepath_sides *sides);
 
+/* Before the threads run: the keys whose images are taken from then on. 0, the number of the line that is no key, or
+ * 2^32 - 1 if there is none. */
+uint32_t truepath_pc_trust(struct truepath_config *config, const uint8_t *keys, size_t keys_bytes);
+
 /* The servo thread: before and behind the motion controller. */
 void truepath_pc_feedback(const struct truepath_servo *servo, const double measured[TRUEPATH_JOINTS],
     double plain[TRUEPATH_JOINTS]);
 void truepath_pc_command(struct truepath_servo *servo, const struct truepath_inputs *inputs,
     struct truepath_outputs *outputs);
 
-/* The configuration thread. Images that were taken (0) are lent until they come back. */
+/* The configuration thread. Images that were taken (0) are lent until they come back. truepath_pc_count gives the ledger
+ * that has to be written before an image can be offered, no bytes for the one that is there; truepath_pc_written follows. */
 uint32_t truepath_pc_ready(const struct truepath_config *config);
 uint32_t truepath_pc_offer(struct truepath_config *config, const struct truepath_limits *limits, const uint8_t *image,
     size_t image_bytes);
 const uint8_t *truepath_pc_returned(struct truepath_config *config);
+size_t truepath_pc_count(struct truepath_config *config, const uint8_t *image, size_t image_bytes,
+    uint8_t file[TRUEPATH_LEDGER_BYTES]);
 size_t truepath_pc_spend(struct truepath_config *config, uint8_t file[TRUEPATH_LEDGER_BYTES]);
 void truepath_pc_written(struct truepath_config *config, uint32_t done);
 

@@ -91,6 +91,8 @@ IMAGE_ERRORS = {
     17: "its signature is wrong: it was changed, or signed by somebody else. Find out where it came from",
     18: "it is signed for another class of device: sign it again with --for",
     19: "a key is no sound public key",
+    20: "a later one of its program was in use: use that, or to go back on purpose sign this one again with truepath image sign",
+    21: "it is signed with a key that was revoked",
     32: "the limits of joint 0 are missing or wrong: min-limit, max-limit, max-correction-vel, max-correction-accel",
     33: "the limits of joint 1 are missing or wrong",
     34: "the limits of joint 2 are missing or wrong",
@@ -99,6 +101,7 @@ IMAGE_ERRORS = {
     37: "the limits of joint 5 are missing or wrong",
     40: "the limits do not go with the servo period: the correction could not move",
     41: "the image before is not yet taken",
+    42: "the ledger cannot be written, so its counter would not be remembered: is the disk full, may LinuxCNC write there?",
     64: "the file cannot be read: see LinuxCNC's messages",
 }
 

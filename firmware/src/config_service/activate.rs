@@ -30,12 +30,10 @@ impl<'a, F: NorFlash> Handler<'a, F> {
         self.not_computing()?;
         let before = self.active;
         let settings = self.settings().rewriter;
-        let done = self
-            .load(wanted, &settings, servo)
-            .and_then(|counted| {
-                self.ledger.change(&mut self.flash, |now| now.active = Some(wanted))?;
-                Ok(counted)
-            });
+        let done = self.load(wanted, &settings, servo).and_then(|counted| {
+            self.ledger.change(&mut self.flash, |now| now.active = Some(wanted))?;
+            Ok(counted)
+        });
         match done {
             Ok(counted) => self.count(counted, servo).map(|()| Reply::Done),
             Err(denial) => {

@@ -79,9 +79,8 @@ pub(super) fn write_revoked<F: NorFlash>(flash: &mut F, sector: usize, key: KeyI
 
 /// The first words of the first place that nothing was written to.
 fn write_pair<F: NorFlash>(flash: &mut F, sector: usize, words: &[[u8; WORD_BYTES]]) -> bool {
-    let blank = |flash: &mut F, at: u32| {
-        [at, at + WORD_BYTES as u32].into_iter().all(|at| Word::read(flash, at).is_blank())
-    };
+    let blank =
+        |flash: &mut F, at: u32| [at, at + WORD_BYTES as u32].into_iter().all(|at| Word::read(flash, at).is_blank());
     let Some(first) = pairs(sector).find(|&at| blank(flash, at)) else { return false };
     words
         .iter()

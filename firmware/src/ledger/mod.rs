@@ -140,12 +140,7 @@ impl Ledger {
         self.keep_keys(flash, written, before)
     }
     /// What was not written into the page of keys, because it is worn or used up, goes with a record to the other sector.
-    fn keep_keys<F: NorFlash>(
-        &mut self,
-        flash: &mut F,
-        written: bool,
-        before: KeyRing,
-    ) -> Result<(), NotProvisioned> {
+    fn keep_keys<F: NorFlash>(&mut self, flash: &mut F, written: bool, before: KeyRing) -> Result<(), NotProvisioned> {
         if written {
             return Ok(());
         }

@@ -130,9 +130,8 @@ enum Fill {
 impl Fill {
     fn fill(self, rig: &mut Rig) {
         let page = LEDGER_SECTORS.start() + (PLACES * 1_024) as u32;
-        let programmed = |rig: &mut Rig, at: u32| {
-            rig.flash().word_state(at) == truepath_fw::flash::WordState::Programmed
-        };
+        let programmed =
+            |rig: &mut Rig, at: u32| rig.flash().word_state(at) == truepath_fw::flash::WordState::Programmed;
         match self {
             Self::None => {}
             // As power cuts would leave them.
@@ -251,11 +250,15 @@ fn with_all_keys_revoked_the_device_is_not_open_but_closed_for_good() {
     for k in 0..MOST_KEYS_EVER {
         rig.done(Ask::Revoke(all[k].id())).unwrap();
         let more = (k + 4 < all.len()).then(|| rig.done(Ask::Provision(all[k + 4])));
-        assert_eq!(more, match k + 4 {
-            4..MOST_KEYS_EVER => Some(Ok(())),
-            MOST_KEYS_EVER => Some(Err(Denial::KeysFull)),
-            _ => None,
-        }, "{k}");
+        assert_eq!(
+            more,
+            match k + 4 {
+                4..MOST_KEYS_EVER => Some(Ok(())),
+                MOST_KEYS_EVER => Some(Err(Denial::KeysFull)),
+                _ => None,
+            },
+            "{k}"
+        );
     }
     for _ in 0..2 {
         let now = keys(&mut rig).keys;

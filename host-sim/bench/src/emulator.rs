@@ -27,6 +27,8 @@ const REQUEST: u64 = 0x08;
 const DONE: u64 = 0x0c;
 const INPUT_BYTES: u64 = 0x10;
 const OUTPUT_BYTES: u64 = 0x14;
+/// 1 there: somebody holds the button, at every reset.
+const BUTTON: u64 = 0x18;
 const INPUT: u64 = 0x1000;
 const OUTPUT: u64 = 0x40_0000;
 /// How long the firmware may take to come up, and a batch to be done; machines under load are slow.
@@ -68,6 +70,18 @@ impl Emulator {
     /// # Errors
     /// QEMU is missing, or the firmware does not come up.
     pub fn start(elf: &Path) -> Result<Self, BenchError> {
+        Self::made(elf, false)
+    }
+
+    /// The same with its button held.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn attended(elf: &Path) -> Result<Self, BenchError> {
+        Self::made(elf, true)
+    }
+
+    fn made(elf: &Path, held: bool) -> Result<Self, BenchError> {
         let opened = |e: io::Error| BenchError::open("the folder of the emulator", &e);
         let (folder, temporary) = {
             let mut hold = hold();
@@ -76,8 +90,10 @@ impl Emulator {
             (folder, temporary)
         };
         let path = folder.path().join("psram");
-        let shared = File::options().read(true).write(true).create_new(true).open(&path).map_err(opened)?;
+        let mut shared = File::options().read(true).write(true).create_new(true).open(&path).map_err(opened)?;
         shared.set_len(PSRAM_BYTES).map_err(opened)?;
+        shared.seek(SeekFrom::Start(BUTTON)).map_err(opened)?;
+        shared.write_all(&u32::from(held).to_le_bytes()).map_err(opened)?;
         let said = File::create(folder.path().join("said")).map_err(opened)?;
         let mut command = Command::new(QEMU);
         command.current_dir(folder.path()).stdin(Stdio::null()).stdout(Stdio::null()).stderr(said);

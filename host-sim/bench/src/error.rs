@@ -100,7 +100,7 @@ fn remedy(denial: &Denial) -> &'static str {
         Denial::NotConfigured => "truepath device settings NAME=VALUE, with the limits of this machine",
         Denial::Untrusted(error) => error.help(),
         Denial::NotPresent => "hold the button of the board while it is reset, then ask again",
-        Denial::KeysFull => "the keys of this device are final: use one of them",
+        Denial::KeysFull => "use a key that it trusts, or revoke one; with eight known, only its flash can be erased",
         Denial::Busy => "wait until the upload or the computation has ended",
         _ => "bring the device into the mode in which it takes this request",
     }

@@ -63,6 +63,8 @@ truepath_ground::codes! {
         / "the private key is the file named to truepath key new, the public one beside it ends with .pub",
     K022 => "a private key that others can read"
         / "chmod 600 it, and make a new pair if somebody may have seen it",
+    K023 => "a time to sign at that is none"
+        / "SOURCE_DATE_EPOCH is whole seconds since 1970, up to 4294967295: unset it, or name --counter",
     N001 => "several features can be corrected, and none is named"
         / "add --feature and one of these names; each of them is a correction of its own",
     N002 => "no feature of that name"

@@ -3,29 +3,35 @@
 //! Both files are text: lines that begin with `#` say something to people, of the others each is a word and 64 hexadecimal
 //! digits. A private key is one line, `ed25519-seed …` (the seed of RFC 8032); a file of public keys is one line for each
 //! key, `ed25519 …`. So the public keys of several people are one file, put together with `cat`.
+//!
+//! The counter of a signature is the time of the signing, whole seconds since 1970: what several people and PCs that sign for one
+//! machine have in common, where an output folder is only one of many. `SOURCE_DATE_EPOCH` stands for the clock where it
+//! is set, so that a build gives the same bytes again.
 
 use std::ops::Range;
 use std::path::Path;
 
 use ed25519_dalek::{Signer as _, SigningKey};
-use truepath_core::image::{DeviceClass, DeviceClasses, PublicKey, sign, signed_bytes};
+use truepath_core::image::{DeviceClass, DeviceClasses, KeyId, PublicKey, sign, signed_bytes};
 use truepath_ground::diagnostics::{Failure, InputError, Source};
 
 #[cfg(unix)]
 use crate::codes::K022;
-use crate::codes::{K020, K021};
+use crate::codes::{K020, K021, K023};
 
 /// The word before a seed.
 const PRIVATE: &str = "ed25519-seed";
 /// The word before a public key.
 const PUBLIC: &str = "ed25519";
 
-/// Somebody's private key, and the classes of device that images are signed for.
+/// Somebody's private key, the classes of device that images are signed for, and the counter they get.
 #[derive(Clone, Debug)]
 pub struct Signer {
     key: SigningKey,
     /// The classes.
     pub classes: DeviceClasses,
+    /// The counter: above that of every image of the same pass that was signed before.
+    pub counter: u32,
 }
 
 /// What a command that writes images says of their signature.
@@ -37,15 +43,20 @@ pub struct SignFlags {
     /// Sign for devices of these classes only.
     #[arg(long = "for", value_name = "CLASS", value_delimiter = ',', value_parser = class, requires = "sign")]
     pub classes: Vec<DeviceClass>,
+    /// Counter of the signature, in place of the time in seconds since 1970: a device takes none below one that was in use.
+    #[arg(long, value_name = "N", requires = "sign")]
+    pub counter: Option<u32>,
 }
 
 impl SignFlags {
     /// Who signs, if anybody does.
     ///
     /// # Errors
-    /// As [`Signer::read`].
+    /// As [`Signer::read`], and `K023`.
     pub fn signer(&self) -> Result<Option<Signer>, InputError> {
-        self.sign.as_deref().map(|file| Signer::read(file, &self.classes)).transpose()
+        let Some(file) = self.sign.as_deref() else { return Ok(None) };
+        let counter = self.counter.map_or_else(now, Ok)?;
+        Ok(Some(Signer { counter, ..Signer::read(file, &self.classes)? }))
     }
 }
 
@@ -58,12 +69,20 @@ pub fn class(text: &str) -> Result<DeviceClass, String> {
     DeviceClass::ALL.into_iter().find(|class| class.name() == text).ok_or_else(|| format!("one of {}", names()))
 }
 
+/// The number of a key from its digits.
+///
+/// # Errors
+/// What it looks like.
+pub fn key_id(text: &str) -> Result<KeyId, String> {
+    unhex(text).map(KeyId).ok_or_else(|| "16 hexadecimal digits".to_owned())
+}
+
 impl Signer {
-    /// A key from its seed; signs for every class.
+    /// A key from its seed; signs for every class, with the least counter.
     pub fn of_seed(seed: &[u8; 32]) -> Self {
-        Self { key: SigningKey::from_bytes(seed), classes: DeviceClasses::ALL }
+        Self { key: SigningKey::from_bytes(seed), classes: DeviceClasses::ALL, counter: 0 }
     }
-    /// Reads a private key; it signs for `classes`, for all without any.
+    /// Reads a private key; it signs for `classes`, for all without any, with the least counter.
     ///
     /// # Errors
     /// `F001` and `K020` to `K022`.
@@ -98,10 +117,35 @@ impl Signer {
     /// The bytes are no image, which those who write one have seen to.
     pub fn signed(&self, image: &[u8]) -> Result<Vec<u8>, Failure> {
         let mut bytes = vec![0; signed_bytes(image)];
-        sign(image, &self.public(), self.classes, |message| self.key.sign(message).to_bytes(), &mut bytes)
-            .map_err(|error| Failure::Internal(error.to_string()))?;
+        sign(
+            image,
+            &self.public(),
+            self.classes,
+            self.counter,
+            |message| self.key.sign(message).to_bytes(),
+            &mut bytes,
+        )
+        .map_err(|error| Failure::Internal(error.to_string()))?;
         Ok(bytes)
     }
+}
+
+/// The time, as the counter of a signature.
+///
+/// # Errors
+/// `K023`.
+pub fn now() -> Result<u32, InputError> {
+    if let Some(stated) = std::env::var_os("SOURCE_DATE_EPOCH") {
+        let stated = stated.to_string_lossy();
+        let expected = "whole seconds since 1970, up to 4294967295";
+        return stated.parse().map_err(|_| K023.error(format!("SOURCE_DATE_EPOCH is {stated:?}"), expected));
+    }
+    // Nobody signs in a browser, which has no such clock.
+    #[cfg(not(target_family = "wasm"))]
+    let seconds = std::time::SystemTime::UNIX_EPOCH.elapsed().unwrap_or_default().as_secs();
+    #[cfg(target_family = "wasm")]
+    let seconds = 0u64;
+    Ok(u32::try_from(seconds).unwrap_or(u32::MAX))
 }
 
 /// The text of a file with one public key.
@@ -172,10 +216,13 @@ fn hex(bytes: &[u8; 32]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn unhex(digits: &str) -> Option<[u8; 32]> {
-    let digits: &[u8; 64] = digits.as_bytes().try_into().ok()?;
-    let mut bytes = [0; 32];
-    for (byte, pair) in bytes.iter_mut().zip(digits.as_chunks::<2>().0) {
+fn unhex<const BYTES: usize>(digits: &str) -> Option<[u8; BYTES]> {
+    let (pairs, []) = digits.as_bytes().as_chunks::<2>() else { return None };
+    let mut bytes = [0; BYTES];
+    if pairs.len() != BYTES {
+        return None;
+    }
+    for (byte, pair) in bytes.iter_mut().zip(pairs) {
         let value = |digit: u8| char::from(digit).to_digit(16);
         *byte = (value(pair[0])? << 4 | value(pair[1])?) as u8;
     }

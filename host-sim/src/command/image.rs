@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use truepath_core::image::{
-    DeviceClass, Image, ImageError, KeyRing, KeyRingError, PublicKey, SignatureError, Signed, dump, verify,
+    DeviceClass, Image, ImageError, KeyId, KeyRing, KeyRingError, PublicKey, SignatureError, Signed, dump, verify,
 };
 use truepath_ground::codes::C001;
 use truepath_ground::diagnostics::{Failure, InputError};
 use truepath_ground::files;
 use truepath_ground::output::write_file;
-use truepath_job::signing::{Signer, class, read_public};
+use truepath_job::signing::{Signer, class, now, read_public};
 
 use crate::terminal::{Terminal, print};
 
@@ -55,6 +55,9 @@ enum Task {
         /// Sign for devices of these classes only: board, linuxcnc, bench.
         #[arg(long = "for", value_name = "CLASS", value_delimiter = ',', value_parser = class)]
         classes: Vec<DeviceClass>,
+        /// Counter of the signature. [default: the time in seconds since 1970, or one more than the image has]
+        #[arg(long, value_name = "N")]
+        counter: Option<u32>,
         /// The signed image.
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
@@ -68,8 +71,8 @@ enum Task {
 pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure> {
     let file = match (&options.task, &options.file) {
         (Some(Task::Verify { file, key, class }), _) => return verified(file, key, *class, terminal),
-        (Some(Task::Sign { file, key, classes, output, force }), _) => {
-            return signed(file, &Signer::read(key, classes)?, (output, *force), terminal);
+        (Some(Task::Sign { file, key, classes, counter, output, force }), _) => {
+            return signed(file, (Signer::read(key, classes)?, *counter), (output, *force), terminal);
         }
         (None, Some(file)) => file,
         (None, None) => return Err(Failure::Internal("an image without a name".to_owned())),
@@ -107,10 +110,10 @@ fn verified(file: &Path, keys: &[PathBuf], class: Option<DeviceClass>, terminal:
     let signed = Signed::of(&bytes).ok_or_else(|| untrusted(SignatureError::Missing))?;
     let any = DeviceClass::ALL.into_iter().find(|&one| signed.classes.holds(one));
     let class = class.or(any).unwrap_or(DeviceClass::Board);
-    let key = verify(&bytes, &ring, class).map_err(untrusted)?.to_string();
-    let classes = signed.classes.to_string();
-    terminal
-        .tell(&serde_json::json!({ "key": key, "for": classes }), || format!("signed with key {key} for {classes}\n"))
+    let Signed { key, classes, counter, .. } = verify(&bytes, &ring, class).map_err(untrusted)?;
+    let (key, classes) = (key.to_string(), classes.to_string());
+    let value = serde_json::json!({ "key": key, "for": classes, "counter": counter });
+    terminal.tell(&value, || format!("signed with key {key} for {classes}, counter {counter}\n"))
 }
 
 fn refused_key(error: KeyRingError, key: &PublicKey, path: &Path) -> InputError {
@@ -126,17 +129,35 @@ fn refused_key(error: KeyRingError, key: &PublicKey, path: &Path) -> InputError 
     }
 }
 
-/// Writes the signed form of an image.
-fn signed(file: &Path, signer: &Signer, to: (&Path, bool), terminal: &Terminal) -> Result<(), Failure> {
+/// Writes the signed form of an image. One that is signed already gets a higher counter, whatever the clock says: this is
+/// the way back to an image that devices refuse as too old.
+fn signed(
+    file: &Path,
+    (mut signer, counter): (Signer, Option<u32>),
+    to: (&Path, bool),
+    terminal: &Terminal,
+) -> Result<(), Failure> {
     let bytes = read(file)?;
     check(&bytes, file)?;
+    let before = Signed::of(&bytes).map(|signed| (signed.key, signed.counter));
+    let least = before.map_or(0, |(_, counter)| counter.saturating_add(1));
+    signer.counter = counter.map_or_else(|| now().map(|now| now.max(least)), Ok)?;
+    let counter = signer.counter;
     let bytes = signer.signed(&bytes)?;
     let crc = Image::new_checked(&bytes).map_err(|e| Failure::Internal(e.to_string()))?.crc();
     let (output, force) = to;
     write_file(output, force, &bytes)?;
     let (key, classes) = (signer.public().id().to_string(), signer.classes.to_string());
-    let value = serde_json::json!({ "key": key, "for": classes, "crc": format!("{crc:08x}"), "file": output });
-    terminal.tell(&value, || format!("image {crc:08x} signed with key {key} for {classes}: {}\n", output.display()))
+    let name = |(key, counter): (KeyId, u32)| serde_json::json!({ "key": key.to_string(), "counter": counter });
+    let value = serde_json::json!({ "key": key, "for": classes, "counter": counter, "before": before.map(name),
+        "crc": format!("{crc:08x}"), "file": output });
+    let instead = before.map_or_else(String::new, |(key, counter)| format!(", in place of {counter} by key {key}"));
+    terminal.tell(&value, || {
+        format!(
+            "image {crc:08x} signed with key {key} for {classes}, counter {counter}{instead}: {}\n",
+            output.display()
+        )
+    })
 }
 
 /// The bytes of an image file.

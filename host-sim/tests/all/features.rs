@@ -290,14 +290,15 @@ fn every_command_takes_the_feature_and_writes_what_it_chose() {
             probe: Some(probe.clone()),
             output: out.clone(),
             route: Some(route),
-            sign: SignFlags { sign: Some(at("shop.key")), classes: vec![] },
+            sign: SignFlags { sign: Some(at("shop.key")), counter: Some(77), ..SignFlags::default() },
             ..correct::Options::default()
         };
         correct::run(&options, &mut |_| ()).unwrap();
         // Every image that is written is signed.
         for name in files.iter().filter(|name| name.ends_with(".tpi")) {
             let bytes = std::fs::read(out.join(name)).unwrap();
-            assert_eq!(verify(&bytes, &keys, DeviceClass::Board), Ok(signer.public().id()), "{name}");
+            let signed = verify(&bytes, &keys, DeviceClass::Board).unwrap();
+            assert_eq!((signed.key, signed.counter), (signer.public().id(), 77), "{name}");
         }
         assert!(files.iter().all(|name| out.join(name).exists()), "{route:?}");
         let summary: serde_json::Value =

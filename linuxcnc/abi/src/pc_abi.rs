@@ -132,6 +132,33 @@ pub extern "C" fn truepath_pc_returned(config: &mut Config) -> *const u8 {
     config.returned().map_or(core::ptr::null(), <[u8]>::as_ptr)
 }
 
+/// See [`Config::trust`]. 0, or the number of the line that is no key, or 2³² - 1 if the file has none.
+///
+/// # Safety
+/// `count` bytes can be read at `keys`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn truepath_pc_trust(config: &mut Config, keys: *const u8, count: usize) -> u32 {
+    // SAFETY: the caller's promise.
+    let keys = unsafe { core::slice::from_raw_parts(keys, count) };
+    config.trust(keys).err().unwrap_or(0)
+}
+
+/// See [`Config::count`].
+///
+/// # Safety
+/// `count` bytes can be read at `image`, and nobody changes them meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn truepath_pc_count(
+    config: &mut Config,
+    image: *const u8,
+    count: usize,
+    file: &mut [u8; LEDGER_BYTES],
+) -> usize {
+    // SAFETY: the caller's promise.
+    let image = unsafe { core::slice::from_raw_parts(image, count) };
+    config.count(image, file)
+}
+
 /// See [`Config::spend`].
 #[unsafe(no_mangle)]
 pub extern "C" fn truepath_pc_spend(config: &mut Config, file: &mut [u8; LEDGER_BYTES]) -> usize {

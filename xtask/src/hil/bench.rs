@@ -96,6 +96,16 @@ impl Bench {
         Ok(setpoints)
     }
 
+    /// What a device with a key has to refuse, over a link of QEMU; gives how much was tried and how much of it refused.
+    ///
+    /// # Errors
+    /// The device took or refused something that it must not.
+    pub fn trust(&self, link: &str) -> Result<(usize, usize), Failure> {
+        let image = self.parts.image("corner");
+        let board = ["--trust", "--board", "virtual", "--link", link, "--elf", &self.firmware];
+        self.debug.trust(&[&[image.as_str()], &board[..]].concat())
+    }
+
     /// The image of a part made in QEMU.
     ///
     /// # Errors

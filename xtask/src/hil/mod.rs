@@ -1,5 +1,5 @@
 //! The emulated bench: the same runs on the host (with all, also in release) and on the release image in QEMU, compared by
-//! digest; a run over the UARTs; the correction made on the device; a short campaign of faults.
+//! digest; a run over the UARTs; what a device with a key refuses; the correction made on the device; a short campaign of faults.
 //!
 //! Nothing here depends on how fast this machine is.
 
@@ -44,6 +44,11 @@ pub fn check(all: bool) -> Outcome {
     for (part, arguments) in OVER_UART {
         let run = bench.emulated(part, "uart", arguments)?;
         println!("{} setpoints over the UARTs: as the host; {} parts armed", run.setpoints, run.armed);
+    }
+    // Over the UARTs it is a real link, over the shared memory what the long runs go by.
+    for link in ["uart", "bulk"] {
+        let (tried, refused) = bench.trust(link)?;
+        println!("{tried} images and keys over {link}: {refused} refused, each with its reason");
     }
     // Over the UARTs setpoints go on while the device computes.
     let on_board: &[_] = if all { &[("corner", "uart"), ("pocket", "bulk")] } else { &[("corner", "uart")] };

@@ -37,6 +37,18 @@ impl Program {
     }
 }
 
+impl Program {
+    /// `truepath hil --trust`: how much was tried, how much of it refused.
+    pub fn trust(&self, arguments: &[&str]) -> Result<(usize, usize), Failure> {
+        let json = read(program(&self.0).arg("hil").args(arguments).arg("--json"))?;
+        let count = |text| json.matches(text).count();
+        match (count("\"given\":"), count("\"refused\": \"")) {
+            (0, _) => Err(Failure::found("truepath hil --trust said something else than a report")),
+            counts => Ok(counts),
+        }
+    }
+}
+
 impl Run {
     fn parse(json: String) -> Option<Self> {
         let number = |key| value(&json, key)?.parse().ok();

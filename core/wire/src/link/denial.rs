@@ -124,7 +124,10 @@ impl fmt::Display for Denial {
             Self::Untrusted(error) => error.fmt(f),
             Self::NotPresent => f.write_str("nobody is at the device: its button was not held at the last reset"),
             Self::KeysFull => {
-                write!(f, "the device trusts {MOST_KEYS} keys already, or has known {MOST_KEYS_EVER}, those revoked among them")
+                write!(
+                    f,
+                    "the device trusts {MOST_KEYS} keys already, or has known {MOST_KEYS_EVER}, those revoked among them"
+                )
             }
         }
     }

@@ -5,8 +5,8 @@ use ed25519_dalek::{Signer, SigningKey};
 use part::{nodes, settings, straight};
 use proptest::prelude::*;
 use truepath_wire::image::{
-    DeviceClass, DeviceClasses, Image, ImageError, KeyId, KeyRing, KeyRingError, MOST_KEYS, MOST_KEYS_EVER, PublicKey, SIGNATURE_BYTES,
-    SignatureError, Signed, build, crc32, image_bytes, sign, signed_bytes, verify,
+    DeviceClass, DeviceClasses, Image, ImageError, KeyId, KeyRing, KeyRingError, MOST_KEYS, MOST_KEYS_EVER, PublicKey,
+    SIGNATURE_BYTES, SignatureError, Signed, build, crc32, image_bytes, sign, signed_bytes, verify,
 };
 
 const CLASS: DeviceClass = DeviceClass::Board;
@@ -67,8 +67,10 @@ fn a_signed_image_is_an_image_with_the_same_content_and_another_name() {
     assert_eq!(before.settings(), after.settings());
     assert!(before.nodes().eq(after.nodes()));
     assert_ne!(before.crc(), after.crc());
-    assert_eq!(verify(&bytes, &ring(&[&owner(2), &key]), CLASS).map(|found| (found.key, found.counter)),
-        Ok((public(&key).id(), COUNTER)));
+    assert_eq!(
+        verify(&bytes, &ring(&[&owner(2), &key]), CLASS).map(|found| (found.key, found.counter)),
+        Ok((public(&key).id(), COUNTER))
+    );
 }
 
 #[test]

@@ -10,13 +10,14 @@ use std::time::Duration;
 use arm::ArmOptions;
 use clap::{Args, Subcommand};
 use truepath_bench::{BenchError, Client, Ingredients, Line, compute};
+use truepath_core::image::KeyId;
 use truepath_core::link::{Ask, Counters, DeviceStatus, Slot};
 use truepath_ground::diagnostics::{Failure, Source};
 use truepath_ground::output::write_file;
 use truepath_job::job::JobFile;
 use truepath_job::levels;
 use truepath_job::pass::Pass;
-use truepath_job::signing::read_public;
+use truepath_job::signing::{key_id, read_public};
 
 use super::hil::Counts;
 use super::image;
@@ -114,10 +115,16 @@ enum Task {
     },
     /// Whose images the device takes.
     Keys,
-    /// Lets the device trust the keys of a file, for ever; its button must have been held at its last reset.
+    /// Lets the device trust the keys of a file; its button must have been held at its last reset.
     Provision {
         /// A file of public keys.
         file: PathBuf,
+    },
+    /// Lets the device trust a key no more, for ever; its button must have been held at its last reset.
+    Revoke {
+        /// Number of the key, 16 hexadecimal digits, as truepath device keys shows it.
+        #[arg(value_name = "KEYID", value_parser = key_id)]
+        key: KeyId,
     },
     /// Resets the device.
     Restart {
@@ -258,6 +265,11 @@ pub(crate) fn main(options: &Options, terminal: &Terminal) -> Result<(), Failure
             for key in read_public(file)? {
                 client.done(Ask::Provision(key))?;
             }
+            let trust = trust(&mut client)?;
+            terminal.tell(&trust, || trust.words())
+        }
+        Task::Revoke { key } => {
+            client.done(Ask::Revoke(*key))?;
             let trust = trust(&mut client)?;
             terminal.tell(&trust, || trust.words())
         }

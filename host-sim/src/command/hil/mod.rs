@@ -6,6 +6,7 @@ mod onlooker;
 mod place;
 mod report;
 mod run;
+mod trust;
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -18,7 +19,7 @@ use truepath_ground::diagnostics::{Failure, InputError};
 
 pub use attack::{AttackReport, Length};
 pub use on_board::{OnBoard, on_board};
-pub use place::{Kind, open};
+pub use place::{Kind, attended, open};
 pub use report::{Counts, Report};
 pub use run::{Options, SILENCE_US, STREAM_HZ, Source, recorded, run, run_watched, settings};
 
@@ -49,6 +50,10 @@ pub struct Arguments {
     /// Attack the host's own servo: random images, settings, controllers and cables, judged by the safety contract alone.
     #[arg(long, conflicts_with_all = ["image", "job", "setpoints", "random", "count", "link", "rate"])]
     attack: bool,
+    /// Try on the configuration link what a device with a key has to refuse. The device is to be open, with its button held at
+    /// its last reset; afterwards it takes no image any more.
+    #[arg(long, requires = "image", conflicts_with_all = ["attack", "job", "setpoints", "random", "count", "rate"])]
+    trust: bool,
     /// Setpoints of the attack. [default: 1000000]
     #[arg(long, value_name = "N", requires = "attack", conflicts_with = "seconds")]
     ticks: Option<u64>,
@@ -120,6 +125,12 @@ enum LinkArgument {
 pub(crate) fn main(arguments: &Arguments, terminal: &Terminal) -> Result<(), Failure> {
     if arguments.attack {
         return attacked(arguments, terminal);
+    }
+    if let (true, Some(path)) = (arguments.trust, &arguments.image) {
+        let bytes = image::read(path)?;
+        image::check(&bytes, path)?;
+        let report = trust::run(&mut *attended(&kind(arguments)?)?, &bytes)?;
+        return terminal.tell(&report, || report.words());
     }
     let options = options(arguments)?;
     let given = arguments.image.as_deref().map(|path| {

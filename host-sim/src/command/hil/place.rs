@@ -40,8 +40,24 @@ impl Kind {
 /// # Errors
 /// Emulator, firmware or port are missing.
 pub fn open(kind: &Kind, window: u32, paced: bool) -> Result<Box<dyn Board>, BenchError> {
-    let start = |elf: &Option<PathBuf>| Emulator::start(&find_elf(elf.as_deref())?);
+    opened(kind, window, paced, false)
+}
+
+/// Opens a board with its button held, so that keys can be provisioned. At a real one somebody has held it.
+///
+/// # Errors
+/// As [`open`].
+pub fn attended(kind: &Kind) -> Result<Box<dyn Board>, BenchError> {
+    opened(kind, 1, false, true)
+}
+
+fn opened(kind: &Kind, window: u32, paced: bool, held: bool) -> Result<Box<dyn Board>, BenchError> {
+    let start = |elf: &Option<PathBuf>| {
+        let elf = find_elf(elf.as_deref())?;
+        if held { Emulator::attended(&elf) } else { Emulator::start(&elf) }
+    };
     Ok(match kind {
+        Kind::Host if held => Box::new(BulkBoard::new(InProcess::attended()?)),
         Kind::Host => Box::new(BulkBoard::new(InProcess::start()?)),
         Kind::VirtualBulk { elf } => Box::new(BulkBoard::new(start(elf)?)),
         Kind::VirtualUart { elf } => {

@@ -43,8 +43,10 @@ pub fn identity(model: &ViewModel) -> String {
     if let Some(up) = up {
         text += &format!("  up {}", time(up));
     }
-    if info.trust.as_ref().is_some_and(|trust| trust.open) {
-        text += "  OPEN";
+    match &info.trust {
+        Some(trust) if trust.open => text += "  OPEN",
+        Some(trust) if trust.keys.is_empty() => text += "  CLOSED",
+        _ => {}
     }
     if matches!(info.last_reset, ResetCause::Watchdog | ResetCause::BrownOut) {
         text += &format!("  (last reset: {:?})", info.last_reset);

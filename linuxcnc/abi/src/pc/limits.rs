@@ -1,7 +1,7 @@
 //! The machine's limits, from the parameters of the component, as settings of a rewriter.
 
 use truepath_core::errors::number;
-use truepath_core::image::ImageError;
+use truepath_core::image::{ImageError, SignatureError};
 use truepath_core::rewrite::{AXES, NO_ACCELERATION_CAP, Settings, SettingsError};
 
 use super::pins::JOINTS;
@@ -27,7 +27,8 @@ pub struct Limits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Joints(pub [u8; JOINTS]);
 
-/// Why an image is not used. Numbers stay the same from version to version; those below 32 are the digits of [`ImageError::code`].
+/// Why an image is not used. Numbers stay the same from version to version; those below 32 are the digits of [`ImageError::code`]
+/// and [`SignatureError::code`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OfferError {
     /// The bytes are no image.
@@ -41,6 +42,10 @@ pub enum OfferError {
     Settings(SettingsError),
     /// The image before is not yet taken.
     Busy,
+    /// There are keys, and it is not signed with one of them for LinuxCNC, or is older than one that was in use.
+    Untrusted(SignatureError),
+    /// The ledger does not remember its counter: it could not be written.
+    NotRemembered,
 }
 
 impl OfferError {
@@ -51,6 +56,8 @@ impl OfferError {
             Self::Limits { joint } => (joint as u32).saturating_add(32),
             Self::Settings(_) => 40,
             Self::Busy => 41,
+            Self::Untrusted(error) => number(error.code()) as u32,
+            Self::NotRemembered => 42,
         }
     }
 }

@@ -17,6 +17,7 @@ mod pins;
 mod servo;
 mod setpoint;
 mod shift;
+mod trust;
 
 pub use arming::{Refused, Running};
 pub use config::Config;
@@ -27,10 +28,13 @@ pub use pins::{Inputs, JOINTS, Outputs, Switches};
 pub use servo::Servo;
 pub use setpoint::{PROBING, Signals, WorkFrame};
 pub use shift::Shift;
+pub use trust::NO_KEY;
 
 use core::sync::atomic::AtomicU32;
 
-use truepath_core::rewrite::{Rewriter, Settings, SpentList};
+use truepath_core::rewrite::{Rewriter, Settings};
+
+use ledger::Remembered;
 
 /// Both sides, on mailboxes that live as long as they do. The ledger is the content of its file, nothing for a new one.
 ///
@@ -42,9 +46,9 @@ pub fn open(
     joints: Joints,
     ledger: &[u8],
 ) -> Result<(Servo, Config), LedgerError> {
-    let spent = if ledger.is_empty() { SpentList::EMPTY } else { ledger::read(ledger)? };
+    let now = if ledger.is_empty() { Remembered::default() } else { ledger::read(ledger)? };
     // The settings are in range, and without an image there is nothing else that could be refused.
     let bare = Rewriter::new(Settings::at_1_khz(), None).map_err(|_| LedgerError::Damaged)?;
     let (servo, config) = mailboxes.split();
-    Ok((Servo::new(servo, joints, period_ns, bare, spent), Config::new(config, joints, period_ns, spent)))
+    Ok((Servo::new(servo, joints, period_ns, bare, now.spent), Config::new(config, joints, period_ns, now)))
 }

@@ -11,6 +11,7 @@ mod pc_once;
 mod pc_properties;
 mod pc_rules;
 mod pc_support;
+mod pc_trust;
 mod remote;
 mod remote_support;
 // Shared with the tests of the wire, which use more of it.
