@@ -5,10 +5,12 @@
 //! |---|---|
 //! | `truepath-VERSION-x86_64-linux.tar.gz` | the program, linked statically, and what belongs to it |
 //! | `truepath_VERSION_amd64.deb` | the same for Debian and Ubuntu |
+//! | `truepath-VERSION-aarch64-linux.tar.gz`, `truepath_VERSION_arm64.deb` | both for 64-bit ARM ([`aarch64`]) |
 //! | `truepath-linuxcnc_VERSION_amd64.deb` | component, M-codes and the operator's side for LinuxCNC, built for the installed one |
 //! | `truepath-VERSION-cp39-abi3-….whl` | the package for Python ([`wheel`]) |
 //! | `truepath-VERSION.cdx.json` | every crate that is linked in, with version and licence |
 //! | `truepath-python-VERSION.cdx.json` | the same of the wheel |
+//! | `truepath-core-VERSION.crate` and the four below it | the core as a registry takes it, each built from its own archive |
 //! | `SHA256SUMS` | of all of them |
 //!
 //! [`check`] does the same with the program of the tests, which is there already, then installs the packages into a root
@@ -17,9 +19,11 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use serde_json::{Value, json};
 
+use crate::aarch64;
 use crate::linuxcnc;
 use crate::repository::{self, Profile, cargo, copy, make_folder, program, read, root, run, target, write};
 use crate::step::{Failure, Outcome, Passed};
@@ -30,6 +34,9 @@ const TRIPLE: &str = "x86_64-unknown-linux-gnu";
 /// Of the Debian packages.
 const MAINTAINER: &str = "The Truepath developers <truepath@localhost>";
 
+/// The crates of the core, each after those that it needs.
+const CRATES: [&str; 5] = ["truepath-units", "truepath-rs274", "truepath-wire", "truepath-model", "truepath-core"];
+
 /// Which program goes into the packages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Build {
@@ -37,6 +44,15 @@ enum Build {
     Dist,
     /// That of the tests.
     Dev,
+}
+
+impl Build {
+    fn profile(self) -> &'static str {
+        match self {
+            Self::Dist => "dist",
+            Self::Dev => "dev",
+        }
+    }
 }
 
 /// Makes the packages.
@@ -61,9 +77,13 @@ pub fn check() -> Outcome {
     for entry in sorted(&folder)?.iter().filter(|entry| entry.extension().is_some_and(|e| e == "deb")) {
         installed_used_removed(entry, &place)?;
     }
-    unpacked_used(&folder)?;
+    let files = unpacked_used(&folder, "x86_64", &|truepath| program(truepath))?;
+    if archive(&folder, "aarch64").exists() {
+        // Another processor, with another library of mathematics: the same files.
+        same_files(&files, &unpacked_used(&folder, "aarch64", &aarch64::emulated)?)?;
+    }
     let wheel = wheel::in_folder(&folder).ok_or_else(|| Failure::Missing(wheel::remedy()))?;
-    wheel::check(&wheel, &folder.join(archived()).join("bin/truepath"))?;
+    wheel::check(&wheel, &folder.join(archived("x86_64")).join("bin/truepath"))?;
     Ok(Passed::Done)
 }
 
@@ -77,41 +97,47 @@ fn packages(folder: &Path, build: Build) -> Result<(), Failure> {
     let bill = folder.join(format!("truepath-{version}.cdx.json"));
     write(&bill, &serde_json::to_vec_pretty(&bill_of_materials("truepath", version)?).unwrap_or_default())?;
 
-    // The archive: as below /usr/local.
-    let name = archived();
-    let usr = stage.join(&name);
-    filled(&usr, &binary, &bill)?;
-    let archive = folder.join(format!("{name}.tar.gz"));
-    // The same bytes from the same files, whoever packs them and when.
-    let same = ["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0", "--create", "--gzip"];
-    run(program("tar").args(same).arg("--file").arg(&archive).arg("--directory").arg(&stage).arg(&name))?;
-
-    let tree = stage.join("deb");
-    filled(&tree.join("usr"), &binary, &bill)?;
-    let about = "Milling contours as if machine and cutter were rigid\n Corrects finishing contours of milling programs \
-                 for the deflection of machine and\n cutter, from a few probe touches.\n";
     // What the program is linked with, where it is not linked statically.
     let needs = if build == Build::Dev { "libc6" } else { "" };
-    deb(&tree, &folder.join(format!("truepath_{version}_amd64.deb")), "truepath", needs, about)?;
+    let native = Native { binary: &binary, bill: &bill };
+    native.packed((folder, &stage), &binary, ["x86_64", "amd64"], needs)?;
+    match aarch64::built(build.profile())? {
+        Some(other) => native.packed((folder, &stage), &other, ["aarch64", "arm64"], "")?,
+        None => eprintln!("    nothing for 64-bit ARM: {}", aarch64::remedy()),
+    }
 
     if let Some(modules) = linuxcnc::packaged(&stage.join("linuxcnc"))? {
         let about = "Truepath for LinuxCNC\n The real-time component that corrects in the servo thread, M-codes and the \
                      operator's side.\n";
         let needs = format!("truepath (= {version}), linuxcnc-uspace (= {modules}), python3");
         let file = folder.join(format!("truepath-linuxcnc_{version}_amd64.deb"));
-        deb(&stage.join("linuxcnc"), &file, "truepath-linuxcnc", &needs, about)?;
+        deb(&stage.join("linuxcnc"), &file, ["truepath-linuxcnc", "amd64"], &needs, about)?;
     }
     let bill = folder.join(format!("truepath-python-{version}.cdx.json"));
     write(&bill, &serde_json::to_vec_pretty(&bill_of_materials("truepath-python", version)?).unwrap_or_default())?;
-    let profile = if build == Build::Dev { "dev" } else { "dist" };
-    if wheel::packaged(folder, profile, &bill)?.is_none() {
+    if wheel::packaged(folder, build.profile(), &bill)?.is_none() {
         eprintln!("    no wheel: {}", wheel::remedy());
         fs::remove_file(&bill).map_err(|e| Failure::found(e.to_string()))?;
     }
+    crates(folder, version)?;
     fs::remove_dir_all(&stage).map_err(|e| Failure::found(e.to_string()))?;
     let names: Vec<_> = sorted(folder)?.iter().filter_map(|entry| entry.file_name().map(ToOwned::to_owned)).collect();
     let sums = read(program("sha256sum").arg("--").args(names).current_dir(folder))?;
     write(&folder.join("SHA256SUMS"), sums.as_bytes())
+}
+
+/// Packs the crates of the core; cargo builds each from its archive and those before it.
+fn crates(folder: &Path, version: &str) -> Result<(), Failure> {
+    let mut command = cargo();
+    // What is packed is what lies here, committed or not, as with every other package.
+    command.args(["package", "--quiet", "--locked", "--allow-dirty"]);
+    command.args(CRATES.iter().flat_map(|name| ["--package", name]));
+    run(&mut command)?;
+    for name in CRATES {
+        let file = format!("{name}-{version}.crate");
+        copy(&target().join("package").join(&file), &folder.join(&file), 0o644)?;
+    }
+    Ok(())
 }
 
 /// Builds the program.
@@ -132,38 +158,70 @@ fn binary(build: Build) -> Result<PathBuf, Failure> {
     Ok(target().join(TRIPLE).join("dist/truepath"))
 }
 
-/// Fills what is `/usr` or `/usr/local` where it is installed.
-fn filled(usr: &Path, binary: &Path, bill: &Path) -> Result<(), Failure> {
-    let to = |name: &str| usr.join(name);
-    copy(binary, &to("bin/truepath"), 0o755)?;
-    let made = to("share/man/man1");
-    run(program(binary).args(["--quiet", "man", "--output"]).arg(&made))?;
-    for page in sorted(&made)? {
-        run(program("gzip").args(["-9", "--no-name"]).arg(page))?;
+/// What lies in every package beside the program: what the one of this computer says, and the list of its parts.
+struct Native<'n> {
+    binary: &'n Path,
+    bill: &'n Path,
+}
+
+impl Native<'_> {
+    /// Packs a program as an archive and for Debian; a processor has a name in either.
+    fn packed(
+        &self,
+        (folder, stage): (&Path, &Path),
+        program_of_it: &Path,
+        [processor, architecture]: [&str; 2],
+        needs: &str,
+    ) -> Result<(), Failure> {
+        // The archive: as below /usr/local.
+        let name = archived(processor);
+        self.filled(&stage.join(&name), program_of_it)?;
+        // The same bytes from the same files, whoever packs them and when.
+        let same = ["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0", "--create", "--gzip"];
+        let file = archive(folder, processor);
+        run(program("tar").args(same).arg("--file").arg(file).arg("--directory").arg(stage).arg(&name))?;
+        let tree = stage.join(architecture);
+        self.filled(&tree.join("usr"), program_of_it)?;
+        let about = "Milling contours as if machine and cutter were rigid\n Corrects finishing contours of milling \
+                     programs for the deflection of machine and\n cutter, from a few probe touches.\n";
+        let file = folder.join(format!("truepath_{}_{architecture}.deb", env!("CARGO_PKG_VERSION")));
+        deb(&tree, &file, ["truepath", architecture], needs, about)
     }
-    for (shell, name) in [
-        ("bash", "share/bash-completion/completions/truepath"),
-        ("zsh", "share/zsh/vendor-completions/_truepath"),
-        ("fish", "share/fish/vendor_completions.d/truepath.fish"),
-    ] {
-        let script = read(program(binary).args(["completions", shell]))?;
-        write(&to(name), script.as_bytes())?;
+
+    /// Fills what is `/usr` or `/usr/local` where it is installed.
+    fn filled(&self, usr: &Path, program_of_it: &Path) -> Result<(), Failure> {
+        let Self { binary, bill } = *self;
+        let to = |name: &str| usr.join(name);
+        copy(program_of_it, &to("bin/truepath"), 0o755)?;
+        let made = to("share/man/man1");
+        run(program(binary).args(["--quiet", "man", "--output"]).arg(&made))?;
+        for page in sorted(&made)? {
+            run(program("gzip").args(["-9", "--no-name"]).arg(page))?;
+        }
+        for (shell, name) in [
+            ("bash", "share/bash-completion/completions/truepath"),
+            ("zsh", "share/zsh/vendor-completions/_truepath"),
+            ("fish", "share/fish/vendor_completions.d/truepath.fish"),
+        ] {
+            let script = read(program(binary).args(["completions", shell]))?;
+            write(&to(name), script.as_bytes())?;
+        }
+        let papers = "share/doc/truepath";
+        for file in ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"] {
+            copy(&root().join(file), &to(&format!("{papers}/{file}")), 0o644)?;
+        }
+        copy(bill, &to(&format!("{papers}/parts.cdx.json")), 0o644)?;
+        let copyright = "Truepath: MIT OR Apache-2.0, see LICENSE-MIT and LICENSE-APACHE.\n\
+                         The crates that are linked in and their licences: parts.cdx.json.\n\
+                         Letters of pages and pictures: Arimo, SIL Open Font License 1.1.\n";
+        write(&to(&format!("{papers}/copyright")), copyright.as_bytes())
     }
-    let papers = "share/doc/truepath";
-    for file in ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"] {
-        copy(&root().join(file), &to(&format!("{papers}/{file}")), 0o644)?;
-    }
-    copy(bill, &to(&format!("{papers}/parts.cdx.json")), 0o644)?;
-    let copyright = "Truepath: MIT OR Apache-2.0, see LICENSE-MIT and LICENSE-APACHE.\n\
-                     The crates that are linked in and their licences: parts.cdx.json.\n\
-                     Letters of pages and pictures: Arimo, SIL Open Font License 1.1.\n";
-    write(&to(&format!("{papers}/copyright")), copyright.as_bytes())
 }
 
 /// A Debian package of a tree.
-fn deb(tree: &Path, file: &Path, name: &str, needs: &str, about: &str) -> Result<(), Failure> {
+fn deb(tree: &Path, file: &Path, [name, architecture]: [&str; 2], needs: &str, about: &str) -> Result<(), Failure> {
     let mut control = format!(
-        "Package: {name}\nVersion: {}\nSection: misc\nPriority: optional\nArchitecture: amd64\nMaintainer: {MAINTAINER}\n",
+        "Package: {name}\nVersion: {}\nSection: misc\nPriority: optional\nArchitecture: {architecture}\nMaintainer: {MAINTAINER}\n",
         env!("CARGO_PKG_VERSION")
     );
     if !needs.is_empty() {
@@ -174,9 +232,14 @@ fn deb(tree: &Path, file: &Path, name: &str, needs: &str, about: &str) -> Result
     run(program("dpkg-deb").args(["--root-owner-group", "--build"]).arg(tree).arg(file).env("SOURCE_DATE_EPOCH", "0"))
 }
 
-/// What the archive holds is in a folder of this name.
-fn archived() -> String {
-    format!("truepath-{}-x86_64-linux", env!("CARGO_PKG_VERSION"))
+/// What the archive for a processor holds is in a folder of this name.
+fn archived(processor: &str) -> String {
+    format!("truepath-{}-{processor}-linux", env!("CARGO_PKG_VERSION"))
+}
+
+/// The archive for a processor, in the folder of packages.
+fn archive(folder: &Path, processor: &str) -> PathBuf {
+    folder.join(format!("{}.tar.gz", archived(processor)))
 }
 
 /// Every crate that is linked into the program or the module of a package, as CycloneDX 1.5 has it.
@@ -227,8 +290,15 @@ fn installed_used_removed(package: &Path, place: &Path) -> Result<(), Failure> {
     let before = files_below(place)?;
     let dpkg = |arguments: &[&str]| {
         let mut command = program("dpkg");
-        // What it needs is installed on this machine, not in that root.
-        command.args(["--force-depends", "--force-not-root", "--force-script-chrootless", "--log=/dev/null", "--root"]);
+        // What it needs is installed on this machine, not in that root; the processor may be another one.
+        command.args([
+            "--force-architecture",
+            "--force-depends",
+            "--force-not-root",
+            "--force-script-chrootless",
+            "--log=/dev/null",
+            "--root",
+        ]);
         command.arg(place).args(arguments);
         command
     };
@@ -238,8 +308,12 @@ fn installed_used_removed(package: &Path, place: &Path) -> Result<(), Failure> {
     if installed.is_empty() {
         return Err(Failure::found(format!("{} installs nothing", package.display())));
     }
+    let architecture = read(program("dpkg-deb").arg("--field").arg(package).arg("Architecture"))?;
     if name.trim() == "truepath" {
-        used(&place.join("usr"))?;
+        let start: &Start =
+            if architecture.trim() == "arm64" { &aarch64::emulated } else { &|truepath| program(truepath) };
+        let part = used(&place.join("usr"), start)?;
+        fs::remove_dir_all(part).map_err(|e| Failure::found(e.to_string()))?;
     }
     run(&mut dpkg(&["--purge", name.trim()]))?;
     let left: Vec<_> =
@@ -247,16 +321,28 @@ fn installed_used_removed(package: &Path, place: &Path) -> Result<(), Failure> {
     if left.is_empty() { Ok(()) } else { Err(Failure::found(format!("{name} leaves {left:?}"))) }
 }
 
-/// Unpacks the archive and uses it.
-fn unpacked_used(folder: &Path) -> Result<(), Failure> {
-    let archive = archived();
-    let name = folder.join(format!("{archive}.tar.gz"));
-    run(program("tar").arg("--extract").arg("--file").arg(name).arg("--directory").arg(folder))?;
-    used(&folder.join(archive))
+/// Unpacks the archive for a processor and uses it, started in its own way; the folder of the part that it corrected.
+fn unpacked_used(folder: &Path, processor: &str, start: &Start) -> Result<PathBuf, Failure> {
+    run(program("tar").arg("--extract").arg("--file").arg(archive(folder, processor)).arg("--directory").arg(folder))?;
+    used(&folder.join(archived(processor)), start)
 }
 
-/// A stranger's first minutes with what lies there: a page of the manual, completions, and a corrected part.
-fn used(usr: &Path) -> Result<(), Failure> {
+/// Makes the command that runs a program.
+type Start = dyn Fn(&Path) -> Command;
+
+/// Whether two folders hold the same files.
+fn same_files(here: &Path, there: &Path) -> Result<(), Failure> {
+    let (names, others) = (files_below(here)?, files_below(there)?);
+    let differs = |name: &&PathBuf| fs::read(here.join(name)).ok() != fs::read(there.join(name)).ok();
+    let different: Vec<&PathBuf> = names.iter().filter(differs).collect();
+    if names == others && different.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::found(format!("{} and {} differ in {different:?}", here.display(), there.display())))
+}
+
+/// A stranger's first minutes with what lies there: a page of the manual, completions, and a corrected part; its folder.
+fn used(usr: &Path, start: &Start) -> Result<PathBuf, Failure> {
     let page =
         read(program("gzip").args(["--decompress", "--stdout"]).arg(usr.join("share/man/man1/truepath-correct.1.gz")))?;
     let completions = usr.join("share/bash-completion/completions/truepath");
@@ -264,15 +350,15 @@ fn used(usr: &Path) -> Result<(), Failure> {
     if !page.contains(".TH truepath-correct") {
         return Err(Failure::found("the page of correct is not one"));
     }
-    let work = target().join("packages-check/part");
+    let work = usr.join("part");
     let _ = fs::remove_dir_all(&work);
     let part = root().join("linuxcnc/sim/programs");
-    let mut command = program(usr.join("bin/truepath"));
+    let mut command = start(&usr.join("bin/truepath"));
     command.env_clear().arg("correct").arg(part.join("corner.toml"));
     command.arg("--probe").arg(part.join("corner-probe-log.txt"));
     run(command.arg("--quiet").arg("--output").arg(&work))?;
     let corrected = fs::metadata(work.join("corrected.nc")).is_ok_and(|data| data.len() > 0);
-    if corrected { Ok(()) } else { Err(Failure::found("the installed program corrected nothing")) }
+    if corrected { Ok(work) } else { Err(Failure::found("the installed program corrected nothing")) }
 }
 
 /// What lies in a folder, by name.

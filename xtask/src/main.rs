@@ -4,6 +4,7 @@
 //! Every check is a step that announces itself. Exit codes: 0 passed, 1 a step failed, 2 wrong command line, 3 a tool
 //! is missing and could not be installed.
 
+mod aarch64;
 mod bench;
 mod checks;
 mod conformance;
