@@ -310,8 +310,7 @@ fn design<'a>(
     }
     warnings.extend(feeds.warnings(mm(correction.sigma_by_points.iter().copied().max().unwrap_or_default())));
     let wall = |nodes| Surface::predicted(&machine, &identified, request.beside, nodes);
-    let (before, after) = rayon::join(|| wall(&[]), || wall(&correction.nodes));
-    let surface = Surfaces { before, after };
+    let surface = Surfaces { before: wall(&[]), after: wall(&correction.nodes) };
     warnings.extend(beyond_tolerance(pass, &remarks, &surface.after));
     Ok(Designed {
         sharp_corners,

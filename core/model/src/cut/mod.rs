@@ -55,4 +55,4 @@ pub use sample::Sample;
 pub use setup::{Coefficients, CutSetup, Helix, Milling, Runout, WallLaw};
 pub use teeth::Teeth;
 pub(crate) use wall::Sought;
-pub use wall::{Envelope, WallError};
+pub use wall::{Displacements, Envelope, WallError};

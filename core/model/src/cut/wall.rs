@@ -22,7 +22,7 @@ pub struct Envelope<'a, D = &'a [Vector]> {
     per_diameter: i64,
 }
 
-/// Who knows how far the cutter is displaced.
+/// Who knows how far the cutter is displaced at a height: a row of displacements, or whoever computes those that are asked for.
 pub trait Displacements {
     /// At a sample, counted from the first that is known; `None` beyond the last.
     fn displacement(&mut self, slot: usize) -> Option<Vector>;
@@ -118,7 +118,7 @@ impl<'a> Envelope<'a> {
 
 impl<'a, D: Displacements> Envelope<'a, D> {
     /// Of the displacements of samples from `from` on.
-    pub(crate) const fn of(path: &'a Path<'a>, from: usize, displacements: D) -> Self {
+    pub const fn of(path: &'a Path<'a>, from: usize, displacements: D) -> Self {
         let radius = path.setup().radius.nm();
         let per_diameter = match (1i64 << 62).checked_div(radius) {
             Some(per) if radius >> 31 == 0 => per,
@@ -128,7 +128,7 @@ impl<'a, D: Displacements> Envelope<'a, D> {
     }
 
     /// As [`error`](Envelope::error).
-    pub(crate) fn read(&mut self, index: usize, guess: usize) -> Option<WallError> {
+    pub fn read(&mut self, index: usize, guess: usize) -> Option<WallError> {
         let path = self.path;
         let mut look = Look::beside(self, index, guess)?;
         let far = if path.is_crowded() { look.by_arc_length(index) } else { look.by_samples(index) };
